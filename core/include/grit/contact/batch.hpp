@@ -1,0 +1,81 @@
+// What passes between the kernel and a contact law: plain arrays, one virtual call a batch.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "grit/vec.hpp"
+
+namespace grit {
+
+/// Candidate pairs are stored in blocks of this many, whatever the width of the machine's registers.
+inline constexpr std::size_t block_size = 8;
+
+/// What one contact does, 64 bytes: force on b [N] and its normal part (> 0 in compression), moment on b about b's
+/// centre [N m] and the overlap [m]. Zero where the pair does not touch.
+struct alignas(64) ContactRow {
+  Row force;   // w: normal force
+  Row moment;  // w: overlap
+};
+
+/// Force [N] and moment [N m] gathered for one body.
+struct alignas(64) BodySum {
+  Row force, moment;
+};
+
+/// What crossing a periodic boundary adds to the position [m] and velocity [m/s] of b. A cell has 27 of them.
+struct ImageShift {
+  Row position, velocity;
+};
+
+/// Candidate pairs of one chunk of bodies. All a's of a chunk belong to it, so no two threads write one sum.
+struct PairBatch {
+  // bodies, by index: centre [m] and radius [m]; velocity [m/s] and 1/mass [1/kg]; spin [rad/s] and 1/inertia
+  const Row* position;
+  const Row* velocity;
+  const Row* spin;
+  // candidates, by index, a multiple of block_size
+  const std::uint32_t* a;
+  const std::uint32_t* b;
+  const std::uint8_t* image;     ///< index into shifts; null without periodic boundaries
+  const std::uint8_t* material;  ///< of each body; null when all are of one material
+  const ImageShift* shifts;
+  std::size_t first_block, last_block;
+  double dt;  ///< s
+  // memory and results
+  double* state;           ///< [block][field][block_size]
+  std::uint8_t* touching;  ///< [block], a bit a lane
+  ContactRow* row;         ///< [candidate]
+  BodySum* sum;            ///< [body]; only a's are added here, b's are gathered from the rows
+  double largest_overlap;  ///< out: largest overlap over the smaller radius
+};
+
+/// One point where a body touches a wall.
+struct WallTouch {
+  Vec3 normal;         ///< unit, from the body into the wall
+  Vec3 normal_before;  ///< the same one step ago; equal to normal when the touch is new
+  Vec3 velocity;       ///< of the wall's surface at the point [m/s]
+  Vec3 spin;           ///< of the wall [rad/s]
+  double overlap;      ///< m, > 0
+  std::uint32_t body;  ///< index
+  std::uint32_t wall;
+  std::uint32_t feature;   ///< stable id of what is touched
+  std::uint32_t material;  ///< of the wall's surface
+};
+
+/// Touches of one chunk of bodies, in the order of their bodies.
+struct WallBatch {
+  const Row* position;
+  const Row* velocity;
+  const Row* spin;
+  const std::uint8_t* material;  ///< of each body; null when all are of one material
+  std::size_t count;
+  const WallTouch* touch;
+  double dt;
+  double* state;    ///< [touch][field]
+  ContactRow* row;  ///< [touch]: force on the wall, moment on the wall about the point of contact
+  BodySum* sum;     ///< [body]
+  double largest_overlap;
+};
+
+}  // namespace grit

@@ -1,0 +1,65 @@
+// The kernel's side of a contact law. A law's author does not derive from this: see grit/contact/law.hpp.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grit/contact/batch.hpp"
+#include "grit/parameters.hpp"
+
+namespace grit {
+
+/// Stiffnesses of one contact, for the time step, and its viscous damping as a fraction of critical.
+struct Stiffness {
+  double normal = 0;         ///< N/m
+  double shear = 0;          ///< N/m
+  double rolling = 0;        ///< N m/rad, about axes in the contact plane
+  double twisting = 0;       ///< N m/rad, about the normal
+  double damping_ratio = 0;  ///< of the pair, 0 … 1
+};
+
+/// The pair whose stiffness is asked for. b is a wall if inverse_mass_b is 0; then radius_b = radius_a.
+struct PairSize {
+  double radius_a, radius_b;              ///< m
+  double inverse_mass_a, inverse_mass_b;  ///< 1/kg
+  double overlap;                         ///< m; the largest that is expected, never below zero
+};
+
+/// One number that a contact remembers.
+struct StateField {
+  std::string name, unit, doc;
+  double swap;  ///< +1 or −1: what the number is multiplied with when a and b change places
+};
+
+/// All calls come from the thread that owns the simulation, but evaluate_*, which are called from several at once on
+/// disjoint chunks.
+class ContactLaw {
+ public:
+  virtual ~ContactLaw() = default;
+
+  /// Settings of the law as a whole.
+  virtual void declare(Parameters& parameters) = 0;
+  /// Forgets all materials and interfaces.
+  virtual void clear_materials() = 0;
+  /// Declares the parameters of a material; adds it, with defaults, if it is new.
+  virtual void declare_material(const std::string& name, Parameters& parameters) = 0;
+  /// Declares what may be overridden where materials `a` and `b` meet, in either order.
+  virtual void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) = 0;
+  /// Mixes all pairs of the materials, given in the order of their indices. Call again after any change.
+  virtual void mix(std::span<const std::string> materials) = 0;
+
+  /// What a contact remembers with the present parameters; parts that a zero parameter switches off are left out.
+  /// Always the first so many of the law's fields.
+  virtual std::vector<StateField> state() const = 0;
+  virtual void evaluate_pairs(PairBatch& batch) const noexcept = 0;
+  virtual void evaluate_walls(WallBatch& batch) const noexcept = 0;
+  /// The same by plain scalars, for tests.
+  virtual void evaluate_pairs_reference(PairBatch& batch) const noexcept = 0;
+  virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
+  /// Elastic energy [J] stored in one contact with the given memory (as many numbers as state()).
+  virtual double energy(const PairSize& pair, std::size_t material_a, std::size_t material_b,
+                        std::span<const double> state) const = 0;
+};
+
+}  // namespace grit

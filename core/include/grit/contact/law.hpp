@@ -1,0 +1,407 @@
+// How a contact law is written. The author writes a struct; the loop over thousands of contacts is here, and is compiled
+// inside the plugin.
+//
+//   struct MyLaw {
+//     struct Material  { double modulus = 1e8; void declare(Parameters&); };      // of one material
+//     struct Interface { std::optional<double> friction; void declare(Parameters&); };  // override for two of them
+//     struct Settings  { void declare(Parameters&) {} };                          // of the law as a whole
+//     template <class L> struct Pair  { L modulus, friction; };                   // nothing but L members
+//     template <class L> struct State { L shear_x, shear_y, shear_z; };           // nothing but L members
+//     static Pair<double> mix(const Settings&, const Material&, const Material&, const Interface&);
+//     static std::vector<StateField> fields();                                    // one a member of State
+//     static constexpr unsigned feature_bits = 1;                                 // parts that can be switched off
+//     static unsigned features(const Pair<double>&);                              // which of them this pair needs
+//     static constexpr std::size_t fields_used(unsigned features);                // how many leading fields they need
+//     template <unsigned Features, class L>
+//     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
+//     static Stiffness stiffness(const PairSize&, const Pair<double>&);
+//     static double energy(const PairSize&, const Pair<double>&, const State<double>&);
+//   };
+//
+// evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also called
+// for lanes that do not touch; their results are discarded, so that they only must not trap.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <map>
+#include <utility>
+
+#include "grit/contact/contact_law.hpp"
+#include "grit/contact/lanes.hpp"
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+/// Turns what a contact remembers with the contact: with the change of its normal, and with the mean spin of the two
+/// bodies about it. Lengths are kept to round-off, and what was tangential stays so.
+template <class L>
+struct Turn {
+  Vec<L> normal;    ///< now
+  Vec<L> bisector;  ///< normal now + normal before
+  L over;           ///< 1 / (bisector · normal)
+  L cosine, sine;   ///< of the turn about the normal
+
+  Vec<L> operator()(const Vec<L>& v) const {
+    const Vec<L> carried = v - (dot(v, normal) * over) * bisector;
+    return cosine * carried + sine * cross(normal, carried);
+  }
+};
+
+/// Where two bodies touch, as a law sees it. Velocities are those of the middle of the last step.
+template <class L>
+struct ContactPoint {
+  Vec<L> normal;                     ///< unit, from a to b
+  L overlap;                         ///< m, > 0 in contact
+  L radius_a, radius_b;              ///< m; for a wall radius_b = radius_a
+  L inverse_mass_a, inverse_mass_b;  ///< 1/kg; 0 for a wall
+  Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms [m/s]
+  Vec<L> spin;                       ///< of b relative to a [rad/s]
+  L dt;                              ///< s
+  Turn<L> turn;
+
+  Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
+};
+
+/// What a law answers.
+template <class L>
+struct Response {
+  L normal_force{};   ///< N, > 0 pushes apart
+  Vec<L> shear{};     ///< N, on b, in the contact plane
+  Vec<L> moment{};    ///< N m, on b; the opposite acts on a
+};
+
+namespace detail {
+
+template <class L>
+Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a, const Vec<L>& spin_b, double dt) {
+  Turn<L> turn;
+  turn.normal = normal;
+  turn.bisector = normal + before;
+  // Opposite normals, half a turn within a step, have no bisector; the guard against fast bodies trips long before.
+  turn.over = L(1.0) / max(dot(turn.bisector, normal), L(1e-6));
+  const L half = L(0.25 * dt) * dot(spin_a + spin_b, normal);  // tan(angle / 2), Cayley's form of a rotation
+  const L scale = L(1.0) / (L(1.0) + half * half);
+  turn.cosine = (L(1.0) - half * half) * scale;
+  turn.sine = L(2.0) * half * scale;
+  return turn;
+}
+
+/// The members of a struct of lanes, seen as an array.
+template <template <class> class Members, class L>
+auto as_array(const Members<L>& members) {
+  return std::bit_cast<std::array<L, sizeof(Members<L>) / sizeof(L)>>(members);
+}
+
+template <class Law, template <class> class Members>
+inline constexpr std::size_t member_count = sizeof(Members<double>) / sizeof(double);
+
+/// Parameters of the pairs of `width` contacts.
+template <class Law, class L, class Index>
+auto load_pair(const typename Law::template Pair<double>* table, Index index) {
+  using Pair = typename Law::template Pair<L>;
+  constexpr std::size_t count = sizeof(typename Law::template Pair<double>) / sizeof(double);
+  std::array<L, count> lanes;
+  for (std::size_t m = 0; m < count; ++m) {
+    const auto member = [&](std::size_t k) { return reinterpret_cast<const double*>(table + index(k))[m]; };
+    if constexpr (lane_width<L> == 1) lanes[m] = member(0);
+    else lanes[m] = L([&](auto k) { return member(k); });
+  }
+  return std::bit_cast<Pair>(lanes);
+}
+
+/// The same where all contacts are of one kind.
+template <class Law, class L>
+auto broadcast_pair(const typename Law::template Pair<double>& pair) {
+  constexpr std::size_t count = sizeof(pair) / sizeof(double);
+  const auto numbers = std::bit_cast<std::array<double, count>>(pair);
+  std::array<L, count> lanes;
+  for (std::size_t m = 0; m < count; ++m) lanes[m] = L(numbers[m]);
+  return std::bit_cast<typename Law::template Pair<L>>(lanes);
+}
+
+template <class L>
+L load_lanes(const double* from) {
+  if constexpr (lane_width<L> == 1) return *from;
+  else return L(from, stdx::element_aligned);
+}
+template <class L>
+void store_lanes(const L& value, double* to) {
+  if constexpr (lane_width<L> == 1) *to = value;
+  else value.copy_to(to, stdx::element_aligned);
+}
+
+inline void add(Row& sum, const Row& row, double sign) {
+  sum.x += sign * row.x, sum.y += sign * row.y, sum.z += sign * row.z;
+}
+
+/// The loop over candidate pairs. L is Lane, or double for the reference twin.
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
+void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+  constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
+  constexpr std::size_t all_fields = sizeof(typename Law::template State<double>) / sizeof(double);
+  using State = typename Law::template State<L>;
+  const L dt(batch.dt);
+  L largest(0.0);
+  const auto one_kind = broadcast_pair<Law, L>(table[0]);
+
+  for (std::size_t block = batch.first_block; block < batch.last_block; ++block) {
+    const std::uint32_t before = batch.touching[block];
+    std::uint32_t touching_now = 0;
+    for (std::size_t sub = 0; sub < block_size; sub += width) {
+      const std::size_t first = block * block_size + sub;
+      const std::uint32_t* ia = batch.a + first;
+      const std::uint32_t* ib = batch.b + first;
+      const auto index_a = [=](std::size_t k) { return ia[k]; };
+      const auto index_b = [=](std::size_t k) { return ib[k]; };
+      const auto image = [&](std::size_t k) { return batch.image[first + k]; };
+
+      const RowLanes<L> pa = load_rows<L>(batch.position, index_a), pb = load_rows<L>(batch.position, index_b);
+      Vec<L> branch = pb.xyz() - pa.xyz();
+      bool shifted = false;
+      if constexpr (Periodic) {
+        for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
+        if (shifted) branch = branch + load_rows<L>(&batch.shifts->position, [&](std::size_t k) {
+                                         return image(k) * (sizeof(ImageShift) / sizeof(Row));
+                                       }).xyz();
+      }
+      const L square = dot(branch, branch), reach = pa.w + pb.w;
+      const auto touches = square < reach * reach;
+      const std::uint32_t bits_now = detail::bits(touches);
+      double* const state_at = batch.state + block * fields * block_size + sub;
+      if (bits_now == 0) {
+        if ((before >> sub & ((1u << width) - 1)) != 0) {
+          for (std::size_t f = 0; f < fields; ++f) store_lanes(L(0.0), state_at + f * block_size);
+          for (std::size_t k = 0; k < width; ++k) batch.row[first + k] = {};
+        }
+        continue;
+      }
+      touching_now |= bits_now << sub;
+
+      const RowLanes<L> va = load_rows<L>(batch.velocity, index_a), wa = load_rows<L>(batch.spin, index_a);
+      const RowLanes<L> vb = load_rows<L>(batch.velocity, index_b), wb = load_rows<L>(batch.spin, index_b);
+      Vec<L> velocity = vb.xyz() - va.xyz();
+      if constexpr (Periodic) {
+        if (shifted) velocity = velocity + load_rows<L>(&batch.shifts->velocity, [&](std::size_t k) {
+                                             return image(k) * (sizeof(ImageShift) / sizeof(Row));
+                                           }).xyz();
+      }
+      const L distance = max(sqrt(square), L(1e-300));
+      const Vec<L> normal = (L(1.0) / distance) * branch;
+      const Vec<L> branch_before = branch - dt * velocity;
+      const Vec<L> normal_before =
+          (L(1.0) / max(sqrt(dot(branch_before, branch_before)), L(1e-300))) * branch_before;
+
+      ContactPoint<L> at;
+      at.normal = normal;
+      at.overlap = max(reach - distance, L(0.0));
+      at.radius_a = pa.w, at.radius_b = pb.w;
+      at.inverse_mass_a = va.w, at.inverse_mass_b = vb.w;
+      at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), normal);
+      at.spin = wb.xyz() - wa.xyz();
+      at.dt = dt;
+      at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), batch.dt);
+      largest = max(largest, at.overlap / max(min(pa.w, pb.w), L(1e-300)));
+
+      std::array<L, all_fields> numbers{};
+      for (std::size_t f = 0; f < fields; ++f) numbers[f] = load_lanes<L>(state_at + f * block_size);
+      State state = std::bit_cast<State>(numbers);
+      Response<L> response;
+      if constexpr (OneKind) {
+        response = Law::template evaluate<Features>(at, one_kind, state);
+      } else {
+        const auto kind = [&](std::size_t k) { return batch.material[ia[k]] * materials + batch.material[ib[k]]; };
+        response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
+      }
+      numbers = std::bit_cast<std::array<L, all_fields>>(state);
+      const L zero(0.0);
+      for (std::size_t f = 0; f < fields; ++f)
+        store_lanes(select(touches, numbers[f], zero), state_at + f * block_size);
+
+      // The force acts at the middle of the overlap, so that the arms add up to the branch: no angular momentum is made.
+      const Vec<L> none{zero, zero, zero};
+      const L half = L(0.5) * at.overlap;
+      const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
+      const Vec<L> lever = cross(normal, select(touches, response.shear, none));
+      const Vec<L> moment = select(touches, response.moment, none);
+      const Vec<L> moment_a = -moment - (pa.w - half) * lever;
+      const Vec<L> moment_b = moment - (pb.w - half) * lever;
+      const L normal_force = select(touches, response.normal_force, zero);
+      const L overlap = select(touches, at.overlap, zero);
+
+      ContactRow* const row = batch.row + first;
+      BodySum* const sum = batch.sum;
+      store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Row& r) {
+        row[k].force = r;
+        add(sum[ia[k]].force, r, -1.0);
+      });
+      store_rows(moment_b.x, moment_b.y, moment_b.z, overlap, [=](std::size_t k, const Row& r) { row[k].moment = r; });
+      store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
+                 [=](std::size_t k, const Row& r) { add(sum[ia[k]].moment, r, 1.0); });
+    }
+    batch.touching[block] = static_cast<std::uint8_t>(touching_now);
+  }
+  if constexpr (width == 1) batch.largest_overlap = largest;
+  else batch.largest_overlap = stdx::hmax(largest);
+}
+
+/// The loop over touches of walls. Few, so that their memory may lie contact by contact.
+template <class Law, unsigned Features, class L>
+void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+  constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
+  constexpr std::size_t all_fields = sizeof(typename Law::template State<double>) / sizeof(double);
+  using State = typename Law::template State<L>;
+  double largest = 0;
+  for (std::size_t first = 0; first < batch.count; first += width) {
+    const std::size_t used = std::min(width, batch.count - first);
+    // Lanes past the end repeat the last touch and are not stored.
+    const auto touch = [&](std::size_t k) -> const WallTouch& { return batch.touch[first + std::min(k, used - 1)]; };
+    const auto lanes = [&](auto get) {
+      if constexpr (width == 1) return get(touch(0));
+      else return L([&](auto k) { return get(touch(k)); });
+    };
+    const auto vector = [&](auto get) {
+      return Vec<L>{lanes([&](const WallTouch& t) { return get(t)[0]; }),
+                    lanes([&](const WallTouch& t) { return get(t)[1]; }),
+                    lanes([&](const WallTouch& t) { return get(t)[2]; })};
+    };
+    const auto body = [&](std::size_t k) { return touch(k).body; };
+    const RowLanes<L> pa = load_rows<L>(batch.position, body), va = load_rows<L>(batch.velocity, body),
+                      wa = load_rows<L>(batch.spin, body);
+    const Vec<L> normal = vector([](const WallTouch& t) -> const Vec3& { return t.normal; });
+    const Vec<L> normal_before = vector([](const WallTouch& t) -> const Vec3& { return t.normal_before; });
+    const Vec<L> wall_velocity = vector([](const WallTouch& t) -> const Vec3& { return t.velocity; });
+    const Vec<L> wall_spin = vector([](const WallTouch& t) -> const Vec3& { return t.spin; });
+
+    ContactPoint<L> at;
+    at.normal = normal;
+    at.overlap = lanes([](const WallTouch& t) { return t.overlap; });
+    at.radius_a = at.radius_b = pa.w;
+    at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
+    at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), normal);
+    at.spin = wall_spin - wa.xyz();
+    at.dt = L(batch.dt);
+    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt);
+
+    std::array<L, all_fields> numbers{};
+    for (std::size_t f = 0; f < fields; ++f) {
+      const auto number = [&](std::size_t k) { return batch.state[(first + std::min(k, used - 1)) * fields + f]; };
+      if constexpr (width == 1) numbers[f] = number(0);
+      else numbers[f] = L([&](auto k) { return number(k); });
+    }
+    State state = std::bit_cast<State>(numbers);
+    const auto kind = [&](std::size_t k) {
+      const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
+      return own * materials + touch(k).material;
+    };
+    const Response<L> response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
+    numbers = std::bit_cast<std::array<L, all_fields>>(state);
+
+    const Vec<L> force = response.normal_force * normal + response.shear;
+    const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
+    const auto put = [&](const L& lane, std::size_t k) {
+      if constexpr (width == 1) return static_cast<void>(k), lane;
+      else return static_cast<double>(lane[k]);
+    };
+    for (std::size_t k = 0; k < used; ++k) {
+      for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = put(numbers[f], k);
+      const Row on_wall{put(force.x, k), put(force.y, k), put(force.z, k), put(response.normal_force, k)};
+      ContactRow& row = batch.row[first + k];
+      row.force = on_wall;
+      row.moment = {put(response.moment.x, k), put(response.moment.y, k), put(response.moment.z, k),
+                    put(at.overlap, k)};
+      BodySum& sum = batch.sum[touch(k).body];
+      add(sum.force, on_wall, -1.0);
+      add(sum.moment, Row{put(moment_a.x, k), put(moment_a.y, k), put(moment_a.z, k), 0}, 1.0);
+      largest = std::max(largest, touch(k).overlap / batch.position[touch(k).body].w);
+    }
+  }
+  batch.largest_overlap = largest;
+}
+
+}  // namespace detail
+
+/// A law as the kernel sees it, made from a law as its author wrote it.
+template <class Law>
+class LawPlugin final : public ContactLaw {
+  using Pair = typename Law::template Pair<double>;
+  using State = typename Law::template State<double>;
+
+ public:
+  void declare(Parameters& parameters) override { settings_.declare(parameters); }
+  void clear_materials() override { materials_.clear(), interfaces_.clear(); }
+  void declare_material(const std::string& name, Parameters& parameters) override {
+    materials_[name].declare(parameters);
+  }
+  void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) override {
+    interfaces_[std::minmax(a, b)].declare(parameters);
+  }
+  void mix(std::span<const std::string> materials) override {
+    count_ = materials.size();
+    table_.clear();
+    features_ = 0;
+    for (const auto& a : materials)
+      for (const auto& b : materials) {
+        table_.push_back(Law::mix(settings_, materials_[a], materials_[b], interfaces_[std::minmax(a, b)]));
+        features_ |= Law::features(table_.back());
+      }
+  }
+
+  std::vector<StateField> state() const override {
+    auto fields = Law::fields();
+    fields.resize(Law::fields_used(features_));
+    return fields;
+  }
+  void evaluate_pairs(PairBatch& batch) const noexcept override { pairs<Lane>(batch); }
+  void evaluate_pairs_reference(PairBatch& batch) const noexcept override { pairs<double>(batch); }
+  void evaluate_walls(WallBatch& batch) const noexcept override {
+    with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, table_.data(), count_); });
+  }
+  Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
+    return Law::stiffness(pair, table_[a * count_ + b]);
+  }
+  double energy(const PairSize& pair, std::size_t a, std::size_t b, std::span<const double> state) const override {
+    std::array<double, sizeof(State) / sizeof(double)> numbers{};
+    std::copy(state.begin(), state.end(), numbers.begin());
+    return Law::energy(pair, table_[a * count_ + b], std::bit_cast<State>(numbers));
+  }
+
+ private:
+  /// Calls `run.operator()<F>()` with the features that are on as a constant.
+  template <unsigned F = 0, class Run>
+  void with_features(Run run) const {
+    if constexpr (F < (1u << Law::feature_bits)) {
+      if (F == features_) run.template operator()<F>();
+      else with_features<F + 1>(run);
+    }
+  }
+  template <class L>
+  void pairs(PairBatch& batch) const {
+    with_features([&]<unsigned F>() {
+      const bool one_kind = batch.material == nullptr;
+      if (batch.image == nullptr && one_kind)
+        detail::pair_loop<Law, F, L, false, true>(batch, table_.data(), count_);
+      else if (batch.image == nullptr) detail::pair_loop<Law, F, L, false, false>(batch, table_.data(), count_);
+      else if (one_kind) detail::pair_loop<Law, F, L, true, true>(batch, table_.data(), count_);
+      else detail::pair_loop<Law, F, L, true, false>(batch, table_.data(), count_);
+    });
+  }
+
+  typename Law::Settings settings_;
+  std::map<std::string, typename Law::Material> materials_;
+  std::map<std::pair<std::string, std::string>, typename Law::Interface> interfaces_;
+  std::vector<Pair> table_;
+  std::size_t count_ = 0;
+  unsigned features_ = 0;
+};
+
+/// The plugin's entry for a law.
+template <class Law>
+PluginInfo contact_law_plugin(const char* name, const char* version, const char* doc) {
+  PluginInfo info;
+  info.kind = "contact", info.name = name, info.version = version, info.doc = doc;
+  info.make_contact = []() -> ContactLaw* { return new LawPlugin<Law>; };
+  return info;
+}
+
+}  // namespace grit

@@ -1,0 +1,64 @@
+// What can go wrong, by whose fault. Library code throws these; only the command line prints them and exits.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace grit {
+
+/// The base of all errors that a user may meet. what() says where, what was found, what is allowed and what to do.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One thing wrong in a description.
+struct Problem {
+  std::string file;     ///< path, or "--set"
+  int line = 0;         ///< from 1; 0 when there is none
+  std::string pointer;  ///< JSON pointer (RFC 6901)
+  std::string message;  ///< what was found and what is allowed
+};
+
+/// A description that cannot be run: every problem in it.
+class DescriptionError : public Error {
+ public:
+  explicit DescriptionError(std::vector<Problem> problems) : Error(text(problems)), problems_(std::move(problems)) {}
+  const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  static std::string text(const std::vector<Problem>& problems) {
+    std::string all;
+    for (const auto& p : problems) {
+      if (!all.empty()) all += '\n';
+      all += p.file;
+      if (p.line > 0) all += ':' + std::to_string(p.line);
+      if (!p.pointer.empty()) all += ": " + p.pointer;
+      all += ": " + p.message;
+    }
+    return all;
+  }
+  std::vector<Problem> problems_;
+};
+
+/// A plugin that cannot be loaded or that broke its contract.
+class PluginError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The simulation went wrong: a guard tripped, a stage did not end.
+class NumericsError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// A file or disk that does not do as asked.
+class FileError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace grit

@@ -1,0 +1,66 @@
+// The shape of a wall.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "grit/parameters.hpp"
+#include "grit/vec.hpp"
+
+namespace grit {
+
+/// Where a wall has moved to: x ↦ about + turn · (x − about) + shift, `about` being the wall's reference point.
+struct Pose {
+  Vec3 about = Vec3::Zero();
+  Vec3 shift = Vec3::Zero();
+  Mat3 turn = Mat3::Identity();
+
+  Vec3 to_world(const Vec3& local) const { return about + turn * (local - about) + shift; }
+  Vec3 to_local(const Vec3& world) const { return about + turn.transpose() * (world - shift - about); }
+  bool turned() const { return !turn.isIdentity(0.0); }
+};
+
+/// A sphere that may touch.
+struct Sphere {
+  Vec3 centre;         ///< m
+  double radius;       ///< m
+  std::uint32_t body;  ///< handed through
+};
+
+/// One point where a sphere touches a shape.
+struct Touch {
+  Vec3 normal;            ///< unit, from the sphere's centre into the shape
+  double overlap;         ///< m, > 0
+  std::uint32_t body;     ///< of the sphere
+  std::uint32_t feature;  ///< stable id of what is touched: it does not change while the sphere slides along it
+};
+
+/// A box; its sides may be infinite.
+struct Bounds {
+  Vec3 low, high;
+};
+
+/// A shape, at the place where the description puts it; a Pose says where it has moved to. Shapes do not change after
+/// prepare(); all const functions may be called from several threads.
+class Geometry {
+ public:
+  virtual ~Geometry() = default;
+  virtual void declare(Parameters& parameters) = 0;
+  /// After the parameters were read.
+  virtual void prepare() {}
+  virtual Bounds bounds() const = 0;
+  /// Area that carries pressure [m²]; 0 if there is none to speak of.
+  virtual double area() const = 0;
+  /// Mean unit normal, towards the side of the bodies; zero if there is none to speak of.
+  virtual Vec3 normal() const = 0;
+  /// Appends the touches of each sphere, in the order of the spheres and, for one sphere, by feature. What is touched at
+  /// an edge or corner that two faces share counts once.
+  virtual void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const = 0;
+  /// Whether a sphere is within `reach` of the shape: may say yes too often, never no when it touches.
+  virtual bool near(const Pose& pose, const Vec3& centre, double reach) const = 0;
+  /// Triangles (three corners each) for pictures.
+  virtual std::vector<Vec3> triangles() const = 0;
+};
+
+}  // namespace grit

@@ -1,0 +1,135 @@
+// What a plugin exports: one function, and behind it a build tag that is compared before anything else is touched.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "grit/contact/batch.hpp"
+#include "grit/vec.hpp"
+
+namespace grit {
+
+class BodyKind;
+class ContactLaw;
+class Engine;
+class Geometry;
+class Probe;
+class Scenario;
+
+/// Raised whenever anything that crosses the plugin boundary changes.
+inline constexpr std::uint32_t sdk_version = 1;
+
+/// Size and alignment of a struct on the hot path.
+struct Layout {
+  std::uint32_t size, alignment;
+  friend bool operator==(const Layout&, const Layout&) = default;
+};
+
+/// How a plugin was built. The layout of this struct never changes; new facts go into `reserved`.
+struct BuildTag {
+  char magic[8];
+  std::uint32_t tag_size;
+  std::uint32_t sdk_version;
+  char compiler[48];         ///< e.g. "gcc 12"
+  char library_abi[48];      ///< e.g. "libstdc++ cxx11 20220819"
+  char instruction_set[64];  ///< e.g. "x86-64 avx2 fma"
+  Layout row, contact_row, body_sum, pair_batch, wall_batch;
+  char reserved[256];
+};
+
+namespace detail {
+
+template <std::size_t N>
+constexpr void put(char (&target)[N], const char* text) {
+  std::size_t i = 0;
+  while (i + 1 < N && target[i] != 0) ++i;
+  while (i + 1 < N && *text != 0) target[i++] = *text++;
+}
+
+template <std::size_t N>
+constexpr void put(char (&target)[N], long number) {
+  char digits[24] = {};
+  int last = 23;
+  do digits[--last] = static_cast<char>('0' + number % 10);
+  while ((number /= 10) > 0);
+  put(target, digits + last);
+}
+
+template <class T>
+constexpr Layout layout_of() {
+  return {sizeof(T), alignof(T)};
+}
+
+}  // namespace detail
+
+/// The tag of the translation unit that calls this.
+constexpr BuildTag build_tag() {
+  BuildTag tag{};
+  detail::put(tag.magic, "gritplg");
+  tag.tag_size = sizeof(BuildTag);
+  tag.sdk_version = sdk_version;
+#if defined(__clang__)
+  detail::put(tag.compiler, "clang ");
+  detail::put(tag.compiler, long{__clang_major__});
+#elif defined(__GNUC__)
+  detail::put(tag.compiler, "gcc ");
+  detail::put(tag.compiler, long{__GNUC__});
+#else
+  detail::put(tag.compiler, "unknown");
+#endif
+#if defined(_GLIBCXX_USE_CXX11_ABI)
+  detail::put(tag.library_abi, _GLIBCXX_USE_CXX11_ABI ? "libstdc++ cxx11 " : "libstdc++ old ");
+  detail::put(tag.library_abi, long{__GLIBCXX__});
+#else
+  detail::put(tag.library_abi, "unknown");
+#endif
+#if defined(__x86_64__)
+  detail::put(tag.instruction_set, "x86-64");
+#elif defined(__aarch64__)
+  detail::put(tag.instruction_set, "aarch64");
+#else
+  detail::put(tag.instruction_set, "unknown");
+#endif
+#if defined(__AVX__)
+  detail::put(tag.instruction_set, " avx");
+#endif
+#if defined(__AVX2__)
+  detail::put(tag.instruction_set, " avx2");
+#endif
+#if defined(__FMA__)
+  detail::put(tag.instruction_set, " fma");
+#endif
+#if defined(__AVX512F__)
+  detail::put(tag.instruction_set, " avx512f");
+#endif
+  tag.row = detail::layout_of<Row>();
+  tag.contact_row = detail::layout_of<ContactRow>();
+  tag.body_sum = detail::layout_of<BodySum>();
+  tag.pair_batch = detail::layout_of<PairBatch>();
+  tag.wall_batch = detail::layout_of<WallBatch>();
+  return tag;
+}
+
+/// One plugin: a name in one registry. Exactly one of the makers is set, the one of its kind.
+struct PluginInfo {
+  BuildTag tag = build_tag();  ///< first, so that it can be read before anything else is trusted
+  const char* kind = "";       ///< "body", "contact", "engine", "geometry", "probe" or "scenario"
+  const char* name = "";       ///< kebab-case, the file's name without its ending
+  const char* version = "";
+  const char* doc = "";  ///< one line
+  BodyKind* (*make_body)() = nullptr;
+  ContactLaw* (*make_contact)() = nullptr;
+  Engine* (*make_engine)() = nullptr;
+  Geometry* (*make_geometry)() = nullptr;
+  Probe* (*make_probe)() = nullptr;
+  Scenario* (*make_scenario)() = nullptr;
+};
+
+/// The one symbol that a plugin exports, `extern "C"`.
+using PluginEntry = const PluginInfo* (*)();
+inline constexpr const char* plugin_entry_name = "grit_plugin";
+
+}  // namespace grit
+
+/// Declares the exported symbol; its definition is the plugin's.
+extern "C" __attribute__((visibility("default"))) const grit::PluginInfo* grit_plugin();

@@ -1,0 +1,45 @@
+// Probes look at a const world and say numbers. Nothing a probe does changes a trajectory.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grit/parameters.hpp"
+#include "grit/world.hpp"
+
+namespace grit {
+
+/// One quantity that a probe reports at every sample.
+struct Channel {
+  std::string name;                ///< snake_case; becomes a dataset
+  std::string unit;                ///< UDUNITS spelling, "1" if dimensionless
+  std::string doc;                 ///< one line, with the sign convention
+  std::vector<std::size_t> shape;  ///< of one sample: {} a number, {n} a list, …
+};
+
+/// One table of an instant, of any length: contacts, cells, chains.
+struct Field {
+  std::string name;  ///< snake_case
+  std::string unit, doc;
+  std::size_t width = 1;       ///< numbers a row
+  std::vector<double> values;  ///< row by row
+};
+
+/// Called from one thread, between steps.
+class Probe {
+ public:
+  virtual ~Probe() = default;
+  virtual void declare(Parameters& parameters) = 0;
+  virtual StateRequest needs() const { return {}; }
+  /// Once, before the first sample. Problems with names of walls and the like are thrown as grit::Error.
+  virtual void prepare(const World&) {}
+  /// The same at every call after prepare().
+  virtual std::vector<Channel> channels() const = 0;
+  /// Fills one span a channel, in the order of channels().
+  virtual void sample(const World& world, std::span<const std::span<double>> values) = 0;
+  /// What goes into frames.
+  virtual std::vector<Field> fields(const World&) { return {}; }
+};
+
+}  // namespace grit

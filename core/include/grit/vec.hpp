@@ -1,0 +1,41 @@
+// Vectors: Vec3 for the world outside the hot loop, Vec<L> for lanes inside it, Row for one body's four numbers.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace grit {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && alignof(Vec3) == alignof(double));
+
+/// Four numbers of one body, loaded by one instruction.
+struct alignas(32) Row {
+  double x = 0, y = 0, z = 0, w = 0;
+};
+
+inline Vec3 xyz(const Row& row) { return {row.x, row.y, row.z}; }
+
+/// A vector whose components are lanes: `double` in the reference twin, a SIMD type in the batch loop.
+template <class L>
+struct Vec {
+  L x{}, y{}, z{};
+
+  friend Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
+  friend Vec operator*(const L& s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend Vec operator*(const Vec& a, const L& s) { return {s * a.x, s * a.y, s * a.z}; }
+};
+
+template <class L>
+L dot(const Vec<L>& a, const Vec<L>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <class L>
+Vec<L> cross(const Vec<L>& a, const Vec<L>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+}  // namespace grit

@@ -1,0 +1,62 @@
+// What a run reports while it goes. The run knows this interface; output/ fills it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grit/probe.hpp"
+#include "grit/world.hpp"
+
+namespace grit {
+
+/// A probe as the results know it: a group of series.
+struct ProbeGroup {
+  std::string name;  ///< the description's name of the probe
+  std::vector<Channel> channels;
+};
+
+/// Tables of one probe in one frame.
+struct FieldGroup {
+  std::string name;
+  std::vector<Field> fields;
+};
+
+/// What a phase of the step cost.
+struct PhaseTime {
+  std::string name;
+  double seconds = 0;
+};
+
+/// How a run ended.
+struct RunSummary {
+  std::string status;   ///< "done", "interrupted", "failed"
+  std::string message;  ///< of the failure
+  std::string stage;    ///< the last one
+  double time = 0;      ///< simulated, s
+  std::uint64_t steps = 0;
+  double time_step = 0, critical_time_step = 0;  ///< s, the last ones
+  std::size_t bodies = 0;
+  double contacts_per_body = 0;  ///< 2 × touching pairs / bodies, mean over the samples
+  double wall_seconds = 0;       ///< of the stepping
+  double particle_steps_per_second = 0;
+  std::size_t rebuilds = 0;  ///< of the neighbour lists
+  unsigned threads = 1;
+  std::vector<PhaseTime> phases;
+};
+
+class Recorder {
+ public:
+  virtual ~Recorder() = default;
+  /// Once, before the first sample.
+  virtual void begin(const World& world, std::span<const ProbeGroup> probes) = 0;
+  /// One sample of the probe with this place in begin()'s list.
+  virtual void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) = 0;
+  virtual void frame(const World& world, std::span<const FieldGroup> fields) = 0;
+  /// A stage ended; what it reached, e.g. "void ratio 0.598".
+  virtual void stage_ended(const World& world, const std::string& what) = 0;
+  virtual void finish(const World& world, const RunSummary& summary) = 0;
+};
+
+}  // namespace grit

@@ -1,0 +1,287 @@
+// The plain description, typed. What it says about a parameter here is all that is ever said about it: reading, checks,
+// schema and reference pages come from these declarations.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/parameters.hpp"
+#include "plugins/component.hpp"
+
+namespace grit {
+
+/// When something is to happen again and again. Neither given: never.
+struct Cadence {
+  std::optional<double> every_time;
+  std::int64_t every_steps = 0;
+  void declare(Parameters& p);
+};
+
+// ---- grains
+
+struct UniformSizes {
+  static constexpr const char* type_name = "uniform";
+  double smallest = 0.25e-3, largest = 0.75e-3;
+  void declare(Parameters& p);
+};
+struct LinearSizes {
+  static constexpr const char* type_name = "linear";
+  double smallest = 0.25e-3, largest = 0.75e-3;
+  void declare(Parameters& p);
+};
+struct LogNormalSizes {
+  static constexpr const char* type_name = "log-normal";
+  double median = 0.5e-3, deviation = 0.25, smallest = 0.25e-3, largest = 1e-3;
+  void declare(Parameters& p);
+};
+struct SieveSizes {
+  static constexpr const char* type_name = "sieve";
+  std::vector<double> diameters, passing;
+  void declare(Parameters& p);
+};
+struct ListSizes {
+  static constexpr const char* type_name = "list";
+  std::vector<double> diameters;
+  void declare(Parameters& p);
+};
+using Sizes = OneOf<UniformSizes, LinearSizes, LogNormalSizes, SieveSizes, ListSizes>;
+
+/// Grains at random places that do not overlap.
+struct CloudGrains {
+  static constexpr const char* type_name = "cloud";
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  std::int64_t count = 0;
+  Sizes sizes{"size distribution"};
+  void declare(Parameters& p);
+};
+/// A text file, "x y z radius" a line.
+struct FileGrains {
+  static constexpr const char* type_name = "file";
+  std::string path;
+  void declare(Parameters& p);
+};
+struct PlacedGrain {
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+  double radius = 0;
+  void declare(Parameters& p);
+};
+struct PlacedGrains {
+  static constexpr const char* type_name = "list";
+  std::deque<PlacedGrain> grains;
+  void declare(Parameters& p);
+};
+struct BodiesDescription {
+  Component<BodyKind> kind;
+  std::string material;
+  OneOf<CloudGrains, FileGrains, PlacedGrains> grains{"source of grains"};
+  explicit BodiesDescription(const Registry& registry);
+  void declare(Parameters& p);
+};
+
+// ---- walls
+
+struct ServoDescription {
+  std::string axis = "z";
+  double pressure = 0;      ///< Pa, compression positive
+  double max_velocity = 0;  ///< m/s
+  double gain = 0.1;        ///< share of the force's error that one step takes away
+  void declare(Parameters& p);
+};
+struct FollowDescription {
+  std::string wall, axes = "z";
+  void declare(Parameters& p);
+};
+struct FreeDescription {
+  std::string axes = "z";
+  double mass = 0;
+  Vec3 load = Vec3::Zero();
+  void declare(Parameters& p);
+};
+/// Along each axis a wall is fixed, has a velocity, follows another wall, is servo-controlled, or is free.
+struct MotionDescription {
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+  std::optional<Vec3> about;
+  double ramp_time = 0;
+  std::optional<ServoDescription> servo;
+  std::optional<FollowDescription> follow;
+  std::optional<FreeDescription> free;
+  void declare(Parameters& p);
+};
+struct WallDescription {
+  Component<Geometry> geometry;
+  std::string material;
+  MotionDescription motion;
+  explicit WallDescription(const Registry& registry);
+  void declare(Parameters& p);
+};
+
+// ---- the rest
+
+struct MaterialDescription {
+  double density = 2600;
+};
+struct DomainDescription {
+  std::optional<Vec3> low, high;
+  std::array<bool, 3> periodic{false, false, false};
+  Vec3 strain_rate = Vec3::Zero();
+  void declare(Parameters& p);
+};
+struct SpecimenDescription {
+  std::vector<std::string> low, high;  ///< walls of the x, y and z sides; "" where the domain bounds it
+  void declare(Parameters& p);
+};
+struct TimeStepDescription {
+  double safety = 0.8;
+  std::optional<double> value;
+  bool allow_unstable = false;
+  void declare(Parameters& p);
+};
+struct GuardsDescription {
+  double overlap = 0.1;  ///< of the smaller radius
+  double travel = 0.05;  ///< of a radius, in one step
+  double energy = 0.05;  ///< share of the energy that may appear from nowhere
+  void declare(Parameters& p);
+};
+struct EngineDescription {
+  Component<Engine> engine;
+  explicit EngineDescription(const Registry& registry) : engine(registry) {}
+  void declare(Parameters& p);
+};
+struct ProbeDescription {
+  Component<Probe> probe;
+  Cadence cadence;
+  std::vector<std::string> stages;  ///< empty: all
+  bool frames = true;               ///< whether its fields go into frames
+  explicit ProbeDescription(const Registry& registry) : probe(registry) {}
+  void declare(Parameters& p);
+};
+
+// ---- stages
+
+struct Condition;
+struct TimeCondition {
+  static constexpr const char* type_name = "time";
+  double value = 0;
+  void declare(Parameters& p);
+};
+struct StepsCondition {
+  static constexpr const char* type_name = "steps";
+  std::int64_t value = 0;
+  void declare(Parameters& p);
+};
+struct DisplacementCondition {
+  static constexpr const char* type_name = "displacement";
+  std::string wall, axis = "x";
+  double value = 0;
+  void declare(Parameters& p);
+};
+struct UnbalancedForceCondition {
+  static constexpr const char* type_name = "unbalanced-force";
+  double below = 1e-3;
+  void declare(Parameters& p);
+};
+struct KineticEnergyCondition {
+  static constexpr const char* type_name = "kinetic-energy";
+  double below = 1e-4;
+  void declare(Parameters& p);
+};
+struct VoidRatioCondition {
+  static constexpr const char* type_name = "void-ratio";
+  std::optional<double> below, above;
+  void declare(Parameters& p);
+};
+struct PressureCondition {
+  static constexpr const char* type_name = "pressure";
+  std::string wall;
+  double value = 0, within = 0.01;
+  void declare(Parameters& p);
+};
+struct AllCondition {
+  static constexpr const char* type_name = "all";
+  std::vector<std::unique_ptr<Condition>> of;
+  void declare(Parameters& p);
+};
+struct AnyCondition {
+  static constexpr const char* type_name = "any";
+  std::vector<std::unique_ptr<Condition>> of;
+  void declare(Parameters& p);
+};
+struct Condition {
+  OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, KineticEnergyCondition,
+        VoidRatioCondition, PressureCondition, AllCondition, AnyCondition>
+      is{"condition"};
+  void declare(Parameters& p) { p.choose(is); }
+};
+
+/// A number of the description that changes during a stage, in equal increments.
+struct RampDescription {
+  std::string pointer;
+  Description from, to;  ///< as the description would give them
+  double duration = 0;
+  std::int64_t increments = 50;
+  void declare(Parameters& p);
+};
+struct ExpectDescription {
+  std::optional<double> void_ratio;
+  double within = 0.01;
+  void declare(Parameters& p);
+};
+struct StageDescription {
+  std::string name;
+  Condition until;
+  double limit = 0;  ///< s of simulated time after which the stage has failed
+  Description change = Description::object();
+  std::deque<RampDescription> ramps;
+  ExpectDescription expect;
+  void declare(Parameters& p);
+};
+
+// ---- output
+
+struct PictureDescription {
+  std::string x;
+  std::vector<std::string> y;
+  std::string view = "xz";
+  std::string color = "rotation";
+  void declare(Parameters& p);
+};
+struct OutputDescription {
+  Cadence frames;
+  std::optional<PictureDescription> picture;
+  std::vector<std::string> summary;
+  void declare(Parameters& p);
+};
+
+/// A whole scene. Every name in it (of a wall, a material, a stage) was checked to exist once it has been read.
+struct SceneDescription {
+  explicit SceneDescription(const Registry& registry);
+  SceneDescription(const SceneDescription&) = delete;
+
+  std::string title;
+  std::int64_t seed = 1;
+  Component<ContactLaw> contacts;
+  std::map<std::string, MaterialDescription> materials;
+  std::vector<std::pair<std::string, std::string>> interfaces;
+  DomainDescription domain;
+  std::map<std::string, BodiesDescription> bodies;
+  std::map<std::string, WallDescription> walls;
+  std::map<std::string, EngineDescription> engines;
+  SpecimenDescription specimen;
+  TimeStepDescription time_step;
+  GuardsDescription guards;
+  std::deque<StageDescription> stages;
+  std::map<std::string, ProbeDescription> probes;
+  OutputDescription output;
+
+  void declare(Parameters& p);
+
+ private:
+  const Registry* registry_;
+};
+
+}  // namespace grit

@@ -1,0 +1,10 @@
+// Linear normal and shear springs with Coulomb's limit, rolling and twisting springs with a limit moment. See README.md.
+#include "linear-rolling.hpp"
+
+#include "grit/contact/law.hpp"
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info = grit::contact_law_plugin<grit::LinearRolling>(
+      "linear-rolling", "1.0.0", "linear springs, Coulomb friction, rolling and twisting resistance");
+  return &info;
+}
