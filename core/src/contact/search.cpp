@@ -1,0 +1,196 @@
+#include "contact/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+std::uint64_t spread(std::uint64_t x) {  // bits of x to every third place
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffff;
+  x = (x | x << 16) & 0x1f0000ff0000ff;
+  x = (x | x << 8) & 0x100f00f00f00f00f;
+  x = (x | x << 4) & 0x10c30c30c30c30c3;
+  return (x | x << 2) & 0x1249249249249249;
+}
+
+struct Box {
+  Vec3 low, high;
+};
+
+/// The periodic cell along its periodic axes, what the bodies fill along the others.
+Box extent(const Bodies& bodies, const Cell& cell) {
+  Box box{Vec3::Constant(std::numeric_limits<double>::max()), Vec3::Constant(std::numeric_limits<double>::lowest())};
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const Vec3 x = xyz(bodies.position[i]);
+    box.low = box.low.cwiseMin(x), box.high = box.high.cwiseMax(x);
+  }
+  for (int k = 0; k < 3; ++k)
+    if (cell.periodic[k]) box.low[k] = cell.low[k], box.high[k] = cell.high[k];
+  return box;
+}
+
+/// Cells of at least `width`, but not many more than there are bodies, however far a stray body has gone.
+std::array<int, 3> cells(const Vec3& length, double width, std::size_t bodies) {
+  const double most = 4.0 * static_cast<double>(bodies) + 64;
+  std::array<int, 3> size{};
+  for (;; width *= 1.5) {
+    double total = 1;
+    for (int k = 0; k < 3; ++k) {
+      const double count = std::clamp(std::floor(length[k] / width), 1.0, 2e6);
+      size[k] = static_cast<int>(count);
+      total *= count;
+    }
+    if (total <= most) return size;
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell) {
+  std::vector<std::uint32_t> order(bodies.count());
+  std::iota(order.begin(), order.end(), 0u);
+  if (order.empty()) return order;
+  double largest = 0;
+  for (std::size_t i = 0; i < bodies.count(); ++i) largest = std::max(largest, bodies.position[i].w);
+  const Box box = extent(bodies, cell);
+  const Vec3 length = box.high - box.low;
+  const auto size = cells(length, std::max(2 * largest, 1e-300), bodies.count());
+  std::vector<std::uint64_t> key(bodies.count());
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const Vec3 x = xyz(bodies.position[i]);
+    std::uint64_t morton = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double place = length[k] > 0 ? (x[k] - box.low[k]) / length[k] * size[k] : 0;
+      morton |= spread(static_cast<std::uint64_t>(std::clamp(place, 0.0, size[k] - 1.0))) << k;
+    }
+    key[i] = morton;
+  }
+  // Ids break ties, so that the order depends on where the bodies are and not on how they came there.
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return key[a] != key[b] ? key[a] < key[b] : bodies.id[a] < bodies.id[b];
+  });
+  return order;
+}
+
+int NeighbourSearch::Grid::index(int axis, double x) const {
+  const double place = (x - origin[axis]) * per_length[axis];
+  return static_cast<int>(std::floor(std::clamp(place, -1e9, 1e9)));
+}
+
+void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, double skin) {
+  cell_ = cell, skin_ = skin;
+  any_periodic_ = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
+  grids_.clear();
+  if (bodies.count() == 0) return;
+  double smallest = std::numeric_limits<double>::max(), largest = 0;
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    smallest = std::min(smallest, bodies.position[i].w), largest = std::max(largest, bodies.position[i].w);
+  }
+  for (int k = 0; k < 3; ++k) {
+    period_[k] = cell.periodic[k] ? cell.high[k] - cell.low[k] : 0;
+    per_period_[k] = cell.periodic[k] ? 1 / period_[k] : 0;
+    const double shortest = 2 * (2 * largest + skin);
+    if (cell.periodic[k] && period_[k] < shortest)
+      throw Error("the periodic cell is " + std::to_string(period_[k] * 1e3) + " mm along " + "xyz"[k] +
+                  ", shorter than twice the reach of its largest bodies, " + std::to_string(shortest * 1e3) +
+                  " mm, so that a body would meet another one twice; make the cell longer");
+  }
+
+  // A class a factor of 2.5 in radius: with 1:3 gradings one class, beyond that as many as it takes.
+  const int classes = largest <= 3.01 * smallest ? 1 : 1 + static_cast<int>(std::log(largest / smallest) / std::log(2.5));
+  const auto class_of = [&](double radius) {
+    if (classes == 1) return 0;
+    const double place = std::log(radius / smallest) / std::log(largest / smallest) * classes;
+    return std::clamp(static_cast<int>(place), 0, classes - 1);
+  };
+  grids_.resize(classes);
+  std::vector<std::vector<std::uint32_t>> members(classes);
+  for (std::uint32_t i = 0; i < bodies.count(); ++i) {
+    const int c = class_of(bodies.position[i].w);
+    members[c].push_back(i);
+    grids_[c].largest_radius = std::max(grids_[c].largest_radius, bodies.position[i].w);
+  }
+  const Box box = extent(bodies, cell);
+  const Vec3 length = box.high - box.low;
+  for (int c = 0; c < classes; ++c) {
+    Grid& grid = grids_[c];
+    grid.size = cells(length, std::max(2 * grid.largest_radius + skin, 1e-300), members[c].size());
+    grid.origin = box.low;
+    for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[k] / length[k] : 0;
+    const auto cell_of = [&](std::uint32_t i) {
+      const Row& x = bodies.position[i];
+      const auto place = [&](int k, double value) { return std::clamp(grid.index(k, value), 0, grid.size[k] - 1); };
+      return (std::size_t(place(2, x.z)) * grid.size[1] + place(1, x.y)) * grid.size[0] + place(0, x.x);
+    };
+    grid.start.assign(std::size_t(grid.size[0]) * grid.size[1] * grid.size[2] + 1, 0);
+    for (const auto i : members[c]) ++grid.start[cell_of(i) + 1];
+    std::partial_sum(grid.start.begin(), grid.start.end(), grid.start.begin());
+    grid.body.resize(members[c].size());
+    auto next = grid.start;
+    for (const auto i : members[c]) grid.body[next[cell_of(i)]++] = i;
+  }
+}
+
+void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const {
+  const std::size_t before = candidates.size();
+  const Row* const position = bodies.position.data();
+  const Row own = position[body];
+  const double centre[3] = {own.x, own.y, own.z};
+  for (const Grid& grid : grids_) {
+    if (grid.body.empty()) continue;
+    const double reach = own.w + grid.largest_radius + skin_;
+    int first[3], last[3];
+    for (int k = 0; k < 3; ++k) {
+      first[k] = grid.index(k, centre[k] - reach), last[k] = grid.index(k, centre[k] + reach);
+      if (!cell_.periodic[k]) {
+        first[k] = std::clamp(first[k], 0, grid.size[k] - 1), last[k] = std::clamp(last[k], 0, grid.size[k] - 1);
+      } else if (last[k] - first[k] >= grid.size[k]) {
+        first[k] = 0, last[k] = grid.size[k] - 1;  // each cell once
+      }
+    }
+    const auto wrapped = [&](int k, int place) {
+      return place < 0 ? place + grid.size[k] : place >= grid.size[k] ? place - grid.size[k] : place;
+    };
+    for (int cz = first[2]; cz <= last[2]; ++cz) {
+      for (int cy = first[1]; cy <= last[1]; ++cy) {
+        const std::size_t line = (std::size_t(wrapped(2, cz)) * grid.size[1] + wrapped(1, cy)) * grid.size[0];
+        for (int cx = first[0]; cx <= last[0]; ++cx) {
+          const std::size_t cell = line + wrapped(0, cx);
+          const std::uint32_t begin = grid.start[cell], end = grid.start[cell + 1];
+          // Bodies of a cell are in rising order: most cells before this body's own are passed over here.
+          if (begin == end || grid.body[end - 1] <= body) continue;
+          for (std::uint32_t n = begin; n < end; ++n) {
+            const std::uint32_t other = grid.body[n];
+            if (other <= body) continue;
+            const Row& b = position[other];
+            double d[3] = {b.x - own.x, b.y - own.y, b.z - own.z};
+            std::uint8_t image = 0;
+            if (any_periodic_) {
+              int place = 1;
+              for (int k = 0; k < 3; ++k, place *= 3) {
+                const double periods = std::nearbyint(d[k] * per_period_[k]);
+                d[k] -= periods * period_[k];
+                image = static_cast<std::uint8_t>(image + (periods > 0 ? 2 * place : periods < 0 ? place : 0));
+              }
+            }
+            const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            const double touch = own.w + b.w, near = touch + skin_;
+            if (square < near * near)
+              candidates.push_back({body, other, image, static_cast<std::uint8_t>(square < touch * touch)});
+          }
+        }
+      }
+    }
+  }
+  std::sort(candidates.begin() + static_cast<std::ptrdiff_t>(before), candidates.end(),
+            [](const Candidate& x, const Candidate& y) { return x.b < y.b; });
+}
+
+}  // namespace grit

@@ -1,0 +1,61 @@
+// Neighbour search on cell grids, one a size class.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/team.hpp"
+#include "grit/world.hpp"
+#include "scene/bodies.hpp"
+
+namespace grit {
+
+/// Bodies of one chunk; passes over bodies and their contacts go chunk by chunk, whatever the number of threads.
+inline constexpr std::size_t chunk_bodies = 256;
+inline std::size_t chunks_of(std::size_t bodies) { return (bodies + chunk_bodies - 1) / chunk_bodies; }
+
+/// A pair whose surfaces are nearer than the skin; a < b by index.
+struct Candidate {
+  std::uint32_t a, b;
+  std::uint8_t image;     ///< which periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
+  std::uint8_t touching;  ///< whether they touch already
+};
+
+/// The shift that an image stands for, in periods.
+inline std::array<int, 3> image_shift(std::uint8_t image) {
+  const auto one = [](int digit) { return digit == 2 ? -1 : digit; };
+  return {one(image % 3), one(image / 3 % 3), one(image / 9)};
+}
+
+/// The order of bodies along a space-filling (Morton) curve through cells of about the largest diameter.
+std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell);
+
+/// Finds all pairs nearer than `skin`. Bodies must lie inside the periods of `cell`, if any. Bodies are filed by size: a
+/// class spans a factor of two in radius, so that small grains do not search the cells of large ones.
+class NeighbourSearch {
+ public:
+  /// Throws DescriptionError-free grit::Error if a period is shorter than twice the reach of two bodies.
+  void build(const Bodies& bodies, const Cell& cell, double skin);
+  /// Appends the candidates whose a is `body`, by b.
+  void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
+
+ private:
+  struct Grid {
+    double largest_radius = 0;
+    Vec3 origin, per_length;  ///< cell index = (x − origin) · per_length
+    std::array<int, 3> size{1, 1, 1};
+    std::vector<std::uint32_t> start, body;  ///< bodies of cell c: body[start[c]] … body[start[c + 1]]
+
+    int index(int axis, double x) const;
+  };
+
+  Cell cell_;
+  Vec3 period_, per_period_;
+  bool any_periodic_ = false;
+  double skin_ = 0;
+  std::vector<Grid> grids_;
+};
+
+}  // namespace grit

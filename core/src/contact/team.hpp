@@ -1,0 +1,52 @@
+// Threads that share the chunks of one pass. Who takes which chunk is chance; results never depend on it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace grit {
+
+/// A few threads that sleep when there is nothing to do and never wait for a thread that has no chunk in hand, so that a
+/// busy neighbour on one core costs no more than its share.
+class Team {
+ public:
+  /// `threads` in all, the caller included; at least 1.
+  explicit Team(unsigned threads);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
+
+  /// Calls work(chunk) for chunk = 0 … chunks − 1 (fewer than 2²⁰), from any thread in any order, and returns when all are
+  /// done. `work` must not throw. Not reentrant.
+  template <class Work>
+  void each(std::size_t chunks, Work&& work) {
+    if (workers_.empty() || chunks < 2) {
+      for (std::size_t i = 0; i < chunks; ++i) work(i);
+      return;
+    }
+    run(chunks, [](void* context, std::size_t i) { (*static_cast<std::remove_reference_t<Work>*>(context))(i); }, &work);
+  }
+
+ private:
+  using Call = void (*)(void*, std::size_t);
+  void run(std::size_t chunks, Call call, void* context);
+  void work_loop();
+  /// Takes chunks of the present job until none is left.
+  void take_chunks(std::uint64_t generation);
+
+  // One word says everything, so that a thread that comes late cannot take a chunk of a job that is over:
+  // generation (24 bits), number of chunks (20), next chunk (20).
+  std::atomic<std::uint64_t> ticket_{0};
+  std::atomic<std::uint32_t> done_{0};
+  std::atomic<bool> stop_{false};
+  Call call_ = nullptr;
+  void* context_ = nullptr;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace grit

@@ -1,0 +1,162 @@
+#include "contact/wall_contacts.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace grit {
+namespace {
+
+auto key(const WallTouch& t) { return std::tuple(t.wall, t.body, t.feature); }
+
+}  // namespace
+
+void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> walls, double skin,
+                           std::span<const StateField> fields, std::span<const std::uint32_t> order) {
+  set_fields(fields);
+  const std::size_t count = bodies.count(), field_count = fields_.size();
+  if (chunks_.size() != chunks_of(count)) chunks_.resize(chunks_of(count));
+
+  // Memories follow their bodies into other chunks.
+  if (!order.empty()) {
+    std::vector<std::uint32_t> now(count);
+    for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+    std::vector<WallTouch> touch;
+    std::vector<double> state;
+    for (Chunk& chunk : chunks_) {
+      touch.insert(touch.end(), chunk.touch.begin(), chunk.touch.end());
+      state.insert(state.end(), chunk.state.begin(), chunk.state.end());
+      chunk.touch.clear(), chunk.state.clear(), chunk.row.clear();
+    }
+    for (WallTouch& t : touch) t.body = now[t.body];
+    std::vector<std::size_t> place(touch.size());
+    std::iota(place.begin(), place.end(), std::size_t{0});
+    std::sort(place.begin(), place.end(), [&](std::size_t p, std::size_t q) { return key(touch[p]) < key(touch[q]); });
+    for (const std::size_t p : place) {
+      Chunk& chunk = chunks_[touch[p].body / chunk_bodies];
+      chunk.touch.push_back(touch[p]);
+      chunk.state.insert(chunk.state.end(), state.begin() + static_cast<std::ptrdiff_t>(p * field_count),
+                         state.begin() + static_cast<std::ptrdiff_t>((p + 1) * field_count));
+      chunk.row.emplace_back();
+    }
+  }
+
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    Chunk& chunk = chunks_[c];
+    chunk.candidate.clear();
+    chunk.candidate_start.assign(1, 0);
+    const std::size_t first = c * chunk_bodies, last = std::min(count, first + chunk_bodies);
+    for (const WallSurface& wall : walls) {
+      for (std::size_t i = first; i < last; ++i)
+        if (wall.geometry->near(wall.pose, xyz(bodies.position[i]), bodies.position[i].w + skin))
+          chunk.candidate.push_back(static_cast<std::uint32_t>(i));
+      chunk.candidate_start.push_back(static_cast<std::uint32_t>(chunk.candidate.size()));
+    }
+  }
+}
+
+void WallContacts::set_fields(std::span<const StateField> fields) {
+  const std::size_t before = fields_.size(), after = fields.size();
+  fields_.assign(fields.begin(), fields.end());
+  if (before == after) return;
+  for (Chunk& chunk : chunks_) {
+    std::vector<double> state(chunk.touch.size() * after);
+    for (std::size_t i = 0; i < chunk.touch.size(); ++i)
+      for (std::size_t f = 0; f < std::min(before, after); ++f) state[i * after + f] = chunk.state[i * before + f];
+    chunk.state.swap(state);
+  }
+}
+
+double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies& bodies, bool one_material,
+                              std::span<const WallSurface> walls, double dt, BodySum* sum) {
+  Chunk& chunk = chunks_[c];
+  chunk.load.assign(walls.size(), {});
+  if (chunk.candidate.empty()) {
+    chunk.touch.clear(), chunk.state.clear(), chunk.row.clear();
+    return 0;
+  }
+  const std::size_t fields = fields_.size();
+  chunk.touch.swap(chunk.touch_before), chunk.state.swap(chunk.state_before);
+  chunk.touch.clear();
+  for (std::uint32_t w = 0; w < walls.size(); ++w) {
+    const WallSurface& wall = walls[w];
+    chunk.spheres.clear(), chunk.found.clear();
+    for (std::uint32_t n = chunk.candidate_start[w]; n < chunk.candidate_start[w + 1]; ++n) {
+      const Row& x = bodies.position[chunk.candidate[n]];
+      chunk.spheres.push_back({{x.x, x.y, x.z}, x.w, chunk.candidate[n]});
+    }
+    if (chunk.spheres.empty()) continue;
+    wall.geometry->touch(wall.pose, chunk.spheres, chunk.found);
+    for (const Touch& t : chunk.found) {
+      const Row& x = bodies.position[t.body];
+      const Vec3 point = xyz(x) + (x.w - t.overlap) * t.normal;
+      chunk.touch.push_back({.normal = t.normal,
+                             .normal_before = t.normal,
+                             .velocity = wall.point_velocity(point),
+                             .spin = wall.spin,
+                             .overlap = t.overlap,
+                             .body = t.body,
+                             .wall = w,
+                             .feature = t.feature,
+                             .material = wall.material});
+    }
+  }
+
+  chunk.state.assign(chunk.touch.size() * fields, 0.0);
+  std::size_t old = 0;
+  for (std::size_t i = 0; i < chunk.touch.size(); ++i) {
+    WallTouch& t = chunk.touch[i];
+    while (old < chunk.touch_before.size() && key(chunk.touch_before[old]) < key(t)) ++old;
+    if (old == chunk.touch_before.size() || key(chunk.touch_before[old]) != key(t)) continue;
+    t.normal_before = chunk.touch_before[old].normal;
+    for (std::size_t f = 0; f < fields; ++f) chunk.state[i * fields + f] = chunk.state_before[old * fields + f];
+  }
+  chunk.row.resize(chunk.touch.size());
+  WallBatch batch{.position = bodies.position.data(),
+                  .velocity = bodies.velocity.data(),
+                  .spin = bodies.spin.data(),
+                  .material = one_material ? nullptr : bodies.material.data(),
+                  .count = chunk.touch.size(),
+                  .touch = chunk.touch.data(),
+                  .dt = dt,
+                  .state = chunk.state.data(),
+                  .row = chunk.row.data(),
+                  .sum = sum,
+                  .largest_overlap = 0};
+  law.evaluate_walls(batch);
+
+  for (std::size_t i = 0; i < chunk.touch.size(); ++i) {
+    const WallTouch& t = chunk.touch[i];
+    const Row& x = bodies.position[t.body];
+    const Vec3 point = xyz(x) + (x.w - t.overlap) * t.normal;
+    const Vec3 force = xyz(chunk.row[i].force);
+    WallLoad& load = chunk.load[t.wall];
+    load.force += force;
+    load.moment += (point - walls[t.wall].reference()).cross(force) + xyz(chunk.row[i].moment);
+    const PairSize size{.radius_a = x.w,
+                        .radius_b = x.w,
+                        .inverse_mass_a = bodies.velocity[t.body].w,
+                        .inverse_mass_b = 0,
+                        .overlap = t.overlap};
+    load.stiffness += law.stiffness(size, bodies.material[t.body], t.material).normal;
+    ++load.touches;
+  }
+  return batch.largest_overlap;
+}
+
+void WallContacts::loads(std::span<WallLoad> loads) const {
+  std::fill(loads.begin(), loads.end(), WallLoad{});
+  for (const Chunk& chunk : chunks_)
+    for (std::size_t w = 0; w < chunk.load.size(); ++w) {
+      loads[w].force += chunk.load[w].force, loads[w].moment += chunk.load[w].moment;
+      loads[w].stiffness += chunk.load[w].stiffness, loads[w].touches += chunk.load[w].touches;
+    }
+}
+
+std::size_t WallContacts::touching_count() const {
+  std::size_t count = 0;
+  for (const Chunk& chunk : chunks_) count += chunk.touch.size();
+  return count;
+}
+
+}  // namespace grit

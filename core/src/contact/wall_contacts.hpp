@@ -1,0 +1,80 @@
+// Touches of bodies and walls, and what they remember.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "contact/search.hpp"
+#include "grit/contact/contact_law.hpp"
+#include "grit/geometry.hpp"
+#include "scene/bodies.hpp"
+
+namespace grit {
+
+/// A wall as the contact pass needs it.
+struct WallSurface {
+  std::shared_ptr<const Geometry> geometry;
+  std::uint32_t material = 0;
+  Pose pose;
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the last step, like those of the bodies
+
+  Vec3 reference() const { return pose.about + pose.shift; }
+  Vec3 point_velocity(const Vec3& point) const { return velocity + spin.cross(point - reference()); }
+};
+
+/// What the bodies do to one wall.
+struct WallLoad {
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 moment = Vec3::Zero();  ///< N m, about the wall's reference point
+  double stiffness = 0;        ///< N/m, normal, of all touches
+  std::uint32_t touches = 0;
+};
+
+/// Touches are filed by the chunk of their body, then by wall, body and feature: the order in which they are found, so
+/// that memory is handed on by walking along two sorted lists.
+class WallContacts {
+ public:
+  /// Which bodies may come to touch which wall while surfaces move by less than `skin` in all.
+  void rebuild(const Bodies& bodies, std::span<const WallSurface> walls, double skin,
+               std::span<const StateField> fields, std::span<const std::uint32_t> order);
+  void set_fields(std::span<const StateField> fields);
+
+  /// Finds and evaluates the touches of one chunk; adds to the sums of its bodies. Returns the largest overlap over a
+  /// radius.
+  double evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
+                  std::span<const WallSurface> walls, double dt, BodySum* sum);
+  /// Loads on all walls, summed chunk by chunk.
+  void loads(std::span<WallLoad> loads) const;
+
+  struct Touching {
+    const WallTouch* touch;
+    const ContactRow* row;
+    std::span<const double> state;
+  };
+  /// All touches, in their order.
+  template <class Use>
+  void each(Use use) const {
+    for (const Chunk& chunk : chunks_)
+      for (std::size_t i = 0; i < chunk.touch.size(); ++i)
+        use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
+  }
+  std::size_t touching_count() const;
+
+ private:
+  struct Chunk {
+    std::vector<std::uint32_t> candidate_start;  // by wall
+    std::vector<std::uint32_t> candidate;        // bodies
+    std::vector<WallTouch> touch, touch_before;
+    std::vector<double> state, state_before;
+    std::vector<ContactRow> row;
+    std::vector<WallLoad> load;  // by wall
+    std::vector<Sphere> spheres;
+    std::vector<Touch> found;
+  };
+  std::vector<Chunk> chunks_;
+  std::vector<StateField> fields_;
+};
+
+}  // namespace grit

@@ -1,0 +1,75 @@
+#include "engines/motion.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace grit {
+namespace {
+
+using Quad = double __attribute__((vector_size(32)));
+
+Quad quad(const Row& row) { return std::bit_cast<Quad>(row); }
+Row row(const Quad& quad) { return std::bit_cast<Row>(quad); }
+Quad quad(const Vec3& v) { return Quad{v.x(), v.y(), v.z(), 0}; }
+
+/// Lessens components that speed the body up, adds to those that slow it down; does nothing to a body at rest.
+Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
+  const Quad power = force * velocity;
+  const Quad less = force * (1 - coefficient), more = force * (1 + coefficient);
+  return power > 0 ? less : power < 0 ? more : force;
+}
+
+Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
+
+}  // namespace
+
+BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
+                  const Vec3& gravity) {
+  BodySum net = sum[body];
+  pairs.gather(body, net);
+  const double mass = 1 / bodies.velocity[body].w;
+  net.force.x += mass * gravity.x(), net.force.y += mass * gravity.y(), net.force.z += mass * gravity.z();
+  net.force.w = net.moment.w = 0;
+  return net;
+}
+
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, BodySum* sum,
+                   const MotionStep& step) {
+  const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
+  const MotionSettings& settings = step.settings;
+  const Quad gravity_kick = quad(Vec3(settings.gravity * step.kick));
+  const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
+  // The fourth number of a row (radius, 1/mass, 1/inertia) stays as it is.
+  const Quad kick = settings.hold_translation ? Quad{} : Quad{step.kick, step.kick, step.kick, 0};
+  const Quad turn_kick = settings.hold_rotation ? Quad{} : Quad{step.kick, step.kick, step.kick, 0};
+  const Quad fall = settings.hold_translation ? Quad{} : gravity_kick;
+  const Quad drift{step.drift, step.drift, step.drift, 0};
+  const double damping = settings.local_damping;
+  Quad fastest{}, poison{};
+  for (std::size_t i = first; i < last; ++i) {
+    BodySum net = sum[i];
+    sum[i] = {};
+    pairs.gather(i, net);
+    Quad x = quad(bodies.position[i]), v = quad(bodies.velocity[i]), w = quad(bodies.spin[i]);
+    const double inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
+    const Quad flow = rate * (x - centre);
+    Quad push = quad(net.force) * (kick * inverse_mass) + fall;
+    Quad twist = quad(net.moment) * (turn_kick * inverse_inertia);
+    if (damping > 0) push = damped(push, v - flow, damping), twist = damped(twist, w, damping);
+    v += push, w += twist;
+    x += v * drift;
+    bodies.position[i] = row(x), bodies.velocity[i] = row(v), bodies.spin[i] = row(w);
+    const Quad speed = absolute(v - flow);
+    fastest = speed > fastest ? speed : fastest;
+    poison += v * 0.0 + w * 0.0;
+  }
+  if (!bodies.rotation.empty())
+    for (std::size_t i = first; i < last; ++i) bodies.rotation[i] += step.drift * xyz(bodies.spin[i]);
+  if (!bodies.displacement.empty())
+    for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
+  return {std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]),
+          poison[0] == 0 && poison[1] == 0 && poison[2] == 0};
+}
+
+}  // namespace grit

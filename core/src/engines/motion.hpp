@@ -1,0 +1,32 @@
+// From forces to positions: one pass over the bodies gathers, damps and integrates.
+#pragma once
+
+#include "contact/contact_table.hpp"
+#include "grit/engine.hpp"
+#include "scene/bodies.hpp"
+
+namespace grit {
+
+/// One step of the leap-frog.
+struct MotionStep {
+  MotionSettings settings;
+  double kick;         ///< s: from the last mid-step to the next, the time over which forces act
+  double drift;        ///< s: the step
+  Vec3 strain_rate;    ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
+  Vec3 centre;         ///< where that flow is zero [m]
+};
+
+/// What a chunk's bodies did.
+struct Motion {
+  double largest_speed = 0;  ///< upper bound of the speeds against the mean flow, m/s
+  bool finite = true;        ///< no velocity is inf or NaN
+};
+
+/// Moves the bodies of one chunk. `sum` holds what contacts did to them as a, and loses it: it is zero afterwards.
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, BodySum* sum, const MotionStep& step);
+
+/// Net force and moment of one body, gravity included, before damping; w is 0.
+BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
+                  const Vec3& gravity);
+
+}  // namespace grit

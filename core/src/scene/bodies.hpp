@@ -1,0 +1,34 @@
+// The bodies: a structure of arrays, by index. Indices follow the bodies through space and change; ids do not.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "grit/vec.hpp"
+#include "grit/world.hpp"
+
+namespace grit {
+
+/// Arrays have one entry a body; position, velocity and spin one more at the end, of a body so far away that it touches
+/// nothing, which pads blocks of contacts.
+struct Bodies {
+  std::vector<Row> position;  ///< m, w: radius [m]
+  std::vector<Row> velocity;  ///< m/s, half a step before the positions; w: 1/mass [1/kg]
+  std::vector<Row> spin;      ///< rad/s; w: 1/inertia [1/(kg m²)]
+  std::vector<std::uint32_t> id;
+  std::vector<std::uint8_t> material;
+  std::vector<Vec3> rotation;      ///< cumulative [rad]; empty unless asked for
+  std::vector<Vec3> displacement;  ///< since the start of the stage [m]; empty unless asked for
+
+  std::size_t count() const { return id.size(); }
+  /// Adds a body (before finish()). Its id is its place.
+  void add(const Vec3& centre, double radius, double mass, double inertia, std::uint8_t material,
+           const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero());
+  /// After the last add(): pads, and allocates the state that was asked for.
+  void finish(StateRequest state);
+  /// Puts body order[i] at place i.
+  void reorder(std::span<const std::uint32_t> order);
+};
+
+}  // namespace grit
