@@ -1,6 +1,8 @@
 // Vectors: Vec3 for the world outside the hot loop, Vec<L> for lanes inside it, Row for one body's four numbers.
 #pragma once
 
+#include <bit>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -15,6 +17,13 @@ struct alignas(32) Row {
   double x = 0, y = 0, z = 0, w = 0;
 };
 
+/// The same four numbers as one register.
+using Quad = double __attribute__((vector_size(32)));
+[[gnu::always_inline]] inline Quad quad(const Row& row) { return std::bit_cast<Quad>(row); }
+[[gnu::always_inline]] inline Row row(const Quad& quad) { return std::bit_cast<Row>(quad); }
+[[gnu::always_inline]] inline Row& operator+=(Row& sum, const Row& r) { return sum = row(quad(sum) + quad(r)); }
+[[gnu::always_inline]] inline Row& operator-=(Row& sum, const Row& r) { return sum = row(quad(sum) - quad(r)); }
+
 inline Vec3 xyz(const Row& row) { return {row.x, row.y, row.z}; }
 
 /// A vector whose components are lanes: `double` in the reference twin, a SIMD type in the batch loop.
@@ -22,20 +31,20 @@ template <class L>
 struct Vec {
   L x{}, y{}, z{};
 
-  friend Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
-  friend Vec operator*(const L& s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-  friend Vec operator*(const Vec& a, const L& s) { return {s * a.x, s * a.y, s * a.z}; }
+  [[gnu::always_inline]] friend Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  [[gnu::always_inline]] friend Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  [[gnu::always_inline]] friend Vec operator-(const Vec& a) { return {-a.x, -a.y, -a.z}; }
+  [[gnu::always_inline]] friend Vec operator*(const L& s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+  [[gnu::always_inline]] friend Vec operator*(const Vec& a, const L& s) { return {s * a.x, s * a.y, s * a.z}; }
 };
 
 template <class L>
-L dot(const Vec<L>& a, const Vec<L>& b) {
+[[gnu::always_inline]] inline L dot(const Vec<L>& a, const Vec<L>& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 template <class L>
-Vec<L> cross(const Vec<L>& a, const Vec<L>& b) {
+[[gnu::always_inline]] inline Vec<L> cross(const Vec<L>& a, const Vec<L>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 

@@ -56,9 +56,7 @@ class ContactTable {
     std::uint32_t first_block = 0, last_block = 0;
   };
   static void add(BodySum& sum, const ContactRow& row) {
-    sum.force.x += row.force.x, sum.force.y += row.force.y, sum.force.z += row.force.z, sum.force.w += row.force.w;
-    sum.moment.x += row.moment.x, sum.moment.y += row.moment.y, sum.moment.z += row.moment.z;
-    sum.moment.w += row.moment.w;
+    sum.force += row.force, sum.moment += row.moment;
   }
   void make_inbox(std::size_t bodies);
 

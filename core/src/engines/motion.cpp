@@ -7,10 +7,6 @@
 namespace grit {
 namespace {
 
-using Quad = double __attribute__((vector_size(32)));
-
-Quad quad(const Row& row) { return std::bit_cast<Quad>(row); }
-Row row(const Quad& quad) { return std::bit_cast<Row>(quad); }
 Quad quad(const Vec3& v) { return Quad{v.x(), v.y(), v.z(), 0}; }
 
 /// Lessens components that speed the body up, adds to those that slow it down; does nothing to a body at rest.

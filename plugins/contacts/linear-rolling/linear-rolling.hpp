@@ -128,7 +128,7 @@ struct LinearRolling {
   }
 
   template <unsigned Features, class L>
-  static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
     const L zero(0.0), one(1.0), tiny(1e-300);
     const L soft_a = pair.modulus_a * at.radius_a, soft_b = pair.modulus_b * at.radius_b;
     const L kn = L(2.0) * soft_a * soft_b / (soft_a + soft_b);

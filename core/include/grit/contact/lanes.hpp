@@ -1,4 +1,6 @@
 // Lanes: what a contact law computes with. `double` in the reference twin, the machine's widest SIMD type in the loop.
+// Lanes have to stay in registers, so that all functions on them are inlined by force: compilers were seen to leave calls
+// in a loop as large as a law, which pass lanes through memory and cost a factor of three.
 #pragma once
 
 #include <algorithm>
@@ -33,35 +35,33 @@ inline constexpr std::size_t lane_width = LaneTraits<L>::width;
 static_assert(block_size % lane_width<Lane> == 0);
 
 // The branch of a law. Both sides are evaluated.
-inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
+[[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 template <class T, class Abi>
-stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& condition, stdx::simd<T, Abi> yes,
+[[gnu::always_inline]] inline stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& condition, stdx::simd<T, Abi> yes,
                           const stdx::simd<T, Abi>& no) {
   stdx::where(!condition, yes) = no;
   return yes;
 }
 template <class L>
-Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes, const Vec<L>& no) {
+[[gnu::always_inline]] inline Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes, const Vec<L>& no) {
   return {select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z)};
 }
 
 // For SIMD lanes the standard library has these already, found by their argument.
-inline double sqrt(double a) { return std::sqrt(a); }
-inline double abs(double a) { return std::abs(a); }
-inline double min(double a, double b) { return b < a ? b : a; }
-inline double max(double a, double b) { return a < b ? b : a; }
+[[gnu::always_inline]] inline double sqrt(double a) { return std::sqrt(a); }
+[[gnu::always_inline]] inline double abs(double a) { return std::abs(a); }
+[[gnu::always_inline]] inline double min(double a, double b) { return b < a ? b : a; }
+[[gnu::always_inline]] inline double max(double a, double b) { return a < b ? b : a; }
 
 namespace detail {
 
-inline std::uint32_t bits(bool mask) { return mask; }
+[[gnu::always_inline]] inline std::uint32_t bits(bool mask) { return mask; }
 template <class T, class Abi>
-std::uint32_t bits(const stdx::simd_mask<T, Abi>& mask) {
+[[gnu::always_inline]] inline std::uint32_t bits(const stdx::simd_mask<T, Abi>& mask) {
   return static_cast<std::uint32_t>(mask.__to_bitset().to_ulong());
 }
 
-using Quad = double __attribute__((vector_size(32)));
-
-inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
+[[gnu::always_inline]] inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
   const Quad ab0 = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab1 = __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const Quad cd0 = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd1 = __builtin_shufflevector(c, d, 1, 5, 3, 7);
   a = __builtin_shufflevector(ab0, cd0, 0, 1, 4, 5), b = __builtin_shufflevector(ab1, cd1, 0, 1, 4, 5);
@@ -74,12 +74,12 @@ inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
 template <class L>
 struct RowLanes {
   L x, y, z, w;
-  Vec<L> xyz() const { return {x, y, z}; }
+  [[gnu::always_inline]] Vec<L> xyz() const { return {x, y, z}; }
 };
 
 /// Loads the rows `base[index(k)]`, k = 0 … width − 1, one a lane.
 template <class L, class Index>
-RowLanes<L> load_rows(const Row* base, Index index) {
+[[gnu::always_inline]] inline RowLanes<L> load_rows(const Row* base, Index index) {
   constexpr std::size_t width = lane_width<L>;
   if constexpr (width == 1) {
     const Row& row = base[index(0)];
@@ -87,14 +87,14 @@ RowLanes<L> load_rows(const Row* base, Index index) {
   } else if constexpr (width % 4 == 0) {
     constexpr std::size_t quads = width / 4;
     struct Column {
-      detail::Quad quad[quads];
+      Quad quad[quads];
     };
     Column x, y, z, w;
     for (std::size_t q = 0; q < quads; ++q) {
-      detail::Quad r0 = std::bit_cast<detail::Quad>(base[index(4 * q)]);
-      detail::Quad r1 = std::bit_cast<detail::Quad>(base[index(4 * q + 1)]);
-      detail::Quad r2 = std::bit_cast<detail::Quad>(base[index(4 * q + 2)]);
-      detail::Quad r3 = std::bit_cast<detail::Quad>(base[index(4 * q + 3)]);
+      Quad r0 = quad(base[index(4 * q)]);
+      Quad r1 = quad(base[index(4 * q + 1)]);
+      Quad r2 = quad(base[index(4 * q + 2)]);
+      Quad r3 = quad(base[index(4 * q + 3)]);
       detail::transpose(r0, r1, r2, r3);
       x.quad[q] = r0, y.quad[q] = r1, z.quad[q] = r2, w.quad[q] = r3;
     }
@@ -107,22 +107,22 @@ RowLanes<L> load_rows(const Row* base, Index index) {
 
 /// The reverse of load_rows: hands row k to `store(k, row)`.
 template <class L, class Store>
-void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
+[[gnu::always_inline]] inline void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
   constexpr std::size_t width = lane_width<L>;
   if constexpr (width == 1) {
     store(0, Row{x, y, z, w});
   } else if constexpr (width % 4 == 0) {
     constexpr std::size_t quads = width / 4;
     struct Column {
-      detail::Quad quad[quads];
+      Quad quad[quads];
     };
     const Column cx = std::bit_cast<Column>(x), cy = std::bit_cast<Column>(y), cz = std::bit_cast<Column>(z),
                  cw = std::bit_cast<Column>(w);
     for (std::size_t q = 0; q < quads; ++q) {
-      detail::Quad r0 = cx.quad[q], r1 = cy.quad[q], r2 = cz.quad[q], r3 = cw.quad[q];
+      Quad r0 = cx.quad[q], r1 = cy.quad[q], r2 = cz.quad[q], r3 = cw.quad[q];
       detail::transpose(r0, r1, r2, r3);
-      store(4 * q, std::bit_cast<Row>(r0)), store(4 * q + 1, std::bit_cast<Row>(r1));
-      store(4 * q + 2, std::bit_cast<Row>(r2)), store(4 * q + 3, std::bit_cast<Row>(r3));
+      store(4 * q, row(r0)), store(4 * q + 1, row(r1));
+      store(4 * q + 2, row(r2)), store(4 * q + 3, row(r3));
     }
   } else {
     for (std::size_t k = 0; k < width; ++k) store(k, Row{x[k], y[k], z[k], w[k]});

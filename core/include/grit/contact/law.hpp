@@ -12,7 +12,7 @@
 //     static constexpr unsigned feature_bits = 1;                                 // parts that can be switched off
 //     static unsigned features(const Pair<double>&);                              // which of them this pair needs
 //     static constexpr std::size_t fields_used(unsigned features);                // how many leading fields they need
-//     template <unsigned Features, class L>
+//     template <unsigned Features, class L> [[gnu::always_inline]]
 //     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
 //     static Stiffness stiffness(const PairSize&, const Pair<double>&);
 //     static double energy(const PairSize&, const Pair<double>&, const State<double>&);
@@ -22,9 +22,9 @@
 // for lanes that do not touch; their results are discarded, so that they only must not trap.
 #pragma once
 
-#include <array>
-#include <bit>
+#include <algorithm>
 #include <map>
+#include <type_traits>
 #include <utility>
 
 #include "grit/contact/contact_law.hpp"
@@ -42,7 +42,7 @@ struct Turn {
   L over;           ///< 1 / (bisector · normal)
   L cosine, sine;   ///< of the turn about the normal
 
-  Vec<L> operator()(const Vec<L>& v) const {
+  [[gnu::always_inline]] Vec<L> operator()(const Vec<L>& v) const {
     const Vec<L> carried = v - (dot(v, normal) * over) * bisector;
     return cosine * carried + sine * cross(normal, carried);
   }
@@ -60,7 +60,7 @@ struct ContactPoint {
   L dt;                              ///< s
   Turn<L> turn;
 
-  Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
+  [[gnu::always_inline]] Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
 };
 
 /// What a law answers.
@@ -74,7 +74,7 @@ struct Response {
 namespace detail {
 
 template <class L>
-Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a, const Vec<L>& spin_b, double dt) {
+[[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a, const Vec<L>& spin_b, double dt) {
   Turn<L> turn;
   turn.normal = normal;
   turn.bisector = normal + before;
@@ -87,59 +87,55 @@ Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin
   return turn;
 }
 
-/// The members of a struct of lanes, seen as an array.
-template <template <class> class Members, class L>
-auto as_array(const Members<L>& members) {
-  return std::bit_cast<std::array<L, sizeof(Members<L>) / sizeof(L)>>(members);
+/// The members of a struct that has nothing but lanes, one after the other. (Not std::bit_cast: that was seen to copy
+/// through memory.)
+template <class L, class Members>
+[[gnu::always_inline]] inline L& member(Members& members, std::size_t i) {
+  static_assert(sizeof(Members) % sizeof(L) == 0 && std::is_trivially_copyable_v<Members>);
+  using Alias [[gnu::may_alias]] = L;
+  return reinterpret_cast<Alias*>(&members)[i];
 }
-
-template <class Law, template <class> class Members>
-inline constexpr std::size_t member_count = sizeof(Members<double>) / sizeof(double);
+template <class Members, class L>
+inline constexpr std::size_t member_count = sizeof(Members) / sizeof(L);
 
 /// Parameters of the pairs of `width` contacts.
 template <class Law, class L, class Index>
-auto load_pair(const typename Law::template Pair<double>* table, Index index) {
-  using Pair = typename Law::template Pair<L>;
-  constexpr std::size_t count = sizeof(typename Law::template Pair<double>) / sizeof(double);
-  std::array<L, count> lanes;
-  for (std::size_t m = 0; m < count; ++m) {
-    const auto member = [&](std::size_t k) { return reinterpret_cast<const double*>(table + index(k))[m]; };
-    if constexpr (lane_width<L> == 1) lanes[m] = member(0);
-    else lanes[m] = L([&](auto k) { return member(k); });
+[[gnu::always_inline]] inline auto load_pair(const typename Law::template Pair<double>* table, Index index) {
+  typename Law::template Pair<L> pair;
+  for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m) {
+    const auto number = [&](std::size_t k) { return reinterpret_cast<const double*>(table + index(k))[m]; };
+    if constexpr (lane_width<L> == 1) member<L>(pair, m) = number(0);
+    else member<L>(pair, m) = L([&](auto k) { return number(k); });
   }
-  return std::bit_cast<Pair>(lanes);
+  return pair;
 }
 
 /// The same where all contacts are of one kind.
 template <class Law, class L>
-auto broadcast_pair(const typename Law::template Pair<double>& pair) {
-  constexpr std::size_t count = sizeof(pair) / sizeof(double);
-  const auto numbers = std::bit_cast<std::array<double, count>>(pair);
-  std::array<L, count> lanes;
-  for (std::size_t m = 0; m < count; ++m) lanes[m] = L(numbers[m]);
-  return std::bit_cast<typename Law::template Pair<L>>(lanes);
+[[gnu::always_inline]] inline auto broadcast_pair(const typename Law::template Pair<double>& numbers) {
+  typename Law::template Pair<L> pair;
+  for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m)
+    member<L>(pair, m) = L(reinterpret_cast<const double*>(&numbers)[m]);
+  return pair;
 }
 
 template <class L>
-L load_lanes(const double* from) {
+[[gnu::always_inline]] inline L load_lanes(const double* from) {
   if constexpr (lane_width<L> == 1) return *from;
   else return L(from, stdx::element_aligned);
 }
 template <class L>
-void store_lanes(const L& value, double* to) {
+[[gnu::always_inline]] inline void store_lanes(const L& value, double* to) {
   if constexpr (lane_width<L> == 1) *to = value;
   else value.copy_to(to, stdx::element_aligned);
 }
 
-inline void add(Row& sum, const Row& row, double sign) {
-  sum.x += sign * row.x, sum.y += sign * row.y, sum.z += sign * row.z;
-}
 
-/// The loop over candidate pairs. L is Lane, or double for the reference twin.
+/// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
+/// lanes through memory, which was seen to cost a factor of two.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
-void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+[[gnu::flatten]] void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
-  constexpr std::size_t all_fields = sizeof(typename Law::template State<double>) / sizeof(double);
   using State = typename Law::template State<L>;
   const L dt(batch.dt);
   L largest(0.0);
@@ -203,9 +199,8 @@ void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* tabl
       at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), batch.dt);
       largest = max(largest, at.overlap / max(min(pa.w, pb.w), L(1e-300)));
 
-      std::array<L, all_fields> numbers{};
-      for (std::size_t f = 0; f < fields; ++f) numbers[f] = load_lanes<L>(state_at + f * block_size);
-      State state = std::bit_cast<State>(numbers);
+      State state{};
+      for (std::size_t f = 0; f < fields; ++f) member<L>(state, f) = load_lanes<L>(state_at + f * block_size);
       Response<L> response;
       if constexpr (OneKind) {
         response = Law::template evaluate<Features>(at, one_kind, state);
@@ -213,10 +208,9 @@ void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* tabl
         const auto kind = [&](std::size_t k) { return batch.material[ia[k]] * materials + batch.material[ib[k]]; };
         response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
       }
-      numbers = std::bit_cast<std::array<L, all_fields>>(state);
       const L zero(0.0);
       for (std::size_t f = 0; f < fields; ++f)
-        store_lanes(select(touches, numbers[f], zero), state_at + f * block_size);
+        store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
 
       // The force acts at the middle of the overlap, so that the arms add up to the branch: no angular momentum is made.
       const Vec<L> none{zero, zero, zero};
@@ -233,11 +227,11 @@ void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* tabl
       BodySum* const sum = batch.sum;
       store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Row& r) {
         row[k].force = r;
-        add(sum[ia[k]].force, r, -1.0);
+        sum[ia[k]].force -= r;
       });
       store_rows(moment_b.x, moment_b.y, moment_b.z, overlap, [=](std::size_t k, const Row& r) { row[k].moment = r; });
       store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
-                 [=](std::size_t k, const Row& r) { add(sum[ia[k]].moment, r, 1.0); });
+                 [=](std::size_t k, const Row& r) { sum[ia[k]].moment += r; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
   }
@@ -247,9 +241,8 @@ void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* tabl
 
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact.
 template <class Law, unsigned Features, class L>
-void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+[[gnu::flatten]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
-  constexpr std::size_t all_fields = sizeof(typename Law::template State<double>) / sizeof(double);
   using State = typename Law::template State<L>;
   double largest = 0;
   for (std::size_t first = 0; first < batch.count; first += width) {
@@ -283,19 +276,17 @@ void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* tabl
     at.dt = L(batch.dt);
     at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt);
 
-    std::array<L, all_fields> numbers{};
+    State state{};
     for (std::size_t f = 0; f < fields; ++f) {
       const auto number = [&](std::size_t k) { return batch.state[(first + std::min(k, used - 1)) * fields + f]; };
-      if constexpr (width == 1) numbers[f] = number(0);
-      else numbers[f] = L([&](auto k) { return number(k); });
+      if constexpr (width == 1) member<L>(state, f) = number(0);
+      else member<L>(state, f) = L([&](auto k) { return number(k); });
     }
-    State state = std::bit_cast<State>(numbers);
     const auto kind = [&](std::size_t k) {
       const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
       return own * materials + touch(k).material;
     };
     const Response<L> response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
-    numbers = std::bit_cast<std::array<L, all_fields>>(state);
 
     const Vec<L> force = response.normal_force * normal + response.shear;
     const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
@@ -304,15 +295,15 @@ void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* tabl
       else return static_cast<double>(lane[k]);
     };
     for (std::size_t k = 0; k < used; ++k) {
-      for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = put(numbers[f], k);
+      for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = put(member<L>(state, f), k);
       const Row on_wall{put(force.x, k), put(force.y, k), put(force.z, k), put(response.normal_force, k)};
       ContactRow& row = batch.row[first + k];
       row.force = on_wall;
       row.moment = {put(response.moment.x, k), put(response.moment.y, k), put(response.moment.z, k),
                     put(at.overlap, k)};
       BodySum& sum = batch.sum[touch(k).body];
-      add(sum.force, on_wall, -1.0);
-      add(sum.moment, Row{put(moment_a.x, k), put(moment_a.y, k), put(moment_a.z, k), 0}, 1.0);
+      sum.force -= on_wall;
+      sum.moment += Row{put(moment_a.x, k), put(moment_a.y, k), put(moment_a.z, k), 0};
       largest = std::max(largest, touch(k).overlap / batch.position[touch(k).body].w);
     }
   }
@@ -361,9 +352,9 @@ class LawPlugin final : public ContactLaw {
     return Law::stiffness(pair, table_[a * count_ + b]);
   }
   double energy(const PairSize& pair, std::size_t a, std::size_t b, std::span<const double> state) const override {
-    std::array<double, sizeof(State) / sizeof(double)> numbers{};
-    std::copy(state.begin(), state.end(), numbers.begin());
-    return Law::energy(pair, table_[a * count_ + b], std::bit_cast<State>(numbers));
+    State numbers{};
+    for (std::size_t f = 0; f < state.size(); ++f) detail::member<double>(numbers, f) = state[f];
+    return Law::energy(pair, table_[a * count_ + b], numbers);
   }
 
  private:
