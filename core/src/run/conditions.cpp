@@ -1,0 +1,103 @@
+#include "run/conditions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+const WallView& wall(const World& world, const std::string& name) {
+  for (const WallView& view : world.walls())
+    if (view.name == name) return view;
+  throw Error("a stage waits for wall \"" + name + "\", which does not exist");
+}
+
+double stage_travel(const DisplacementCondition& c, const World& world) {
+  return wall(world, c.wall).stage_position[c.axis[0] - 'x'];
+}
+
+struct Met {
+  const Simulation& simulation;
+  const StageStart& start;
+
+  bool look_now() const { return (simulation.step() - start.step) % slow_conditions_every == 0; }
+
+  // Half a step of tolerance: a stage of 1 ms at 0.1 ms a step has ten steps, whatever the rounding of the sum.
+  bool operator()(const TimeCondition& c) const {
+    return simulation.time() - start.time >= c.value - 0.5 * simulation.dt();
+  }
+  bool operator()(const StepsCondition& c) const {
+    return simulation.step() - start.step >= static_cast<std::uint64_t>(c.value);
+  }
+  bool operator()(const DisplacementCondition& c) const {
+    const double travel = stage_travel(c, simulation);
+    return c.value > 0 ? travel >= c.value : travel <= c.value;
+  }
+  bool operator()(const UnbalancedForceCondition& c) const {
+    if (!look_now()) return false;
+    const Unrest now = unrest(simulation);
+    return now.mean_contact_force > 0 && now.unbalanced_force < c.below;
+  }
+  bool operator()(const KineticEnergyCondition& c) const {
+    return look_now() && simulation.kinetic_energy_ratio() < c.below;
+  }
+  bool operator()(const VoidRatioCondition& c) const {
+    if (!look_now()) return false;
+    const double e = void_ratio(simulation, simulation.interior(simulation.mean_diameter()));
+    return (!c.below || e < *c.below) && (!c.above || e > *c.above);
+  }
+  bool operator()(const PressureCondition& c) const {
+    return std::abs(wall(simulation, c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
+  }
+  bool operator()(const AllCondition& c) const {
+    return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return is_met(*one, simulation, start); });
+  }
+  bool operator()(const AnyCondition& c) const {
+    return std::any_of(c.of.begin(), c.of.end(), [&](const auto& one) { return is_met(*one, simulation, start); });
+  }
+  bool operator()(std::monostate) const { return true; }
+};
+
+struct Progress {
+  const Simulation& simulation;
+  const StageStart& start;
+
+  std::optional<double> operator()(const TimeCondition& c) const { return (simulation.time() - start.time) / c.value; }
+  std::optional<double> operator()(const StepsCondition& c) const {
+    return static_cast<double>(simulation.step() - start.step) / static_cast<double>(c.value);
+  }
+  std::optional<double> operator()(const DisplacementCondition& c) const {
+    return stage_travel(c, simulation) / c.value;
+  }
+  std::optional<double> operator()(const AllCondition& c) const {
+    std::optional<double> least;
+    for (const auto& one : c.of)
+      if (const auto p = progress(*one, simulation, start)) least = least ? std::min(*least, *p) : p;
+    return least;
+  }
+  std::optional<double> operator()(const AnyCondition& c) const {
+    std::optional<double> most;
+    for (const auto& one : c.of)
+      if (const auto p = progress(*one, simulation, start)) most = most ? std::max(*most, *p) : p;
+    return most;
+  }
+  template <class Other>
+  std::optional<double> operator()(const Other&) const {
+    return std::nullopt;
+  }
+};
+
+}  // namespace
+
+bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
+  return std::visit(Met{simulation, start}, condition.is.value());
+}
+
+std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start) {
+  const auto raw = std::visit(Progress{simulation, start}, condition.is.value());
+  return raw ? std::optional(std::clamp(*raw, 0.0, 1.0)) : std::nullopt;
+}
+
+}  // namespace grit

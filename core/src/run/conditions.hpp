@@ -1,0 +1,27 @@
+// When a stage ends.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "run/simulation.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+/// Where a stage began.
+struct StageStart {
+  double time = 0;
+  std::uint64_t step = 0;
+};
+
+/// Conditions that need a pass over all bodies or contacts are looked at every so many steps.
+inline constexpr std::uint64_t slow_conditions_every = 100;
+
+/// Whether the condition holds. Between looks, slow conditions count as not met.
+bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
+
+/// How far on the way the stage is, 0 … 1, where the condition tells.
+std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start);
+
+}  // namespace grit

@@ -1,0 +1,268 @@
+#include "run/driver.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+
+#include "grit/error.hpp"
+#include "run/conditions.hpp"
+
+namespace grit {
+namespace {
+
+using Wall = std::chrono::steady_clock;
+
+double seconds_since(Wall::time_point start) { return std::chrono::duration<double>(Wall::now() - start).count(); }
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(4);
+  text << value;
+  return text.str();
+}
+
+/// Says when something that happens again and again is due.
+class Schedule {
+ public:
+  explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
+  void restart(const World& world) { first_time_ = world.time(), first_step_ = world.step(), count_ = 0; }
+  bool is_due(const World& world) {
+    bool due = false;
+    if (cadence_.every_steps > 0)
+      due = (world.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
+    if (cadence_.every_time) {
+      // Counted, not summed up, so that the instants do not drift.
+      const double next = first_time_ + static_cast<double>(count_) * *cadence_.every_time;
+      if (world.time() >= next - 0.5 * world.dt()) due = true, ++count_;
+    }
+    return due;
+  }
+  bool never() const { return !cadence_.every_time && cadence_.every_steps == 0; }
+
+ private:
+  Cadence cadence_;
+  double first_time_ = 0;
+  std::uint64_t first_step_ = 0, count_ = 0;
+};
+
+/// A probe of the description at work.
+class Observer {
+ public:
+  Observer(const std::string& name, const ProbeDescription& description, const World& world)
+      : name_(name), description_(&description), schedule_(description.cadence) {
+    description.probe->prepare(world);
+    for (const Channel& channel : description.probe->channels()) {
+      std::size_t size = 1;
+      for (const std::size_t n : channel.shape) size *= n;
+      values_.emplace_back(size);
+    }
+  }
+  ProbeGroup group() const { return {name_, description_->probe->channels()}; }
+  bool watches(const std::string& stage) const {
+    return description_->stages.empty() || std::find(description_->stages.begin(), description_->stages.end(), stage) !=
+                                               description_->stages.end();
+  }
+  Schedule& schedule() { return schedule_; }
+  void sample(std::size_t index, const World& world, Recorder& recorder) {
+    if (last_step_ == world.step()) return;
+    last_step_ = world.step();
+    std::vector<std::span<double>> out(values_.begin(), values_.end());
+    description_->probe->sample(world, out);
+    const std::vector<std::span<const double>> in(values_.begin(), values_.end());
+    recorder.sample(index, world, in);
+  }
+  bool in_frames() const { return description_->frames; }
+  FieldGroup fields(const World& world) const { return {name_, description_->probe->fields(world)}; }
+
+ private:
+  std::string name_;
+  const ProbeDescription* description_;
+  Schedule schedule_;
+  std::vector<std::vector<double>> values_;
+  std::uint64_t last_step_ = ~0ull;
+};
+
+class Run {
+ public:
+  Run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control)
+      : scene_(scene), simulation_(simulation), recorder_(recorder), control_(control),
+        frames_(scene.description->output.frames) {
+    phases_ = {{"probes", 0}, {"output", 0}};
+  }
+
+  RunSummary operator()() {
+    RunSummary summary;
+    simulation_.find_forces();
+    for (const auto& [name, probe] : scene_.description->probes) observers_.emplace_back(name, probe, simulation_);
+    std::vector<ProbeGroup> groups;
+    for (const Observer& observer : observers_) groups.push_back(observer.group());
+    recorder_.begin(simulation_, groups);
+    summary.status = "done";
+    try {
+      for (std::size_t i = 0; i < scene_.stages.size() && !interrupted(); ++i) stage(i);
+      if (interrupted()) summary.status = "interrupted";
+    } catch (const NumericsError& error) {
+      summary.status = "failed", summary.message = error.what();
+    }
+    observe(true);
+    if (!frames_.never()) frame();
+    fill(summary);
+    recorder_.finish(simulation_, summary);
+    return summary;
+  }
+
+ private:
+  bool interrupted() const { return control_.interrupted != nullptr && control_.interrupted->load(); }
+
+  void stage(std::size_t index) {
+    const StagePlan& plan = scene_.stages[index];
+    const StageDescription& stage = scene_.description->stages[index];
+    start_ = {simulation_.time(), simulation_.step()};
+    simulation_.begin_stage(stage.name, *plan.start);
+    for (Observer& observer : observers_) observer.schedule().restart(simulation_);
+    frames_.restart(simulation_);
+    ramped_ = 0;
+    wall_start_ = last_report_ = Wall::now();
+    last_report_steps_ = simulation_.step();
+
+    while (!interrupted()) {
+      ramp(stage, plan);
+      step_forces();
+      const bool met = is_met(stage.until, simulation_, start_);
+      observe(met);
+      if (met) break;
+      if (simulation_.time() - start_.time > stage.limit)
+        throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
+                            " s; " + reached() +
+                            "; give it more time (/stages/" + std::to_string(index) +
+                            "/limit) or a condition that it can reach");
+      const auto begin = Wall::now();
+      simulation_.advance();
+      stepping_ += seconds_since(begin);
+      report(index, stage);
+    }
+    const std::string what = reached();
+    recorder_.stage_ended(simulation_, what);
+    if (!interrupted() && stage.expect.void_ratio) {
+      const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
+      if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
+        throw NumericsError("stage \"" + stage.name + "\" was to end at a void ratio of " +
+                            number(*stage.expect.void_ratio) + " ± " + number(stage.expect.within) + " and reached " +
+                            number(e) + "; wish for another one, or prepare the specimen otherwise");
+    }
+  }
+
+  void step_forces() {
+    const auto begin = Wall::now();
+    simulation_.find_forces();
+    stepping_ += seconds_since(begin);
+  }
+
+  /// Applies the increments of the stage's ramps that are due; ramps follow one another.
+  void ramp(const StageDescription& stage, const StagePlan& plan) {
+    double since = simulation_.time() - start_.time;
+    std::size_t due = 0;
+    for (const RampDescription& one : stage.ramps) {
+      const auto increments = static_cast<double>(one.increments);
+      const double done = std::floor(std::clamp(since / one.duration, 0.0, 1.0) * increments + 1e-9);
+      due += static_cast<std::size_t>(done);
+      if (done < increments) break;
+      since -= one.duration;
+    }
+    if (due == ramped_) return;
+    ramped_ = due;
+    simulation_.change(*plan.ramp[due - 1]);
+  }
+
+  void observe(bool all) {
+    const auto begin = Wall::now();
+    for (std::size_t i = 0; i < observers_.size(); ++i) {
+      Observer& observer = observers_[i];
+      if (!observer.watches(simulation_.stage())) continue;
+      const bool due = observer.schedule().is_due(simulation_);
+      if (due || all) observer.sample(i, simulation_, recorder_);
+    }
+    if (frames_.is_due(simulation_)) frame();
+    if (simulation_.step() % 100 == 0 && simulation_.positions().size() > 0)
+      contact_sum_ += 2.0 * static_cast<double>(simulation_.pair_count()) /
+                      static_cast<double>(simulation_.positions().size()),
+          ++contact_samples_;
+    phases_[0].seconds += seconds_since(begin);
+  }
+
+  void frame() {
+    if (last_frame_ == simulation_.step()) return;
+    last_frame_ = simulation_.step();
+    const auto begin = Wall::now();
+    std::vector<FieldGroup> fields;
+    for (const Observer& observer : observers_)
+      if (observer.in_frames()) fields.push_back(observer.fields(simulation_));
+    recorder_.frame(simulation_, fields);
+    phases_[1].seconds += seconds_since(begin);
+  }
+
+  void report(std::size_t index, const StageDescription& stage) {
+    if (!control_.progress || simulation_.step() % 8 != 0) return;
+    const double since = seconds_since(last_report_);
+    if (since < 0.2) return;
+    Progress now;
+    now.stage = stage.name, now.stage_number = index + 1, now.stages = scene_.stages.size();
+    now.fraction = progress(stage.until, simulation_, start_);
+    const double wall = seconds_since(wall_start_);
+    if (now.fraction && *now.fraction > 1e-3) now.seconds_left = wall * (1 - *now.fraction) / *now.fraction;
+    now.time = simulation_.time();
+    now.particle_steps_per_second = static_cast<double>(simulation_.step() - last_report_steps_) *
+                                    static_cast<double>(simulation_.positions().size()) / since;
+    last_report_ = Wall::now(), last_report_steps_ = simulation_.step();
+    control_.progress(now);
+  }
+
+  /// What the specimen is like, in words.
+  std::string reached() const {
+    const Unrest now = unrest(simulation_);
+    std::string text = "unbalanced force " + number(now.unbalanced_force);
+    const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
+    const double overall = void_ratio(simulation_, simulation_.specimen());
+    if (std::isfinite(e) && std::isfinite(overall))
+      text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
+    return text + ", time " + number(simulation_.time() - start_.time) + " s";
+  }
+
+  void fill(RunSummary& summary) const {
+    const std::size_t bodies = simulation_.positions().size();
+    summary.stage = simulation_.stage();
+    summary.time = simulation_.time(), summary.steps = simulation_.step();
+    summary.time_step = simulation_.dt(), summary.critical_time_step = simulation_.clock().critical_time_step;
+    summary.bodies = bodies;
+    summary.contacts_per_body = contact_samples_ > 0 ? contact_sum_ / static_cast<double>(contact_samples_) : 0;
+    summary.wall_seconds = stepping_;
+    summary.particle_steps_per_second =
+        stepping_ > 0 ? static_cast<double>(bodies) * static_cast<double>(summary.steps) / stepping_ : 0;
+    summary.rebuilds = simulation_.clock().rebuilds;
+    summary.threads = simulation_.threads();
+    summary.phases = simulation_.phases();
+    summary.phases.insert(summary.phases.end(), phases_.begin(), phases_.end());
+  }
+
+  const Scene& scene_;
+  Simulation& simulation_;
+  Recorder& recorder_;
+  const RunControl& control_;
+  Schedule frames_;
+  std::deque<Observer> observers_;
+  StageStart start_;
+  std::size_t ramped_ = 0;
+  std::uint64_t last_frame_ = ~0ull, last_report_steps_ = 0, contact_samples_ = 0;
+  Wall::time_point wall_start_, last_report_;
+  double stepping_ = 0, contact_sum_ = 0;
+  std::vector<PhaseTime> phases_;
+};
+
+}  // namespace
+
+RunSummary run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control) {
+  return Run(scene, simulation, recorder, control)();
+}
+
+}  // namespace grit

@@ -1,0 +1,36 @@
+// A run: stage after stage, with probes, frames and progress.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "input/scene.hpp"
+#include "run/recorder.hpp"
+#include "run/simulation.hpp"
+
+namespace grit {
+
+/// What a person who waits wants to know.
+struct Progress {
+  std::string stage;
+  std::size_t stage_number = 0, stages = 0;  ///< from 1
+  std::optional<double> fraction;            ///< of the stage, 0 … 1, where its end can be foreseen
+  std::optional<double> seconds_left;        ///< of the stage
+  double time = 0;                           ///< simulated, s
+  double particle_steps_per_second = 0;      ///< lately
+};
+
+struct RunControl {
+  const std::atomic<bool>* interrupted = nullptr;  ///< looked at every step
+  std::function<void(const Progress&)> progress;   ///< called a few times a second
+};
+
+/// Runs all stages. Returns what came of it: status "done", "interrupted" or "failed" (a guard, a stage that did not end,
+/// an expectation that was not met; the message says which); in all three cases everything was recorded, the last
+/// instant included. Other errors are thrown.
+RunSummary run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control);
+
+}  // namespace grit

@@ -1,0 +1,502 @@
+#include "run/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "contact/critical_step.hpp"
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+// Skin as a share of the mean diameter. On the dense periodic box of bench/ 0.02 … 0.1 were tried: the wider, the fewer
+// searches and the more pairs to test; 0.06 was best or within 3 % of it at 10 000 and 50 000 grains.
+constexpr double skin_share = 0.06;
+// A search after which bodies are put in spatial order again.
+constexpr std::uint64_t reorder_every = 8;
+// The time step is raised only when it could be so much larger, so that it does not follow every small change.
+constexpr double raise_when = 1.1;
+constexpr std::uint64_t energy_check_every = 500;
+
+using Seconds = std::chrono::duration<double>;
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += Seconds(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(4);
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads)
+    : team_(threads), bodies_(std::move(bodies)), shifts_(27) {
+  for (const auto& [name, material] : scene.materials) material_names_.push_back(name);
+  phases_ = {{"search", 0}, {"contacts", 0}, {"walls", 0}, {"motion", 0}};
+  const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
+  clock_.cell = {scene.domain.low.value_or(-open), scene.domain.high.value_or(open), scene.domain.periodic,
+                 Vec3::Zero()};
+  periodic_ = scene.domain.periodic[0] || scene.domain.periodic[1] || scene.domain.periodic[2];
+  clock_.period_before = clock_.cell.high - clock_.cell.low;
+
+  const std::size_t count = bodies_.count();
+  double diameters = 0, mass = 0, volume = 0;
+  smallest_radius_ = count > 0 ? std::numeric_limits<double>::max() : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r = bodies_.position[i].w;
+    diameters += 2 * r, mass += 1 / bodies_.velocity[i].w, volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    largest_radius_ = std::max(largest_radius_, r), smallest_radius_ = std::min(smallest_radius_, r);
+    one_material_ = one_material_ && bodies_.material[i] == 0;
+  }
+  if (count > 0) mean_diameter_ = diameters / static_cast<double>(count), solid_density_ = mass / volume;
+  skin_ = skin_share * mean_diameter_;
+  sum_.assign(count + 1, {});
+  chunk_overlap_.assign(chunks_of(count), 0);
+  chunk_motion_.assign(chunks_of(count), {});
+  begin_stage("", scene);
+}
+
+void Simulation::begin_stage(const std::string& name, const SceneDescription& scene) {
+  stage_ = name;
+  std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), Vec3::Zero());
+  walls_.apply(scene);
+  apply(scene);
+}
+
+void Simulation::change(const SceneDescription& scene) {
+  walls_.change(scene);
+  apply(scene);
+}
+
+void Simulation::apply(const SceneDescription& scene) {
+  scene_ = &scene;
+  law_ = scene.contacts.get();
+  law_->mix(material_names_);
+  fields_ = law_->state();
+  pairs_.set_fields(fields_), wall_contacts_.set_fields(fields_);
+  settings_ = {};
+  force_engines_.clear();
+  for (const auto& [name, engine] : scene.engines) {
+    if (engine.engine->phase() == Phase::settings) engine.engine->settings(settings_);
+    else force_engines_.push_back(engine.engine.get());
+  }
+  // Bodies take part in the mean flow of a deforming cell from its first instant.
+  const Vec3 change_of_rate = scene.domain.strain_rate - clock_.cell.strain_rate;
+  if (!change_of_rate.isZero(0.0)) {
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+      const Vec3 v = change_of_rate.cwiseProduct(xyz(bodies_.position[i]) - centre());
+      bodies_.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
+    }
+    clock_.cell.strain_rate = scene.domain.strain_rate;
+  }
+  loads_.resize(walls_.size());
+  surfaces_.resize(walls_.size());
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const WallDescription& wall = scene.walls.at(walls_.name(w));
+    surfaces_[w].geometry = wall.geometry.get();
+    surfaces_[w].material = static_cast<std::uint32_t>(
+        std::find(material_names_.begin(), material_names_.end(), wall.material) - material_names_.begin());
+  }
+  energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
+  search_now_ = true;
+  net_step_ = contact_step_ = wall_step_ = ~0ull;
+}
+
+void Simulation::update_shifts() {
+  const Vec3 period = clock_.cell.high - clock_.cell.low;
+  for (std::uint8_t image = 0; image < 27; ++image) {
+    const auto shift = image_shift(image);
+    double position[3], velocity[3];
+    for (int k = 0; k < 3; ++k) {
+      position[k] = shift[k] != 0 ? shift[k] * period[k] : 0;
+      velocity[k] = shift[k] != 0 && clock_.last_time_step > 0
+                        ? shift[k] * (period[k] - clock_.period_before[k]) / clock_.last_time_step
+                        : 0;
+    }
+    shifts_[image] = {{position[0], position[1], position[2], 0}, {velocity[0], velocity[1], velocity[2], 0}};
+  }
+}
+
+void Simulation::update_surfaces() {
+  for (std::size_t w = 0; w < surfaces_.size(); ++w) {
+    const WallState& state = walls_.states()[w];
+    surfaces_[w].pose = state.pose;
+    surfaces_[w].velocity = state.velocity, surfaces_[w].spin = state.spin;
+  }
+}
+
+bool Simulation::search_is_due() {
+  if (search_now_) return true;
+  const auto used = [&] {
+    return std::max(2 * clock_.body_travel + clock_.strain_travel, clock_.body_travel + clock_.wall_travel);
+  };
+  if (used() < skin_) return false;
+  // The sum of the largest speeds is a bound; the true travel is often far less and worth a look.
+  // In a cell that deforms, travel is what a body does apart from the mean flow.
+  Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
+  if (!clock_.cell.strain_rate.isZero(0.0)) {
+    from = 0.5 * (reference_cell_.low + reference_cell_.high), to = centre();
+    for (int k = 0; k < 3; ++k)
+      if (clock_.cell.periodic[k])
+        stretch[k] = (clock_.cell.high[k] - clock_.cell.low[k]) / (reference_cell_.high[k] - reference_cell_.low[k]);
+      else from[k] = to[k] = 0;
+  }
+  double largest = 0;
+  for (std::size_t i = 0; i < bodies_.count(); ++i)
+    largest = std::max(largest, (xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from))
+                                    .squaredNorm());
+  clock_.body_travel = std::sqrt(largest);
+  return used() > 0.8 * skin_;
+}
+
+void Simulation::wrap() {
+  const Vec3 period = clock_.cell.high - clock_.cell.low;
+  for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    Vec3 x = xyz(bodies_.position[i]), v = xyz(bodies_.velocity[i]);
+    bool moved = false;
+    for (int k = 0; k < 3; ++k) {
+      if (!clock_.cell.periodic[k]) {
+        if (x[k] < clock_.cell.low[k] || x[k] > clock_.cell.high[k])
+          fail_at_body(i, "left the domain through its " + std::string(x[k] < clock_.cell.low[k] ? "lower" : "upper") +
+                              " " + "xyz"[k] + " side",
+                       "close the domain there with a wall, or make it larger");
+        continue;
+      }
+      const double periods = std::floor((x[k] - clock_.cell.low[k]) / period[k]);
+      if (periods == 0) continue;
+      x[k] -= periods * period[k], v[k] -= periods * period[k] * clock_.cell.strain_rate[k];
+      if (x[k] >= clock_.cell.high[k]) x[k] = clock_.cell.low[k];
+      moved = true;
+    }
+    if (!moved) continue;
+    bodies_.position[i] = {x.x(), x.y(), x.z(), bodies_.position[i].w};
+    bodies_.velocity[i] = {v.x(), v.y(), v.z(), bodies_.velocity[i].w};
+  }
+}
+
+void Simulation::search() {
+  wrap();
+  std::vector<std::uint32_t> order;
+  if (clock_.rebuilds % reorder_every == 0) {
+    order = spatial_order(bodies_, clock_.cell);
+    bodies_.reorder(order);
+  }
+  search_.build(bodies_, clock_.cell, skin_);
+  pairs_.rebuild(bodies_, search_, periodic_, fields_, order, team_);
+  wall_contacts_.rebuild(bodies_, surfaces_, skin_, fields_, order);
+  reference_ = bodies_.position, reference_cell_ = clock_.cell;
+  clock_.body_travel = clock_.wall_travel = clock_.strain_travel = 0;
+  ++clock_.rebuilds;
+  search_now_ = false;
+  set_time_step();
+}
+
+void Simulation::set_time_step() {
+  const TimeStepDescription& wish = scene_->time_step;
+  clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), skin_);
+  if (wish.value) {
+    clock_.time_step = *wish.value;
+    if (*wish.value > clock_.critical_time_step && !wish.allow_unstable)
+      fail("the time step " + number(*wish.value) + " s is above the critical one, " +
+               number(clock_.critical_time_step) + " s",
+           "leave out /time_step/value, or say \"allow_unstable\": true");
+    return;
+  }
+  const double safe = wish.safety * clock_.critical_time_step;
+  if (!std::isfinite(safe)) throw Error("there is no body, so that there is no time step; give /time_step/value");
+  if (clock_.time_step == 0 || safe < clock_.time_step || safe > raise_when * clock_.time_step) clock_.time_step = safe;
+}
+
+void Simulation::find_forces() {
+  net_step_ = contact_step_ = wall_step_ = ~0ull;
+  update_shifts();
+  update_surfaces();
+  {
+    const Stopwatch watch(phases_[searching].seconds);
+    if (search_is_due()) search();
+  }
+  const double dt = clock_.last_time_step;
+  {
+    const Stopwatch watch(phases_[pair_contacts].seconds);
+    team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {
+      const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+      std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
+                BodySum{});
+      chunk_overlap_[chunk] =
+          pairs_.evaluate(chunk, *law_, bodies_, one_material_, shifts_.data(), dt, sum_.data());
+    });
+  }
+  if (!surfaces_.empty()) {
+    const Stopwatch watch(phases_[wall_touches].seconds);
+    team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {
+      chunk_overlap_[chunk] = std::max(chunk_overlap_[chunk], wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_,
+                                                                                    surfaces_, dt, sum_.data()));
+    });
+    wall_contacts_.loads(loads_);
+    walls_.clear_forces();
+    for (std::size_t w = 0; w < loads_.size(); ++w)
+      walls_.add(w, loads_[w].force, loads_[w].moment, loads_[w].stiffness, loads_[w].touches);
+  }
+  if (!force_engines_.empty()) {
+    std::vector<Row> force(bodies_.count()), moment(bodies_.count());
+    for (const auto& engine : force_engines_) engine->forces(*this, force, moment);
+    for (std::size_t i = 0; i < bodies_.count(); ++i) sum_[i].force += force[i], sum_[i].moment += moment[i];
+  }
+  check_overlap(chunk_overlap_.empty() ? 0 : *std::max_element(chunk_overlap_.begin(), chunk_overlap_.end()));
+  if (clock_.step % energy_check_every == 0) check_energy();
+}
+
+void Simulation::advance() {
+  const double dt = clock_.time_step;
+  walls_.drive(dt);
+  for (const WallState& wall : walls_.states())
+    energy_.work += dt * (-wall.force.dot(wall.velocity) - wall.moment.dot(wall.spin));
+  const MotionStep step{.settings = settings_,
+                        .kick = clock_.last_time_step > 0 ? 0.5 * (clock_.last_time_step + dt) : 0.5 * dt,
+                        .drift = dt,
+                        .strain_rate = clock_.cell.strain_rate,
+                        .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
+  {
+    const Stopwatch watch(phases_[motion].seconds);
+    team_.each(chunk_motion_.size(), [&](std::size_t chunk) {
+      chunk_motion_[chunk] = move_bodies(chunk, bodies_, pairs_, sum_.data(), step);
+    });
+  }
+  double fastest = 0;
+  bool finite = true;
+  for (const Motion& one : chunk_motion_) fastest = std::max(fastest, one.largest_speed), finite = finite && one.finite;
+  walls_.move(dt);
+  clock_.time += dt;
+  ++clock_.step;
+  clock_.period_before = clock_.cell.high - clock_.cell.low;
+  if (!clock_.cell.strain_rate.isZero(0.0)) {
+    const Vec3 middle = centre();
+    for (int k = 0; k < 3; ++k) {
+      if (!clock_.cell.periodic[k]) continue;
+      const double half = 0.5 * clock_.period_before[k] * (1 + dt * clock_.cell.strain_rate[k]);
+      clock_.cell.low[k] = middle[k] - half, clock_.cell.high[k] = middle[k] + half;
+    }
+  }
+  clock_.last_time_step = dt;
+
+  clock_.body_travel += dt * fastest;
+  clock_.strain_travel += dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + skin_);
+  double wall_speed = 0;
+  for (const WallState& wall : walls_.states()) {
+    double arm = 0;
+    if (!wall.spin.isZero(0.0))
+      for (std::size_t i = 0; i < bodies_.count(); ++i)
+        arm = std::max(arm, (xyz(bodies_.position[i]) - (wall.pose.about + wall.pose.shift)).norm() + largest_radius_);
+    wall_speed = std::max(wall_speed, wall.velocity.norm() + wall.spin.norm() * arm);
+  }
+  clock_.wall_travel += dt * wall_speed;
+
+  if (!finite || dt * fastest > scene_->guards.travel * smallest_radius_) {
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+      const Vec3 v = xyz(bodies_.velocity[i]), w = xyz(bodies_.spin[i]);
+      if (!v.allFinite() || !w.allFinite())
+        fail_at_body(i, "has a velocity that is not a number",
+                     "two bodies may have begun at one place, or the time step is too large");
+      const Vec3 flow = clock_.cell.strain_rate.isZero(0.0)
+                            ? Vec3::Zero()
+                            : Vec3(clock_.cell.strain_rate.cwiseProduct(xyz(bodies_.position[i]) - centre()));
+      const double travel = dt * (v - flow).norm(), radius = bodies_.position[i].w;
+      if (travel > scene_->guards.travel * radius)
+        fail_at_body(i, "moves " + number(travel / radius) + " of its radius in one step, more than /guards/travel " +
+                            number(scene_->guards.travel),
+                     "bodies may overlap too much at the start, a wall may be too fast, or the time step too large");
+    }
+  }
+}
+
+void Simulation::check_overlap(double largest) const {
+  if (largest <= scene_->guards.overlap) return;
+  for (const Contact& contact : contacts()) {
+    const double radius = contact.with_wall
+                              ? bodies_.position[contact.a].w
+                              : std::min(bodies_.position[contact.a].w, bodies_.position[contact.b].w);
+    if (contact.overlap <= scene_->guards.overlap * radius) continue;
+    fail_at_body(contact.a,
+                 "overlaps " +
+                     (contact.with_wall ? "wall \"" + walls_.name(contact.b) + "\""
+                                        : "body " + std::to_string(bodies_.id[contact.b])) +
+                     " by " + number(contact.overlap / radius) + " of its radius, more than /guards/overlap " +
+                     number(scene_->guards.overlap),
+                 "the contact modulus may be too low for this load, or bodies began inside each other");
+  }
+}
+
+double Simulation::elastic_energy() const {
+  double energy = 0;
+  for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
+    if (!pairs_.touches(c)) continue;
+    const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
+    energy += law_->energy({.radius_a = bodies_.position[a].w,
+                            .radius_b = bodies_.position[b].w,
+                            .inverse_mass_a = bodies_.velocity[a].w,
+                            .inverse_mass_b = bodies_.velocity[b].w,
+                            .overlap = pairs_.row(c).moment.w},
+                           bodies_.material[a], bodies_.material[b], pairs_.state(c));
+  }
+  wall_contacts_.each([&](const WallContacts::Touching& t) {
+    const std::uint32_t a = t.touch->body;
+    const double r = bodies_.position[a].w;
+    energy += law_->energy({.radius_a = r,
+                            .radius_b = r,
+                            .inverse_mass_a = bodies_.velocity[a].w,
+                            .inverse_mass_b = 0,
+                            .overlap = t.touch->overlap},
+                           bodies_.material[a], t.touch->material, t.state);
+  });
+  return energy;
+}
+
+double Simulation::kinetic_energy_ratio() const {
+  const double elastic = elastic_energy();
+  return elastic > 0 ? unrest(*this).kinetic_energy / elastic : std::numeric_limits<double>::infinity();
+}
+
+double Simulation::gravitational() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < bodies_.count(); ++i)
+    energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
+  return energy;
+}
+
+void Simulation::check_energy() {
+  // The work of a deforming cell, of engines and of held bodies is not kept; nor is gravity along a periodic axis.
+  bool kept = clock_.cell.strain_rate.isZero(0.0) && force_engines_.empty() && !settings_.hold_rotation &&
+              !settings_.hold_translation;
+  for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
+  if (!kept) return;
+  const double energy = unrest(*this).kinetic_energy + elastic_energy(), stored = energy + gravitational();
+  if (std::isnan(energy_.stored_at_start)) {
+    energy_ = {.stored_at_start = stored, .work = 0, .largest = energy};
+    return;
+  }
+  energy_.largest = std::max(energy_.largest, energy);
+  const double gained = stored - energy_.stored_at_start - energy_.work;
+  if (gained > scene_->guards.energy * energy_.largest)
+    fail("energy came from nowhere: " + number(gained) + " J more than was put in, " +
+             number(gained / energy_.largest) + " of the largest energy so far; /guards/energy allows " +
+             number(scene_->guards.energy),
+         "the time step may be too large for the stiffest contact; try a smaller /time_step/safety");
+}
+
+std::span<const Row> Simulation::forces() const {
+  if (net_step_ != clock_.step) {
+    net_force_.resize(bodies_.count()), net_moment_.resize(bodies_.count());
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+      const BodySum net = net_force(i, bodies_, pairs_, sum_.data(), settings_.gravity);
+      net_force_[i] = net.force, net_moment_[i] = net.moment;
+    }
+    net_step_ = clock_.step;
+  }
+  return net_force_;
+}
+
+std::span<const Row> Simulation::moments() const {
+  static_cast<void>(forces());
+  return net_moment_;
+}
+
+std::span<const Contact> Simulation::contacts() const {
+  if (contact_step_ == clock_.step) return contact_list_;
+  contact_list_.clear();
+  for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
+    if (!pairs_.touches(c)) continue;
+    const ContactRow& row = pairs_.row(c);
+    const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
+    const Vec3 branch = xyz(bodies_.position[b]) - xyz(bodies_.position[a]) + xyz(shifts_[pairs_.image(c)].position);
+    contact_list_.push_back({.a = a,
+                             .b = b,
+                             .with_wall = false,
+                             .branch = branch,
+                             .normal = branch.normalized(),
+                             .force = xyz(row.force),
+                             .moment = xyz(row.moment),
+                             .normal_force = row.force.w,
+                             .overlap = row.moment.w});
+  }
+  wall_contacts_.each([&](const WallContacts::Touching& t) {
+    const double arm = bodies_.position[t.touch->body].w - t.touch->overlap;
+    contact_list_.push_back({.a = t.touch->body,
+                             .b = t.touch->wall,
+                             .with_wall = true,
+                             .branch = arm * t.touch->normal,
+                             .normal = t.touch->normal,
+                             .force = xyz(t.row->force),
+                             .moment = xyz(t.row->moment),
+                             .normal_force = t.row->force.w,
+                             .overlap = t.touch->overlap});
+  });
+  contact_step_ = clock_.step;
+  return contact_list_;
+}
+
+std::span<const WallView> Simulation::walls() const {
+  if (wall_step_ != clock_.step) walls_.view(wall_views_), wall_step_ = clock_.step;
+  return wall_views_;
+}
+
+Region Simulation::region(double margin) const {
+  Region region{clock_.cell.low, clock_.cell.high};
+  const auto wall = [&](const std::string& name) -> std::size_t {
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+      if (walls_.name(w) == name) return w;
+    throw Error("the specimen is bounded by wall \"" + name + "\", which does not exist");
+  };
+  for (int k = 0; k < 3; ++k) {
+    const auto side = [&](const std::vector<std::string>& names) {
+      return names.size() == 3 ? names[static_cast<std::size_t>(k)] : std::string();
+    };
+    if (const std::string name = side(scene_->specimen.low); !name.empty()) {
+      const std::size_t w = wall(name);
+      region.low[k] = walls_.geometry(w).bounds().high[k] + walls_.pose(w).shift[k] + margin;
+    }
+    if (const std::string name = side(scene_->specimen.high); !name.empty()) {
+      const std::size_t w = wall(name);
+      region.high[k] = walls_.geometry(w).bounds().low[k] + walls_.pose(w).shift[k] - margin;
+    }
+  }
+  return region;
+}
+
+std::size_t Simulation::memory() const {
+  const std::size_t bodies = bodies_.count() * (4 * sizeof(Row) + sizeof(BodySum) + 5 +
+                                                (bodies_.rotation.empty() ? 0 : sizeof(Vec3)) +
+                                                (bodies_.displacement.empty() ? 0 : sizeof(Vec3)));
+  const std::size_t pair = sizeof(ContactRow) + fields_.size() * sizeof(double) + 3 * sizeof(std::uint32_t) + 2 +
+                           (periodic_ ? 1 : 0) + sizeof(Candidate);
+  return bodies + pairs_.candidates() * pair;
+}
+
+void Simulation::fail(const std::string& what, const std::string& advice) const {
+  throw NumericsError("step " + std::to_string(clock_.step) + ", time " + number(clock_.time) + " s" +
+                      (stage_.empty() ? "" : ", stage \"" + stage_ + "\"") + ": " + what + "; " + advice);
+}
+
+void Simulation::fail_at_body(std::size_t body, const std::string& what, const std::string& advice) const {
+  const Vec3 x = xyz(bodies_.position[body]);
+  fail("body " + std::to_string(bodies_.id[body]) + " at (" + number(x.x()) + ", " + number(x.y()) + ", " +
+           number(x.z()) + ") m " + what,
+       advice);
+}
+
+}  // namespace grit

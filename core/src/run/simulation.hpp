@@ -1,0 +1,150 @@
+// The world while it moves: forces at an instant, then a step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contact/contact_table.hpp"
+#include "contact/search.hpp"
+#include "contact/team.hpp"
+#include "contact/wall_contacts.hpp"
+#include "engines/motion.hpp"
+#include "engines/walls.hpp"
+#include "grit/world.hpp"
+#include "run/recorder.hpp"
+#include "scene/bodies.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+/// Everything that goes from one step to the next, apart from bodies, contacts and walls, which keep their own.
+struct Clock {
+  double time = 0;              ///< s
+  std::uint64_t step = 0;
+  double time_step = 0;         ///< of the next step, s
+  double last_time_step = 0;    ///< of the one before; 0 at the start
+  double critical_time_step = 0;
+  Cell cell;
+  Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
+  std::uint64_t rebuilds = 0;
+  double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
+};
+
+/// Energies and work, for the guard against energy from nowhere.
+struct EnergyBook {
+  double stored_at_start = 0;  ///< J, kinetic, elastic and gravitational, when the present settings began
+  double work = 0;             ///< J, done by walls since then
+  double largest = 0;          ///< J, largest kinetic and elastic energy since then
+};
+
+class Simulation final : public World {
+ public:
+  /// Bodies as made for this scene; `state` is what its components ask for.
+  Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads);
+
+  /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first.
+  void begin_stage(const std::string& name, const SceneDescription& scene);
+  /// Changes settings within a stage.
+  void change(const SceneDescription& scene);
+
+  /// Forces at time(), searching neighbours first if need be. Throws NumericsError if a guard trips.
+  void find_forces();
+  /// One step; find_forces() must have been called at this instant. Throws NumericsError if a guard trips.
+  void advance();
+
+  /// Kinetic over elastic energy; infinite where nothing is stored.
+  double kinetic_energy_ratio() const;
+
+  const Clock& clock() const { return clock_; }
+  unsigned threads() const { return team_.threads(); }
+  std::size_t pair_count() const { return pairs_.touching_count(); }
+  std::size_t candidate_count() const { return pairs_.candidates(); }
+  const std::vector<PhaseTime>& phases() const { return phases_; }
+  const Walls& wall_states() const { return walls_; }
+  double skin() const { return skin_; }
+  /// Bytes held by bodies and contacts.
+  std::size_t memory() const;
+  const WallContacts& wall_contacts() const { return wall_contacts_; }
+  const ContactTable& pairs() const { return pairs_; }
+
+  // World
+  double time() const override { return clock_.time; }
+  std::uint64_t step() const override { return clock_.step; }
+  double dt() const override { return clock_.time_step; }
+  const std::string& stage() const override { return stage_; }
+  std::span<const std::uint32_t> ids() const override { return bodies_.id; }
+  std::span<const Row> positions() const override { return {bodies_.position.data(), bodies_.count()}; }
+  std::span<const Row> velocities() const override { return {bodies_.velocity.data(), bodies_.count()}; }
+  std::span<const Row> spins() const override { return {bodies_.spin.data(), bodies_.count()}; }
+  std::span<const std::uint8_t> materials() const override { return {bodies_.material.data(), bodies_.count()}; }
+  std::span<const Vec3> rotations() const override { return bodies_.rotation; }
+  std::span<const Vec3> displacements() const override { return bodies_.displacement; }
+  std::span<const Row> forces() const override;
+  std::span<const Row> moments() const override;
+  std::span<const Contact> contacts() const override;
+  std::span<const WallView> walls() const override;
+  const Cell& cell() const override { return clock_.cell; }
+  Region specimen() const override { return region(0); }
+  Region interior(double margin) const override { return region(margin); }
+  double mean_diameter() const override { return mean_diameter_; }
+  double solid_density() const override { return solid_density_; }
+
+ private:
+  enum Part { searching, pair_contacts, wall_touches, motion, part_count };
+
+  void apply(const SceneDescription& scene);
+  bool search_is_due();
+  void search();
+  void wrap();
+  void set_time_step();
+  void update_shifts();
+  void update_surfaces();
+  void check_overlap(double largest) const;
+  void check_energy();
+  double elastic_energy() const;
+  double gravitational() const;
+  Region region(double margin) const;
+  Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
+  [[noreturn]] void fail(const std::string& what, const std::string& advice) const;
+  [[noreturn]] void fail_at_body(std::size_t body, const std::string& what, const std::string& advice) const;
+
+  const SceneDescription* scene_ = nullptr;  // the present settings; owned by the plan of the run
+  std::shared_ptr<ContactLaw> law_;
+  std::vector<StateField> fields_;
+  std::vector<std::shared_ptr<Engine>> force_engines_;
+  MotionSettings settings_;
+  std::vector<std::string> material_names_;
+  std::string stage_;
+
+  Team team_;
+  Clock clock_;
+  EnergyBook energy_;
+  Bodies bodies_;
+  ContactTable pairs_;
+  WallContacts wall_contacts_;
+  Walls walls_;
+  NeighbourSearch search_;
+
+  std::vector<BodySum> sum_;
+  std::vector<Row> reference_;  // positions at the last search
+  Cell reference_cell_;
+  std::vector<ImageShift> shifts_;
+  std::vector<WallSurface> surfaces_;
+  std::vector<WallLoad> loads_;
+  std::vector<double> chunk_overlap_;
+  std::vector<Motion> chunk_motion_;
+  std::vector<PhaseTime> phases_;
+  double skin_ = 0, largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
+  bool one_material_ = true, periodic_ = false, search_now_ = true;
+
+  // What probes ask for, worked out at most once an instant.
+  mutable std::vector<Row> net_force_, net_moment_;
+  mutable std::vector<Contact> contact_list_;
+  mutable std::vector<WallView> wall_views_;
+  mutable std::uint64_t net_step_ = ~0ull, contact_step_ = ~0ull, wall_step_ = ~0ull;
+};
+
+}  // namespace grit

@@ -1,0 +1,49 @@
+#include "scene/make_bodies.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "grit/error.hpp"
+#include "scene/cloud.hpp"
+#include "scene/packing_file.hpp"
+
+namespace grit {
+
+StateRequest requested_state(const SceneDescription& scene, StateRequest also) {
+  for (const auto& [name, probe] : scene.probes) also = also | probe.probe->needs();
+  for (const auto& [name, engine] : scene.engines) also = also | engine.engine->needs();
+  return also;
+}
+
+Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
+  const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
+  const Cell cell{scene.domain.low.value_or(-open), scene.domain.high.value_or(open), scene.domain.periodic};
+  Random random(static_cast<std::uint64_t>(scene.seed));
+  Bodies bodies;
+  for (const auto& [name, group] : scene.bodies) {
+    const auto found = scene.materials.find(group.material);
+    const auto material = static_cast<std::uint8_t>(std::distance(scene.materials.begin(), found));
+    const auto add = [&](const Vec3& centre, double radius, const Vec3& velocity, const Vec3& spin) {
+      const double mass = found->second.density * group.kind->volume(radius);
+      bodies.add(centre, radius, mass, group.kind->inertia(radius, mass), material, velocity, spin);
+    };
+    if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
+      for (const PlacedGrain& g : placed->grains) add(g.position, g.radius, g.velocity, g.spin);
+      continue;
+    }
+    const auto* cloud = std::get_if<CloudGrains>(&group.grains.value());
+    const auto* file = std::get_if<FileGrains>(&group.grains.value());
+    for (const Row& g : cloud != nullptr ? make_cloud(*cloud, cell, random, bodies.position) : read_packing(file->path))
+      add(xyz(g), g.w, Vec3::Zero(), Vec3::Zero());
+  }
+  for (const Row& x : bodies.position)
+    for (int k = 0; k < 3; ++k)
+      if (!(xyz(x)[k] >= cell.low[k] && xyz(x)[k] <= cell.high[k]))
+        throw Error("a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
+                    ") m lies outside the domain; enlarge /domain or move the body");
+  bodies.finish(state);
+  return bodies;
+}
+
+}  // namespace grit
