@@ -1,0 +1,38 @@
+// The commands, one file each.
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/exit_status.hpp"
+
+namespace grit {
+
+/// Words that make no sense as a command line.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Gets the words after the command's name. Throws UsageError and grit::Error.
+using CommandMain = ExitStatus (*)(const std::vector<std::string>& words);
+
+struct Command {
+  const char* name;
+  const char* synopsis;
+  const char* doc;
+  CommandMain main;
+};
+
+ExitStatus run_command(const std::vector<std::string>& words);
+ExitStatus check_command(const std::vector<std::string>& words);
+ExitStatus expand_command(const std::vector<std::string>& words);
+ExitStatus schema_command(const std::vector<std::string>& words);
+ExitStatus plugins_command(const std::vector<std::string>& words);
+ExitStatus describe_command(const std::vector<std::string>& words);
+
+std::span<const Command> commands();
+
+}  // namespace grit

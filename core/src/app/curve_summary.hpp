@@ -1,0 +1,40 @@
+// Hands everything on to the results, says on the way what each stage reached, and keeps the curves that the description
+// wants summed up at the end.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "run/recorder.hpp"
+
+namespace grit {
+
+class CurveSummary final : public Recorder {
+ public:
+  /// `channels` as "probe/channel"; `say` gets a line for each stage that ends.
+  CurveSummary(Recorder& next, std::vector<std::string> channels, std::function<void(const std::string&)> say);
+
+  /// Throws Error for a channel that no probe has.
+  void begin(const World& world, std::span<const ProbeGroup> probes) override;
+  void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
+  void frame(const World& world, std::span<const FieldGroup> fields) override { next_.frame(world, fields); }
+  void stage_ended(const World& world, const std::string& what) override;
+  void finish(const World& world, const RunSummary& summary) override { next_.finish(world, summary); }
+
+  /// A line a channel: largest value and last value, with units.
+  std::string text() const;
+
+ private:
+  struct Curve {
+    std::string name, unit;
+    std::size_t probe = 0, channel = 0;
+    double largest = 0, last = 0;
+    bool any = false;
+  };
+  Recorder& next_;
+  std::function<void(const std::string&)> say_;
+  std::vector<Curve> curves_;
+};
+
+}  // namespace grit

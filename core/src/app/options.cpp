@@ -1,0 +1,63 @@
+#include "app/options.hpp"
+
+#include <algorithm>
+#include <boost/dll/runtime_symbol_info.hpp>
+#include <iostream>
+
+#include "engines/builtin.hpp"
+#include "scene/sphere_body.hpp"
+
+namespace grit {
+namespace po = boost::program_options;
+
+Options::Options(const Command& command) : command_(command) {
+  visible_.add_options()("plugin-path", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
+                         "look for plugins here first; may be given again")("help,h", "say this and stop");
+}
+
+bool Options::read(const std::vector<std::string>& words) {
+  po::options_description all;
+  all.add(visible_).add_options()("words", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("words", -1);
+  try {
+    // No guessing of shortened names: a script must not change its meaning when an option is added.
+    const auto style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(words).options(all).positional(positional).style(style).run(), values_);
+    po::notify(values_);
+  } catch (const po::error& error) {
+    throw UsageError(std::string(error.what()) + "; see 'grit " + command_.name + " --help'");
+  }
+  words_ = list("words");
+  if (!has("help")) return true;
+  std::cout << "grit " << command_.name << ' ' << command_.synopsis << "\n\n" << command_.doc << "\n\n" << visible_;
+  return false;
+}
+
+std::vector<std::string> Options::list(const char* name) const {
+  return has(name) ? get<std::vector<std::string>>(name) : std::vector<std::string>();
+}
+
+std::string Options::only_word(const char* what) const {
+  if (words_.size() != 1)
+    throw UsageError(std::string("one ") + what + " is wanted, " + std::to_string(words_.size()) +
+                     " were given; see 'grit " + command_.name + " --help'");
+  return words_.front();
+}
+
+std::unique_ptr<Registry> Options::registry() const {
+  const std::filesystem::path binary = boost::dll::program_location().string();
+  auto registry = std::make_unique<Registry>(
+      plugin_directories(list("plugin-path"), std::filesystem::weakly_canonical(binary).parent_path() / "../lib/grit"));
+  registry->add(sphere_body());
+  for (const PluginInfo& engine : builtin_engines()) registry->add(engine);
+  return registry;
+}
+
+const Command& command(const std::string& name) {
+  const auto found =
+      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return c.name == name; });
+  return *found;
+}
+
+}  // namespace grit

@@ -1,0 +1,44 @@
+// What all commands read from their command lines in the same way.
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command.hpp"
+#include "plugins/registry.hpp"
+
+namespace grit {
+
+/// The words of a command, read by its options; positional words go to the hidden option "words".
+class Options {
+ public:
+  /// `doc` and `synopsis` are what --help says first. Every command has --plugin-path and --help.
+  explicit Options(const Command& command);
+  boost::program_options::options_description_easy_init add() { return visible_.add_options(); }
+  /// Reads. Returns false if --help was asked for, and prints it. Throws UsageError.
+  bool read(const std::vector<std::string>& words);
+
+  const std::vector<std::string>& words() const { return words_; }
+  bool has(const char* name) const { return values_.count(name) > 0; }
+  template <class T>
+  T get(const char* name) const {
+    return values_[name].as<T>();
+  }
+  std::vector<std::string> list(const char* name) const;
+  /// The one positional word that a command takes. Throws UsageError.
+  std::string only_word(const char* what) const;
+  /// Built-in components, and the plugins of --plugin-path, GRIT_PLUGIN_PATH, and of this installation.
+  std::unique_ptr<Registry> registry() const;
+
+ private:
+  const Command& command_;
+  boost::program_options::options_description visible_{"options"};
+  boost::program_options::variables_map values_;
+  std::vector<std::string> words_;
+};
+
+const Command& command(const std::string& name);
+
+}  // namespace grit

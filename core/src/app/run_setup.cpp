@@ -1,0 +1,54 @@
+#include "app/run_setup.hpp"
+
+#include <set>
+#include <utility>
+
+#include "scene/make_bodies.hpp"
+
+namespace grit {
+namespace {
+
+StateRequest picture_state(const SceneDescription& scene) {
+  if (!scene.output.picture) return {};
+  if (scene.output.picture->color == "rotation") return BodyState::rotation;
+  if (scene.output.picture->color == "displacement") return BodyState::displacement;
+  return {};
+}
+
+}  // namespace
+
+std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry) {
+  std::set<std::pair<std::string, std::string>> names{{"contact", scene.contacts.type()}};
+  for (const auto& [name, bodies] : scene.bodies) names.emplace("body", bodies.kind.type());
+  for (const auto& [name, wall] : scene.walls) names.emplace("geometry", wall.geometry.type());
+  for (const auto& [name, engine] : scene.engines) names.emplace("engine", engine.engine.type());
+  for (const auto& [name, probe] : scene.probes) names.emplace("probe", probe.probe.type());
+  std::vector<PluginUsed> used;
+  for (const auto& [kind, name] : names) {
+    const PluginInfo& info = registry.info(kind, name);
+    used.push_back({kind, name, info.version, registry.file(kind, name), info.tag});
+  }
+  return used;
+}
+
+StateRequest run_state(const SceneDescription& scene) { return requested_state(scene, picture_state(scene)); }
+
+std::vector<std::string> who_asked(const SceneDescription& scene) {
+  std::vector<std::string> lines;
+  for (const auto& [state, name, bytes] : {std::tuple(BodyState::rotation, "rotation", sizeof(Vec3)),
+                                           std::tuple(BodyState::displacement, "displacement", sizeof(Vec3))}) {
+    std::string who;
+    const auto add = [&](const std::string& one) { who += (who.empty() ? "" : ", ") + one; };
+    for (const auto& [probe_name, probe] : scene.probes)
+      if (probe.probe->needs().has(state)) add("probe " + probe_name);
+    for (const auto& [engine_name, engine] : scene.engines)
+      if (engine.engine->needs().has(state)) add("engine " + engine_name);
+    if (picture_state(scene).has(state)) add("the picture");
+    lines.push_back(std::string(name) + (who.empty() ? ": off" : ": " + std::to_string(bytes) + " bytes a body, for " + who));
+  }
+  for (const StateField& field : scene.contacts->state())
+    lines.push_back(field.name + ": 8 bytes a contact, for contact law " + scene.contacts.type() + " (" + field.doc + ")");
+  return lines;
+}
+
+}  // namespace grit

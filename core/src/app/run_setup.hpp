@@ -1,0 +1,21 @@
+// What `run` and `check` both need to know before a run.
+#pragma once
+
+#include <vector>
+
+#include "output/run_json.hpp"
+#include "plugins/registry.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+/// Every component of the scene, once, by kind and name.
+std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry);
+
+/// State of bodies that the scene's components and its picture ask for.
+StateRequest run_state(const SceneDescription& scene);
+
+/// The same, with who asked: "rotation: picture".
+std::vector<std::string> who_asked(const SceneDescription& scene);
+
+}  // namespace grit
