@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -59,7 +60,7 @@ class Directory {
 
   const fs::path& path() const { return path_; }
   fs::path body(const std::string& name) const { return path_ / "bodies" / (name + ".so"); }
-  void write_text(const std::string& name) const { std::ofstream(body(name)) << "not a shared library\n"; }
+  void write_text(const std::string& name) const { std::ofstream(body(name)) << std::string(100, '?'); }
   void copy_good(const std::string& name) const { fs::copy_file(file_of("good"), body(name)); }
 
  private:
@@ -282,7 +283,7 @@ TEST(Loader, NamesAPluginWhoseDeclareThrows) {
                 Parameters parameters;
                 component.declare(parameters);
               }),
-              HasSubstr("(" + file_of("throwing-declare") + "): its declare() threw: nothing to declare"));
+              HasSubstr('(' + file_of("throwing-declare") + "): its declare() threw: nothing to declare"));
 }
 
 // ---- what is chosen

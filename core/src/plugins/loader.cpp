@@ -1,6 +1,7 @@
 #include "plugins/loader.hpp"
 
-#include <array>
+#include <dlfcn.h>
+
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <boost/dll/shared_library.hpp>
 #include <cctype>
@@ -82,10 +83,11 @@ const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kin
   };
 
   Library opened;
-  try {
-    opened.load(file, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
-  } catch (const std::system_error& error) {
-    throw refuse(std::string("cannot be opened: ") + error.what(),
+  std::error_code failed;
+  opened.load(file, failed, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
+  if (failed) {
+    const char* const reason = ::dlerror();  // says more than the code, which is always the same
+    throw refuse("cannot be opened: " + (reason != nullptr ? reason : failed.message()),
                  "build it with the function grit_plugin of the CMake package in " + sdk_package() + "; `ldd -r " +
                      file.string() + "` lists what it lacks");
   }
