@@ -12,8 +12,7 @@ if(TARGET grit_app)
   install(TARGETS grit_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
-# The build tag demands the same SDK, so the version has to be the same too.
-write_basic_package_version_file(${build_package}/grit-config-version.cmake COMPATIBILITY ExactVersion)
+write_basic_package_version_file(${build_package}/grit-config-version.cmake COMPATIBILITY SameMinorVersion)
 configure_file(cmake/grit-config.cmake ${build_package}/grit-config.cmake COPYONLY)
 configure_file(cmake/GritPlugin.cmake ${build_package}/GritPlugin.cmake COPYONLY)
 install(FILES cmake/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
