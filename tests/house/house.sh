@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(input plugins scene contact engines run output app)
+rooms=(plugins scene input contact engines run output app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {
