@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 
 #include "grit/error.hpp"
 #include "plugins/component.hpp"
@@ -179,6 +180,7 @@ std::string layout_text(Layout layout) {
 
 struct TagCase {
   std::string plugin, line;
+  friend std::ostream& operator<<(std::ostream& out, const TagCase& one) { return out << one.plugin; }
 };
 class LoaderTag : public testing::TestWithParam<TagCase> {};
 
