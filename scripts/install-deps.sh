@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Installs what grit is built from, on Debian 12. Needs root or sudo only where something is missing; can be run again.
+set -euo pipefail
+
+packages=(
+  g++ cmake ninja-build git          # the build
+  libboost-dev                       # Boost.DLL
+  libboost-program-options-dev
+  libeigen3-dev
+  libhdf5-dev
+  libmuparser-dev
+  libspdlog-dev
+  libudunits2-dev
+  libvalijson-dev
+  nlohmann-json3-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
+  librsvg2-bin                       # pictures of the report as PNG
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true) == installed ]] || missing+=("$package")
+done
+if [[ ${#missing[@]} == 0 ]]; then
+  echo "install-deps: all ${#packages[@]} packages are there"
+  exit 0
+fi
+
+as_root=()
+if [[ $(id -u) != 0 ]]; then
+  command -v sudo > /dev/null || {
+    echo "install-deps: not root and no sudo; as root, run: apt-get install ${missing[*]}" >&2
+    exit 1
+  }
+  as_root=(sudo)
+fi
+echo "install-deps: installing ${missing[*]}"
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}"

@@ -1,0 +1,10 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds everything and runs all tests; CTest's summary comes last.
+#   test.sh [ARGUMENTS OF CTEST…]      e.g. test.sh -R loader
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+scripts/install-deps.sh
+cmake --preset release
+cmake --build --preset release
+exec ctest --preset release -j"$(nproc)" "$@"
