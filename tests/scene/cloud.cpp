@@ -155,7 +155,8 @@ TEST(Cloud, SaysWhatItReachedWhenThereIsNoRoom) {
     place_at_random(box, open_cell, std::vector<double>(1000, 0.1), random);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::ContainsRegex("only [0-9]+ of 1000 grains found a place in the box \\(0 0 0\\)"));
+    EXPECT_THAT(error.what(),
+                testing::ContainsRegex("only [0-9]+ of 1000 grains found a place in the box \\(0 0 0\\)"));
     EXPECT_THAT(error.what(), testing::ContainsRegex("solid fraction 0\\.[23][0-9]+"));
     EXPECT_THAT(error.what(), testing::HasSubstr("give a bigger box, fewer grains or smaller ones"));
   }

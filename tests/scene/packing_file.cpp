@@ -18,8 +18,9 @@ namespace {
 class PackingFile : public testing::Test {
  protected:
   PackingFile()
-      : folder_(std::filesystem::path(testing::TempDir()) /
-                ("packing-" + std::to_string(getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name())),
+      : folder_(
+            std::filesystem::path(testing::TempDir()) /
+            ("packing-" + std::to_string(getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name())),
         path_(folder_ / "grains.txt") {
     std::filesystem::create_directories(folder_);
   }
@@ -62,7 +63,9 @@ TEST_F(PackingFile, ComesBackToTheSameBits) {
   write_packing(path_, grains, "made by hand\nin two lines");
   const auto read = read_packing(path_);
   ASSERT_EQ(read.size(), grains.size());
-  const auto same = [](double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); };
+  const auto same = [](double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  };
   for (std::size_t i = 0; i < grains.size(); ++i)
     ASSERT_TRUE(same(read[i].x, grains[i].x) && same(read[i].y, grains[i].y) && same(read[i].z, grains[i].z) &&
                 same(read[i].w, grains[i].w))
@@ -81,7 +84,8 @@ TEST_F(PackingFile, WritesSeventeenDigitsAndItsComment) {
 }
 
 TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
-  const auto found = problems("# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -4\n1e999 2 3 4\n");
+  const auto found =
+      problems("# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -4\n1e999 2 3 4\n");
   const std::pair<int, const char*> wanted[] = {
       {3, "found 3 numbers; a grain is four: x y z radius, in m"},
       {4, "z is \"x3\", not a number"},

@@ -17,7 +17,8 @@ namespace {
 double curve_error(std::vector<double> sample, int power, const std::function<double(double)>& wanted) {
   std::sort(sample.begin(), sample.end());
   const auto weight = [power](double d) { return std::pow(d, power); };
-  const double all = std::accumulate(sample.begin(), sample.end(), 0.0, [&](double s, double d) { return s + weight(d); });
+  const double all =
+      std::accumulate(sample.begin(), sample.end(), 0.0, [&](double s, double d) { return s + weight(d); });
   double below = 0, worst = 0;
   for (const double d : sample) {
     const double next = below + weight(d) / all;
@@ -70,10 +71,10 @@ TEST(Sizes, SieveCurveByMassIsMet) {
 }
 
 TEST(Sizes, LogNormalIsTruncated) {
-  for (const LogNormalSizes sizes : {LogNormalSizes{0.5e-3, 0.25, 0.25e-3, 1e-3},      // both sides
-                                     LogNormalSizes{0.5e-3, 0.25, 0.6e-3, 1e-3},       // above the median
-                                     LogNormalSizes{0.5e-3, 0.1, 0.1e-3, 0.25e-3},     // far below: z = −16 … −7
-                                     LogNormalSizes{0.5e-3, 0.1, 1.1e-3, 1.5e-3}}) {   // far above: z = 8 … 11
+  for (const LogNormalSizes sizes : {LogNormalSizes{0.5e-3, 0.25, 0.25e-3, 1e-3},     // both sides
+                                     LogNormalSizes{0.5e-3, 0.25, 0.6e-3, 1e-3},      // above the median
+                                     LogNormalSizes{0.5e-3, 0.1, 0.1e-3, 0.25e-3},    // far below: z = −16 … −7
+                                     LogNormalSizes{0.5e-3, 0.1, 1.1e-3, 1.5e-3}}) {  // far above: z = 8 … 11
     Random random(1);
     const auto sample = draw_diameters(sizes, 2000, random);
     // Shares from the nearer tail, as the other one has lost its digits.
@@ -119,8 +120,9 @@ TEST(Sizes, SayWhatIsWrongWithASieveCurve) {
     }
     return "";
   };
-  for (const SieveSizes& wrong : {SieveSizes{{1, 2}, {0, 0.9}}, SieveSizes{{2, 1}, {0, 1}}, SieveSizes{{1, 2, 3}, {0, 1}},
-                                  SieveSizes{{0, 2}, {0, 1}}, SieveSizes{{1, 2, 3}, {0, 1.5, 1}}, SieveSizes{}})
+  for (const SieveSizes& wrong :
+       {SieveSizes{{1, 2}, {0, 0.9}}, SieveSizes{{2, 1}, {0, 1}}, SieveSizes{{1, 2, 3}, {0, 1}},
+        SieveSizes{{0, 2}, {0, 1}}, SieveSizes{{1, 2, 3}, {0, 1.5, 1}}, SieveSizes{}})
     EXPECT_THAT(message(wrong), testing::HasSubstr("`passing` must not decrease from 0 to 1"));
   EXPECT_EQ(message(SieveSizes{{1, 2}, {0, 1}}), "");
   EXPECT_THROW(draw_diameters(ListSizes{}, 1, random), Error);

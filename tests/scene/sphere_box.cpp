@@ -154,7 +154,8 @@ TEST(SphereBox, DoesNotDependOnPlaceMirrorOrOrderOfAxes) {
     ASSERT_NEAR(sphere_box_volume(Vec3::Zero(), radius, -high, -low), volume, bound * all);
     const auto turned = [](const Vec3& v) { return Vec3(v[1], v[2], v[0]); };
     ASSERT_NEAR(sphere_box_volume(Vec3::Zero(), radius, turned(low), turned(high)), volume, bound * all);
-    ASSERT_NEAR(sphere_box_volume(Vec3::Zero(), 1, low / radius, high / radius), volume / std::pow(radius, 3), bound * ball);
+    ASSERT_NEAR(sphere_box_volume(Vec3::Zero(), 1, low / radius, high / radius), volume / std::pow(radius, 3),
+                bound * ball);
   }
 }
 

@@ -26,7 +26,8 @@ struct FakeWorld : World {
   Region whole{Vec3::Zero(), Vec3::Ones()};  ///< the specimen
 
   /// A sphere of `density`; its index.
-  std::uint32_t add(const Vec3& centre, double radius, const Vec3& speed = Vec3::Zero(), const Vec3& turn = Vec3::Zero()) {
+  std::uint32_t add(const Vec3& centre, double radius, const Vec3& speed = Vec3::Zero(),
+                    const Vec3& turn = Vec3::Zero()) {
     const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
     const auto index = static_cast<std::uint32_t>(position.size());
     id.push_back(index);
@@ -52,9 +53,7 @@ struct FakeWorld : World {
     fill(touching, branch, force_on_wall);
     touching.overlap = position[body].w - branch.norm();
   }
-  void make_periodic(const Vec3& low, const Vec3& high) {
-    box = {low, high, {true, true, true}}, whole = {low, high};
-  }
+  void make_periodic(const Vec3& low, const Vec3& high) { box = {low, high, {true, true, true}}, whole = {low, high}; }
 
   double time() const override { return now; }
   std::uint64_t step() const override { return steps; }

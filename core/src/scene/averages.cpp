@@ -51,7 +51,8 @@ Unrest unrest(const World& world) {
   const double half_step = 0.5 * world.dt();
   // Velocities are half a step old; the acceleration that now acts brings them up to time().
   const auto energy = [half_step](const Row& velocity, const Row& force) {
-    return velocity.w > 0 ? 0.5 / velocity.w * (xyz(velocity) + half_step * velocity.w * xyz(force)).squaredNorm() : 0.0;
+    return velocity.w > 0 ? 0.5 / velocity.w * (xyz(velocity) + half_step * velocity.w * xyz(force)).squaredNorm()
+                          : 0.0;
   };
   double kinetic = 0, net = 0, normal = 0;
   std::size_t movable = 0;
@@ -72,9 +73,8 @@ double void_ratio(const World& world, const Region& region) {
   double solid = 0;
   for (const auto& body : world.positions()) {
     const Vec3 centre = xyz(body), reach = Vec3::Constant(body.w);
-    for_images(world.cell(), region, centre - reach, centre + reach, [&](const Vec3& shift) {
-      solid += sphere_box_volume(centre + shift, body.w, region.low, region.high);
-    });
+    for_images(world.cell(), region, centre - reach, centre + reach,
+               [&](const Vec3& shift) { solid += sphere_box_volume(centre + shift, body.w, region.low, region.high); });
   }
   return solid > 0 ? volume / solid - 1 : std::numeric_limits<double>::infinity();
 }

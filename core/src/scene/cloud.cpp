@@ -66,9 +66,7 @@ class Room {
     std::vector<std::int32_t> first;  // grain of each cell; the others follow by next_
 
     int cell(int axis, double offset) const { return static_cast<int>(std::floor(offset * per_length[axis])); }
-    std::size_t index(int x, int y, int z) const {
-      return (static_cast<std::size_t>(z) * cells[1] + y) * cells[0] + x;
-    }
+    std::size_t index(int x, int y, int z) const { return (static_cast<std::size_t>(z) * cells[1] + y) * cells[0] + x; }
   };
 
   std::size_t level_of(double radius) const { return static_cast<std::size_t>(std::ilogb(largest_ / radius)); }

@@ -29,6 +29,8 @@ std::string whole_file(const std::filesystem::path& path) {
   if (!file) fail(path, "cannot read grains", errno);
   std::string text;
   constexpr std::size_t piece = 1 << 20;
+  std::error_code unknown;  // a pipe has no size
+  if (const auto size = std::filesystem::file_size(path, unknown); !unknown) text.reserve(size + piece);
   do {
     const std::size_t size = text.size();
     text.resize(size + piece);
@@ -57,7 +59,8 @@ std::string read_grain(std::string_view line, Row& grain) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *numbers[found]);
     const std::string where = std::string(names[found]) + " is \"" + std::string(word.substr(0, 40)) + "\"";
     if (error == std::errc::invalid_argument || end != word.data() + word.size()) return where + ", not a number";
-    if (error != std::errc() || !std::isfinite(*numbers[found])) return where + ", not a finite number in double's range";
+    if (error != std::errc() || !std::isfinite(*numbers[found]))
+      return where + ", not a finite number in double's range";
   }
   if (found != 4) return "found " + std::to_string(found) + " numbers; a grain is four: x y z radius, in m";
   if (!(grain.w > 0)) return "radius is " + std::to_string(grain.w) + " m; it must be above 0";

@@ -21,7 +21,8 @@ class Random {
   std::uint64_t bits();
   /// In [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
-  /// In 0 … n − 1, all equally likely; n > 0. D. Lemire, ACM Trans. Model. Comput. Simul. 29 (2019) 3, doi:10.1145/3230636.
+  /// In 0 … n − 1, all equally likely; n > 0. D. Lemire, ACM Trans. Model. Comput. Simul. 29 (2019) 3,
+  /// doi:10.1145/3230636.
   std::uint64_t below(std::uint64_t n);
   /// Standard normal, by inversion; within ±8.3.
   double normal();

@@ -36,7 +36,8 @@ void check(const SieveSizes& sieve) {
                      passing.back() == 1 && std::is_sorted(passing.begin(), passing.end());
   if (!curve)
     throw Error(
-        "sieve sizes: `diameters` must be positive and increase, `passing` must not decrease from 0 to 1, and both need "
+        "sieve sizes: `diameters` must be positive and increase, `passing` must not decrease from 0 to 1, and both "
+        "need "
         "the same number of entries, 2 or more; found " +
         std::to_string(d.size()) + " diameters and " + std::to_string(passing.size()) + " shares");
 }
@@ -67,11 +68,11 @@ std::vector<double> draw_diameters(const LogNormalSizes& sizes, std::size_t coun
 
 std::vector<double> draw_diameters(const SieveSizes& sizes, std::size_t count, Random& random) {
   check(sizes);
-  const auto& [d, passing] = sizes;
+  const std::vector<double>&d = sizes.diameters, &passing = sizes.passing;
   std::vector<double> numbers(d.size(), 0.0);  // of grains below each diameter, per mass
   for (std::size_t i = 1; i < d.size(); ++i)
-    numbers[i] = numbers[i - 1] +
-                 (passing[i] - passing[i - 1]) * (d[i - 1] + d[i]) / (2 * d[i - 1] * d[i - 1] * d[i] * d[i]);
+    numbers[i] =
+        numbers[i - 1] + (passing[i] - passing[i - 1]) * (d[i - 1] + d[i]) / (2 * d[i - 1] * d[i - 1] * d[i] * d[i]);
   return stratified(count, random, [&](double share) {
     const double wanted = share * numbers.back();
     const auto above = std::upper_bound(numbers.begin() + 1, numbers.end() - 1, wanted) - numbers.begin();

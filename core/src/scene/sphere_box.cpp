@@ -1,9 +1,9 @@
 // Closed form. The planes of the box cut the ball into pieces {x > a, y > b, z > c} with a, b, c ≥ 0 (one, two or three
 // planes), and the part inside is a sum of these with signs. A piece's volume is a third of the flux of the position
 // vector: its spherical face by Gauss–Bonnet (circles' geodesic curvature and the angles between them), its plane faces
-// as circular segments. All roots are taken once and all angles by atan2 from them: rounding errors of a nearly vanishing
-// root then cancel to first order. Cf. S. Strobl, A. Formella, T. Pöschel, J. Comput. Phys. 311 (2016) 158–172,
-// doi:10.1016/j.jcp.2016.02.003.
+// as circular segments. All roots are taken once and all angles by atan2 from them: rounding errors of a nearly
+// vanishing root then cancel to first order. Cf. S. Strobl, A. Formella, T. Pöschel, J. Comput. Phys. 311 (2016)
+// 158–172, doi:10.1016/j.jcp.2016.02.003.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,10 +63,14 @@ struct Side {
 
 double piece(const double* plane, int planes) {
   switch (planes) {
-    case 0: return ball;
-    case 1: return cap(plane[0]);
-    case 2: return edge(plane[0], plane[1]);
-    default: return corner(plane[0], plane[1], plane[2]);
+    case 0:
+      return ball;
+    case 1:
+      return cap(plane[0]);
+    case 2:
+      return edge(plane[0], plane[1]);
+    default:
+      return corner(plane[0], plane[1], plane[2]);
   }
 }
 
