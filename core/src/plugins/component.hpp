@@ -12,6 +12,7 @@
 #include "grit/geometry.hpp"
 #include "grit/probe.hpp"
 #include "grit/scenario.hpp"
+#include "plugins/boundary.hpp"
 #include "plugins/registry.hpp"
 
 namespace grit {
@@ -29,7 +30,9 @@ class Component : public Choice {
     type_ = type;
   }
   void declare(Parameters& parameters) override {
-    if (instance_) instance_->declare(parameters);
+    if (instance_)
+      at_boundary(registry_->title(kind_name<Interface>(), type_), "declare()",
+                  [&] { instance_->declare(parameters); });
   }
   std::unique_ptr<Choice> twin() const override { return std::make_unique<Component>(*registry_); }
 

@@ -1,0 +1,26 @@
+// Where the kernel enters the code of a plugin that has no reason to throw.
+#pragma once
+
+#include <exception>
+#include <string>
+
+#include "grit/error.hpp"
+
+namespace grit {
+
+/// Returns `call()`. Whatever it throws leaves as a PluginError that names the plugin and the part of it that ran.
+template <class Call>
+decltype(auto) at_boundary(const std::string& plugin, const std::string& part, Call&& call) {
+  const auto thrown = [&](const std::string& what) {
+    return PluginError(plugin + ": its " + part + " threw: " + what + "\n  mend the plugin, or choose another one");
+  };
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    throw thrown(error.what());
+  } catch (...) {
+    throw thrown("something that is not a std::exception");
+  }
+}
+
+}  // namespace grit

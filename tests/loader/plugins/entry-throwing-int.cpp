@@ -1,0 +1,3 @@
+#include "fixture.hpp"
+
+const grit::PluginInfo* grit_plugin() { throw 42; }

@@ -1,0 +1,3 @@
+#include "fixture.hpp"
+
+const grit::PluginInfo* grit_plugin() { return nullptr; }

@@ -1,0 +1,5 @@
+#include "fixture.hpp"
+
+const grit::PluginInfo* grit_plugin() {
+  return fixture::wrong_tag([](grit::BuildTag& tag) { tag.pair_batch.size += 8; });
+}

@@ -1,0 +1,363 @@
+// Every check of the loader, each with a plugin that fails it and the text that says so.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "grit/error.hpp"
+#include "plugins/component.hpp"
+#include "plugins/loader.hpp"
+#include "plugins/nearest.hpp"
+#include "plugins/registry.hpp"
+
+namespace grit {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+const fs::path fixtures = FIXTURES;
+
+std::string file_of(const std::string& name) { return (fixtures / "bodies" / (name + ".so")).string(); }
+
+/// The text of the PluginError that `call` throws; empty, with a failure, if it throws none.
+template <class Call>
+std::string error_of(Call call) {
+  try {
+    call();
+  } catch (const PluginError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no PluginError";
+  return "";
+}
+
+std::string make_error(const std::string& name) {
+  const Registry registry({fixtures});
+  return error_of([&] { registry.make<BodyKind>(name); });
+}
+
+/// A plugin directory that goes with the test.
+class Directory {
+ public:
+  Directory() {
+    std::string pattern = (fs::temp_directory_path() / "grit-loader-XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+    fs::create_directories(path_ / "bodies");
+  }
+  ~Directory() { fs::remove_all(path_); }
+  Directory(const Directory&) = delete;
+  Directory& operator=(const Directory&) = delete;
+
+  const fs::path& path() const { return path_; }
+  fs::path body(const std::string& name) const { return path_ / "bodies" / (name + ".so"); }
+  void write_text(const std::string& name) const { std::ofstream(body(name)) << std::string(100, '?'); }
+  void copy_good(const std::string& name) const { fs::copy_file(file_of("good"), body(name)); }
+
+ private:
+  fs::path path_;
+};
+
+TEST(Loader, MakesWhatAGoodPluginMakes) {
+  const Registry registry({fixtures});
+  const auto cube = registry.make<BodyKind>("good");
+  EXPECT_DOUBLE_EQ(cube->volume(0.5), 1.0);
+  EXPECT_DOUBLE_EQ(cube->inertia(0.5, 6.0), 1.0);
+  EXPECT_STREQ(registry.info("body", "good").version, "1.0.0");
+  EXPECT_EQ(registry.file("body", "good"), file_of("good"));
+}
+
+TEST(Loader, KeepsALibraryWithoutItsRegistry) {
+  std::shared_ptr<BodyKind> cube;
+  {
+    const Registry registry({fixtures});
+    cube = registry.make<BodyKind>("good");
+  }
+  EXPECT_DOUBLE_EQ(cube->volume(0.5), 1.0);
+}
+
+TEST(Loader, ComesWithThePluginsOfTheBuild) {
+  const auto law = Registry({GRIT_PLUGIN_DIR}).make<ContactLaw>("linear-rolling");
+  EXPECT_THAT(law->state(), SizeIs(3));
+}
+
+// ---- what cannot be opened
+
+TEST(Loader, SaysWhatThereIsForAnUnknownName) {
+  const Directory directory;
+  directory.write_text("sphere");
+  directory.write_text("cylinder");
+  const Registry registry({directory.path(), "/nowhere"});
+  const auto error = error_of([&] { registry.make<BodyKind>("spehre"); });
+  EXPECT_THAT(error, HasSubstr("unknown body plugin \"spehre\", perhaps \"sphere\""));
+  EXPECT_THAT(error, HasSubstr("there are: cylinder, sphere"));
+  EXPECT_THAT(error,
+              HasSubstr("searched: " + directory.path().string() + "/bodies, /nowhere/bodies (no such directory)"));
+  EXPECT_THAT(error, HasSubstr("put spehre.so there"));
+  EXPECT_THAT(error, HasSubstr("--plugin-path or GRIT_PLUGIN_PATH"));
+}
+
+TEST(Loader, GuessesNoNameThatIsFarOff) {
+  const Directory directory;
+  directory.write_text("sphere");
+  const Registry registry({directory.path()});
+  EXPECT_THAT(error_of([&] { registry.info("body", "tetrahedron"); }), Not(HasSubstr("perhaps")));
+}
+
+TEST(Loader, SaysThatThereIsNothing) {
+  const auto error = error_of([] { Registry({}).info("probe", "x"); });
+  EXPECT_THAT(error, AllOf(HasSubstr("there are: none"), HasSubstr("searched: no directory")));
+}
+
+TEST(Loader, RefusesAKindThatIsNone) {
+  const Registry registry({fixtures});
+  EXPECT_THAT(error_of([&] { registry.names("prob"); }),
+              "unknown kind of plugin \"prob\", perhaps \"probe\"; there are body, contact, engine, geometry, probe, "
+              "scenario");
+  EXPECT_THAT(error_of([&] { registry.info("bodies", "good"); }), HasSubstr("unknown kind of plugin \"bodies\""));
+}
+
+TEST(Loader, RefusesANameThatIsAPath) {
+  const Registry registry({fixtures});
+  for (const std::string name : {"../bodies/good", "/tmp/good", "./good", "good.so", "..", ".", "", "a\\b"}) {
+    const auto error = error_of([&] { registry.make<BodyKind>(name); });
+    EXPECT_THAT(error, AllOf(HasSubstr('"' + name + "\" is not the name of a body plugin"),
+                             HasSubstr("a description cannot name a path"), HasSubstr("--plugin-path")));
+  }
+}
+
+TEST(Loader, RefusesWhatIsNotASharedLibrary) {
+  const Directory directory;
+  directory.write_text("text");
+  const Registry registry({directory.path()});
+  EXPECT_THAT(error_of([&] { registry.make<BodyKind>("text"); }),
+              AllOf(HasSubstr("body plugin \"text\" (" + directory.body("text").string() + "): cannot be opened"),
+                    HasSubstr("invalid ELF header"), HasSubstr("build it with the function grit_plugin")));
+}
+
+TEST(Loader, RefusesAnUndefinedSymbol) {
+  EXPECT_THAT(make_error("undefined-symbol"),
+              AllOf(HasSubstr(file_of("undefined-symbol") + "): cannot be opened"), HasSubstr("undefined symbol"),
+                    HasSubstr("nowhere_to_be_found"), HasSubstr("`ldd -r " + file_of("undefined-symbol") + "`")));
+}
+
+// ---- the one symbol
+
+TEST(Loader, RefusesALibraryWithoutTheSymbol) {
+  EXPECT_THAT(make_error("no-entry"), AllOf(HasSubstr(file_of("no-entry") + "): has no function grit_plugin"),
+                                            HasSubstr("define extern \"C\" const grit::PluginInfo* grit_plugin()")));
+}
+
+TEST(Loader, RefusesASymbolThatReturnsNull) {
+  EXPECT_THAT(make_error("null-entry"), AllOf(HasSubstr(file_of("null-entry") + "): its grit_plugin() returned null"),
+                                              HasSubstr("return the address of a static PluginInfo")));
+}
+
+TEST(Loader, NamesAPluginWhoseSymbolThrows) {
+  EXPECT_THAT(make_error("throwing-entry"),
+              AllOf(HasSubstr(file_of("throwing-entry") + "): its grit_plugin() threw: no luck today"),
+                    HasSubstr("mend the plugin")));
+  EXPECT_THAT(
+      make_error("entry-throwing-int"),
+      HasSubstr(file_of("entry-throwing-int") + "): its grit_plugin() threw: something that is not a std::exc"));
+}
+
+// ---- the build tag
+
+std::string layout_text(Layout layout) {
+  return std::to_string(layout.size) + " bytes aligned to " + std::to_string(layout.alignment);
+}
+
+struct TagCase {
+  std::string plugin, line;
+};
+class LoaderTag : public testing::TestWithParam<TagCase> {};
+
+TEST_P(LoaderTag, RefusesTheMismatch) {
+  const auto& [plugin, line] = GetParam();
+  const auto error = make_error(plugin);
+  EXPECT_THAT(error, HasSubstr("body plugin \"" + plugin + "\" (" + file_of(plugin) + "): was built differently"));
+  EXPECT_THAT(error, HasSubstr("\n  " + line + "\n"));
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 2) << "more than this one mismatch:\n" << error;
+  EXPECT_THAT(error, HasSubstr("rebuild it against this SDK: cmake --fresh -S SOURCES -B BUILD -Dgrit_DIR="));
+}
+
+std::vector<TagCase> tag_cases() {
+  const BuildTag tag = build_tag();
+  const auto number = [](const char* what, std::uint32_t expected, std::uint32_t found) {
+    return what + (": expected " + std::to_string(expected)) + ", found " + std::to_string(found);
+  };
+  const auto text = [](const char* what, std::string expected, char first) {
+    const std::string found = first + expected.substr(1);
+    return std::string(what) + ": expected \"" + expected + "\", found \"" + found + '"';
+  };
+  const auto layout = [](const char* what, Layout expected, Layout found) {
+    return what + (": expected " + layout_text(expected)) + ", found " + layout_text(found);
+  };
+  return {
+      {"wrong-tag-size", number("size of the build tag", sizeof(BuildTag), 12)},
+      {"wrong-sdk-version", number("SDK version", sdk_version, sdk_version + 7)},
+      {"wrong-compiler", text("compiler", tag.compiler, 'G')},
+      {"wrong-library-abi", text("C++ library", tag.library_abi, 'L')},
+      {"wrong-instruction-set", text("instruction set", tag.instruction_set, 'X')},
+      {"wrong-row", layout("Row", tag.row, {tag.row.size + 8, tag.row.alignment})},
+      {"wrong-contact-row",
+       layout("ContactRow", tag.contact_row, {tag.contact_row.size, tag.contact_row.alignment * 2})},
+      {"wrong-body-sum", layout("BodySum", tag.body_sum, {tag.body_sum.size * 2, tag.body_sum.alignment})},
+      {"wrong-pair-batch", layout("PairBatch", tag.pair_batch, {tag.pair_batch.size + 8, tag.pair_batch.alignment})},
+      {"wrong-wall-batch", layout("WallBatch", tag.wall_batch, {tag.wall_batch.size - 8, tag.wall_batch.alignment})}};
+}
+
+INSTANTIATE_TEST_SUITE_P(EachField, LoaderTag, testing::ValuesIn(tag_cases()), [](const auto& info) {
+  std::string name = info.param.plugin;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
+
+TEST(Loader, ReportsAllMismatchesAtOnce) {
+  const auto error = make_error("wrong-everything");
+  for (const char* what : {"SDK version", "compiler", "C++ library", "instruction set", "Row", "ContactRow", "BodySum",
+                           "PairBatch", "WallBatch"})
+    EXPECT_THAT(error, HasSubstr(std::string("\n  ") + what + ": expected "));
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 10);
+}
+
+TEST(Loader, ReadsNothingButTheMagicOfAForeignFile) {
+  const auto error = make_error("wrong-magic");
+  EXPECT_THAT(error, AllOf(HasSubstr(file_of("wrong-magic") + "): is not a plugin of grit"),
+                           HasSubstr("magic: expected \"gritplg\", found \"Gritplg\""), HasSubstr("rebuild it")));
+  EXPECT_THAT(error, Not(HasSubstr("SDK version")));
+}
+
+TEST(Loader, AcceptsItsOwnTag) { EXPECT_THAT(mismatches(build_tag(), build_tag()), IsEmpty()); }
+
+// ---- what stands behind the tag
+
+TEST(Loader, RefusesAnotherKind) {
+  EXPECT_THAT(
+      make_error("wrong-kind"),
+      AllOf(HasSubstr(file_of("wrong-kind") + "): kind: expected \"body\" of a file in bodies/, found \"probe\""),
+            HasSubstr("move the file to the folder of its kind")));
+}
+
+TEST(Loader, RefusesAnotherName) {
+  EXPECT_THAT(
+      make_error("wrong-name"),
+      AllOf(HasSubstr(file_of("wrong-name") + "): name: expected \"wrong-name\", the file's, found \"another-name\""),
+            HasSubstr("rename the file")));
+  EXPECT_THAT(make_error("null-name"), HasSubstr("name: expected \"null-name\", the file's, found \"\""));
+}
+
+TEST(Loader, RefusesAPluginThatCannotMakeItsKind) {
+  EXPECT_THAT(make_error("no-maker"),
+              AllOf(HasSubstr(file_of("no-maker") + "): has no maker: PluginInfo::make_body is null"),
+                    HasSubstr("set make_body to a function")));
+}
+
+TEST(Loader, RefusesAMakerThatMakesNothing) {
+  EXPECT_THAT(make_error("null-maker"), AllOf(HasSubstr("body plugin \"null-maker\" (" + file_of("null-maker")),
+                                              HasSubstr("its maker returned null"), HasSubstr("return a new object")));
+}
+
+TEST(Loader, NamesAPluginWhoseMakerThrows) {
+  EXPECT_THAT(make_error("throwing-maker"),
+              AllOf(HasSubstr("body plugin \"throwing-maker\" (" + file_of("throwing-maker") +
+                              "): its maker threw: out of clay"),
+                    HasSubstr("mend the plugin")));
+}
+
+TEST(Loader, NamesAPluginWhoseDeclareThrows) {
+  const Registry registry({fixtures});
+  Component<BodyKind> component(registry);
+  component.choose("throwing-declare");
+  EXPECT_THAT(error_of([&] {
+                Parameters parameters;
+                component.declare(parameters);
+              }),
+              HasSubstr('(' + file_of("throwing-declare") + "): its declare() threw: nothing to declare"));
+}
+
+// ---- what is chosen
+
+TEST(Registry, ListsFilesWithoutOpeningThem) {
+  const Directory directory;
+  directory.write_text("text");
+  fs::create_directory(directory.body("folder"));
+  std::ofstream(directory.path() / "bodies/README.md") << "not a plugin\n";
+  std::ofstream(directory.path() / "bodies/two.dots.so") << "cannot be asked for\n";
+  directory.copy_good("good");
+  const Registry registry({directory.path(), "/nowhere"});
+  EXPECT_THAT(registry.names("body"), ElementsAre("good", "text"));
+  EXPECT_THAT(registry.names("probe"), IsEmpty());
+  const auto installed = registry.installed();
+  ASSERT_THAT(installed, SizeIs(2));
+  EXPECT_EQ(installed[1].kind, "body");
+  EXPECT_EQ(installed[1].name, "text");
+  EXPECT_EQ(installed[1].file, directory.body("text"));
+  EXPECT_THAT(error_of([&] { registry.make<BodyKind>("text"); }), HasSubstr("cannot be opened"));
+}
+
+TEST(Registry, TakesTheFirstDirectoryOnThePath) {
+  const Directory first, second;
+  first.copy_good("good"), second.copy_good("good");
+  const Registry forwards({first.path(), second.path()}), backwards({second.path(), first.path()}),
+      only({first.path()});
+  EXPECT_EQ(forwards.file("body", "good"), first.body("good"));
+  EXPECT_EQ(backwards.file("body", "good"), second.body("good"));
+  EXPECT_EQ(&forwards.info("body", "good"), &only.info("body", "good"));
+  EXPECT_NE(&forwards.info("body", "good"), &backwards.info("body", "good"));
+  EXPECT_THAT(forwards.names("body"), ElementsAre("good"));
+}
+
+TEST(Registry, DoesNotStepOverABadFileOfTheFirstDirectory) {
+  const Directory first, second;
+  first.write_text("good"), second.copy_good("good");
+  const Registry registry({first.path(), second.path()});
+  EXPECT_THAT(error_of([&] { registry.make<BodyKind>("good"); }), HasSubstr(first.body("good").string()));
+}
+
+struct Point : BodyKind {
+  void declare(Parameters&) override {}
+  double volume(double) const override { return 0; }
+  double inertia(double, double) const override { return 0; }
+};
+
+TEST(Registry, PrefersWhatIsBuiltIn) {
+  PluginInfo info;
+  info.kind = "body", info.name = "good", info.make_body = []() -> BodyKind* { return new Point; };
+  Registry registry({fixtures});
+  registry.add(info);
+  EXPECT_EQ(&registry.info("body", "good"), &info);
+  EXPECT_EQ(registry.make<BodyKind>("good")->volume(1), 0);
+  EXPECT_EQ(registry.file("body", "good"), "");
+  EXPECT_EQ(registry.title("body", "good"), "body plugin \"good\" (built in)");
+  EXPECT_EQ(std::ranges::count(registry.names("body"), "good"), 1);
+}
+
+TEST(Registry, SearchesOptionThenVariableThenBeside) {
+  ::setenv("GRIT_PLUGIN_PATH", "/c::/d", 1);
+  const auto directories = plugin_directories({"/a", "/b"}, "/beside");
+  ::unsetenv("GRIT_PLUGIN_PATH");
+  EXPECT_THAT(directories, ElementsAre("/a", "/b", "/c", "/d", "/beside"));
+  EXPECT_THAT(plugin_directories({}, "/beside"), ElementsAre("/beside"));
+}
+
+TEST(Nearest, CountsEdits) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("spehre", "sphere"), 1u);
+  EXPECT_EQ(edit_distance("linear-rolling", "linear-roling"), 1u);
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,8 @@
+#include "linear-normal.hpp"
+
+#include <gtest/gtest.h>
+
+TEST(LinearNormal, SetsTwoSpringsInSeries) {
+  LinearNormal::Material soft{.stiffness = 1000}, hard{.stiffness = 3000};
+  EXPECT_DOUBLE_EQ(LinearNormal::mix({}, soft, hard, {}).stiffness, 750);
+}
