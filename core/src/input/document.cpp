@@ -87,22 +87,26 @@ std::string pointer_token(const std::string& key) {
 
 std::string describe_value(const Description& value) {
   switch (value.type()) {
-    case Description::value_t::object: return "an object";
-    case Description::value_t::array: return "a list";
-    case Description::value_t::null: return "null";
-    case Description::value_t::boolean: return value.get<bool>() ? "true" : "false";
+    case Description::value_t::object:
+      return "an object";
+    case Description::value_t::array:
+      return "a list";
+    case Description::value_t::null:
+      return "null";
+    case Description::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
     case Description::value_t::string: {
       const auto& text = value.get_ref<const std::string&>();
       return "the text \"" + (text.size() > 60 ? text.substr(0, 57) + "..." : text) + '"';
     }
-    default: return "the number " + value.dump();
+    default:
+      return "the number " + value.dump();
   }
 }
 
 /// Builds a document from the events of nlohmann's parser.
 struct Document::Parser : nlohmann::json_sax<Description> {
-  Parser(Document& document, std::shared_ptr<const Source> source)
-      : document_(document), source_(std::move(source)) {}
+  Parser(Document& document, std::shared_ptr<const Source> source) : document_(document), source_(std::move(source)) {}
 
   /// Whether the text is JSON; problems holds what is wrong in it.
   bool parse(const std::string& text) {
@@ -137,7 +141,8 @@ struct Document::Parser : nlohmann::json_sax<Description> {
     std::string text = error.what();
     for (const char* start : {"syntax error", "number overflow"})
       if (const auto at = text.find(start); at != std::string::npos) text.erase(0, at);
-    problems.push_back({source_->name, line_of_number(), open_.empty() ? "" : open_.back().pointer, "not JSON: " + text});
+    problems.push_back(
+        {source_->name, line_of_number(), open_.empty() ? "" : open_.back().pointer, "not JSON: " + text});
     return false;
   }
 
@@ -210,8 +215,8 @@ Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
   std::ifstream file(path, std::ios::binary);
   std::error_code none;
   if (!file || fs::is_directory(path, none))
-    throw FileError(path.string() + ": cannot be read: " +
-                    (fs::is_directory(path, none) ? "it is a directory" : std::strerror(errno)));
+    throw FileError(path.string() +
+                    ": cannot be read: " + (fs::is_directory(path, none) ? "it is a directory" : std::strerror(errno)));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
 
   Document document;
@@ -219,7 +224,8 @@ Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
   parser.parse(text);
   if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
   if (!document.json_.is_object())
-    throw DescriptionError({document.problem("", "found " + describe_value(document.json_) + "; a description is an object")});
+    throw DescriptionError(
+        {document.problem("", "found " + describe_value(document.json_) + "; a description is an object")});
 
   const auto extends = document.json_.find("extends");
   if (extends == document.json_.end()) return document;
@@ -270,7 +276,8 @@ void Document::set(const std::string& assignment) {
   if (!parser.parse(text)) value.json_ = text;
   else if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
   if (value.json_.is_null()) return erase(pointer);
-  if (const auto problem = set(pointer, std::move(value.json_), {source, 0, pointer}); !problem.empty()) refuse(problem);
+  if (const auto problem = set(pointer, std::move(value.json_), {source, 0, pointer}); !problem.empty())
+    refuse(problem);
 }
 
 std::string Document::set(const std::string& pointer, Description value, const Origin& origin) {

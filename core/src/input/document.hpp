@@ -33,15 +33,15 @@ class Document {
   /// Takes JSON that was made by a program; every value has the same source and no line.
   Document(Description json, const std::string& source_name);
 
-  /// Reads a file and what it extends: the value of its key "extends" is the path of another description, from the file's
-  /// own folder, onto which this one is merged (RFC 7396: objects are merged, everything else replaced, null removes).
-  /// Throws FileError if `path` cannot be read, DescriptionError with every problem of syntax, key that stands twice,
-  /// and extended file that is not there or extends itself.
+  /// Reads a file and what it extends: the value of its key "extends" is the path of another description, from the
+  /// file's own folder, onto which this one is merged (RFC 7396: objects are merged, everything else replaced, null
+  /// removes). Throws FileError if `path` cannot be read, DescriptionError with every problem of syntax, key that
+  /// stands twice, and extended file that is not there or extends itself.
   static Document load(const std::filesystem::path& path);
 
   const Description& json() const { return json_; }
-  /// Where the value at a pointer was written; for one that is not there, where its nearest parent was, with the rest of
-  /// the pointer added.
+  /// Where the value at a pointer was written; for one that is not there, where its nearest parent was, with the rest
+  /// of the pointer added.
   Origin origin(const std::string& pointer) const;
   /// A problem with the value at a pointer.
   Problem problem(const std::string& pointer, std::string message) const;

@@ -12,12 +12,12 @@
 namespace grit {
 namespace {
 
-std::string quoted(const std::string& text) { return '"' + text + '"'; }
+std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
 /// `unknown key "colour"; did you mean "color"? Allowed are color, view.`
 std::string unknown(const std::string& what, const std::string& found, const std::vector<std::string>& names) {
   const auto meant = nearest(found, names);
-  return "unknown " + what + ' ' + quoted(found) + (meant ? "; did you mean " + quoted(*meant) + '?' : ";") +
+  return "unknown " + what + ' ' + in_quotes(found) + (meant ? "; did you mean " + in_quotes(*meant) + '?' : ";") +
          (names.size() == 1 ? " allowed is " : " allowed are ") + listed(names);
 }
 
@@ -32,7 +32,8 @@ class Reader {
     const auto names = declared(parameters, at);
     if (chosen && !parameters.is_open())
       for (const auto& [key, _] : value.items())
-        if (std::ranges::find(names, key) == names.end()) complain(at + '/' + pointer_token(key), unknown("key", key, names));
+        if (std::ranges::find(names, key) == names.end())
+          complain(at + '/' + pointer_token(key), unknown("key", key, names));
 
     std::set<std::string> unclean;
     for (const auto& parameter : parameters.entries())
@@ -66,10 +67,12 @@ class Reader {
     if (choice == nullptr) return true;
     const auto types = choice->types();
     const auto type = value.find("type");
-    if (type == value.end()) return complain(at, "missing key \"type\", the " + choice->what() + "; allowed are " + listed(types));
+    if (type == value.end())
+      return complain(at, "missing key \"type\", the " + choice->what() + "; allowed are " + listed(types));
     if (!type->is_string()) return wrong(at + "/type", *type, "a text that names the " + choice->what());
     const auto& name = type->get_ref<const std::string&>();
-    if (std::ranges::find(types, name) == types.end()) return complain(at + "/type", unknown(choice->what(), name, types));
+    if (std::ranges::find(types, name) == types.end())
+      return complain(at + "/type", unknown(choice->what(), name, types));
     choice->choose(name);
     choice->declare(parameters);
     return true;
@@ -80,11 +83,12 @@ class Reader {
     if (parameters.choice() != nullptr) names.push_back("type");
     for (const auto& parameter : parameters.entries()) {
       if (std::ranges::find(names, parameter.name()) != names.end())
-        throw PluginError("the key " + quoted(parameter.name()) + " is declared twice in the object " + quoted(at) +
-                          (parameters.choice() ? ", whose " + parameters.choice()->what() + " is " +
-                                                     quoted(parameters.choice()->type())
-                                               : "") +
-                          "; let the plugin give its parameter another name");
+        throw PluginError(
+            "the key " + in_quotes(parameter.name()) + " is declared twice in the object " + in_quotes(at) +
+            (parameters.choice()
+                 ? ", whose " + parameters.choice()->what() + " is " + in_quotes(parameters.choice()->type())
+                 : "") +
+            "; let the plugin give its parameter another name");
       names.push_back(parameter.name());
     }
     return names;
@@ -94,10 +98,11 @@ class Reader {
     const auto value = object.find(parameter.name());
     const std::string pointer = at + '/' + pointer_token(parameter.name());
     if (value != object.end())
-      return std::visit([&](const auto& target) { return read(*value, pointer, parameter, target); }, parameter.target());
+      return std::visit([&](const auto& target) { return read(*value, pointer, parameter, target); },
+                        parameter.target());
     if (!parameter.is_required()) return true;
     const std::string unit = parameter.unit() == "1" ? "" : " [" + parameter.unit() + ']';
-    return complain(at, "missing key " + quoted(parameter.name()) + unit +
+    return complain(at, "missing key " + in_quotes(parameter.name()) + unit +
                             (parameter.doc().empty() ? "" : ": " + parameter.doc()));
   }
 
@@ -117,8 +122,8 @@ class Reader {
     const auto found = parse_quantity(text, unit);
     if (!found) {
       const bool bare = unit != "1" && parse_quantity(text, "1");
-      return complain(at, "found " + describe_value(value) + (bare ? ", a number without a unit" : "") + "; allowed is " +
-                              quantities(parameter));
+      return complain(at, "found " + describe_value(value) + (bare ? ", a number without a unit" : "") +
+                              "; allowed is " + quantities(parameter));
     }
     if (!parameter.allows(found->value)) return out_of_range(at, text, parameter, found->spelling);
     target = found->value;
@@ -137,7 +142,8 @@ class Reader {
   bool read(const Description& value, const std::string& at, const Parameter& parameter, double* target) {
     return number(value, at, parameter, *target);
   }
-  bool read(const Description& value, const std::string& at, const Parameter& parameter, std::optional<double>* target) {
+  bool read(const Description& value, const std::string& at, const Parameter& parameter,
+            std::optional<double>* target) {
     double found = 0;
     if (!number(value, at, parameter, found)) return false;
     *target = found;
@@ -193,7 +199,8 @@ class Reader {
     std::string found = value.get<std::string>();
     if (!choices.empty() && std::ranges::find(choices, found) == choices.end()) {
       const auto meant = nearest(found, choices);
-      return complain(at, "found " + quoted(found) + (meant ? "; did you mean " + quoted(*meant) + "? Allowed" : "; allowed") +
+      return complain(at, "found " + in_quotes(found) +
+                              (meant ? "; did you mean " + in_quotes(*meant) + "? Allowed" : "; allowed") +
                               " is one of " + listed(choices));
     }
     if (parameter.is_file()) {
@@ -203,7 +210,8 @@ class Reader {
     *target = std::move(found);
     return true;
   }
-  bool read(const Description& value, const std::string& at, const Parameter& parameter, std::vector<std::string>* target) {
+  bool read(const Description& value, const std::string& at, const Parameter& parameter,
+            std::vector<std::string>* target) {
     if (!long_enough(value, at, parameter, "texts")) return false;
     target->assign(value.size(), {});
     bool clean = true;
@@ -248,7 +256,7 @@ class Reader {
     for (const auto& [name, entry] : value.items()) {
       const std::string pointer = at + '/' + pointer_token(name);
       if (name.size() > 100 || !std::regex_match(name, pattern)) {
-        clean = complain(pointer, "found the name " + quoted(name) + "; allowed are letters, digits and _ . + -");
+        clean = complain(pointer, "found the name " + in_quotes(name) + "; allowed are letters, digits and _ . + -");
         continue;
       }
       Parameters inner;
@@ -260,7 +268,8 @@ class Reader {
 
   // ---- lengths
 
-  bool long_enough(const Description& value, const std::string& at, const Parameter& parameter, const std::string& what) {
+  bool long_enough(const Description& value, const std::string& at, const Parameter& parameter,
+                   const std::string& what) {
     if (!value.is_array()) return wrong(at, value, "a list of " + what);
     return value.size() >= parameter.least_entries() || too_few(at, value, parameter);
   }
@@ -279,7 +288,8 @@ class Reader {
 
 }  // namespace
 
-bool read(const Document& document, const std::string& pointer, Parameters& parameters, std::vector<Problem>& problems) {
+bool read(const Document& document, const std::string& pointer, Parameters& parameters,
+          std::vector<Problem>& problems) {
   return Reader(document, problems).object(document.json().at(Description::json_pointer(pointer)), pointer, parameters);
 }
 

@@ -127,7 +127,8 @@ Document expanded(const Document& document, const Registry& registry) {
 
 }  // namespace
 
-Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets, const Registry& registry) {
+Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
+                       const Registry& registry) {
   Document document = Document::load(path);
   for (const auto& assignment : sets) document.set(assignment);
   return document.json().contains("scenario") ? expanded(document, registry) : document;

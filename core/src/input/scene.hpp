@@ -21,7 +21,7 @@ struct StagePlan {
 
 /// A description that was read and found right.
 struct Scene {
-  Document document;  ///< plain: extended, set, and expanded where it was a scenario
+  Document document;                                    ///< plain: extended, set, and expanded where it was a scenario
   std::shared_ptr<const SceneDescription> description;  ///< before any stage's change
   std::vector<StagePlan> stages;                        ///< one for each of description->stages
 };
@@ -29,10 +29,11 @@ struct Scene {
 /// Reads a description with what it extends, applies `sets` ("/pointer=value") in order, and expands its scenario if it
 /// has one; its other keys are merged onto the expansion. The result is plain, and not yet checked. Throws FileError,
 /// DescriptionError, PluginError.
-Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets, const Registry& registry);
+Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
+                       const Registry& registry);
 
-/// The same, then reads all that the stages will run with. Throws DescriptionError with every problem of the description
-/// and of its stages' changes and ramps. Components hold a pointer to the registry.
+/// The same, then reads all that the stages will run with. Throws DescriptionError with every problem of the
+/// description and of its stages' changes and ramps. Components hold a pointer to the registry.
 Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& sets, const Registry& registry);
 
 /// The same for a plain document.

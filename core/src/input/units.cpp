@@ -93,7 +93,8 @@ class Udunits {
     ut_set_error_message_handler(ut_ignore);
     system_.reset(ut_read_xml(nullptr));
     if (!system_)
-      throw FileError("the unit database of UDUNITS-2 cannot be read; install udunits2 or let UDUNITS2_XML_PATH name it");
+      throw FileError(
+          "the unit database of UDUNITS-2 cannot be read; install udunits2 or let UDUNITS2_XML_PATH name it");
   }
 
   Unit parse(const std::string& text) const {
@@ -108,7 +109,8 @@ class Udunits {
     Scale scale;
     scale.factor = cv_convert_double(converter.get(), 1.0);
     const double exponent = std::round(std::log10(scale.factor));
-    if (std::abs(scale.factor - std::pow(10, exponent)) < 1e-14 * scale.factor) scale.exponent = static_cast<int>(exponent);
+    if (std::abs(scale.factor - std::pow(10, exponent)) < 1e-14 * scale.factor)
+      scale.exponent = static_cast<int>(exponent);
     return scale;
   }
 

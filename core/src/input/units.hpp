@@ -20,8 +20,8 @@ std::string quantity_pattern(const std::string& unit);
 
 /// A quantity as somebody wrote it.
 struct Quantity {
-  double value;         ///< SI; infinite if the number is too large
-  std::string spelling; ///< of the unit, one of unit_spellings()
+  double value;          ///< SI; infinite if the number is too large
+  std::string spelling;  ///< of the unit, one of unit_spellings()
 };
 
 /// Reads a text such as "200 kPa". Factors that are powers of ten are exact: "0.3 mm" is the double next to 3e-4.

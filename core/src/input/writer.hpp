@@ -8,8 +8,8 @@
 
 namespace grit {
 
-/// All present values of a declaration, defaults too, numbers in SI; reading them gives the same values. What is optional
-/// and absent, and choices that were not made, are left out. Values of free form stay as they were read.
+/// All present values of a declaration, defaults too, numbers in SI; reading them gives the same values. What is
+/// optional and absent, and choices that were not made, are left out. Values of free form stay as they were read.
 Description write(Parameters& parameters);
 
 /// The value of one parameter; nothing if it is absent.

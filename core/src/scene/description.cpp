@@ -10,10 +10,12 @@ namespace {
 const std::vector<std::string> one_axis{"x", "y", "z"};
 const std::vector<std::string> some_axes{"x", "y", "z", "xy", "xz", "yz", "xyz"};
 
-/// What a stage may change and ramp; of the domain only the strain rate.
-const std::vector<std::string> changeable{"materials", "interfaces", "walls", "engines", "domain", "time_step", "guards"};
+std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
-std::string quoted(const std::string& text) { return '"' + text + '"'; }
+bool is_changeable(const std::string& section) {
+  const auto& all = SceneDescription::changeable();
+  return std::ranges::find(all, section) != all.end();
+}
 
 template <class Names>
 std::string any_of(const Names& names, const std::string& otherwise) {
@@ -54,7 +56,8 @@ class References {
 
   bool has(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
   void check(const std::string& key, const std::string& name) const {
-    if (!has(name)) complain_(key, "the " + what_ + ' ' + quoted(name) + ", which is not described", any_of(names_, "none"));
+    if (!has(name))
+      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not described", any_of(names_, "none"));
   }
 
  private:
@@ -68,7 +71,8 @@ void check_walls_of(const Condition& condition, const std::string& key, const Re
     for (std::size_t i = 0; i < parts.size(); ++i) check_walls_of(*parts[i], key + "/of/" + std::to_string(i), walls);
   };
   const auto& is = condition.is.value();
-  if (const auto* displacement = std::get_if<DisplacementCondition>(&is)) walls.check(key + "/wall", displacement->wall);
+  if (const auto* displacement = std::get_if<DisplacementCondition>(&is))
+    walls.check(key + "/wall", displacement->wall);
   if (const auto* pressure = std::get_if<PressureCondition>(&is)) walls.check(key + "/wall", pressure->wall);
   if (const auto* all = std::get_if<AllCondition>(&is)) each(all->of);
   if (const auto* any = std::get_if<AnyCondition>(&is)) each(any->of);
@@ -85,7 +89,8 @@ void check_circles(const std::map<std::string, WallDescription>& walls, const Co
       at = &next->second;
     }
     if (passed.contains(name))
-      complain("walls/" + name + "/motion/follow/wall", "a circle of walls that follow each other", "a wall that leads");
+      complain("walls/" + name + "/motion/follow/wall", "a circle of walls that follow each other",
+               "a wall that leads");
   }
 }
 
@@ -121,12 +126,20 @@ void LogNormalSizes::declare(Parameters& p) {
 }
 void SieveSizes::declare(Parameters& p) {
   p.add("diameters", diameters).unit("m").above(0).required().entries(2).doc("openings of the sieves, rising");
-  p.add("passing", passing).at_least(0).at_most(1).required().entries(2).doc("share of the mass that passes each, rising to 1");
+  p.add("passing", passing)
+      .at_least(0)
+      .at_most(1)
+      .required()
+      .entries(2)
+      .doc("share of the mass that passes each, rising to 1");
   p.check(
       [this](const Complain& complain) {
-        const auto rises = [](const std::vector<double>& v) { return std::ranges::adjacent_find(v, std::greater_equal()) == v.end(); };
+        const auto rises = [](const std::vector<double>& v) {
+          return std::ranges::adjacent_find(v, std::greater_equal()) == v.end();
+        };
         if (passing.size() != diameters.size())
-          complain("passing", std::to_string(passing.size()) + " entries", std::to_string(diameters.size()) + ", one for each diameter");
+          complain("passing", std::to_string(passing.size()) + " entries",
+                   std::to_string(diameters.size()) + ", one for each diameter");
         if (!rises(diameters)) complain("diameters", "a list that does not rise", "a rising list");
         if (!rises(passing)) complain("passing", "a list that does not rise", "a rising list");
         if (passing.back() != 1) complain("passing", "a last entry below 1", "1, all of the mass");
@@ -146,7 +159,11 @@ void CloudGrains::declare(Parameters& p) {
 }
 void FileGrains::declare(Parameters& p) {
   p.add("path", path).file().required().doc("text file, a line a grain: x y z radius, in m; # starts a comment");
-  p.check([this](const Complain& complain) { if (path.empty()) complain("path", "an empty text", "the path of a file"); }, {"path"});
+  p.check(
+      [this](const Complain& complain) {
+        if (path.empty()) complain("path", "an empty text", "the path of a file");
+      },
+      {"path"});
 }
 void PlacedGrain::declare(Parameters& p) {
   p.add("position", position).unit("m").required().doc("centre");
@@ -154,7 +171,9 @@ void PlacedGrain::declare(Parameters& p) {
   p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity at the start");
   p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity at the start, right-handed");
 }
-void PlacedGrains::declare(Parameters& p) { p.add("grains", grains).required().entries(1).doc("the grains, one by one"); }
+void PlacedGrains::declare(Parameters& p) {
+  p.add("grains", grains).required().entries(1).doc("the grains, one by one");
+}
 
 BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) {}
 void BodiesDescription::declare(Parameters& p) {
@@ -167,7 +186,12 @@ void BodiesDescription::declare(Parameters& p) {
 
 void ServoDescription::declare(Parameters& p) {
   p.add("axis", axis).one_of(one_axis).doc("axis along which the wall is driven");
-  p.add("pressure", pressure).unit("Pa").symbol("p").at_least(0).required().doc("pressure to keep, compression positive");
+  p.add("pressure", pressure)
+      .unit("Pa")
+      .symbol("p")
+      .at_least(0)
+      .required()
+      .doc("pressure to keep, compression positive");
   p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
   p.add("gain", gain).above(0).at_most(1).doc("share of the force's error that one step takes away");
 }
@@ -192,7 +216,9 @@ void MotionDescription::declare(Parameters& p) {
       [this](const Complain& complain) {
         for (int k = 0; k < 3; ++k) {
           std::vector<std::string> claims;
-          const auto claim = [&](bool claimed, const char* key) { if (claimed) claims.push_back(key); };
+          const auto claim = [&](bool claimed, const char* key) {
+            if (claimed) claims.push_back(key);
+          };
           claim(velocity[k] != 0, "velocity");
           claim(servo && servo->axis == one_axis[k], "servo");
           claim(follow && follow->axes.find(one_axis[k]) != std::string::npos, "follow");
@@ -227,7 +253,8 @@ void DomainDescription::declare(Parameters& p) {
           if (periodic[k] && !(low && high))
             complain("periodic" + axis, "a periodic axis without an end", "low and high with periodic axes");
           if (!periodic[k] && strain_rate[static_cast<int>(k)] != 0)
-            complain("strain_rate" + axis, "a strain rate along an axis that is not periodic", "0 here, or a periodic axis");
+            complain("strain_rate" + axis, "a strain rate along an axis that is not periodic",
+                     "0 here, or a periodic axis");
         }
       },
       {"low", "high", "periodic", "strain_rate"});
@@ -246,7 +273,8 @@ void TimeStepDescription::declare(Parameters& p) {
   p.add("value", value).unit("s").symbol("dt").above(0).doc("time step; left out: safety times the critical one");
   p.add("allow_unstable", allow_unstable).doc("runs above the critical time step too");
   p.check([this](const Complain& complain) {
-    if (safety > 1 && !allow_unstable) complain("safety", "a time step above the critical one", "at most 1, unless allow_unstable is true");
+    if (safety > 1 && !allow_unstable)
+      complain("safety", "a time step above the critical one", "at most 1, unless allow_unstable is true");
   });
 }
 void GuardsDescription::declare(Parameters& p) {
@@ -273,8 +301,16 @@ void StepsCondition::declare(Parameters& p) {
 void DisplacementCondition::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall");
   p.add("axis", axis).one_of(one_axis).doc("axis of the displacement");
-  p.add("value", value).unit("m").symbol("u").required().doc("displacement since the stage began, reached in the direction of its sign");
-  p.check([this](const Complain& complain) { if (value == 0) complain("value", "0 m", "a displacement with a direction"); }, {"value"});
+  p.add("value", value)
+      .unit("m")
+      .symbol("u")
+      .required()
+      .doc("displacement since the stage began, reached in the direction of its sign");
+  p.check(
+      [this](const Complain& complain) {
+        if (value == 0) complain("value", "0 m", "a displacement with a direction");
+      },
+      {"value"});
 }
 void UnbalancedForceCondition::declare(Parameters& p) {
   p.add("below", below).above(0).doc("mean net force of a body over the mean contact force");
@@ -285,7 +321,9 @@ void KineticEnergyCondition::declare(Parameters& p) {
 void VoidRatioCondition::declare(Parameters& p) {
   p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen that is fallen below");
   p.add("above", above).symbol("e").above(0).doc("void ratio of the specimen that is exceeded");
-  p.check([this](const Complain& complain) { if (!below && !above) complain("", "neither below nor above", "at least one of them"); });
+  p.check([this](const Complain& complain) {
+    if (!below && !above) complain("", "neither below nor above", "at least one of them");
+  });
 }
 void PressureCondition::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall");
@@ -305,13 +343,13 @@ void RampDescription::declare(Parameters& p) {
       [this](const Complain& complain) {
         const auto second = pointer.find('/', 1);
         const std::string section = pointer.empty() ? "" : pointer.substr(1, second - 1);
-        if (pointer.empty() || pointer.front() != '/' || second == std::string::npos ||
-            std::ranges::find(changeable, section) == changeable.end())
-          complain("pointer", quoted(pointer), "a JSON pointer below " + any_of(changeable, ""));
+        if (pointer.empty() || pointer.front() != '/' || second == std::string::npos || !is_changeable(section))
+          complain("pointer", in_quotes(pointer), "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
         else if (section == "domain" && !pointer.starts_with("/domain/strain_rate"))
-          complain("pointer", quoted(pointer), "of the domain only /domain/strain_rate");
+          complain("pointer", in_quotes(pointer), "of the domain only /domain/strain_rate");
         for (const auto& [key, value] : {std::pair("from", &from), std::pair("to", &to)})
-          if (!value->is_number() && !value->is_string()) complain(key, "neither number nor text", "a number or a quantity");
+          if (!value->is_number() && !value->is_string())
+            complain(key, "neither number nor text", "a number or a quantity");
       },
       {"pointer", "from", "to"});
 }
@@ -323,23 +361,30 @@ void StageDescription::declare(Parameters& p) {
   p.add("name", name).required().doc("its name, which no other stage has");
   p.add("until", until).required().doc("what ends it");
   p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage has failed");
-  p.add("change", change).doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
-                              any_of(changeable, "").substr(7) + " (strain_rate)");
+  p.add("change", change)
+      .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
+           any_of(SceneDescription::changeable(), "").substr(7) + " (strain_rate)");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
   p.add("expect", expect).doc("what the stage must have reached");
   p.check(
       [this](const Complain& complain) {
         if (!change.is_object()) return complain("change", "no object", "a merge patch, which is an object");
         for (const auto& [section, patch] : change.items()) {
-          if (std::ranges::find(changeable, section) == changeable.end())
-            complain("change/" + section, "a change of " + quoted(section), any_of(changeable, ""));
+          if (!is_changeable(section))
+            complain("change/" + section, "a change of " + in_quotes(section),
+                     any_of(SceneDescription::changeable(), ""));
           if (section != "domain" || !patch.is_object()) continue;
           for (const auto& [key, _] : patch.items())
-            if (key != "strain_rate") complain("change/domain/" + key, "a change of " + quoted(key), "strain_rate alone");
+            if (key != "strain_rate")
+              complain("change/domain/" + key, "a change of " + in_quotes(key), "strain_rate alone");
         }
       },
       {"change"});
-  p.check([this](const Complain& complain) { if (name.empty()) complain("name", "an empty text", "a name"); }, {"name"});
+  p.check(
+      [this](const Complain& complain) {
+        if (name.empty()) complain("name", "an empty text", "a name");
+      },
+      {"name"});
 }
 
 // ---- output
@@ -359,6 +404,12 @@ void OutputDescription::declare(Parameters& p) {
 // ---- the scene
 
 SceneDescription::SceneDescription(const Registry& registry) : contacts(registry), registry_(&registry) {}
+
+const std::vector<std::string>& SceneDescription::changeable() {
+  static const std::vector<std::string> sections{"materials", "interfaces", "walls", "engines",
+                                                 "domain",    "time_step",  "guards"};
+  return sections;
+}
 
 void SceneDescription::declare(Parameters& p) {
   p.add("title", title).doc("one line that names the run");
@@ -380,7 +431,10 @@ void SceneDescription::declare(Parameters& p) {
     materials[name] = {};
     declare(name, inner);
   };
-  p.add_target("materials", std::move(by_material)).required().entries(1).doc("materials by name: density and what the contact law asks for");
+  p.add_target("materials", std::move(by_material))
+      .required()
+      .entries(1)
+      .doc("materials by name: density and what the contact law asks for");
 
   MapTarget by_pair;
   by_pair.names = [this] {
@@ -408,13 +462,16 @@ void SceneDescription::declare(Parameters& p) {
       .entries(1)
       .doc("groups of bodies by name");
   p.add("walls", walls, [this](const std::string&) { return WallDescription(*registry_); }).doc("walls by name");
-  p.add("engines", engines, [this](const std::string&) { return EngineDescription(*registry_); })
-      .doc("what acts on the bodies besides contacts, by name");
+  p.add("engines", engines, [this](const std::string&) {
+     return EngineDescription(*registry_);
+   }).doc("what acts on the bodies besides contacts, by name");
   p.add("specimen", specimen).doc("part of the world that averages are taken over");
   p.add("time_step", time_step).doc("time step");
   p.add("guards", guards).doc("limits beyond which a run stops");
   p.add("stages", stages).required().entries(1).doc("what happens, in order");
-  p.add("probes", probes, [this](const std::string&) { return ProbeDescription(*registry_); }).doc("what is measured, by name");
+  p.add("probes", probes, [this](const std::string&) {
+     return ProbeDescription(*registry_);
+   }).doc("what is measured, by name");
   p.add("output", output).doc("frames, picture, summary");
 
   p.check(
@@ -427,12 +484,13 @@ void SceneDescription::declare(Parameters& p) {
         for (const auto& [a, b] : interfaces) {
           const std::string name = b.empty() ? a : a + '+' + b, key = "interfaces/" + name;
           if (b.empty()) {
-            complain(key, quoted(name), "two materials joined by +, e.g. sand+steel");
+            complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
             continue;
           }
           known.check(key, a);
           if (a != b) known.check(key, b);
-          if (!pairs.insert(std::minmax(a, b)).second) complain(key, "an interface that is described twice", "either order, once");
+          if (!pairs.insert(std::minmax(a, b)).second)
+            complain(key, "an interface that is described twice", "either order, once");
         }
       },
       {"contacts", "materials", "interfaces"});
@@ -476,7 +534,8 @@ void SceneDescription::declare(Parameters& p) {
         std::set<std::string> names;
         for (std::size_t i = 0; i < stages.size(); ++i)
           if (!names.insert(stages[i].name).second)
-            complain("stages/" + std::to_string(i) + "/name", quoted(stages[i].name) + ", as a stage before it", "a name of its own");
+            complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", as a stage before it",
+                     "a name of its own");
       },
       {"stages"});
   p.check(
