@@ -122,7 +122,7 @@ class Udunits {
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (std::string_view("^$\\.*+?()[]{}|/").find(c) != std::string_view::npos && c != '/') result += '\\';
+    if (std::string_view("^$\\.*+?()[]{}|").find(c) != std::string_view::npos) result += '\\';
     result += c;
   }
   return result;
@@ -168,8 +168,11 @@ std::string unit_list(const std::string& unit) {
 
 std::string quantity_pattern(const std::string& unit) {
   std::string units;
-  for (const auto& spelling : unit_spellings(unit)) units += (units.empty() ? "" : "|") + escaped(spelling);
-  if (unit == "1") units = "|" + units.substr(units.find_first_not_of('|'));
+  bool first = true;
+  for (const auto& spelling : unit_spellings(unit)) {
+    if (!std::exchange(first, false)) units += '|';
+    units += escaped(spelling);
+  }
   return "^([-+]?(?:[0-9]+\\.?[0-9]*|\\.[0-9]+)(?:[eE][-+]?[0-9]{1,4})?) *(" + units + ")$";
 }
 
