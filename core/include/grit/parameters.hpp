@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -96,6 +97,9 @@ class Parameter {
   Parameter& below(double bound) { return high_ = bound, high_open_ = true, *this; }
   /// The strings that are allowed.
   Parameter& one_of(std::vector<std::string> choices) { return choices_ = std::move(choices), *this; }
+  /// The text is the path of a file to read. A relative one starts where the description that says it lies; reading
+  /// makes it absolute.
+  Parameter& file() { return file_ = true, *this; }
   /// How many entries a list must have at least.
   Parameter& entries(std::size_t least) { return least_entries_ = least, *this; }
 
@@ -110,6 +114,7 @@ class Parameter {
   bool low_is_open() const { return low_open_; }
   bool high_is_open() const { return high_open_; }
   const std::vector<std::string>& choices() const { return choices_; }
+  bool is_file() const { return file_; }
   std::size_t least_entries() const { return least_entries_; }
   /// Whether `value` (SI) lies in the declared range. A value that is not finite never does.
   bool allows(double value) const {
@@ -121,15 +126,21 @@ class Parameter {
   std::string name_;
   Target target_;
   std::string unit_ = "1", symbol_, doc_;
-  bool required_ = false, low_open_ = false, high_open_ = false;
+  bool required_ = false, file_ = false, low_open_ = false, high_open_ = false;
   double low_ = -std::numeric_limits<double>::infinity(), high_ = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices_;
   std::size_t least_entries_ = 0;
 };
 
-/// Reports a problem that lies between parameters: the key at fault ("" for the whole object), what was found, what
-/// is allowed.
+/// Reports a problem that lies between parameters: the key at fault ("" for the whole object, "wall/motion" for what lies
+/// deeper), what was found, what is allowed.
 using Complain = std::function<void(std::string_view key, std::string_view found, std::string_view allowed)>;
+
+/// What must hold between the parameters of one object.
+struct Check {
+  std::function<void(const Complain&)> run;
+  std::vector<std::string> about;  // keys; none: all of the object
+};
 
 /// The declarations of one object, in the order in which they are read.
 class Parameters {
@@ -174,7 +185,7 @@ class Parameters {
   /// Declares objects by name. `make` gives a new entry; by default it is default-constructed.
   template <Declarable T>
   Parameter& add(std::string name, std::map<std::string, T>& member,
-                 std::function<T(const std::string&)> make = [](const std::string&) { return T(); }) {
+                 std::type_identity_t<std::function<T(const std::string&)>> make = [](const std::string&) { return T(); }) {
     auto names = [&member] {
       std::vector<std::string> result;
       for (const auto& entry : member) result.push_back(entry.first);
@@ -191,17 +202,23 @@ class Parameters {
   Parameter& add_target(std::string name, Target target) {
     return entries_.emplace_back(std::move(name), std::move(target));
   }
-  /// Adds a check that runs after all parameters of this object were read without a problem.
-  void check(std::function<void(const Complain&)> check) { checks_.push_back(std::move(check)); }
+  /// Says that further keys of this object cannot be known, so that nobody calls them unknown.
+  void leave_open() { open_ = true; }
+  /// Adds a check that runs after the keys `about` were read without a problem; without keys, after the whole object was.
+  void check(std::function<void(const Complain&)> check, std::vector<std::string> about = {}) {
+    checks_.push_back({std::move(check), std::move(about)});
+  }
 
   Choice* choice() const { return choice_; }
   const std::deque<Parameter>& entries() const { return entries_; }
-  const std::vector<std::function<void(const Complain&)>>& checks() const { return checks_; }
+  const std::vector<Check>& checks() const { return checks_; }
+  bool is_open() const { return open_; }
 
  private:
   Choice* choice_ = nullptr;
+  bool open_ = false;
   std::deque<Parameter> entries_;  // a deque keeps references valid while it grows
-  std::vector<std::function<void(const Complain&)>> checks_;
+  std::vector<Check> checks_;
 };
 
 /// A choice among built-in variants. Each T has `static constexpr const char* type_name` and declare().

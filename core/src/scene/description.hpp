@@ -187,7 +187,7 @@ struct UnbalancedForceCondition {
 };
 struct KineticEnergyCondition {
   static constexpr const char* type_name = "kinetic-energy";
-  double below = 1e-4;
+  double below = 0;  ///< J
   void declare(Parameters& p);
 };
 struct VoidRatioCondition {
@@ -279,6 +279,9 @@ struct SceneDescription {
   OutputDescription output;
 
   void declare(Parameters& p);
+
+  /// The sections that a stage may change and ramp; of the domain only its strain rate.
+  static const std::vector<std::string>& changeable();
 
  private:
   const Registry* registry_;

@@ -1,0 +1,376 @@
+#include "input/document.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+
+namespace grit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Hands characters on and counts the lines they end.
+class CountingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  struct Count {
+    int line = 1;
+    char last = 0;
+  };
+  CountingIterator(const char* at, Count* count) : at_(at), count_(count) {}
+
+  reference operator*() const { return *at_; }
+  CountingIterator& operator++() {
+    count_->last = *at_++;
+    count_->line += count_->last == '\n';
+    return *this;
+  }
+  CountingIterator operator++(int) {
+    auto before = *this;
+    ++*this;
+    return before;
+  }
+  friend bool operator==(const CountingIterator& a, const CountingIterator& b) { return a.at_ == b.at_; }
+  friend bool operator!=(const CountingIterator& a, const CountingIterator& b) { return a.at_ != b.at_; }
+
+ private:
+  const char* at_;
+  Count* count_;
+};
+
+std::optional<std::vector<std::string>> split_pointer(const std::string& pointer) {
+  if (!pointer.empty() && pointer.front() != '/') return std::nullopt;
+  std::vector<std::string> tokens;
+  for (std::size_t i = 0; i < pointer.size(); ++i) {
+    if (pointer[i] == '/') {
+      tokens.emplace_back();
+    } else if (pointer[i] != '~') {
+      tokens.back() += pointer[i];
+    } else if (++i < pointer.size() && (pointer[i] == '0' || pointer[i] == '1')) {
+      tokens.back() += pointer[i] == '0' ? '~' : '/';
+    } else {
+      return std::nullopt;
+    }
+  }
+  return tokens;
+}
+
+std::optional<std::size_t> index_in(const Description& list, const std::string& token) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
+  if (error != std::errc() || end != token.data() + token.size() || index >= list.size()) return std::nullopt;
+  if (token.size() > 1 && token.front() == '0') return std::nullopt;
+  return index;
+}
+
+bool is_below(const std::string& pointer, const std::string& parent) {
+  return pointer.size() > parent.size() && pointer[parent.size()] == '/' &&
+         pointer.compare(0, parent.size(), parent) == 0;
+}
+
+}  // namespace
+
+std::string pointer_token(const std::string& key) {
+  std::string token;
+  for (const char c : key) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return token;
+}
+
+std::string describe_value(const Description& value) {
+  switch (value.type()) {
+    case Description::value_t::object:
+      return "an object";
+    case Description::value_t::array:
+      return "a list";
+    case Description::value_t::null:
+      return "null";
+    case Description::value_t::boolean:
+      return value.get<bool>() ? "true" : "false";
+    case Description::value_t::string: {
+      const auto& text = value.get_ref<const std::string&>();
+      return "the text \"" + (text.size() > 60 ? text.substr(0, 57) + "..." : text) + '"';
+    }
+    default:
+      return "the number " + value.dump();
+  }
+}
+
+/// Builds a document from the events of nlohmann's parser.
+struct Document::Parser : nlohmann::json_sax<Description> {
+  Parser(Document& document, std::shared_ptr<const Source> source) : document_(document), source_(std::move(source)) {}
+
+  /// Whether the text is JSON; problems holds what is wrong in it.
+  bool parse(const std::string& text) {
+    const char *begin = text.data(), *end = begin + text.size();
+    return Description::sax_parse(CountingIterator(begin, &count_), CountingIterator(end, &count_), this);
+  }
+
+  bool null() override { return value(nullptr, line()); }
+  bool boolean(bool v) override { return value(v, line()); }
+  bool number_integer(number_integer_t v) override { return value(v, line_of_number()); }
+  bool number_unsigned(number_unsigned_t v) override { return value(v, line_of_number()); }
+  bool number_float(number_float_t v, const string_t&) override { return value(v, line_of_number()); }
+  bool string(string_t& v) override { return value(v, line()); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return start(Description::object()); }
+  bool start_array(std::size_t) override { return start(Description::array()); }
+  bool end_object() override { return end(); }
+  bool end_array() override { return end(); }
+  bool key(string_t& key) override {
+    if (skipped_ > 0) return true;
+    key_ = key;
+    if (key == "//") return comment_ = true;
+    if (open_.back().value->contains(key)) {
+      const std::string at = open_.back().pointer + '/' + pointer_token(key);
+      problems.push_back({source_->name, line(), at,
+                          "the key \"" + key + "\" stands twice, first in line " +
+                              std::to_string(document_.origin(at).line) + "; keep one of them"});
+    }
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
+    std::string text = error.what();
+    for (const char* start : {"syntax error", "number overflow"})
+      if (const auto at = text.find(start); at != std::string::npos) text.erase(0, at);
+    problems.push_back(
+        {source_->name, line_of_number(), open_.empty() ? "" : open_.back().pointer, "not JSON: " + text});
+    return false;
+  }
+
+  std::vector<Problem> problems;
+
+ private:
+  struct Open {
+    Description* value;
+    std::string pointer;
+  };
+
+  int line() const { return count_.line; }
+  /// The parser knows a number's end only from the character behind it.
+  int line_of_number() const { return count_.line - (count_.last == '\n'); }
+
+  /// Puts a value where it belongs; null where it is a comment.
+  Description* put(Description v, int line, std::string& pointer) {
+    if (comment_ || skipped_ > 0) return nullptr;
+    Description* place = &document_.json_;
+    if (!open_.empty()) {
+      Open& parent = open_.back();
+      const bool list = parent.value->is_array();
+      pointer = parent.pointer + '/' + (list ? std::to_string(parent.value->size()) : pointer_token(key_));
+      if (list) parent.value->push_back(nullptr);
+      place = list ? &parent.value->back() : &(*parent.value)[key_];
+    }
+    *place = std::move(v);
+    document_.forget(pointer);
+    document_.origins_[pointer] = {source_, line, pointer};
+    return place;
+  }
+  bool value(Description v, int line) {
+    std::string pointer;
+    put(std::move(v), line, pointer);
+    comment_ = false;
+    return true;
+  }
+  bool start(Description v) {
+    std::string pointer;
+    if (Description* place = put(std::move(v), line(), pointer)) open_.push_back({place, pointer});
+    else ++skipped_;
+    comment_ = false;
+    return true;
+  }
+  bool end() {
+    if (skipped_ > 0) --skipped_;
+    else open_.pop_back();
+    return true;
+  }
+
+  Document& document_;
+  std::shared_ptr<const Source> source_;
+  CountingIterator::Count count_;
+  std::vector<Open> open_;
+  std::string key_;
+  bool comment_ = false;  // the next value belongs to a key "//"
+  int skipped_ = 0;       // depth within a comment
+};
+
+Document::Document(Description json, const std::string& source_name) : json_(std::move(json)) {
+  origins_[""] = {std::make_shared<const Source>(Source{source_name, {}}), 0, ""};
+}
+
+Document Document::load(const fs::path& path) {
+  std::vector<fs::path> open;
+  return load(path, open);
+}
+
+Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
+  std::ifstream file(path, std::ios::binary);
+  std::error_code none;
+  if (!file || fs::is_directory(path, none))
+    throw FileError(path.string() +
+                    ": cannot be read: " + (fs::is_directory(path, none) ? "it is a directory" : std::strerror(errno)));
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+
+  Document document;
+  Parser parser(document, std::make_shared<const Source>(Source{path.string(), path.parent_path()}));
+  parser.parse(text);
+  if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
+  if (!document.json_.is_object())
+    throw DescriptionError(
+        {document.problem("", "found " + describe_value(document.json_) + "; a description is an object")});
+
+  const auto extends = document.json_.find("extends");
+  if (extends == document.json_.end()) return document;
+  const auto refuse = [&](const std::string& message) {
+    throw DescriptionError({document.problem("/extends", message)});
+  };
+  if (!extends->is_string())
+    refuse("found " + describe_value(*extends) + "; allowed is the path of a description, from the folder of this one");
+  const fs::path base_path = (path.parent_path() / extends->get<std::string>()).lexically_normal();
+  open.push_back(fs::weakly_canonical(path));
+  if (std::ranges::find(open, fs::weakly_canonical(base_path)) != open.end())
+    refuse(base_path.string() + " extends itself, directly or by way of others; break the circle");
+  if (!fs::is_regular_file(base_path, none)) refuse("there is no file " + base_path.string() + " to extend");
+  Document base = load(base_path, open);
+  open.pop_back();
+  document.erase("/extends");
+  base.merge(document);
+  return base;
+}
+
+Origin Document::origin(const std::string& pointer) const {
+  for (std::string at = pointer;; at.erase(at.rfind('/'))) {
+    if (const auto found = origins_.find(at); found != origins_.end()) {
+      Origin origin = found->second;
+      origin.pointer += pointer.substr(at.size());
+      return origin;
+    }
+    if (at.empty()) return {std::make_shared<const Source>(), 0, pointer};
+  }
+}
+
+Problem Document::problem(const std::string& pointer, std::string message) const {
+  const Origin place = origin(pointer);
+  return {place.source->name, place.line, place.pointer, std::move(message)};
+}
+
+void Document::set(const std::string& assignment) {
+  static const auto source = std::make_shared<const Source>(Source{"--set", {}});
+  const auto equals = assignment.find('=');
+  const std::string pointer = assignment.substr(0, equals);
+  const auto refuse = [&](const std::string& message) { throw DescriptionError({{"--set", 0, pointer, message}}); };
+  if (equals == std::string::npos || pointer.empty())
+    refuse("found \"" + assignment + "\"; allowed is /pointer=value, e.g. /stages/0/limit=0.1");
+  const std::string text = assignment.substr(equals + 1);
+
+  Document value;
+  Parser parser(value, source);
+  if (!parser.parse(text)) value.json_ = text;
+  else if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
+  if (value.json_.is_null()) return erase(pointer);
+  if (const auto problem = set(pointer, std::move(value.json_), {source, 0, pointer}); !problem.empty())
+    refuse(problem);
+}
+
+std::string Document::set(const std::string& pointer, Description value, const Origin& origin) {
+  const auto tokens = split_pointer(pointer);
+  if (!tokens) return "found \"" + pointer + "\"; allowed is a JSON pointer, e.g. /stages/0/limit";
+  std::string at;
+  Description* place = &json_;
+  for (const auto& token : *tokens) {
+    const std::string parent = at;
+    at += '/' + pointer_token(token);
+    const bool last = at.size() == pointer.size();
+    if (place->is_array()) {
+      if (last && token == "-") {
+        at = parent + '/' + std::to_string(place->size());
+        place->push_back(nullptr);
+        place = &place->back();
+        continue;
+      }
+      const auto index = index_in(*place, token);
+      if (!index)
+        return "there is no entry \"" + token + "\" in " + parent + ", which has " + std::to_string(place->size()) +
+               ", counted from 0";
+      place = &(*place)[*index];
+    } else if (place->is_object()) {
+      const bool is_new = !place->contains(token);
+      place = &(*place)[token];
+      if (is_new && !last) {
+        *place = Description::object();
+        origins_[at] = {origin.source, origin.line, origin.pointer == pointer ? at : origin.pointer};
+      }
+    } else {
+      return "there is nothing below " + parent + ", which is " + describe_value(*place);
+    }
+  }
+  *place = std::move(value);
+  forget(at);
+  origins_[at] = origin;
+  return {};
+}
+
+void Document::merge(const Document& other, const std::string& from) {
+  merge(json_, "", other.json_.at(Description::json_pointer(from)), other, from);
+}
+
+void Document::merge(Description& target, const std::string& at, const Description& patch, const Document& other,
+                     const std::string& from) {
+  if (!patch.is_object() || !target.is_object()) forget(at);
+  origins_[at] = other.origin(from);
+  if (!patch.is_object()) {
+    for (auto entry = other.origins_.lower_bound(from + '/');
+         entry != other.origins_.end() && is_below(entry->first, from); ++entry)
+      origins_[at + entry->first.substr(from.size())] = entry->second;
+    target = patch;
+    return;
+  }
+  if (!target.is_object()) target = Description::object();
+  for (const auto& [key, value] : patch.items()) {
+    const std::string token = '/' + pointer_token(key);
+    if (value.is_null()) {
+      target.erase(key);
+      forget(at + token);
+    } else {
+      merge(target[key], at + token, value, other, from + token);
+    }
+  }
+}
+
+void Document::erase(const std::string& pointer) {
+  const auto tokens = split_pointer(pointer);
+  if (!tokens || tokens->empty()) return;
+  Description* parent = &json_;
+  for (std::size_t i = 0; i + 1 < tokens->size(); ++i) {
+    const auto& token = (*tokens)[i];
+    if (parent->is_array()) {
+      const auto index = index_in(*parent, token);
+      if (!index) return;
+      parent = &(*parent)[*index];
+    } else {
+      if (!parent->is_object() || !parent->contains(token)) return;
+      parent = &(*parent)[token];
+    }
+  }
+  if (!parent->is_object()) return;
+  parent->erase(tokens->back());
+  forget(pointer);
+}
+
+void Document::forget(const std::string& pointer) {
+  origins_.erase(pointer);
+  const auto first = origins_.lower_bound(pointer + '/');
+  auto last = first;
+  while (last != origins_.end() && is_below(last->first, pointer)) ++last;
+  origins_.erase(first, last);
+}
+
+}  // namespace grit

@@ -1,0 +1,27 @@
+#include "input/range.hpp"
+
+#include <cmath>
+
+#include "input/units.hpp"
+
+namespace grit {
+
+std::string range_text(const Parameter& parameter, const std::string& spelling) {
+  const auto text = [&](double bound) { return quantity_text(bound, parameter.unit(), spelling); };
+  const bool low = std::isfinite(parameter.low()), high = std::isfinite(parameter.high());
+  const std::string from = low ? text(parameter.low()) : "", to = high ? text(parameter.high()) : "";
+  if (low && high)
+    return (parameter.low_is_open() ? "above " : "from ") + from + (parameter.high_is_open() ? " to below " : " to ") +
+           to;
+  if (low) return (parameter.low_is_open() ? "above " : "at least ") + from;
+  if (high) return (parameter.high_is_open() ? "below " : "at most ") + to;
+  return "any finite number";
+}
+
+std::string listed(const std::vector<std::string>& names, const std::string& otherwise) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return names.empty() ? otherwise : text;
+}
+
+}  // namespace grit

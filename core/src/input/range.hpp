@@ -1,0 +1,17 @@
+// What a declaration allows, in words.
+#pragma once
+
+#include <string>
+
+#include "grit/parameters.hpp"
+
+namespace grit {
+
+/// The declared range in one spelling of the parameter's unit: "above 0 kPa", "from 0 deg to below 90 deg"; "any finite
+/// number" if there is none.
+std::string range_text(const Parameter& parameter, const std::string& spelling);
+
+/// "a, b, c"; `otherwise` if there is nothing to list.
+std::string listed(const std::vector<std::string>& names, const std::string& otherwise = "none");
+
+}  // namespace grit

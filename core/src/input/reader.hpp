@@ -1,0 +1,25 @@
+// From JSON into what was declared.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/parameters.hpp"
+#include "input/document.hpp"
+
+namespace grit {
+
+/// Names that a description may give to its things (ECMAScript, anchored).
+inline constexpr const char* name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.+-]*$";
+
+/// Reads the object at `pointer` of a document into a declaration: first the choice made by its key "type", then the
+/// entries in declared order, then the checks. Adds every problem to `problems` and returns whether there was none;
+/// what a value with a problem was to set keeps its default. Throws PluginError if a plugin that was chosen cannot be
+/// had.
+bool read(const Document& document, const std::string& pointer, Parameters& parameters, std::vector<Problem>& problems);
+
+/// The same, throwing all problems together as DescriptionError.
+void read(const Document& document, Parameters& parameters);
+
+}  // namespace grit

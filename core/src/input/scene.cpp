@@ -1,0 +1,161 @@
+#include "input/scene.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "input/reader.hpp"
+#include "input/writer.hpp"
+
+namespace grit {
+namespace {
+
+/// Reads a document whole. Null if it has problems, which are added unless they are known already.
+std::shared_ptr<SceneDescription> read_whole(const Document& document, const Registry& registry,
+                                             std::vector<Problem>& problems) {
+  auto scene = std::make_shared<SceneDescription>(registry);
+  Parameters parameters;
+  scene->declare(parameters);
+  std::vector<Problem> found;
+  read(document, "", parameters, found);
+  const auto same = [](const Problem& a, const Problem& b) {
+    return std::tie(a.file, a.line, a.pointer, a.message) == std::tie(b.file, b.line, b.pointer, b.message);
+  };
+  for (auto& problem : found)
+    if (std::ranges::none_of(problems, [&](const Problem& known) { return same(known, problem); }))
+      problems.push_back(problem);
+  return found.empty() ? scene : nullptr;
+}
+
+/// Lets lists that are nowhere in the document, but in what it resolves to, stand in it, so that a pointer to one of
+/// their entries finds them.
+void write_out_lists(Document& document, const Description& resolved, const std::string& pointer) {
+  for (auto slash = pointer.find('/', 1); slash != std::string::npos; slash = pointer.find('/', slash + 1)) {
+    const std::string parent = pointer.substr(0, slash);
+    const Description::json_pointer at(parent);
+    if (document.json().contains(at) || !resolved.contains(at) || !resolved.at(at).is_array()) continue;
+    document.set(parent, resolved.at(at), document.origin(parent));
+  }
+}
+
+/// The typed scenes of the stages, one change after the other.
+class Planner {
+ public:
+  Planner(const Document& document, const Registry& registry, std::vector<Problem>& problems)
+      : written_(document), now_(document), registry_(registry), problems_(problems) {}
+
+  StagePlan stage(std::size_t number) {
+    StagePlan plan;
+    const std::string at = "/stages/" + std::to_string(number);
+    const auto& stage = written_.json().at("stages").at(number);
+    if (const auto change = stage.find("change"); change != stage.end() && change->is_object())
+      now_.merge(written_, at + "/change");
+    plan.start = read_whole(now_, registry_, problems_);
+    if (!plan.start) return plan;
+    const auto& ramps = plan.start->stages.at(number).ramps;
+    for (std::size_t i = 0; i < ramps.size(); ++i) {
+      const auto& before = plan.ramp.empty() ? *plan.start : *plan.ramp.back();
+      if (!ramp(ramps[i], at + "/ramps/" + std::to_string(i), before, plan.ramp)) break;
+    }
+    return plan;
+  }
+
+ private:
+  /// Appends the increments of a ramp. False if there was a problem.
+  bool ramp(const RampDescription& ramp, const std::string& at, const SceneDescription& before,
+            std::vector<std::shared_ptr<const SceneDescription>>& increments) {
+    write_out_lists(now_, resolved(before), ramp.pointer);
+    const auto from = number_at(ramp, at + "/from", ramp.from), to = number_at(ramp, at + "/to", ramp.to);
+    if (!from || !to) return false;
+    for (std::int64_t k = 1; k <= ramp.increments; ++k) {
+      const double share = static_cast<double>(k) / static_cast<double>(ramp.increments);
+      // Exact at the end, where (to − from) + from may not be.
+      now_.set(ramp.pointer, k == ramp.increments ? *to : *from + (*to - *from) * share, written_.origin(at + "/to"));
+      increments.push_back(read_whole(now_, registry_, problems_));
+      if (!increments.back()) return false;
+    }
+    return true;
+  }
+
+  /// The SI value that `value` has where the ramp's pointer points: found by reading it there.
+  std::optional<double> number_at(const RampDescription& ramp, const std::string& at, const Description& value) {
+    const auto refuse = [&](const std::string& key, const std::string& message) -> std::optional<double> {
+      problems_.push_back(written_.problem(key, message));
+      return std::nullopt;
+    };
+    const std::string pointer_key = at.substr(0, at.rfind('/')) + "/pointer";
+    Document trial = now_;
+    if (const auto problem = trial.set(ramp.pointer, value, written_.origin(at)); !problem.empty())
+      return refuse(pointer_key, problem);
+    const auto scene = read_whole(trial, registry_, problems_);
+    if (!scene) return std::nullopt;
+    const Description all = resolved(*scene);
+    const Description::json_pointer place(ramp.pointer);
+    if (!all.contains(place) || !all.at(place).is_number())
+      return refuse(pointer_key, "found \"" + ramp.pointer + "\"; allowed is the pointer of a number");
+    return all.at(place).get<double>();
+  }
+
+  const Document& written_;
+  Document now_;
+  const Registry& registry_;
+  std::vector<Problem>& problems_;
+};
+
+/// The plain description behind a scenario, the document's other keys merged onto it.
+Document expanded(const Document& document, const Registry& registry) {
+  Component<Scenario> scenario(registry);
+  Parameters parameters;
+  parameters.choose(scenario);
+  std::vector<Problem> problems;
+  if (!read(document, "/scenario", parameters, problems)) throw DescriptionError(std::move(problems));
+  const std::string name = "scenario \"" + scenario.type() + '"';
+  Document plain;
+  try {
+    plain = Document(scenario->expand(), "expansion of " + name + " in " + document.origin("/scenario").source->name);
+  } catch (const PluginError&) {
+    throw;
+  } catch (const Error& error) {
+    throw DescriptionError({document.problem("/scenario", name + ": " + error.what())});
+  } catch (const std::exception& error) {
+    throw PluginError(name + " failed to expand: " + error.what());
+  }
+  Document others = document;
+  others.erase("/scenario");
+  plain.merge(others);
+  return plain;
+}
+
+}  // namespace
+
+Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
+                       const Registry& registry) {
+  Document document = Document::load(path);
+  for (const auto& assignment : sets) document.set(assignment);
+  return document.json().contains("scenario") ? expanded(document, registry) : document;
+}
+
+Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& sets, const Registry& registry) {
+  return read_scene(load_document(path, sets, registry), registry);
+}
+
+Scene read_scene(Document document, const Registry& registry) {
+  Scene scene;
+  std::vector<Problem> problems;
+  scene.description = read_whole(document, registry, problems);
+  if (const auto stages = document.json().find("stages"); stages != document.json().end() && stages->is_array()) {
+    Planner planner(document, registry, problems);
+    for (std::size_t i = 0; i < stages->size(); ++i) scene.stages.push_back(planner.stage(i));
+  }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+  scene.document = std::move(document);
+  return scene;
+}
+
+Description resolved(const SceneDescription& scene) {
+  // Declaring binds to members without changing them, and writing only reads.
+  Parameters parameters;
+  const_cast<SceneDescription&>(scene).declare(parameters);
+  return write(parameters);
+}
+
+}  // namespace grit

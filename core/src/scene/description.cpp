@@ -1,0 +1,553 @@
+#include "scene/description.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace grit {
+namespace {
+
+const std::vector<std::string> one_axis{"x", "y", "z"};
+const std::vector<std::string> some_axes{"x", "y", "z", "xy", "xz", "yz", "xyz"};
+
+std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
+
+bool is_changeable(const std::string& section) {
+  const auto& all = SceneDescription::changeable();
+  return std::ranges::find(all, section) != all.end();
+}
+
+template <class Names>
+std::string any_of(const Names& names, const std::string& otherwise) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "one of " : ", ") + name;
+  return text.empty() ? otherwise : text;
+}
+
+template <class T>
+std::vector<std::string> keys(const std::map<std::string, T>& map) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) names.push_back(entry.first);
+  return names;
+}
+
+void declare_sizes(Parameters& p, double& smallest, double& largest) {
+  p.add("smallest", smallest).unit("m").symbol("d_min").above(0).doc("smallest diameter");
+  p.add("largest", largest).unit("m").symbol("d_max").above(0).doc("largest diameter");
+  p.check(
+      [&](const Complain& complain) {
+        if (largest < smallest) complain("largest", "a diameter below smallest", "smallest or more");
+      },
+      {"smallest", "largest"});
+}
+
+/// Reports a low that is not below its high, axis by axis.
+void check_box(const Vec3& low, const Vec3& high, const Complain& complain) {
+  for (int k = 0; k < 3; ++k)
+    if (!(low[k] < high[k]))
+      complain("high/" + std::to_string(k), "a side that is not above low along " + one_axis[k], "low < high");
+}
+
+/// Reports names that are none of `names`.
+class References {
+ public:
+  References(std::string what, std::vector<std::string> names, const Complain& complain)
+      : names_(std::move(names)), complain_(complain), what_(std::move(what)) {}
+
+  bool has(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
+  void check(const std::string& key, const std::string& name) const {
+    if (!has(name))
+      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not described", any_of(names_, "none"));
+  }
+
+ private:
+  std::vector<std::string> names_;
+  const Complain& complain_;
+  std::string what_;
+};
+
+void check_walls_of(const Condition& condition, const std::string& key, const References& walls) {
+  const auto each = [&](const std::vector<std::unique_ptr<Condition>>& parts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) check_walls_of(*parts[i], key + "/of/" + std::to_string(i), walls);
+  };
+  const auto& is = condition.is.value();
+  if (const auto* displacement = std::get_if<DisplacementCondition>(&is))
+    walls.check(key + "/wall", displacement->wall);
+  if (const auto* pressure = std::get_if<PressureCondition>(&is)) walls.check(key + "/wall", pressure->wall);
+  if (const auto* all = std::get_if<AllCondition>(&is)) each(all->of);
+  if (const auto* any = std::get_if<AnyCondition>(&is)) each(any->of);
+}
+
+/// A wall that follows itself by way of others.
+void check_circles(const std::map<std::string, WallDescription>& walls, const Complain& complain) {
+  for (const auto& [name, wall] : walls) {
+    std::set<std::string> passed;
+    const WallDescription* at = &wall;
+    while (at->motion.follow && passed.insert(at->motion.follow->wall).second) {
+      const auto next = walls.find(at->motion.follow->wall);
+      if (next == walls.end()) break;
+      at = &next->second;
+    }
+    if (passed.contains(name))
+      complain("walls/" + name + "/motion/follow/wall", "a circle of walls that follow each other",
+               "a wall that leads");
+  }
+}
+
+void declare_parts(Parameters& p, std::vector<std::unique_ptr<Condition>>& of, const std::string& doc) {
+  ListTarget target;
+  target.size = [&of] { return of.size(); };
+  target.clear = [&of] { of.clear(); };
+  target.append = [&of](Parameters& inner) { of.emplace_back(std::make_unique<Condition>())->declare(inner); };
+  target.declare = [&of](std::size_t i, Parameters& inner) { of[i]->declare(inner); };
+  p.add_target("of", std::move(target)).required().entries(1).doc(doc);
+}
+
+}  // namespace
+
+void Cadence::declare(Parameters& p) {
+  p.add("every_time", every_time).unit("s").above(0).doc("simulated time from one to the next");
+  p.add("every_steps", every_steps).at_least(0).doc("steps from one to the next; 0: not by steps");
+  p.check(
+      [this](const Complain& complain) {
+        if (every_time && every_steps > 0) complain("every_steps", "a cadence in time and in steps", "one of the two");
+      },
+      {"every_time", "every_steps"});
+}
+
+// ---- grains
+
+void UniformSizes::declare(Parameters& p) { declare_sizes(p, smallest, largest); }
+void LinearSizes::declare(Parameters& p) { declare_sizes(p, smallest, largest); }
+void LogNormalSizes::declare(Parameters& p) {
+  p.add("median", median).unit("m").symbol("d_50").above(0).doc("median diameter");
+  p.add("deviation", deviation).above(0).at_most(3).doc("standard deviation of the diameter's natural logarithm");
+  declare_sizes(p, smallest, largest);
+}
+void SieveSizes::declare(Parameters& p) {
+  p.add("diameters", diameters).unit("m").above(0).required().entries(2).doc("openings of the sieves, rising");
+  p.add("passing", passing)
+      .at_least(0)
+      .at_most(1)
+      .required()
+      .entries(2)
+      .doc("share of the mass that passes each, rising to 1");
+  p.check(
+      [this](const Complain& complain) {
+        const auto rises = [](const std::vector<double>& v) {
+          return std::ranges::adjacent_find(v, std::greater_equal()) == v.end();
+        };
+        if (passing.size() != diameters.size())
+          complain("passing", std::to_string(passing.size()) + " entries",
+                   std::to_string(diameters.size()) + ", one for each diameter");
+        if (!rises(diameters)) complain("diameters", "a list that does not rise", "a rising list");
+        if (!rises(passing)) complain("passing", "a list that does not rise", "a rising list");
+        if (passing.back() != 1) complain("passing", "a last entry below 1", "1, all of the mass");
+      },
+      {"diameters", "passing"});
+}
+void ListSizes::declare(Parameters& p) {
+  p.add("diameters", diameters).unit("m").above(0).required().entries(1).doc("diameters, taken in turn");
+}
+
+void CloudGrains::declare(Parameters& p) {
+  p.add("low", low).unit("m").required().doc("lower corner of the box that is filled");
+  p.add("high", high).unit("m").required().doc("upper corner of the box that is filled");
+  p.add("count", count).at_least(1).at_most(4e9).required().doc("number of grains");
+  p.add("sizes", sizes).required().doc("their diameters");
+  p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
+}
+void FileGrains::declare(Parameters& p) {
+  p.add("path", path).file().required().doc("text file, a line a grain: x y z radius, in m; # starts a comment");
+  p.check(
+      [this](const Complain& complain) {
+        if (path.empty()) complain("path", "an empty text", "the path of a file");
+      },
+      {"path"});
+}
+void PlacedGrain::declare(Parameters& p) {
+  p.add("position", position).unit("m").required().doc("centre");
+  p.add("radius", radius).unit("m").symbol("R").above(0).required().doc("radius");
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity at the start");
+  p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity at the start, right-handed");
+}
+void PlacedGrains::declare(Parameters& p) {
+  p.add("grains", grains).required().entries(1).doc("the grains, one by one");
+}
+
+BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) {}
+void BodiesDescription::declare(Parameters& p) {
+  p.choose(kind);
+  p.add("material", material).required().doc("name of their material");
+  p.add("grains", grains).required().doc("where they are and how large");
+}
+
+// ---- walls
+
+void ServoDescription::declare(Parameters& p) {
+  p.add("axis", axis).one_of(one_axis).doc("axis along which the wall is driven");
+  p.add("pressure", pressure)
+      .unit("Pa")
+      .symbol("p")
+      .at_least(0)
+      .required()
+      .doc("pressure to keep, compression positive");
+  p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
+  p.add("gain", gain).above(0).at_most(1).doc("share of the force's error that one step takes away");
+}
+void FollowDescription::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall whose motion it shares");
+  p.add("axes", axes).one_of(some_axes).doc("axes along which it does");
+}
+void FreeDescription::declare(Parameters& p) {
+  p.add("axes", axes).one_of(some_axes).doc("axes along which the wall moves as forces push it");
+  p.add("mass", mass).unit("kg").symbol("m").above(0).required().doc("its mass");
+  p.add("load", load).unit("N").symbol("F").doc("force on the wall from outside");
+}
+void MotionDescription::declare(Parameters& p) {
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity");
+  p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity, right-handed");
+  p.add("about", about).unit("m").doc("point that it turns about; left out: the geometry's reference point");
+  p.add("ramp_time", ramp_time).unit("s").at_least(0).doc("time in which velocity and spin grow linearly from zero");
+  p.add("servo", servo).doc("keeps a pressure");
+  p.add("follow", follow).doc("shares the motion of another wall");
+  p.add("free", free).doc("moves as forces push it");
+  p.check(
+      [this](const Complain& complain) {
+        for (int k = 0; k < 3; ++k) {
+          std::vector<std::string> claims;
+          const auto claim = [&](bool claimed, const char* key) {
+            if (claimed) claims.push_back(key);
+          };
+          claim(velocity[k] != 0, "velocity");
+          claim(servo && servo->axis == one_axis[k], "servo");
+          claim(follow && follow->axes.find(one_axis[k]) != std::string::npos, "follow");
+          claim(free && free->axes.find(one_axis[k]) != std::string::npos, "free");
+          if (claims.size() < 2) continue;
+          std::string all;
+          for (const auto& one : claims) all += (all.empty() ? "" : " and ") + one;
+          complain(claims.back(), "the axis " + one_axis[k] + " claimed by " + all, "one of them for each axis");
+        }
+      },
+      {"velocity", "servo", "follow", "free"});
+}
+WallDescription::WallDescription(const Registry& registry) : geometry(registry) {}
+void WallDescription::declare(Parameters& p) {
+  p.choose(geometry);
+  p.add("material", material).required().doc("name of the material of its surface");
+  p.add("motion", motion).doc("how it moves, axis by axis; left out: not at all");
+}
+
+// ---- the rest
+
+void DomainDescription::declare(Parameters& p) {
+  p.add("low", low).unit("m").doc("lower corner; left out: open");
+  p.add("high", high).unit("m").doc("upper corner; left out: open");
+  p.add("periodic", periodic).doc("axes along which the domain repeats");
+  p.add("strain_rate", strain_rate).unit("1/s").symbol("eps_dot").doc("of the periodic axes, positive in extension");
+  p.check(
+      [this](const Complain& complain) {
+        if (low && high) check_box(*low, *high, complain);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::string axis = '/' + std::to_string(k);
+          if (periodic[k] && !(low && high))
+            complain("periodic" + axis, "a periodic axis without an end", "low and high with periodic axes");
+          if (!periodic[k] && strain_rate[static_cast<int>(k)] != 0)
+            complain("strain_rate" + axis, "a strain rate along an axis that is not periodic",
+                     "0 here, or a periodic axis");
+        }
+      },
+      {"low", "high", "periodic", "strain_rate"});
+}
+void SpecimenDescription::declare(Parameters& p) {
+  p.add("low", low).doc("walls on its lower x, y and z side; \"\" where the domain bounds it");
+  p.add("high", high).doc("walls on its upper x, y and z side; \"\" where the domain bounds it");
+  p.check([this](const Complain& complain) {
+    for (const auto& [key, walls] : {std::pair("low", &low), std::pair("high", &high)})
+      if (!walls->empty() && walls->size() != 3)
+        complain(key, "a list of " + std::to_string(walls->size()), "a list of 3, for x, y and z");
+  });
+}
+void TimeStepDescription::declare(Parameters& p) {
+  p.add("safety", safety).above(0).at_most(10).doc("time step over the critical one");
+  p.add("value", value).unit("s").symbol("dt").above(0).doc("time step; left out: safety times the critical one");
+  p.add("allow_unstable", allow_unstable).doc("runs above the critical time step too");
+  p.check([this](const Complain& complain) {
+    if (safety > 1 && !allow_unstable)
+      complain("safety", "a time step above the critical one", "at most 1, unless allow_unstable is true");
+  });
+}
+void GuardsDescription::declare(Parameters& p) {
+  p.add("overlap", overlap).above(0).doc("largest overlap, over the smaller radius");
+  p.add("travel", travel).above(0).doc("largest way in one step, over the radius");
+  p.add("energy", energy).above(0).doc("largest share of the energy that may appear from nowhere");
+}
+void EngineDescription::declare(Parameters& p) { p.choose(engine); }
+void ProbeDescription::declare(Parameters& p) {
+  p.choose(probe);
+  cadence.declare(p);
+  p.add("stages", stages).doc("names of the stages in which it looks; empty: all");
+  p.add("frames", frames).doc("whether its fields go into frames");
+}
+
+// ---- stages
+
+void TimeCondition::declare(Parameters& p) {
+  p.add("value", value).unit("s").symbol("t").above(0).required().doc("simulated time since the stage began");
+}
+void StepsCondition::declare(Parameters& p) {
+  p.add("value", value).at_least(1).required().doc("steps since the stage began");
+}
+void DisplacementCondition::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall");
+  p.add("axis", axis).one_of(one_axis).doc("axis of the displacement");
+  p.add("value", value)
+      .unit("m")
+      .symbol("u")
+      .required()
+      .doc("displacement since the stage began, reached in the direction of its sign");
+  p.check(
+      [this](const Complain& complain) {
+        if (value == 0) complain("value", "0 m", "a displacement with a direction");
+      },
+      {"value"});
+}
+void UnbalancedForceCondition::declare(Parameters& p) {
+  p.add("below", below).above(0).doc("mean net force of a body over the mean contact force");
+}
+void KineticEnergyCondition::declare(Parameters& p) {
+  p.add("below", below).unit("J").symbol("E_k").above(0).required().doc("kinetic energy of all bodies");
+}
+void VoidRatioCondition::declare(Parameters& p) {
+  p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen that is fallen below");
+  p.add("above", above).symbol("e").above(0).doc("void ratio of the specimen that is exceeded");
+  p.check([this](const Complain& complain) {
+    if (!below && !above) complain("", "neither below nor above", "at least one of them");
+  });
+}
+void PressureCondition::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall");
+  p.add("value", value).unit("Pa").symbol("p").at_least(0).required().doc("pressure on the wall, compression positive");
+  p.add("within", within).above(0).at_most(1).doc("relative difference that counts as reached");
+}
+void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at once"); }
+void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which one must hold"); }
+
+void RampDescription::declare(Parameters& p) {
+  p.add("pointer", pointer).required().doc("JSON pointer of the number, e.g. /walls/top/motion/servo/pressure");
+  p.add("from", from).required().doc("its value at the start, as the description would give it");
+  p.add("to", to).required().doc("its value at the end, which stays");
+  p.add("duration", duration).unit("s").above(0).required().doc("simulated time from start to end");
+  p.add("increments", increments).at_least(1).at_most(100000).doc("equal steps in which it goes");
+  p.check(
+      [this](const Complain& complain) {
+        const auto second = pointer.find('/', 1);
+        const std::string section = pointer.empty() ? "" : pointer.substr(1, second - 1);
+        if (pointer.empty() || pointer.front() != '/' || second == std::string::npos || !is_changeable(section))
+          complain("pointer", in_quotes(pointer), "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
+        else if (section == "domain" && !pointer.starts_with("/domain/strain_rate"))
+          complain("pointer", in_quotes(pointer), "of the domain only /domain/strain_rate");
+        for (const auto& [key, value] : {std::pair("from", &from), std::pair("to", &to)})
+          if (!value->is_number() && !value->is_string())
+            complain(key, "neither number nor text", "a number or a quantity");
+      },
+      {"pointer", "from", "to"});
+}
+void ExpectDescription::declare(Parameters& p) {
+  p.add("void_ratio", void_ratio).symbol("e").above(0).doc("void ratio of the specimen at the end of the stage");
+  p.add("within", within).above(0).doc("difference that is accepted");
+}
+void StageDescription::declare(Parameters& p) {
+  p.add("name", name).required().doc("its name, which no other stage has");
+  p.add("until", until).required().doc("what ends it");
+  p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage has failed");
+  p.add("change", change)
+      .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
+           any_of(SceneDescription::changeable(), "").substr(7) + " (strain_rate)");
+  p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
+  p.add("expect", expect).doc("what the stage must have reached");
+  p.check(
+      [this](const Complain& complain) {
+        if (!change.is_object()) return complain("change", "no object", "a merge patch, which is an object");
+        for (const auto& [section, patch] : change.items()) {
+          if (!is_changeable(section))
+            complain("change/" + section, "a change of " + in_quotes(section),
+                     any_of(SceneDescription::changeable(), ""));
+          if (section != "domain" || !patch.is_object()) continue;
+          for (const auto& [key, _] : patch.items())
+            if (key != "strain_rate")
+              complain("change/domain/" + key, "a change of " + in_quotes(key), "strain_rate alone");
+        }
+      },
+      {"change"});
+  p.check(
+      [this](const Complain& complain) {
+        if (name.empty()) complain("name", "an empty text", "a name");
+      },
+      {"name"});
+}
+
+// ---- output
+
+void PictureDescription::declare(Parameters& p) {
+  p.add("x", x).required().doc("series of the horizontal axis: probe/channel, e.g. test/shear_displacement");
+  p.add("y", y).required().entries(1).doc("series of the vertical axis");
+  p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the grains are drawn");
+  p.add("color", color).doc("what colours the grains");
+}
+void OutputDescription::declare(Parameters& p) {
+  p.add("frames", frames).doc("when frames are written, besides the end of every stage");
+  p.add("picture", picture).doc("curve and view of the grains that the report begins with");
+  p.add("summary", summary).doc("series whose last values are printed at the end: probe/channel");
+}
+
+// ---- the scene
+
+SceneDescription::SceneDescription(const Registry& registry) : contacts(registry), registry_(&registry) {}
+
+const std::vector<std::string>& SceneDescription::changeable() {
+  static const std::vector<std::string> sections{"materials", "interfaces", "walls", "engines",
+                                                 "domain",    "time_step",  "guards"};
+  return sections;
+}
+
+void SceneDescription::declare(Parameters& p) {
+  p.add("title", title).doc("one line that names the run");
+  p.add("seed", seed).at_least(0).doc("seed of everything random");
+  p.add("contacts", contacts).required().doc("contact law");
+
+  MapTarget by_material;
+  by_material.names = [this] { return keys(materials); };
+  by_material.clear = [this] {
+    materials.clear();
+    if (contacts.get()) contacts->clear_materials();
+  };
+  by_material.declare = [this](const std::string& name, Parameters& inner) {
+    inner.add("density", materials.at(name).density).unit("kg/m^3").symbol("rho").above(0).doc("of the solid");
+    if (contacts.get()) contacts->declare_material(name, inner);
+    else inner.leave_open();
+  };
+  by_material.insert = [this, declare = by_material.declare](const std::string& name, Parameters& inner) {
+    materials[name] = {};
+    declare(name, inner);
+  };
+  p.add_target("materials", std::move(by_material))
+      .required()
+      .entries(1)
+      .doc("materials by name: density and what the contact law asks for");
+
+  MapTarget by_pair;
+  by_pair.names = [this] {
+    std::vector<std::string> names;
+    for (const auto& [a, b] : interfaces) names.push_back(a + '+' + b);
+    return names;
+  };
+  by_pair.clear = [this] { interfaces.clear(); };
+  by_pair.declare = [this](const std::string& name, Parameters& inner) {
+    const auto plus = name.find('+');
+    if (contacts.get() && plus != std::string::npos)
+      contacts->declare_interface(name.substr(0, plus), name.substr(plus + 1), inner);
+    else inner.leave_open();
+  };
+  by_pair.insert = [this, declare = by_pair.declare](const std::string& name, Parameters& inner) {
+    const auto plus = name.find('+');
+    interfaces.emplace_back(name.substr(0, plus), plus == std::string::npos ? "" : name.substr(plus + 1));
+    declare(name, inner);
+  };
+  p.add_target("interfaces", std::move(by_pair)).doc("what differs where two materials meet, by \"one+other\"");
+
+  p.add("domain", domain).doc("box of the world");
+  p.add("bodies", bodies, [this](const std::string&) { return BodiesDescription(*registry_); })
+      .required()
+      .entries(1)
+      .doc("groups of bodies by name");
+  p.add("walls", walls, [this](const std::string&) { return WallDescription(*registry_); }).doc("walls by name");
+  p.add("engines", engines, [this](const std::string&) {
+     return EngineDescription(*registry_);
+   }).doc("what acts on the bodies besides contacts, by name");
+  p.add("specimen", specimen).doc("part of the world that averages are taken over");
+  p.add("time_step", time_step).doc("time step");
+  p.add("guards", guards).doc("limits beyond which a run stops");
+  p.add("stages", stages).required().entries(1).doc("what happens, in order");
+  p.add("probes", probes, [this](const std::string&) {
+     return ProbeDescription(*registry_);
+   }).doc("what is measured, by name");
+  p.add("output", output).doc("frames, picture, summary");
+
+  p.check(
+      [this](const Complain& complain) {
+        for (const auto& [name, _] : materials)
+          if (name.find('+') != std::string::npos)
+            complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
+        const References known("material", keys(materials), complain);
+        std::set<std::pair<std::string, std::string>> pairs;
+        for (const auto& [a, b] : interfaces) {
+          const std::string name = b.empty() ? a : a + '+' + b, key = "interfaces/" + name;
+          if (b.empty()) {
+            complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
+            continue;
+          }
+          known.check(key, a);
+          if (a != b) known.check(key, b);
+          if (!pairs.insert(std::minmax(a, b)).second)
+            complain(key, "an interface that is described twice", "either order, once");
+        }
+      },
+      {"contacts", "materials", "interfaces"});
+  p.check(
+      [this](const Complain& complain) {
+        const References known("material", keys(materials), complain);
+        for (const auto& [name, group] : bodies) known.check("bodies/" + name + "/material", group.material);
+      },
+      {"materials", "bodies"});
+  p.check(
+      [this](const Complain& complain) {
+        const References known("material", keys(materials), complain);
+        for (const auto& [name, wall] : walls) known.check("walls/" + name + "/material", wall.material);
+      },
+      {"materials", "walls"});
+  p.check(
+      [this](const Complain& complain) {
+        const References known("wall", keys(walls), complain);
+        for (const auto& [name, wall] : walls)
+          if (wall.motion.follow) known.check("walls/" + name + "/motion/follow/wall", wall.motion.follow->wall);
+        check_circles(walls, complain);
+      },
+      {"walls"});
+  p.check(
+      [this](const Complain& complain) {
+        const References known("wall", keys(walls), complain);
+        for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})
+          for (std::size_t k = 0; k < side->size(); ++k)
+            if (!(*side)[k].empty()) known.check("specimen/" + std::string(key) + '/' + std::to_string(k), (*side)[k]);
+      },
+      {"walls", "specimen"});
+  p.check(
+      [this](const Complain& complain) {
+        const References known("wall", keys(walls), complain);
+        for (std::size_t i = 0; i < stages.size(); ++i)
+          check_walls_of(stages[i].until, "stages/" + std::to_string(i) + "/until", known);
+      },
+      {"walls", "stages"});
+  p.check(
+      [this](const Complain& complain) {
+        std::set<std::string> names;
+        for (std::size_t i = 0; i < stages.size(); ++i)
+          if (!names.insert(stages[i].name).second)
+            complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", as a stage before it",
+                     "a name of its own");
+      },
+      {"stages"});
+  p.check(
+      [this](const Complain& complain) {
+        std::vector<std::string> names;
+        for (const auto& stage : stages) names.push_back(stage.name);
+        const References known("stage", names, complain);
+        for (const auto& [name, probe] : probes)
+          for (std::size_t i = 0; i < probe.stages.size(); ++i)
+            known.check("probes/" + name + "/stages/" + std::to_string(i), probe.stages[i]);
+      },
+      {"stages", "probes"});
+}
+
+}  // namespace grit

@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "folder.hpp"
+#include "grit/error.hpp"
+#include "input/document.hpp"
+
+using namespace grit;
+using testing::HasSubstr;
+
+namespace {
+
+std::string problems_of(const std::filesystem::path& path) {
+  try {
+    Document::load(path);
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::string problems_of(Document& document, const std::string& assignment) {
+  try {
+    document.set(assignment);
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST(Document, EveryValueKnowsItsLine) {
+  const Folder folder;
+  const auto document = Document::load(folder.write(
+      "a.json", "{\n\"a\": 1\n,\"b\": [1,\n2\n],\"c\": {\"d\"\n:\ntrue}, \"e\":\n\"x\"\n,\"f\":-1.5e3\n}"));
+  const auto line = [&](const char* pointer) { return document.origin(pointer).line; };
+  EXPECT_EQ(line(""), 1);
+  EXPECT_EQ(line("/a"), 2);  // a number ends with the character behind it
+  EXPECT_EQ(line("/b"), 3);
+  EXPECT_EQ(line("/b/0"), 3);
+  EXPECT_EQ(line("/b/1"), 4);
+  EXPECT_EQ(line("/c"), 5);
+  EXPECT_EQ(line("/c/d"), 7);
+  EXPECT_EQ(line("/e"), 8);
+  EXPECT_EQ(line("/f"), 9);
+  EXPECT_EQ(line("/c/not/there"), 5);
+  EXPECT_EQ(document.origin("/c/not/there").pointer, "/c/not/there");
+}
+
+TEST(Document, CommentsAreDroppedWhateverTheyHold) {
+  const Folder folder;
+  const auto document = Document::load(folder.write(
+      "a.json", R"({"//": {"x": [1, {"//": 2}], "y": "z"}, "a": [{"//": [[]]}, 2], "//": 3, "b": {"//": null}})"));
+  EXPECT_EQ(document.json().dump(), R"({"a":[{},2],"b":{}})");
+}
+
+TEST(Document, KeysThatStandTwiceAreAllFound) {
+  const Folder folder;
+  const auto path = folder.write("a.json", "{\"a\": 1,\n\"a\": 2,\n\"b\": {\"c/d\": 1,\n\"c/d\": 1}}");
+  EXPECT_EQ(problems_of(path),
+            path.string() + ":2: /a: the key \"a\" stands twice, first in line 1; keep one of them\n" + path.string() +
+                ":4: /b/c~1d: the key \"c/d\" stands twice, first in line 3; keep one of them");
+}
+
+TEST(Document, WhatIsNotJsonIsRefusedWithItsLine) {
+  const Folder folder;
+  EXPECT_THAT(problems_of(folder.write("a.json", "{\"a\": 1,\n\"b\": }\n")),
+              HasSubstr("a.json:2: not JSON: syntax error"));
+  EXPECT_THAT(problems_of(folder.write("b.json", "{\"a\": {\"b\": 1\n")),
+              HasSubstr("b.json:1: /a: not JSON: syntax error"));
+  EXPECT_THAT(problems_of(folder.write("c.json", "{} {}")), HasSubstr("c.json:1: not JSON"));
+  EXPECT_THAT(problems_of(folder.write("d.json", "")), HasSubstr("d.json:1: not JSON"));
+  EXPECT_THAT(problems_of(folder.write("e.json", "{\"a\":\n1e999}")), HasSubstr("e.json:2: not JSON: number overflow"));
+  EXPECT_THAT(problems_of(folder.write("f.json", "[1]")),
+              HasSubstr("f.json:1: found a list; a description is an object"));
+}
+
+TEST(Document, AFileThatCannotBeReadIsNoDescriptionError) {
+  const Folder folder;
+  EXPECT_THROW(Document::load(folder.path() / "none.json"), FileError);
+  EXPECT_THROW(Document::load(folder.path()), FileError);
+}
+
+TEST(Document, ExtendingMergesAndKeepsOrigins) {
+  const Folder folder;
+  folder.write("base/base.json", "{\"a\": {\"x\": 1,\n\"y\": [1, 2]},\n\"b\": {\"z\": 1}, \"c\": 1}");
+  folder.write("base/middle.json", "{\"extends\": \"base.json\",\n\"d\": {\"new\": {\"k\": 1, \"n\": null}}}");
+  const auto top = folder.write(
+      "top.json", "{\n\"extends\": \"base/middle.json\",\n\"a\": {\"y\":\n[3]}, \"b\": null, \"c\": {\"q\": 2}}");
+  const auto document = Document::load(top);
+  EXPECT_EQ(document.json(), Description::parse(R"({"a":{"x":1,"y":[3]},"c":{"q":2},"d":{"new":{"k":1}}})"));
+  EXPECT_EQ(document.origin("/a/x").source->name, (folder.path() / "base/base.json").string());
+  EXPECT_EQ(document.origin("/a/x").line, 1);
+  EXPECT_EQ(document.origin("/a/y/0").source->name, top.string());
+  EXPECT_EQ(document.origin("/a/y/0").line, 4);
+  EXPECT_EQ(document.origin("/a/y/1").line, 4);  // gone with the list that held it
+  EXPECT_EQ(document.origin("/b/z").source->name, top.string());
+  EXPECT_EQ(document.origin("/c/q").line, 4);
+  EXPECT_EQ(document.origin("/d/new/k").source->name, (folder.path() / "base/middle.json").string());
+}
+
+TEST(Document, CirclesAndMissingFilesAreRefused) {
+  const Folder folder;
+  folder.write("b.json", "{\"extends\": \"a.json\"}");
+  EXPECT_THAT(problems_of(folder.write("a.json", "{\n\"extends\": \"./b.json\"}")), HasSubstr("b.json:1: /extends: "));
+  EXPECT_THAT(problems_of(folder.path() / "a.json"), HasSubstr("a.json extends itself"));
+  EXPECT_THAT(problems_of(folder.write("c.json", "{\n\"extends\": \"none.json\"}")),
+              HasSubstr("c.json:2: /extends: there is no file"));
+  EXPECT_THAT(problems_of(folder.write("d.json", "{\"extends\": 5}")),
+              HasSubstr("found the number 5; allowed is the path"));
+}
+
+TEST(Document, SetTakesJsonOrText) {
+  Document document(Description::parse(R"({"a": {"b": 1}, "l": [1, {"x": 1}]})"), "test");
+  document.set("/a/b=2.5");
+  document.set("/a/c=200 kPa");
+  document.set("/new/deep/er={\"//\": 0, \"k\": [1]}");
+  document.set("/l/1/x=true");
+  document.set("/l/-=7");
+  document.set("/t=x=y");
+  document.set("/e~1f=");
+  document.set("/l/0=\"3\"");
+  EXPECT_EQ(document.json(), Description::parse(R"({"a": {"b": 2.5, "c": "200 kPa"}, "l": ["3", {"x": true}, 7],
+      "new": {"deep": {"er": {"k": [1]}}}, "t": "x=y", "e/f": ""})"));
+  document.set("/a/b=null");
+  EXPECT_FALSE(document.json().at("a").contains("b"));
+  EXPECT_EQ(document.origin("/a/c").source->name, "--set");
+  EXPECT_EQ(document.origin("/new/deep").source->name, "--set");
+  EXPECT_EQ(document.origin("/new/deep").pointer, "/new/deep");
+  EXPECT_EQ(document.origin("/l/1").source->name, "test");
+}
+
+TEST(Document, SetRefusesWhatItCannotDo) {
+  Document document(Description::parse(R"({"a": 1, "l": [1]})"), "test");
+  EXPECT_EQ(problems_of(document, "/a/b=1"), "--set: /a/b: there is nothing below /a, which is the number 1");
+  EXPECT_EQ(problems_of(document, "/l/1=1"), "--set: /l/1: there is no entry \"1\" in /l, which has 1, counted from 0");
+  EXPECT_EQ(problems_of(document, "/l/00=1"),
+            "--set: /l/00: there is no entry \"00\" in /l, which has 1, counted from 0");
+  EXPECT_EQ(problems_of(document, "a=1"), "--set: a: found \"a\"; allowed is a JSON pointer, e.g. /stages/0/limit");
+  EXPECT_EQ(problems_of(document, "/a~2=1"),
+            "--set: /a~2: found \"/a~2\"; allowed is a JSON pointer, e.g. /stages/0/limit");
+  EXPECT_THAT(problems_of(document, "/a"), HasSubstr("found \"/a\"; allowed is /pointer=value"));
+  EXPECT_THAT(problems_of(document, "/b={\"x\": 1, \"x\": 2}"), HasSubstr("--set:1: /x: the key \"x\" stands twice"));
+  EXPECT_EQ(document.json(), Description::parse(R"({"a": 1, "l": [1]})"));
+}

@@ -1,0 +1,173 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "components.hpp"
+#include "folder.hpp"
+#include "input/scene.hpp"
+
+using namespace grit;
+using testing::HasSubstr;
+
+namespace {
+
+class SceneTest : public testing::Test {
+ protected:
+  SceneTest() : registry_({}) { add_components(registry_); }
+
+  Scene good(const std::string& name, const std::vector<std::string>& sets = {}) const {
+    return load_scene(std::string(GRIT_SOURCE_DIR) + "/tests/input/good/" + name + ".json", sets, registry_);
+  }
+  std::string problems_of(const std::string& name, const std::vector<std::string>& sets) const {
+    try {
+      good(name, sets);
+    } catch (const DescriptionError& error) {
+      return error.what();
+    }
+    return {};
+  }
+  static Description at(const SceneDescription& scene, const std::string& pointer) {
+    return resolved(scene).value(Description::json_pointer(pointer), Description());
+  }
+
+  Registry registry_;
+};
+
+}  // namespace
+
+TEST_F(SceneTest, ReadsIntoTypes) {
+  const Scene scene = good("everything");
+  const auto& s = *scene.description;
+  EXPECT_EQ(s.seed, 7);
+  EXPECT_EQ(s.contacts.type(), "spring");
+  EXPECT_EQ(s.materials.at("sand").density, 2600);
+  EXPECT_EQ(s.interfaces, (std::vector<std::pair<std::string, std::string>>{{"sand", "steel"}, {"sand", "sand"}}));
+  EXPECT_EQ(s.domain.strain_rate, Vec3(0.01, 0, 0));
+  EXPECT_EQ(std::get<PlacedGrains>(s.bodies.at("wanderers").grains.value()).grains.at(0).radius, 1e-3);
+  EXPECT_EQ(std::get<FileGrains>(s.bodies.at("saved").grains.value()).path,
+            std::string(GRIT_SOURCE_DIR) + "/tests/input/good/grains.txt");
+  EXPECT_EQ(s.walls.at("lid").motion.servo->pressure, 2e5);
+  EXPECT_EQ(s.walls.at("cup").geometry.type(), "mesh");
+  EXPECT_EQ(s.engines.at("damping").engine.type(), "damping");
+  EXPECT_EQ(s.probes.at("curve").cadence.every_time, 1e-3);
+  EXPECT_EQ(s.stages.size(), 2u);
+  EXPECT_EQ(s.output.picture->view, "xy");
+}
+
+TEST_F(SceneTest, ChangesAndRampsStay) {
+  const Scene scene = good("everything");
+  ASSERT_EQ(scene.stages.size(), 2u);
+  const auto& [first, second] = std::tie(scene.stages[0], scene.stages[1]);
+  EXPECT_TRUE(first.ramp.empty());
+  EXPECT_EQ(resolved(*first.start), resolved(*scene.description));
+
+  EXPECT_EQ(at(*scene.description, "/materials/sand/friction_angle"), 18 * 0.017453292519943295);
+  EXPECT_EQ(at(*second.start, "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
+  EXPECT_TRUE(first.start->engines.contains("damping"));
+  EXPECT_FALSE(second.start->engines.contains("damping"));
+  EXPECT_EQ(second.start->domain.strain_rate, Vec3::Zero());
+
+  EXPECT_EQ(second.start->walls.at("lid").motion.servo->pressure, 200e3);
+  ASSERT_EQ(second.ramp.size(), 3u);
+  EXPECT_EQ(second.ramp[0]->walls.at("lid").motion.servo->pressure, 150e3);
+  EXPECT_EQ(second.ramp[1]->walls.at("lid").motion.servo->pressure, 100e3);
+  EXPECT_EQ(second.ramp[2]->walls.at("lid").motion.servo->pressure, 50e3);
+  EXPECT_EQ(at(*second.ramp[2], "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
+}
+
+TEST_F(SceneTest, RampsGoOneAfterTheOtherAndIntoLists) {
+  const Scene scene = good(
+      "plain",
+      {R"(/stages/0/ramps=[{"pointer": "/walls/floor/motion/velocity/0", "from": 0, "to": "1 mm/s", "duration": 1, "increments": 2},
+                           {"pointer": "/guards/overlap", "from": "10 %", "to": 0.3, "duration": 1, "increments": 1}])",
+       R"(/stages/-={"name": "after", "until": {"type": "time", "value": 1}, "limit": 2})"});
+  const auto& ramp = scene.stages.at(0).ramp;
+  ASSERT_EQ(ramp.size(), 3u);
+  EXPECT_EQ(ramp[0]->walls.at("floor").motion.velocity, Vec3(0.5e-3, 0, 0));
+  EXPECT_EQ(ramp[1]->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
+  EXPECT_EQ(ramp[1]->guards.overlap, 0.1);
+  EXPECT_EQ(ramp[2]->guards.overlap, 0.3);
+  EXPECT_EQ(ramp[2]->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
+  EXPECT_EQ(scene.stages.at(1).start->guards.overlap, 0.3);
+  EXPECT_EQ(scene.stages.at(1).start->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
+  EXPECT_EQ(scene.description->guards.overlap, 0.1);
+}
+
+TEST_F(SceneTest, ExtendingFilesAndSets) {
+  const Scene scene = good("extending", {"/seed=5", "/walls/lid/motion/servo/gain=20 %"});
+  EXPECT_EQ(scene.description->title, "a lighter lid");
+  EXPECT_EQ(scene.description->seed, 5);
+  EXPECT_EQ(scene.description->walls.at("lid").motion.servo->pressure, 1e5);
+  EXPECT_EQ(scene.description->walls.at("lid").motion.servo->gain, 0.2);
+  EXPECT_FALSE(scene.description->walls.contains("floor"));
+  EXPECT_EQ(problems_of("plain", {"/sed=5"}).find("--set: /sed: unknown key \"sed\"; did you mean \"seed\"?"), 0u);
+}
+
+TEST_F(SceneTest, AScenarioBecomesAPlainDescription) {
+  const Scene scene = good("scenario", {"/probes/p={\"type\": \"curve\", \"wall\": \"floor\"}"});
+  EXPECT_FALSE(scene.document.json().contains("scenario"));
+  EXPECT_EQ(scene.description->title, "my pile");
+  EXPECT_EQ(scene.description->seed, 3);
+  EXPECT_EQ(scene.description->guards.overlap, 0.3);
+  const auto& cloud = std::get<CloudGrains>(scene.description->bodies.at("grains").grains.value());
+  EXPECT_EQ(cloud.count, 100);
+  EXPECT_EQ(cloud.high, Vec3(0.2, 0.2, 0.2));
+  EXPECT_TRUE(scene.description->probes.contains("p"));
+  EXPECT_EQ(std::get<CloudGrains>(good("extended_scenario").description->bodies.at("grains").grains.value()).count, 50);
+}
+
+TEST_F(SceneTest, WhatIsResolvedReadsTheSame) {
+  for (const char* name : {"plain", "units", "glue", "everything", "scenario"}) {
+    const Description first = resolved(*good(name).description);
+    const Scene again = read_scene(Document(first, "resolved"), registry_);
+    EXPECT_EQ(resolved(*again.description).dump(), first.dump()) << name;
+  }
+}
+
+TEST_F(SceneTest, ManyProblemsInOneGo) {
+  const Folder folder;
+  const auto path = folder.write("many.json", R"({
+  "contacts": {"type": "spring"},
+  "materials": {
+    "sand": {"density": "2600",
+      "frictoin_angle": 0.3}
+  },
+  "bodies": {"grains": {"type": "cube", "material": "snad", "grains": {"type": "cloud"}}},
+  "walls": {
+    "floor": {"type": "plane", "position": [0, 0], "material": "wood"},
+    "lid": {"type": "plane", "position": [0, 0, 1], "material": "sand",
+      "motion": {"follow": {"wall": "roof"}}}
+  },
+  "stages": [
+    {"name": "a", "until": {"type": "time", "value": -1}, "limit": 1,
+      "change": {"guards": {
+        "overlap": 0}}}
+  ],
+  "seed": 1.5,
+  "colour": "red"
+})");
+  const std::string file = path.string();
+  try {
+    load_scene(path, {}, registry_);
+    FAIL() << "nothing was refused";
+  } catch (const DescriptionError& error) {
+    std::vector<std::string> found;
+    for (const auto& p : error.problems()) {
+      EXPECT_EQ(p.file, file);
+      found.push_back(std::to_string(p.line) + ' ' + p.pointer);
+    }
+    EXPECT_THAT(found, testing::UnorderedElementsAre(
+                           "18 /colour", "17 /seed", "4 /materials/sand/density", "5 /materials/sand/frictoin_angle",
+                           "7 /bodies/grains/type", "7 /bodies/grains/grains", "7 /bodies/grains/grains",
+                           "7 /bodies/grains/grains", "7 /bodies/grains/grains", "9 /walls/floor/position",
+                           "13 /stages/0/until/value", "15 /stages/0/change/guards/overlap"))
+        << error.what();
+  }
+}
+
+TEST_F(SceneTest, ABrokenPluginIsNoDescriptionProblem) {
+  PluginInfo broken;
+  broken.kind = "engine", broken.name = "broken", broken.version = "1.0.0";
+  broken.make_engine = []() -> Engine* { throw std::runtime_error("out of order"); };
+  registry_.add(broken);
+  EXPECT_THROW(good("plain", {R"(/engines/x={"type": "broken"})"}), PluginError);
+}
