@@ -105,11 +105,11 @@ struct FreeDescription {
 /// Along each axis a wall is fixed, has a velocity, follows another wall, is servo-controlled, or is free.
 struct MotionDescription {
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
-  std::optional<Vec3> about;
+  std::optional<Vec3> about{};
   double ramp_time = 0;
-  std::optional<ServoDescription> servo;
-  std::optional<FollowDescription> follow;
-  std::optional<FreeDescription> free;
+  std::optional<ServoDescription> servo{};
+  std::optional<FollowDescription> follow{};
+  std::optional<FreeDescription> free{};
   void declare(Parameters& p);
 };
 struct WallDescription {

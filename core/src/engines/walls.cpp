@@ -1,0 +1,232 @@
+#include "engines/walls.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "grit/error.hpp"
+
+namespace grit {
+
+namespace {
+
+/// Below this the normal counts as perpendicular to an axis: a servo along it would have nothing to press with.
+constexpr double aslant = 1e-6;
+
+[[noreturn]] void fail(const WallSetup& setup, const std::string& what) {
+  throw Error("wall \"" + setup.name + "\": " + what);
+}
+
+std::array<bool, 3> axes_of(const WallSetup& setup, const std::string& motion, const std::string& letters) {
+  std::array<bool, 3> axes{};
+  for (const char letter : letters) {
+    if (letter < 'x' || letter > 'z') fail(setup, motion + " along \"" + letters + "\"; allowed are x, y and z");
+    axes[letter - 'x'] = true;
+  }
+  if (letters.empty()) fail(setup, motion + " along no axis; name one or more of x, y and z");
+  return axes;
+}
+
+/// The same place, told from another reference point.
+void tell_from(const Vec3& about, WallState& state) {
+  if (about == state.pose.about) return;
+  const Vec3 before = state.pose.about + state.pose.shift, now = state.pose.to_world(about), shift = now - about;
+  state.stage_start += shift - state.pose.shift;
+  state.moment += (before - now).cross(state.force);
+  state.velocity += state.spin.cross(now - before);
+  state.pose.about = about;
+  state.pose.shift = shift;
+}
+
+/// Where a wall turns about if nothing is said: the middle of its bounds, 0 along axes where they are infinite.
+Vec3 middle(const Geometry& geometry) {
+  const Bounds bounds = geometry.bounds();
+  Vec3 middle = 0.5 * (bounds.low + bounds.high);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(middle[axis])) middle[axis] = 0;
+  return middle;
+}
+
+/// Component of a servo's wall's normal along its axis. Throws if the servo has nothing to press with.
+double facing(const WallSetup& setup, const Pose& pose) {
+  const std::string& letter = setup.motion.servo->axis;
+  if (!(setup.geometry->area() > 0))
+    fail(setup, "a servo needs an area for its pressure, and this geometry has none; give it one, or take a rectangle");
+  const double along = (pose.turn * setup.geometry->normal())[letter.front() - 'x'];
+  if (std::abs(along) < aslant)
+    fail(setup, "a servo along " + letter + ", but its normal is perpendicular to that axis");
+  return along;
+}
+
+/// Takes `gain` of the force's error away in one step, if the touches are springs.
+double servo_velocity(const WallSetup& setup, int axis, const WallState& state, double dt) {
+  const ServoDescription& servo = *setup.motion.servo;
+  const double along = facing(setup, state.pose), side = along < 0 ? -1 : 1;
+  const double excess = -side * state.force[axis] - servo.pressure * setup.geometry->area() * std::abs(along);
+  double retreat = excess < 0 ? -servo.max_velocity : 0;  // nothing to press on yet: close
+  if (state.touches > 0 && state.stiffness > 0)
+    retreat = std::clamp(servo.gain * excess / (state.stiffness * dt), -servo.max_velocity, servo.max_velocity);
+  return -side * retreat;
+}
+
+}  // namespace
+
+std::vector<WallSetup> wall_setups(const SceneDescription& scene) {
+  std::vector<WallSetup> setups;
+  for (const auto& [name, wall] : scene.walls) setups.push_back({name, wall.geometry.get(), wall.motion});
+  return setups;
+}
+
+void Walls::apply(std::vector<WallSetup> setups) {
+  change(std::move(setups));
+  for (WallState& state : states_) {
+    state.stage_start = state.pose.shift;
+    state.stage_time = 0;
+  }
+}
+
+void Walls::change(std::vector<WallSetup> setups) {
+  std::vector<Drive> drives;
+  std::vector<WallState> states;
+  for (const WallSetup& setup : setups) {
+    const auto known =
+        std::find_if(setups_.begin(), setups_.end(), [&](const auto& old) { return old.name == setup.name; });
+    WallState state;
+    if (known != setups_.end()) state = states_[static_cast<std::size_t>(known - setups_.begin())];
+    else state.pose.about = middle(*setup.geometry);
+    tell_from(setup.motion.about.value_or(state.pose.about), state);
+    drives.push_back(drive_of(setups, setup));
+    if (drives.back().servo_axis >= 0) facing(setup, state.pose);
+    states.push_back(state);
+  }
+  order_ = leaders_first(setups, drives);
+  setups_ = std::move(setups);
+  drives_ = std::move(drives);
+  states_ = std::move(states);
+}
+
+Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSetup& setup) {
+  const MotionDescription& motion = setup.motion;
+  Drive drive;
+  Axes servo{};
+  if (motion.servo) {
+    servo = axes_of(setup, "servo", motion.servo->axis);
+    if (std::count(servo.begin(), servo.end(), true) != 1)
+      fail(setup, "a servo along \"" + motion.servo->axis + "\"; it acts along one axis");
+    if (!(motion.servo->max_velocity > 0)) fail(setup, "a servo needs a max_velocity above 0");
+    drive.servo_axis = static_cast<int>(std::find(servo.begin(), servo.end(), true) - servo.begin());
+  }
+  if (motion.follow) {
+    drive.follow = axes_of(setup, "following", motion.follow->axes);
+    const auto leader =
+        std::find_if(setups.begin(), setups.end(), [&](const auto& s) { return s.name == motion.follow->wall; });
+    if (leader == setups.end()) fail(setup, "follows the wall \"" + motion.follow->wall + "\", which there is not");
+    drive.leader = static_cast<std::size_t>(leader - setups.begin());
+  }
+  if (motion.free) {
+    drive.free = axes_of(setup, "free", motion.free->axes);
+    if (!(motion.free->mass > 0)) fail(setup, "a free wall needs a mass above 0");
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if ((motion.velocity[axis] != 0) + servo[axis] + drive.follow[axis] + drive.free[axis] > 1)
+      fail(setup, std::string("two motions along ") + "xyz"[axis] + "; choose one of velocity, servo, follow and free");
+  return drive;
+}
+
+std::vector<std::size_t> Walls::leaders_first(const std::vector<WallSetup>& setups, const std::vector<Drive>& drives) {
+  enum class Mark { unseen, waiting, placed };
+  std::vector<Mark> marks(setups.size(), Mark::unseen);
+  std::vector<std::size_t> order;
+  const std::function<void(std::size_t)> place = [&](std::size_t wall) {
+    if (marks[wall] == Mark::placed) return;
+    if (marks[wall] == Mark::waiting) fail(setups[wall], "follows itself, directly or by way of others");
+    marks[wall] = Mark::waiting;
+    if (setups[wall].motion.follow) place(drives[wall].leader);
+    marks[wall] = Mark::placed;
+    order.push_back(wall);
+  };
+  for (std::size_t wall = 0; wall < setups.size(); ++wall) place(wall);
+  return order;
+}
+
+Vec3 Walls::point_velocity(std::size_t wall, const Vec3& point) const {
+  return states_[wall].velocity + states_[wall].spin.cross(point - reference(wall));
+}
+
+void Walls::clear_forces() {
+  for (WallState& state : states_) {
+    state.force.setZero();
+    state.moment.setZero();
+    state.stiffness = 0;
+    state.touches = 0;
+  }
+}
+
+void Walls::add(std::size_t wall, const Vec3& force, const Vec3& moment, double stiffness, std::uint32_t touches) {
+  WallState& state = states_[wall];
+  state.force += force;
+  state.moment += moment;
+  state.stiffness += stiffness;
+  state.touches += touches;
+}
+
+void Walls::drive(double dt) {
+  for (const std::size_t wall : order_) {
+    const MotionDescription& motion = setups_[wall].motion;
+    const Drive& how = drives_[wall];
+    WallState& state = states_[wall];
+    // The ramp in the middle of the step: so a ramp of whole steps covers exactly half of velocity × ramp_time.
+    const double ramp = motion.ramp_time > 0 ? std::min(1.0, (state.stage_time + 0.5 * dt) / motion.ramp_time) : 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      double& velocity = state.velocity[axis];
+      if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], axis, state, dt);
+      else if (how.follow[axis]) velocity = states_[how.leader].velocity[axis];
+      else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
+      else velocity = ramp * motion.velocity[axis];
+    }
+    state.spin = ramp * motion.spin;
+  }
+}
+
+void Walls::move(double dt) {
+  for (WallState& state : states_) {
+    state.pose.shift += dt * state.velocity;
+    state.stage_time += dt;
+    const double angle = dt * state.spin.norm();
+    if (angle == 0) continue;  // the turn of a wall that does not spin stays the exact identity
+    const Mat3 turn = Eigen::AngleAxisd(angle, state.spin.normalized()) * state.pose.turn;
+    state.pose.turn = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
+  }
+}
+
+void Walls::view(std::vector<WallView>& views) const {
+  views.resize(size());
+  for (std::size_t wall = 0; wall < size(); ++wall) {
+    const WallState& state = states_[wall];
+    const Geometry& geometry = *setups_[wall].geometry;
+    WallView& view = views[wall];
+    view.name = setups_[wall].name;
+    view.position = state.pose.shift;
+    view.stage_position = state.pose.shift - state.stage_start;
+    view.velocity = state.velocity;
+    view.spin = state.spin;
+    view.force = state.force;
+    view.moment = state.moment;
+    view.area = geometry.area();
+    view.normal = state.pose.turn * geometry.normal();
+    view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
+    view.touches = state.touches;
+  }
+}
+
+void Walls::restore(std::vector<WallState> states) {
+  if (states.size() != states_.size())
+    throw Error("a checkpoint with " + std::to_string(states.size()) + " walls, but the scene has " +
+                std::to_string(states_.size()) + "; continue with the description that wrote it");
+  states_ = std::move(states);
+}
+
+}  // namespace grit

@@ -1,0 +1,94 @@
+// What moves the walls.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grit/geometry.hpp"
+#include "grit/world.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+/// A wall as the description has it.
+struct WallSetup {
+  std::string name;
+  std::shared_ptr<const Geometry> geometry;
+  MotionDescription motion;
+};
+/// The walls of a scene, in the order of their names.
+std::vector<WallSetup> wall_setups(const SceneDescription& scene);
+
+/// All that a checkpoint must keep of a wall. pose.about is its reference point, where the description puts it;
+/// pose.shift is how far that point has moved.
+struct WallState {
+  Pose pose;
+  Vec3 stage_start = Vec3::Zero();                    ///< pose.shift when the stage began [m]
+  double stage_time = 0;                              ///< since the stage began [s]
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the step that drive() began [m/s, rad/s]
+  Vec3 force = Vec3::Zero();                          ///< that the bodies exert on the wall [N]
+  Vec3 moment = Vec3::Zero();                         ///< the same about the reference point [N m]
+  double stiffness = 0;                               ///< sum over the touches, normal [N/m]
+  std::uint32_t touches = 0;
+};
+
+/// Owns the walls while they move. A step is: clear_forces(), touch and add() for all bodies, drive(dt), move(dt).
+/// Velocities are those of the middle of the step, as the bodies' are. Used by one thread.
+class Walls {
+ public:
+  /// Begins a stage: walls get their new geometries and motions, and keep their poses and velocities by name; new walls
+  /// stand where the description puts them. Throws grit::Error, naming the wall, for motions that cannot be: two on one
+  /// axis, a wall that is unknown or follows itself, a servo without an area or along the wall's face, no mass.
+  void apply(const SceneDescription& scene) { apply(wall_setups(scene)); }
+  void apply(std::vector<WallSetup> setups);
+  /// The same within a stage, e.g. for one increment of a ramp: the stage's time and start stay. Throws as apply()
+  /// does.
+  void change(const SceneDescription& scene) { change(wall_setups(scene)); }
+  void change(std::vector<WallSetup> setups);
+
+  std::size_t size() const { return states_.size(); }
+  const std::string& name(std::size_t wall) const { return setups_[wall].name; }
+  const Geometry& geometry(std::size_t wall) const { return *setups_[wall].geometry; }
+  const Pose& pose(std::size_t wall) const { return states_[wall].pose; }
+  /// Where the reference point is now [m].
+  Vec3 reference(std::size_t wall) const { return states_[wall].pose.about + states_[wall].pose.shift; }
+  /// Velocity of the point of the wall that is now at `point` [m/s].
+  Vec3 point_velocity(std::size_t wall, const Vec3& point) const;
+
+  void clear_forces();
+  /// Adds what bodies do to a wall: force [N], moment about reference() [N m], normal stiffness of their touches [N/m]
+  /// and their number.
+  void add(std::size_t wall, const Vec3& force, const Vec3& moment, double stiffness, std::uint32_t touches);
+  /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them.
+  void drive(double dt);
+  /// Moves and turns the walls by one step of dt [s].
+  void move(double dt);
+
+  /// What probes see. Entries of `views` are reused.
+  void view(std::vector<WallView>& views) const;
+
+  const std::vector<WallState>& states() const { return states_; }
+  /// Sets the states of a checkpoint. Throws grit::Error if their number is not that of the walls.
+  void restore(std::vector<WallState> states);
+
+ private:
+  using Axes = std::array<bool, 3>;
+  /// A motion, checked, and what it takes from elsewhere.
+  struct Drive {
+    int servo_axis = -1;
+    Axes follow{}, free{};
+    std::size_t leader = 0;
+  };
+  static Drive drive_of(const std::vector<WallSetup>& setups, const WallSetup& setup);
+  static std::vector<std::size_t> leaders_first(const std::vector<WallSetup>& setups, const std::vector<Drive>& drives);
+
+  std::vector<WallSetup> setups_;
+  std::vector<WallState> states_;
+  std::vector<Drive> drives_;
+  std::vector<std::size_t> order_;
+};
+
+}  // namespace grit

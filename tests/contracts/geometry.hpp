@@ -1,0 +1,326 @@
+// What every geometry must do. A plugin's test names its cases:
+//   INSTANTIATE_TEST_SUITE_P(Plane, GeometryContract, testing::Values(…), case_name);
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <random>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/geometry.hpp"
+
+namespace grit {
+
+using Setting = std::variant<double, bool, Vec3, std::vector<std::string>>;
+
+/// A geometry as a description makes it: declared, set, checked, prepared. Throws grit::Error with what the checks have
+/// to complain about.
+template <class G>
+std::shared_ptr<G> made(const std::vector<std::pair<std::string, Setting>>& settings) {
+  auto geometry = std::make_shared<G>();
+  Parameters parameters;
+  geometry->declare(parameters);
+  for (const auto& setting : settings) {
+    const auto found = std::find_if(parameters.entries().begin(), parameters.entries().end(),
+                                    [&](const Parameter& parameter) { return parameter.name() == setting.first; });
+    if (found == parameters.entries().end()) throw Error("there is no parameter " + setting.first);
+    std::visit(
+        [&]<class T>(const T& value) {
+          if (const auto plain = std::get_if<T*>(&found->target())) **plain = value;
+          if constexpr (std::same_as<T, double>)
+            if (const auto maybe = std::get_if<std::optional<double>*>(&found->target())) **maybe = value;
+        },
+        setting.second);
+  }
+  std::string complaints;
+  for (const auto& check : parameters.checks())
+    check([&](std::string_view key, std::string_view what, std::string_view allowed) {
+      complaints += std::string(key) + ": found " + std::string(what) + ", allowed: " + std::string(allowed) + "; ";
+    });
+  if (!complaints.empty()) throw Error(complaints);
+  geometry->prepare();
+  return geometry;
+}
+
+/// A straight way of a sphere's centre.
+struct Way {
+  Vec3 from, to;
+};
+
+/// One geometry with what the contract needs to know of it.
+struct GeometryCase {
+  std::string name;
+  std::shared_ptr<const Geometry> geometry;
+  Bounds where;                  ///< centres are drawn from here
+  double radius;                 ///< of the largest sphere; the smallest has half of it
+  std::vector<Way> flanks = {};  ///< ways with exactly one touch, always of the same feature
+  std::vector<Way> across = {};  ///< ways along which forces must not jump
+  double facet_error = 0;        ///< how far the surface lies off its triangles [m]
+  /// Whether a centre is where a body's may be, not behind a face that is solid behind.
+  std::function<bool(const Vec3&)> in_front = [](const Vec3&) { return true; };
+};
+
+inline void PrintTo(const GeometryCase& one, std::ostream* out) { *out << one.name; }
+inline std::string case_name(const testing::TestParamInfo<GeometryCase>& info) { return info.param.name; }
+
+/// The touches of one sphere.
+inline std::vector<Touch> touches_of(const Geometry& geometry, const Vec3& centre, double radius,
+                                     const Pose& pose = {}) {
+  const Sphere sphere{centre, radius, 0};
+  std::vector<Touch> touches;
+  geometry.touch(pose, {&sphere, 1}, touches);
+  return touches;
+}
+
+/// The point of a triangle that is closest to p: Ericson, Real-Time Collision Detection (2005), 5.1.5.
+inline Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d1 <= 0 && d2 <= 0) return a;
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / (d4 - d3 + d5 - d6) * (c - b);
+  return a + (vb * ab + vc * ac) / (va + vb + vc);
+}
+
+class GeometryContract : public testing::TestWithParam<GeometryCase> {
+ protected:
+  const GeometryCase& one() const { return GetParam(); }
+  const Geometry& shape() const { return *one().geometry; }
+  double size() const { return (one().where.high - one().where.low).norm(); }
+  double rounding() const { return 1e-14 * (size() + one().where.low.norm() + one().where.high.norm()); }
+
+  double draw(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  Vec3 draw(const Vec3& low, const Vec3& high) {
+    return {draw(low.x(), high.x()), draw(low.y(), high.y()), draw(low.z(), high.z())};
+  }
+  Sphere draw_sphere() {
+    return {draw(one().where.low, one().where.high), draw(0.5, 1) * one().radius,
+            static_cast<std::uint32_t>(random_())};
+  }
+  Pose draw_pose() {
+    const Vec3 box = Vec3::Constant(size());
+    const Vec3 axis = draw(-Vec3::Ones(), Vec3::Ones()).normalized();
+    return {draw(one().where.low, one().where.high), draw(-box, box),
+            Eigen::AngleAxisd(draw(-3, 3), axis).toRotationMatrix()};
+  }
+  double distance(const Vec3& point) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 2 < triangles_.size(); i += 3)
+      least = std::min(
+          least, (closest_on_triangle(point, triangles_[i], triangles_[i + 1], triangles_[i + 2]) - point).norm());
+    return least;
+  }
+  void SetUp() override {
+    triangles_ = shape().triangles();
+    ASSERT_FALSE(triangles_.empty()) << "give the geometry an extent that holds all of `where`";
+  }
+
+  static constexpr int samples = 4000;
+  std::mt19937_64 random_{20240607};
+  std::vector<Vec3> triangles_;
+};
+
+TEST_P(GeometryContract, AppendsInTheOrderOfSpheresThenFeatures) {
+  std::vector<Sphere> spheres;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    spheres.push_back(draw_sphere());
+    spheres.back().body = samples - i;  // the order of the spheres counts, not that of their numbers
+  }
+  const Touch first{Vec3::UnitX(), 1, samples + 1, 0};
+  std::vector<Touch> touches{first};
+  shape().touch({}, spheres, touches);
+  ASSERT_GT(touches.size(), samples / 100u) << "too few samples touch";
+  EXPECT_EQ(touches.front().body, first.body) << "touches are appended";
+  for (std::size_t i = 1; i < touches.size(); ++i) {
+    EXPECT_GE(touches[i - 1].body, touches[i].body);
+    if (touches[i - 1].body == touches[i].body) {
+      EXPECT_LT(touches[i - 1].feature, touches[i].feature);
+    }
+  }
+}
+
+TEST_P(GeometryContract, EachTouchLiesOnTheSurfaceAlongItsUnitNormal) {
+  for (int i = 0; i < samples; ++i) {
+    const Sphere sphere = draw_sphere();
+    for (const Touch& touch : touches_of(shape(), sphere.centre, sphere.radius)) {
+      EXPECT_NEAR(touch.normal.norm(), 1, 1e-15);
+      EXPECT_GT(touch.overlap, 0);
+      if (!one().in_front(sphere.centre)) continue;
+      const Vec3 point = sphere.centre + (sphere.radius - touch.overlap) * touch.normal;
+      EXPECT_LE(distance(point), one().facet_error + rounding());
+    }
+  }
+}
+
+TEST_P(GeometryContract, NormalsPointIntoTheShape) {
+  for (int i = 0; i < samples; ++i) {
+    const Sphere sphere = draw_sphere();
+    for (const Touch& touch : touches_of(shape(), sphere.centre, sphere.radius)) {
+      const double step = 1e-3 * (sphere.radius - touch.overlap);
+      if (step < 1e-6 * sphere.radius) continue;
+      const Vec3 closer = sphere.centre + step * touch.normal;
+      const auto after = touches_of(shape(), closer, sphere.radius);
+      const auto same =
+          std::find_if(after.begin(), after.end(), [&](const Touch& t) { return t.feature == touch.feature; });
+      ASSERT_NE(same, after.end());
+      EXPECT_NEAR(same->overlap, touch.overlap + step, rounding());
+    }
+  }
+}
+
+TEST_P(GeometryContract, OverlapIsRadiusLessDistance) {
+  int touching = 0;
+  const double error = one().facet_error + rounding();
+  for (int i = 0; i < samples; ++i) {
+    const Sphere sphere = draw_sphere();
+    if (!one().in_front(sphere.centre)) continue;
+    double overlap = 0;
+    for (const Touch& touch : touches_of(shape(), sphere.centre, sphere.radius))
+      overlap = std::max(overlap, touch.overlap);
+    EXPECT_NEAR(overlap, std::max(sphere.radius - distance(sphere.centre), 0.0), error) << sphere.centre.transpose();
+    touching += overlap > 0;
+  }
+  EXPECT_GT(touching, samples / 100) << "too few samples touch";
+}
+
+TEST_P(GeometryContract, NearNeverMissesATouch) {
+  int touching = 0;
+  for (int i = 0; i < samples; ++i) {
+    const Sphere sphere = draw_sphere();
+    const Pose pose = i % 2 == 0 ? Pose{} : draw_pose();
+    const Vec3 centre = pose.to_world(sphere.centre);
+    if (touches_of(shape(), centre, sphere.radius, pose).empty()) continue;
+    ++touching;
+    EXPECT_TRUE(shape().near(pose, centre, sphere.radius));
+    EXPECT_TRUE(shape().near(pose, centre, 2 * sphere.radius));
+  }
+  EXPECT_GT(touching, samples / 100) << "too few samples touch";
+}
+
+TEST_P(GeometryContract, NearIsWorthAsking) {
+  int far = 0;
+  const double reach = 1e-3 * size();
+  for (int i = 0; i < samples; ++i) far += !shape().near({}, draw(one().where.low, one().where.high), reach);
+  EXPECT_GT(far, samples / 10);
+}
+
+TEST_P(GeometryContract, MovedShapeTouchesWhatTheInverselyMovedSphereTouches) {
+  for (int i = 0; i < samples; ++i) {
+    const Sphere sphere = draw_sphere();
+    const Pose pose = draw_pose();
+    const auto here = touches_of(shape(), sphere.centre, sphere.radius);
+    const auto there = touches_of(shape(), pose.to_world(sphere.centre), sphere.radius, pose);
+    const double tolerance = 4 * rounding();
+    const auto grazes = [&](const Touch& touch) { return touch.overlap < tolerance; };
+    if (std::any_of(here.begin(), here.end(), grazes) || std::any_of(there.begin(), there.end(), grazes)) continue;
+    ASSERT_EQ(here.size(), there.size()) << sphere.centre.transpose();
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      EXPECT_EQ(here[k].feature, there[k].feature);
+      EXPECT_NEAR(here[k].overlap, there[k].overlap, tolerance);
+      const double from = std::abs(sphere.radius - here[k].overlap);
+      EXPECT_LE((pose.turn * here[k].normal - there[k].normal).norm(), 1e-14 + 4 * tolerance / from);
+    }
+  }
+}
+
+TEST_P(GeometryContract, BoundsHoldAllTriangles) {
+  ASSERT_EQ(triangles_.size() % 3, 0u);
+  const Bounds bounds = shape().bounds();
+  for (const Vec3& corner : triangles_)
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GE(corner[axis], bounds.low[axis] - rounding());
+      EXPECT_LE(corner[axis], bounds.high[axis] + rounding());
+    }
+}
+
+TEST_P(GeometryContract, SaysWhereItsPressureActs) {
+  const double length = shape().normal().norm();
+  EXPECT_GE(shape().area(), 0);
+  EXPECT_TRUE(length == 0 || std::abs(length - 1) < 1e-15) << length;
+  if (shape().area() > 0) {
+    EXPECT_GT(length, 0);
+  }
+}
+
+// Overlap changes no faster than the centre moves; the normal no faster than the centre's direction seen from the
+// surface.
+TEST_P(GeometryContract, NothingJumpsOnTheWayAcross) {
+  constexpr int steps = 2000;
+  for (const Way& way : one().across) {
+    const double step = (way.to - way.from).norm() / steps, radius = one().radius;
+    std::vector<Touch> before;
+    bool touched = false;
+    for (int i = 0; i <= steps; ++i) {
+      const auto now = touches_of(shape(), way.from + i * (way.to - way.from) / steps, radius);
+      const auto compare = [&](const Touch& touch, const std::vector<Touch>& others) {
+        const auto other =
+            std::find_if(others.begin(), others.end(), [&](const Touch& t) { return t.feature == touch.feature; });
+        const double overlap = other == others.end() ? 0 : other->overlap;
+        EXPECT_LE(std::abs(touch.overlap - overlap), 1.001 * step + rounding())
+            << "feature " << touch.feature << ", step " << i;
+        if (other != others.end()) {
+          EXPECT_LE((touch.normal - other->normal).norm(), 1.01 * step / (radius - touch.overlap) + 1e-12)
+              << "step " << i;
+        }
+      };
+      if (i > 0) {
+        for (const Touch& touch : now) compare(touch, before);
+        for (const Touch& touch : before) compare(touch, now);
+      }
+      touched = touched || !now.empty();
+      before = now;
+    }
+    EXPECT_TRUE(touched) << "a way that touches nothing tests nothing";
+  }
+}
+
+TEST_P(GeometryContract, OneFeatureAlongAFlank) {
+  constexpr int steps = 500;
+  for (const Way& way : one().flanks) {
+    std::optional<std::uint32_t> feature;
+    for (int i = 0; i <= steps; ++i) {
+      const auto now = touches_of(shape(), way.from + i * (way.to - way.from) / steps, one().radius);
+      ASSERT_EQ(now.size(), 1u) << "step " << i;
+      EXPECT_EQ(now.front().feature, feature.value_or(now.front().feature)) << "step " << i;
+      feature = now.front().feature;
+    }
+  }
+}
+
+TEST_P(GeometryContract, AnswersSeveralThreadsAlike) {
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < samples; ++i) spheres.push_back(draw_sphere());
+  std::vector<std::vector<Touch>> touches(4);
+  std::vector<std::thread> threads;
+  for (auto& mine : touches) threads.emplace_back([&] { shape().touch({}, spheres, mine); });
+  for (auto& thread : threads) thread.join();
+  for (const auto& mine : touches) {
+    ASSERT_EQ(mine.size(), touches.front().size());
+    for (std::size_t i = 0; i < mine.size(); ++i) {
+      EXPECT_EQ(mine[i].body, touches.front()[i].body);
+      EXPECT_EQ(mine[i].overlap, touches.front()[i].overlap);
+      EXPECT_EQ(mine[i].normal, touches.front()[i].normal);
+    }
+  }
+}
+
+}  // namespace grit

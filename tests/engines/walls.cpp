@@ -1,0 +1,318 @@
+#include "engines/walls.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+/// A wall of which only area, normal and bounds matter.
+struct Plate : Geometry {
+  double surface = 2;
+  Vec3 towards = -Vec3::UnitZ();
+  Bounds box{Vec3(0, 0, 1), Vec3(4, 2, 1)};
+
+  void declare(Parameters&) override {}
+  Bounds bounds() const override { return box; }
+  double area() const override { return surface; }
+  Vec3 normal() const override { return towards; }
+  void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+  bool near(const Pose&, const Vec3&, double) const override { return false; }
+  std::vector<Vec3> triangles() const override { return {}; }
+};
+
+WallSetup plate(const MotionDescription& motion, std::string name = "lid") {
+  return {std::move(name), std::make_shared<Plate>(), motion};
+}
+void step(Walls& walls, double dt) {
+  walls.drive(dt);
+  walls.move(dt);
+}
+WallView view(const Walls& walls, std::size_t wall = 0) {
+  std::vector<WallView> views;
+  walls.view(views);
+  return views.at(wall);
+}
+std::string complaint(std::vector<WallSetup> setups) {
+  try {
+    Walls().apply(std::move(setups));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Walls, FixedWallsStay) {
+  Walls walls;
+  walls.apply({plate({})});
+  walls.add(0, {1, 2, 3}, {4, 5, 6}, 7, 8);
+  for (int i = 0; i < 10; ++i) step(walls, 0.1);
+  EXPECT_EQ(walls.pose(0).shift, Vec3::Zero());
+  EXPECT_FALSE(walls.pose(0).turned());
+}
+
+TEST(Walls, RampedVelocityCoversHalfTheWayDuringTheRamp) {
+  Walls walls;
+  walls.apply({plate({.velocity = {2, 0, -1}, .ramp_time = 0.5})});
+  const double dt = 0.5 / 64;
+  for (int i = 0; i < 64; ++i) {
+    EXPECT_NEAR(walls.pose(0).shift.x(), std::pow(i * dt, 2) * 2, 1e-15) << "x = V t² / (2 T)";
+    step(walls, dt);
+    EXPECT_NEAR(view(walls).velocity.x(), 2 * (i + 0.5) / 64, 1e-15) << "that of the step's middle";
+  }
+  for (int i = 0; i < 64; ++i) step(walls, dt);
+  EXPECT_NEAR(walls.pose(0).shift.x(), 0.5 + 1, 1e-14);
+  EXPECT_NEAR(walls.pose(0).shift.z(), -0.25 - 0.5, 1e-14);
+}
+
+TEST(Walls, FreeMassFallsAsLeapFrogHasIt) {
+  const double dt = 1e-3, mass = 4, weight = 9.81 * mass;
+  Walls walls;
+  walls.apply(
+      {plate({.velocity = {1, 0, 0}, .free = FreeDescription{.axes = "z", .mass = mass, .load = {7, 7, -weight}}})});
+  const int steps = 500;
+  for (int n = 0; n < steps; ++n) step(walls, dt);
+  const double t = steps * dt;
+  EXPECT_NEAR(walls.pose(0).shift.z(), -0.5 * 9.81 * dt * dt * steps * (steps + 1), 1e-12) << "g dt² (1 + 2 + … + n)";
+  EXPECT_NEAR(walls.pose(0).shift.z(), -0.5 * 9.81 * t * t, 9.81 * t * dt);
+  EXPECT_NEAR(walls.pose(0).shift.x(), t, 1e-12) << "other axes keep their velocity";
+  EXPECT_EQ(walls.pose(0).shift.y(), 0);
+}
+
+TEST(Walls, FreeMassOnASpringSwingsAtLeapFrogsFrequency) {
+  const double dt = 0.1, mass = 2, stiffness = 8, omega = std::sqrt(stiffness / mass);
+  Walls walls;
+  walls.apply({plate({.free = FreeDescription{.axes = "z", .mass = mass, .load = {0, 0, 1}}})});
+  const double phase =
+      2 * std::asin(0.5 * omega * dt);  // a step, exactly: z(n+1) − 2 z(n) + z(n−1) = −(ω dt)² (z(n) − z0)
+  const double rest = 1 / stiffness;
+  for (int n = 0; n < 200; ++n) {
+    // z(0) = z(−1) = 0, as the velocity half a step before the start is 0
+    EXPECT_NEAR(walls.pose(0).shift.z(), rest * (1 - std::cos((n + 0.5) * phase) / std::cos(0.5 * phase)), 1e-12);
+    walls.clear_forces();
+    walls.add(0, {0, 0, -stiffness * walls.pose(0).shift.z()}, Vec3::Zero(), stiffness, 1);
+    step(walls, dt);
+  }
+}
+
+TEST(Walls, PointComesBackAfterAFullTurn) {
+  const Vec3 about(1, -2, 0.5), point(3, 1, 2), spin = Vec3(1, 2, -2);  // 3 rad/s
+  Walls walls;
+  walls.apply({plate({.velocity = {0.1, 0, 0}, .spin = spin, .about = about})});
+  const int steps = 1000;
+  const double time = 2 * std::numbers::pi / 3, dt = time / steps;
+  for (int n = 0; n < steps / 4; ++n) step(walls, dt);
+  const Mat3 quarter = Eigen::AngleAxisd(0.5 * std::numbers::pi, spin / 3).toRotationMatrix();
+  const Vec3 moved = about + quarter * (point - about) + Vec3(0.1 * time / 4, 0, 0);
+  EXPECT_LT((walls.pose(0).to_world(point) - moved).norm(), 1e-12);
+  EXPECT_LT((walls.point_velocity(0, moved) - (Vec3(0.1, 0, 0) + spin.cross(quarter * (point - about)))).norm(), 1e-11);
+  for (int n = steps / 4; n < steps; ++n) step(walls, dt);
+  EXPECT_LT((walls.pose(0).to_world(point) - point - Vec3(0.1 * time, 0, 0)).norm(), 1e-12);
+}
+
+TEST(Walls, TurnStaysARotation) {
+  Walls walls;
+  walls.apply({plate({.spin = {0.3, -1, 2}})});
+  for (int n = 0; n < 100000; ++n) step(walls, 0.01);
+  const Mat3& turn = walls.pose(0).turn;
+  EXPECT_LT((turn * turn.transpose() - Mat3::Identity()).norm(), 3e-15);
+  EXPECT_NEAR(turn.determinant(), 1, 3e-15);
+}
+
+TEST(Walls, TurnsAboutTheMiddleOfItsBoundsUnlessToldOtherwise) {
+  Walls walls;
+  const auto endless = std::make_shared<Plate>();
+  endless->box.low.x() = -std::numeric_limits<double>::infinity();
+  endless->box.high.x() = std::numeric_limits<double>::infinity();
+  walls.apply({plate({}), {"plane", endless, {}}, plate({.about = Vec3(9, 9, 9)}, "told")});
+  EXPECT_EQ(walls.reference(0), Vec3(2, 1, 1));
+  EXPECT_EQ(walls.reference(1), Vec3(0, 1, 1));
+  EXPECT_EQ(walls.reference(2), Vec3(9, 9, 9));
+}
+
+/// A servo-controlled wall that presses on a spring.
+struct Spring {
+  explicit Spring(const ServoDescription& servo, const Vec3& towards) {
+    auto geometry = std::make_shared<Plate>();
+    geometry->towards = towards;
+    walls.apply({{"lid", geometry, {.servo = servo}}});
+    axis = servo.axis[0] - 'x';
+    side = towards[axis] < 0 ? -1 : 1;
+  }
+  double force() const { return std::max(0.0, stiffness * (side * walls.pose(0).shift[axis] - gap)); }
+  void advance() {
+    walls.clear_forces();
+    if (force() > 0) walls.add(0, -side * force() * Vec3::Unit(axis), Vec3::Zero(), stiffness, 1);
+    step(walls, dt);
+  }
+  Walls walls;
+  int axis;
+  double side, gap = 0, stiffness = 1e4, dt = 1e-3;
+};
+
+TEST(Walls, ServoTakesItsGainOfTheErrorAwayEachStep) {
+  for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(-1, 0, 0), Vec3(0, 0.6, -0.8)}) {
+    const std::string axis = towards.x() != 0 ? "x" : "z";
+    Spring spring({.axis = axis, .pressure = 50, .max_velocity = 1e3, .gain = 0.3}, towards);
+    spring.gap = -1e-4;  // touching from the start: no approach at full speed
+    const double target = 50 * 2 * std::abs(towards[spring.axis]);
+    double error = spring.force() - target;
+    for (int n = 0; n < 40; ++n) {
+      spring.advance();
+      EXPECT_NEAR(spring.force() - target, 0.7 * error, 1e-9 * target) << n;
+      error = spring.force() - target;
+    }
+    EXPECT_NEAR(spring.force(), target, 1e-4 * target);
+  }
+}
+
+TEST(Walls, ServoNeverExceedsItsVelocity) {
+  const ServoDescription servo{.axis = "z", .pressure = 50, .max_velocity = 0.2, .gain = 0.3};
+  Spring spring(servo, {0, 0, -1});
+  spring.gap = 0.0101;
+  spring.advance();
+  EXPECT_EQ(view(spring.walls).velocity, Vec3(0, 0, -0.2)) << "closes at full speed while nothing touches";
+  spring.gap = -1e-6;
+  spring.advance();
+  EXPECT_EQ(view(spring.walls).velocity, Vec3(0, 0, -0.2)) << "far too little force";
+  spring.gap = -1;
+  spring.advance();
+  EXPECT_EQ(view(spring.walls).velocity, Vec3(0, 0, 0.2)) << "far too much force";
+  Spring unloaded({.axis = "z", .pressure = 0, .max_velocity = 0.2}, {0, 0, -1});
+  unloaded.gap = 1;
+  unloaded.advance();
+  EXPECT_EQ(view(unloaded.walls).velocity, Vec3(0, 0, 0)) << "no pressure wanted and none there";
+}
+
+TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
+  const auto behind = [](std::string leader, std::string axes, Vec3 own) {
+    return MotionDescription{.velocity = own,
+                             .follow = FollowDescription{.wall = std::move(leader), .axes = std::move(axes)}};
+  };
+  Walls walls;
+  walls.apply({plate(behind("b", "z", {0, 9, 0}), "a"), plate(behind("c", "xz", {}), "b"),
+               plate({.velocity = {1, 2, 0}, .servo = ServoDescription{.pressure = 1, .max_velocity = 3}}, "c")});
+  step(walls, 0.1);
+  EXPECT_EQ(view(walls, 2).velocity, Vec3(1, 2, -3));
+  EXPECT_EQ(view(walls, 1).velocity, Vec3(1, 0, -3));
+  EXPECT_EQ(view(walls, 0).velocity, Vec3(0, 9, -3));
+}
+
+TEST(Walls, SumsWhatBodiesDo) {
+  Walls walls;
+  walls.apply({plate({})});
+  walls.add(0, {1, 2, 30}, {1, 0, 0}, 5, 2);
+  walls.add(0, {1, 1, 10}, {0, 1, 0}, 6, 1);
+  EXPECT_EQ(view(walls).force, Vec3(2, 3, 40));
+  EXPECT_EQ(view(walls).moment, Vec3(1, 1, 0));
+  EXPECT_EQ(view(walls).pressure, 20) << "a lid pushed up is in compression";
+  EXPECT_EQ(view(walls).touches, 3u);
+  EXPECT_EQ(walls.states()[0].stiffness, 11);
+  walls.clear_forces();
+  EXPECT_EQ(view(walls).force, Vec3::Zero());
+  EXPECT_EQ(view(walls).moment, Vec3::Zero());
+  EXPECT_EQ(view(walls).touches, 0u);
+  EXPECT_EQ(walls.states()[0].stiffness, 0);
+}
+
+TEST(Walls, NewStageKeepsPosesAndStartsItsOwnRampAndPosition) {
+  Walls walls;
+  walls.apply({plate({.velocity = {1, 0, 0}}), plate({}, "side")});
+  for (int i = 0; i < 10; ++i) step(walls, 0.1);
+  walls.apply({plate({}, "base"), plate({.velocity = {2, 0, 0}, .ramp_time = 0.4}), plate({}, "side")});
+  ASSERT_EQ(walls.name(1), "lid");
+  step(walls, 0.1);
+  EXPECT_NEAR(view(walls, 1).position.x(), 1 + 0.025, 1e-15);
+  EXPECT_NEAR(view(walls, 1).stage_position.x(), 0.025, 1e-15);
+  EXPECT_EQ(view(walls, 0).position, Vec3::Zero()) << "a wall that is new";
+  walls.change({plate({.velocity = {4, 0, 0}, .ramp_time = 0.4})});
+  step(walls, 0.1);
+  EXPECT_NEAR(view(walls).stage_position.x(), 0.025 + 0.15, 1e-15) << "a change within the stage restarts nothing";
+}
+
+TEST(Walls, WallSetFreeKeepsItsVelocity) {
+  Walls walls;
+  walls.apply({plate({.velocity = {0, 0, 3}})});
+  step(walls, 0.1);
+  walls.apply({plate({.free = FreeDescription{.axes = "z", .mass = 1}})});
+  step(walls, 0.1);
+  EXPECT_EQ(view(walls).velocity.z(), 3);
+}
+
+TEST(Walls, NewReferencePointMovesNothing) {
+  const Vec3 point(0.3, 0.7, 1), about(5, 0, 0);
+  Walls walls;
+  walls.apply({plate({.velocity = {1, 0, 0}, .spin = {0, 0, 2}})});
+  for (int i = 0; i < 7; ++i) step(walls, 0.1);
+  walls.add(0, {0, 0, 5}, {1, 2, 3}, 1, 1);
+  const Vec3 place = walls.pose(0).to_world(point), velocity = walls.point_velocity(0, place),
+             before = walls.reference(0);
+  walls.apply({plate({.about = about})});
+  EXPECT_LT((walls.pose(0).to_world(point) - place).norm(), 1e-14);
+  EXPECT_LT((walls.point_velocity(0, place) - velocity).norm(), 1e-14);
+  EXPECT_LT((walls.reference(0) - walls.pose(0).to_world(about)).norm(), 1e-14);
+  EXPECT_LT((view(walls).moment - (Vec3(1, 2, 3) + (before - walls.reference(0)).cross(Vec3(0, 0, 5)))).norm(), 1e-13);
+  EXPECT_EQ(view(walls).stage_position, Vec3::Zero());
+}
+
+TEST(Walls, RestoredWallsGoOnToTheSameBits) {
+  const std::vector<WallSetup> setups{plate({.velocity = {1, 0, 0},
+                                             .spin = {0.1, 0.2, 0.3},
+                                             .ramp_time = 0.7,
+                                             .free = FreeDescription{.axes = "z", .mass = 3, .load = {0, 0, 1}}})};
+  Walls whole, halved;
+  whole.apply(setups);
+  for (int i = 0; i < 5; ++i) step(whole, 0.1);
+  halved.apply(setups);
+  halved.restore(whole.states());
+  for (int i = 0; i < 5; ++i) step(whole, 0.1), step(halved, 0.1);
+  EXPECT_EQ(whole.pose(0).shift, halved.pose(0).shift);
+  EXPECT_EQ(whole.pose(0).turn, halved.pose(0).turn);
+  EXPECT_EQ(view(whole).velocity, view(halved).velocity);
+  try {
+    halved.restore({});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "a checkpoint with 0 walls, but the scene has 1; continue with the description that wrote it");
+  }
+}
+
+TEST(Walls, SayWhichMotionCannotBe) {
+  const ServoDescription servo{.axis = "z", .pressure = 1, .max_velocity = 1};
+  const auto flat = [](double area, const Vec3& towards, const ServoDescription& how) -> std::vector<WallSetup> {
+    auto geometry = std::make_shared<Plate>();
+    geometry->surface = area;
+    geometry->towards = towards;
+    return {{"lid", geometry, {.servo = how}}};
+  };
+  EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), servo)), "");
+  EXPECT_EQ(complaint(flat(0, -Vec3::UnitZ(), servo)),
+            "wall \"lid\": a servo needs an area for its pressure, and this geometry has none; give it one, or take a "
+            "rectangle");
+  EXPECT_EQ(complaint(flat(1, Vec3::UnitX(), servo)),
+            "wall \"lid\": a servo along z, but its normal is perpendicular to that axis");
+  EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "z", .pressure = 1})),
+            "wall \"lid\": a servo needs a max_velocity above 0");
+  EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "xz", .pressure = 1, .max_velocity = 1})),
+            "wall \"lid\": a servo along \"xz\"; it acts along one axis");
+  EXPECT_EQ(complaint({plate({.velocity = {0, 0, 1}, .servo = servo})}),
+            "wall \"lid\": two motions along z; choose one of velocity, servo, follow and free");
+  EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "z"}})}),
+            "wall \"lid\": a free wall needs a mass above 0");
+  EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "w", .mass = 1}})}),
+            "wall \"lid\": free along \"w\"; allowed are x, y and z");
+  EXPECT_EQ(complaint({plate({.follow = FollowDescription{.wall = "base"}})}),
+            "wall \"lid\": follows the wall \"base\", which there is not");
+  EXPECT_EQ(complaint({plate({.follow = FollowDescription{.wall = "b"}}, "a"),
+                       plate({.follow = FollowDescription{.wall = "a"}}, "b")}),
+            "wall \"a\": follows itself, directly or by way of others");
+}
+
+}  // namespace
+}  // namespace grit
