@@ -1,8 +1,6 @@
 // A world that is what a test says it is.
 #pragma once
 
-#include <limits>
-
 #include "grit/world.hpp"
 
 namespace grit {
@@ -28,6 +26,11 @@ class FakeWorld : public World {
     velocity.push_back({n, n + 0.25, n + 0.5, 1});
     spin.push_back({-n, 2 * n, 3 * n, 1});
     material.push_back(static_cast<std::uint8_t>(number % 2));
+  }
+
+  void add_wall(const std::string& name, const Vec3& moved) {
+    const Vec3 zero = Vec3::Zero();
+    wall.push_back({name, moved, moved, zero, zero, zero, zero, 0, 0, zero, 0});
   }
 
   double time() const override { return now; }

@@ -175,22 +175,24 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   write_probes(file.create_group("probes"), fields);
   file.close();
   publish(path);
-  instants_.push_back({world.time(), world.step(), world.ids().size(), !world.rotations().empty(),
-                       !world.displacements().empty()});
+  instants_.push_back(
+      {world.time(), world.step(), world.ids().size(), !world.rotations().empty(), !world.displacements().empty()});
   write_index();
 }
 
 void Frames::write_index() const {
   std::string text =
       "<?xml version=\"1.0\"?>\n"
-      "<Xdmf Version=\"3.0\">\n <Domain>\n  <Grid Name=\"grains\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+      "<Xdmf Version=\"3.0\">\n <Domain>\n  <Grid Name=\"grains\" GridType=\"Collection\" "
+      "CollectionType=\"Temporal\">\n";
   for (std::size_t number = 0; number < instants_.size(); ++number) {
     const auto& instant = instants_[number];
     const auto item = [&](const char* name, const char* type, int width) {
-      return fmt::format("<DataItem Dimensions=\"{}{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">"
-                         "frames/{}:/bodies/{}</DataItem>",
-                         instant.bodies, width == 3 ? " 3" : "", type, std::string_view(name) == "material" ? 4 : 8,
-                         file_name(number), name);
+      return fmt::format(
+          "<DataItem Dimensions=\"{}{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">"
+          "frames/{}:/bodies/{}</DataItem>",
+          instant.bodies, width == 3 ? " 3" : "", type, std::string_view(name) == "material" ? 4 : 8, file_name(number),
+          name);
     };
     const auto attribute = [&](const char* name, const char* type, int width) {
       text += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", name,

@@ -83,7 +83,8 @@ GrainView grain_view(const World& world, std::span<const WallShape> walls, const
   const double third = high - low < 3 * world.mean_diameter() ? 0 : (high - low) / 3;
   std::vector<std::uint32_t> bodies;
   for (std::uint32_t i = 0; i < rows.size(); ++i)
-    if (const double depth = xyz(rows[i])[look.depth]; depth >= low + third && depth <= high - third) bodies.push_back(i);
+    if (const double depth = xyz(rows[i])[look.depth]; depth >= low + third && depth <= high - third)
+      bodies.push_back(i);
   std::ranges::stable_sort(bodies, std::greater(),
                            [&](std::uint32_t i) { return look.away * xyz(rows[i])[look.depth]; });
   for (const auto i : bodies) {

@@ -51,13 +51,20 @@ Handle owned(hid_t id, Handle::Close close, const std::string& where, const std:
 
 hid_t native(Number type) {
   switch (type) {
-    case Number::float64: return H5T_NATIVE_DOUBLE;
-    case Number::float32: return H5T_NATIVE_FLOAT;
-    case Number::int64: return H5T_NATIVE_INT64;
-    case Number::int32: return H5T_NATIVE_INT32;
-    case Number::uint64: return H5T_NATIVE_UINT64;
-    case Number::uint32: return H5T_NATIVE_UINT32;
-    case Number::uint8: break;
+    case Number::float64:
+      return H5T_NATIVE_DOUBLE;
+    case Number::float32:
+      return H5T_NATIVE_FLOAT;
+    case Number::int64:
+      return H5T_NATIVE_INT64;
+    case Number::int32:
+      return H5T_NATIVE_INT32;
+    case Number::uint64:
+      return H5T_NATIVE_UINT64;
+    case Number::uint32:
+      return H5T_NATIVE_UINT32;
+    case Number::uint8:
+      break;
   }
   return H5T_NATIVE_UINT8;
 }
@@ -66,9 +73,9 @@ std::vector<hsize_t> lengths(const Shape& shape) { return {shape.begin(), shape.
 
 Handle space(const Shape& shape, const std::string& where) {
   const auto dims = lengths(shape);
-  return owned(dims.empty() ? H5Screate(H5S_SCALAR)
-                            : H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr),
-               H5Sclose, where, "describe a shape");
+  return owned(
+      dims.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr),
+      H5Sclose, where, "describe a shape");
 }
 
 /// Space of the file with rows [first, first + count) selected.
@@ -100,9 +107,12 @@ hid_t open_file(const std::filesystem::path& path, Mode mode) {
   }
   checked(H5Pset_mdc_config(access.id(), &cache), where, "prepare to open");
   switch (mode) {
-    case Mode::read: return checked(H5Fopen(where.c_str(), H5F_ACC_RDONLY, access.id()), where, "read");
-    case Mode::change: return checked(H5Fopen(where.c_str(), H5F_ACC_RDWR, access.id()), where, "change");
-    case Mode::replace: break;
+    case Mode::read:
+      return checked(H5Fopen(where.c_str(), H5F_ACC_RDONLY, access.id()), where, "read");
+    case Mode::change:
+      return checked(H5Fopen(where.c_str(), H5F_ACC_RDWR, access.id()), where, "change");
+    case Mode::replace:
+      break;
   }
   const auto creation = owned(H5Pcreate(H5P_FILE_CREATE), H5Pclose, where, "prepare to create");
   checked(H5Pset_istore_k(creation.id(), chunk_index_half), where, "prepare to create");
@@ -121,8 +131,9 @@ void Object::set_attribute(const std::string& name, std::string_view text) {
   checked(H5Tset_cset(string.id(), H5T_CSET_UTF8), where_, what);
   const auto scalar = space({}, where_);
   if (has_attribute(name)) checked(H5Adelete(handle_.id(), name.c_str()), where_, what);
-  const auto attribute = owned(
-      H5Acreate2(handle_.id(), name.c_str(), string.id(), scalar.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, where_, what);
+  const auto attribute =
+      owned(H5Acreate2(handle_.id(), name.c_str(), string.id(), scalar.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+            where_, what);
   checked(H5Awrite(attribute.id(), string.id(), text.empty() ? "" : text.data()), where_, what);
 }
 
@@ -131,8 +142,8 @@ void Object::set_number(const std::string& name, Number type, const void* value)
   const auto scalar = space({}, where_);
   if (has_attribute(name)) checked(H5Adelete(handle_.id(), name.c_str()), where_, what);
   const auto attribute =
-      owned(H5Acreate2(handle_.id(), name.c_str(), native(type), scalar.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, where_,
-            what);
+      owned(H5Acreate2(handle_.id(), name.c_str(), native(type), scalar.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+            where_, what);
   checked(H5Awrite(attribute.id(), native(type), value), where_, what);
 }
 
@@ -241,8 +252,9 @@ std::vector<std::string> Group::names() const {
 Dataset Group::write(const std::string& name, const Shape& shape, Number type, std::size_t size, const void* values) {
   auto where = child(where_, name);
   const auto extent = space(shape, where);
-  auto id = owned(H5Dcreate2(handle_.id(), name.c_str(), native(type), extent.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                  H5Dclose, where, "create the dataset");
+  auto id =
+      owned(H5Dcreate2(handle_.id(), name.c_str(), native(type), extent.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+            H5Dclose, where, "create the dataset");
   if (size != product(shape))
     throw FileError(where + ": cannot write " + std::to_string(size) + " numbers into a shape of " +
                     std::to_string(product(shape)));
@@ -262,8 +274,9 @@ Dataset Group::create_growing(const std::string& name, const Shape& row, std::si
                             "describe a shape");
   const auto creation = owned(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, where, "prepare the dataset");
   checked(H5Pset_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data()), where, "prepare the dataset");
-  auto id = owned(H5Dcreate2(handle_.id(), name.c_str(), native(type), extent.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
-                  H5Dclose, where, "create the dataset");
+  auto id =
+      owned(H5Dcreate2(handle_.id(), name.c_str(), native(type), extent.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+            H5Dclose, where, "create the dataset");
   return {std::move(id), std::move(where)};
 }
 

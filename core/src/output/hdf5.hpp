@@ -60,17 +60,15 @@ inline std::size_t product(std::span<const std::size_t> shape) {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
 }
 
-// T below is one of the types of Number; reading converts. Everything throws FileError with the file, the object and the
-// library's innermost message.
+// T below is one of the types of Number; reading converts. Everything throws FileError with the file, the object and
+// the library's innermost message.
 
 /// What may carry attributes.
 class Object {
  public:
   void set_attribute(const std::string& name, std::string_view text);
   template <class T>
-  void set_attribute(const std::string& name, const T& number)
-    requires std::is_arithmetic_v<T>
-  {
+  void set_attribute(const std::string& name, const T& number) requires std::is_arithmetic_v<T> {
     set_number(name, number_of<T>(), &number);
   }
   bool has_attribute(const std::string& name) const;
@@ -162,7 +160,7 @@ enum class Mode { read, change, replace };
 
 /// An open file. Not locked, so that others may read a file that is being written; in the oldest format, which has
 /// neither checksums nor a mark "open for writing" that a killed writer would leave behind. Nothing of what is written
-/// need be on disk before flush() or close(), and no metadata is.
+/// need be on disk before flush() or close(), and no metadata is. Its groups and datasets are closed with it.
 class File : public Group {
  public:
   File(const std::filesystem::path& path, Mode mode);

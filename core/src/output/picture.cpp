@@ -24,8 +24,8 @@ constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#
 
 using Rgb = std::array<double, 3>;
 // ColorBrewer's RdBu: safe for colour-blind readers; red is positive.
-constexpr std::array<Rgb, 7> diverging{{{20, 78, 140}, {67, 147, 195}, {164, 207, 228}, {246, 246, 244},
-                                        {246, 178, 147}, {214, 96, 77}, {160, 18, 40}}};
+constexpr std::array<Rgb, 7> diverging{
+    {{20, 78, 140}, {67, 147, 195}, {164, 207, 228}, {246, 246, 244}, {246, 178, 147}, {214, 96, 77}, {160, 18, 40}}};
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -60,7 +60,8 @@ std::string style(const Picture& picture) {
   std::string sheet =
       "text{font-family:'Helvetica Neue',Helvetica,Arial,'Liberation Sans','DejaVu Sans',sans-serif;font-size:12px;"
       "fill:#333}\n"
-      ".title{font-size:20px;font-weight:600;fill:#111}.facts{font-size:13px;fill:#666}.axis{font-size:13px;fill:#222}\n"
+      ".title{font-size:20px;font-weight:600;fill:#111}.facts{font-size:13px;fill:#666}.axis{font-size:13px;fill:#222}"
+      "\n"
       ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600}.small{font-size:11px;fill:#666}\n"
       ".grid{stroke:#e6e6e3;stroke-width:1}.frame{stroke:#8a8a86;stroke-width:1}\n"
       ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:round}\n"
@@ -89,7 +90,8 @@ std::size_t colour_of(const std::vector<std::string>& names, const std::string& 
 
 class PanelDrawing {
  public:
-  PanelDrawing(Svg& svg, const Panel& panel, const std::vector<std::string>& names, Point corner, double wide, double high)
+  PanelDrawing(Svg& svg, const Panel& panel, const std::vector<std::string>& names, Point corner, double wide,
+               double high)
       : svg_(svg), panel_(panel), names_(names) {
     left_ = corner.x + 46, right_ = corner.x + wide - 12, top_ = corner.y + 26, bottom_ = corner.y + high - 44;
     for (const auto& curve : panel.curves)
@@ -229,7 +231,8 @@ ViewLayout layout(const GrainView& view) {
   const double most = std::max(result.x.span(), result.y.span());
   if (result.x.span() < 1e-3 * most) result.x = {result.x.low - 0.1 * most, result.x.high + 0.1 * most};
   if (result.y.span() < 1e-3 * most) result.y = {result.y.low - 0.1 * most, result.y.high + 0.1 * most};
-  if (most <= 0) result.x = {result.x.low - 0.5, result.x.low + 0.5}, result.y = {result.y.low - 0.5, result.y.low + 0.5};
+  if (most <= 0)
+    result.x = {result.x.low - 0.5, result.x.low + 0.5}, result.y = {result.y.low - 0.5, result.y.low + 0.5};
   result.scale = std::min((inner - colour_bar) / result.x.span(), tallest / result.y.span());
   result.wide = result.scale * result.x.span();
   result.high = result.scale * result.y.span();
@@ -255,15 +258,16 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double t
   svg.open_group("clip-path=\"url(#view)\"");
   double mean = 0;
   for (const auto& disc : view.discs) mean += disc.radius / static_cast<double>(view.discs.size());
-  svg.open_group(fmt::format("class=\"grains\" stroke-width=\"{:.2f}\"", std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
+  svg.open_group(
+      fmt::format("class=\"grains\" stroke-width=\"{:.2f}\"", std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
   std::array<std::string, classes> names;
   for (int i = 0; i < classes; ++i) names[static_cast<std::size_t>(i)] = fmt::format("class=\"c{}\"", i);
   for (const auto& disc : view.discs) {
     if (!std::isfinite(disc.x) || !std::isfinite(disc.y)) continue;
     const bool coloured = std::isfinite(disc.value);
-    svg.circle(place(disc.x, disc.y), disc.radius * at.scale,
-               coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view.symmetric))]
-                        : "class=\"n\"");
+    svg.circle(
+        place(disc.x, disc.y), disc.radius * at.scale,
+        coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view.symmetric))] : "class=\"n\"");
   }
   svg.close_group();
   std::set<std::array<long, 4>> drawn;  // an edge that two triangles share is one line

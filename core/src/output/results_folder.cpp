@@ -110,8 +110,8 @@ ResultsFolder::Kept ResultsFolder::find(const std::string& name, std::span<const
       if (full == name) return {probe, channel, spelled(found.name), found.unit, {}, {}};
       there += (there.empty() ? "" : ", ") + full;
     }
-  throw Error("picture: no probe has a channel '" + name + "' of one number; there are: " +
-              (there.empty() ? "none" : there));
+  throw Error("picture: no probe has a channel '" + name +
+              "' of one number; there are: " + (there.empty() ? "none" : there));
 }
 
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {

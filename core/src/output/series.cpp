@@ -25,8 +25,9 @@ hdf5::Dataset reopened(const hdf5::Group& group, const Channel& channel, std::si
   auto shape = dataset.shape();
   shape.erase(shape.begin());
   if (shape != channel.shape)
-    throw FileError(dataset.where() + ": has another shape than the probe's channel: resume with the description that "
-                                      "the run began with, or write to another folder");
+    throw FileError(dataset.where() +
+                    ": has another shape than the probe's channel: resume with the description that "
+                    "the run began with, or write to another folder");
   dataset.truncate(rows);
   return dataset;
 }
@@ -42,15 +43,17 @@ Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> pr
 Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::uint64_t last_step,
                Flushing flushing)
     : file_(path, hdf5::Mode::change), flushing_(flushing) {
-  for (const auto& probe : probes)
-    tables_.push_back(file_.has(probe.name) ? reopen(probe, last_step) : create(probe));
+  for (const auto& probe : probes) tables_.push_back(file_.has(probe.name) ? reopen(probe, last_step) : create(probe));
   file_.flush();
 }
 
 Series::Table Series::create(const ProbeGroup& probe) {
   auto group = file_.create_group(probe.name);
   Table table{column<double>(group, {"time", "s", "simulated time since the start of the run", {}}),
-              column<std::uint64_t>(group, {"step", "1", "steps since the start of the run", {}}), {}, {}, {}};
+              column<std::uint64_t>(group, {"step", "1", "steps since the start of the run", {}}),
+              {},
+              {},
+              {}};
   for (const auto& channel : probe.channels) table.columns.push_back({column<double>(group, channel), {}});
   return table;
 }

@@ -11,7 +11,8 @@
 
 namespace grit {
 
-/// When samples go from memory to the file: after so many numbers, or when a sample comes this long after the last time.
+/// When samples go from memory to the file: after so many numbers, or when a sample comes this long after the last
+/// time.
 struct Flushing {
   std::size_t numbers = 1 << 16;
   std::chrono::steady_clock::duration interval = std::chrono::seconds(1);
