@@ -1,0 +1,39 @@
+#include "output/atomic_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, int code) {
+  throw FileError(path.string() + ": cannot write: " + std::strerror(code));
+}
+
+}  // namespace
+
+std::filesystem::path beside(const std::filesystem::path& path) {
+  auto temporary = path;
+  temporary += ".part";
+  return temporary;
+}
+
+void publish(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::rename(beside(path), path, error);
+  if (error) throw FileError(path.string() + ": cannot put the new file in place: " + error.message());
+}
+
+void write_atomically(const std::filesystem::path& path, std::string_view text) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(beside(path).c_str(), "wb"), std::fclose);
+  if (!file) fail(path, errno);
+  if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) fail(path, errno);
+  if (std::fclose(file.release()) != 0) fail(path, errno);
+  publish(path);
+}
+
+}  // namespace grit

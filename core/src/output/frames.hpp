@@ -1,0 +1,51 @@
+// frames/000123.h5, one instant a file, and frames.xdmf, which opens them all in ParaView.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "run/recorder.hpp"
+
+namespace grit {
+
+/// What a wall looks like, at the place where the description puts it.
+struct WallShape {
+  std::string name;
+  std::vector<Vec3> triangles;  ///< three corners each [m]
+};
+
+/// The triangles where the wall of this name is now. Its displacement counts, its turning does not: a wall that spins
+/// is drawn as it stood at the start.
+std::vector<Vec3> placed(const WallShape& shape, const World& world);
+
+/// Writes frames: /bodies sorted by id, /contacts, /walls/<name>, /probes/<name>/<field>; every dataset has `units` and
+/// `long_name`, the file `time`, `step`, `stage`. A file appears under its name only when it is whole. All functions
+/// throw FileError.
+class Frames {
+ public:
+  /// Numbers go on after the last frame not later than `last_step`; later ones are removed. Without it, all are.
+  Frames(const std::filesystem::path& results, std::vector<WallShape> walls,
+         std::optional<std::uint64_t> last_step = {});
+
+  void write(const World& world, std::span<const FieldGroup> fields);
+  std::size_t count() const { return instants_.size(); }
+
+ private:
+  struct Instant {
+    double time;
+    std::uint64_t step;
+    std::size_t bodies;
+    bool rotation, displacement;
+  };
+
+  void write_index() const;
+
+  std::filesystem::path results_;
+  std::vector<WallShape> walls_;
+  std::vector<Instant> instants_;
+};
+
+}  // namespace grit

@@ -1,0 +1,104 @@
+#include "output/grain_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+/// Axes of a view. `away` is the sign of the depth axis along the line of sight.
+struct Sight {
+  int right, up, depth;
+  double away;
+};
+
+Sight sight(const std::string& view) {
+  if (view == "xz") return {0, 2, 1, 1};
+  if (view == "xy") return {0, 1, 2, -1};
+  if (view == "yz") return {1, 2, 0, -1};
+  throw Error("picture: there is no view '" + view + "'; there are 'xz', 'xy' and 'yz'");
+}
+
+using Value = std::function<double(std::uint32_t)>;
+
+/// Sets what colours mean in `shown`, and says how to get it for a body.
+Value colouring(const World& world, const Sight& look, const std::string& color, GrainView& shown) {
+  const Value grey = [](std::uint32_t) { return std::numeric_limits<double>::quiet_NaN(); };
+  if (color == "rotation") {
+    shown.value = {"rotation", "rad"};
+    shown.note = "clockwise +";
+    if (world.rotations().empty()) return grey;
+    // A right-handed turn about the line of sight is clockwise for who looks along it.
+    return [rotations = world.rotations(), look](std::uint32_t i) { return look.away * rotations[i][look.depth]; };
+  }
+  if (color == "displacement") {
+    shown.value = {"displacement", "m"};
+    shown.note = shown.horizontal + " +";
+    if (world.displacements().empty()) return grey;
+    return [displacements = world.displacements(), look](std::uint32_t i) { return displacements[i][look.right]; };
+  }
+  if (color == "speed") {
+    shown.value = {"speed", "m/s"};
+    shown.symmetric = false;
+    return [velocities = world.velocities()](std::uint32_t i) { return xyz(velocities[i]).norm(); };
+  }
+  throw Error("picture: there is no color '" + color + "'; there are 'rotation', 'displacement' and 'speed'");
+}
+
+/// Where the plane at `depth` cuts the triangles.
+void cut(std::span<const Vec3> triangles, const Sight& look, double depth, std::vector<Segment>& segments) {
+  for (std::size_t first = 0; first + 2 < triangles.size(); first += 3) {
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto &a = triangles[first + i], &b = triangles[first + (i + 1) % 3];
+      const double from = a[look.depth] - depth, to = b[look.depth] - depth;
+      if ((from < 0) != (to < 0)) points.push_back(a + (b - a) * (from / (from - to)));
+    }
+    if (points.size() == 2)
+      segments.push_back({points[0][look.right], points[0][look.up], points[1][look.right], points[1][look.up]});
+  }
+}
+
+}  // namespace
+
+GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
+                     const std::string& color) {
+  const auto look = sight(view);
+  GrainView shown;
+  shown.horizontal = "xyz"[look.right];
+  shown.vertical = "xyz"[look.up];
+  const auto value = colouring(world, look, color, shown);
+
+  const auto rows = world.positions();
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& row : rows) {
+    low = std::min(low, xyz(row)[look.depth]);
+    high = std::max(high, xyz(row)[look.depth]);
+  }
+  const double third = high - low < 3 * world.mean_diameter() ? 0 : (high - low) / 3;
+  std::vector<std::uint32_t> bodies;
+  for (std::uint32_t i = 0; i < rows.size(); ++i)
+    if (const double depth = xyz(rows[i])[look.depth]; depth >= low + third && depth <= high - third)
+      bodies.push_back(i);
+  std::ranges::stable_sort(bodies, std::greater(),
+                           [&](std::uint32_t i) { return look.away * xyz(rows[i])[look.depth]; });
+  for (const auto i : bodies) {
+    const auto centre = xyz(rows[i]);
+    shown.discs.push_back({centre[look.right], centre[look.up], rows[i].w, value(i)});
+  }
+
+  double middle = 0.5 * (low + high);
+  if (rows.empty()) {
+    const auto box = world.specimen();
+    middle = 0.5 * (box.low[look.depth] + box.high[look.depth]);
+  }
+  for (const auto& wall : walls) cut(placed(wall, world), look, middle, shown.walls);
+  return shown;
+}
+
+}  // namespace grit

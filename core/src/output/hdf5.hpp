@@ -1,0 +1,172 @@
+// HDF5 files, as little of them as the results need. hdf5.cpp alone sees the library's own header.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <numeric>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace grit::hdf5 {
+
+/// Lengths of the dimensions, slowest first; empty: one number.
+using Shape = std::vector<std::size_t>;
+
+/// An identifier of the library, closed with its owner.
+class Handle {
+ public:
+  using Close = int (*)(std::int64_t);
+  Handle() = default;
+  Handle(std::int64_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  std::int64_t id() const { return id_; }
+  std::int64_t release() { return std::exchange(id_, -1); }
+
+ private:
+  std::int64_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+enum class Number { float64, float32, int64, int32, uint64, uint32, uint8 };
+
+template <class T>
+constexpr Number number_of() {
+  if constexpr (std::same_as<T, double>) return Number::float64;
+  else if constexpr (std::same_as<T, float>) return Number::float32;
+  else if constexpr (std::same_as<T, std::int64_t>) return Number::int64;
+  else if constexpr (std::same_as<T, std::int32_t>) return Number::int32;
+  else if constexpr (std::same_as<T, std::uint64_t>) return Number::uint64;
+  else if constexpr (std::same_as<T, std::uint32_t>) return Number::uint32;
+  else {
+    static_assert(std::same_as<T, std::uint8_t>);
+    return Number::uint8;
+  }
+}
+
+inline std::size_t product(std::span<const std::size_t> shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies());
+}
+
+// T below is one of the types of Number; reading converts. Everything throws FileError with the file, the object and
+// the library's innermost message.
+
+/// What may carry attributes.
+class Object {
+ public:
+  void set_attribute(const std::string& name, std::string_view text);
+  template <class T>
+  void set_attribute(const std::string& name, const T& number) requires std::is_arithmetic_v<T> {
+    set_number(name, number_of<T>(), &number);
+  }
+  bool has_attribute(const std::string& name) const;
+  std::string text(const std::string& name) const;
+  template <class T>
+  T number(const std::string& name) const {
+    T value{};
+    get_number(name, number_of<T>(), &value);
+    return value;
+  }
+
+  /// The file, and the object's path in it, for messages.
+  const std::string& where() const { return where_; }
+
+ protected:
+  Object(Handle handle, std::string where) : handle_(std::move(handle)), where_(std::move(where)) {}
+  Handle handle_;
+  std::string where_;
+
+ private:
+  void set_number(const std::string& name, Number type, const void* value);
+  void get_number(const std::string& name, Number type, void* value) const;
+};
+
+class Dataset : public Object {
+ public:
+  Shape shape() const;
+  /// The first dimension; 1 for one number.
+  std::size_t rows() const;
+  /// All numbers, or those of rows [first, first + count).
+  template <class T>
+  std::vector<T> read() const {
+    std::vector<T> values(product(shape()));
+    get(number_of<T>(), values.data());
+    return values;
+  }
+  template <class T>
+  std::vector<T> read(std::size_t first, std::size_t count) const {
+    auto part = shape();
+    part.at(0) = count;
+    std::vector<T> values(product(part));
+    get(number_of<T>(), first, count, values.data());
+    return values;
+  }
+  /// Adds whole rows at the end of a dataset that grows.
+  template <class T>
+  void append(std::span<const T> values) {
+    append(number_of<T>(), values.size(), values.data());
+  }
+  /// Forgets the rows from `rows` on.
+  void truncate(std::size_t rows);
+
+ private:
+  friend class Group;
+  using Object::Object;
+  void get(Number type, void* values) const;
+  void get(Number type, std::size_t first, std::size_t count, void* values) const;
+  void append(Number type, std::size_t size, const void* values);
+};
+
+class Group : public Object {
+ public:
+  Group create_group(const std::string& name);
+  Group group(const std::string& name) const;
+  Dataset dataset(const std::string& name) const;
+  bool has(const std::string& name) const;
+  std::vector<std::string> names() const;  ///< of groups and datasets, sorted
+
+  /// A dataset of fixed size, written at once.
+  template <class T>
+  Dataset write(const std::string& name, const Shape& shape, std::span<const T> values) {
+    return write(name, shape, number_of<T>(), values.size(), values.data());
+  }
+  /// A dataset whose first dimension grows; `row` is the shape of one row.
+  template <class T>
+  Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk) {
+    return create_growing(name, row, rows_per_chunk, number_of<T>());
+  }
+
+ protected:
+  using Object::Object;
+
+ private:
+  Dataset write(const std::string& name, const Shape& shape, Number type, std::size_t size, const void* values);
+  Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk, Number type);
+};
+
+enum class Mode { read, change, replace };
+
+/// An open file. Not locked, so that others may read a file that is being written; in the oldest format, which has
+/// neither checksums nor a mark "open for writing" that a killed writer would leave behind. Nothing of what is written
+/// need be on disk before flush() or close(), and no metadata is. Its groups and datasets are closed with it.
+class File : public Group {
+ public:
+  File(const std::filesystem::path& path, Mode mode);
+  void flush();
+  /// Writes what is left and closes; the destructor does so too, but cannot say that it failed.
+  void close();
+};
+
+}  // namespace grit::hdf5

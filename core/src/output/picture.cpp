@@ -1,0 +1,353 @@
+#include "output/picture.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+
+#include "output/scale.hpp"
+#include "output/svg.hpp"
+
+namespace grit {
+namespace {
+
+constexpr double width = 900, margin = 36, inner = width - 2 * margin;
+constexpr int classes = 21;  // of colour, odd: one is for zero
+constexpr double percentile = 0.98;
+
+// Okabe and Ito's colours that stand out on white, told apart by all readers.
+constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#a8518a", "#7a6a00", "#555555"};
+
+using Rgb = std::array<double, 3>;
+// ColorBrewer's RdBu: safe for colour-blind readers; red is positive.
+constexpr std::array<Rgb, 7> diverging{
+    {{20, 78, 140}, {67, 147, 195}, {164, 207, 228}, {246, 246, 244}, {246, 178, 147}, {214, 96, 77}, {160, 18, 40}}};
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void add(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  double span() const { return high - low; }
+  double largest() const { return std::max(std::abs(low), std::abs(high)); }
+  bool empty() const { return !(low <= high); }
+};
+
+/// A colour of the map at 0…1.
+std::string colour(double place) {
+  const double along = std::clamp(place, 0.0, 1.0) * (diverging.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(along), diverging.size() - 2);
+  const double part = along - static_cast<double>(i);
+  std::array<int, 3> mixed{};
+  for (std::size_t k = 0; k < 3; ++k)
+    mixed[k] = static_cast<int>(std::lround(diverging[i][k] * (1 - part) + diverging[i + 1][k] * part));
+  return fmt::format("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]);
+}
+
+/// The colour of class i: blue–white–red, or its half from white to blue.
+std::string class_colour(int i, bool symmetric) {
+  const double place = static_cast<double>(i) / (classes - 1);
+  return colour(symmetric ? place : 0.5 - 0.5 * place);
+}
+
+std::string style(const Picture& picture) {
+  std::string sheet =
+      "text{font-family:'Helvetica Neue',Helvetica,Arial,'Liberation Sans','DejaVu Sans',sans-serif;font-size:12px;"
+      "fill:#333}\n"
+      ".title{font-size:20px;font-weight:600;fill:#111}.facts{font-size:13px;fill:#666}.axis{font-size:13px;fill:#222}"
+      "\n"
+      ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600}.small{font-size:11px;fill:#666}\n"
+      ".grid{stroke:#e6e6e3;stroke-width:1}.frame{stroke:#8a8a86;stroke-width:1}\n"
+      ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:round}\n"
+      ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.scale{stroke:#222;stroke-width:2}\n"
+      ".grains{stroke:#4a4a4a;stroke-opacity:.55}.n{fill:#c9c9c5}\n";
+  for (std::size_t i = 0; i < palette.size(); ++i)
+    sheet += fmt::format(".k{0}{{stroke:{1}}}.f{0}{{fill:{1}}}\n", i, palette[i]);
+  if (picture.grains)
+    for (int i = 0; i < classes; ++i)
+      sheet += fmt::format(".c{}{{fill:{}}}", i, class_colour(i, picture.grains->symmetric));
+  return sheet + '\n';
+}
+
+/// Names of curves in the order of their first appearance; their places choose their colours.
+std::vector<std::string> names_of(const std::vector<Panel>& panels) {
+  std::vector<std::string> names;
+  for (const auto& panel : panels)
+    for (const auto& curve : panel.curves)
+      if (std::ranges::find(names, curve.name) == names.end()) names.push_back(curve.name);
+  return names;
+}
+
+std::size_t colour_of(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) % palette.size();
+}
+
+class PanelDrawing {
+ public:
+  PanelDrawing(Svg& svg, const Panel& panel, const std::vector<std::string>& names, Point corner, double wide,
+               double high)
+      : svg_(svg), panel_(panel), names_(names) {
+    left_ = corner.x + 46, right_ = corner.x + wide - 12, top_ = corner.y + 26, bottom_ = corner.y + high - 44;
+    for (const auto& curve : panel.curves)
+      for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
+        if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+          x_.add(curve.x[i]);
+          y_.add(curve.y[i]);
+        }
+    if (x_.empty()) x_ = y_ = {0, 1};
+    x_unit_ = readable(panel.x.unit, x_.largest());
+    y_unit_ = readable(panel.y.unit, y_.largest());
+    for (auto* end : {&x_.low, &x_.high}) *end *= x_unit_.factor;
+    for (auto* end : {&y_.low, &y_.high}) *end *= y_unit_.factor;
+    settle_ranges();
+  }
+
+  void draw() {
+    const auto x_ticks = ticks(x_.low, x_.high, std::max(2, static_cast<int>((right_ - left_) / 75)));
+    const auto y_ticks = ticks(y_.low, y_.high, 5);
+    const auto step_of = [](const std::vector<double>& marks) { return marks.size() > 1 ? marks[1] - marks[0] : 1.0; };
+    for (const double mark : y_ticks) {
+      svg_.line({left_, down(mark)}, {right_, down(mark)}, "class=\"grid\"");
+      svg_.text({left_ - 7, down(mark) + 4}, tick_label(mark, step_of(y_ticks)), "class=\"e\"");
+    }
+    for (const double mark : x_ticks) {
+      svg_.line({across(mark), top_}, {across(mark), bottom_}, "class=\"grid\"");
+      svg_.text({across(mark), bottom_ + 17}, tick_label(mark, step_of(x_ticks)), "class=\"m\"");
+    }
+    const double base = y_.low <= 0 && y_.high >= 0 ? down(0) : bottom_;
+    svg_.line({left_, base}, {right_, base}, "class=\"frame\"");
+    svg_.line({left_, top_}, {left_, bottom_}, "class=\"frame\"");
+    svg_.text({left_ - 40, top_ - 12}, axis_title(panel_.y.label, y_unit_.unit), "class=\"axis\"");
+    svg_.text({(left_ + right_) / 2, bottom_ + 37}, axis_title(panel_.x.label, x_unit_.unit), "class=\"axis m\"");
+    for (const auto& curve : panel_.curves) draw_curve(curve);
+    for (const auto& curve : panel_.curves) mark_peak(curve);
+  }
+
+ private:
+  double across(double x) const { return left_ + (x - x_.low) / x_.span() * (right_ - left_); }
+  double down(double y) const { return bottom_ - (y - y_.low) / y_.span() * (bottom_ - top_); }
+  Point place(const Curve& curve, std::size_t i) const {
+    return {across(curve.x[i] * x_unit_.factor), down(curve.y[i] * y_unit_.factor)};
+  }
+
+  /// y from tick to tick, with zero where it is near; nothing of no width.
+  void settle_ranges() {
+    if (x_.span() <= 0) x_ = {x_.low - 0.5, x_.high + 0.5};
+    if (y_.low > 0 && y_.low < 0.5 * y_.high) y_.low = 0;
+    if (y_.high < 0 && y_.high > 0.5 * y_.low) y_.high = 0;
+    if (y_.span() <= 1e-12 * y_.largest() || y_.span() <= 0) {
+      const double room = y_.largest() > 0 ? 0.5 * y_.largest() : 1;
+      y_ = {y_.low - room, y_.high + room};
+    }
+    const double step = nice_step(y_.span(), 5);
+    y_ = {std::floor(y_.low / step + 1e-9) * step, std::ceil((y_.high + 0.04 * y_.span()) / step - 1e-9) * step};
+  }
+
+  void draw_curve(const Curve& curve) {
+    const auto attributes = fmt::format("class=\"curve k{}\"", colour_of(names_, curve.name));
+    std::vector<Point> points;
+    const auto finish = [&] {
+      if (!points.empty()) svg_.polyline(points, attributes);
+      points.clear();
+    };
+    const auto count = std::min(curve.x.size(), curve.y.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) {
+        finish();
+        continue;
+      }
+      const auto point = place(curve, i);
+      // What moves less than a quarter of a pixel is not seen, but would be paid for in bytes.
+      if (points.empty() || i + 1 == count || std::hypot(point.x - points.back().x, point.y - points.back().y) > 0.25)
+        points.push_back(point);
+    }
+    finish();
+  }
+
+  void mark_peak(const Curve& curve) {
+    std::size_t peak = 0;
+    bool found = false;
+    for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
+      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]) && (!found || curve.y[i] > curve.y[peak])) {
+        peak = i;
+        found = true;
+      }
+    if (!found) return;
+    const auto at = place(curve, peak);
+    const auto k = colour_of(names_, curve.name);
+    svg_.circle(at, 3, fmt::format("class=\"f{}\"", k));
+    const char* anchor = at.x > right_ - 30 ? "e" : at.x < left_ + 30 ? "" : "m";
+    const double aside = at.x < left_ + 30 ? 6 : 0;
+    svg_.text({at.x + aside, at.y - 8}, short_number(curve.y[peak] * y_unit_.factor),
+              fmt::format("class=\"peak {} f{}\"", anchor, k));
+  }
+
+  Svg& svg_;
+  const Panel& panel_;
+  const std::vector<std::string>& names_;
+  double left_, right_, top_, bottom_;
+  Range x_, y_;
+  ReadableUnit x_unit_, y_unit_;
+};
+
+/// Where the view of the grains goes, and what its colours mean.
+struct ViewLayout {
+  Range x, y;         ///< m
+  double scale = 1;   ///< px/m
+  double wide, high;  ///< px
+  double limit = 1;   ///< value of the outermost colour
+};
+
+ViewLayout layout(const GrainView& view) {
+  constexpr double colour_bar = 96, tallest = 640;
+  ViewLayout result;
+  std::vector<double> sizes;
+  for (const auto& disc : view.discs) {
+    if (!std::isfinite(disc.x) || !std::isfinite(disc.y)) continue;
+    for (const double side : {-disc.radius, disc.radius}) {
+      result.x.add(disc.x + side);
+      result.y.add(disc.y + side);
+    }
+    if (std::isfinite(disc.value)) sizes.push_back(std::abs(disc.value));
+  }
+  // Walls may reach far beyond the grains; a third of the grains' extent of them is enough to understand the scene.
+  const bool bare = result.x.empty();
+  const double reach = bare ? 0 : 0.35 * std::max(result.x.span(), result.y.span());
+  const Range x = result.x, y = result.y;
+  for (const auto& wall : view.walls) {
+    const auto within = [&](double value, const Range& range) {
+      return bare ? value : std::clamp(value, range.low - reach, range.high + reach);
+    };
+    for (const double end : {wall.x1, wall.x2}) result.x.add(within(end, x));
+    for (const double end : {wall.y1, wall.y2}) result.y.add(within(end, y));
+  }
+  if (result.x.empty()) result.x = result.y = {0, 1};
+  const double most = std::max(result.x.span(), result.y.span());
+  if (result.x.span() < 1e-3 * most) result.x = {result.x.low - 0.1 * most, result.x.high + 0.1 * most};
+  if (result.y.span() < 1e-3 * most) result.y = {result.y.low - 0.1 * most, result.y.high + 0.1 * most};
+  if (most <= 0)
+    result.x = {result.x.low - 0.5, result.x.low + 0.5}, result.y = {result.y.low - 0.5, result.y.low + 0.5};
+  result.scale = std::min((inner - colour_bar) / result.x.span(), tallest / result.y.span());
+  result.wide = result.scale * result.x.span();
+  result.high = result.scale * result.y.span();
+  if (!sizes.empty()) {
+    const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(sizes.size() - 1));
+    std::ranges::nth_element(sizes, nth);
+    if (*nth > 0) result.limit = *nth;
+  }
+  return result;
+}
+
+int class_of(double value, double limit, bool symmetric) {
+  const double place = symmetric ? 0.5 + 0.5 * value / limit : value / limit;
+  return static_cast<int>(std::lround(std::clamp(place, 0.0, 1.0) * (classes - 1)));
+}
+
+void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
+  const double left = margin + 0.5 * (inner - 96 - at.wide);
+  const auto place = [&](double x, double y) {
+    return Point{left + (x - at.x.low) * at.scale, top + (at.y.high - y) * at.scale};
+  };
+  svg.clip("view", {left - 3, top - 3}, at.wide + 6, at.high + 6);
+  svg.open_group("clip-path=\"url(#view)\"");
+  double mean = 0;
+  for (const auto& disc : view.discs) mean += disc.radius / static_cast<double>(view.discs.size());
+  svg.open_group(
+      fmt::format("class=\"grains\" stroke-width=\"{:.2f}\"", std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
+  std::array<std::string, classes> names;
+  for (int i = 0; i < classes; ++i) names[static_cast<std::size_t>(i)] = fmt::format("class=\"c{}\"", i);
+  for (const auto& disc : view.discs) {
+    if (!std::isfinite(disc.x) || !std::isfinite(disc.y)) continue;
+    const bool coloured = std::isfinite(disc.value);
+    svg.circle(
+        place(disc.x, disc.y), disc.radius * at.scale,
+        coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view.symmetric))] : "class=\"n\"");
+  }
+  svg.close_group();
+  std::set<std::array<long, 4>> drawn;  // an edge that two triangles share is one line
+  for (const auto& wall : view.walls) {
+    auto a = place(wall.x1, wall.y1), b = place(wall.x2, wall.y2);
+    if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) std::swap(a, b);
+    if (std::hypot(a.x - b.x, a.y - b.y) < 0.01) continue;
+    if (drawn.insert({std::lround(100 * a.x), std::lround(100 * a.y), std::lround(100 * b.x), std::lround(100 * b.y)})
+            .second)
+      svg.line(a, b, "class=\"wall\"");
+  }
+  svg.close_group();
+}
+
+void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
+  const double left = margin + 0.5 * (inner - 96 - at.wide), y = top + at.high + 24;
+  const double length = nice_step(140 / at.scale, 1);
+  const auto unit = readable("m", length);
+  const double end = left + length * at.scale;
+  svg.line({left, y}, {end, y}, "class=\"scale\"");
+  for (const double x : {left, end}) svg.line({x, y - 4}, {x, y + 4}, "class=\"scale\"");
+  svg.text({end + 10, y + 4}, fmt::format("{:g} {}", length * unit.factor, unit.unit));
+  svg.text({left + at.wide, y + 4}, view.horizontal + " →   " + view.vertical + " ↑", "class=\"e small\"");
+}
+
+void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
+  if (std::ranges::none_of(view.discs, [](const Disc& disc) { return std::isfinite(disc.value); })) return;
+  const double left = margin + inner - 64, tall = std::clamp(at.high - 60, 120.0, 240.0), first = top + 30;
+  const auto unit = readable(view.value.unit, at.limit);
+  svg.text({margin + inner, top + 4}, axis_title(view.value.label, unit.unit), "class=\"axis e\"");
+  for (int i = 0; i < classes; ++i)
+    svg.rectangle({left, first + tall * (classes - 1 - i) / classes}, 14, tall / classes + 0.3,
+                  fmt::format("class=\"c{}\"", i));
+  const double high = at.limit * unit.factor, low = view.symmetric ? -high : 0;
+  const auto marks = ticks(low, high, 4);
+  for (const double mark : marks) {
+    const double y = first + tall * (1 - (mark - low) / (high - low));
+    svg.line({left + 14, y}, {left + 18, y}, "class=\"frame\"");
+    svg.text({left + 22, y + 4}, tick_label(mark, marks.size() > 1 ? marks[1] - marks[0] : 1));
+  }
+  if (!view.note.empty()) svg.text({margin + inner, first + tall + 20}, view.note, "class=\"small e\"");
+}
+
+}  // namespace
+
+std::string draw(const Picture& picture) {
+  const auto count = picture.panels.size();
+  const auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
+  const auto rows = (count + columns - 1) / columns;
+  const auto names = names_of(picture.panels);
+  const bool legend = names.size() > 1;
+  const double panels_top = legend ? 118 : 92, panel_high = columns == 1 ? 300 : columns == 2 ? 280 : 250;
+  const double gap = 16, panel_wide = (inner - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+  const double grains_top = panels_top + panel_high * static_cast<double>(rows) + (count > 0 ? 30 : 8);
+  const auto view = picture.grains ? layout(*picture.grains) : ViewLayout{};
+  const double height = picture.grains ? grains_top + std::max(view.high, 180.0) + 56 : grains_top;
+
+  Svg svg(width, height, picture.title, style(picture));
+  svg.rectangle({0, 0}, width, height, "fill=\"#fff\"");
+  svg.text({margin, 44}, picture.title, "class=\"title\"");
+  svg.text({margin, 66}, picture.facts, "class=\"facts\"");
+  if (legend) {
+    double x = margin;
+    for (const auto& name : names) {
+      svg.line({x, 92}, {x + 22, 92}, fmt::format("class=\"curve k{}\"", colour_of(names, name)));
+      svg.text({x + 29, 96}, name);
+      x += 52 + 7 * static_cast<double>(name.size());
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point corner{margin + static_cast<double>(i % columns) * (panel_wide + gap),
+                       panels_top + static_cast<double>(i / columns) * panel_high};
+    PanelDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
+  }
+  if (picture.grains) {
+    draw_grains(svg, *picture.grains, view, grains_top);
+    draw_scale_bar(svg, *picture.grains, view, grains_top);
+    draw_colour_bar(svg, *picture.grains, view, grains_top);
+  }
+  return std::move(svg).finish();
+}
+
+}  // namespace grit

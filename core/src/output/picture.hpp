@@ -1,0 +1,55 @@
+// A page about a run: test curves above, the grains below. Knows numbers, not worlds.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace grit {
+
+struct Curve {
+  std::string name;  ///< for the legend; one colour a name, in all panels
+  std::vector<double> x, y;
+};
+
+struct Axis {
+  std::string label;
+  std::string unit = "1";  ///< SI; shown with the prefix that reads best, radians as degrees
+};
+
+/// Curves that share two axes. Points that are not finite interrupt a curve.
+struct Panel {
+  Axis x, y;
+  std::vector<Curve> curves;
+};
+
+struct Disc {
+  double x, y, radius;  ///< m
+  double value;         ///< what its colour says; not finite: grey
+};
+
+struct Segment {
+  double x1, y1, x2, y2;  ///< m
+};
+
+/// Grains seen along an axis.
+struct GrainView {
+  std::string horizontal = "x", vertical = "z";
+  std::vector<Disc> discs;  ///< back to front
+  std::vector<Segment> walls;
+  Axis value;
+  std::string note;       ///< beneath the colour bar: the sign convention
+  bool symmetric = true;  ///< blue–white–red about zero, else white–blue from zero
+};
+
+struct Picture {
+  std::string title;
+  std::string facts;  ///< one line
+  std::vector<Panel> panels;
+  std::optional<GrainView> grains;
+};
+
+/// The picture as SVG, 900 px wide.
+std::string draw(const Picture& picture);
+
+}  // namespace grit

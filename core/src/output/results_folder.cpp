@@ -1,0 +1,158 @@
+#include "output/results_folder.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+#include "grit/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/grain_view.hpp"
+#include "output/picture.hpp"
+
+namespace grit {
+namespace {
+
+/// Makes the folder, or sees to it that what is there may be used.
+std::filesystem::path prepared(const ResultsOptions& options) {
+  const auto& folder = options.folder;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw FileError(folder.string() + ": cannot make the folder of results: " + error.message());
+  if (options.existing == Existing::resume) return folder;
+  for (const char* mark : {"run.json", "series.h5", "checkpoint.h5"})
+    if (options.existing == Existing::refuse && std::filesystem::exists(folder / mark))
+      throw FileError(folder.string() + ": holds a run already (" + mark +
+                      " is there): choose another folder, resume that run, or allow it to be overwritten");
+  for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "frames", "frames.xdmf",
+                           "packing.txt", "picture.svg"}) {
+    std::filesystem::remove_all(folder / mine, error);
+    if (error) throw FileError((folder / mine).string() + ": cannot remove it: " + error.message());
+  }
+  return folder;
+}
+
+std::string spelled(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+/// 1234567 as "1 234 567", with thin spaces that do not break.
+std::string grouped(std::uint64_t number) {
+  auto digits = std::to_string(number);
+  for (auto place = static_cast<std::ptrdiff_t>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), "\u202f");
+  return digits;
+}
+
+}  // namespace
+
+ResultsFolder::ResultsFolder(ResultsOptions options)
+    : options_(std::move(options)), run_json_(prepared(options_) / "run.json", options_.facts) {
+  if (!options_.facts.description.is_null())
+    write_atomically(options_.folder / "description.json", options_.facts.description.dump(2) + '\n');
+}
+
+void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes) {
+  if (options_.picture) {
+    kept_.push_back(find(options_.picture->x, probes));
+    for (const auto& name : options_.picture->y) kept_.push_back(find(name, probes));
+    grain_view(world, {}, options_.picture->view, options_.picture->color);
+  }
+  const auto path = options_.folder / "series.h5";
+  const bool resumed = options_.existing == Existing::resume && std::filesystem::exists(path);
+  if (resumed) {
+    series_.emplace(path, probes, world.step(), options_.flushing);
+    const hdf5::File file(path, hdf5::Mode::read);
+    for (auto& kept : kept_) {
+      const auto group = file.group(probes[kept.probe].name);
+      kept.steps = group.dataset("step").read<double>();
+      kept.values = group.dataset(probes[kept.probe].channels[kept.channel].name).read<double>();
+    }
+  } else {
+    series_.emplace(path, probes, options_.flushing);
+  }
+  frames_.emplace(options_.folder, options_.walls, resumed ? std::optional(world.step()) : std::nullopt);
+  run_json_.begin(world, resumed);
+}
+
+void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
+  series_->append(probe, world.time(), world.step(), values);
+  for (auto& kept : kept_)
+    if (kept.probe == probe) {
+      kept.steps.push_back(static_cast<double>(world.step()));
+      kept.values.push_back(values[kept.channel].front());
+    }
+}
+
+void ResultsFolder::frame(const World& world, std::span<const FieldGroup> fields) { frames_->write(world, fields); }
+
+void ResultsFolder::stage_ended(const World& world, const std::string& what) {
+  series_->flush();
+  run_json_.stage_ended(world, what);
+}
+
+void ResultsFolder::finish(const World& world, const RunSummary& summary) {
+  if (series_) series_->close();
+  if (summary.status != "failed") write_packing(options_.folder / "packing.txt", world);
+  if (options_.picture && !kept_.empty()) draw_picture(world, summary);
+  run_json_.finish(world, summary);
+}
+
+ResultsFolder::Kept ResultsFolder::find(const std::string& name, std::span<const ProbeGroup> probes) const {
+  std::string there;
+  for (std::size_t probe = 0; probe < probes.size(); ++probe)
+    for (std::size_t channel = 0; channel < probes[probe].channels.size(); ++channel) {
+      const auto& found = probes[probe].channels[channel];
+      if (hdf5::product(found.shape) != 1) continue;
+      const auto full = probes[probe].name + '/' + found.name;
+      if (full == name) return {probe, channel, spelled(found.name), found.unit, {}, {}};
+      there += (there.empty() ? "" : ", ") + full;
+    }
+  throw Error("picture: no probe has a channel '" + name +
+              "' of one number; there are: " + (there.empty() ? "none" : there));
+}
+
+void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {
+  Picture picture;
+  picture.title = options_.title.empty() ? options_.folder.filename().string() : options_.title;
+  picture.facts = fmt::format("{} grains  ·  {:.4g} s simulated  ·  {} steps  ·  {:.3g} million particle-steps/s",
+                              grouped(summary.bodies), summary.time, grouped(summary.steps),
+                              1e-6 * summary.particle_steps_per_second);
+  const auto& x = kept_.front();
+  for (const auto& y : std::span(kept_).subspan(1)) {
+    // Probes may sample at different steps: a point is where both did.
+    Curve curve;
+    for (std::size_t i = 0, j = 0; i < x.steps.size() && j < y.steps.size();) {
+      if (x.steps[i] == y.steps[j]) {
+        curve.x.push_back(x.values[i]);
+        curve.y.push_back(y.values[j]);
+        ++i, ++j;
+      } else {
+        x.steps[i] < y.steps[j] ? ++i : ++j;
+      }
+    }
+    picture.panels.push_back({{x.label, x.unit}, {y.label, y.unit}, {std::move(curve)}});
+  }
+  picture.grains = grain_view(world, options_.walls, options_.picture->view, options_.picture->color);
+  write_atomically(options_.folder / "picture.svg", draw(picture));
+}
+
+void write_packing(const std::filesystem::path& path, const World& world) {
+  const auto rows = world.positions();
+  std::vector<std::uint32_t> order(rows.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
+  std::string text = "# x y z radius [m]\n";
+  char digits[32];
+  for (const auto i : order)
+    for (const auto& [number, end] : {std::pair(rows[i].x, ' '), std::pair(rows[i].y, ' '), std::pair(rows[i].z, ' '),
+                                      std::pair(rows[i].w, '\n')}) {
+      text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);  // the shortest that reads back
+      text += end;
+    }
+  write_atomically(path, text);
+}
+
+}  // namespace grit

@@ -1,0 +1,76 @@
+// The folder that a run leaves behind: run.json, series.h5, frames, description, grains, picture.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "output/frames.hpp"
+#include "output/run_json.hpp"
+#include "output/series.hpp"
+#include "run/recorder.hpp"
+
+namespace grit {
+
+/// A picture drawn at the end: channels as "probe/channel", one curve a panel; see grain_view() for view and color.
+struct PictureRequest {
+  std::string x;
+  std::vector<std::string> y;
+  std::string view = "xz", color = "rotation";
+};
+
+/// What to do with a folder that holds a run.
+enum class Existing {
+  refuse,
+  overwrite,  ///< its results are removed; other files in it stay
+  resume,     ///< what it says up to the step at which the run goes on is kept
+};
+
+struct ResultsOptions {
+  std::filesystem::path folder;
+  Existing existing = Existing::refuse;
+  std::string title;
+  RunFacts facts;
+  std::vector<WallShape> walls;
+  std::optional<PictureRequest> picture;
+  Flushing flushing = {};
+};
+
+/// Writes, at the start: description.json, run.json; meanwhile: series.h5, frames/, frames.xdmf, run.json; at the end:
+/// packing.txt (`x y z radius` in m, by id, to the last bit; not for a failed run), picture.svg, and run.json last, so
+/// that its status vouches for the rest. All functions throw FileError for what the disk refuses.
+class ResultsFolder final : public Recorder {
+ public:
+  /// Makes the folder. Throws FileError where it cannot, or where it holds a run and `existing` says refuse.
+  explicit ResultsFolder(ResultsOptions options);
+
+  /// Throws Error for a channel of the picture that no probe has, or that is not one number.
+  void begin(const World& world, std::span<const ProbeGroup> probes) override;
+  void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
+  void frame(const World& world, std::span<const FieldGroup> fields) override;
+  void stage_ended(const World& world, const std::string& what) override;
+  void finish(const World& world, const RunSummary& summary) override;
+
+ private:
+  /// A channel that the picture shows, kept in memory.
+  struct Kept {
+    std::size_t probe, channel;
+    std::string label, unit;
+    std::vector<double> steps, values;
+  };
+
+  Kept find(const std::string& name, std::span<const ProbeGroup> probes) const;
+  void draw_picture(const World& world, const RunSummary& summary) const;
+
+  ResultsOptions options_;
+  RunJson run_json_;
+  std::optional<Series> series_;
+  std::optional<Frames> frames_;
+  std::vector<Kept> kept_;  ///< x first, then the y of the picture
+};
+
+/// Writes `x y z radius` lines, sorted by id, with a comment line above. Numbers read back to the same bits.
+void write_packing(const std::filesystem::path& path, const World& world);
+
+}  // namespace grit

@@ -1,0 +1,154 @@
+#include "output/run_json.hpp"
+
+#include <spdlog/fmt/chrono.h>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "grit/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/build_facts.hpp"
+
+namespace grit {
+namespace {
+
+std::string now() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name"))
+      if (const auto colon = line.find(": "); colon != std::string::npos) return line.substr(colon + 2);
+  return "unknown";
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+Description load_average() {
+  std::array<double, 3> load{};
+  const int count = getloadavg(load.data(), 3);
+  return count == 3 ? Description(load) : Description();
+}
+
+Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
+
+Description plugin(const PluginUsed& used) {
+  const auto& tag = used.tag;
+  return {{"kind", used.kind},
+          {"name", used.name},
+          {"version", used.version},
+          {"file", used.file.string()},
+          {"build",
+           {{"sdk_version", tag.sdk_version},
+            {"compiler", tag.compiler},
+            {"library_abi", tag.library_abi},
+            {"instruction_set", tag.instruction_set},
+            {"row", layout(tag.row)},
+            {"contact_row", layout(tag.contact_row)},
+            {"body_sum", layout(tag.body_sum)},
+            {"pair_batch", layout(tag.pair_batch)},
+            {"wall_batch", layout(tag.wall_batch)}}}};
+}
+
+}  // namespace
+
+RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std::move(path)) {
+  const auto& build = build_facts();
+  json_ = {{"status", "running"},
+           {"message", ""},
+           {"grit",
+            {{"version", build.version},
+             {"revision", build.revision},
+             {"compiler", build.compiler},
+             {"build_type", build.build_type},
+             {"instruction_set", build.instruction_set}}},
+           {"host",
+            {{"name", host_name()},
+             {"cpu", cpu_model()},
+             {"cores", std::thread::hardware_concurrency()},
+             {"load_average_at_start", load_average()}}},
+           {"started", now()},
+           {"seed", facts.seed},
+           {"threads", facts.threads},
+           {"stage", ""},
+           {"time", 0.0},
+           {"steps", 0},
+           {"bodies", 0},
+           {"time_step_s", nullptr},
+           {"critical_time_step_s", nullptr},
+           {"contacts_per_body", nullptr},
+           {"wall_s", 0.0},
+           {"particle_steps_per_s", nullptr},
+           {"rebuilds", nullptr},
+           {"phases_s", Description::object()},
+           {"stages", Description::array()},
+           {"plugins", Description::array()},
+           {"description", facts.description}};
+  for (const auto& used : facts.plugins) json_["plugins"].push_back(plugin(used));
+}
+
+void RunJson::begin(const World& world, bool resumed) {
+  if (std::ifstream file(path_); resumed && file) {
+    const auto old = Description::parse(file, nullptr, false);
+    if (old.is_discarded()) throw FileError(path_.string() + ": is not JSON: remove it to resume without its history");
+    for (const auto& stage : old.value("stages", Description::array()))
+      if (stage.value("step", std::uint64_t{0}) <= world.step()) json_["stages"].push_back(stage);
+    json_["resumed_at_step"] = world.step();
+  }
+  progress(world);
+  write();
+}
+
+void RunJson::stage_ended(const World& world, const std::string& what) {
+  progress(world);
+  json_["stages"].push_back({{"name", world.stage()},
+                             {"reached", what},
+                             {"time", world.time()},
+                             {"step", world.step()},
+                             {"wall_s", json_["wall_s"]}});
+  write();
+}
+
+void RunJson::finish(const World& world, const RunSummary& summary) {
+  progress(world);
+  json_["status"] = summary.status;
+  json_["message"] = summary.message;
+  json_["stage"] = summary.stage;
+  json_["time"] = summary.time;
+  json_["steps"] = summary.steps;
+  json_["bodies"] = summary.bodies;
+  json_["threads"] = summary.threads;
+  json_["time_step_s"] = summary.time_step;
+  json_["critical_time_step_s"] = summary.critical_time_step;
+  json_["contacts_per_body"] = summary.contacts_per_body;
+  json_["wall_s"] = summary.wall_seconds;
+  json_["particle_steps_per_s"] = summary.particle_steps_per_second;
+  json_["rebuilds"] = summary.rebuilds;
+  for (const auto& phase : summary.phases) json_["phases_s"][phase.name] = phase.seconds;
+  json_["host"]["load_average_at_end"] = load_average();
+  json_["ended"] = now();
+  write();
+}
+
+void RunJson::progress(const World& world) {
+  json_["stage"] = world.stage();
+  json_["time"] = world.time();
+  json_["steps"] = world.step();
+  json_["time_step_s"] = world.dt();
+  json_["bodies"] = world.ids().size();
+  json_["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+void RunJson::write() const {
+  write_atomically(path_, json_.dump(2, ' ', false, Description::error_handler_t::replace) + '\n');
+}
+
+}  // namespace grit

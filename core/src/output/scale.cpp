@@ -1,0 +1,67 @@
+#include "output/scale.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace grit {
+namespace {
+
+std::string with_minus(std::string text) {
+  if (text.starts_with('-')) text.replace(0, 1, "−");
+  return text;
+}
+
+}  // namespace
+
+double nice_step(double span, int pieces) {
+  const double rough = span / pieces;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double lead = rough / power;
+  return power * (lead < std::sqrt(2.0) ? 1 : lead < std::sqrt(10.0) ? 2 : lead < std::sqrt(50.0) ? 5 : 10);
+}
+
+std::vector<double> ticks(double low, double high, int pieces) {
+  if (!(high > low)) return {low};
+  const double step = nice_step(high - low, pieces);
+  std::vector<double> marks;
+  for (auto i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) marks.push_back(i * step);
+  return marks;
+}
+
+std::string tick_label(double value, double step) {
+  if (std::abs(value) < 1e-9 * step) return "0";
+  if (step < 1e-4 || std::abs(value) >= 1e6) return with_minus(fmt::format("{:.3g}", value));
+  const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+  return with_minus(fmt::format("{:.{}f}", value, decimals));
+}
+
+std::string short_number(double value) {
+  const double size = std::abs(value);
+  if (size == 0) return "0";
+  if (size < 1e-3 || size >= 1e5) return with_minus(fmt::format("{:.2e}", value));
+  const int decimals = std::max(0, 2 - static_cast<int>(std::floor(std::log10(size))));
+  return with_minus(fmt::format("{:.{}f}", value, decimals));
+}
+
+ReadableUnit readable(const std::string& unit, double largest) {
+  if (unit == "rad") return {180 / std::numbers::pi, "deg"};
+  if (unit != "m" && unit != "Pa" && unit != "N" && unit != "J" && unit != "m/s" && unit != "W") return {1, unit};
+  struct Prefix {
+    double size;
+    const char* letter;
+  };
+  constexpr std::array<Prefix, 6> prefixes{{{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "µ"}}};
+  const bool length = unit.front() == 'm';
+  for (const auto& [size, letter] : prefixes)
+    if (largest >= size && !(length && size > 1)) return {1 / size, letter + unit};
+  return largest > 0 ? ReadableUnit{1e6, "µ" + unit} : ReadableUnit{1, unit};
+}
+
+std::string axis_title(const std::string& label, const std::string& unit) {
+  return unit.empty() || unit == "1" ? label : label + " [" + unit + "]";
+}
+
+}  // namespace grit

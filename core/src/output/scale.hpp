@@ -1,0 +1,32 @@
+// Scales that people like to read.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace grit {
+
+/// The steps 1, 2, 5 × 10ⁿ: the one that cuts `span` (> 0) into about `pieces`.
+double nice_step(double span, int pieces);
+
+/// Multiples of a nice step within [low, high]; about `pieces` + 1 of them.
+std::vector<double> ticks(double low, double high, int pieces);
+
+/// A number for a tick of a scale with this step, with U+2212 for minus.
+std::string tick_label(double value, double step);
+
+/// Three significant digits, with U+2212 for minus.
+std::string short_number(double value);
+
+/// A unit in which `largest` is easy to read, and what to multiply by: 0.004 m becomes 4 mm; rad become deg. Units
+/// without prefixes, "1" among them, stay.
+struct ReadableUnit {
+  double factor = 1;
+  std::string unit;
+};
+ReadableUnit readable(const std::string& unit, double largest);
+
+/// "label [unit]", or the label alone for a unit of "1" or "".
+std::string axis_title(const std::string& label, const std::string& unit);
+
+}  // namespace grit

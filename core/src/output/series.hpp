@@ -1,0 +1,58 @@
+// series.h5: what the probes said, sample after sample.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "output/hdf5.hpp"
+#include "run/recorder.hpp"
+
+namespace grit {
+
+/// When samples go from memory to the file: after so many numbers, or when a sample comes this long after the last
+/// time.
+struct Flushing {
+  std::size_t numbers = 1 << 16;
+  std::chrono::steady_clock::duration interval = std::chrono::seconds(1);
+};
+
+/// One group a probe with `time` [s], `step` and one dataset a channel: first dimension the samples, then the channel's
+/// shape; attributes `units` (UDUNITS) and `long_name`. What was flushed stays readable if the process is killed. All
+/// functions throw FileError.
+class Series {
+ public:
+  Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing = {});
+  /// Goes on with a file: samples later than `last_step` are forgotten, probes that are new begin.
+  Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::uint64_t last_step,
+         Flushing flushing = {});
+
+  /// One sample of the probe with this place in the list; one span a channel.
+  void append(std::size_t probe, double time, std::uint64_t step, std::span<const std::span<const double>> values);
+  void flush();
+  void close();
+
+ private:
+  struct Column {
+    hdf5::Dataset dataset;
+    std::vector<double> waiting;
+  };
+  struct Table {
+    hdf5::Dataset time, step;
+    std::vector<double> waiting_times;
+    std::vector<std::uint64_t> waiting_steps;
+    std::vector<Column> columns;
+  };
+
+  Table create(const ProbeGroup& probe);
+  Table reopen(const ProbeGroup& probe, std::uint64_t last_step);
+
+  hdf5::File file_;
+  std::vector<Table> tables_;
+  Flushing flushing_;
+  std::size_t waiting_ = 0;
+  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace grit

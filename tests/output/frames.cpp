@@ -1,0 +1,152 @@
+#include "output/frames.hpp"
+
+#include <gmock/gmock.h>
+
+#include <boost/property_tree/xml_parser.hpp>
+#include <sstream>
+
+#include "fake_world.hpp"
+#include "folder.hpp"
+#include "grit/error.hpp"
+#include "output/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+FakeWorld three_grains() {
+  FakeWorld world;
+  world.now = 0.25;
+  world.steps = 1000;
+  world.add(7, {0.7, 0, 0}, 0.07);
+  world.add(2, {0.2, 0, 0}, 0.02);
+  world.add(5, {0.5, 0, 0}, 0.05);
+  world.add_wall("base", Vec3::Zero());
+  world.add_wall("lid", {0, 0, -0.5});
+  world.wall[1].pressure = 2e5;
+  const Vec3 along(-1, 0, 0), force(1, 2, 3);
+  const Contact pair{0, 2, false, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
+  const Contact touch{1, 1, true, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
+  world.contact = {pair, touch};
+  return world;
+}
+
+const std::vector<WallShape> lid{{"lid", {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 1)}}};
+
+TEST(Frames, SortBodiesById) {
+  const Folder folder;
+  auto world = three_grains();
+  world.rotation = {Vec3(7, 0, 0), Vec3(2, 0, 0), Vec3(5, 0, 0)};
+  Frames(folder.path(), {}).write(world, {});
+
+  const hdf5::File file(folder / "frames/000000.h5", hdf5::Mode::read);
+  EXPECT_EQ(file.number<double>("time"), 0.25);
+  EXPECT_EQ(file.number<std::uint64_t>("step"), 1000u);
+  EXPECT_EQ(file.text("stage"), "shear");
+  const auto bodies = file.group("bodies");
+  EXPECT_THAT(bodies.dataset("id").read<std::int64_t>(), ElementsAre(2, 5, 7));
+  EXPECT_THAT(bodies.dataset("position").shape(), ElementsAre(3, 3));
+  EXPECT_THAT(bodies.dataset("position").read<double>(), ElementsAre(0.2, 0, 0, 0.5, 0, 0, 0.7, 0, 0));
+  EXPECT_THAT(bodies.dataset("radius").read<double>(), ElementsAre(0.02, 0.05, 0.07));
+  EXPECT_THAT(bodies.dataset("velocity").read<double>(), ElementsAre(2, 2.25, 2.5, 5, 5.25, 5.5, 7, 7.25, 7.5));
+  EXPECT_THAT(bodies.dataset("spin").read<double>(), ElementsAre(-2, 4, 6, -5, 10, 15, -7, 14, 21));
+  EXPECT_THAT(bodies.dataset("material").read<std::int32_t>(), ElementsAre(0, 1, 1));
+  EXPECT_THAT(bodies.dataset("rotation").read<double>(), ElementsAre(2, 0, 0, 5, 0, 0, 7, 0, 0));
+  EXPECT_FALSE(bodies.has("displacement"));
+  EXPECT_EQ(bodies.dataset("spin").text("units"), "rad/s");
+}
+
+TEST(Frames, PlaceContactsWallsAndFields) {
+  const Folder folder;
+  const std::vector<FieldGroup> fields{{"chains", {{"strength", "N", "of a chain", 2, {1, 2, 3, 4}}}}};
+  Frames(folder.path(), lid).write(three_grains(), fields);
+  const hdf5::File file(folder / "frames/000000.h5", hdf5::Mode::read);
+  const auto contacts = file.group("contacts");
+  EXPECT_THAT(contacts.dataset("body_a").read<std::int64_t>(), ElementsAre(7, 2));
+  EXPECT_THAT(contacts.dataset("body_b").read<std::int64_t>(), ElementsAre(5, -2));
+  EXPECT_THAT(contacts.dataset("force").read<double>(), ElementsAre(1, 2, 3, 1, 2, 3));
+  EXPECT_THAT(contacts.dataset("normal_force").read<double>(), ElementsAre(4, 4));
+  EXPECT_THAT(contacts.dataset("branch").shape(), ElementsAre(2, 3));
+
+  const auto walls = file.group("walls");
+  EXPECT_THAT(walls.dataset("base").shape(), ElementsAre(0, 3, 3));
+  EXPECT_THAT(walls.dataset("lid").shape(), ElementsAre(1, 3, 3));
+  EXPECT_THAT(walls.dataset("lid").read<double>(), ElementsAre(0, 0, 0.5, 1, 0, 0.5, 0, 1, 0.5));
+  EXPECT_EQ(walls.dataset("lid").number<std::int64_t>("index"), 1);
+  EXPECT_EQ(walls.dataset("lid").number<double>("pressure"), 2e5);
+
+  const auto strength = file.group("probes").group("chains").dataset("strength");
+  EXPECT_THAT(strength.shape(), ElementsAre(2, 2));
+  EXPECT_EQ(strength.text("units"), "N");
+
+  const std::vector<FieldGroup> ragged{{"chains", {{"strength", "N", "", 3, {1, 2, 3, 4}}}}};
+  EXPECT_THAT(error_of<PluginError>([&] { Frames(folder.path(), lid).write(three_grains(), ragged); }),
+              HasSubstr("probe 'chains': its field 'strength' has 4 numbers, which are not whole rows of 3"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "frames/000000.h5")) << "a frame that failed is no frame";
+}
+
+/// Whether the data item names a dataset of the stated dimensions.
+void check_item(const boost::property_tree::ptree& item, const std::filesystem::path& folder) {
+  const auto text = item.get_value<std::string>();
+  const auto colon = text.find(':');
+  ASSERT_NE(colon, std::string::npos) << text;
+  const hdf5::File file(folder / text.substr(0, colon), hdf5::Mode::read);
+  std::istringstream dimensions(item.get<std::string>("<xmlattr>.Dimensions"));
+  const hdf5::Shape stated{std::istream_iterator<std::size_t>(dimensions), {}};
+  EXPECT_EQ(file.dataset(text.substr(colon + 2)).shape(), stated) << text;
+}
+
+TEST(Frames, IndexNamesWhatIsThere) {
+  const Folder folder;
+  Frames frames(folder.path(), {});
+  auto world = three_grains();
+  frames.write(world, {});
+  world.add(9, {0.9, 0, 0}, 0.09);
+  world.now = 0.5;
+  world.rotation.assign(4, Vec3::Zero());
+  world.displacement.assign(4, Vec3::Zero());
+  frames.write(world, {});
+
+  boost::property_tree::ptree xml;
+  read_xml((folder / "frames.xdmf").string(), xml);
+  const auto& series = xml.get_child("Xdmf.Domain.Grid");
+  EXPECT_EQ(series.get<std::string>("<xmlattr>.CollectionType"), "Temporal");
+  std::vector<double> times;
+  std::vector<std::size_t> points, items;
+  for (const auto& [name, grid] : series) {
+    if (name != "Grid") continue;
+    times.push_back(grid.get<double>("Time.<xmlattr>.Value"));
+    points.push_back(grid.get<std::size_t>("Topology.<xmlattr>.NumberOfElements"));
+    EXPECT_EQ(grid.get<std::string>("Topology.<xmlattr>.TopologyType"), "Polyvertex");
+    items.push_back(0);
+    for (const auto& [kind, child] : grid)
+      if (const auto item = child.get_child_optional("DataItem")) {
+        check_item(*item, folder.path());
+        ++items.back();
+      }
+  }
+  EXPECT_THAT(times, ElementsAre(0.25, 0.5));
+  EXPECT_THAT(points, ElementsAre(3, 4));
+  EXPECT_THAT(items, ElementsAre(6, 8));
+}
+
+TEST(Frames, GoOnFromAStep) {
+  const Folder folder;
+  auto world = three_grains();
+  {
+    Frames frames(folder.path(), {});
+    for (world.steps = 0; world.steps < 50; world.steps += 10) frames.write(world, {});
+  }
+  std::ofstream(folder / "frames/000005.h5.part") << "torn";
+  Frames frames(folder.path(), {}, 25);
+  EXPECT_EQ(frames.count(), 3u);
+  EXPECT_FALSE(std::filesystem::exists(folder / "frames/000003.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "frames/000004.h5"));
+  frames.write(world, {});
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames/000003.h5"));
+}
+
+}  // namespace
+}  // namespace grit

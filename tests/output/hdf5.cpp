@@ -1,0 +1,108 @@
+#include "output/hdf5.hpp"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "folder.hpp"
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Hdf5, ReadsBackWhatItWrote) {
+  const Folder folder;
+  {
+    hdf5::File file(folder / "a.h5", hdf5::Mode::replace);
+    file.set_attribute("stage", "shear");
+    file.set_attribute("step", std::uint64_t{1} << 60);
+    file.set_attribute("stage", "dense sand: φ");  // replaces
+    file.set_attribute("nothing", "");
+    auto group = file.create_group("g");
+    const std::vector<double> numbers{1, 2, 3, 4, 5, 6};
+    group.write("table", {2, 3}, std::span(numbers)).set_attribute("factor", 0.1);
+    const std::vector<std::int64_t> ids{-1, std::int64_t{1} << 40};
+    group.write("ids", {2}, std::span(ids));
+    group.write("empty", {0, 3}, std::span<const double>());
+    file.close();
+  }
+  const hdf5::File file(folder / "a.h5", hdf5::Mode::read);
+  EXPECT_EQ(file.text("stage"), "dense sand: φ");
+  EXPECT_EQ(file.text("nothing"), "");
+  EXPECT_EQ(file.number<std::uint64_t>("step"), std::uint64_t{1} << 60);
+  const auto group = file.group("g");
+  EXPECT_THAT(group.names(), ElementsAre("empty", "ids", "table"));
+  EXPECT_THAT(group.dataset("table").shape(), ElementsAre(2, 3));
+  EXPECT_THAT(group.dataset("table").read<double>(), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(group.dataset("table").read<std::int32_t>(1, 1), ElementsAre(4, 5, 6));
+  EXPECT_EQ(group.dataset("table").number<double>("factor"), 0.1);
+  EXPECT_THAT(group.dataset("ids").read<std::int64_t>(), ElementsAre(-1, std::int64_t{1} << 40));
+  EXPECT_THAT(group.dataset("empty").shape(), ElementsAre(0, 3));
+  EXPECT_FALSE(file.has("h"));
+}
+
+TEST(Hdf5, GrowsAndShortens) {
+  const Folder folder;
+  hdf5::File file(folder / "a.h5", hdf5::Mode::replace);
+  auto rows = file.create_growing<double>("rows", {2}, 3);
+  for (int i = 0; i < 10; ++i) {
+    const double row[] = {i + 0.0, i + 0.5};
+    rows.append(std::span<const double>(row));
+  }
+  EXPECT_THAT(rows.shape(), ElementsAre(10, 2));
+  rows.truncate(4);
+  const double row[] = {40, 41};
+  rows.append(std::span<const double>(row));
+  EXPECT_THAT(rows.read<double>(), ElementsAre(0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 40, 41));
+}
+
+TEST(Hdf5, SaysWhatIsWrongWithAFile) {
+  const Folder folder;
+  EXPECT_THAT(error_of<FileError>([&] { hdf5::File(folder / "none.h5", hdf5::Mode::read); }),
+              testing::AllOf(HasSubstr("none.h5: cannot read: "), HasSubstr("No such file or directory")));
+  EXPECT_THAT(error_of<FileError>([&] { hdf5::File(folder / "no/folder.h5", hdf5::Mode::replace); }),
+              testing::AllOf(HasSubstr("no/folder.h5: cannot create: "), HasSubstr("No such file or directory")));
+  std::ofstream(folder / "text.h5") << "not HDF5";
+  EXPECT_THAT(error_of<FileError>([&] { hdf5::File(folder / "text.h5", hdf5::Mode::read); }),
+              HasSubstr("file signature not found"));
+  hdf5::File file(folder / "a.h5", hdf5::Mode::replace);
+  EXPECT_THAT(error_of<FileError>([&] { file.dataset("x"); }), HasSubstr("a.h5/x: cannot open the dataset: "));
+  file.create_group("g");
+  EXPECT_THAT(error_of<FileError>([&] { file.create_group("g"); }), HasSubstr("name already exists"));
+  const double three[] = {1, 2, 3};
+  EXPECT_THAT(error_of<FileError>([&] {
+                file.write("w", {2, 2}, std::span<const double>(three));
+              }),
+              HasSubstr("cannot write 3 numbers into a shape of 4"));
+  auto rows = file.create_growing<double>("rows", {2}, 3);
+  EXPECT_THAT(error_of<FileError>([&] { rows.append(std::span<const double>(three)); }), HasSubstr("a row has 2"));
+}
+
+// A limit on the size of files stands in for a full disk: write() fails all the same.
+TEST(Hdf5, SaysThatTheDiskIsFull) {
+  const Folder folder;
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 1 << 16;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  std::string text;
+  {
+    hdf5::File file(folder / "a.h5", hdf5::Mode::replace);
+    const std::vector<double> many(1 << 16, 1.0);
+    text = error_of<FileError>([&] {
+      file.write("many", {many.size()}, std::span(many));
+      file.close();
+    });
+    setrlimit(RLIMIT_FSIZE, &before);
+  }
+  signal(SIGXFSZ, handler);
+  EXPECT_THAT(text, testing::AllOf(HasSubstr("a.h5"), HasSubstr("cannot write: "), HasSubstr("File too large")));
+}
+
+}  // namespace
+}  // namespace grit

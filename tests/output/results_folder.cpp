@@ -1,0 +1,192 @@
+#include "output/results_folder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <boost/property_tree/xml_parser.hpp>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "fake_world.hpp"
+#include "folder.hpp"
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<ProbeGroup> probes{
+    {"test", {{"shear_displacement", "m", "", {}}, {"stress_ratio", "1", "", {}}, {"profile", "m", "", {4}}}},
+    {"energy", {{"kinetic_energy", "J", "", {}}}}};
+
+ResultsOptions options(const std::filesystem::path& folder) {
+  ResultsOptions options;
+  options.folder = folder;
+  options.title = "direct shear";
+  options.facts.description = {{"title", "direct shear"}, {"seed", 4}};
+  options.facts.seed = 4;
+  options.facts.threads = 2;
+  options.facts.plugins.push_back({"contact", "linear-rolling", "1.0", "/lib/linear-rolling.so", build_tag()});
+  options.picture = PictureRequest{"test/shear_displacement", {"test/stress_ratio", "energy/kinetic_energy"}};
+  return options;
+}
+
+FakeWorld world_of_two() {
+  FakeWorld world;
+  world.add(4, {0.1, 0.2, 1.0 / 3}, 0.05);
+  world.add(1, {0.5, 0.2, 0.3}, 0.05);
+  return world;
+}
+
+void sample(ResultsFolder& results, const FakeWorld& world, double x, double y) {
+  const double displacement[] = {x}, ratio[] = {y}, profile[] = {0, 1, 2, 3}, energy[] = {x * y};
+  const std::span<const double> test[] = {displacement, ratio, profile}, rest[] = {energy};
+  results.sample(0, world, test);
+  results.sample(1, world, rest);
+}
+
+TEST(ResultsFolder, HoldsAWholeRun) {
+  const Folder folder;
+  auto world = world_of_two();
+  ResultsFolder results(options(folder / "run"));
+  EXPECT_EQ(json::parse(text_of(folder / "run/description.json")).at("seed"), 4);
+  results.begin(world, probes);
+  auto run = json::parse(text_of(folder / "run/run.json"));
+  EXPECT_EQ(run.at("status"), "running");
+  EXPECT_EQ(run.at("description").at("title"), "direct shear");
+  EXPECT_EQ(run.at("seed"), 4);
+  EXPECT_EQ(run.at("threads"), 2);
+  EXPECT_EQ(run.at("plugins").at(0).at("name"), "linear-rolling");
+  EXPECT_EQ(run.at("plugins").at(0).at("build").at("compiler"), build_tag().compiler);
+  EXPECT_NE(run.at("grit").at("version"), "");
+  EXPECT_TRUE(run.at("host").contains("cpu"));
+
+  for (int i = 0; i < 5; ++i) {
+    world.steps = static_cast<std::uint64_t>(10 * i);
+    world.now = i;
+    sample(results, world, 1e-3 * i, 0.8 - 0.1 * (i - 3) * (i - 3));
+  }
+  results.frame(world, {});
+  world.stage_name = "consolidation";
+  results.stage_ended(world, "void ratio 0.598");
+  run = json::parse(text_of(folder / "run/run.json"));
+  EXPECT_EQ(run.at("status"), "running");
+  EXPECT_EQ(run.at("stages").at(0).at("name"), "consolidation");
+  EXPECT_EQ(run.at("stages").at(0).at("reached"), "void ratio 0.598");
+  EXPECT_EQ(run.at("stages").at(0).at("step"), 40);
+
+  RunSummary summary;
+  summary.status = "done";
+  summary.steps = 40;
+  summary.time = 4;
+  summary.bodies = 2;
+  summary.time_step = 1e-6;
+  summary.critical_time_step = 1.25e-6;
+  summary.contacts_per_body = 4.5;
+  summary.wall_seconds = 2;
+  summary.particle_steps_per_second = 40;
+  summary.rebuilds = 3;
+  summary.phases = {{"contact forces", 1.5}};
+  results.finish(world, summary);
+  run = json::parse(text_of(folder / "run/run.json"));
+  EXPECT_EQ(run.at("status"), "done");
+  EXPECT_EQ(run.at("steps"), 40);
+  EXPECT_EQ(run.at("time_step_s"), 1e-6);
+  EXPECT_EQ(run.at("critical_time_step_s"), 1.25e-6);
+  EXPECT_EQ(run.at("contacts_per_body"), 4.5);
+  EXPECT_EQ(run.at("wall_s"), 2);
+  EXPECT_EQ(run.at("particle_steps_per_s"), 40);
+  EXPECT_EQ(run.at("rebuilds"), 3);
+  EXPECT_EQ(run.at("phases_s").at("contact forces"), 1.5);
+
+  const auto file = hdf5::File(folder / "run/series.h5", hdf5::Mode::read).group("test").dataset("profile");
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/frames/000000.h5"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/frames.xdmf"));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path()))
+    EXPECT_NE(entry.path().extension(), ".part");
+
+  boost::property_tree::ptree svg;
+  read_xml((folder / "run/picture.svg").string(), svg);
+  EXPECT_EQ(svg.get<std::string>("svg.title"), "direct shear");
+  EXPECT_THAT(text_of(folder / "run/picture.svg"), AllOf(HasSubstr("shear displacement [mm]"), HasSubstr(">0.800<")));
+}
+
+TEST(ResultsFolder, WritesGrainsThatReadBackToTheBit) {
+  const Folder folder;
+  write_packing(folder / "packing.txt", world_of_two());
+  std::istringstream text(text_of(folder / "packing.txt"));
+  std::string comment;
+  std::getline(text, comment);
+  EXPECT_EQ(comment, "# x y z radius [m]");
+  const std::vector<double> numbers{std::istream_iterator<double>(text), {}};
+  EXPECT_THAT(numbers, ElementsAre(0.5, 0.2, 0.3, 0.05, 0.1, 0.2, 1.0 / 3, 0.05));
+}
+
+TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
+  const Folder folder;
+  const auto world = world_of_two();
+  ResultsFolder(options(folder / "run")).begin(world, probes);
+  std::ofstream(folder / "run/notes.txt") << "mine";
+  std::ofstream(folder / "run/checkpoint.h5") << "old";
+  EXPECT_THAT(error_of<FileError>([&] { ResultsFolder(options(folder / "run")); }),
+              AllOf(HasSubstr("run: holds a run already (run.json is there)"), HasSubstr("choose another folder")));
+  auto again = options(folder / "run");
+  again.existing = Existing::overwrite;
+  ResultsFolder results(again);
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/series.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5"));
+  EXPECT_EQ(text_of(folder / "run/notes.txt"), "mine");
+}
+
+TEST(ResultsFolder, GoesOnWithARun) {
+  const Folder folder;
+  auto world = world_of_two();
+  {
+    ResultsFolder results(options(folder / "run"));
+    results.begin(world, probes);
+    for (world.steps = 10; world.steps <= 30; world.steps += 10) {
+      sample(results, world, 0.001, 0.5);
+      results.frame(world, {});
+      results.stage_ended(world, "step " + std::to_string(world.steps));
+    }
+  }
+  auto more = options(folder / "run");
+  more.existing = Existing::resume;
+  ResultsFolder results(more);
+  world.steps = 20;
+  results.begin(world, probes);
+  world.steps = 21;
+  sample(results, world, 0.002, 0.6);
+  RunSummary summary;
+  summary.status = "done";
+  results.finish(world, summary);
+  const auto series = hdf5::File(folder / "run/series.h5", hdf5::Mode::read);
+  EXPECT_THAT(series.group("test").dataset("step").read<int>(), ElementsAre(10, 20, 21));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/frames/000002.h5"));
+  const auto run = json::parse(text_of(folder / "run/run.json"));
+  EXPECT_EQ(run.at("stages").size(), 2u);
+  EXPECT_EQ(run.at("resumed_at_step"), 20);
+}
+
+TEST(ResultsFolder, SaysWhyItCannotBeMade) {
+  const Folder folder;
+  std::ofstream(folder / "file") << "x";
+  EXPECT_THAT(error_of<FileError>([&] { ResultsFolder(options(folder / "file/run")); }),
+              AllOf(HasSubstr("file/run: cannot make the folder of results: "), HasSubstr("Not a directory")));
+}
+
+TEST(ResultsFolder, KnowsTheChannelsOfThePicture) {
+  const Folder folder;
+  auto wrong = options(folder / "run");
+  wrong.picture->x = "test/profile";
+  ResultsFolder results(wrong);
+  EXPECT_THAT(error_of<Error>([&] { results.begin(world_of_two(), probes); }),
+              AllOf(HasSubstr("no probe has a channel 'test/profile'"),
+                    HasSubstr("test/shear_displacement, test/stress_ratio, energy/kinetic_energy")));
+}
+
+}  // namespace
+}  // namespace grit

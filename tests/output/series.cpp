@@ -1,0 +1,137 @@
+#include "output/series.hpp"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "folder.hpp"
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::vector<ProbeGroup> probes{
+    {"test", {{"stress_ratio", "1", "shear over normal stress", {}}, {"shear_displacement", "m", "of the frame", {}}}},
+    {"profile", {{"velocity", "m/s", "by height", {3}}, {"stress", "Pa", "compression positive", {2, 2}}}}};
+
+void append(Series& series, std::uint64_t step) {
+  const double s = static_cast<double>(step);
+  const double ratio[] = {s}, shear[] = {-s}, velocity[] = {s, s + 1, s + 2}, stress[] = {s, s, s, 2 * s};
+  const std::span<const double> test[] = {ratio, shear}, profile[] = {velocity, stress};
+  series.append(0, 0.5 * s, step, test);
+  if (step % 2 == 0) series.append(1, 0.5 * s, step, profile);
+}
+
+TEST(Series, HasAGroupAProbeAndADatasetAChannel) {
+  const Folder folder;
+  Series series(folder / "series.h5", probes);
+  for (std::uint64_t step = 0; step < 5; ++step) append(series, step);
+  series.close();
+
+  const hdf5::File file(folder / "series.h5", hdf5::Mode::read);
+  EXPECT_THAT(file.names(), ElementsAre("profile", "test"));
+  const auto test = file.group("test");
+  EXPECT_THAT(test.names(), ElementsAre("shear_displacement", "step", "stress_ratio", "time"));
+  EXPECT_THAT(test.dataset("time").read<double>(), ElementsAre(0, 0.5, 1, 1.5, 2));
+  EXPECT_THAT(test.dataset("step").read<std::uint64_t>(), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(test.dataset("shear_displacement").read<double>(), ElementsAre(0, -1, -2, -3, -4));
+  EXPECT_EQ(test.dataset("shear_displacement").text("units"), "m");
+  EXPECT_EQ(test.dataset("shear_displacement").text("long_name"), "of the frame");
+  EXPECT_EQ(test.dataset("time").text("units"), "s");
+  const auto profile = file.group("profile");
+  EXPECT_THAT(profile.dataset("step").read<std::uint64_t>(), ElementsAre(0, 2, 4));
+  EXPECT_THAT(profile.dataset("velocity").shape(), ElementsAre(3, 3));
+  EXPECT_THAT(profile.dataset("stress").shape(), ElementsAre(3, 2, 2));
+  EXPECT_THAT(profile.dataset("velocity").read<double>(1, 2), ElementsAre(2, 3, 4, 4, 5, 6));
+}
+
+// The reader is a process of its own, begun before the file is opened: else the library would hand out the open one.
+TEST(Series, CanBeReadWhileItIsWritten) {
+  const Folder folder;
+  int written[2];
+  ASSERT_EQ(pipe(written), 0);
+  const pid_t reader = fork();
+  if (reader == 0) {
+    char word;
+    if (read(written[0], &word, 1) != 1) _exit(2);
+    const hdf5::File file(folder / "series.h5", hdf5::Mode::read);
+    const auto steps = file.group("test").dataset("step").read<std::uint64_t>();
+    _exit(steps == std::vector<std::uint64_t>{7} ? 0 : 1);
+  }
+  Series series(folder / "series.h5", probes, Flushing{.numbers = 1});
+  append(series, 7);
+  ASSERT_EQ(write(written[1], "!", 1), 1);
+  int status = 0;
+  waitpid(reader, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+TEST(Series, GoesOnFromAStep) {
+  const Folder folder;
+  {
+    Series series(folder / "series.h5", probes);
+    for (std::uint64_t step = 0; step < 10; ++step) append(series, step);
+    series.close();
+  }
+  auto more = probes;
+  more.push_back({"late", {{"x", "1", "", {}}}});
+  {
+    Series series(folder / "series.h5", more, 5);
+    for (std::uint64_t step = 6; step < 8; ++step) append(series, 100 * step);
+    series.close();
+  }
+  {
+    const hdf5::File file(folder / "series.h5", hdf5::Mode::read);
+    EXPECT_THAT(file.group("test").dataset("step").read<std::uint64_t>(), ElementsAre(0, 1, 2, 3, 4, 5, 600, 700));
+    EXPECT_THAT(file.group("profile").dataset("step").read<std::uint64_t>(), ElementsAre(0, 2, 4, 600, 700));
+    EXPECT_THAT(file.group("late").dataset("x").shape(), ElementsAre(0));
+  }
+  auto other = probes;
+  other[1].channels[0].shape = {4};
+  EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", other, 5); }),
+              testing::AllOf(HasSubstr("series.h5/profile/velocity"), HasSubstr("another shape")));
+}
+
+// A child writes and says after each flush how many samples it has flushed; it is killed in the midst of that.
+TEST(Series, SurvivesSigkill) {
+  const Folder folder;
+  for (int attempt = 0; attempt < 30; ++attempt) {
+    const auto path = folder / (std::to_string(attempt) + ".h5");
+    int flushed[2];
+    ASSERT_EQ(pipe(flushed), 0);
+    const pid_t writer = fork();
+    if (writer == 0) {
+      Series series(path, probes, Flushing{.numbers = 1 << 30, .interval = std::chrono::hours(1)});
+      for (std::uint64_t step = 0;; ++step) {
+        append(series, step);
+        if (step % 100 < 99) continue;
+        series.flush();
+        const std::uint64_t samples = step + 1;
+        if (write(flushed[1], &samples, sizeof samples) < 0) _exit(1);
+      }
+    }
+    close(flushed[1]);
+    std::uint64_t samples = 0;
+    for (int reports = 0; reports < 3 + 2 * attempt; ++reports)
+      ASSERT_EQ(read(flushed[0], &samples, sizeof samples), static_cast<ssize_t>(sizeof samples));
+    kill(writer, SIGKILL);
+    while (read(flushed[0], &samples, sizeof samples) > 0) {
+    }
+    close(flushed[0]);
+    waitpid(writer, nullptr, 0);
+
+    const hdf5::File file(path, hdf5::Mode::read);
+    const auto ratio = file.group("test").dataset("stress_ratio");
+    ASSERT_GE(ratio.rows(), samples);
+    const auto values = ratio.read<double>(0, samples);
+    for (std::uint64_t i = 0; i < samples; ++i) ASSERT_EQ(values[i], static_cast<double>(i)) << "of " << samples;
+    ASSERT_GE(file.group("profile").dataset("velocity").rows(), samples / 2);
+  }
+}
+
+}  // namespace
+}  // namespace grit
