@@ -1,0 +1,96 @@
+// A world made by hand, for whatever looks at one: fill the public members.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "grit/world.hpp"
+
+namespace grit {
+
+struct FakeWorld : World {
+  double now = 0, time_step = 1e-6, density = 2600;
+  std::uint64_t steps = 0;
+  std::string stage_name = "stage";
+  std::vector<std::uint32_t> id;
+  std::vector<Row> position, velocity, spin, force, moment;
+  std::vector<std::uint8_t> material;
+  std::vector<Vec3> rotation, displacement;
+  std::vector<Contact> contact;  ///< pairs first
+  std::vector<WallView> wall;
+  Cell box{Vec3::Constant(-std::numeric_limits<double>::infinity()),
+           Vec3::Constant(std::numeric_limits<double>::infinity())};
+  Region whole{Vec3::Zero(), Vec3::Ones()};  ///< the specimen
+
+  /// A sphere of `density`; its index.
+  std::uint32_t add(const Vec3& centre, double radius, const Vec3& speed = Vec3::Zero(),
+                    const Vec3& turn = Vec3::Zero()) {
+    const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+    const auto index = static_cast<std::uint32_t>(position.size());
+    id.push_back(index);
+    position.push_back({centre[0], centre[1], centre[2], radius});
+    velocity.push_back({speed[0], speed[1], speed[2], 1 / mass});
+    spin.push_back({turn[0], turn[1], turn[2], 1 / (0.4 * mass * radius * radius)});
+    force.push_back({});
+    moment.push_back({});
+    material.push_back(0);
+    return index;
+  }
+  /// A contact of two bodies with this force on b; the branch may cross a periodic side.
+  void touch(std::uint32_t a, std::uint32_t b, const Vec3& branch, const Vec3& force_on_b) {
+    Contact pair;
+    pair.a = a, pair.b = b;
+    fill(pair, branch, force_on_b);
+    pair.overlap = position[a].w + position[b].w - branch.norm();
+  }
+  /// A touch of a wall, `branch` reaching from the body's centre to the touching point.
+  void touch_wall(std::uint32_t body, std::uint32_t wall_index, const Vec3& branch, const Vec3& force_on_wall) {
+    Contact touching;
+    touching.a = body, touching.b = wall_index, touching.with_wall = true;
+    fill(touching, branch, force_on_wall);
+    touching.overlap = position[body].w - branch.norm();
+  }
+  void make_periodic(const Vec3& low, const Vec3& high) { box = {low, high, {true, true, true}}, whole = {low, high}; }
+
+  double time() const override { return now; }
+  std::uint64_t step() const override { return steps; }
+  double dt() const override { return time_step; }
+  const std::string& stage() const override { return stage_name; }
+  std::span<const std::uint32_t> ids() const override { return id; }
+  std::span<const Row> positions() const override { return position; }
+  std::span<const Row> velocities() const override { return velocity; }
+  std::span<const Row> spins() const override { return spin; }
+  std::span<const std::uint8_t> materials() const override { return material; }
+  std::span<const Vec3> rotations() const override { return rotation; }
+  std::span<const Vec3> displacements() const override { return displacement; }
+  std::span<const Row> forces() const override { return force; }
+  std::span<const Row> moments() const override { return moment; }
+  std::span<const Contact> contacts() const override { return contact; }
+  std::span<const WallView> walls() const override { return wall; }
+  const Cell& cell() const override { return box; }
+  Region specimen() const override { return whole; }
+  Region interior(double margin) const override {
+    Region inner = whole;
+    for (int k = 0; k < 3; ++k)
+      if (!box.periodic[k]) inner.low[k] += margin, inner.high[k] -= margin;
+    return inner;
+  }
+  double mean_diameter() const override {
+    double sum = 0;
+    for (const auto& body : position) sum += 2 * body.w;
+    return position.empty() ? 0 : sum / static_cast<double>(position.size());
+  }
+  double solid_density() const override { return density; }
+
+ private:
+  void fill(Contact& made, const Vec3& branch, const Vec3& force_on_b) {
+    made.branch = branch, made.normal = branch.normalized(), made.force = force_on_b, made.moment = Vec3::Zero();
+    made.normal_force = force_on_b.dot(made.normal);
+    contact.push_back(made);
+  }
+};
+
+}  // namespace grit
