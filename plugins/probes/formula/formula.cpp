@@ -1,0 +1,205 @@
+// Curves through muParser. See README.md.
+#include "formula.hpp"
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <deque>
+#include <functional>
+#include <regex>
+
+#include "../specimen.hpp"
+#include "../wall_names.hpp"
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+namespace {
+
+struct WallVector {
+  const char* suffix;
+  Vec3 WallView::* member;
+};
+constexpr WallVector wall_vectors[] = {{"_force", &WallView::force},
+                                       {"_travel", &WallView::position},
+                                       {"_stage_travel", &WallView::stage_position},
+                                       {"_velocity", &WallView::velocity}};
+
+struct WallScalar {
+  const char* suffix;
+  double WallView::* member;
+};
+constexpr WallScalar wall_scalars[] = {{"_pressure", &WallView::pressure}, {"_area", &WallView::area}};
+
+/// Something that a formula may name.
+struct Variable {
+  std::string name;
+  std::function<double(const World&)> read;
+  bool used = false;
+  double value = 0;
+};
+
+std::deque<Variable> variables_of(const World& world) {
+  std::deque<Variable> variables;
+  const auto add = [&](std::string name, std::function<double(const World&)> read) {
+    const auto same = [&](const Variable& other) { return other.name == name; };
+    if (std::any_of(variables.begin(), variables.end(), same))
+      throw Error("probe formula: two walls would both give the variable \"" + name + "\"; walls are: " +
+                  listed(wall_names(world)) + "; rename one of them");
+    variables.push_back({std::move(name), std::move(read)});
+  };
+  add("time", [](const World& w) { return w.time(); });
+  add("step", [](const World& w) { return static_cast<double>(w.step()); });
+  add("mean_diameter", [](const World& w) { return w.mean_diameter(); });
+  add("void_ratio", [](const World& w) { return void_ratio(w, interior_box(w)); });
+  for (std::size_t i = 0; i < world.walls().size(); ++i) {
+    const std::string stem = wall_stem(world.walls()[i].name);
+    for (const auto& [suffix, member] : wall_vectors)
+      for (int k = 0; k < 3; ++k)
+        add(stem + suffix + '_' + "xyz"[k], [i, k, member = member](const World& w) { return (w.walls()[i].*member)[k]; });
+    for (const auto& [suffix, member] : wall_scalars)
+      add(stem + suffix, [i, member = member](const World& w) { return w.walls()[i].*member; });
+  }
+  return variables;
+}
+
+/// What a formula may name, without repeating the same for each wall.
+std::string known_names(const World& world, const std::map<std::string, FormulaProbe::Constant>& constants) {
+  std::string known = "time, step, mean_diameter, void_ratio";
+  for (const auto& constant : constants) known += ", " + constant.first;
+  if (world.walls().empty()) return known;
+  std::vector<std::string> stems;
+  for (const auto& name : wall_names(world)) stems.push_back(wall_stem(name));
+  known += "; of each wall (" + listed(stems) + "): ";
+  for (const auto& vector : wall_vectors) known += std::string("<wall>") + vector.suffix + "_x/_y/_z, ";
+  return known + "<wall>_pressure, <wall>_area";
+}
+
+bool is_name(const std::string& text) {
+  static const std::regex pattern("[A-Za-z_][A-Za-z0-9_]*");
+  return std::regex_match(text, pattern);
+}
+
+bool is_snake_case(const std::string& text) {
+  static const std::regex pattern("[a-z][a-z0-9_]*");
+  return std::regex_match(text, pattern);
+}
+
+/// Where a formula assigns; npos if it does not. muParser takes "a = 1" for an assignment to its variable.
+std::size_t assignment(const std::string& formula) {
+  for (std::size_t i = 0; i < formula.size(); ++i) {
+    if (formula[i] != '=') continue;
+    const bool compares = (i > 0 && std::string_view("<>!=").find(formula[i - 1]) != std::string_view::npos) ||
+                          (i + 1 < formula.size() && formula[i + 1] == '=');
+    if (!compares) return i;
+  }
+  return std::string::npos;
+}
+
+/// muParser's message without its count of characters, which begins at 0.
+std::string plain_message(const mu::ParserError& error) {
+  static const std::regex position("( found)? at (expression )?position -?[0-9]+");
+  std::string message = std::regex_replace(error.GetMsg(), position, "");
+  while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
+  if (!message.empty()) message.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(message.front())));
+  return message;
+}
+
+}  // namespace
+
+struct FormulaProbe::Evaluation {
+  std::deque<Variable> variables;
+  std::deque<mu::Parser> parsers;  ///< in the order of the curves
+};
+
+FormulaProbe::FormulaProbe() = default;
+FormulaProbe::~FormulaProbe() = default;
+
+void FormulaProbe::Curve::declare(Parameters& parameters) {
+  parameters.add("formula", formula).required().doc("expression in muParser's syntax, of SI numbers; see the README for the names");
+  parameters.add("unit", unit).doc("unit of the result, UDUNITS spelling; \"1\" is dimensionless");
+  parameters.add("doc", doc).doc("one line on the curve, with its sign convention; empty: the formula");
+}
+
+void FormulaProbe::Constant::declare(Parameters& parameters) {
+  parameters.add("value", value).required().doc("the number, SI");
+  parameters.add("doc", doc).doc("what it is");
+}
+
+void FormulaProbe::declare(Parameters& parameters) {
+  parameters.add("curves", curves).required().doc("curves by name (snake_case); each becomes a channel");
+  parameters.add("constants", constants).doc("numbers that formulas may name");
+  parameters.check([this](const Complain& complain) {
+    if (curves.empty()) complain("curves", "no curve", "at least one");
+    for (const auto& curve : curves)
+      if (!is_snake_case(curve.first))
+        complain("curves", "the name \"" + curve.first + "\"", "small letters, digits and _, a letter first");
+    for (const auto& constant : constants)
+      if (!is_name(constant.first))
+        complain("constants", "the name \"" + constant.first + "\"", "letters, digits and _, no digit first");
+  });
+}
+
+void FormulaProbe::prepare(const World& world) {
+  auto evaluation = std::make_unique<Evaluation>();
+  auto& variables = evaluation->variables = variables_of(world);
+  std::vector<std::string> names;
+  for (const auto& variable : variables) names.push_back(variable.name);
+  for (const auto& constant : constants) {
+    if (std::find(names.begin(), names.end(), constant.first) != names.end())
+      throw Error("probe formula, /constants/" + constant.first + ": a variable has this name; choose another");
+    names.push_back(constant.first);
+  }
+
+  for (const auto& [name, curve] : curves) {
+    const auto fail = [&, &name = name, &curve = curve](std::size_t position, const std::string& message) {
+      throw Error("probe formula, /curves/" + name + "/formula: \"" + curve.formula + "\": " + message + " at character " +
+                  std::to_string(position + 1));
+    };
+    if (const auto at = assignment(curve.formula); at != std::string::npos)
+      fail(at, "a formula only reads, \"==\" compares: found \"=\"");
+    auto& parser = evaluation->parsers.emplace_back();
+    try {
+      for (auto& variable : variables) parser.DefineVar(variable.name, &variable.value);
+      for (const auto& constant : constants) parser.DefineConst(constant.first, constant.second.value);
+      parser.SetExpr(curve.formula);
+      parser.Eval();
+      for (const auto& used : parser.GetUsedVar())
+        for (auto& variable : variables) variable.used |= variable.name == used.first;
+    } catch (const mu::ParserError& error) {
+      const auto position = static_cast<std::size_t>(std::max(error.GetPos(), 0));
+      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken()))
+        fail(position, "there is no \"" + error.GetToken() + "\" (the nearest name is \"" +
+                           nearest_name(error.GetToken(), names) + "\"; names are: " + known_names(world, constants) + ")");
+      fail(position, plain_message(error));
+    }
+    if (parser.GetNumResults() != 1) fail(curve.formula.rfind(','), "a formula has one result: found \",\"");
+  }
+  evaluation_ = std::move(evaluation);
+}
+
+std::vector<Channel> FormulaProbe::channels() const {
+  std::vector<Channel> channels;
+  for (const auto& [name, curve] : curves)
+    channels.push_back({name, curve.unit, curve.doc.empty() ? curve.formula : curve.doc, {}});
+  return channels;
+}
+
+void FormulaProbe::sample(const World& world, std::span<const std::span<double>> values) {
+  for (auto& variable : evaluation_->variables)
+    if (variable.used) variable.value = variable.read(world);
+  auto value = values.begin();
+  for (auto& parser : evaluation_->parsers) value++->front() = parser.Eval();
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "probe",
+                                     .name = "formula",
+                                     .version = "1.0.0",
+                                     .doc = "curves written as formulas of wall forces, ways, void ratio and time",
+                                     .make_probe = []() -> grit::Probe* { return new grit::FormulaProbe; }};
+  return &info;
+}

@@ -1,0 +1,174 @@
+#include "formula.hpp"
+
+#include <gmock/gmock.h>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+/// Counts who looks at the grains.
+struct WatchedWorld : FakeWorld {
+  mutable int looks = 0;
+  std::span<const Row> positions() const override { return ++looks, FakeWorld::positions(); }
+};
+
+WatchedWorld shear_box() {
+  WatchedWorld world;
+  world.now = 0.5, world.steps = 1000;
+  world.wall = {{.name = "upper-left"}, {.name = "top"}};
+  for (auto& wall : world.wall)
+    wall.spin = wall.moment = wall.normal = Vec3::Zero();
+  auto& left = world.wall[0];
+  left.position = {6e-3, 1e-3, 2e-3}, left.stage_position = {5e-3, 0.1, 0.2}, left.velocity = {0.1, 0.2, 0.3};
+  left.force = {-120, 3, 4};
+  auto& top = world.wall[1];
+  top.position = {0, 0, 3e-4}, top.stage_position = {0, 0, 2e-4}, top.velocity = {0, 0, 1e-5};
+  top.force = {0, 0, 200}, top.area = 4e-4, top.pressure = 5e5;
+  world.add({0.5, 0.5, 0.5}, 0.1);
+  return world;
+}
+
+double value_of(const std::string& formula, const World& world = shear_box()) {
+  FormulaProbe probe;
+  probe.curves["curve"].formula = formula;
+  probe.constants["length"].value = 0.06;
+  probe.prepare(world);
+  return channel_value(probe, world, "curve");
+}
+
+std::string error_of(const std::string& formula, const World& world = shear_box()) {
+  try {
+    value_of(formula, world);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Formula, KnowsTheWorld) {
+  EXPECT_DOUBLE_EQ(value_of("time"), 0.5);
+  EXPECT_DOUBLE_EQ(value_of("step"), 1000);
+  EXPECT_DOUBLE_EQ(value_of("mean_diameter"), 0.2);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_force_x"), -120);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_force_y"), 3);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_force_z"), 4);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_travel_x"), 6e-3);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_stage_travel_z"), 0.2);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_velocity_y"), 0.2);
+  EXPECT_DOUBLE_EQ(value_of("top_pressure"), 5e5);
+  EXPECT_DOUBLE_EQ(value_of("top_area"), 4e-4);
+  EXPECT_DOUBLE_EQ(value_of("length"), 0.06);
+}
+
+TEST(Formula, TakesVoidRatioOfTheInterior) {
+  const double inner = 0.6 * 0.6 * 0.6, solid = 4.0 / 3 * std::numbers::pi * 1e-3;  // one diameter, 0.2, off the walls
+  EXPECT_NEAR(value_of("void_ratio"), (inner - solid) / solid, 1e-12);
+}
+
+TEST(Formula, ComputesTestCurves) {
+  EXPECT_DOUBLE_EQ(value_of("-upper_left_force_x / top_force_z"), 0.6);
+  EXPECT_DOUBLE_EQ(value_of("upper_left_stage_travel_x / length"), 5e-3 / 0.06);
+  EXPECT_DOUBLE_EQ(value_of("top_pressure > 1e6 ? 1 : 2"), 2);
+  EXPECT_DOUBLE_EQ(value_of("time == 0.5 && step >= 1000 && step <= 1000 && step != 3"), 1);
+  EXPECT_DOUBLE_EQ(value_of("ln(exp(2)) + log10(100) + max(1, 3) + sqrt(4) + 2^3"), 17);
+  EXPECT_TRUE(std::isinf(value_of("1 / top_force_x")));
+}
+
+TEST(Formula, FollowsTheWorld) {
+  WatchedWorld world = shear_box();
+  FormulaProbe probe;
+  probe.curves["b"].formula = "time", probe.curves["a"].formula = "2 * time + top_force_z";
+  probe.prepare(world);
+  world.now = 7, world.wall[1].force.z() = 1;
+  EXPECT_EQ(channel_value(probe, world, "a"), 15);
+  EXPECT_EQ(channel_value(probe, world, "b"), 7);
+}
+
+TEST(Formula, LooksAtGrainsOnlyForVoidRatio) {
+  const WatchedWorld world = shear_box();
+  FormulaProbe probe;
+  probe.curves["curve"].formula = "time + top_force_x";
+  probe.prepare(world);
+  channel_value(probe, world, "curve");
+  EXPECT_EQ(world.looks, 0);
+  probe.curves["curve"].formula = "void_ratio";
+  probe.prepare(world);
+  channel_value(probe, world, "curve");
+  EXPECT_GT(world.looks, 0);
+}
+
+TEST(Formula, DescribesItsCurves) {
+  FormulaProbe probe;
+  probe.curves["ratio"] = {"time / 2", "s", ""};
+  probe.curves["stress"] = {"top_pressure", "Pa", "vertical stress, positive in compression"};
+  const auto channels = probe.channels();
+  EXPECT_EQ(channels[0].name, "ratio");
+  EXPECT_EQ(channels[0].unit, "s");
+  EXPECT_EQ(channels[0].doc, "time / 2");
+  EXPECT_EQ(channels[1].doc, "vertical stress, positive in compression");
+}
+
+TEST(Formula, NamesTheNearestVariable) {
+  EXPECT_EQ(error_of("2 * top_presure"),
+            "probe formula, /curves/curve/formula: \"2 * top_presure\": there is no \"top_presure\" (the nearest name is "
+            "\"top_pressure\"; names are: time, step, mean_diameter, void_ratio, length; of each wall (upper_left, top): "
+            "<wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, <wall>_velocity_x/_y/_z, "
+            "<wall>_pressure, <wall>_area) at character 5");
+}
+
+TEST(Formula, SaysWhereItCannotBeRead) {
+  EXPECT_EQ(error_of("2 + "), "probe formula, /curves/curve/formula: \"2 + \": unexpected end of expression at character 5");
+  EXPECT_EQ(error_of("(time + 1"),
+            "probe formula, /curves/curve/formula: \"(time + 1\": missing parenthesis at character 10");
+  EXPECT_THAT(error_of("time time"), HasSubstr("at character 6"));
+  EXPECT_THAT(error_of("time $ 2"), HasSubstr("at character 6"));
+  EXPECT_THAT(error_of(""), HasSubstr("/curves/curve/formula: \"\": "));
+  EXPECT_THAT(error_of("sinn(2)"), HasSubstr("there is no \"sinn\""));
+}
+
+TEST(Formula, NeitherAssignsNorLists) {
+  EXPECT_THAT(error_of("time = 3"), HasSubstr("found \"=\" at character 6"));
+  EXPECT_THAT(error_of("time, step"), HasSubstr("a formula has one result: found \",\" at character 5"));
+}
+
+TEST(Formula, RefusesNamesThatMeanTwoThings) {
+  WatchedWorld world = shear_box();
+  world.wall.push_back(world.wall[0]);
+  world.wall.back().name = "upper_left";
+  EXPECT_THAT(error_of("time", world), HasSubstr("two walls would both give the variable \"upper_left_force_x\""));
+
+  FormulaProbe probe;
+  probe.curves["curve"].formula = "time";
+  probe.constants["step"].value = 1;
+  EXPECT_THAT([&] { probe.prepare(shear_box()); },
+              testing::ThrowsMessage<Error>("probe formula, /constants/step: a variable has this name; choose another"));
+}
+
+TEST(Formula, ChecksNames) {
+  FormulaProbe probe;
+  EXPECT_EQ(complaints(probe), "curves: found no curve, allowed: at least one\n");
+  probe.curves["Stress Ratio"].formula = "time";
+  probe.constants["1st"].value = 1;
+  EXPECT_EQ(complaints(probe),
+            "curves: found the name \"Stress Ratio\", allowed: small letters, digits and _, a letter first\n"
+            "constants: found the name \"1st\", allowed: letters, digits and _, no digit first\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(Formula, ProbeContract,
+                         testing::Values(ProbeCase{"curves",
+                                                   [] {
+                                                     auto probe = std::make_shared<FormulaProbe>();
+                                                     probe->curves["stress_ratio"].formula =
+                                                         "bottom_force_x / bottom_force_z";
+                                                     probe->curves["void_ratio"] = {"void_ratio", "1",
+                                                                                    "of the interior; infinite without solids"};
+                                                     probe->curves["settlement"] = {"-top_wall_travel_z", "m", ""};
+                                                     return probe;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit

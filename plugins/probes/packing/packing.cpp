@@ -1,0 +1,192 @@
+// Figures of a specimen, and averaging cells. See README.md.
+#include "packing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../specimen.hpp"
+#include "../wall_names.hpp"
+#include "averaging_cells.hpp"
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+namespace {
+
+/// Grains that touch grains.
+struct Coordination {
+  double number = 0, mechanical = 0, rattler_share = 0;
+};
+
+Coordination coordination(const World& world) {
+  struct Touches {
+    unsigned grains = 0, walls = 0;
+  };
+  std::vector<Touches> touches(world.positions().size());
+  for (const auto& contact : world.contacts()) {
+    if (contact.with_wall) ++touches[contact.a].walls;
+    else ++touches[contact.a].grains, ++touches[contact.b].grains;
+  }
+  double all = 0, held = 0, of_held = 0;
+  for (const auto& grain : touches) {
+    all += grain.grains;
+    if (grain.grains + grain.walls >= 2) ++held, of_held += grain.grains;
+  }
+  const auto grains = static_cast<double>(touches.size());
+  if (touches.empty()) return {};
+  return {all / grains, held > 0 ? of_held / held : 0, 1 - held / grains};
+}
+
+/// q = sqrt(3/2 s : s), s the deviator of the symmetric part.
+double deviatoric(const Mat3& stress) {
+  const Mat3 symmetric = 0.5 * (stress + stress.transpose());
+  const Mat3 deviator = symmetric - symmetric.trace() / 3 * Mat3::Identity();
+  return std::sqrt(1.5) * deviator.norm();
+}
+
+struct Figures {
+  double void_ratio, void_ratio_overall, coordination_number, coordination_number_mechanical, rattler_share, mean_stress,
+      deviatoric_stress, kinetic_energy, unbalanced_force, mean_contact_force, inertial_number, largest_overlap;
+};
+
+/// A channel and where its number comes from.
+struct Figure {
+  const char *name, *unit, *doc;
+  double Figures::* value;
+};
+
+constexpr Figure figures[] = {
+    {"void_ratio", "1",
+     "volume of voids over volume of solids one mean diameter or more off the walls; infinite without solids",
+     &Figures::void_ratio},
+    {"void_ratio_overall", "1", "the same of the whole specimen, up to the walls; infinite without solids",
+     &Figures::void_ratio_overall},
+    {"coordination_number", "1", "touching grains of a grain: 2 contacts between grains / grains",
+     &Figures::coordination_number},
+    {"coordination_number_mechanical", "1",
+     "touching grains of a grain that is no rattler (Thornton 2000); 0 if all are", &Figures::coordination_number_mechanical},
+    {"rattler_share", "1", "share of the grains with fewer than two contacts, touches of walls included",
+     &Figures::rattler_share},
+    {"mean_stress", "Pa", "mean stress p of the interior, a third of the trace, positive in compression",
+     &Figures::mean_stress},
+    {"deviatoric_stress", "Pa", "deviatoric stress q = sqrt(3/2 s:s) of the interior, never negative",
+     &Figures::deviatoric_stress},
+    {"kinetic_energy", "J", "translation and rotation of all bodies", &Figures::kinetic_energy},
+    {"unbalanced_force", "1", "mean net force of a body over the mean contact force; 0 without contacts",
+     &Figures::unbalanced_force},
+    {"mean_contact_force", "N", "mean magnitude of the normal force of a contact, walls included",
+     &Figures::mean_contact_force},
+    {"inertial_number", "1", "I = shear rate * d50 * sqrt(density / p), never negative; 0 where p <= 0 or nothing drives",
+     &Figures::inertial_number},
+    {"largest_overlap", "m", "largest overlap of a contact, walls included, positive in compression",
+     &Figures::largest_overlap},
+};
+
+}  // namespace
+
+void PackingProbe::declare(Parameters& parameters) {
+  parameters.add("shear_rate", shear_rate)
+      .unit("s-1")
+      .symbol("gamma_dot")
+      .doc("shear rate in the inertial number; left out: from driven_by");
+  parameters.add("driven_by", driven_by)
+      .doc("wall whose speed over the specimen's height (z) is the shear rate, unless shear_rate is given; empty: 0");
+  parameters.add("driven_axis", driven_axis)
+      .one_of({"", "x", "y", "z"})
+      .doc("component of that wall's velocity that drives; empty: its magnitude");
+  parameters.add("cell_size", cell_size).at_least(0.1).doc("side of an averaging cell over the mean diameter");
+  parameters.add("cell_step", cell_step)
+      .at_least(0.1)
+      .doc("distance between neighbouring averaging cells over the mean diameter");
+  parameters.add("depth_axis", depth_axis)
+      .one_of({"x", "y", "z"})
+      .doc("axis along which an averaging cell is as deep as the specimen");
+  parameters.check([this](const Complain& complain) {
+    if (shear_rate && !driven_by.empty())
+      complain("driven_by", "\"" + driven_by + "\" beside a shear_rate", "one of the two");
+  });
+}
+
+void PackingProbe::prepare(const World& world) {
+  driving_wall_.reset();
+  if (!driven_by.empty()) driving_wall_ = wall_index(world, driven_by, "probe packing, /driven_by");
+}
+
+std::vector<Channel> PackingProbe::channels() const {
+  std::vector<Channel> channels;
+  for (const auto& figure : figures) channels.push_back({figure.name, figure.unit, figure.doc, {}});
+  channels.push_back({"stress", "Pa",
+                      "Love-Weber stress of the interior, row by row (force, branch), positive in compression",
+                      {3, 3}});
+  return channels;
+}
+
+double PackingProbe::shear_rate_of(const World& world) const {
+  if (shear_rate) return std::abs(*shear_rate);
+  if (!driving_wall_) return 0;
+  const Vec3& velocity = world.walls()[*driving_wall_].velocity;
+  const Region specimen = specimen_box(world);
+  const double height = specimen.high.z() - specimen.low.z();
+  const double speed = driven_axis.empty() ? velocity.norm() : std::abs(velocity[driven_axis[0] - 'x']);
+  return height > 0 ? speed / height : 0;
+}
+
+void PackingProbe::sample(const World& world, std::span<const std::span<double>> values) {
+  const Region interior = interior_box(world);
+  const Mat3 stress = grit::mean_stress(world, interior);
+  const double p = stress.trace() / 3;
+  const auto [coordination_number, mechanical, rattlers] = coordination(world);
+  const Unrest rest = unrest(world);
+  double overlap = 0;
+  for (const auto& contact : world.contacts()) overlap = std::max(overlap, contact.overlap);
+
+  const Figures now{
+      .void_ratio = void_ratio(world, interior),
+      .void_ratio_overall = void_ratio(world, specimen_box(world)),
+      .coordination_number = coordination_number,
+      .coordination_number_mechanical = mechanical,
+      .rattler_share = rattlers,
+      .mean_stress = p,
+      .deviatoric_stress = deviatoric(stress),
+      .kinetic_energy = rest.kinetic_energy,
+      .unbalanced_force = rest.unbalanced_force,
+      .mean_contact_force = rest.mean_contact_force,
+      .inertial_number =
+          p > 0 ? shear_rate_of(world) * world.mean_diameter() * std::sqrt(world.solid_density() / p) : 0,
+      .largest_overlap = overlap,
+  };
+  auto value = values.begin();
+  for (const auto& figure : figures) value++->front() = now.*figure.value;
+  for (int i = 0; i < 9; ++i) (*value)[i] = stress(i / 3, i % 3);
+}
+
+std::vector<Field> PackingProbe::fields(const World& world) {
+  const double d50 = world.mean_diameter();
+  const auto cells =
+      averaging_cells(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
+  std::vector<Field> fields{
+      {"centre", "m", "centre of an averaging cell", 3, {}},
+      {"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}},
+      {"coordination_number", "1", "touching grains of a grain, over the grains centred in the cell; 0 without any", 1, {}},
+      {"stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}}};
+  for (auto& field : fields) field.values.reserve(field.width * cells.size());
+  for (const auto& cell : cells) {
+    const Vec3 centre = 0.5 * (cell.region.low + cell.region.high);
+    fields[0].values.insert(fields[0].values.end(), centre.begin(), centre.end());
+    fields[1].values.push_back(cell.void_ratio);
+    fields[2].values.push_back(cell.coordination_number);
+    for (int i = 0; i < 9; ++i) fields[3].values.push_back(cell.stress(i / 3, i % 3));
+  }
+  return fields;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "probe",
+                                     .name = "packing",
+                                     .version = "1.0.0",
+                                     .doc = "void ratio, coordination, stress and unrest of the specimen, and averaging cells",
+                                     .make_probe = []() -> grit::Probe* { return new grit::PackingProbe; }};
+  return &info;
+}

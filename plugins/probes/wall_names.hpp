@@ -1,0 +1,68 @@
+// Names of walls as probes turn them into names of channels and variables, and as they look them up.
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/world.hpp"
+
+namespace grit {
+
+/// How a wall's name begins the names of its channels and variables: '-' becomes '_', and a name that begins with a digit
+/// gets "wall_" in front.
+inline std::string wall_stem(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  const bool digit = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0;
+  return digit ? "wall_" + name : name;
+}
+
+/// The name with the fewest single-letter edits (Levenshtein) between it and `name`; empty if there are no names.
+inline std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
+  const auto edits = [name](const std::string& other) {
+    std::vector<std::size_t> row(other.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < name.size(); ++i) {
+      std::size_t diagonal = std::exchange(row[0], i + 1);
+      for (std::size_t j = 0; j < other.size(); ++j) {
+        const std::size_t swapped = diagonal + (name[i] == other[j] ? 0 : 1);
+        diagonal = std::exchange(row[j + 1], std::min({swapped, row[j] + 1, row[j + 1] + 1}));
+      }
+    }
+    return row.back();
+  };
+  const auto best = std::min_element(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return edits(a) < edits(b);
+  });
+  return best == names.end() ? std::string() : *best;
+}
+
+/// "a, b, c".
+inline std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
+inline std::vector<std::string> wall_names(const World& world) {
+  std::vector<std::string> names;
+  for (const auto& wall : world.walls()) names.push_back(wall.name);
+  return names;
+}
+
+/// Place of a wall in World::walls(). Throws Error, beginning with `who`, if there is no such wall.
+inline std::size_t wall_index(const World& world, const std::string& name, const std::string& who) {
+  const auto names = wall_names(world);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  if (names.empty()) throw Error(who + ": there is no wall \"" + name + "\": the scene has no walls");
+  throw Error(who + ": there is no wall \"" + name + "\"; the nearest name is \"" + nearest_name(name, names) +
+              "\"; walls are: " + listed(names));
+}
+
+}  // namespace grit

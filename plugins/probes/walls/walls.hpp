@@ -1,0 +1,31 @@
+// What walls do and bear: displacement, velocity, force, moment, pressure, touches.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grit/probe.hpp"
+
+namespace grit {
+
+class WallsProbe : public Probe {
+ public:
+  /// The walls to report, in this order; empty: all.
+  std::vector<std::string> walls;
+
+  void declare(Parameters& parameters) override;
+  /// Throws Error for a wall that does not exist, or for two that would get the same channels.
+  void prepare(const World& world) override;
+  std::vector<Channel> channels() const override;
+  void sample(const World& world, std::span<const std::span<double>> values) override;
+
+ private:
+  struct Reported {
+    std::string stem;
+    std::size_t index;  ///< in World::walls()
+  };
+  std::vector<Reported> reported_;
+};
+
+}  // namespace grit

@@ -1,0 +1,309 @@
+// What every probe must do. A plugin's test names its cases:
+//   INSTANTIATE_TEST_SUITE_P(Walls, ProbeContract, testing::Values(…), probe_case_name);
+// and links UDUNITS-2, by which units are read.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <udunits2.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <ostream>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/probe.hpp"
+#include "support/fake_world.hpp"
+
+namespace grit {
+
+/// A box of nx × ny × nz grains on a lattice, each pressed into its neighbours by a hundredth of its size, at (0, 0, 0) and up;
+/// forces, speeds and sizes differ from grain to grain. Walls "bottom" and "top-wall" bear the lowest and highest layer.
+inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3) {
+  FakeWorld world;
+  const double spacing = 0.99 * diameter;
+  const auto vary = [](int i, int period) { return 1 + 0.2 * ((i % period) - period / 2) / period; };
+  const auto index = [=](int i, int j, int k) { return static_cast<std::uint32_t>((i * ny + j) * nz + k); };
+  world.wall = {{.name = "bottom"}, {.name = "top-wall"}};
+  for (auto& wall : world.wall)
+    wall.position = wall.stage_position = wall.velocity = wall.spin = wall.force = wall.moment = Vec3::Zero();
+  world.wall[0].normal = Vec3::UnitZ(), world.wall[1].normal = -Vec3::UnitZ();
+  world.wall[1].velocity = {1e-3, 0, -1e-5}, world.wall[1].position = {2e-3, 0, -1e-4};
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      for (int k = 0; k < nz; ++k) {
+        const int count = static_cast<int>(world.position.size());
+        const auto body = world.add((Vec3(i, j, k).array() + 0.5) * spacing, 0.5 * diameter * vary(count, 7),
+                                    1e-3 * Vec3(vary(count, 3), -vary(count, 5), 0.1), Vec3(0.1, vary(count, 4), 0));
+        world.force[body] = {1e-6 * vary(count, 5), -1e-6, 2e-6, 0};
+      }
+  const double volume = spacing * spacing;
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      for (int k = 0; k < nz; ++k) {
+        const int count = static_cast<int>(world.contact.size());
+        const auto touch = [&](int di, int dj, int dk, double pressure) {
+          if (i + di < nx && j + dj < ny && k + dk < nz)
+            world.touch(index(i, j, k), index(i + di, j + dj, k + dk), spacing * Vec3(di, dj, dk),
+                        volume * pressure * vary(count, 9) * Vec3(di + 0.1, dj, dk));
+        };
+        touch(1, 0, 0, 50e3), touch(0, 1, 0, 60e3), touch(0, 0, 1, 100e3);
+      }
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      for (const int side : {0, 1}) {
+        const Vec3 out = side == 0 ? Vec3(0, 0, -1) : Vec3(0, 0, 1);
+        auto& wall = world.wall[static_cast<std::size_t>(side)];
+        world.touch_wall(index(i, j, side == 0 ? 0 : nz - 1), static_cast<std::uint32_t>(side), 0.5 * spacing * out,
+                         volume * 100e3 * out);
+        wall.force += volume * 100e3 * out, ++wall.touches;
+      }
+  for (auto& wall : world.wall) wall.area = nx * ny * volume, wall.pressure = std::abs(wall.force.z()) / wall.area;
+  world.whole = {Vec3::Zero(), spacing * Vec3(nx, ny, nz)};
+  world.now = 0.25, world.steps = 250000;
+  return world;
+}
+
+/// A probe with its parameters set, not yet prepared, and a world to look at.
+struct ProbeCase {
+  std::string name;
+  std::function<std::shared_ptr<Probe>()> make;
+  std::function<FakeWorld()> world = [] { return lattice_world(6, 4, 8); };
+};
+
+inline void PrintTo(const ProbeCase& one, std::ostream* out) { *out << one.name; }
+inline std::string probe_case_name(const testing::TestParamInfo<ProbeCase>& info) { return info.param.name; }
+
+/// Room for one sample, filled with a NaN that no computation yields; a mark behind each channel shows writing past its end.
+class SampleRoom {
+ public:
+  explicit SampleRoom(const std::vector<Channel>& channels) {
+    for (const auto& channel : channels) {
+      std::size_t size = 1;
+      for (const auto extent : channel.shape) size *= extent;
+      rooms_.emplace_back(size + 1, unwritten());
+    }
+    for (auto& room : rooms_) spans_.emplace_back(room.data(), room.size() - 1);
+  }
+  std::span<const std::span<double>> spans() const { return spans_; }
+  const std::vector<std::vector<double>>& rooms() const { return rooms_; }
+  std::span<const double> operator[](std::size_t channel) const { return spans_[channel]; }
+
+  static double unwritten() { return std::nan("0x5ca1e"); }
+  static bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+  friend bool operator==(const SampleRoom& a, const SampleRoom& b) {
+    if (a.rooms_.size() != b.rooms_.size()) return false;
+    for (std::size_t i = 0; i < a.rooms_.size(); ++i)
+      if (a.rooms_[i].size() != b.rooms_[i].size() ||
+          std::memcmp(a.rooms_[i].data(), b.rooms_[i].data(), a.rooms_[i].size() * sizeof(double)) != 0)
+        return false;
+    return true;
+  }
+
+ private:
+  std::vector<std::vector<double>> rooms_;
+  std::vector<std::span<double>> spans_;
+};
+
+/// Samples a prepared probe.
+inline SampleRoom sampled(Probe& probe, const World& world) {
+  SampleRoom room(probe.channels());
+  probe.sample(world, room.spans());
+  return room;
+}
+
+/// The values of one channel of a prepared probe. Throws Error if there is no such channel.
+inline std::vector<double> channel_values(Probe& probe, const World& world, const std::string& name) {
+  const auto channels = probe.channels();
+  const auto room = sampled(probe, world);
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    if (channels[i].name == name) return {room[i].begin(), room[i].end()};
+  throw Error("there is no channel " + name);
+}
+
+/// The same of a channel that is one number.
+inline double channel_value(Probe& probe, const World& world, const std::string& name) {
+  return channel_values(probe, world, name).at(0);
+}
+
+/// What the checks of a probe's parameters complain about, one to a line.
+inline std::string complaints(Probe& probe) {
+  Parameters parameters;
+  probe.declare(parameters);
+  std::string all;
+  for (const auto& check : parameters.checks())
+    check([&](std::string_view key, std::string_view found, std::string_view allowed) {
+      all += std::string(key) + ": found " + std::string(found) + ", allowed: " + std::string(allowed) + "\n";
+    });
+  return all;
+}
+
+class ProbeContract : public testing::TestWithParam<ProbeCase> {
+ protected:
+  void SetUp() override {
+    world_ = GetParam().world();
+    probe_ = GetParam().make();
+    probe_->prepare(world_);
+  }
+
+  static bool is_snake_case(const std::string& name) {
+    static const std::regex pattern("[a-z][a-z0-9]*(_[a-z0-9]+)*");
+    return std::regex_match(name, pattern);
+  }
+
+  /// Whether UDUNITS-2 reads the unit.
+  static bool is_unit(const std::string& text) {
+    static const std::unique_ptr<ut_system, decltype(&ut_free_system)> system = [] {
+      ut_set_error_message_handler(ut_ignore);
+      return std::unique_ptr<ut_system, decltype(&ut_free_system)>(ut_read_xml(nullptr), &ut_free_system);
+    }();
+    const std::unique_ptr<ut_unit, decltype(&ut_free)> unit(ut_parse(system.get(), text.c_str(), UT_UTF8), &ut_free);
+    return !text.empty() && unit != nullptr;
+  }
+
+  /// Numbers are finite unless the line of doc says what else they may be.
+  static bool is_documented(double value, const std::string& doc) {
+    return std::isfinite(value) || doc.find(std::isnan(value) ? "NaN" : "infinite") != std::string::npos;
+  }
+
+  /// Everything in a world, as numbers.
+  static std::vector<double> all_of(const FakeWorld& world) {
+    std::vector<double> all{world.now, world.time_step, world.density, static_cast<double>(world.steps)};
+    const auto vector = [&](const Vec3& v) { all.insert(all.end(), v.begin(), v.end()); };
+    for (const auto* rows : {&world.position, &world.velocity, &world.spin, &world.force, &world.moment})
+      for (const auto& row : *rows) vector(xyz(row)), all.push_back(row.w);
+    for (const auto* vectors : {&world.rotation, &world.displacement})
+      for (const auto& v : *vectors) vector(v);
+    all.insert(all.end(), world.id.begin(), world.id.end());
+    all.insert(all.end(), world.material.begin(), world.material.end());
+    for (const auto& c : world.contact) {
+      for (const auto* v : {&c.branch, &c.normal, &c.force, &c.moment}) vector(*v);
+      all.insert(all.end(), {double(c.a), double(c.b), double(c.with_wall), c.normal_force, c.overlap});
+    }
+    for (const auto& w : world.wall) {
+      for (const auto* v : {&w.position, &w.stage_position, &w.velocity, &w.spin, &w.force, &w.moment, &w.normal}) vector(*v);
+      all.insert(all.end(), {w.area, w.pressure, double(w.touches), double(std::hash<std::string>()(w.name) >> 12)});
+    }
+    vector(world.whole.low), vector(world.whole.high), vector(world.box.low), vector(world.box.high);
+    return all;
+  }
+
+  FakeWorld world_;
+  std::shared_ptr<Probe> probe_;
+};
+
+TEST_P(ProbeContract, DocumentsItsParameters) {
+  Parameters parameters;
+  probe_->declare(parameters);
+  std::set<std::string> names;
+  for (const auto& parameter : parameters.entries()) {
+    EXPECT_TRUE(is_snake_case(parameter.name())) << parameter.name();
+    EXPECT_TRUE(names.insert(parameter.name()).second) << parameter.name() << " is declared twice";
+    EXPECT_TRUE(is_unit(parameter.unit())) << parameter.name() << ": unit \"" << parameter.unit() << '"';
+    EXPECT_FALSE(parameter.doc().empty()) << parameter.name();
+  }
+  EXPECT_EQ(complaints(*probe_), "");
+}
+
+TEST_P(ProbeContract, NamesItsChannels) {
+  std::set<std::string> names;
+  for (const auto& channel : probe_->channels()) {
+    EXPECT_TRUE(is_snake_case(channel.name)) << channel.name;
+    EXPECT_TRUE(names.insert(channel.name).second) << channel.name << " is there twice";
+    EXPECT_TRUE(is_unit(channel.unit)) << channel.name << ": unit \"" << channel.unit << '"';
+    EXPECT_FALSE(channel.doc.empty()) << channel.name;
+    EXPECT_EQ(channel.doc.find('\n'), std::string::npos) << channel.name;
+    for (const auto extent : channel.shape) EXPECT_GT(extent, 0u) << channel.name;
+  }
+  EXPECT_FALSE(names.empty());
+}
+
+TEST_P(ProbeContract, KeepsItsChannels) {
+  const auto described = [this] {
+    std::string all;
+    for (const auto& channel : probe_->channels()) {
+      all += channel.name + '|' + channel.unit + '|' + channel.doc;
+      for (const auto extent : channel.shape) all += '|' + std::to_string(extent);
+      all += '\n';
+    }
+    return all;
+  };
+  const std::string first = described();
+  EXPECT_EQ(described(), first);
+  sampled(*probe_, world_);
+  probe_->fields(world_);
+  EXPECT_EQ(described(), first);
+}
+
+TEST_P(ProbeContract, FillsEveryValue) {
+  const auto channels = probe_->channels();
+  const auto room = sampled(*probe_, world_);
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    for (const double value : room[i]) {
+      EXPECT_FALSE(SampleRoom::same_bits(value, SampleRoom::unwritten())) << channels[i].name << " has an unwritten value";
+      EXPECT_TRUE(is_documented(value, channels[i].doc)) << channels[i].name << ": " << value;
+    }
+    EXPECT_TRUE(SampleRoom::same_bits(room.rooms()[i].back(), SampleRoom::unwritten()))
+        << channels[i].name << ": written past its end";
+  }
+}
+
+TEST_P(ProbeContract, FillsEveryValueWithoutBodies) {
+  FakeWorld empty = world_;
+  empty.contact.clear();
+  for (auto* rows : {&empty.position, &empty.velocity, &empty.spin, &empty.force, &empty.moment}) rows->clear();
+  empty.id.clear(), empty.material.clear(), empty.rotation.clear(), empty.displacement.clear();
+  const auto channels = probe_->channels();
+  const auto room = sampled(*probe_, empty);
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    for (const double value : room[i]) {
+      EXPECT_FALSE(SampleRoom::same_bits(value, SampleRoom::unwritten())) << channels[i].name << " has an unwritten value";
+      EXPECT_TRUE(is_documented(value, channels[i].doc)) << channels[i].name << ": " << value;
+    }
+  probe_->fields(empty);
+}
+
+TEST_P(ProbeContract, GivesTheSameBitsAgain) {
+  const auto first = sampled(*probe_, world_);
+  EXPECT_TRUE(sampled(*probe_, world_) == first);
+  probe_->fields(world_);
+  EXPECT_TRUE(sampled(*probe_, world_) == first);
+  const auto other = GetParam().make();  // as after --resume: nothing may be remembered from earlier samples
+  other->prepare(world_);
+  EXPECT_TRUE(sampled(*other, world_) == first);
+}
+
+TEST_P(ProbeContract, LeavesTheWorldAsItIs) {
+  const auto before = all_of(world_);
+  sampled(*probe_, world_);
+  probe_->fields(world_);
+  EXPECT_TRUE(before == all_of(world_));
+}
+
+TEST_P(ProbeContract, GivesFieldsAsTables) {
+  const auto fields = probe_->fields(world_);
+  const auto again = probe_->fields(world_);
+  ASSERT_EQ(fields.size(), again.size());
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto& field = fields[i];
+    EXPECT_TRUE(is_snake_case(field.name)) << field.name;
+    EXPECT_TRUE(names.insert(field.name).second) << field.name << " is there twice";
+    EXPECT_TRUE(is_unit(field.unit)) << field.name << ": unit \"" << field.unit << '"';
+    EXPECT_FALSE(field.doc.empty()) << field.name;
+    ASSERT_GT(field.width, 0u) << field.name;
+    EXPECT_EQ(field.values.size() % field.width, 0u) << field.name;
+    EXPECT_EQ(field.values.size() / field.width, fields[0].values.size() / fields[0].width) << field.name;
+    for (const double value : field.values) EXPECT_TRUE(is_documented(value, field.doc)) << field.name << ": " << value;
+    ASSERT_EQ(field.values.size(), again[i].values.size()) << field.name;
+    EXPECT_EQ(std::memcmp(field.values.data(), again[i].values.data(), field.values.size() * sizeof(double)), 0) << field.name;
+  }
+}
+
+}  // namespace grit
