@@ -7,7 +7,8 @@
 //     struct Settings  { void declare(Parameters&) {} };                          // of the law as a whole
 //     template <class L> struct Pair  { L modulus, friction; };                   // nothing but L members
 //     template <class L> struct State { L shear_x, shear_y, shear_z; };           // nothing but L members
-//     static Pair<double> mix(const Settings&, const Material&, const Material&, const Interface&);
+//     static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface&, bool wall);
+//                                                                                 // wall: b is a wall's surface
 //     static std::vector<StateField> fields();                                    // one a member of State
 //     static constexpr unsigned feature_bits = 1;                                 // parts that can be switched off
 //     static unsigned features(const Pair<double>&);                              // which of them this pair needs
@@ -55,7 +56,8 @@ struct ContactPoint {
   L overlap;                         ///< m, > 0 in contact
   L radius_a, radius_b;              ///< m; for a wall radius_b = radius_a
   L inverse_mass_a, inverse_mass_b;  ///< 1/kg; 0 for a wall
-  Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms [m/s]
+  Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms: none while the two
+                                     ///< turn as one rigid body, and a closed path sums up to nothing [m/s]
   Vec<L> spin;                       ///< of b relative to a [rad/s]
   L dt;                              ///< s
   Turn<L> turn;
@@ -132,12 +134,12 @@ template <class L>
 
 
 /// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
-/// lanes through memory, which was seen to cost a factor of two.
+/// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
-[[gnu::flatten]] void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+[[gnu::flatten, gnu::noinline]] void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
-  const L dt(batch.dt);
+  const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
   L largest(0.0);
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
 
@@ -185,15 +187,17 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       const L distance = max(sqrt(square), L(1e-300));
       const Vec<L> normal = (L(1.0) / distance) * branch;
       const Vec<L> branch_before = branch - dt * velocity;
-      const Vec<L> normal_before =
-          (L(1.0) / max(sqrt(dot(branch_before, branch_before)), L(1e-300))) * branch_before;
+      const L distance_before = max(sqrt(dot(branch_before, branch_before)), L(1e-300));
+      const Vec<L> normal_before = (L(1.0) / distance_before) * branch_before;
 
       ContactPoint<L> at;
       at.normal = normal;
       at.overlap = max(reach - distance, L(0.0));
       at.radius_a = pa.w, at.radius_b = pb.w;
       at.inverse_mass_a = va.w, at.inverse_mass_b = vb.w;
-      at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), normal);
+      // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips.
+      at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), normal) +
+                    ((reach - distance_before) * per_dt) * (normal - normal_before);
       at.spin = wb.xyz() - wa.xyz();
       at.dt = dt;
       at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), batch.dt);
@@ -244,6 +248,7 @@ template <class Law, unsigned Features, class L>
 [[gnu::flatten]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
+  const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
   double largest = 0;
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
@@ -271,7 +276,10 @@ template <class Law, unsigned Features, class L>
     at.overlap = lanes([](const WallTouch& t) { return t.overlap; });
     at.radius_a = at.radius_b = pa.w;
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
-    at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), normal);
+    // The last term takes the wall's velocity where the sphere's surface would be: none slips that a wall carries along
+    // as it turns, or that pivots about an edge.
+    at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), normal) +
+                  (at.overlap * per_dt) * (normal - normal_before);
     at.spin = wall_spin - wa.xyz();
     at.dt = L(batch.dt);
     at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt);
@@ -329,12 +337,14 @@ class LawPlugin final : public ContactLaw {
   }
   void mix(std::span<const std::string> materials) override {
     count_ = materials.size();
-    table_.clear();
+    table_.clear(), wall_table_.clear();
     features_ = 0;
     for (const auto& a : materials)
       for (const auto& b : materials) {
-        table_.push_back(Law::mix(settings_, materials_[a], materials_[b], interfaces_[std::minmax(a, b)]));
-        features_ |= Law::features(table_.back());
+        const auto& interface = interfaces_[std::minmax(a, b)];
+        table_.push_back(Law::mix(settings_, materials_[a], materials_[b], interface, false));
+        wall_table_.push_back(Law::mix(settings_, materials_[a], materials_[b], interface, true));
+        features_ |= Law::features(table_.back()) | Law::features(wall_table_.back());
       }
   }
 
@@ -346,15 +356,15 @@ class LawPlugin final : public ContactLaw {
   void evaluate_pairs(PairBatch& batch) const noexcept override { pairs<Lane>(batch); }
   void evaluate_pairs_reference(PairBatch& batch) const noexcept override { pairs<double>(batch); }
   void evaluate_walls(WallBatch& batch) const noexcept override {
-    with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, table_.data(), count_); });
+    with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, wall_table_.data(), count_); });
   }
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
-    return Law::stiffness(pair, table_[a * count_ + b]);
+    return Law::stiffness(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b]);
   }
   double energy(const PairSize& pair, std::size_t a, std::size_t b, std::span<const double> state) const override {
     State numbers{};
     for (std::size_t f = 0; f < state.size(); ++f) detail::member<double>(numbers, f) = state[f];
-    return Law::energy(pair, table_[a * count_ + b], numbers);
+    return Law::energy(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b], numbers);
   }
 
  private:
@@ -381,7 +391,7 @@ class LawPlugin final : public ContactLaw {
   typename Law::Settings settings_;
   std::map<std::string, typename Law::Material> materials_;
   std::map<std::pair<std::string, std::string>, typename Law::Interface> interfaces_;
-  std::vector<Pair> table_;
+  std::vector<Pair> table_, wall_table_;  // of two bodies; of a body and a wall
   std::size_t count_ = 0;
   unsigned features_ = 0;
 };

@@ -1,0 +1,49 @@
+// Pieces that laws are composed of: springs that turn with the contact and slip at a limit.
+#pragma once
+
+#include "grit/contact/law.hpp"
+
+namespace grit {
+
+/// `v`, shortened to the length `limit` (≥ 0) where it is longer.
+template <class L>
+[[gnu::always_inline]] inline Vec<L> shortened(const Vec<L>& v, const L& limit) {
+  return min(L(1.0), limit / max(sqrt(dot(v, v)), L(1e-300))) * v;
+}
+
+/// A spring in the contact plane, of a force driven by at.velocity or of a moment driven by at.spin: what was `stored`
+/// turns with the contact, then grows against the relative motion of b during the step. Not limited yet.
+template <class L>
+[[gnu::always_inline]] inline Vec<L> stretched(const ContactPoint<L>& at, const Vec<L>& stored, const L& stiffness,
+                                               const Vec<L>& rate) {
+  return at.turn(stored) - (stiffness * at.dt) * at.tangential(rate);
+}
+
+/// A spring about the normal, against the relative spin; |moment| ≤ limit.
+template <class L>
+[[gnu::always_inline]] inline L twisted(const ContactPoint<L>& at, const L& stored, const L& stiffness,
+                                        const L& limit) {
+  const L moment = stored - (stiffness * at.dt) * dot(at.spin, at.normal);
+  return max(-limit, min(limit, moment));
+}
+
+/// Two springs k = modulus · radius in line, each as long as its radius: 2 k_a k_b / (k_a + k_b) [N/m].
+template <class L>
+[[gnu::always_inline]] inline L spring_in_line(const L& modulus_a, const L& radius_a, const L& modulus_b,
+                                               const L& radius_b) {
+  const L a = modulus_a * radius_a, b = modulus_b * radius_b;
+  return L(2.0) * a * b / (a + b);
+}
+
+/// Coefficient [N s/m] of the dashpot that damps `stiffness` [N/m] by `ratio` of critical; 0 between two bodies that
+/// cannot be moved.
+template <class L>
+[[gnu::always_inline]] inline L dashpot(const L& ratio, const L& stiffness, const L& inverse_mass) {
+  const L product = select(inverse_mass > L(0.0), stiffness / max(inverse_mass, L(1e-300)), L(0.0));
+  return L(2.0) * ratio * sqrt(product);
+}
+
+/// Elastic energy [J] of a spring that carries the force or moment whose square is given; 0 for no spring.
+inline double spring_energy(double square, double stiffness) { return stiffness > 0 ? 0.5 * square / stiffness : 0.0; }
+
+}  // namespace grit

@@ -1,0 +1,159 @@
+// The law itself, apart from the plugin, so that tests see it.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "grit/contact/law_parameters.hpp"
+#include "grit/contact/springs.hpp"
+
+namespace grit {
+
+struct HertzMindlin {
+  struct Settings {
+    void declare(Parameters&) {}
+  };
+
+  struct Material {
+    double young_modulus = 70e9;
+    double poisson_ratio = 0.3;
+    double friction_angle = 18 * degree;
+    double restitution = 1;
+    double rolling_stiffness = 0;
+    double rolling_limit = 0;
+
+    void declare(Parameters& p) {
+      p.add("young_modulus", young_modulus).unit("Pa").symbol("E").above(0).doc("Young's modulus of the solid");
+      p.add("poisson_ratio", poisson_ratio).symbol("nu").above(-1).at_most(0.5).doc("Poisson's ratio of the solid");
+      declare_friction_angle(p, friction_angle);
+      declare_restitution(p, restitution);
+      declare_rolling_stiffness(p, rolling_stiffness);
+      declare_rolling_limit(p, rolling_limit);
+    }
+  };
+
+  struct Interface {
+    std::optional<double> friction_angle, restitution, rolling_limit;
+
+    void declare(Parameters& p) {
+      declare_friction_angle(p, friction_angle);
+      declare_restitution(p, restitution);
+      declare_rolling_limit(p, rolling_limit);
+    }
+  };
+
+  template <class L>
+  struct Pair {
+    L modulus, shear_modulus;  ///< E* and G* [Pa]
+    L friction;
+    L damping;  ///< 2 √(5/6) ζ
+    L rolling, rolling_limit;
+    L curved;  ///< 1: b is a sphere, 0: b is a wall, flat at the scale of the contact
+  };
+
+  template <class L>
+  struct State {
+    L shear_x, shear_y, shear_z;        ///< shear force on b [N]
+    L contact_radius;                   ///< m
+    L rolling_x, rolling_y, rolling_z;  ///< rolling moment on b [N m]
+  };
+  static std::vector<StateField> fields() {
+    return {
+        {"shear_x", "N", "shear force on b", -1},        {"shear_y", "N", "shear force on b", -1},
+        {"shear_z", "N", "shear force on b", -1},        {"contact_radius", "m", "radius of the area of contact", 1},
+        {"rolling_x", "N m", "rolling moment on b", -1}, {"rolling_y", "N m", "rolling moment on b", -1},
+        {"rolling_z", "N m", "rolling moment on b", -1}};
+  }
+
+  static constexpr unsigned feature_bits = 3;
+  static constexpr unsigned with_shear = 1, with_damping = 2, with_rolling = 4;
+  static unsigned features(const Pair<double>& pair) {
+    return (pair.friction > 0 ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
+           (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u);
+  }
+  static constexpr std::size_t fields_used(unsigned features) {
+    return (features & with_rolling) != 0 ? 7 : (features & with_shear) != 0 ? 4 : 0;
+  }
+
+  static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface& interface,
+                          bool wall) {
+    const auto plane_compliance = [](const Material& m) {
+      return (1 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
+    };
+    const auto shear_compliance = [](const Material& m) {
+      return (2 - m.poisson_ratio) * 2 * (1 + m.poisson_ratio) / m.young_modulus;
+    };
+    Pair<double> pair;
+    pair.modulus = 1 / (plane_compliance(a) + plane_compliance(b));
+    pair.shear_modulus = 1 / (shear_compliance(a) + shear_compliance(b));
+    pair.friction = std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)));
+    const double restitution = interface.restitution.value_or(std::min(a.restitution, b.restitution));
+    pair.damping = 2 * std::sqrt(5.0 / 6) * damping_of_restitution(restitution);
+    pair.rolling = 0.5 * (a.rolling_stiffness + b.rolling_stiffness);
+    pair.rolling_limit = interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit));
+    pair.curved = wall ? 0 : 1;
+    return pair;
+  }
+
+  /// R* [m]; a wall's radius_b does not count.
+  template <class L>
+  [[gnu::always_inline]] static L reduced_radius(const L& a, const L& b, const L& curved) {
+    return a * b / max(curved * a + b, L(1e-300));
+  }
+
+  template <unsigned Features, class L>
+  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+    const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
+    const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
+
+    Response<L> response;
+    response.normal_force = L(2.0 / 3) * kn * at.overlap;
+    if constexpr ((Features & with_damping) != 0) {
+      const L dash = dashpot(L(0.5) * pair.damping, kn, at.inverse_mass_a + at.inverse_mass_b);
+      response.normal_force = max(L(0.0), response.normal_force - dash * dot(at.velocity, at.normal));
+    }
+
+    // Springs that soften as the contact is unloaded give their energy away with their force.
+    const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(1e-300)));
+    state.contact_radius = contact_radius;
+    if constexpr ((Features & with_shear) != 0) {
+      const Vec<L> stored{state.shear_x, state.shear_y, state.shear_z};
+      response.shear = shortened(stretched(at, kept * stored, ks, at.velocity), pair.friction * response.normal_force);
+      state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
+    }
+    if constexpr ((Features & with_rolling) != 0) {
+      const Vec<L> stored{state.rolling_x, state.rolling_y, state.rolling_z};
+      const L stiffness = pair.rolling * ks * at.radius_a * at.radius_b;
+      const L arm = L(0.5) * (at.radius_a + at.radius_b);
+      response.moment =
+          shortened(stretched(at, kept * stored, stiffness, at.spin), pair.rolling_limit * arm * response.normal_force);
+      state.rolling_x = response.moment.x, state.rolling_y = response.moment.y, state.rolling_z = response.moment.z;
+    }
+    return response;
+  }
+
+  /// The least overlap over R* that stiffness() reckons with: a contact just made will be deeper soon.
+  static constexpr double least_overlap = 1e-4;
+
+  static Stiffness stiffness_at(const PairSize& size, const Pair<double>& pair, double contact_radius) {
+    const double ks = 8 * pair.shear_modulus * contact_radius;
+    return {.normal = 2 * pair.modulus * contact_radius,
+            .shear = pair.friction > 0 ? ks : 0,
+            .rolling = pair.rolling_limit > 0 ? pair.rolling * ks * size.radius_a * size.radius_b : 0,
+            .damping_ratio = 0.5 * pair.damping};
+  }
+  static Stiffness stiffness(const PairSize& size, const Pair<double>& pair) {
+    const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
+    return stiffness_at(size, pair, std::sqrt(radius * std::max(size.overlap, least_overlap * radius)));
+  }
+  static double energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
+    const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
+    const Stiffness k = stiffness_at(size, pair, std::sqrt(radius * size.overlap));
+    const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
+    const Vec<double> rolling{state.rolling_x, state.rolling_y, state.rolling_z};
+    return 4.0 / 15 * k.normal * size.overlap * size.overlap + spring_energy(dot(shear, shear), k.shear) +
+           spring_energy(dot(rolling, rolling), k.rolling);
+  }
+};
+
+}  // namespace grit

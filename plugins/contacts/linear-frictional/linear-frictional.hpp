@@ -1,0 +1,120 @@
+// The law itself, apart from the plugin, so that tests see it.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "grit/contact/law_parameters.hpp"
+#include "grit/contact/springs.hpp"
+
+namespace grit {
+
+struct LinearFrictional {
+  struct Settings {
+    bool shear_damping = false;
+
+    void declare(Parameters& p) {
+      p.add("shear_damping", shear_damping).doc("whether the restitution damps sticking contacts in shear as well");
+    }
+  };
+
+  struct Material {
+    double contact_modulus = 300e6;
+    double shear_to_normal_stiffness = 0.3;
+    double friction_angle = 18 * degree;
+    double restitution = 1;
+
+    void declare(Parameters& p) {
+      declare_contact_modulus(p, contact_modulus);
+      declare_shear_to_normal_stiffness(p, shear_to_normal_stiffness);
+      declare_friction_angle(p, friction_angle);
+      declare_restitution(p, restitution);
+    }
+  };
+
+  struct Interface {
+    std::optional<double> friction_angle, restitution;
+
+    void declare(Parameters& p) {
+      declare_friction_angle(p, friction_angle);
+      declare_restitution(p, restitution);
+    }
+  };
+
+  template <class L>
+  struct Pair {
+    L modulus_a, modulus_b, shear_ratio, friction;
+    L damping, shear_damping;  ///< over critical
+  };
+
+  template <class L>
+  struct State {
+    L shear_x, shear_y, shear_z;  ///< force of the shear spring on b [N]
+  };
+  static std::vector<StateField> fields() {
+    return {{"shear_x", "N", "force of the shear spring on b", -1},
+            {"shear_y", "N", "force of the shear spring on b", -1},
+            {"shear_z", "N", "force of the shear spring on b", -1}};
+  }
+
+  static constexpr unsigned feature_bits = 3;
+  static constexpr unsigned with_shear = 1, with_damping = 2, with_shear_damping = 4;
+  static unsigned features(const Pair<double>& pair) {
+    const bool shear = pair.friction * pair.shear_ratio > 0;
+    return (shear ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
+           (shear && pair.shear_damping > 0 ? with_shear_damping : 0u);
+  }
+  static constexpr std::size_t fields_used(unsigned features) { return (features & with_shear) != 0 ? 3 : 0; }
+
+  /// A wall lends its friction and restitution: stiffness, like the radius, is the grain's.
+  static Pair<double> mix(const Settings& settings, const Material& a, const Material& b, const Interface& interface,
+                          bool wall) {
+    const Material& stiff_b = wall ? a : b;
+    Pair<double> pair;
+    pair.modulus_a = a.contact_modulus, pair.modulus_b = stiff_b.contact_modulus;
+    pair.shear_ratio = 0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness);
+    pair.friction = std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)));
+    pair.damping = damping_of_restitution(interface.restitution.value_or(std::min(a.restitution, b.restitution)));
+    pair.shear_damping = settings.shear_damping ? pair.damping : 0;
+    return pair;
+  }
+
+  template <unsigned Features, class L>
+  [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
+    const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
+    const L inverse_mass = at.inverse_mass_a + at.inverse_mass_b;
+
+    Response<L> response;
+    response.normal_force = kn * at.overlap;
+    if constexpr ((Features & with_damping) != 0) {
+      const L damped = response.normal_force - dashpot(pair.damping, kn, inverse_mass) * dot(at.velocity, at.normal);
+      response.normal_force = max(L(0.0), damped);
+    }
+
+    if constexpr ((Features & with_shear) != 0) {
+      const L limit = pair.friction * response.normal_force;
+      const Vec<L> trial = stretched(at, {state.shear_x, state.shear_y, state.shear_z}, ks, at.velocity);
+      const Vec<L> spring = shortened(trial, limit);
+      state.shear_x = spring.x, state.shear_y = spring.y, state.shear_z = spring.z;
+      response.shear = spring;
+      if constexpr ((Features & with_shear_damping) != 0) {
+        const L dash = dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass);
+        const L sticking = select(dot(trial, trial) <= limit * limit, dash, L(0.0));
+        response.shear = shortened(spring - sticking * at.tangential(at.velocity), limit);
+      }
+    }
+    return response;
+  }
+
+  static Stiffness stiffness(const PairSize& size, const Pair<double>& pair) {
+    const double kn = spring_in_line(pair.modulus_a, size.radius_a, pair.modulus_b, size.radius_b);
+    return {.normal = kn, .shear = pair.friction > 0 ? pair.shear_ratio * kn : 0, .damping_ratio = pair.damping};
+  }
+  static double energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
+    const Stiffness k = stiffness(size, pair);
+    const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
+    return 0.5 * k.normal * size.overlap * size.overlap + spring_energy(dot(shear, shear), k.shear);
+  }
+};
+
+}  // namespace grit
