@@ -19,7 +19,9 @@ struct Flushing {
 };
 
 /// One group a probe with `time` [s], `step` and one dataset a channel: first dimension the samples, then the channel's
-/// shape; attributes `units` (UDUNITS) and `long_name`. What was flushed stays readable if the process is killed. All
+/// shape; attributes `units` (UDUNITS) and `long_name`. What was flushed stays readable if the process is killed. If
+/// that happens within a flush that opens a new chunk (2048 numbers), the samples of this chunk may be counted but not
+/// readable: 3 of 200 writers killed while they did nothing but flush left such a tail; resuming cuts it off. All
 /// functions throw FileError.
 class Series {
  public:
