@@ -20,21 +20,6 @@ hdf5::Dataset column(hdf5::Group& group, const Channel& channel) {
   return dataset;
 }
 
-/// The steps up to the first chunk that a writer killed in a flush may have left without its place in the file.
-std::vector<std::uint64_t> readable_steps(const hdf5::Dataset& dataset) {
-  std::vector<std::uint64_t> steps;
-  const auto rows = dataset.rows();
-  while (steps.size() < rows) {
-    try {
-      const auto block = dataset.read<std::uint64_t>(steps.size(), std::min(numbers_per_chunk, rows - steps.size()));
-      steps.insert(steps.end(), block.begin(), block.end());
-    } catch (const FileError&) {
-      break;
-    }
-  }
-  return steps;
-}
-
 hdf5::Dataset reopened(const hdf5::Group& group, const Channel& channel, std::size_t rows) {
   auto dataset = group.dataset(channel.name);
   auto shape = dataset.shape();
@@ -75,7 +60,7 @@ Series::Table Series::create(const ProbeGroup& probe) {
 
 Series::Table Series::reopen(const ProbeGroup& probe, std::uint64_t last_step) {
   const auto group = file_.group(probe.name);
-  const auto steps = readable_steps(group.dataset("step"));
+  const auto steps = group.dataset("step").read<std::uint64_t>();
   const auto rows = static_cast<std::size_t>(std::ranges::upper_bound(steps, last_step) - steps.begin());
   Table table{reopened(group, {"time", "s", "", {}}, rows), reopened(group, {"step", "1", "", {}}, rows), {}, {}, {}};
   for (const auto& channel : probe.channels) table.columns.push_back({reopened(group, channel, rows), {}});
