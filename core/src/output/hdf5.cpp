@@ -109,8 +109,12 @@ hid_t open_file(const std::filesystem::path& path, Mode mode) {
   switch (mode) {
     case Mode::read:
       return checked(H5Fopen(where.c_str(), H5F_ACC_RDONLY, access.id()), where, "read");
-    case Mode::change:
-      return checked(H5Fopen(where.c_str(), H5F_ACC_RDWR, access.id()), where, "change");
+    case Mode::change: {
+      Handle file = owned(H5Fopen(where.c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, where, "change");
+      // The length of the file is the last that a flush writes: a writer killed in one may have left it too short.
+      checked(H5Fincrement_filesize(file.id(), 0), where, "change");
+      return file.release();
+    }
     case Mode::replace:
       break;
   }

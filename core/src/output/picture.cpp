@@ -136,7 +136,7 @@ class PanelDrawing {
     return {across(curve.x[i] * x_unit_.factor), down(curve.y[i] * y_unit_.factor)};
   }
 
-  /// y from tick to tick, with zero where it is near; nothing of no width.
+  /// y from tick to tick, with zero where it is near, and no tick more for noise about one; nothing of no width.
   void settle_ranges() {
     if (x_.span() <= 0) x_ = {x_.low - 0.5, x_.high + 0.5};
     if (y_.low > 0 && y_.low < 0.5 * y_.high) y_.low = 0;
@@ -146,7 +146,8 @@ class PanelDrawing {
       y_ = {y_.low - room, y_.high + room};
     }
     const double step = nice_step(y_.span(), 5);
-    y_ = {std::floor(y_.low / step + 1e-9) * step, std::ceil((y_.high + 0.04 * y_.span()) / step - 1e-9) * step};
+    y_ = {std::floor((y_.low + 0.03 * y_.span()) / step + 1e-9) * step,
+          std::ceil((y_.high + 0.04 * y_.span()) / step - 1e-9) * step};
   }
 
   void draw_curve(const Curve& curve) {
@@ -174,7 +175,8 @@ class PanelDrawing {
     std::size_t peak = 0;
     bool found = false;
     for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
-      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]) && (!found || curve.y[i] > curve.y[peak])) {
+      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]) &&
+          (!found || std::abs(curve.y[i]) > std::abs(curve.y[peak]))) {
         peak = i;
         found = true;
       }
@@ -184,7 +186,7 @@ class PanelDrawing {
     svg_.circle(at, 3, fmt::format("class=\"f{}\"", k));
     const char* anchor = at.x > right_ - 30 ? "e" : at.x < left_ + 30 ? "" : "m";
     const double aside = at.x < left_ + 30 ? 6 : 0;
-    svg_.text({at.x + aside, at.y - 8}, short_number(curve.y[peak] * y_unit_.factor),
+    svg_.text({at.x + aside, curve.y[peak] < 0 ? at.y + 17 : at.y - 8}, short_number(curve.y[peak] * y_unit_.factor),
               fmt::format("class=\"peak {} f{}\"", anchor, k));
   }
 
@@ -290,7 +292,7 @@ void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doubl
   svg.line({left, y}, {end, y}, "class=\"scale\"");
   for (const double x : {left, end}) svg.line({x, y - 4}, {x, y + 4}, "class=\"scale\"");
   svg.text({end + 10, y + 4}, fmt::format("{:g} {}", length * unit.factor, unit.unit));
-  svg.text({left + at.wide, y + 4}, view.horizontal + " →   " + view.vertical + " ↑", "class=\"e small\"");
+  svg.text({left + at.wide, y + 4}, view.horizontal + " →\u2003" + view.vertical + " ↑", "class=\"e small\"");
 }
 
 void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {

@@ -17,7 +17,7 @@ struct Axis {
   std::string unit = "1";  ///< SI; shown with the prefix that reads best, radians as degrees
 };
 
-/// Curves that share two axes. Points that are not finite interrupt a curve.
+/// Curves that share two axes. Points that are not finite interrupt a curve; the value farthest from zero is marked.
 struct Panel {
   Axis x, y;
   std::vector<Curve> curves;

@@ -93,6 +93,8 @@ void ResultsFolder::stage_ended(const World& world, const std::string& what) {
   run_json_.stage_ended(world, what);
 }
 
+void ResultsFolder::flush() { series_->flush(); }
+
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (series_) series_->close();
   if (summary.status != "failed") write_packing(options_.folder / "packing.txt", world);

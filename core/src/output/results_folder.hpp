@@ -50,6 +50,7 @@ class ResultsFolder final : public Recorder {
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override;
   void stage_ended(const World& world, const std::string& what) override;
+  void flush() override;
   void finish(const World& world, const RunSummary& summary) override;
 
  private:

@@ -56,6 +56,8 @@ class Recorder {
   virtual void frame(const World& world, std::span<const FieldGroup> fields) = 0;
   /// A stage ended; what it reached, e.g. "void ratio 0.598".
   virtual void stage_ended(const World& world, const std::string& what) = 0;
+  /// Before a checkpoint is saved: what was recorded so far must outlive the process.
+  virtual void flush() {}
   virtual void finish(const World& world, const RunSummary& summary) = 0;
 };
 
