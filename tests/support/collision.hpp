@@ -32,9 +32,12 @@ inline Collision collide(const ContactLaw& law, const Ball& a, const Ball& b, do
   return result;
 }
 
-inline Collision collide_with_wall(const ContactLaw& law, Ball ball, double speed, double dt) {
+/// The same with a wall of the given material.
+inline Collision collide_with_wall(const ContactLaw& law, Ball ball, double speed, double dt,
+                                   std::uint32_t material = 0) {
   ball.position = {0, 0, ball.radius}, ball.velocity = {0, 0, -speed};
   WallPair pair(law, ball, dt);
+  pair.touch.material = material;
   Collision result{0, 0, 0, 0};
   do {
     pair.position.z += dt * pair.velocity.z;

@@ -112,21 +112,21 @@ TEST(LinearFrictional, ShearDashpotActsOnlyWhileSticking) {
 
 TEST(LinearFrictional, SlippingSphereStartsToRoll) {
   // Slips until t = 2 u0 / (7 μ g), then rolls at 5/7 u0.
-  const auto law = law_of(material(1e6, 15, 1));
+  const auto law = law_of(material(1e8, 15, 1));
   const double gravity = 9.81, mass = 2, radius = 0.1, dt = 2e-5, mu = std::tan(15 * degree);
   const double u0 = 1, weight = mass * gravity, slipping = 2 * u0 / (7 * mu * gravity);
   WallPair wall(*law, {.radius = radius, .velocity = {u0, 0, 0}, .mass = mass}, dt);
-  wall.touch.overlap = weight / (1e6 * radius);
+  wall.touch.overlap = weight / (1e8 * radius);
   for (double t = 0; t < 2 * slipping; t += dt) {
     wall.evaluate();
     wall.velocity.x += dt * wall.velocity.w * wall.sum.force.x;
     wall.spin.y += dt * wall.spin.w * wall.sum.moment.y;
     if (t < 0.98 * slipping) {
-      ASSERT_NEAR(wall.velocity.x, u0 - mu * gravity * (t + dt), 1e-6);
+      ASSERT_NEAR(wall.velocity.x, u0 - mu * gravity * (t + dt), 3e-4);  // the spring is loaded first
     }
   }
-  EXPECT_NEAR(wall.velocity.x, 5.0 / 7 * u0, 2e-3);
-  EXPECT_NEAR(wall.spin.y * radius, 5.0 / 7 * u0, 2e-2);
+  EXPECT_NEAR(wall.velocity.x, 5.0 / 7 * u0, 5e-3);
+  EXPECT_NEAR(wall.spin.y * radius, 5.0 / 7 * u0, 1.5e-2);
 }
 
 TEST(LinearFrictional, RefusesWhatCannotBe) {
