@@ -14,8 +14,8 @@
 
 namespace grit {
 
-/// How a wall's name begins the names of its channels and variables: '-' becomes '_', and a name that begins with a digit
-/// gets "wall_" in front.
+/// How a wall's name begins the names of its channels and variables: '-' becomes '_', and a name that begins with a
+/// digit gets "wall_" in front.
 inline std::string wall_stem(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
   const bool digit = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0;
@@ -36,9 +36,8 @@ inline std::string nearest_name(std::string_view name, const std::vector<std::st
     }
     return row.back();
   };
-  const auto best = std::min_element(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
-    return edits(a) < edits(b);
-  });
+  const auto best = std::min_element(names.begin(), names.end(),
+                                     [&](const std::string& a, const std::string& b) { return edits(a) < edits(b); });
   return best == names.end() ? std::string() : *best;
 }
 

@@ -15,6 +15,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grit/error.hpp"
@@ -23,16 +24,25 @@
 
 namespace grit {
 
-/// A box of nx × ny × nz grains on a lattice, each pressed into its neighbours by a hundredth of its size, at (0, 0, 0) and up;
-/// forces, speeds and sizes differ from grain to grain. Walls "bottom" and "top-wall" bear the lowest and highest layer.
+/// A wall at rest that bears nothing.
+inline WallView still_wall(std::string name) {
+  WallView wall;
+  wall.name = std::move(name);
+  for (auto* vector :
+       {&wall.position, &wall.stage_position, &wall.velocity, &wall.spin, &wall.force, &wall.moment, &wall.normal})
+    vector->setZero();
+  return wall;
+}
+
+/// A box of nx × ny × nz grains on a lattice, each pressed into its neighbours by a hundredth of its size, at (0, 0, 0)
+/// and up; forces, speeds and sizes differ from grain to grain. Walls "bottom" and "top-wall" bear the lowest and
+/// highest layer.
 inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3) {
   FakeWorld world;
   const double spacing = 0.99 * diameter;
   const auto vary = [](int i, int period) { return 1 + 0.2 * ((i % period) - period / 2) / period; };
   const auto index = [=](int i, int j, int k) { return static_cast<std::uint32_t>((i * ny + j) * nz + k); };
-  world.wall = {{.name = "bottom"}, {.name = "top-wall"}};
-  for (auto& wall : world.wall)
-    wall.position = wall.stage_position = wall.velocity = wall.spin = wall.force = wall.moment = Vec3::Zero();
+  world.wall = {still_wall("bottom"), still_wall("top-wall")};
   world.wall[0].normal = Vec3::UnitZ(), world.wall[1].normal = -Vec3::UnitZ();
   world.wall[1].velocity = {1e-3, 0, -1e-5}, world.wall[1].position = {2e-3, 0, -1e-4};
   for (int i = 0; i < nx; ++i)
@@ -80,7 +90,8 @@ struct ProbeCase {
 inline void PrintTo(const ProbeCase& one, std::ostream* out) { *out << one.name; }
 inline std::string probe_case_name(const testing::TestParamInfo<ProbeCase>& info) { return info.param.name; }
 
-/// Room for one sample, filled with a NaN that no computation yields; a mark behind each channel shows writing past its end.
+/// Room for one sample, filled with a NaN that no computation yields; a mark behind each channel shows writing past its
+/// end.
 class SampleRoom {
  public:
   explicit SampleRoom(const std::vector<Channel>& channels) {
@@ -187,7 +198,8 @@ class ProbeContract : public testing::TestWithParam<ProbeCase> {
       all.insert(all.end(), {double(c.a), double(c.b), double(c.with_wall), c.normal_force, c.overlap});
     }
     for (const auto& w : world.wall) {
-      for (const auto* v : {&w.position, &w.stage_position, &w.velocity, &w.spin, &w.force, &w.moment, &w.normal}) vector(*v);
+      for (const auto* v : {&w.position, &w.stage_position, &w.velocity, &w.spin, &w.force, &w.moment, &w.normal})
+        vector(*v);
       all.insert(all.end(), {w.area, w.pressure, double(w.touches), double(std::hash<std::string>()(w.name) >> 12)});
     }
     vector(world.whole.low), vector(world.whole.high), vector(world.box.low), vector(world.box.high);
@@ -246,7 +258,8 @@ TEST_P(ProbeContract, FillsEveryValue) {
   const auto room = sampled(*probe_, world_);
   for (std::size_t i = 0; i < channels.size(); ++i) {
     for (const double value : room[i]) {
-      EXPECT_FALSE(SampleRoom::same_bits(value, SampleRoom::unwritten())) << channels[i].name << " has an unwritten value";
+      EXPECT_FALSE(SampleRoom::same_bits(value, SampleRoom::unwritten()))
+          << channels[i].name << " has an unwritten value";
       EXPECT_TRUE(is_documented(value, channels[i].doc)) << channels[i].name << ": " << value;
     }
     EXPECT_TRUE(SampleRoom::same_bits(room.rooms()[i].back(), SampleRoom::unwritten()))
@@ -263,7 +276,8 @@ TEST_P(ProbeContract, FillsEveryValueWithoutBodies) {
   const auto room = sampled(*probe_, empty);
   for (std::size_t i = 0; i < channels.size(); ++i)
     for (const double value : room[i]) {
-      EXPECT_FALSE(SampleRoom::same_bits(value, SampleRoom::unwritten())) << channels[i].name << " has an unwritten value";
+      EXPECT_FALSE(SampleRoom::same_bits(value, SampleRoom::unwritten()))
+          << channels[i].name << " has an unwritten value";
       EXPECT_TRUE(is_documented(value, channels[i].doc)) << channels[i].name << ": " << value;
     }
   probe_->fields(empty);
@@ -302,7 +316,8 @@ TEST_P(ProbeContract, GivesFieldsAsTables) {
     EXPECT_EQ(field.values.size() / field.width, fields[0].values.size() / fields[0].width) << field.name;
     for (const double value : field.values) EXPECT_TRUE(is_documented(value, field.doc)) << field.name << ": " << value;
     ASSERT_EQ(field.values.size(), again[i].values.size()) << field.name;
-    EXPECT_EQ(std::memcmp(field.values.data(), again[i].values.data(), field.values.size() * sizeof(double)), 0) << field.name;
+    EXPECT_EQ(std::memcmp(field.values.data(), again[i].values.data(), field.values.size() * sizeof(double)), 0)
+        << field.name;
   }
 }
 

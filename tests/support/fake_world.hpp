@@ -43,15 +43,15 @@ struct FakeWorld : World {
   void touch(std::uint32_t a, std::uint32_t b, const Vec3& branch, const Vec3& force_on_b) {
     Contact pair;
     pair.a = a, pair.b = b;
-    fill(pair, branch, force_on_b);
     pair.overlap = position[a].w + position[b].w - branch.norm();
+    fill(pair, branch, force_on_b);
   }
   /// A touch of a wall, `branch` reaching from the body's centre to the touching point.
   void touch_wall(std::uint32_t body, std::uint32_t wall_index, const Vec3& branch, const Vec3& force_on_wall) {
     Contact touching;
     touching.a = body, touching.b = wall_index, touching.with_wall = true;
-    fill(touching, branch, force_on_wall);
     touching.overlap = position[body].w - branch.norm();
+    fill(touching, branch, force_on_wall);
   }
   void make_periodic(const Vec3& low, const Vec3& high) { box = {low, high, {true, true, true}}, whole = {low, high}; }
 

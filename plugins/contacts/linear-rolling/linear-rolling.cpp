@@ -1,4 +1,5 @@
-// Linear normal and shear springs with Coulomb's limit, rolling and twisting springs with a limit moment. See README.md.
+// Linear normal and shear springs with Coulomb's limit, rolling and twisting springs with a limit moment. See
+// README.md.
 #include "linear-rolling.hpp"
 
 #include "grit/contact/law.hpp"

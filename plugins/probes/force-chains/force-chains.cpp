@@ -37,16 +37,22 @@ void ForceChainsProbe::declare(Parameters& parameters) {
 std::vector<Channel> ForceChainsProbe::channels() const {
   return {{"mean_normal_force", "N", "mean normal force of a contact, positive in compression; 0 without contacts", {}},
           {"share_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
-          {"force_by_direction", "N",
+          {"force_by_direction",
+           "N",
            "mean normal force of the contacts in each 10 degrees of direction in the plane, the first from 0 to 10 "
-           "degrees, positive in compression; 0 where there are none", {bins}},
-          {"contacts_by_direction", "1",
+           "degrees, positive in compression; 0 where there are none",
+           {bins}},
+          {"contacts_by_direction",
+           "1",
            "number of contacts in each 10 degrees of direction in the plane; a contact counts in both of its "
-           "directions", {bins}},
+           "directions",
+           {bins}},
           {"anisotropy", "1", "amplitude a of E = (1 + a cos 2(theta - theta_a)) / 2 pi, fitted to the directions", {}},
-          {"anisotropy_direction", "rad",
+          {"anisotropy_direction",
+           "rad",
            "direction theta_a that most contacts prefer, from the first axis of the plane towards the second, "
-           "-pi/2 to pi/2", {}}};
+           "-pi/2 to pi/2",
+           {}}};
 }
 
 std::vector<const Contact*> ForceChainsProbe::counted(const World& world) const {
@@ -90,7 +96,11 @@ std::vector<Field> ForceChainsProbe::fields(const World& world) {
   const double mean = mean_normal_force(contacts);
   std::vector<Field> fields{
       {"start", "m", "centre of the first body", 3, {}},
-      {"end", "m", "centre of the second body, or the touching point of the wall; across a periodic side, its image", 3, {}},
+      {"end",
+       "m",
+       "centre of the second body, or the touching point of the wall; across a periodic side, its image",
+       3,
+       {}},
       {"normal_force", "N", "normal force, positive in compression", 1, {}},
       {"above_mean", "1", "1 where the normal force is above the mean, 0 elsewhere", 1, {}}};
   for (auto& field : fields) field.values.reserve(field.width * contacts.size());

@@ -58,7 +58,8 @@ TEST(ForceChains, TakesDirectionsInThePlane) {
   world.add({0, 0, 0}, 1), world.add({0, 0, 2}, 1);
   const Vec3 normal = Vec3(std::cos(25 * degree), std::sin(25 * degree), 0);
   world.touch(0, 1, 2 * normal, 5 * normal);
-  for (const auto& [plane, bin] : std::vector<std::pair<std::string, int>>{{"xy", 2}, {"yx", 6}, {"xz", 0}, {"zy", 9}}) {
+  for (const auto& [plane, bin] :
+       std::vector<std::pair<std::string, int>>{{"xy", 2}, {"yx", 6}, {"xz", 0}, {"zy", 9}}) {
     ForceChainsProbe probe;
     probe.plane = plane;
     const auto counted = channel_values(probe, world, "contacts_by_direction");
@@ -114,7 +115,7 @@ TEST(ForceChains, FindsTheAmplitudeOfADistribution) {
 
 TEST(ForceChains, TakesWallsOnlyIfAsked) {
   FakeWorld world = world_of({{25, 2}});
-  world.wall.push_back({.name = "floor"});
+  world.wall.push_back(still_wall("floor"));
   world.touch_wall(0, 0, Vec3(0, 0, -1), Vec3(0, 0, -8));
   ForceChainsProbe probe;
   EXPECT_NEAR(channel_value(probe, world, "mean_normal_force"), 2, 1e-12);

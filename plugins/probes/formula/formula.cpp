@@ -19,7 +19,7 @@ namespace {
 
 struct WallVector {
   const char* suffix;
-  Vec3 WallView::* member;
+  Vec3 WallView::*member;
 };
 constexpr WallVector wall_vectors[] = {{"_force", &WallView::force},
                                        {"_travel", &WallView::position},
@@ -28,7 +28,7 @@ constexpr WallVector wall_vectors[] = {{"_force", &WallView::force},
 
 struct WallScalar {
   const char* suffix;
-  double WallView::* member;
+  double WallView::*member;
 };
 constexpr WallScalar wall_scalars[] = {{"_pressure", &WallView::pressure}, {"_area", &WallView::area}};
 
@@ -45,8 +45,8 @@ std::deque<Variable> variables_of(const World& world) {
   const auto add = [&](std::string name, std::function<double(const World&)> read) {
     const auto same = [&](const Variable& other) { return other.name == name; };
     if (std::any_of(variables.begin(), variables.end(), same))
-      throw Error("probe formula: two walls would both give the variable \"" + name + "\"; walls are: " +
-                  listed(wall_names(world)) + "; rename one of them");
+      throw Error("probe formula: two walls would both give the variable \"" + name +
+                  "\"; walls are: " + listed(wall_names(world)) + "; rename one of them");
     variables.push_back({std::move(name), std::move(read)});
   };
   add("time", [](const World& w) { return w.time(); });
@@ -57,7 +57,8 @@ std::deque<Variable> variables_of(const World& world) {
     const std::string stem = wall_stem(world.walls()[i].name);
     for (const auto& [suffix, member] : wall_vectors)
       for (int k = 0; k < 3; ++k)
-        add(stem + suffix + '_' + "xyz"[k], [i, k, member = member](const World& w) { return (w.walls()[i].*member)[k]; });
+        add(stem + suffix + '_' + "xyz"[k],
+            [i, k, member = member](const World& w) { return (w.walls()[i].*member)[k]; });
     for (const auto& [suffix, member] : wall_scalars)
       add(stem + suffix, [i, member = member](const World& w) { return w.walls()[i].*member; });
   }
@@ -117,7 +118,9 @@ FormulaProbe::FormulaProbe() = default;
 FormulaProbe::~FormulaProbe() = default;
 
 void FormulaProbe::Curve::declare(Parameters& parameters) {
-  parameters.add("formula", formula).required().doc("expression in muParser's syntax, of SI numbers; see the README for the names");
+  parameters.add("formula", formula)
+      .required()
+      .doc("expression in muParser's syntax, of SI numbers; see the README for the names");
   parameters.add("unit", unit).doc("unit of the result, UDUNITS spelling; \"1\" is dimensionless");
   parameters.add("doc", doc).doc("one line on the curve, with its sign convention; empty: the formula");
 }
@@ -154,8 +157,8 @@ void FormulaProbe::prepare(const World& world) {
 
   for (const auto& [name, curve] : curves) {
     const auto fail = [&, &name = name, &curve = curve](std::size_t position, const std::string& message) {
-      throw Error("probe formula, /curves/" + name + "/formula: \"" + curve.formula + "\": " + message + " at character " +
-                  std::to_string(position + 1));
+      throw Error("probe formula, /curves/" + name + "/formula: \"" + curve.formula + "\": " + message +
+                  " at character " + std::to_string(position + 1));
     };
     if (const auto at = assignment(curve.formula); at != std::string::npos)
       fail(at, "a formula only reads, \"==\" compares: found \"=\"");
@@ -168,10 +171,12 @@ void FormulaProbe::prepare(const World& world) {
       for (const auto& used : parser.GetUsedVar())
         for (auto& variable : variables) variable.used |= variable.name == used.first;
     } catch (const mu::ParserError& error) {
-      const auto position = static_cast<std::size_t>(std::max(error.GetPos(), 0));
+      // muParser reads one blank past the end.
+      const auto position = std::min(static_cast<std::size_t>(std::max(error.GetPos(), 0)), curve.formula.size());
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken()))
         fail(position, "there is no \"" + error.GetToken() + "\" (the nearest name is \"" +
-                           nearest_name(error.GetToken(), names) + "\"; names are: " + known_names(world, constants) + ")");
+                           nearest_name(error.GetToken(), names) + "\"; names are: " + known_names(world, constants) +
+                           ")");
       fail(position, plain_message(error));
     }
     if (parser.GetNumResults() != 1) fail(curve.formula.rfind(','), "a formula has one result: found \",\"");

@@ -18,9 +18,7 @@ struct WatchedWorld : FakeWorld {
 WatchedWorld shear_box() {
   WatchedWorld world;
   world.now = 0.5, world.steps = 1000;
-  world.wall = {{.name = "upper-left"}, {.name = "top"}};
-  for (auto& wall : world.wall)
-    wall.spin = wall.moment = wall.normal = Vec3::Zero();
+  world.wall = {still_wall("upper-left"), still_wall("top")};
   auto& left = world.wall[0];
   left.position = {6e-3, 1e-3, 2e-3}, left.stage_position = {5e-3, 0.1, 0.2}, left.velocity = {0.1, 0.2, 0.3};
   left.force = {-120, 3, 4};
@@ -112,15 +110,17 @@ TEST(Formula, DescribesItsCurves) {
 }
 
 TEST(Formula, NamesTheNearestVariable) {
-  EXPECT_EQ(error_of("2 * top_presure"),
-            "probe formula, /curves/curve/formula: \"2 * top_presure\": there is no \"top_presure\" (the nearest name is "
-            "\"top_pressure\"; names are: time, step, mean_diameter, void_ratio, length; of each wall (upper_left, top): "
-            "<wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, <wall>_velocity_x/_y/_z, "
-            "<wall>_pressure, <wall>_area) at character 5");
+  EXPECT_EQ(
+      error_of("2 * top_presure"),
+      "probe formula, /curves/curve/formula: \"2 * top_presure\": there is no \"top_presure\" (the nearest name is "
+      "\"top_pressure\"; names are: time, step, mean_diameter, void_ratio, length; of each wall (upper_left, top): "
+      "<wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, <wall>_velocity_x/_y/_z, "
+      "<wall>_pressure, <wall>_area) at character 5");
 }
 
 TEST(Formula, SaysWhereItCannotBeRead) {
-  EXPECT_EQ(error_of("2 + "), "probe formula, /curves/curve/formula: \"2 + \": unexpected end of expression at character 5");
+  EXPECT_EQ(error_of("2 + "),
+            "probe formula, /curves/curve/formula: \"2 + \": unexpected end of expression at character 5");
   EXPECT_EQ(error_of("(time + 1"),
             "probe formula, /curves/curve/formula: \"(time + 1\": missing parenthesis at character 10");
   EXPECT_THAT(error_of("time time"), HasSubstr("at character 6"));
@@ -143,8 +143,9 @@ TEST(Formula, RefusesNamesThatMeanTwoThings) {
   FormulaProbe probe;
   probe.curves["curve"].formula = "time";
   probe.constants["step"].value = 1;
-  EXPECT_THAT([&] { probe.prepare(shear_box()); },
-              testing::ThrowsMessage<Error>("probe formula, /constants/step: a variable has this name; choose another"));
+  EXPECT_THAT(
+      [&] { probe.prepare(shear_box()); },
+      testing::ThrowsMessage<Error>("probe formula, /constants/step: a variable has this name; choose another"));
 }
 
 TEST(Formula, ChecksNames) {
@@ -157,18 +158,18 @@ TEST(Formula, ChecksNames) {
             "constants: found the name \"1st\", allowed: letters, digits and _, no digit first\n");
 }
 
-INSTANTIATE_TEST_SUITE_P(Formula, ProbeContract,
-                         testing::Values(ProbeCase{"curves",
-                                                   [] {
-                                                     auto probe = std::make_shared<FormulaProbe>();
-                                                     probe->curves["stress_ratio"].formula =
-                                                         "bottom_force_x / bottom_force_z";
-                                                     probe->curves["void_ratio"] = {"void_ratio", "1",
-                                                                                    "of the interior; infinite without solids"};
-                                                     probe->curves["settlement"] = {"-top_wall_travel_z", "m", ""};
-                                                     return probe;
-                                                   }}),
-                         probe_case_name);
+INSTANTIATE_TEST_SUITE_P(
+    Formula, ProbeContract,
+    testing::Values(ProbeCase{
+        "curves",
+        [] {
+          auto probe = std::make_shared<FormulaProbe>();
+          probe->curves["stress_ratio"].formula = "bottom_force_x / bottom_force_z";
+          probe->curves["void_ratio"] = {"void_ratio", "1", "of the interior; infinite without solids"};
+          probe->curves["settlement"] = {"-top_wall_travel_z", "m", ""};
+          return probe;
+        }}),
+    probe_case_name);
 
 }  // namespace
 }  // namespace grit

@@ -10,9 +10,9 @@ namespace {
 
 /// What a column, or a cell, holds.
 struct Sums {
-  double solid = 0;               ///< m³
+  double solid = 0;                 ///< m³
   double grains = 0, touching = 0;  ///< grains with their centre in it, and the grains that touch those
-  Mat3 load = Mat3::Zero();       ///< sum of force and branch, as far as it lies inside [N m]
+  Mat3 load = Mat3::Zero();         ///< sum of force and branch, as far as it lies inside [N m]
 
   Sums& operator+=(const Sums& other) {
     solid += other.solid, grains += other.grains, touching += other.touching, load += other.load;
@@ -24,8 +24,14 @@ struct Sums {
 class Columns {
  public:
   Columns(const World& world, const Region& box, int depth, const CellAxis& first, const CellAxis& second)
-      : cell_(world.cell()), box_(box), depth_(depth), first_axis_(depth == 0 ? 1 : 0), second_axis_(depth == 2 ? 1 : 2),
-        first_(first), second_(second), sums_(first.strips() * second.strips()) {
+      : cell_(world.cell()),
+        box_(box),
+        depth_(depth),
+        first_axis_(depth == 0 ? 1 : 0),
+        second_axis_(depth == 2 ? 1 : 2),
+        first_(first),
+        second_(second),
+        sums_(first.strips() * second.strips()) {
     // Only what lies in cells counts; the cells may leave a rim of the box free.
     box_.low[first_axis_] = first.edges().front(), box_.high[first_axis_] = first.edges().back();
     box_.low[second_axis_] = second.edges().front(), box_.high[second_axis_] = second.edges().back();
@@ -56,15 +62,15 @@ class Columns {
       const double before = box_.low[k] - place[k] - high[k], after = box_.high[k] - place[k] - low[k];
       if (cell_.periodic[k]) {
         period[k] = cell_.high[k] - cell_.low[k];
-        least[k] = static_cast<int>(std::ceil(before / period[k])), most[k] = static_cast<int>(std::floor(after / period[k]));
+        least[k] = static_cast<int>(std::ceil(before / period[k])),
+        most[k] = static_cast<int>(std::floor(after / period[k]));
       } else {
         least[k] = 0, most[k] = before <= 0 && after >= 0 ? 0 : -1;
       }
     }
     for (int i = least[0]; i <= most[0]; ++i)
       for (int j = least[1]; j <= most[1]; ++j)
-        for (int k = least[2]; k <= most[2]; ++k)
-          visit(place + Vec3(i * period[0], j * period[1], k * period[2]));
+        for (int k = least[2]; k <= most[2]; ++k) visit(place + Vec3(i * period[0], j * period[1], k * period[2]));
   }
 
   Sums& column(std::size_t i, std::size_t j) { return sums_[i * second_.strips() + j]; }
@@ -115,8 +121,9 @@ class Columns {
   /// Notes where between `from` and `to` a branch crosses edges of strips.
   void cut(const CellAxis& axis, double start, double branch, double from, double to) {
     if (branch == 0) return;
-    const auto [low, high] = std::minmax(start + from * branch, start + to * branch);
-    for (std::size_t edge = axis.strip(low) + 1; edge < axis.strips() && axis.edges()[edge] < high; ++edge)
+    const double one = start + from * branch, other = start + to * branch, high = std::max(one, other);
+    for (std::size_t edge = axis.strip(std::min(one, other)) + 1; edge < axis.strips() && axis.edges()[edge] < high;
+         ++edge)
       cuts_.push_back(std::clamp((axis.edges()[edge] - start) / branch, from, to));
   }
 
@@ -184,8 +191,7 @@ std::vector<CellAverage> averaging_cells(const World& world, const Region& box, 
       region.low[a] = across.low, region.high[a] = across.high;
       region.low[b] = up.low, region.high[b] = up.high;
       const double volume = region.volume();
-      averages.push_back({region,
-                          sums.solid > 0 ? volume / sums.solid - 1 : std::numeric_limits<double>::infinity(),
+      averages.push_back({region, sums.solid > 0 ? volume / sums.solid - 1 : std::numeric_limits<double>::infinity(),
                           sums.grains > 0 ? sums.touching / sums.grains : 0, sums.load / volume});
     }
   }

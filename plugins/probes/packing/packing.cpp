@@ -45,14 +45,15 @@ double deviatoric(const Mat3& stress) {
 }
 
 struct Figures {
-  double void_ratio, void_ratio_overall, coordination_number, coordination_number_mechanical, rattler_share, mean_stress,
-      deviatoric_stress, kinetic_energy, unbalanced_force, mean_contact_force, inertial_number, largest_overlap;
+  double void_ratio, void_ratio_overall, coordination_number, coordination_number_mechanical, rattler_share,
+      mean_stress, deviatoric_stress, kinetic_energy, unbalanced_force, mean_contact_force, inertial_number,
+      largest_overlap;
 };
 
 /// A channel and where its number comes from.
 struct Figure {
   const char *name, *unit, *doc;
-  double Figures::* value;
+  double Figures::*value;
 };
 
 constexpr Figure figures[] = {
@@ -64,7 +65,8 @@ constexpr Figure figures[] = {
     {"coordination_number", "1", "touching grains of a grain: 2 contacts between grains / grains",
      &Figures::coordination_number},
     {"coordination_number_mechanical", "1",
-     "touching grains of a grain that is no rattler (Thornton 2000); 0 if all are", &Figures::coordination_number_mechanical},
+     "touching grains of a grain that is no rattler (Thornton 2000); 0 if all are",
+     &Figures::coordination_number_mechanical},
     {"rattler_share", "1", "share of the grains with fewer than two contacts, touches of walls included",
      &Figures::rattler_share},
     {"mean_stress", "Pa", "mean stress p of the interior, a third of the trace, positive in compression",
@@ -76,7 +78,8 @@ constexpr Figure figures[] = {
      &Figures::unbalanced_force},
     {"mean_contact_force", "N", "mean magnitude of the normal force of a contact, walls included",
      &Figures::mean_contact_force},
-    {"inertial_number", "1", "I = shear rate * d50 * sqrt(density / p), never negative; 0 where p <= 0 or nothing drives",
+    {"inertial_number", "1",
+     "I = shear rate * d50 * sqrt(density / p), never negative; 0 where p <= 0 or nothing drives",
      &Figures::inertial_number},
     {"largest_overlap", "m", "largest overlap of a contact, walls included, positive in compression",
      &Figures::largest_overlap},
@@ -115,7 +118,8 @@ void PackingProbe::prepare(const World& world) {
 std::vector<Channel> PackingProbe::channels() const {
   std::vector<Channel> channels;
   for (const auto& figure : figures) channels.push_back({figure.name, figure.unit, figure.doc, {}});
-  channels.push_back({"stress", "Pa",
+  channels.push_back({"stress",
+                      "Pa",
                       "Love-Weber stress of the interior, row by row (force, branch), positive in compression",
                       {3, 3}});
   return channels;
@@ -162,12 +166,15 @@ void PackingProbe::sample(const World& world, std::span<const std::span<double>>
 
 std::vector<Field> PackingProbe::fields(const World& world) {
   const double d50 = world.mean_diameter();
-  const auto cells =
-      averaging_cells(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
+  const auto cells = averaging_cells(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
   std::vector<Field> fields{
       {"centre", "m", "centre of an averaging cell", 3, {}},
       {"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}},
-      {"coordination_number", "1", "touching grains of a grain, over the grains centred in the cell; 0 without any", 1, {}},
+      {"coordination_number",
+       "1",
+       "touching grains of a grain, over the grains centred in the cell; 0 without any",
+       1,
+       {}},
       {"stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}}};
   for (auto& field : fields) field.values.reserve(field.width * cells.size());
   for (const auto& cell : cells) {
@@ -183,10 +190,11 @@ std::vector<Field> PackingProbe::fields(const World& world) {
 }  // namespace grit
 
 const grit::PluginInfo* grit_plugin() {
-  static const grit::PluginInfo info{.kind = "probe",
-                                     .name = "packing",
-                                     .version = "1.0.0",
-                                     .doc = "void ratio, coordination, stress and unrest of the specimen, and averaging cells",
-                                     .make_probe = []() -> grit::Probe* { return new grit::PackingProbe; }};
+  static const grit::PluginInfo info{
+      .kind = "probe",
+      .name = "packing",
+      .version = "1.0.0",
+      .doc = "void ratio, coordination, stress and unrest of the specimen, and averaging cells",
+      .make_probe = []() -> grit::Probe* { return new grit::PackingProbe; }};
   return &info;
 }

@@ -53,7 +53,7 @@ FakeWorld random_world(bool periodic_depth) {
       if (branch.norm() < world.position[a].w + world.position[b].w)
         world.touch(a, b, branch, 10 * branch + Vec3(sign(random), sign(random), sign(random)));
     }
-  world.wall.push_back({.name = "floor"});
+  world.wall.push_back(still_wall("floor"));
   for (std::uint32_t a = 0; a < world.position.size(); ++a)
     if (world.position[a].z < world.position[a].w)
       world.touch_wall(a, 0, Vec3(0, 0, -world.position[a].z), Vec3(sign(random), 0, -5));
@@ -114,12 +114,12 @@ TEST(Packing, LeavesRattlersOutOfTheMechanicalCoordination) {
   for (int i = 0; i < 5; ++i) world.add({double(i), 0, 0}, 0.5);
   const Vec3 any(1, 0, 0);
   world.touch(0, 1, any, any), world.touch(1, 2, any, any), world.touch(0, 2, any, any);  // three that hold each other
-  world.touch(2, 3, any, any);                                                           // one more; the last touches none
+  world.touch(2, 3, any, any);  // one more; the last touches none
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number"), 2 * 4 / 5.0);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number_mechanical"), (2 * 4 - 1) / (5 - 1 - 1.0));
   EXPECT_DOUBLE_EQ(value_of(world, "rattler_share"), 0.4);
 
-  world.wall.push_back({.name = "floor"});
+  world.wall.push_back(still_wall("floor"));
   world.touch_wall(3, 0, Vec3(0, 0, -0.5), Vec3(0, 0, -1));  // a grain between a grain and a wall is held
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number"), 2 * 4 / 5.0);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number_mechanical"), 8 / 4.0);
@@ -129,7 +129,7 @@ TEST(Packing, LeavesRattlersOutOfTheMechanicalCoordination) {
 TEST(Packing, FindsTheLargestOverlap) {
   FakeWorld world;
   world.add({0, 0, 0}, 1), world.add({1.9, 0, 0}, 1), world.add({0, 1.95, 0}, 1);
-  world.wall.push_back({.name = "floor"});
+  world.wall.push_back(still_wall("floor"));
   world.touch(0, 1, Vec3(1.9, 0, 0), Vec3(1, 0, 0)), world.touch(0, 2, Vec3(0, 1.95, 0), Vec3(0, 1, 0));
   EXPECT_NEAR(value_of(world, "largest_overlap"), 0.1, 1e-14);
   world.touch_wall(0, 0, Vec3(0, 0, -0.8), Vec3(0, 0, -1));
@@ -157,7 +157,7 @@ TEST(Packing, GivesTheInertialNumber) {
   given.shear_rate = -8;
   EXPECT_NEAR(value_of(world, "inertial_number", given), 8 * per_rate, 1e-12);
 
-  world.wall.push_back({.name = "top"});
+  world.wall.push_back(still_wall("top"));
   world.wall[0].velocity = {0.03, 0, -0.04};
   PackingProbe driven;
   driven.driven_by = "top";
@@ -171,7 +171,7 @@ TEST(Packing, GivesTheInertialNumber) {
 
 TEST(Packing, RefusesAWallThatIsNotThere) {
   FakeWorld world;
-  world.wall = {{.name = "top"}, {.name = "bottom"}};
+  world.wall = {still_wall("top"), still_wall("bottom")};
   PackingProbe probe;
   probe.driven_by = "tip";
   EXPECT_THAT([&] { probe.prepare(world); },
@@ -193,7 +193,8 @@ TEST(AveragingCells, LieInTheMiddle) {
 }
 
 TEST(AveragingCells, KnowTheirStripsForAnySizeAndStep) {
-  for (const auto& [size, step] : std::vector<std::pair<double, double>>{{5, 1}, {2.5, 1}, {1, 3}, {0.7, 0.3}, {3, 3}}) {
+  for (const auto& [size, step] :
+       std::vector<std::pair<double, double>>{{5, 1}, {2.5, 1}, {1, 3}, {0.7, 0.3}, {3, 3}}) {
     const CellAxis axis(-2, 15, size, step);
     for (const auto& cell : axis.cells()) {
       EXPECT_NEAR(axis.edges()[cell.begin], cell.low, 1e-9);
@@ -250,8 +251,9 @@ TEST_P(AveragingCellsOf, RandomGrainsAgreeWithAveragesOfEachBox) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, AveragingCellsOf,
-                         testing::Values(std::tuple(false, 1, 4, 1), std::tuple(true, 1, 4, 1), std::tuple(true, 0, 2.5, 1),
-                                         std::tuple(false, 2, 1.7, 0.4), std::tuple(true, 1, 1, 2)));
+                         testing::Values(std::tuple(false, 1, 4, 1), std::tuple(true, 1, 4, 1),
+                                         std::tuple(true, 0, 2.5, 1), std::tuple(false, 2, 1.7, 0.4),
+                                         std::tuple(true, 1, 1, 2)));
 
 TEST(Packing, GivesItsCellsAsFields) {
   PackingProbe probe;

@@ -11,10 +11,9 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 WallView wall_named(const std::string& name) {
-  WallView wall;
-  wall.name = name;
-  wall.position = {1, 2, 3}, wall.stage_position = {-1, -2, -3}, wall.velocity = {4, 5, 6}, wall.spin = {0, 0, 0};
-  wall.force = {7, 8, 9}, wall.moment = {10, 11, 12}, wall.normal = {0, 0, 1};
+  WallView wall = still_wall(name);
+  wall.position = {1, 2, 3}, wall.stage_position = {-1, -2, -3}, wall.velocity = {4, 5, 6};
+  wall.force = {7, 8, 9}, wall.moment = {10, 11, 12};
   wall.area = 0.5, wall.pressure = 18, wall.touches = 42;
   return wall;
 }
@@ -44,8 +43,8 @@ TEST(WallsProbe, ReportsWhatTheWallSays) {
   const FakeWorld world = world_with({"top"});
   WallsProbe probe;
   probe.prepare(world);
-  EXPECT_THAT(names_of(probe), ElementsAre("top_position", "top_velocity", "top_force", "top_moment", "top_pressure",
-                                           "top_touches"));
+  EXPECT_THAT(names_of(probe),
+              ElementsAre("top_position", "top_velocity", "top_force", "top_moment", "top_pressure", "top_touches"));
   EXPECT_THAT(channel_values(probe, world, "top_position"), ElementsAre(1, 2, 3));
   EXPECT_THAT(channel_values(probe, world, "top_velocity"), ElementsAre(4, 5, 6));
   EXPECT_THAT(channel_values(probe, world, "top_force"), ElementsAre(7, 8, 9));
@@ -83,7 +82,8 @@ TEST(WallsProbe, RefusesAWallThatIsNotThere) {
 
 TEST(WallsProbe, RefusesWallsWithTheSameChannels) {
   WallsProbe probe;
-  EXPECT_THAT(error_of(probe, world_with({"a-b", "a_b"})), HasSubstr("walls \"a-b\" and \"a_b\" would both be reported as \"a_b_"));
+  EXPECT_THAT(error_of(probe, world_with({"a-b", "a_b"})),
+              HasSubstr("walls \"a-b\" and \"a_b\" would both be reported as \"a_b_"));
   probe.walls = {"a-b"};
   EXPECT_EQ(error_of(probe, world_with({"a-b", "a_b"})), "no error");
 }

@@ -195,12 +195,13 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       at.overlap = max(reach - distance, L(0.0));
       at.radius_a = pa.w, at.radius_b = pb.w;
       at.inverse_mass_a = va.w, at.inverse_mass_b = vb.w;
-      // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips.
-      at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), normal) +
+      at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), batch.dt);
+      // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips. The
+      // spins act on the normal of the middle of the step, as the velocities do.
+      at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), L(0.5) * at.turn.bisector) +
                     ((reach - distance_before) * per_dt) * (normal - normal_before);
       at.spin = wb.xyz() - wa.xyz();
       at.dt = dt;
-      at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), batch.dt);
       largest = max(largest, at.overlap / max(min(pa.w, pb.w), L(1e-300)));
 
       State state{};
@@ -276,13 +277,13 @@ template <class Law, unsigned Features, class L>
     at.overlap = lanes([](const WallTouch& t) { return t.overlap; });
     at.radius_a = at.radius_b = pa.w;
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
+    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt);
     // The last term takes the wall's velocity where the sphere's surface would be: none slips that a wall carries along
     // as it turns, or that pivots about an edge.
-    at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), normal) +
+    at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), L(0.5) * at.turn.bisector) +
                   (at.overlap * per_dt) * (normal - normal_before);
     at.spin = wall_spin - wa.xyz();
     at.dt = L(batch.dt);
-    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt);
 
     State state{};
     for (std::size_t f = 0; f < fields; ++f) {

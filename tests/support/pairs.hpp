@@ -1,0 +1,199 @@
+// Spheres, and pairs of them in the blocks that a contact law is called with.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "grit/contact/contact_law.hpp"
+
+namespace grit::test {
+
+struct Ball {
+  Vec3 position = Vec3::Zero();
+  double radius = 1;
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+  double mass = 1;  ///< infinite: cannot be moved
+  std::uint8_t material = 0;
+};
+
+/// As the kernel lays them out: padding pairs a body with one that is far away, whose index is the number of bodies.
+class Pairs {
+ public:
+  explicit Pairs(const ContactLaw& law, double dt) : law_(law), fields_(law.state()), dt(dt) { close(); }
+
+  std::uint32_t add(const Ball& ball) {
+    open();
+    position_.push_back({ball.position.x(), ball.position.y(), ball.position.z(), ball.radius});
+    velocity_.push_back({ball.velocity.x(), ball.velocity.y(), ball.velocity.z(), 1 / ball.mass});
+    spin_.push_back({ball.spin.x(), ball.spin.y(), ball.spin.z(), 1 / (0.4 * ball.mass * ball.radius * ball.radius)});
+    material_.push_back(ball.material);
+    close();
+    return static_cast<std::uint32_t>(count() - 1);
+  }
+  /// Pairs a with b, in the next place; returns the place.
+  std::size_t pair(std::uint32_t a, std::uint32_t b, std::uint8_t image = 0) {
+    if (used_ == a_.size()) {
+      a_.resize(used_ + block_size, 0), b_.resize(used_ + block_size, pad_), image_.resize(used_ + block_size, 0);
+      touching_.push_back(0), row_.resize(used_ + block_size);
+      state_.resize(state_.size() + fields_.size() * block_size, 0.0);
+    }
+    a_[used_] = a, b_[used_] = b, image_[used_] = image;
+    return used_++;
+  }
+  /// Leaves the next place to padding.
+  void skip() { pair(0, pad_); }
+
+  std::size_t count() const { return position_.size() - 1; }
+  std::size_t places() const { return used_; }
+  std::size_t fields() const { return fields_.size(); }
+  Row& position(std::size_t i) { return position_[i]; }
+  Row& velocity(std::size_t i) { return velocity_[i]; }
+  Row& spin(std::size_t i) { return spin_[i]; }
+  std::uint8_t material(std::size_t i) const { return material_[i]; }
+  std::uint32_t a(std::size_t place) const { return a_[place]; }
+  std::uint32_t b(std::size_t place) const { return b_[place]; }
+  std::uint8_t image(std::size_t place) const { return image_[place]; }
+  double& state(std::size_t place, std::size_t field) {
+    return state_[(place / block_size * fields_.size() + field) * block_size + place % block_size];
+  }
+  std::vector<double> state(std::size_t place) {
+    std::vector<double> numbers;
+    for (std::size_t f = 0; f < fields_.size(); ++f) numbers.push_back(state(place, f));
+    return numbers;
+  }
+  void mark_touching(std::size_t place) { touching_[place / block_size] |= 1u << (place % block_size); }
+  bool touching(std::size_t place) const { return (touching_[place / block_size] >> (place % block_size) & 1) != 0; }
+  /// What the law answered; `row` acts on b, `sum` is all that a's were given.
+  const ContactRow& row(std::size_t place) const { return row_[place]; }
+  const BodySum& sum(std::size_t body) const { return sum_[body]; }
+  double overlap(std::size_t place) const { return row_[place].moment.w; }
+  double largest_overlap() const { return largest_overlap_; }
+
+  void evaluate() { run(false); }
+  void evaluate_reference() { run(true); }
+  /// Moves all bodies through one step, then evaluates.
+  void step() {
+    for (std::size_t i = 0; i < count(); ++i) {
+      Row &x = position_[i], &v = velocity_[i];
+      x.x += dt * v.x, x.y += dt * v.y, x.z += dt * v.z;
+    }
+    for (ImageShift& shift : shifts) {
+      Row &x = shift.position, &v = shift.velocity;
+      x.x += dt * v.x, x.y += dt * v.y, x.z += dt * v.z;
+    }
+    evaluate();
+  }
+  /// Lets the forces act on velocities and spins for one step.
+  void kick() {
+    std::vector<BodySum> total = sum_;
+    for (std::size_t c = 0; c < used_; ++c) total[b_[c]].force += row_[c].force, total[b_[c]].moment += row_[c].moment;
+    for (std::size_t i = 0; i < count(); ++i) {
+      Row &v = velocity_[i], &w = spin_[i];
+      const Row &f = total[i].force, &m = total[i].moment;
+      v = {v.x + dt * v.w * f.x, v.y + dt * v.w * f.y, v.z + dt * v.w * f.z, v.w};
+      w = {w.x + dt * w.w * m.x, w.y + dt * w.w * m.y, w.z + dt * w.w * m.z, w.w};
+    }
+  }
+
+ private:
+  void open() { position_.pop_back(), velocity_.pop_back(), spin_.pop_back(), material_.pop_back(); }
+  void close() {
+    position_.push_back({1e150, 1e150, 1e150, 0}), velocity_.push_back({}), spin_.push_back({}), material_.push_back(0);
+    const auto last = static_cast<std::uint32_t>(count());
+    std::replace(b_.begin(), b_.end(), pad_, last);
+    pad_ = last;
+  }
+  void run(bool reference) {
+    sum_.assign(position_.size(), {});
+    PairBatch batch{.position = position_.data(),
+                    .velocity = velocity_.data(),
+                    .spin = spin_.data(),
+                    .a = a_.data(),
+                    .b = b_.data(),
+                    .image = shifts.empty() ? nullptr : image_.data(),
+                    .material = one_material ? nullptr : material_.data(),
+                    .shifts = shifts.data(),
+                    .first_block = 0,
+                    .last_block = a_.size() / block_size,
+                    .dt = dt,
+                    .state = state_.data(),
+                    .touching = touching_.data(),
+                    .row = row_.data(),
+                    .sum = sum_.data(),
+                    .largest_overlap = std::numeric_limits<double>::quiet_NaN()};
+    if (reference) law_.evaluate_pairs_reference(batch);
+    else law_.evaluate_pairs(batch);
+    largest_overlap_ = batch.largest_overlap;
+  }
+
+  const ContactLaw& law_;
+  std::vector<StateField> fields_;
+  std::vector<Row> position_, velocity_, spin_;
+  std::vector<std::uint8_t> material_, image_, touching_;
+  std::vector<std::uint32_t> a_, b_;
+  std::vector<double> state_;
+  std::vector<ContactRow> row_;
+  std::vector<BodySum> sum_;
+  std::uint32_t pad_ = 0;
+  std::size_t used_ = 0;
+  double largest_overlap_ = 0;
+
+ public:
+  double dt;
+  bool one_material = true;
+  std::vector<ImageShift> shifts;  ///< the first must be none
+};
+
+inline Vec3 vec(const Row& row) { return xyz(row); }
+inline void set(Row& row, const Vec3& v) { row = {v.x(), v.y(), v.z(), row.w}; }
+
+/// One sphere on a wall at rest or in motion: the wall's outer normal as seen from the sphere, and where it is.
+class WallPair {
+ public:
+  WallPair(const ContactLaw& law, const Ball& ball, double dt) : law_(law), dt_(dt), state_(law.state().size()) {
+    position = {ball.position.x(), ball.position.y(), ball.position.z(), ball.radius};
+    velocity = {ball.velocity.x(), ball.velocity.y(), ball.velocity.z(), 1 / ball.mass};
+    spin = {ball.spin.x(), ball.spin.y(), ball.spin.z(), 1 / (0.4 * ball.mass * ball.radius * ball.radius)};
+  }
+  /// The touch must be filled in by the caller before.
+  void evaluate() {
+    sum = {};
+    touch.body = 0;
+    WallBatch batch{.position = &position,
+                    .velocity = &velocity,
+                    .spin = &spin,
+                    .material = nullptr,
+                    .count = 1,
+                    .touch = &touch,
+                    .dt = dt_,
+                    .state = state_.data(),
+                    .row = &row,
+                    .sum = &sum,
+                    .largest_overlap = 0};
+    law_.evaluate_walls(batch);
+  }
+  void clear() { state_.assign(state_.size(), 0.0); }
+  std::vector<double>& state() { return state_; }
+
+  Row position, velocity, spin;
+  WallTouch touch{.normal = -Vec3::UnitZ(),
+                  .normal_before = -Vec3::UnitZ(),
+                  .velocity = Vec3::Zero(),
+                  .spin = Vec3::Zero(),
+                  .overlap = 0,
+                  .body = 0,
+                  .wall = 0,
+                  .feature = 0,
+                  .material = 0};
+  ContactRow row;
+  BodySum sum;
+
+ private:
+  const ContactLaw& law_;
+  double dt_;
+  std::vector<double> state_;
+};
+
+}  // namespace grit::test
