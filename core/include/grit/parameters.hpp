@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,10 +18,12 @@
 #include <variant>
 #include <vector>
 
-#include "grit/description.hpp"
 #include "grit/vec.hpp"
 
 namespace grit {
+
+/// A description as JSON; see grit/description.hpp.
+using Description = nlohmann::ordered_json;
 
 class Parameters;
 

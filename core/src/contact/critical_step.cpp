@@ -51,7 +51,7 @@ double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const
   walls.each([&](const WallContacts::Touching& t) {
     const std::uint32_t a = t.touch->body;
     PairSize size = size_of(a, a, t.touch->overlap);
-    size.inverse_mass_b = 0;
+    size.inverse_mass_b = 0, size.wall = true;
     const Stiffness k = law.stiffness(size, bodies.material[a], t.touch->material);
     sum[a] += own_demand(k, a);
     damping = std::max(damping, k.damping_ratio);

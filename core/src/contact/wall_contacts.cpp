@@ -137,7 +137,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                         .radius_b = x.w,
                         .inverse_mass_a = bodies.velocity[t.body].w,
                         .inverse_mass_b = 0,
-                        .overlap = t.overlap};
+                        .overlap = t.overlap,
+                        .wall = true};
     load.stiffness += law.stiffness(size, bodies.material[t.body], t.material).normal;
     ++load.touches;
   }

@@ -361,7 +361,8 @@ double Simulation::elastic_energy() const {
                             .radius_b = r,
                             .inverse_mass_a = bodies_.velocity[a].w,
                             .inverse_mass_b = 0,
-                            .overlap = t.touch->overlap},
+                            .overlap = t.touch->overlap,
+                            .wall = true},
                            bodies_.material[a], t.touch->material, t.state);
   });
   return energy;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "grit/description.hpp"
 #include "grit/parameters.hpp"
 #include "plugins/component.hpp"
 

@@ -158,7 +158,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       Vec<L> branch = pb.xyz() - pa.xyz();
       bool shifted = false;
       if constexpr (Periodic) {
-        for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
+        if (batch.image != nullptr)
+          for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
         if (shifted) branch = branch + load_rows<L>(&batch.shifts->position, [&](std::size_t k) {
                                          return image(k) * (sizeof(ImageShift) / sizeof(Row));
                                        }).xyz();
@@ -210,7 +211,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       if constexpr (OneKind) {
         response = Law::template evaluate<Features>(at, one_kind, state);
       } else {
-        const auto kind = [&](std::size_t k) { return batch.material[ia[k]] * materials + batch.material[ib[k]]; };
+        const auto kind = [&](std::size_t k) {
+          return batch.material != nullptr ? batch.material[ia[k]] * materials + batch.material[ib[k]] : 0;
+        };
         response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
       }
       const L zero(0.0);
@@ -380,12 +383,13 @@ class LawPlugin final : public ContactLaw {
   template <class L>
   void pairs(PairBatch& batch) const {
     with_features([&]<unsigned F>() {
-      const bool one_kind = batch.material == nullptr;
-      if (batch.image == nullptr && one_kind)
-        detail::pair_loop<Law, F, L, false, true>(batch, table_.data(), count_);
-      else if (batch.image == nullptr) detail::pair_loop<Law, F, L, false, false>(batch, table_.data(), count_);
-      else if (one_kind) detail::pair_loop<Law, F, L, true, true>(batch, table_.data(), count_);
-      else detail::pair_loop<Law, F, L, true, false>(batch, table_.data(), count_);
+      // The twin and mixtures take the general loop; the other two are worth their compilation.
+      const bool general = lane_width<L> == 1 || batch.material != nullptr;
+      if (general) detail::pair_loop<Law, F, L, true, false>(batch, table_.data(), count_);
+      else if constexpr (lane_width<L> > 1) {
+        if (batch.image == nullptr) detail::pair_loop<Law, F, L, false, true>(batch, table_.data(), count_);
+        else detail::pair_loop<Law, F, L, true, true>(batch, table_.data(), count_);
+      }
     });
   }
 
