@@ -95,6 +95,8 @@ class Udunits {
     if (!system_)
       throw FileError(
           "the unit database of UDUNITS-2 cannot be read; install udunits2 or let UDUNITS2_XML_PATH name it");
+    // The symbol that everybody uses and the database does not have.
+    ut_map_symbol_to_unit("deg", UT_ASCII, parse("degree").get());
   }
 
   Unit parse(const std::string& text) const {
