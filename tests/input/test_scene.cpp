@@ -133,7 +133,7 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
   },
   "bodies": {"grains": {"type": "cube", "material": "snad", "grains": {"type": "cloud"}}},
   "walls": {
-    "floor": {"type": "plane", "position": [0, 0], "material": "wood"},
+    "floor": {"type": "plane", "position": [0, 0], "material": "wood"}, "side": {"type": "plane", "position": [0, 0, 1]},
     "lid": {"type": "plane", "position": [0, 0, 1], "material": "sand",
       "motion": {"follow": {"wall": "roof"}}}
   },
@@ -160,7 +160,7 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
                            "7 /bodies/grains/type", "7 /bodies/grains/grains", "7 /bodies/grains/grains",
                            "7 /bodies/grains/grains", "7 /bodies/grains/grains", "9 /walls/floor/position",
                            "14 /stages/0/until/value", "16 /stages/0/change/guards/overlap", "9 /walls/floor/material",
-                           "11 /walls/lid/motion/follow/wall", "7 /bodies/grains/material"))
+                           "9 /walls/side", "11 /walls/lid/motion/follow/wall", "7 /bodies/grains/material"))
         << error.what();
   }
 }

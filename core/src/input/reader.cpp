@@ -55,12 +55,14 @@ class Reader {
   }
 
  private:
-  bool complain(const std::string& at, std::string message) {
+  bool complain(const std::string& at, std::string message) { return complain(at, at, std::move(message)); }
+  /// `fault` is what cannot be trusted: a key that is missing at `at`.
+  bool complain(const std::string& at, const std::string& fault, std::string message) {
     problems_.push_back(document_.problem(at, std::move(message)));
-    faults_.push_back(at);
+    faults_.push_back(fault);
     return false;
   }
-  /// Whether one of `faults` lies at, above or below a pointer. What is unknown does not touch its neighbours.
+  /// Whether one of `faults` lies at, above or below a pointer.
   static bool has_fault(const std::vector<std::string>& faults, const std::string& at) {
     return std::ranges::any_of(faults, [&](const std::string& fault) {
       const auto& [shorter, longer] = fault.size() < at.size() ? std::tie(fault, at) : std::tie(at, fault);
@@ -78,7 +80,8 @@ class Reader {
     const auto types = choice->types();
     const auto type = value.find("type");
     if (type == value.end())
-      return complain(at, "missing key \"type\", the " + choice->what() + "; allowed are " + listed(types));
+      return complain(at, at + "/type",
+                      "missing key \"type\", the " + choice->what() + "; allowed are " + listed(types));
     if (!type->is_string()) return wrong(at + "/type", *type, "a text that names the " + choice->what());
     const auto& name = type->get_ref<const std::string&>();
     if (std::ranges::find(types, name) == types.end())
@@ -112,8 +115,9 @@ class Reader {
                         parameter.target());
     if (!parameter.is_required()) return true;
     const std::string unit = parameter.unit() == "1" ? "" : " [" + parameter.unit() + ']';
-    return complain(at, "missing key " + in_quotes(parameter.name()) + unit +
-                            (parameter.doc().empty() ? "" : ": " + parameter.doc()));
+    return complain(
+        at, pointer,
+        "missing key " + in_quotes(parameter.name()) + unit + (parameter.doc().empty() ? "" : ": " + parameter.doc()));
   }
 
   // ---- numbers

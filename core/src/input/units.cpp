@@ -69,7 +69,7 @@ class Udunits {
     return instance;
   }
 
-  /// Throws std::invalid_argument for units that do not convert: the table is wrong, or a plugin's declaration.
+  /// Throws PluginError for units that do not convert: it can only be a declaration that is wrong.
   Scale scale(const std::string& spelling, const std::string& unit) {
     const std::lock_guard lock(mutex_);
     auto [found, is_new] = scales_.try_emplace({spelling, unit});
@@ -107,7 +107,8 @@ class Udunits {
     const Unit from = parse(spelling), to = parse(unit);
     const Converter converter(from && to ? ut_get_converter(from.get(), to.get()) : nullptr, cv_free);
     if (!converter)
-      throw Error("the unit \"" + spelling + "\" does not convert to \"" + unit + "\"; declare a unit of UDUNITS-2");
+      throw PluginError("the unit \"" + spelling + "\" does not convert to \"" + unit +
+                        "\"; declare a unit of UDUNITS-2");
     Scale scale;
     scale.factor = cv_convert_double(converter.get(), 1.0);
     const double exponent = std::round(std::log10(scale.factor));
