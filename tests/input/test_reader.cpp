@@ -115,7 +115,7 @@ TEST(Reader, FillsWhatWasDeclared) {
   EXPECT_EQ(x.place, Vec3(0, 1e-3, -1));
   EXPECT_EQ(x.about, Vec3(0.01, 0, 0));
   EXPECT_EQ(x.axes, (std::array{false, true, false}));
-  EXPECT_EQ(x.lengths, (std::vector{1, 2e-3, 3}));
+  EXPECT_EQ(x.lengths, (std::vector{1.0, 2e-3, 3.0}));
   EXPECT_TRUE(x.names.empty());
   EXPECT_EQ(x.round.radius, 2);
   EXPECT_EQ(x.maybe->radius, 3);
@@ -237,7 +237,7 @@ TEST(Reference, TellsEveryParameterInAColumn) {
   EXPECT_EQ(line("count"), "count integer 3 from 1 to 10");
   EXPECT_EQ(line("word"), "word text one one, two");
   EXPECT_EQ(line("place"), "place 3 × m 1 m, 2 m, 3 m any");
-  EXPECT_EQ(line("  radius"), " radius m 500 mm above 0 m of the thing");
+  EXPECT_EQ(line("  radius"), " radius m 0.5 m above 0 m of the thing");
   EXPECT_EQ(line("  type"), " type one of required round, tall shape");
   EXPECT_EQ(line("        type"), " type one of required round, tall shape, as above");
 }

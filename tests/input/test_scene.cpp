@@ -133,7 +133,7 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
   },
   "bodies": {"grains": {"type": "cube", "material": "snad", "grains": {"type": "cloud"}}},
   "walls": {
-    "floor": {"type": "plane", "position": [0, 0], "material": "wood"},
+    "floor": {"type": "plane", "position": [0, 0], "material": "wood"}, "side": {"type": "plane", "position": [0, 0, 1]},
     "lid": {"type": "plane", "position": [0, 0, 1], "material": "sand",
       "motion": {"follow": {"wall": "roof"}}}
   },
@@ -156,10 +156,11 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
       found.push_back(std::to_string(p.line) + ' ' + p.pointer);
     }
     EXPECT_THAT(found, testing::UnorderedElementsAre(
-                           "18 /colour", "17 /seed", "4 /materials/sand/density", "5 /materials/sand/frictoin_angle",
+                           "19 /colour", "18 /seed", "4 /materials/sand/density", "5 /materials/sand/frictoin_angle",
                            "7 /bodies/grains/type", "7 /bodies/grains/grains", "7 /bodies/grains/grains",
                            "7 /bodies/grains/grains", "7 /bodies/grains/grains", "9 /walls/floor/position",
-                           "13 /stages/0/until/value", "15 /stages/0/change/guards/overlap"))
+                           "14 /stages/0/until/value", "16 /stages/0/change/guards/overlap", "9 /walls/floor/material",
+                           "9 /walls/side", "11 /walls/lid/motion/follow/wall", "7 /bodies/grains/material"))
         << error.what();
   }
 }

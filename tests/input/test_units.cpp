@@ -77,7 +77,7 @@ TEST(Units, EverySpellingConvertsAndMatchesThePattern) {
 TEST(Units, AUnitOutsideTheTableHasItsOwnSpelling) {
   EXPECT_EQ(si("3 Pa s/m", "Pa s/m"), 3);
   EXPECT_FALSE(parse_quantity("3 kPa s/m", "Pa s/m"));
-  EXPECT_THROW(parse_quantity("3 quux", "quux"), Error);
+  EXPECT_THROW(parse_quantity("3 quux", "quux"), PluginError);
 }
 
 TEST(Units, FriendlyTextsAreShort) {

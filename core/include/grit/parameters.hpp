@@ -143,6 +143,7 @@ using Complain = std::function<void(std::string_view key, std::string_view found
 struct Check {
   std::function<void(const Complain&)> run;
   std::vector<std::string> about;  // keys; none: all of the object
+  bool despite_problems = false;   // runs in any case; complaints where a problem is known already are dropped
 };
 
 /// The declarations of one object, in the order in which they are read.
@@ -211,6 +212,9 @@ class Parameters {
   void check(std::function<void(const Complain&)> check, std::vector<std::string> about = {}) {
     checks_.push_back({std::move(check), std::move(about)});
   }
+  /// Adds a check of names that refer to others. It runs whatever problems there are, so it must bear values that were
+  /// not read; what it says of those is not heard.
+  void check_names(std::function<void(const Complain&)> check) { checks_.push_back({std::move(check), {}, true}); }
 
   Choice* choice() const { return choice_; }
   const std::deque<Parameter>& entries() const { return entries_; }

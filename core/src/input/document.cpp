@@ -324,8 +324,11 @@ void Document::merge(const Document& other, const std::string& from) {
 
 void Document::merge(Description& target, const std::string& at, const Description& patch, const Document& other,
                      const std::string& from) {
-  if (!patch.is_object() || !target.is_object()) forget(at);
-  origins_[at] = other.origin(from);
+  // An object that is merged into stays where it was written, for what it holds without an entry of its own.
+  if (!patch.is_object() || !target.is_object()) {
+    forget(at);
+    origins_[at] = other.origin(from);
+  }
   if (!patch.is_object()) {
     for (auto entry = other.origins_.lower_bound(from + '/');
          entry != other.origins_.end() && is_below(entry->first, from); ++entry)

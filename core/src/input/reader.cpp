@@ -4,6 +4,7 @@
 #include <cmath>
 #include <regex>
 #include <set>
+#include <tuple>
 
 #include "input/range.hpp"
 #include "input/units.hpp"
@@ -40,22 +41,33 @@ class Reader {
       if (!entry(value, at, parameter)) unclean.insert(parameter.name());
     const bool clean = problems_.size() == before;
     for (const auto& check : parameters.checks()) {
-      const bool ready = check.about.empty() ? clean : std::ranges::none_of(check.about, [&](const std::string& key) {
-        return unclean.contains(key);
+      const auto is_clean = [&](const std::string& key) { return !unclean.contains(key); };
+      if (!check.despite_problems && !(check.about.empty() ? clean : std::ranges::all_of(check.about, is_clean)))
+        continue;
+      const auto known = faults_;
+      check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
+        const std::string where = key.empty() ? at : at + '/' + std::string(key);
+        if (check.despite_problems && has_fault(known, where)) return;
+        complain(where, "found " + std::string(found) + "; allowed is " + std::string(allowed));
       });
-      if (ready)
-        check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
-          const std::string where = key.empty() ? at : at + '/' + std::string(key);
-          complain(where, "found " + std::string(found) + "; allowed is " + std::string(allowed));
-        });
     }
     return problems_.size() == before;
   }
 
  private:
-  bool complain(const std::string& at, std::string message) {
+  bool complain(const std::string& at, std::string message) { return complain(at, at, std::move(message)); }
+  /// `fault` is what cannot be trusted: a key that is missing at `at`.
+  bool complain(const std::string& at, const std::string& fault, std::string message) {
     problems_.push_back(document_.problem(at, std::move(message)));
+    faults_.push_back(fault);
     return false;
+  }
+  /// Whether one of `faults` lies at, above or below a pointer.
+  static bool has_fault(const std::vector<std::string>& faults, const std::string& at) {
+    return std::ranges::any_of(faults, [&](const std::string& fault) {
+      const auto& [shorter, longer] = fault.size() < at.size() ? std::tie(fault, at) : std::tie(at, fault);
+      return longer.starts_with(shorter) && (longer.size() == shorter.size() || longer[shorter.size()] == '/');
+    });
   }
   bool wrong(const std::string& at, const Description& found, const std::string& allowed) {
     return complain(at, "found " + describe_value(found) + "; allowed is " + allowed);
@@ -68,7 +80,8 @@ class Reader {
     const auto types = choice->types();
     const auto type = value.find("type");
     if (type == value.end())
-      return complain(at, "missing key \"type\", the " + choice->what() + "; allowed are " + listed(types));
+      return complain(at, at + "/type",
+                      "missing key \"type\", the " + choice->what() + "; allowed are " + listed(types));
     if (!type->is_string()) return wrong(at + "/type", *type, "a text that names the " + choice->what());
     const auto& name = type->get_ref<const std::string&>();
     if (std::ranges::find(types, name) == types.end())
@@ -102,8 +115,9 @@ class Reader {
                         parameter.target());
     if (!parameter.is_required()) return true;
     const std::string unit = parameter.unit() == "1" ? "" : " [" + parameter.unit() + ']';
-    return complain(at, "missing key " + in_quotes(parameter.name()) + unit +
-                            (parameter.doc().empty() ? "" : ": " + parameter.doc()));
+    return complain(
+        at, pointer,
+        "missing key " + in_quotes(parameter.name()) + unit + (parameter.doc().empty() ? "" : ": " + parameter.doc()));
   }
 
   // ---- numbers
@@ -284,6 +298,7 @@ class Reader {
 
   const Document& document_;
   std::vector<Problem>& problems_;
+  std::vector<std::string> faults_;  // pointers of what has a problem
 };
 
 }  // namespace

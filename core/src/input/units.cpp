@@ -69,7 +69,7 @@ class Udunits {
     return instance;
   }
 
-  /// Throws std::invalid_argument for units that do not convert: the table is wrong, or a plugin's declaration.
+  /// Throws PluginError for units that do not convert: it can only be a declaration that is wrong.
   Scale scale(const std::string& spelling, const std::string& unit) {
     const std::lock_guard lock(mutex_);
     auto [found, is_new] = scales_.try_emplace({spelling, unit});
@@ -95,6 +95,8 @@ class Udunits {
     if (!system_)
       throw FileError(
           "the unit database of UDUNITS-2 cannot be read; install udunits2 or let UDUNITS2_XML_PATH name it");
+    // The symbol that everybody uses and the database does not have.
+    ut_map_symbol_to_unit("deg", UT_ASCII, parse("degree").get());
   }
 
   Unit parse(const std::string& text) const {
@@ -105,7 +107,8 @@ class Udunits {
     const Unit from = parse(spelling), to = parse(unit);
     const Converter converter(from && to ? ut_get_converter(from.get(), to.get()) : nullptr, cv_free);
     if (!converter)
-      throw Error("the unit \"" + spelling + "\" does not convert to \"" + unit + "\"; declare a unit of UDUNITS-2");
+      throw PluginError("the unit \"" + spelling + "\" does not convert to \"" + unit +
+                        "\"; declare a unit of UDUNITS-2");
     Scale scale;
     scale.factor = cv_convert_double(converter.get(), 1.0);
     const double exponent = std::round(std::log10(scale.factor));

@@ -9,7 +9,7 @@ namespace grit {
 
 /// How a unit may be written where `unit` (SI, UDUNITS spelling) is meant. Never empty; "" stands for no unit at all.
 /// A unit that is not in the table has only its own spelling. All functions here may be called from several threads.
-/// They throw FileError if the UDUNITS-2 database cannot be read.
+/// They throw FileError if the UDUNITS-2 database cannot be read, PluginError if it does not know a declared unit.
 std::vector<std::string> unit_spellings(const std::string& unit);
 
 /// The same as a list for messages: "Pa, kPa, MPa".

@@ -63,7 +63,10 @@ Description write(Parameters& parameters) {
 }
 
 std::optional<Description> write(const Parameter& parameter) {
-  return std::visit([](const auto& target) { return value_of(target); }, parameter.target());
+  auto value = std::visit([](const auto& target) { return value_of(target); }, parameter.target());
+  // A list that is shorter than it may be was not given.
+  if (value && value->is_structured() && value->size() < parameter.least_entries()) return std::nullopt;
+  return value;
 }
 
 }  // namespace grit

@@ -474,80 +474,64 @@ void SceneDescription::declare(Parameters& p) {
    }).doc("what is measured, by name");
   p.add("output", output).doc("frames, picture, summary");
 
-  p.check(
-      [this](const Complain& complain) {
-        for (const auto& [name, _] : materials)
-          if (name.find('+') != std::string::npos)
-            complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
-        const References known("material", keys(materials), complain);
-        std::set<std::pair<std::string, std::string>> pairs;
-        for (const auto& [a, b] : interfaces) {
-          const std::string name = b.empty() ? a : a + '+' + b, key = "interfaces/" + name;
-          if (b.empty()) {
-            complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
-            continue;
-          }
-          known.check(key, a);
-          if (a != b) known.check(key, b);
-          if (!pairs.insert(std::minmax(a, b)).second)
-            complain(key, "an interface that is described twice", "either order, once");
-        }
-      },
-      {"contacts", "materials", "interfaces"});
-  p.check(
-      [this](const Complain& complain) {
-        const References known("material", keys(materials), complain);
-        for (const auto& [name, group] : bodies) known.check("bodies/" + name + "/material", group.material);
-      },
-      {"materials", "bodies"});
-  p.check(
-      [this](const Complain& complain) {
-        const References known("material", keys(materials), complain);
-        for (const auto& [name, wall] : walls) known.check("walls/" + name + "/material", wall.material);
-      },
-      {"materials", "walls"});
-  p.check(
-      [this](const Complain& complain) {
-        const References known("wall", keys(walls), complain);
-        for (const auto& [name, wall] : walls)
-          if (wall.motion.follow) known.check("walls/" + name + "/motion/follow/wall", wall.motion.follow->wall);
-        check_circles(walls, complain);
-      },
-      {"walls"});
-  p.check(
-      [this](const Complain& complain) {
-        const References known("wall", keys(walls), complain);
-        for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})
-          for (std::size_t k = 0; k < side->size(); ++k)
-            if (!(*side)[k].empty()) known.check("specimen/" + std::string(key) + '/' + std::to_string(k), (*side)[k]);
-      },
-      {"walls", "specimen"});
-  p.check(
-      [this](const Complain& complain) {
-        const References known("wall", keys(walls), complain);
-        for (std::size_t i = 0; i < stages.size(); ++i)
-          check_walls_of(stages[i].until, "stages/" + std::to_string(i) + "/until", known);
-      },
-      {"walls", "stages"});
-  p.check(
-      [this](const Complain& complain) {
-        std::set<std::string> names;
-        for (std::size_t i = 0; i < stages.size(); ++i)
-          if (!names.insert(stages[i].name).second)
-            complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", as a stage before it",
-                     "a name of its own");
-      },
-      {"stages"});
-  p.check(
-      [this](const Complain& complain) {
-        std::vector<std::string> names;
-        for (const auto& stage : stages) names.push_back(stage.name);
-        const References known("stage", names, complain);
-        for (const auto& [name, probe] : probes)
-          for (std::size_t i = 0; i < probe.stages.size(); ++i)
-            known.check("probes/" + name + "/stages/" + std::to_string(i), probe.stages[i]);
-      },
-      {"stages", "probes"});
+  p.check_names([this](const Complain& complain) {
+    for (const auto& [name, _] : materials)
+      if (name.find('+') != std::string::npos)
+        complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
+    const References known("material", keys(materials), complain);
+    std::set<std::pair<std::string, std::string>> pairs;
+    for (const auto& [a, b] : interfaces) {
+      const std::string name = b.empty() ? a : a + '+' + b, key = "interfaces/" + name;
+      if (b.empty()) {
+        complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
+        continue;
+      }
+      known.check(key, a);
+      if (a != b) known.check(key, b);
+      if (!pairs.insert(std::minmax(a, b)).second)
+        complain(key, "an interface that is described twice", "either order, once");
+    }
+  });
+  p.check_names([this](const Complain& complain) {
+    const References known("material", keys(materials), complain);
+    for (const auto& [name, group] : bodies) known.check("bodies/" + name + "/material", group.material);
+  });
+  p.check_names([this](const Complain& complain) {
+    const References known("material", keys(materials), complain);
+    for (const auto& [name, wall] : walls) known.check("walls/" + name + "/material", wall.material);
+  });
+  p.check_names([this](const Complain& complain) {
+    const References known("wall", keys(walls), complain);
+    for (const auto& [name, wall] : walls)
+      if (wall.motion.follow) known.check("walls/" + name + "/motion/follow/wall", wall.motion.follow->wall);
+    check_circles(walls, complain);
+  });
+  p.check_names([this](const Complain& complain) {
+    const References known("wall", keys(walls), complain);
+    for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})
+      for (std::size_t k = 0; k < side->size(); ++k)
+        if (!(*side)[k].empty()) known.check("specimen/" + std::string(key) + '/' + std::to_string(k), (*side)[k]);
+  });
+  p.check_names([this](const Complain& complain) {
+    const References known("wall", keys(walls), complain);
+    for (std::size_t i = 0; i < stages.size(); ++i)
+      check_walls_of(stages[i].until, "stages/" + std::to_string(i) + "/until", known);
+  });
+  p.check_names([this](const Complain& complain) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < stages.size(); ++i)
+      if (!names.insert(stages[i].name).second)
+        complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", as a stage before it",
+                 "a name of its own");
+  });
+  p.check_names([this](const Complain& complain) {
+    std::vector<std::string> names;
+    for (const auto& stage : stages) names.push_back(stage.name);
+    const References known("stage", names, complain);
+    for (const auto& [name, probe] : probes)
+      for (std::size_t i = 0; i < probe.stages.size(); ++i)
+        known.check("probes/" + name + "/stages/" + std::to_string(i), probe.stages[i]);
+  });
 }
 
 }  // namespace grit
