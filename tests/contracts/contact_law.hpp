@@ -474,7 +474,9 @@ TEST_P(ContactLawContract, ClosedCyclesLeaveNoForceAndYieldNoEnergy) {
       constexpr int steps = 400;
       const auto path = [&](int step) {
         const double phase = 2 * std::numbers::pi * step / steps;
-        return Vec3(1e-3 * (1 - std::cos(phase)), 0, 1.68 - press * (1 - std::cos(phase - 2 * std::numbers::pi * lag)));
+        const double aside = 1e-3 * (1 - std::cos(phase));
+        const double distance = 1.68 - press * (1 - std::cos(phase - 2 * std::numbers::pi * lag));
+        return Vec3(distance * Vec3(std::sin(aside / 1.7), 0, std::cos(aside / 1.7)));
       };
       set(pairs.position(1), path(0));
       pairs.step();
@@ -489,7 +491,9 @@ TEST_P(ContactLawContract, ClosedCyclesLeaveNoForceAndYieldNoEnergy) {
       rest(pairs), pairs.step();
       // Out and back on one line, the spring is what it was, unless its stiffness follows the overlap.
       if (press == 0 || (lag == 0 && !stiffness_follows_overlap())) {
-        EXPECT_LE(shear(pairs, 0).norm(), 1e-12 * largest + 1e-9) << press;
+        // A stiffness that follows the overlap follows its round-off, too.
+        const double closed = stiffness_follows_overlap() ? 1e-11 : 1e-12;
+        EXPECT_LE(shear(pairs, 0).norm(), closed * largest + 1e-9 * closed) << press;
       }
       // The increment uses radii, the force the branch: where both overlap and shear go round, they differ by
       // 1 - branch / radii, of the second order.
