@@ -64,7 +64,7 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
       const std::uint32_t a = pairs.add({centre, radius_a, vector(1), vector(2), uniform(0.5, 2), kind()});
       const Vec3 other = centre + (radius_a + radius_b) * uniform(0.92, 1.03) * normal - shift;
       const std::uint32_t b = pairs.add(
-          {other, radius_b, vec(pairs.velocity(a)) + vector(20) - drift, vector(20), uniform(0.5, 2), kind()});
+          {other, radius_b, vec(pairs.velocity(a)) + vector(20) - drift, vector(300), uniform(0.5, 2), kind()});
       pairs.pair(a, b, image);
     }
     for (int step = 0; step < 30; ++step) pairs.step();
