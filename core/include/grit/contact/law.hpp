@@ -94,8 +94,7 @@ template <class L>
 template <class L, class Members>
 [[gnu::always_inline]] inline L& member(Members& members, std::size_t i) {
   static_assert(sizeof(Members) % sizeof(L) == 0 && std::is_trivially_copyable_v<Members>);
-  using Alias [[gnu::may_alias]] = L;
-  return reinterpret_cast<Alias*>(&members)[i];
+  return reinterpret_cast<L*>(&members)[i];
 }
 template <class Members, class L>
 inline constexpr std::size_t member_count = sizeof(Members) / sizeof(L);
