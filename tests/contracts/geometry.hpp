@@ -47,7 +47,7 @@ std::shared_ptr<G> made(const std::vector<std::pair<std::string, Setting>>& sett
   }
   std::string complaints;
   for (const auto& check : parameters.checks())
-    check([&](std::string_view key, std::string_view what, std::string_view allowed) {
+    check.run([&](std::string_view key, std::string_view what, std::string_view allowed) {
       complaints += std::string(key) + ": found " + std::string(what) + ", allowed: " + std::string(allowed) + "; ";
     });
   if (!complaints.empty()) throw Error(complaints);

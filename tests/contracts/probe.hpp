@@ -149,7 +149,7 @@ inline std::string complaints(Probe& probe) {
   probe.declare(parameters);
   std::string all;
   for (const auto& check : parameters.checks())
-    check([&](std::string_view key, std::string_view found, std::string_view allowed) {
+    check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
       all += std::string(key) + ": found " + std::string(found) + ", allowed: " + std::string(allowed) + "\n";
     });
   return all;

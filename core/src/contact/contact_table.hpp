@@ -32,13 +32,13 @@ class ContactTable {
                   const ImageShift* shifts, double dt, BodySum* sum);
 
   /// Adds what the contacts do to `body` as their b. Always in the same order.
-  void gather(std::size_t body, BodySum& sum) const {
+  void gather(std::size_t body, Quad& force, Quad& moment) const {
     const std::uint32_t* entry = inbox_.data() + inbox_start_[body];
     const std::uint32_t* const far = inbox_.data() + inbox_far_[body];
     const std::uint32_t* const end = inbox_.data() + inbox_start_[body + 1];
-    for (; entry != far; ++entry) add(sum, row_[*entry]);
+    for (; entry != far; ++entry) add(row_[*entry], force, moment);
     for (; entry != end; ++entry)
-      if (touches(*entry)) add(sum, row_[*entry]);
+      if (touches(*entry)) add(row_[*entry], force, moment);
   }
 
   std::size_t candidates() const { return a_.size(); }
@@ -55,8 +55,8 @@ class ContactTable {
   struct Chunk {
     std::uint32_t first_block = 0, last_block = 0;
   };
-  static void add(BodySum& sum, const ContactRow& row) {
-    sum.force += row.force, sum.moment += row.moment;
+  static void add(const ContactRow& row, Quad& force, Quad& moment) {
+    force += load(row.force), moment += load(row.moment);
   }
   void make_inbox(std::size_t bodies);
 

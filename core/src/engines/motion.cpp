@@ -22,15 +22,17 @@ Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
 BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
                   const Vec3& gravity) {
-  BodySum net = sum[body];
-  pairs.gather(body, net);
+  Quad force = load(sum[body].force), moment = load(sum[body].moment);
+  pairs.gather(body, force, moment);
+  BodySum net;
+  store(force, net.force), store(moment, net.moment);
   const double mass = 1 / bodies.velocity[body].w;
   net.force.x += mass * gravity.x(), net.force.y += mass * gravity.y(), net.force.z += mass * gravity.z();
   net.force.w = net.moment.w = 0;
   return net;
 }
 
-Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, BodySum* sum,
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
                    const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
@@ -44,18 +46,17 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs,
   const double damping = settings.local_damping;
   Quad fastest{}, poison{};
   for (std::size_t i = first; i < last; ++i) {
-    BodySum net = sum[i];
-    sum[i] = {};
-    pairs.gather(i, net);
-    Quad x = quad(bodies.position[i]), v = quad(bodies.velocity[i]), w = quad(bodies.spin[i]);
+    Quad force = load(sum[i].force), moment = load(sum[i].moment);
+    pairs.gather(i, force, moment);
+    Quad x = load(bodies.position[i]), v = load(bodies.velocity[i]), w = load(bodies.spin[i]);
     const double inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
     const Quad flow = rate * (x - centre);
-    Quad push = quad(net.force) * (kick * inverse_mass) + fall;
-    Quad twist = quad(net.moment) * (turn_kick * inverse_inertia);
+    Quad push = force * (kick * inverse_mass) + fall;
+    Quad twist = moment * (turn_kick * inverse_inertia);
     if (damping > 0) push = damped(push, v - flow, damping), twist = damped(twist, w, damping);
     v += push, w += twist;
     x += v * drift;
-    bodies.position[i] = row(x), bodies.velocity[i] = row(v), bodies.spin[i] = row(w);
+    store(x, bodies.position[i]), store(v, bodies.velocity[i]), store(w, bodies.spin[i]);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;
     poison += v * 0.0 + w * 0.0;

@@ -22,8 +22,8 @@ struct Motion {
   bool finite = true;        ///< no velocity is inf or NaN
 };
 
-/// Moves the bodies of one chunk. `sum` holds what contacts did to them as a, and loses it: it is zero afterwards.
-Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, BodySum* sum, const MotionStep& step);
+/// Moves the bodies of one chunk. `sum` holds what contacts did to them as a.
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, const BodySum* sum, const MotionStep& step);
 
 /// Net force and moment of one body, gravity included, before damping; w is 0.
 BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,

@@ -15,6 +15,8 @@ namespace {
 
 /// Below this the normal counts as perpendicular to an axis: a servo along it would have nothing to press with.
 constexpr double aslant = 1e-6;
+/// Steps, times the gain, in which a servo gets used to a velocity. A stack of some dozens of grains is slower.
+constexpr double habit_steps = 30;
 
 [[noreturn]] void fail(const WallSetup& setup, const std::string& what) {
   throw Error("wall \"" + setup.name + "\": " + what);
@@ -61,15 +63,21 @@ double facing(const WallSetup& setup, const Pose& pose) {
   return along;
 }
 
-/// Takes `gain` of the force's error away in one step, if the touches are springs.
-double servo_velocity(const WallSetup& setup, int axis, const WallState& state, double dt) {
+/// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
+/// in one step if the touches are springs, and leaves no error behind when the specimen swells or shrinks steadily. Such
+/// a wall takes energy out, whatever it presses on.
+double servo_velocity(const WallSetup& setup, int axis, WallState& state, double dt) {
   const ServoDescription& servo = *setup.motion.servo;
   const double along = facing(setup, state.pose), side = along < 0 ? -1 : 1;
+  if (state.touches == 0 || !(state.stiffness > 0)) {  // nothing to press on yet: close
+    state.habit = 0;
+    return servo.pressure > 0 ? side * servo.max_velocity : 0;
+  }
   const double excess = -side * state.force[axis] - servo.pressure * setup.geometry->area() * std::abs(along);
-  double retreat = excess < 0 ? -servo.max_velocity : 0;  // nothing to press on yet: close
-  if (state.touches > 0 && state.stiffness > 0)
-    retreat = std::clamp(servo.gain * excess / (state.stiffness * dt), -servo.max_velocity, servo.max_velocity);
-  return -side * retreat;
+  const double wished = state.habit - side * servo.gain * excess / (state.stiffness * dt);
+  const double velocity = std::clamp(wished, -servo.max_velocity, servo.max_velocity);
+  state.habit += servo.gain / habit_steps * (velocity - state.habit);
+  return velocity;
 }
 
 }  // namespace

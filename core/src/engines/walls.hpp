@@ -32,6 +32,7 @@ struct WallState {
   Vec3 force = Vec3::Zero();                          ///< that the bodies exert on the wall [N]
   Vec3 moment = Vec3::Zero();                         ///< the same about the reference point [N m]
   double stiffness = 0;                               ///< sum over the touches, normal [N/m]
+  double habit = 0;                                   ///< of a servo: its velocity, averaged over recent steps [m/s]
   std::uint32_t touches = 0;
 };
 

@@ -23,7 +23,9 @@ std::shared_ptr<SceneDescription> read_whole(const Document& document, const Reg
   for (auto& problem : found)
     if (std::ranges::none_of(problems, [&](const Problem& known) { return same(known, problem); }))
       problems.push_back(problem);
-  return found.empty() ? scene : nullptr;
+  if (!found.empty()) return nullptr;
+  for (auto& [name, wall] : scene->walls) wall.geometry->prepare();
+  return scene;
 }
 
 /// Lets lists that are nowhere in the document, but in what it resolves to, stand in it, so that a pointer to one of

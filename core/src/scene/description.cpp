@@ -316,7 +316,7 @@ void UnbalancedForceCondition::declare(Parameters& p) {
   p.add("below", below).above(0).doc("mean net force of a body over the mean contact force");
 }
 void KineticEnergyCondition::declare(Parameters& p) {
-  p.add("below", below).unit("J").symbol("E_k").above(0).required().doc("kinetic energy of all bodies");
+  p.add("below", below).above(0).doc("kinetic energy of all bodies over the elastic energy of all contacts");
 }
 void VoidRatioCondition::declare(Parameters& p) {
   p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen that is fallen below");

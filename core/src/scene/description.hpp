@@ -90,7 +90,7 @@ struct ServoDescription {
   std::string axis = "z";
   double pressure = 0;      ///< Pa, compression positive
   double max_velocity = 0;  ///< m/s
-  double gain = 0.1;        ///< share of the force's error that one step takes away
+  double gain = 1;        ///< share of the force's error that one step takes away
   void declare(Parameters& p);
 };
 struct FollowDescription {
@@ -143,7 +143,7 @@ struct TimeStepDescription {
   void declare(Parameters& p);
 };
 struct GuardsDescription {
-  double overlap = 0.1;  ///< of the smaller radius
+  double overlap = 0.2;  ///< of the smaller radius
   double travel = 0.05;  ///< of a radius, in one step
   double energy = 0.05;  ///< share of the energy that may appear from nowhere
   void declare(Parameters& p);
@@ -188,7 +188,7 @@ struct UnbalancedForceCondition {
 };
 struct KineticEnergyCondition {
   static constexpr const char* type_name = "kinetic-energy";
-  double below = 0;  ///< J
+  double below = 1e-4;
   void declare(Parameters& p);
 };
 struct VoidRatioCondition {

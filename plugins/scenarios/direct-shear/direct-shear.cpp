@@ -1,6 +1,7 @@
 #include "direct-shear.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -12,8 +13,32 @@ namespace {
 
 // Solid fraction of the cloud of grains that preparation starts from.
 constexpr double cloud_solid_fraction = 0.3;
-// Friction during compaction, from which it is lowered until the wanted void ratio is there.
-constexpr double loose_friction_angle = 60 * std::numbers::pi / 180;
+constexpr double degree = std::numbers::pi / 180;
+
+// Friction during compaction, and the void ratio of the interior that it led to: measured under 200 kPa, see README.md.
+struct Compacted {
+  double friction_angle, void_ratio;
+};
+constexpr std::array<Compacted, 7> compacted{{{0, 0.561},
+                                              {2 * degree, 0.589},
+                                              {5 * degree, 0.622},
+                                              {10 * degree, 0.699},
+                                              {18 * degree, 0.751},
+                                              {30 * degree, 0.842},
+                                              {60 * degree, 0.910}}};
+// Compaction aims so much above the wanted void ratio; lowering the friction does the rest.
+constexpr double aim_above = 0.03;
+
+double compaction_friction_angle(double void_ratio) {
+  for (std::size_t i = 1; i < compacted.size(); ++i) {
+    const Compacted &a = compacted[i - 1], &b = compacted[i];
+    if (void_ratio >= b.void_ratio) continue;
+    const double share = std::max(0.0, void_ratio - a.void_ratio) / (b.void_ratio - a.void_ratio);
+    return a.friction_angle + share * (b.friction_angle - a.friction_angle);
+  }
+  return compacted.back().friction_angle;
+}
+
 // Shear starts from rest over this share of its duration.
 constexpr double start_share = 0.02;
 constexpr int curve_samples = 400, frames_in_shear = 10;
@@ -76,7 +101,7 @@ void DirectShear::declare(Parameters& p) {
       {"smallest_diameter", "largest_diameter"});
 }
 
-VoidRatioRange DirectShear::reachable() const { return {0.56, 0.76}; }
+VoidRatioRange DirectShear::reachable() const { return {0.57, 0.88}; }
 
 double DirectShear::shear_velocity() const {
   if (velocity_ > 0) return velocity_;
@@ -144,60 +169,60 @@ Description DirectShear::expand() const {
         {"count", grains()},
         {"sizes", {{"type", "uniform"}, {"smallest", smallest_diameter_}, {"largest", largest_diameter_}}}}}};
 
-  const auto block = [&](double x_low, double x_high, double z_low, double z_high) -> Description {
-    return {{"type", "box"},
-            {"low", vector(x_low, -depth_, z_low)},
-            {"high", vector(x_high, 2 * depth_, z_high)},
-            {"inside", false}};
+  const auto wall = [](Description geometry, const char* material) {
+    geometry["material"] = material;
+    return geometry;
   };
-  const auto apron = [&](double x, double z_low, double z_high, double facing) -> Description {
+  const auto plane = [&](const Description& point, const Description& normal, const char* material) {
+    return wall({{"type", "plane"}, {"point", point}, {"normal", normal}}, material);
+  };
+  const auto block = [&](double x_low, double x_high, double z_low, double z_high) {
+    return wall({{"type", "box"},
+                 {"low", vector(x_low, -depth_, z_low)},
+                 {"high", vector(x_high, 2 * depth_, z_high)},
+                 {"inside", false}},
+                "frame");
+  };
+  const auto apron = [&](double x, double z_low, double z_high, double facing) {
     // Seen from the sand, normal = edge_a × edge_b.
     const double y = facing > 0 ? -depth_ : 2 * depth_, along = facing > 0 ? 3 * depth_ : -3 * depth_;
-    return {{"type", "rectangle"},
-            {"corner", vector(x, y, z_low)},
-            {"edge_a", vector(0, along, 0)},
-            {"edge_b", vector(0, 0, z_high - z_low)},
-            {"two_sided", false}};
+    return wall({{"type", "rectangle"},
+                 {"corner", vector(x, y, z_low)},
+                 {"edge_a", vector(0, along, 0)},
+                 {"edge_b", vector(0, 0, z_high - z_low)},
+                 {"two_sided", false}},
+                "smooth");
   };
   auto& walls = d["walls"];
-  walls["bottom"] = {{"geometry", {{"type", "plane"}, {"point", vector(0, 0, 0)}, {"normal", vector(0, 0, 1)}}},
-                     {"material", "frame"}};
-  walls["lower-left"] = {{"geometry", block(-thickness, 0, -height_, middle - 0.5 * gap)}, {"material", "frame"}};
-  walls["lower-right"] = {{"geometry", block(width_, width_ + thickness, -height_, middle - 0.5 * gap)},
-                          {"material", "frame"}};
-  walls["upper-left"] = {{"geometry", block(-thickness, 0, middle + 0.5 * gap, top)}, {"material", "frame"}};
-  walls["upper-right"] = {{"geometry", block(width_, width_ + thickness, middle + 0.5 * gap, top)},
-                          {"material", "frame"}};
-  walls["lower-apron"] = {{"geometry", apron(-behind, middle - gap, middle + 0.5 * gap + over, 1)},
-                          {"material", "smooth"}};
-  walls["upper-apron"] = {{"geometry", apron(width_ + behind, middle - 0.5 * gap - over, middle + gap, -1)},
-                          {"material", "smooth"}};
-  walls["platen"] = {
-      {"geometry",
-       {{"type", "rectangle"},
-        {"corner", vector(0, depth_, cloud_height)},
-        {"edge_a", vector(width_, 0, 0)},
-        {"edge_b", vector(0, -depth_, 0)},
-        {"two_sided", false}}},
-      {"material", "frame"},
-      {"motion",
-       {{"servo", {{"axis", "z"}, {"pressure", normal_stress_}, {"max_velocity", preparation_speed}}}}}};
+  walls["bottom"] = plane(vector(0, 0, 0), vector(0, 0, 1), "frame");
+  walls["lower-left"] = block(-thickness, 0, -height_, middle - 0.5 * gap);
+  walls["lower-right"] = block(width_, width_ + thickness, -height_, middle - 0.5 * gap);
+  walls["upper-left"] = block(-thickness, 0, middle + 0.5 * gap, top);
+  walls["upper-right"] = block(width_, width_ + thickness, middle + 0.5 * gap, top);
+  walls["lower-apron"] = apron(-behind, middle - gap, middle + 0.5 * gap + over, 1);
+  walls["upper-apron"] = apron(width_ + behind, middle - 0.5 * gap - over, middle + gap, -1);
+  walls["platen"] = wall({{"type", "rectangle"},
+                          {"corner", vector(0, depth_, cloud_height)},
+                          {"edge_a", vector(width_, 0, 0)},
+                          {"edge_b", vector(0, -depth_, 0)},
+                          {"two_sided", false}},
+                         "frame");
+  walls["platen"]["motion"]["servo"] = {{"axis", "z"}, {"pressure", normal_stress_}, {"max_velocity", preparation_speed}};
   if (!periodic) {
-    walls["front"] = {{"geometry", {{"type", "plane"}, {"point", vector(0, 0, 0)}, {"normal", vector(0, 1, 0)}}},
-                      {"material", "smooth"}};
-    walls["back"] = {{"geometry", {{"type", "plane"}, {"point", vector(0, depth_, 0)}, {"normal", vector(0, -1, 0)}}},
-                     {"material", "smooth"}};
+    walls["front"] = plane(vector(0, 0, 0), vector(0, 1, 0), "smooth");
+    walls["back"] = plane(vector(0, depth_, 0), vector(0, -1, 0), "smooth");
   }
-  d["specimen"] = {{"low", {"lower-left", periodic ? "" : "front", "bottom"}},
+  d["specimen"] = {{"low", {"upper-left", periodic ? "" : "front", "bottom"}},
                    {"high", {"lower-right", periodic ? "" : "back", "platen"}}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.3}};
 
   // Preparation: compacted with high friction, which is then lowered until the grains have settled far enough. Aprons keep
   // the gap between the frames closed, so that no sand is lost.
   const auto friction = [](double angle) -> Description { return {{"sand", {{"friction_angle", angle}}}}; };
+  const double loose_angle = compaction_friction_angle(void_ratio_ + aim_above);
   Description compact;
   compact["name"] = "compact";
-  compact["change"]["materials"] = friction(loose_friction_angle);
+  compact["change"]["materials"] = friction(loose_angle);
   compact["until"] = {{"type", "all"},
                       {"of",
                        {{{"type", "pressure"}, {"wall", "platen"}, {"value", normal_stress_}, {"within", 0.02}},
@@ -206,12 +231,12 @@ Description DirectShear::expand() const {
   Description densify;
   densify["name"] = "densify";
   densify["ramps"] = Description::array({{{"pointer", "/materials/sand/friction_angle"},
-                                          {"from", loose_friction_angle},
+                                          {"from", loose_angle},
                                           {"to", 0.0},
-                                          {"duration", 5 * settling},
-                                          {"increments", 200}}});
+                                          {"duration", settling},
+                                          {"increments", 100}}});
   densify["until"] = {{"type", "void-ratio"}, {"below", void_ratio_}};
-  densify["limit"] = 15 * settling;
+  densify["limit"] = 5 * settling;
   Description settle;
   settle["name"] = "settle";
   settle["change"]["materials"] = friction(friction_angle_);

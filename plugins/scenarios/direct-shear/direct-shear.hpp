@@ -36,7 +36,7 @@ class DirectShear final : public Scenario {
   double density_ = 2600, friction_angle_ = 18 * degree, wall_friction_angle_ = 0, local_damping_ = 0.08;
   double normal_stress_ = 200e3, void_ratio_ = 0.6;
   double shear_displacement_ = 6e-3, inertial_number_ = 1e-3, velocity_ = 0;
-  double preparation_inertial_number_ = 1e-2;
+  double preparation_inertial_number_ = 3e-3;
   std::int64_t seed_ = 1;
 };
 

@@ -91,10 +91,10 @@ template <class L, class Index>
     };
     Column x, y, z, w;
     for (std::size_t q = 0; q < quads; ++q) {
-      Quad r0 = quad(base[index(4 * q)]);
-      Quad r1 = quad(base[index(4 * q + 1)]);
-      Quad r2 = quad(base[index(4 * q + 2)]);
-      Quad r3 = quad(base[index(4 * q + 3)]);
+      Quad r0 = load(base[index(4 * q)]);
+      Quad r1 = load(base[index(4 * q + 1)]);
+      Quad r2 = load(base[index(4 * q + 2)]);
+      Quad r3 = load(base[index(4 * q + 3)]);
       detail::transpose(r0, r1, r2, r3);
       x.quad[q] = r0, y.quad[q] = r1, z.quad[q] = r2, w.quad[q] = r3;
     }
@@ -105,12 +105,12 @@ template <class L, class Index>
   }
 }
 
-/// The reverse of load_rows: hands row k to `store(k, row)`.
+/// The reverse of load_rows: hands the numbers of row k to `store(k, quad)`.
 template <class L, class Store>
 [[gnu::always_inline]] inline void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
   constexpr std::size_t width = lane_width<L>;
   if constexpr (width == 1) {
-    store(0, Row{x, y, z, w});
+    store(0, Quad{x, y, z, w});
   } else if constexpr (width % 4 == 0) {
     constexpr std::size_t quads = width / 4;
     struct Column {
@@ -121,11 +121,10 @@ template <class L, class Store>
     for (std::size_t q = 0; q < quads; ++q) {
       Quad r0 = cx.quad[q], r1 = cy.quad[q], r2 = cz.quad[q], r3 = cw.quad[q];
       detail::transpose(r0, r1, r2, r3);
-      store(4 * q, row(r0)), store(4 * q + 1, row(r1));
-      store(4 * q + 2, row(r2)), store(4 * q + 3, row(r3));
+      store(4 * q, r0), store(4 * q + 1, r1), store(4 * q + 2, r2), store(4 * q + 3, r3);
     }
   } else {
-    for (std::size_t k = 0; k < width; ++k) store(k, Row{x[k], y[k], z[k], w[k]});
+    for (std::size_t k = 0; k < width; ++k) store(k, Quad{x[k], y[k], z[k], w[k]});
   }
 }
 

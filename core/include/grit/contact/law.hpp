@@ -232,13 +232,13 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
 
       ContactRow* const row = batch.row + first;
       BodySum* const sum = batch.sum;
-      store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Row& r) {
-        row[k].force = r;
-        sum[ia[k]].force -= r;
+      store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Quad& force) {
+        store(force, row[k].force);
+        sum[ia[k]].force -= force;
       });
-      store_rows(moment_b.x, moment_b.y, moment_b.z, overlap, [=](std::size_t k, const Row& r) { row[k].moment = r; });
+      store_rows(moment_b.x, moment_b.y, moment_b.z, overlap, [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
       store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
-                 [=](std::size_t k, const Row& r) { sum[ia[k]].moment += r; });
+                 [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
   }
@@ -307,14 +307,14 @@ template <class Law, unsigned Features, class L>
     };
     for (std::size_t k = 0; k < used; ++k) {
       for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = put(member<L>(state, f), k);
-      const Row on_wall{put(force.x, k), put(force.y, k), put(force.z, k), put(response.normal_force, k)};
+      const Quad on_wall{put(force.x, k), put(force.y, k), put(force.z, k), put(response.normal_force, k)};
       ContactRow& row = batch.row[first + k];
-      row.force = on_wall;
+      store(on_wall, row.force);
       row.moment = {put(response.moment.x, k), put(response.moment.y, k), put(response.moment.z, k),
                     put(at.overlap, k)};
       BodySum& sum = batch.sum[touch(k).body];
       sum.force -= on_wall;
-      sum.moment += Row{put(moment_a.x, k), put(moment_a.y, k), put(moment_a.z, k), 0};
+      sum.moment += Quad{put(moment_a.x, k), put(moment_a.y, k), put(moment_a.z, k), 0};
       largest = std::max(largest, touch(k).overlap / batch.position[touch(k).body].w);
     }
   }
