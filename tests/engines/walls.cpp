@@ -211,7 +211,7 @@ TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
                              .follow = FollowDescription{.wall = std::move(leader), .axes = std::move(axes)}};
   };
   Walls walls;
-  walls.apply({plate(behind("b", "z", {0, 9, 0}), "a"), plate(behind("c", "xz", {}), "b"),
+  walls.apply({plate(behind("b", "z", {0, 9, 0}), "a"), plate(behind("c", "xz", Vec3::Zero()), "b"),
                plate({.velocity = {1, 2, 0}, .servo = ServoDescription{.pressure = 1, .max_velocity = 3}}, "c")});
   step(walls, 0.1);
   EXPECT_EQ(view(walls, 2).velocity, Vec3(1, 2, -3));

@@ -78,18 +78,18 @@ TEST_F(SceneTest, RampsGoOneAfterTheOtherAndIntoLists) {
   const Scene scene = good(
       "plain",
       {R"(/stages/0/ramps=[{"pointer": "/walls/floor/motion/velocity/0", "from": 0, "to": "1 mm/s", "duration": 1, "increments": 2},
-                           {"pointer": "/guards/overlap", "from": "10 %", "to": 0.3, "duration": 1, "increments": 1}])",
+                           {"pointer": "/guards/overlap", "from": "20 %", "to": 0.3, "duration": 1, "increments": 1}])",
        R"(/stages/-={"name": "after", "until": {"type": "time", "value": 1}, "limit": 2})"});
   const auto& ramp = scene.stages.at(0).ramp;
   ASSERT_EQ(ramp.size(), 3u);
   EXPECT_EQ(ramp[0]->walls.at("floor").motion.velocity, Vec3(0.5e-3, 0, 0));
   EXPECT_EQ(ramp[1]->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
-  EXPECT_EQ(ramp[1]->guards.overlap, 0.1);
+  EXPECT_EQ(ramp[1]->guards.overlap, GuardsDescription().overlap);
   EXPECT_EQ(ramp[2]->guards.overlap, 0.3);
   EXPECT_EQ(ramp[2]->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
   EXPECT_EQ(scene.stages.at(1).start->guards.overlap, 0.3);
   EXPECT_EQ(scene.stages.at(1).start->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
-  EXPECT_EQ(scene.description->guards.overlap, 0.1);
+  EXPECT_EQ(scene.description->guards.overlap, GuardsDescription().overlap);
 }
 
 TEST_F(SceneTest, ExtendingFilesAndSets) {
