@@ -31,11 +31,11 @@ struct LinearNormal {
   static unsigned features(const Pair<double>&) { return 0; }
   static constexpr std::size_t fields_used(unsigned) { return 0; }
 
-  static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface&) {
+  static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface&, bool) {
     return {a.stiffness * b.stiffness / (a.stiffness + b.stiffness)};
   }
   template <unsigned Features, class L>
-  static grit::Response<L> evaluate(const grit::ContactPoint<L>& at, const Pair<L>& pair, State<L>&) {
+  [[gnu::always_inline]] static grit::Response<L> evaluate(const grit::ContactPoint<L>& at, const Pair<L>& pair, State<L>&) {
     return {.normal_force = pair.stiffness * at.overlap};
   }
   static grit::Stiffness stiffness(const grit::PairSize&, const Pair<double>& pair) {

@@ -4,5 +4,5 @@
 
 TEST(LinearNormal, SetsTwoSpringsInSeries) {
   LinearNormal::Material soft{.stiffness = 1000}, hard{.stiffness = 3000};
-  EXPECT_DOUBLE_EQ(LinearNormal::mix({}, soft, hard, {}).stiffness, 750);
+  EXPECT_DOUBLE_EQ(LinearNormal::mix({}, soft, hard, {}, false).stiffness, 750);
 }
