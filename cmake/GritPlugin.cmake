@@ -1,6 +1,6 @@
 # grit_plugin(<kind folder> <name> [LIBRARIES …]): builds <name>.cpp of the current folder into
 # <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, where there is one and the project has found GTest, into a
-# test that sees the same code. The target grit_plugins is all plugins of a project. Part of the installed SDK.
+# test that sees the same code and runs in the plugin's folder. The target grit_plugins is all plugins of a project. Part of the installed SDK.
 include(GoogleTest)
 
 function(grit_plugin folder name)
@@ -29,6 +29,7 @@ function(grit_plugin folder name)
     target_compile_options(test_${target} PRIVATE -Wall -Wextra)
     target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     target_link_libraries(test_${target} PRIVATE ${target}_objects grit::grit GTest::gtest GTest::gmock GTest::gtest_main)
-    gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST)
+    gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST
+                         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   endif()
 endfunction()

@@ -1,0 +1,140 @@
+#include "direct-shear.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "grit/error.hpp"
+#include "input/document.hpp"
+#include "input/reader.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+struct Read {
+  std::unique_ptr<DirectShear> scenario = std::make_unique<DirectShear>();
+  std::vector<Problem> problems;
+};
+
+Read read_with(const Description& keys) {
+  Read result;
+  Parameters parameters;
+  result.scenario->declare(parameters);
+  read(Document(keys, "test"), "", parameters, result.problems);
+  return result;
+}
+
+std::unique_ptr<DirectShear> made(const Description& keys = Description::object()) {
+  Read result = read_with(keys);
+  for (const Problem& problem : result.problems) ADD_FAILURE() << problem.pointer << ' ' << problem.message;
+  return std::move(result.scenario);
+}
+
+std::string refusal(const Description& keys) {
+  try {
+    made(keys)->expand();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// The expansion of all defaults, so that a change of it is seen for what it is. After a wanted change, replace the file by
+// what the test has written.
+TEST(DirectShear, ExpandsToTheGoldenDescription) {
+  const Description now = made()->expand();
+  std::ifstream file("expansion.json");
+  const Description flat_now = now.flatten(), flat_golden = Description::parse(file).flatten();
+  const auto written = std::filesystem::temp_directory_path() / "direct-shear-expansion.json";
+  std::ofstream(written) << now.dump(2) << '\n';
+  const std::string advice = "what the expansion is now: " + written.string();
+  EXPECT_EQ(flat_now.size(), flat_golden.size()) << advice;
+  for (const auto& [pointer, golden] : flat_golden.items()) {
+    ASSERT_TRUE(flat_now.contains(pointer)) << pointer << "; " << advice;
+    const auto& value = flat_now[pointer];
+    if (golden.is_number_float()) {  // machines with and without fused multiplication differ in the last digits
+      EXPECT_NEAR(value.get<double>(), golden.get<double>(), 1e-12 * std::abs(golden.get<double>())) << pointer;
+    } else {
+      EXPECT_EQ(value, golden) << pointer << "; " << advice;
+    }
+  }
+}
+
+TEST(DirectShear, RefusesVoidRatiosOutOfReachAndSaysTheRange) {
+  const VoidRatioRange range = made()->reachable();
+  for (const double wish : {range.densest - 0.001, range.loosest + 0.001}) {
+    const std::string text = refusal({{"void_ratio", wish}, {"normal_stress", "100 kPa"}});
+    EXPECT_THAT(text, HasSubstr("/scenario/void_ratio"));
+    EXPECT_THAT(text, HasSubstr("between 0.57"));
+    EXPECT_THAT(text, HasSubstr("and 0.79"));
+    EXPECT_THAT(text, HasSubstr("100 kPa"));
+  }
+  EXPECT_EQ(refusal({{"void_ratio", range.densest}}), "");
+  EXPECT_EQ(refusal({{"void_ratio", range.loosest}}), "");
+}
+
+TEST(DirectShear, RefusesABoxOfAFewGrains) {
+  EXPECT_THAT(refusal({{"depth", "2.9 mm"}}), HasSubstr("four of the largest grains"));
+  EXPECT_EQ(refusal({{"depth", "3 mm"}}), "");
+}
+
+TEST(DirectShear, RefusesASmallestGrainThatIsLargest) {
+  const Read result = read_with({{"smallest_diameter", "1 mm"}});
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].pointer, "/smallest_diameter");
+}
+
+TEST(DirectShear, ShearsAtTheInertialNumberUnlessGivenAVelocity) {
+  // I = (v / h) d sqrt(rho / sigma)
+  const auto quasi_static = made({{"inertial_number", 1e-4}, {"normal_stress", "80 kPa"}});
+  EXPECT_NEAR(quasi_static->shear_velocity() / 25e-3 * 0.5e-3 * std::sqrt(2600 / 80e3), 1e-4, 1e-16);
+  EXPECT_EQ(made({{"velocity", "3 mm/s"}})->shear_velocity(), 3e-3);
+}
+
+TEST(DirectShear, FillsTheBoxAtTheWantedVoidRatio) {
+  double volume = 0;  // of a grain, the mean over diameters that are uniform by number
+  const int parts = 100000;
+  for (int i = 0; i < parts; ++i) {
+    const double d = 0.25e-3 + 0.5e-3 * (i + 0.5) / parts;
+    volume += std::numbers::pi / 6 * d * d * d / parts;
+  }
+  const double solids = 60e-3 * 25e-3 * 5e-3 / 1.7;
+  EXPECT_NEAR(static_cast<double>(made({{"void_ratio", 0.7}})->grains()), solids / volume, 1);
+}
+
+TEST(DirectShear, LeavesAGapOfTheLargestGrainHalfWayUp) {
+  const Description d = made()->expand();
+  for (const char* side : {"left", "right"}) {
+    const double low = d["walls"]["lower-" + std::string(side)]["high"][2], high = d["walls"]["upper-" + std::string(side)]["low"][2];
+    EXPECT_NEAR(high - low, 0.75e-3, 1e-15);
+    EXPECT_NEAR(0.5 * (high + low), 12.5e-3, 1e-15);
+  }
+}
+
+TEST(DirectShear, MovesTheUpperFrameAsOneAndLetsThePlatenLeadItUpAndDown) {
+  const auto scenario = made();
+  const Description stages = scenario->expand()["stages"];
+  const Description& walls = stages.back()["change"]["walls"];
+  EXPECT_EQ(walls.size(), 4u);
+  for (const auto& [name, wall] : walls.items()) {
+    EXPECT_DOUBLE_EQ(wall["motion"]["velocity"][0], scenario->shear_velocity()) << name;
+    EXPECT_EQ(wall["motion"].contains("follow"), name != "platen") << name;
+  }
+}
+
+TEST(DirectShear, LeavesOutFrontAndBackWhereTheDepthIsPeriodic) {
+  const Description d = made({{"depth_boundary", "periodic"}})->expand();
+  EXPECT_FALSE(d["walls"].contains("front") || d["walls"].contains("back"));
+  EXPECT_EQ(d["domain"]["periodic"], Description({false, true, false}));
+  EXPECT_EQ(d["domain"]["high"][1].get<double>() - d["domain"]["low"][1].get<double>(), 5e-3);
+  EXPECT_EQ(d["specimen"]["low"][1], "");
+}
+
+}  // namespace
+}  // namespace grit
