@@ -16,7 +16,7 @@ double demand(const Stiffness& k, double radius, double inverse_mass, double inv
 }  // namespace
 
 double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const WallContacts& walls,
-                          const ContactLaw& law, const ImageShift* shifts, double skin) {
+                          const ContactLaw& law, const ImageShift* shifts, double near) {
   const std::size_t count = bodies.count();
   if (count == 0) return std::numeric_limits<double>::infinity();
   std::vector<double> sum(count, 0.0);
@@ -39,7 +39,7 @@ double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const
       const Vec3 branch =
           xyz(bodies.position[b]) - xyz(bodies.position[a]) + xyz(shifts[pairs.image(c)].position);
       const double overlap = bodies.position[a].w + bodies.position[b].w - branch.norm();
-      if (overlap > -0.25 * skin) use(a, b, std::max(overlap, 0.0));
+      if (overlap > -near) use(a, b, std::max(overlap, 0.0));
     }
   };
 

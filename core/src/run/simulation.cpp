@@ -14,13 +14,18 @@ namespace grit {
 namespace {
 
 // Skin as a share of the mean diameter. On the dense periodic box of bench/ 0.02 … 0.1 were tried: the wider, the fewer
-// searches and the more pairs to test; 0.06 was best or within 3 % of it at 10 000 and 50 000 grains.
-constexpr double skin_share = 0.06;
+// searches and the more pairs to test; 0.06 was best or within 3 % of it at 10 000 and 50 000 grains. A cloud under
+// compaction has few pairs to test and searches all the time: it is better off with a wide one.
+constexpr double least_skin = 0.06, most_skin = 0.4;
+// The skin grows when a search comes sooner than this many steps after the last, and shrinks when it comes later.
+constexpr std::uint64_t soon = 60, late = 600;
 // A search after which bodies are put in spatial order again.
 constexpr std::uint64_t reorder_every = 8;
 // The time step is raised only when it could be so much larger, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
 constexpr std::uint64_t energy_check_every = 500;
+// Contacts form within the skin between two searches.
+constexpr std::uint64_t time_step_check_every = 500;
 
 using Seconds = std::chrono::duration<double>;
 
@@ -65,7 +70,7 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
     one_material_ = one_material_ && bodies_.material[i] == 0;
   }
   if (count > 0) mean_diameter_ = diameters / static_cast<double>(count), solid_density_ = mass / volume;
-  skin_ = skin_share * mean_diameter_;
+  clock_.skin = least_skin * mean_diameter_;
   sum_.assign(count + 1, {});
   chunk_overlap_.assign(chunks_of(count), 0);
   chunk_motion_.assign(chunks_of(count), {});
@@ -146,7 +151,7 @@ bool Simulation::search_is_due() {
   const auto used = [&] {
     return std::max(2 * clock_.body_travel + clock_.strain_travel, clock_.body_travel + clock_.wall_travel);
   };
-  if (used() < skin_) return false;
+  if (used() < clock_.skin) return false;
   // The sum of the largest speeds is a bound; the true travel is often far less and worth a look.
   // In a cell that deforms, travel is what a body does apart from the mean flow.
   Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
@@ -162,7 +167,7 @@ bool Simulation::search_is_due() {
     largest = std::max(largest, (xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from))
                                     .squaredNorm());
   clock_.body_travel = std::sqrt(largest);
-  return used() > 0.8 * skin_;
+  return used() > 0.8 * clock_.skin;
 }
 
 void Simulation::wrap() {
@@ -190,16 +195,32 @@ void Simulation::wrap() {
   }
 }
 
+/// By the number of steps alone, so that a run is the same on every machine.
+void Simulation::adapt_skin() {
+  const std::uint64_t steps = clock_.step - clock_.last_search;
+  clock_.last_search = clock_.step;
+  if (search_now_) return;
+  double most = most_skin * mean_diameter_;
+  for (int k = 0; k < 3; ++k)
+    if (clock_.cell.periodic[k])
+      most = std::min(most, 0.5 * (clock_.cell.high[k] - clock_.cell.low[k]) - 2 * largest_radius_);
+  const double least = least_skin * mean_diameter_;
+  if (steps < soon) clock_.skin *= 1.5;
+  if (steps > late) clock_.skin /= 1.25;
+  clock_.skin = std::max(least, std::min(most, clock_.skin));
+}
+
 void Simulation::search() {
   wrap();
+  adapt_skin();
   std::vector<std::uint32_t> order;
   if (clock_.rebuilds % reorder_every == 0) {
     order = spatial_order(bodies_, clock_.cell);
     bodies_.reorder(order);
   }
-  search_.build(bodies_, clock_.cell, skin_);
+  search_.build(bodies_, clock_.cell, clock_.skin);
   pairs_.rebuild(bodies_, search_, periodic_, fields_, order, team_);
-  wall_contacts_.rebuild(bodies_, surfaces_, skin_, fields_, order);
+  wall_contacts_.rebuild(bodies_, surfaces_, clock_.skin, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
   clock_.body_travel = clock_.wall_travel = clock_.strain_travel = 0;
   ++clock_.rebuilds;
@@ -209,7 +230,8 @@ void Simulation::search() {
 
 void Simulation::set_time_step() {
   const TimeStepDescription& wish = scene_->time_step;
-  clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), skin_);
+  clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(),
+                                                   0.25 * least_skin * mean_diameter_);
   if (wish.value) {
     clock_.time_step = *wish.value;
     if (*wish.value > clock_.critical_time_step && !wish.allow_unstable)
@@ -230,6 +252,7 @@ void Simulation::find_forces() {
   {
     const Stopwatch watch(phases_[searching].seconds);
     if (search_is_due()) search();
+    else if (clock_.step % time_step_check_every == 0) set_time_step();
   }
   const double dt = clock_.last_time_step;
   {
@@ -296,7 +319,7 @@ void Simulation::advance() {
   clock_.last_time_step = dt;
 
   clock_.body_travel += dt * fastest;
-  clock_.strain_travel += dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + skin_);
+  clock_.strain_travel += dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + clock_.skin);
   double wall_speed = 0;
   for (const WallState& wall : walls_.states()) {
     double arm = 0;

@@ -30,6 +30,8 @@ struct Clock {
   Cell cell;
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;
+  std::uint64_t last_search = 0;      ///< step
+  double skin = 0;                    ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
 };
 
@@ -64,7 +66,7 @@ class Simulation final : public World {
   std::size_t candidate_count() const { return pairs_.candidates(); }
   const std::vector<PhaseTime>& phases() const { return phases_; }
   const Walls& wall_states() const { return walls_; }
-  double skin() const { return skin_; }
+  double skin() const { return clock_.skin; }
   /// Bytes held by bodies and contacts.
   std::size_t memory() const;
   const WallContacts& wall_contacts() const { return wall_contacts_; }
@@ -97,6 +99,7 @@ class Simulation final : public World {
 
   void apply(const SceneDescription& scene);
   bool search_is_due();
+  void adapt_skin();
   void search();
   void wrap();
   void set_time_step();
@@ -137,7 +140,7 @@ class Simulation final : public World {
   std::vector<double> chunk_overlap_;
   std::vector<Motion> chunk_motion_;
   std::vector<PhaseTime> phases_;
-  double skin_ = 0, largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
+  double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
   bool one_material_ = true, periodic_ = false, search_now_ = true;
 
   // What probes ask for, worked out at most once an instant.

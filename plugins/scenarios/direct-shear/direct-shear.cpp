@@ -195,8 +195,8 @@ Description DirectShear::expand() const {
   };
   auto& walls = d["walls"];
   walls["bottom"] = plane(vector(0, 0, 0), vector(0, 0, 1), "frame");
-  walls["lower-left"] = block(-thickness, 0, -height_, middle - 0.5 * gap);
-  walls["lower-right"] = block(width_, width_ + thickness, -height_, middle - 0.5 * gap);
+  walls["lower-left"] = block(-thickness, 0, -4 * gap, middle - 0.5 * gap);
+  walls["lower-right"] = block(width_, width_ + thickness, -4 * gap, middle - 0.5 * gap);
   walls["upper-left"] = block(-thickness, 0, middle + 0.5 * gap, top);
   walls["upper-right"] = block(width_, width_ + thickness, middle + 0.5 * gap, top);
   walls["lower-apron"] = apron(-behind, middle - gap, middle + 0.5 * gap + over, 1);
