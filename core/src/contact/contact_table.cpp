@@ -107,7 +107,7 @@ void ContactTable::set_fields(std::span<const StateField> fields) {
   const std::size_t before = fields_.size(), after = fields.size();
   fields_.assign(fields.begin(), fields.end());
   if (before == after) return;
-  std::vector<StateLine> state(touching_.size() * after);
+  LargeArray<StateLine> state(touching_.size() * after);
   for (std::size_t block = 0; block < touching_.size(); ++block)
     std::copy_n(state_.begin() + static_cast<std::ptrdiff_t>(block * before), std::min(before, after),
                 state.begin() + static_cast<std::ptrdiff_t>(block * after));

@@ -41,6 +41,13 @@ class ContactTable {
       if (touches(*entry)) add(row_[*entry], force, moment);
   }
 
+  /// Asks for the memory that gather() will read.
+  void prefetch(std::size_t body) const {
+    for (std::uint32_t e = inbox_start_[body]; e < inbox_far_[body]; ++e) {
+      __builtin_prefetch(&row_[inbox_[e]].force);
+    }
+  }
+
   std::size_t candidates() const { return a_.size(); }
   bool touches(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
   std::uint32_t a(std::size_t c) const { return a_[c]; }
@@ -65,8 +72,8 @@ class ContactTable {
   std::vector<std::uint8_t> image_;  // empty without periodic boundaries
   std::vector<std::uint8_t> touching_;
   std::vector<StateField> fields_;
-  std::vector<StateLine> state_;  // [block][field]
-  std::vector<ContactRow> row_;
+  LargeArray<StateLine> state_;  // [block][field]
+  LargeArray<ContactRow> row_;
   // Candidates by their b: inbox_start_[b] … inbox_far_[b] touched when the table was built, the rest did not.
   std::vector<std::uint32_t> inbox_, inbox_start_, inbox_far_;
   std::vector<std::uint8_t> near_;  // of each candidate: touched when the table was built

@@ -131,8 +131,8 @@ class Simulation final : public World {
   Walls walls_;
   NeighbourSearch search_;
 
-  std::vector<BodySum> sum_;
-  std::vector<Row> reference_;  // positions at the last search
+  LargeArray<BodySum> sum_;
+  LargeArray<Row> reference_;  // positions at the last search
   Cell reference_cell_;
   std::vector<ImageShift> shifts_;
   std::vector<WallSurface> surfaces_;

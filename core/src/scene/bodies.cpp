@@ -3,10 +3,10 @@
 namespace grit {
 namespace {
 
-template <class T>
-void permute(std::vector<T>& values, std::span<const std::uint32_t> order) {
+template <class Array>
+void permute(Array& values, std::span<const std::uint32_t> order) {
   if (values.empty()) return;
-  std::vector<T> moved(values.size());
+  Array moved(values.size());
   for (std::size_t i = 0; i < order.size(); ++i) moved[i] = values[order[i]];
   for (std::size_t i = order.size(); i < values.size(); ++i) moved[i] = values[i];
   values.swap(moved);

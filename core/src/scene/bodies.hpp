@@ -7,15 +7,16 @@
 
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
+#include "scene/large_array.hpp"
 
 namespace grit {
 
 /// Arrays have one entry a body; position, velocity and spin one more at the end, of a body so far away that it touches
 /// nothing, which pads blocks of contacts.
 struct Bodies {
-  std::vector<Row> position;  ///< m, w: radius [m]
-  std::vector<Row> velocity;  ///< m/s, half a step before the positions; w: 1/mass [1/kg]
-  std::vector<Row> spin;      ///< rad/s; w: 1/inertia [1/(kg m²)]
+  LargeArray<Row> position;  ///< m, w: radius [m]
+  LargeArray<Row> velocity;  ///< m/s, half a step before the positions; w: 1/mass [1/kg]
+  LargeArray<Row> spin;      ///< rad/s; w: 1/inertia [1/(kg m²)]
   std::vector<std::uint32_t> id;
   std::vector<std::uint8_t> material;
   std::vector<Vec3> rotation;      ///< cumulative [rad]; empty unless asked for

@@ -1,0 +1,45 @@
+// Arrays that the hot loop walks through in an order that is not theirs.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace grit {
+
+/// Asks for pages of 2 MiB, of which the processor's address cache holds the whole of a scene; with those of 4 KiB a step
+/// of 50 000 grains took about a tenth longer.
+template <class T>
+struct LargePages {
+  using value_type = T;
+  static constexpr std::size_t page = std::size_t{2} << 20;
+
+  LargePages() = default;
+  template <class Other>
+  LargePages(const LargePages<Other>&) {}
+
+  T* allocate(std::size_t count) {
+    const std::size_t bytes = count * sizeof(T);
+    void* const memory = ::operator new(bytes, alignment(bytes));
+    if (bytes >= page) ::madvise(memory, bytes / page * page, MADV_HUGEPAGE);  // a wish: refusal does no harm
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count * sizeof(T))); }
+  template <class Other>
+  bool operator==(const LargePages<Other>&) const {
+    return true;
+  }
+
+ private:
+  static std::align_val_t alignment(std::size_t bytes) {
+    return std::align_val_t{bytes >= page ? page : std::max<std::size_t>(64, alignof(T))};
+  }
+};
+
+template <class T>
+using LargeArray = std::vector<T, LargePages<T>>;
+
+}  // namespace grit
