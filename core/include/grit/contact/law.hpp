@@ -132,6 +132,9 @@ template <class L>
 }
 
 
+/// Blocks ahead of which bodies are asked for; 1 and 4 are slower beyond the caches.
+constexpr std::size_t bodies_ahead = 2;
+
 /// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
 /// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
@@ -144,6 +147,12 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
 
   for (std::size_t block = batch.first_block; block < batch.last_block; ++block) {
     const std::uint32_t before = batch.touching[block];
+    if (block + bodies_ahead < batch.last_block) {
+      for (std::size_t k = 0; k < block_size; ++k) {
+        const std::uint32_t b = batch.b[(block + bodies_ahead) * block_size + k];
+        __builtin_prefetch(batch.position + b), __builtin_prefetch(batch.velocity + b), __builtin_prefetch(batch.spin + b);
+      }
+    }
     std::uint32_t touching_now = 0;
     for (std::size_t sub = 0; sub < block_size; sub += width) {
       const std::size_t first = block * block_size + sub;
