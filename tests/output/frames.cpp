@@ -16,8 +16,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-FakeWorld three_grains() {
-  FakeWorld world;
+NumberedWorld three_grains() {
+  NumberedWorld world;
   world.now = 0.25;
   world.steps = 1000;
   world.add(7, {0.7, 0, 0}, 0.07);

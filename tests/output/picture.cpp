@@ -143,7 +143,7 @@ TEST(Picture, CopesWithNothing) {
 }
 
 TEST(GrainView, LooksAlongTheAxisAndCountsClockwise) {
-  FakeWorld world;
+  NumberedWorld world;
   world.add(1, {1, 0, 3}, 0.1);
   world.rotation = {Vec3(0.1, 0.2, 0.3)};
   const auto front = grain_view(world, {}, "xz", "rotation").discs.at(0);
@@ -159,7 +159,7 @@ TEST(GrainView, LooksAlongTheAxisAndCountsClockwise) {
 }
 
 TEST(GrainView, TakesTheMiddleThirdBackToFront) {
-  FakeWorld world;
+  NumberedWorld world;
   for (std::uint32_t i = 0; i <= 9; ++i) world.add(i, {0.1 * i, i / 9.0, 0}, 0.01);
   const auto front = grain_view(world, {}, "xz", "rotation").discs;
   ASSERT_EQ(front.size(), 4u);
@@ -169,7 +169,7 @@ TEST(GrainView, TakesTheMiddleThirdBackToFront) {
 }
 
 TEST(GrainView, CutsWallsAtMidDepthWhereTheyHaveMovedTo) {
-  FakeWorld world;
+  NumberedWorld world;
   world.add(1, {0, 0, 0}, 0.1);
   world.add_wall("lid", {0.5, 0, 2});
   const WallShape lid{"lid",

@@ -9,6 +9,7 @@
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
+#include "scene/packing_file.hpp"
 
 namespace grit {
 namespace {
@@ -34,14 +35,14 @@ ResultsOptions options(const std::filesystem::path& folder) {
   return options;
 }
 
-FakeWorld world_of_two() {
-  FakeWorld world;
+NumberedWorld world_of_two() {
+  NumberedWorld world;
   world.add(4, {0.1, 0.2, 1.0 / 3}, 0.05);
   world.add(1, {0.5, 0.2, 0.3}, 0.05);
   return world;
 }
 
-void sample(ResultsFolder& results, const FakeWorld& world, double x, double y) {
+void sample(ResultsFolder& results, const NumberedWorld& world, double x, double y) {
   const double displacement[] = {x}, ratio[] = {y}, profile[] = {0, 1, 2, 3}, energy[] = {x * y};
   const std::span<const double> test[] = {displacement, ratio, profile}, rest[] = {energy};
   results.sample(0, world, test);
@@ -102,6 +103,11 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   EXPECT_EQ(run.at("rebuilds"), 3);
   EXPECT_EQ(run.at("phases_s").at("contact forces"), 1.5);
 
+  const std::vector<Row> grains = read_packing(folder / "run/packing.txt");
+  ASSERT_EQ(grains.size(), 2u);
+  EXPECT_EQ(grains[0].x, 0.5) << "in the order of their ids";
+  EXPECT_EQ(grains[1].z, 1.0 / 3);
+
   const auto file = hdf5::File(folder / "run/series.h5", hdf5::Mode::read).group("test").dataset("profile");
   EXPECT_TRUE(std::filesystem::exists(folder / "run/frames/000000.h5"));
   EXPECT_TRUE(std::filesystem::exists(folder / "run/frames.xdmf"));
@@ -112,17 +118,6 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   read_xml((folder / "run/picture.svg").string(), svg);
   EXPECT_EQ(svg.get<std::string>("svg.title"), "direct shear");
   EXPECT_THAT(text_of(folder / "run/picture.svg"), AllOf(HasSubstr("shear displacement [mm]"), HasSubstr(">0.800<")));
-}
-
-TEST(ResultsFolder, WritesGrainsThatReadBackToTheBit) {
-  const Folder folder;
-  write_packing(folder / "packing.txt", world_of_two());
-  std::istringstream text(text_of(folder / "packing.txt"));
-  std::string comment;
-  std::getline(text, comment);
-  EXPECT_EQ(comment, "# x y z radius [m]");
-  const std::vector<double> numbers{std::istream_iterator<double>(text), {}};
-  EXPECT_THAT(numbers, ElementsAre(0.5, 0.2, 0.3, 0.05, 0.1, 0.2, 1.0 / 3, 0.05));
 }
 
 TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {

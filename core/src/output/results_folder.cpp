@@ -3,16 +3,25 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
+#include "scene/packing_file.hpp"
 
 namespace grit {
 namespace {
+
+std::vector<Row> grains_by_id(const World& world) {
+  std::vector<std::uint32_t> order(world.ids().size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
+  std::vector<Row> grains;
+  for (const auto body : order) grains.push_back(world.positions()[body]);
+  return grains;
+}
 
 /// Makes the folder, or sees to it that what is there may be used.
 std::filesystem::path prepared(const ResultsOptions& options) {
@@ -97,7 +106,7 @@ void ResultsFolder::flush() { series_->flush(); }
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (series_) series_->close();
-  if (summary.status != "failed") write_packing(options_.folder / "packing.txt", world);
+  if (summary.status != "failed") write_packing(options_.folder / "packing.txt", grains_by_id(world), options_.title);
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
 }
@@ -139,22 +148,6 @@ void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) 
   }
   picture.grains = grain_view(world, options_.walls, options_.picture->view, options_.picture->color);
   write_atomically(options_.folder / "picture.svg", draw(picture));
-}
-
-void write_packing(const std::filesystem::path& path, const World& world) {
-  const auto rows = world.positions();
-  std::vector<std::uint32_t> order(rows.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
-  std::string text = "# x y z radius [m]\n";
-  char digits[32];
-  for (const auto i : order)
-    for (const auto& [number, end] : {std::pair(rows[i].x, ' '), std::pair(rows[i].y, ' '), std::pair(rows[i].z, ' '),
-                                      std::pair(rows[i].w, '\n')}) {
-      text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);  // the shortest that reads back
-      text += end;
-    }
-  write_atomically(path, text);
 }
 
 }  // namespace grit

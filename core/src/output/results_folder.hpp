@@ -71,7 +71,4 @@ class ResultsFolder final : public Recorder {
   std::vector<Kept> kept_;  ///< x first, then the y of the picture
 };
 
-/// Writes `x y z radius` lines, sorted by id, with a comment line above. Numbers read back to the same bits.
-void write_packing(const std::filesystem::path& path, const World& world);
-
 }  // namespace grit
