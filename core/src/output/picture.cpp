@@ -186,7 +186,8 @@ class PanelDrawing {
     svg_.circle(at, 3, fmt::format("class=\"f{}\"", k));
     const char* anchor = at.x > right_ - 30 ? "e" : at.x < left_ + 30 ? "" : "m";
     const double aside = at.x < left_ + 30 ? 6 : 0;
-    svg_.text({at.x + aside, curve.y[peak] < 0 ? at.y + 17 : at.y - 8}, short_number(curve.y[peak] * y_unit_.factor),
+    const bool below = curve.y[peak] < 0 && at.y + 17 < bottom_;  // never among the axis's numbers
+    svg_.text({at.x + aside, below ? at.y + 17 : at.y - 8}, short_number(curve.y[peak] * y_unit_.factor),
               fmt::format("class=\"peak {} f{}\"", anchor, k));
   }
 
