@@ -126,12 +126,13 @@ class Run {
     wall_start_ = last_report_ = Wall::now();
     last_report_steps_ = simulation_.step();
 
-    while (!interrupted()) {
+    for (;;) {
       ramp(stage, plan);
       step_forces();
       const bool met = is_met(stage.until, simulation_, start_);
       observe(met);
       if (met) break;
+      if (interrupted()) return;  // here, where positions and forces are of one instant
       if (simulation_.time() - start_.time > stage.limit)
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
                             " s; " + reached() +
@@ -144,7 +145,7 @@ class Run {
     }
     const std::string what = reached();
     recorder_.stage_ended(simulation_, what);
-    if (!interrupted() && stage.expect.void_ratio) {
+    if (stage.expect.void_ratio) {
       const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
       if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
         throw NumericsError("stage \"" + stage.name + "\" was to end at a void ratio of " +

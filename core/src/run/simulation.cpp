@@ -254,7 +254,9 @@ void Simulation::find_forces() {
     if (search_is_due()) search();
     else if (clock_.step % time_step_check_every == 0) set_time_step();
   }
-  const double dt = clock_.last_time_step;
+  // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
+  const double dt = clock_.forces_step == clock_.step ? 0 : clock_.last_time_step;
+  clock_.forces_step = clock_.step;
   {
     const Stopwatch watch(phases_[pair_contacts].seconds);
     team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {

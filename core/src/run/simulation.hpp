@@ -27,6 +27,7 @@ struct Clock {
   double time_step = 0;         ///< of the next step, s
   double last_time_step = 0;    ///< of the one before; 0 at the start
   double critical_time_step = 0;
+  std::uint64_t forces_step = ~0ull;  ///< at which contacts were last brought up to date
   Cell cell;
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;

@@ -1,0 +1,138 @@
+// One sphere on a plane: sliding, rolling without slip, resting; each limit from both sides. The plane is level and gravity
+// leans, so that nothing but the physics is aslant.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double g = 9.81, radius = 0.01, density = 2500, modulus = 1e8;
+
+/// A sphere that lies on the plane, pressed in by its weight; friction is a coefficient.
+Description on_plane(const std::string& law, double friction, double slope, Description material = {}) {
+  const double angle = std::atan(slope), stiffness = modulus * radius;
+  const double mass = density * 4 / 3 * std::numbers::pi * std::pow(radius, 3);
+  const double sunk = mass * g * std::cos(angle) / stiffness;
+  material["contact_modulus"] = modulus, material["density"] = density;
+  material["friction_angle"] = std::atan(friction);
+  Description d = description(law, material, {{{0, 0, radius - sunk}, radius}});
+  d["walls"]["slope"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"},
+                             {"acceleration", {g * std::sin(angle), 0, -g * std::cos(angle)}}};
+  return d;
+}
+/// Shear that is damped, so that the spring of a new contact soon rests.
+Description frictional(double friction, double slope) {
+  Description d = on_plane("linear-frictional", friction, slope, {{"restitution", 0.3}});
+  d["contacts"]["shear_damping"] = true;
+  return d;
+}
+/// Resistance to rolling; local damping stills the springs of a sphere that stays, and leaves its limits as they are.
+Description resisting(double friction, double limit, double slope, double damping) {
+  Description d = on_plane("linear-rolling", friction, slope, {{"rolling_limit", limit}});
+  if (damping > 0) d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", damping}};
+  return d;
+}
+
+struct Rates {
+  double acceleration, spinning;  ///< m/s², rad/s²
+};
+/// Over the second half of a time, by least squares: springs that nothing damps swing on, and their swing averages out.
+Rates rates(const Description& d, double time) {
+  Trial t(d);
+  while (t.world().time() < 0.5 * time) t.step();
+  double tt = 0, tv = 0, tw = 0, n = 0;
+  Vec3 mean = Vec3::Zero();  // time, speed, spin
+  for (; t.world().time() < time; t.step()) {
+    const Vec3 now(t.world().time(), t.velocity(0).x(), t.spin(0).y());
+    const double weight = n / (n + 1), before = now[0] - mean[0];
+    tt += weight * before * before, tv += weight * before * (now[1] - mean[1]), tw += weight * before * (now[2] - mean[2]);
+    mean += (now - mean) / ++n;
+  }
+  return {tv / tt, tw / tt};
+}
+double down(double slope) { return g * std::sin(std::atan(slope)); }
+double normal(double slope) { return g * std::cos(std::atan(slope)); }
+
+TEST(Incline, SphereSlidesBelowTwoSeventhsOfTheSlope) {
+  for (const double slope : {0.3, 1.0})
+    for (const double share : {0.3, 0.9, 0.99}) {
+      const double friction = share * 2.0 / 7 * slope;
+      const Rates now = rates(frictional(friction, slope), 0.2);
+      // Friction's arm is the radius less an overlap of 1e-5 of it.
+      EXPECT_NEAR(now.acceleration, down(slope) - friction * normal(slope), 1e-9 * g) << slope << ' ' << share;
+      EXPECT_NEAR(now.spinning * radius / (2.5 * friction * normal(slope)), 1, 2e-5) << slope << ' ' << share;
+      EXPECT_GT(now.acceleration - now.spinning * radius, 0.9 * (1 - share) * down(slope)) << "it slips";
+    }
+}
+
+TEST(Incline, SphereRollsAboveTwoSeventhsOfTheSlope) {
+  for (const double slope : {0.3, 1.0})
+    for (const double share : {1.01, 1.1, 3.0}) {
+      const Rates now = rates(frictional(share * 2.0 / 7 * slope, slope), 0.2);
+      // 5/7 is that of a point of contact at the radius; the overlap is 1e-5 of it, and the spring creeps as long as it is
+      // damped.
+      EXPECT_NEAR(now.acceleration, 5.0 / 7 * down(slope), 2e-5 * g) << slope << ' ' << share;
+      EXPECT_NEAR(now.spinning * radius, now.acceleration, 2e-5 * g) << slope << ' ' << share;
+    }
+}
+
+TEST(Incline, SlippingSphereRollsAtFiveSeventhsOfItsSpeed) {
+  const double friction = 0.3, speed = 0.5;
+  Description d = frictional(friction, 0);
+  d["bodies"]["grains"]["grains"]["grains"][0]["velocity"] = {speed, 0, 0};
+  Trial t(d);
+  const auto slip = [&] { return t.velocity(0).x() - radius * t.spin(0).y(); };
+  double before = slip(), rolls_at = 0;
+  for (; slip() > 1e-3 * speed; t.step()) before = slip(), rolls_at = t.world().time();
+  before = slip(), rolls_at = t.world().time();
+  t.step(10);
+  const double end = 2 * speed / (7 * friction * g);
+  // Slip falls at 7/2 μ g to the end, but for the 1e-7 m over which the spring was first stretched.
+  EXPECT_NEAR((rolls_at + before / (3.5 * friction * g)) / end, 1, 1e-4);
+  while (t.world().time() < 2 * end) t.step();
+  EXPECT_NEAR(t.velocity(0).x() / speed, 5.0 / 7, 2e-5);
+  EXPECT_NEAR(t.spin(0).y() * radius / speed, 5.0 / 7, 2e-5);
+}
+
+TEST(Incline, RollingResistanceHoldsUpToTheAngleThatItGives) {
+  for (const double limit : {0.05, 0.4}) {
+    const double friction = 0.8;
+    for (const double share : {0.5, 0.9, 0.99}) {
+      Trial t(resisting(friction, limit, share * limit, 0.3));
+      while (t.world().time() < 0.15) t.step();
+      const Vec3 place = t.position(0);
+      while (t.world().time() < 0.2) t.step();
+      EXPECT_LT((t.position(0) - place).norm(), 1e-12) << limit << ' ' << share;
+      EXPECT_LT(t.velocity(0).norm(), 1e-9) << limit << ' ' << share;
+    }
+    for (const double share : {1.01, 1.1, 1.5}) {
+      const double slope = share * limit;
+      const Rates now = rates(resisting(friction, limit, slope, 0), 0.2);
+      EXPECT_NEAR(now.acceleration, 5.0 / 7 * (down(slope) - limit * normal(slope)), 1e-4 * g) << limit << ' ' << share;
+      EXPECT_NEAR(now.spinning * radius, now.acceleration, 1e-4 * g) << limit << ' ' << share;
+    }
+  }
+}
+
+TEST(Incline, SphereThatCannotRollSlidesAboveTheAngleOfFriction) {
+  const double friction = 0.3, limit = 2;
+  Trial t(resisting(friction, limit, 0.99 * friction, 0.3));
+  while (t.world().time() < 0.15) t.step();
+  const Vec3 place = t.position(0);
+  while (t.world().time() < 0.2) t.step();
+  EXPECT_LT((t.position(0) - place).norm(), 1e-12);
+  for (const double share : {1.01, 1.5}) {
+    const double slope = share * friction;
+    const Rates now = rates(resisting(friction, limit, slope, 0), 0.2);
+    EXPECT_NEAR(now.acceleration, down(slope) - friction * normal(slope), 1e-4 * g) << share;
+    EXPECT_NEAR(now.spinning * radius, 0, 1e-4 * g) << share;
+  }
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,140 @@
+// The neighbour search misses no pair: against every body with every other, and step by step in a run of fast grains.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <tuple>
+
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+using Pair = std::tuple<std::uint32_t, std::uint32_t, int>;  // a < b by index, image of b
+
+/// All pairs nearer than `skin`, by trying all.
+std::set<Pair> brute_force(std::span<const Row> x, const Cell& cell, double skin) {
+  const Vec3 period = cell.high - cell.low;
+  std::set<Pair> pairs;
+  for (int image = 0; image < 27; ++image) {
+    const auto shift = image_shift(static_cast<std::uint8_t>(image));
+    Vec3 by = Vec3::Zero();
+    bool there = true;
+    for (int k = 0; k < 3; ++k)
+      if (shift[k] != 0) by[k] = shift[k] * period[k], there = there && cell.periodic[k];
+    if (!there) continue;
+    for (std::uint32_t a = 0; a < x.size(); ++a)
+      for (std::uint32_t b = a + 1; b < x.size(); ++b)
+        if ((xyz(x[b]) + by - xyz(x[a])).norm() < x[a].w + x[b].w + skin) pairs.emplace(a, b, image);
+  }
+  return pairs;
+}
+
+/// Radii over a decade, about as many of each size in volume; every fourth body sits on a side, an edge or a corner.
+Bodies scattered(std::size_t count, const Vec3& low, const Vec3& high, double smallest, Random& random) {
+  Bodies bodies;
+  for (std::size_t i = 0; i < count; ++i) {
+    Vec3 x;
+    for (int k = 0; k < 3; ++k) {
+      x[k] = low[k] + random.uniform() * (high[k] - low[k]);
+      if (i % 4 == 0 && random.uniform() < 0.6) x[k] = random.uniform() < 0.5 ? low[k] : std::nextafter(high[k], low[k]);
+    }
+    bodies.add(x, smallest * std::pow(10, random.uniform()), 1, 1, 0);
+  }
+  bodies.finish({});
+  return bodies;
+}
+
+TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
+  Random random(11);
+  for (int axes = 0; axes < 8; ++axes)
+    for (const double skin : {0.0, 0.05}) {
+      const Vec3 low(-1, 2, 0.5), high = low + Vec3(4.3, 5.1, 6.7);
+      Cell cell{low, high};
+      for (int k = 0; k < 3; ++k) cell.periodic[k] = (axes >> k & 1) != 0;
+      const Bodies bodies = scattered(700, low, high, 0.1, random);
+      NeighbourSearch search;
+      search.build(bodies, cell, skin);
+      std::vector<Candidate> found;
+      for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
+      std::set<Pair> pairs;
+      for (const Candidate& c : found) {
+        EXPECT_TRUE(pairs.emplace(c.a, c.b, c.image).second) << "found twice";
+        const Vec3 branch = xyz(bodies.position[c.b]) - xyz(bodies.position[c.a]);
+        if (c.image == 0) {
+          EXPECT_EQ(c.touching != 0, branch.norm() < bodies.position[c.a].w + bodies.position[c.b].w);
+        }
+      }
+      const auto all = brute_force({bodies.position.data(), bodies.count()}, cell, skin);
+      EXPECT_EQ(pairs, all) << "periodic axes " << axes << ", skin " << skin;
+      EXPECT_GT(all.size(), 700u);
+    }
+}
+
+/// At every step, what touches is what brute force says, and no step goes by without a search for too long.
+void expect_no_missed_pair(const Description& d, std::size_t steps) {
+  Trial t(d);
+  for (std::size_t i = 0; i < steps; ++i, t.step()) {
+    std::set<Pair> touching;
+    const Simulation& world = t.world();
+    for (std::size_t c = 0; c < world.candidate_count(); ++c)
+      if (world.pairs().touches(c)) touching.emplace(world.pairs().a(c), world.pairs().b(c), world.pairs().image(c));
+    // Bodies may lie beyond a periodic side until the next search; images then count from where they lie.
+    ASSERT_EQ(touching, brute_force(world.positions(), world.cell(), 0)) << "step " << world.step();
+    std::set<std::tuple<std::uint32_t, std::uint32_t>> on_walls, on_walls_too;
+    for (const Contact& c : world.contacts())
+      if (c.with_wall) on_walls.emplace(c.a, c.b);
+    for (std::uint32_t w = 0; w < world.walls().size(); ++w) {
+      const auto& state = world.wall_states();
+      for (std::uint32_t a = 0; a < world.positions().size(); ++a) {
+        std::vector<Touch> touch;
+        const Sphere sphere{xyz(world.positions()[a]), world.positions()[a].w, a};
+        state.geometry(w).touch(state.pose(w), {&sphere, 1}, touch);
+        if (!touch.empty()) on_walls_too.emplace(a, w);
+      }
+    }
+    ASSERT_EQ(on_walls, on_walls_too) << "step " << world.step();
+  }
+  EXPECT_GT(t.world().clock().rebuilds, 10u);
+  EXPECT_LT(t.world().clock().rebuilds, steps / 2) << "the skin is used";
+}
+
+const Vec3 block(3e-3, 3e-3, 3e-3);  // where a solid box turns
+
+std::vector<Grain> fast_grains(double speed) {
+  auto grains = jumble({6, 6, 6}, 1e-3, speed, 3);
+  for (std::size_t i = 0; i < grains.size(); ++i) grains[i].radius *= i % 5 == 0 ? 0.9 : 0.35;
+  std::erase_if(grains, [](const Grain& g) { return (g.position - block).norm() < 1.6e-3; });
+  return grains;
+}
+Description fast(double speed) {
+  Description d = description("linear-rolling", {{"contact_modulus", 1e8}}, fast_grains(speed));
+  d["guards"] = {{"overlap", 1}, {"travel", 0.5}, {"energy", 10}};
+  return d;
+}
+
+TEST(NeighbourSearch, MissesNoPairOfFastGrainsBetweenMovingWalls) {
+  Description d = fast(1);
+  const Vec3 low = Vec3::Zero(), high = Vec3::Constant(6e-3);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false})
+      d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]] =
+          plane(up ? low : high, up ? Vec3(Vec3::Unit(axis)) : Vec3(-Vec3::Unit(axis)));
+  d["walls"]["high_z"]["motion"]["velocity"] = {0, 0, -1};
+  d["walls"]["block"] = {{"type", "box"}, {"low", vector(block - Vec3(5e-4, 1e-3, 2e-4))},
+                         {"high", vector(block + Vec3(5e-4, 1e-3, 2e-4))},
+                         {"inside", false}, {"material", "grain"},
+                         {"motion", {{"spin", {0, 1000, 0}}}}};
+  expect_no_missed_pair(d, 600);
+}
+
+TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {
+  for (const double rate : {-200.0, 200.0}) {
+    Description d = fast(1);
+    d["domain"] = {{"low", {0, 0, 0}}, {"high", {6e-3, 6e-3, 6e-3}}, {"periodic", {true, true, true}},
+                   {"strain_rate", {rate, -0.5 * rate, 0}}};
+    expect_no_missed_pair(d, 600);
+  }
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,64 @@
+// The same bits for any number of threads.
+#include <gtest/gtest.h>
+
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+const Description sand{{"contact_modulus", 1e6}, {"density", 2600}};
+
+/// 2744 grains between six walls: a lid presses by a servo, another slides along.
+Description boxed() {
+  const double spacing = 1e-3;
+  const Vec3 low = Vec3::Zero(), high = Vec3::Constant(14 * spacing);
+  Description d = description("linear-rolling", sand, jumble({14, 14, 14}, spacing, 0.02, 5));
+  const char* const names[3][2] = {{"left", "right"}, {"front", "back"}, {"bottom", "lid"}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false})
+      d["walls"][names[axis][up ? 0 : 1]] = side(axis, up ? low[axis] : high[axis], low, high, up);
+  d["walls"]["lid"]["motion"]["servo"] = {{"axis", "z"}, {"pressure", 1e4}, {"max_velocity", 0.5}};
+  d["walls"]["bottom"]["motion"]["velocity"] = {0.05, 0, 0};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.3}};
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  return d;
+}
+
+/// 2744 grains without a wall, compressed along x and y, stretched along z.
+Description periodic() {
+  const double spacing = 1e-3;
+  Description d = description("linear-rolling", sand, jumble({14, 14, 14}, spacing, 0.02, 6));
+  d["domain"] = {{"low", {0, 0, 0}},
+                 {"high", {14 * spacing, 14 * spacing, 14 * spacing}},
+                 {"periodic", {true, true, true}},
+                 {"strain_rate", {-20, -20, 15}}};
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  return d;
+}
+
+void expect_same_bits(const Description& d) {
+  Trial one(d, 1), two(d, 2), three(d, 3);
+  ASSERT_EQ(three.world().threads(), 3u);
+  const std::size_t steps = 120;
+  for (int round = 0; round < 4; ++round) {
+    for (Trial* t : {&one, &two, &three}) t->step(steps);
+    ASSERT_TRUE(same_bits(one.world(), two.world())) << "2 threads, step " << one.world().step();
+    ASSERT_TRUE(same_bits(one.world(), three.world())) << "3 threads, step " << one.world().step();
+  }
+  EXPECT_GT(one.world().pair_count(), 2744u) << "a packing";
+  EXPECT_GT(one.world().clock().rebuilds, 8u) << "bodies are put in order anew in between";
+}
+
+TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
+TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
+
+TEST(SameBits, AreToldFromOthers) {
+  Trial one(periodic()), other(periodic());
+  EXPECT_TRUE(same_bits(one.world(), other.world()));
+  one.step();
+  EXPECT_FALSE(same_bits(one.world(), other.world()));
+}
+
+}  // namespace
+}  // namespace grit::test

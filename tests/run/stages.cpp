@@ -1,0 +1,275 @@
+// The driver: what ends a stage, what changes in it, what is reported, how a run ends.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "run/conditions.hpp"
+#include "support/notes.hpp"
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double dt = 1e-5, radius = 1e-3, modulus = 1e7, density = 2600;
+constexpr double mass = density * 4.188790204786391 * radius * radius * radius;
+
+/// One grain at rest, 1 mm above a floor of 1 cm², steps of 10 µs, and a stage that ends as `until` says.
+Description lone(const Description& until, double limit = 1) {
+  Description d = description("linear-rolling", {{"contact_modulus", modulus}, {"density", density}},
+                              {{{0, 0, 2 * radius}, radius}});
+  d["time_step"]["value"] = dt;
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["floor"]["area"] = 1e-4;
+  d["stages"][0]["until"] = until;
+  d["stages"][0]["limit"] = limit;
+  return d;
+}
+Description steps(int n) { return {{"type", "steps"}, {"value", n}}; }
+Description seconds(double t) { return {{"type", "time"}, {"value", t}}; }
+Description stage(const char* name, const Description& until) {
+  return {{"name", name}, {"until", until}, {"limit", 1}};
+}
+/// The grain, dropped, comes to rest on the floor.
+Description dropped(const Description& until) {
+  Description d = lone(until);
+  d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {0, 0, radius};
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
+  return d;
+}
+/// A cell of 1 cm³ with a grain in it that shrinks evenly.
+Description shrinking(const Description& until, double rate) {
+  Description d = lone(until);
+  d.erase("walls");
+  d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {5e-3, 5e-3, 5e-3};
+  d["domain"] = {{"low", {0, 0, 0}}, {"high", {1e-2, 1e-2, 1e-2}}, {"periodic", {true, true, true}},
+                 {"strain_rate", {rate, 0, 0}}};
+  return d;
+}
+
+std::uint64_t steps_until(const Description& until) { return run(lone(until)).summary().steps; }
+
+TEST(Stage, EndsAtATimeOrAfterSteps) {
+  EXPECT_EQ(steps_until(seconds(1e-3)), 100u);
+  EXPECT_EQ(steps_until(seconds(1.004e-3)), 100u);
+  EXPECT_EQ(steps_until(seconds(1.006e-3)), 101u);
+  EXPECT_EQ(steps_until(steps(7)), 7u);
+}
+
+TEST(Stage, CountsFromItsOwnStart) {
+  Description d = lone(steps(30));
+  d["stages"].push_back(stage("second", seconds(2e-4)));
+  d["stages"].push_back(stage("third", steps(5)));
+  const Done done = run(d);
+  EXPECT_EQ(done.summary().status, "done");
+  EXPECT_THAT(done.notes.ended_at, ElementsAre(30, 50, 55));
+  EXPECT_EQ(done.summary().stage, "third");
+}
+
+TEST(Stage, EndsAtADisplacementInTheDirectionOfItsSign) {
+  for (const double sign : {1.0, -1.0}) {
+    Description d = lone({{"type", "displacement"}, {"wall", "floor"}, {"axis", "x"}, {"value", sign * 0.9995e-4}});
+    d["walls"]["floor"]["motion"]["velocity"] = {sign * 0.1, 0, 0};
+    const Done done = run(d);
+    EXPECT_EQ(done.summary().steps, 100u);
+    EXPECT_NEAR(done.world->walls()[0].position.x(), sign * 1e-4, 1e-12);
+    d["walls"]["floor"]["motion"]["velocity"] = {-sign * 0.1, 0, 0};
+    d["stages"][0]["limit"] = 2e-3;
+    EXPECT_EQ(run(d).summary().status, "failed");
+  }
+}
+
+TEST(Stage, EndsAtAPressureWithinItsBand) {
+  Description d = lone({{"type", "pressure"}, {"wall", "floor"}, {"value", 1e3}, {"within", 0.02}});
+  d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {0, 0, radius};
+  d["engines"]["hold"] = {{"type", "hold"}, {"translation", true}};
+  d["walls"]["floor"]["motion"]["velocity"] = {0, 0, 1e-2};
+  const Done done = run(d);
+  // E R u / A = 1e8 Pa/m · u: 980 Pa are reached 9.8 µm up, after 98 steps; rounding may take one more.
+  EXPECT_NEAR(static_cast<double>(done.summary().steps), 98, 1);
+  EXPECT_NEAR(done.world->walls()[0].pressure, 980, 10.001);
+  d["stages"][0]["until"]["value"] = 0;
+  EXPECT_EQ(run(d).summary().steps, 0u) << "no pressure is reached at once";
+}
+
+/// Conditions that are looked at every hundred steps: met at the end, and not a hundred steps before.
+template <class Measure>
+void expect_first_look_below(const Description& d, double limit, Measure measure) {
+  const Done done = run(d);
+  ASSERT_EQ(done.summary().status, "done") << done.summary().message;
+  ASSERT_GE(done.summary().steps, 200u);
+  EXPECT_EQ(done.summary().steps % 100, 0u);
+  EXPECT_LT(measure(*done.world), limit);
+  Description shorter = d;
+  shorter["stages"][0]["until"] = steps(static_cast<int>(done.summary().steps) - 100);
+  EXPECT_GE(measure(*run(shorter).world), limit);
+}
+
+TEST(Stage, EndsAtRest) {
+  expect_first_look_below(dropped({{"type", "unbalanced-force"}, {"below", 1e-4}}), 1e-4,
+                          [](const Simulation& w) { return unrest(w).unbalanced_force; });
+  expect_first_look_below(dropped({{"type", "kinetic-energy"}, {"below", 1e-6}}), 1e-6,
+                          [](const Simulation& w) { return w.kinetic_energy_ratio(); });
+}
+
+TEST(Stage, IsNotAtRestWithoutContacts) {
+  Description d = lone({{"type", "any"}, {"of", {steps(250), {{"type", "unbalanced-force"}, {"below", 1e9}},
+                                                {{"type", "kinetic-energy"}, {"below", 1e9}}}}});
+  EXPECT_EQ(run(d).summary().steps, 250u) << "flying is not resting";
+}
+
+TEST(Stage, EndsAtAVoidRatio) {
+  const auto e = [](const Simulation& w) { return void_ratio(w, w.specimen()); };
+  const double start = 1e-6 / (mass / density) - 1;
+  expect_first_look_below(shrinking({{"type", "void-ratio"}, {"below", 0.9 * start}}, -20), 0.9 * start, e);
+  expect_first_look_below(shrinking({{"type", "void-ratio"}, {"above", 1.1 * start}}, 20), -1.1 * start,
+                          [&](const Simulation& w) { return -e(w); });
+}
+
+TEST(Stage, EndsWhenAllOrAnyHold) {
+  EXPECT_EQ(steps_until({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}}), 50u);
+  EXPECT_EQ(steps_until({{"type", "any"}, {"of", {steps(20), seconds(5e-4)}}}), 20u);
+  EXPECT_EQ(steps_until({{"type", "all"}, {"of", {steps(20), {{"type", "any"}, {"of", {steps(60), steps(40)}}}}}}), 40u);
+}
+
+TEST(Stage, TellsHowFarItIs) {
+  const Scene scene = scene_of(lone({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}}));
+  Simulation world(*scene.description, make_bodies(*scene.description, {}), 1);
+  world.find_forces();
+  for (int i = 0; i < 10; ++i) world.advance(), world.find_forces();
+  EXPECT_NEAR(*progress(scene.description->stages[0].until, world, {}), 0.2, 1e-12);
+}
+
+TEST(Stage, ThatNeverEndsFailsLoudly) {
+  Description d = lone(steps(1000000), 0.9995e-3);
+  d["stages"].push_back(stage("never begun", steps(1)));
+  const Done done = run(d);
+  EXPECT_EQ(done.summary().status, "failed");
+  EXPECT_EQ(done.summary().steps, 100u);
+  EXPECT_THAT(done.summary().message,
+              testing::AllOf(HasSubstr("stage \"only\" did not end within its limit of 0.0009995 s"), HasSubstr("time 0.001 s"),
+                             HasSubstr("give it more time (/stages/0/limit) or a condition that it can reach")));
+  EXPECT_EQ(done.notes.finished, 1);
+  EXPECT_THAT(done.notes.ended, testing::IsEmpty());
+}
+
+TEST(Stage, MustReachWhatIsExpected) {
+  Description d = shrinking(steps(10), -20);
+  d["stages"][0]["expect"] = {{"void_ratio", 0.6}, {"within", 0.02}};
+  d["stages"].push_back(stage("never begun", steps(1)));
+  Done done = run(d);
+  EXPECT_EQ(done.summary().status, "failed");
+  EXPECT_THAT(done.summary().message,
+              testing::StartsWith("stage \"only\" was to end at a void ratio of 0.6 ± 0.02 and reached 237.3; "));
+  EXPECT_EQ(done.summary().steps, 10u);
+  d["stages"][0]["expect"]["void_ratio"] = 237.3;
+  d["stages"][0]["expect"]["within"] = 0.1;
+  EXPECT_EQ(run(d).summary().status, "done");
+}
+
+TEST(Stage, ChangeTakesEffectAndStays) {
+  Description d = lone(steps(10));
+  d["stages"].push_back(stage("fall", steps(10)));
+  d["stages"][1]["change"]["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -10}}};
+  d["stages"].push_back(stage("fall on", steps(10)));
+  d["stages"].push_back(stage("fly", steps(10)));
+  d["stages"][3]["change"]["engines"]["gravity"] = nullptr;
+  d["probes"]["speed"] = {{"type", "watch"}, {"every_steps", 10}};
+  watched() = [](const World& w) { return w.velocities()[0].z; };
+  // The step before the change ends half a step before it: ten kicks in ten steps.
+  const auto speeds = run(d).notes.values_of("speed");
+  ASSERT_EQ(speeds.size(), 5u);
+  const double expected[] = {0, 0, -1e-3, -2e-3, -2e-3};
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(speeds[static_cast<std::size_t>(i)], expected[i], 1e-15) << i;
+}
+
+TEST(Stage, RampsGoInIncrementsOneAfterTheOther) {
+  Description d = lone(steps(30));
+  d["stages"][0]["ramps"] = {{{"pointer", "/walls/floor/motion/velocity/0"}, {"from", 0}, {"to", 4}, {"duration", 16 * dt},
+                              {"increments", 4}},
+                             {{"pointer", "/walls/floor/motion/velocity/0"}, {"from", 4}, {"to", 10}, {"duration", 4 * dt},
+                              {"increments", 2}}};
+  d["probes"]["speed"] = {{"type", "watch"}, {"every_steps", 1}};
+  watched() = [](const World& w) { return w.walls()[0].velocity.x(); };
+  std::vector<double> expected;  // of the step that ended
+  for (int step = 0; step <= 30; ++step) {
+    const int began = step - 1;
+    expected.push_back(began < 4 ? 0 : began < 16 ? began / 4 : began < 18 ? 4 : began < 20 ? 7 : 10);
+  }
+  EXPECT_EQ(run(d).notes.values_of("speed"), expected);
+}
+
+TEST(Stage, BoundaryChangesNothing) {
+  Description whole = description("linear-rolling", {{"contact_modulus", 1e6}}, jumble({4, 4, 4}, 1e-3, 0.1, 8));
+  whole["time_step"]["value"] = 2e-6;
+  whole["stages"] = {stage("all", steps(60))};
+  Description halves = whole;
+  halves["stages"] = Description::array();
+  for (int i = 0; i < 6; ++i) halves["stages"].push_back(stage(std::to_string(i).c_str(), steps(10)));
+  const Done one = run(whole), six = run(halves);
+  double largest = 0, apart = 0;
+  for (std::uint32_t id = 0; id < 64; ++id) {
+    const auto row = [&](const Done& d) { return xyz(d.world->spins()[index_of(*d.world, id)]); };
+    largest = std::max(largest, row(one).norm()), apart = std::max(apart, (row(one) - row(six)).norm());
+  }
+  EXPECT_LT(apart, 1e-10 * largest) << "only the order of sums differs";
+}
+
+TEST(Reports, ComeAtTheirCadence) {
+  Description d = lone(steps(10));
+  d["stages"].push_back(stage("second", steps(8)));
+  d["probes"]["steps"] = {{"type", "watch"}, {"every_steps", 4}};
+  d["probes"]["time"] = {{"type", "watch"}, {"every_time", 2.4 * dt}};
+  d["probes"]["second"] = {{"type", "watch"}, {"every_steps", 4}, {"stages", {"second"}}};
+  d["probes"]["ends"] = {{"type", "watch"}};
+  d["output"]["frames"]["every_steps"] = 6;
+  const Done done = run(d);
+  EXPECT_THAT(done.notes.steps_of("steps"), ElementsAre(0, 4, 8, 10, 14, 18));
+  EXPECT_THAT(done.notes.steps_of("time"), ElementsAre(0, 2, 5, 7, 10, 12, 15, 17, 18));
+  EXPECT_THAT(done.notes.steps_of("second"), ElementsAre(10, 14, 18));
+  EXPECT_THAT(done.notes.steps_of("ends"), ElementsAre(10, 18));
+  EXPECT_THAT(done.notes.frames, ElementsAre(0, 6, 10, 16, 18)) << "at their cadence and at the end of every stage";
+  EXPECT_EQ(done.notes.begun, 1);
+  EXPECT_EQ(done.notes.finished, 1);
+  d["output"].erase("frames");
+  EXPECT_THAT(run(d).notes.frames, testing::IsEmpty());
+}
+
+TEST(Reports, SaySummaryAndStages) {
+  const Done done = run(dropped(steps(40)));
+  EXPECT_EQ(done.summary().bodies, 1u);
+  EXPECT_EQ(done.summary().time_step, dt);
+  EXPECT_GT(done.summary().critical_time_step, dt);
+  EXPECT_NEAR(done.summary().time, 40 * dt, 1e-15);
+  EXPECT_EQ(done.summary().threads, 1u);
+  EXPECT_GT(done.summary().rebuilds, 0u);
+  ASSERT_EQ(done.notes.ended.size(), 1u);
+  EXPECT_THAT(done.notes.ended[0], testing::MatchesRegex("unbalanced force [0-9.e-]+, time 0.0004 s"));
+}
+
+TEST(Reports, AnInterruptedRunEndsAtOnceAndWhole) {
+  std::atomic<bool> interrupted{false};
+  Description d = dropped(steps(1000));
+  d["probes"]["stop"] = {{"type", "watch"}, {"every_steps", 1}};
+  d["output"]["frames"]["every_steps"] = 1000;
+  watched() = [&](const World& w) { return interrupted = w.step() == 120, 0.0; };
+  const Done done = run(d, &interrupted);
+  EXPECT_EQ(done.summary().status, "interrupted");
+  EXPECT_EQ(done.summary().message, "");
+  EXPECT_EQ(done.summary().steps, 120u);
+  EXPECT_EQ(done.notes.steps_of("stop").back(), 120u);
+  EXPECT_THAT(done.notes.frames, ElementsAre(0, 120));
+  EXPECT_THAT(done.notes.ended, testing::IsEmpty()) << "the stage did not end";
+  ASSERT_EQ(done.world->contacts().size(), 1u);
+  EXPECT_NEAR(done.world->contacts()[0].overlap, radius - done.world->positions()[0].z, 1e-18)
+      << "positions and forces are of one instant";
+
+  watched() = {};
+  interrupted = true;
+  EXPECT_EQ(run(d, &interrupted).summary().steps, 0u);
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,102 @@
+// Runs of whole descriptions whose results are kept in memory.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grit/plugin.hpp"
+#include "grit/probe.hpp"
+#include "run/driver.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test {
+
+/// What a run reported.
+struct Notes final : Recorder {
+  struct Sample {
+    std::string probe, stage;
+    std::uint64_t step;
+    double time;
+    std::vector<double> values;  ///< of the first channel
+  };
+  std::vector<ProbeGroup> groups;
+  std::vector<Sample> samples;
+  std::vector<std::uint64_t> frames;    ///< steps
+  std::vector<std::string> ended;       ///< what stages reached
+  std::vector<std::uint64_t> ended_at;  ///< steps
+  int begun = 0, finished = 0;
+  RunSummary summary;
+
+  void begin(const World&, std::span<const ProbeGroup> probes) override {
+    groups.assign(probes.begin(), probes.end());
+    ++begun;
+  }
+  void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override {
+    samples.push_back({groups.at(probe).name, world.stage(), world.step(), world.time(),
+                       std::vector<double>(values[0].begin(), values[0].end())});
+  }
+  void frame(const World& world, std::span<const FieldGroup>) override { frames.push_back(world.step()); }
+  void stage_ended(const World& world, const std::string& what) override {
+    ended.push_back(what), ended_at.push_back(world.step());
+  }
+  void finish(const World&, const RunSummary& how) override { summary = how, ++finished; }
+
+  std::vector<std::uint64_t> steps_of(const std::string& probe) const {
+    std::vector<std::uint64_t> steps;
+    for (const Sample& s : samples)
+      if (s.probe == probe) steps.push_back(s.step);
+    return steps;
+  }
+  std::vector<double> values_of(const std::string& probe) const {
+    std::vector<double> values;
+    for (const Sample& s : samples)
+      if (s.probe == probe) values.push_back(s.values.front());
+    return values;
+  }
+};
+
+/// The probe "watch" reports what this says.
+inline std::function<double(const World&)>& watched() {
+  static std::function<double(const World&)> function;
+  return function;
+}
+
+class Watch final : public Probe {
+ public:
+  void declare(Parameters&) override {}
+  std::vector<Channel> channels() const override { return {{"value", "1", "what the test asks for", {}}}; }
+  void sample(const World& world, std::span<const std::span<double>> values) override {
+    values[0][0] = watched() ? watched()(world) : 0;
+  }
+};
+
+/// A description that has been run.
+struct Done {
+  Scene scene;  // the world looks at it
+  Notes notes;
+  std::unique_ptr<Simulation> world;
+  const RunSummary& summary() const { return notes.summary; }
+};
+
+inline Done run(const Description& plain, const std::atomic<bool>* interrupted = nullptr) {
+  static const PluginInfo watch = [] {
+    PluginInfo info;
+    info.kind = "probe", info.name = "watch", info.version = "1.0.0", info.doc = "what a test asks for";
+    info.make_probe = []() -> Probe* { return new Watch; };
+    return info;
+  }();
+  installed().add(watch);
+  Done done;
+  done.scene = scene_of(plain);
+  const SceneDescription& start = *done.scene.description;
+  done.world = std::make_unique<Simulation>(start, make_bodies(start, {}), 1);
+  RunControl control;
+  control.interrupted = interrupted;
+  grit::run(done.scene, *done.world, done.notes, control);
+  return done;
+}
+
+}  // namespace grit::test

@@ -1,0 +1,100 @@
+// Scenes for tests: plain descriptions made by hand, with the plugins of this build, and worlds that run step by step.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "engines/builtin.hpp"
+#include "input/scene.hpp"
+#include "run/simulation.hpp"
+#include "scene/make_bodies.hpp"
+#include "scene/sphere_body.hpp"
+
+namespace grit::test {
+
+/// The kernel's own components and the plugins of this build.
+inline Registry& installed() {
+  static Registry registry({GRIT_PLUGIN_DIR});
+  static const bool filled = [] {
+    registry.add(sphere_body());
+    for (const PluginInfo& engine : builtin_engines()) registry.add(engine);
+    return true;
+  }();
+  static_cast<void>(filled);
+  return registry;
+}
+
+inline Description vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+struct Grain {
+  Vec3 position;
+  double radius;
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+};
+
+/// Grains of one material, "grain", and one stage.
+inline Description description(const std::string& law, const Description& material, const std::vector<Grain>& grains) {
+  Description list = Description::array();
+  for (const Grain& g : grains)
+    list.push_back({{"position", vector(g.position)},
+                    {"radius", g.radius},
+                    {"velocity", vector(g.velocity)},
+                    {"spin", vector(g.spin)}});
+  Description d = Description::parse(R"({
+    "contacts": {}, "materials": {},
+    "bodies": {"grains": {"type": "sphere", "material": "grain", "grains": {"type": "list"}}},
+    "stages": [{"name": "only", "until": {"type": "steps", "value": 1}, "limit": 1e9}]
+  })");
+  d["contacts"]["type"] = law;
+  d["materials"]["grain"] = material;
+  d["bodies"]["grains"]["grains"]["grains"] = std::move(list);
+  return d;
+}
+
+inline Description plane(const Vec3& point, const Vec3& normal, const std::string& material = "grain") {
+  return {{"type", "plane"}, {"point", vector(point)}, {"normal", vector(normal)}, {"material", material}};
+}
+
+inline Scene scene_of(const Description& plain) { return read_scene(Document(plain, "test"), installed()); }
+
+/// What World says of one body, by its id.
+inline std::size_t index_of(const World& world, std::uint32_t id) {
+  const auto ids = world.ids();
+  return static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+}
+
+/// The first stage of a description, step by step; forces and positions always belong together.
+class Trial {
+ public:
+  explicit Trial(const Description& plain, unsigned threads = 1)
+      : scene_(scene_of(plain)),
+        simulation_(*scene_.stages.front().start, make_bodies(*scene_.description, {}), threads) {
+    simulation_.find_forces();
+  }
+  void step(std::size_t steps = 1) {
+    for (; steps > 0; --steps) simulation_.advance(), simulation_.find_forces();
+  }
+
+  Simulation& world() { return simulation_; }
+  const Simulation& world() const { return simulation_; }
+  const Scene& scene() const { return scene_; }
+
+  Vec3 position(std::uint32_t id) const { return xyz(simulation_.positions()[index_of(simulation_, id)]); }
+  /// At time(), not half a step before.
+  Vec3 velocity(std::uint32_t id) const { return now(simulation_.velocities(), simulation_.forces(), id); }
+  Vec3 spin(std::uint32_t id) const { return now(simulation_.spins(), simulation_.moments(), id); }
+  double mass(std::uint32_t id) const { return 1 / simulation_.velocities()[index_of(simulation_, id)].w; }
+
+ private:
+  Vec3 now(std::span<const Row> rates, std::span<const Row> pushes, std::uint32_t id) const {
+    const std::size_t i = index_of(simulation_, id);
+    const double half = simulation_.step() > 0 ? 0.5 * simulation_.clock().last_time_step : 0;
+    return xyz(rates[i]) + half * rates[i].w * xyz(pushes[i]);
+  }
+
+  Scene scene_;
+  Simulation simulation_;
+};
+
+}  // namespace grit::test
