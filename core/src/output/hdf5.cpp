@@ -89,6 +89,10 @@ Handle rows_of(hid_t dataset, const Shape& shape, std::size_t first, std::size_t
 }
 
 hid_t open_file(const std::filesystem::path& path, Mode mode) {
+  // A file that a full disk keeps from being closed would be closed again when the process exits, and crash it. All
+  // others are closed by then. Only before the first call that opens the library does this count.
+  static const herr_t no_cleanup = H5dont_atexit();
+  static_cast<void>(no_cleanup);
   // Per thread, where HDF5 is built for threads: so at every file, not once.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const auto where = path.string();
