@@ -173,6 +173,23 @@ TEST(ResultsFolder, SaysWhyItCannotBeMade) {
               AllOf(HasSubstr("file/run: cannot make the folder of results: "), HasSubstr("Not a directory")));
 }
 
+TEST(ResultsFolder, DrawsCurvesOverTime) {
+  const Folder folder;
+  auto over_time = options(folder / "run");
+  over_time.picture = PictureRequest{"test/time", {"test/stress_ratio"}};
+  auto world = world_of_two();
+  ResultsFolder results(over_time);
+  results.begin(world, probes);
+  for (const double time : {0.0, 20.0}) {
+    world.now = time;
+    sample(results, world, 0, 0.5);
+  }
+  RunSummary summary;
+  summary.status = "done";
+  results.finish(world, summary);
+  EXPECT_THAT(text_of(folder / "run/picture.svg"), AllOf(HasSubstr(">time [s]<"), HasSubstr(">20<")));
+}
+
 TEST(ResultsFolder, KnowsTheChannelsOfThePicture) {
   const Folder folder;
   auto wrong = options(folder / "run");

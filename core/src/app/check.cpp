@@ -1,6 +1,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <thread>
 
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
@@ -15,7 +16,8 @@ namespace {
 
 // Measured on one core of a 2-core AMD EPYC (Zen 3): 4 to 5 M particle-steps/s in dense packings; a bound to plan with.
 constexpr double planning_speed = 3e6;
-// A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this share of the cloud's.
+// A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this share of the
+// cloud's.
 constexpr double dense_step_share = 0.6;
 
 /// Simulated time that a stage takes, where its description tells, and at most.
@@ -43,7 +45,7 @@ void check_one(const std::string& file, const Options& options, const Registry& 
     std::cout << "  " << std::left << std::setw(10) << one.kind << std::setw(20) << one.name << one.version
               << (one.file.empty() ? "  built in" : "") << '\n';
 
-  const unsigned threads = options.get<unsigned>("threads");
+  const unsigned threads = options.threads();
   Simulation simulation(description, make_bodies(description, run_state(description)), threads);
   simulation.find_forces();
   const std::size_t bodies = simulation.positions().size();
@@ -59,8 +61,8 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << simulation.pair_count() << '\n';
   std::cout << "time step: " << simulation.dt() << " s, critical " << simulation.clock().critical_time_step
             << " s at the start; followed as contacts change\n";
-  std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(simulation.memory())) + 1
-            << " MB now, about " << std::lround(1e-6 * 700.0 * static_cast<double>(bodies)) + 1 << " MB when dense\n\nstages\n";
+  std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(simulation.memory())) + 1 << " MB now, about "
+            << std::lround(1e-6 * 700.0 * static_cast<double>(bodies)) + 1 << " MB when dense\n\nstages\n";
 
   const bool cloud = simulation.pair_count() * 2 < bodies;
   const double dt = simulation.dt() * (cloud && !description.time_step.value ? dense_step_share : 1);
@@ -84,14 +86,12 @@ void check_one(const std::string& file, const Options& options, const Registry& 
 }  // namespace
 
 ExitStatus check_command(const std::vector<std::string>& words) {
-  namespace po = boost::program_options;
   Options options(command("check"));
-  options.add()("threads", po::value<unsigned>()->default_value(std::max(1u, std::thread::hardware_concurrency())),
-                "threads to estimate for")(
-      "set", po::value<std::vector<std::string>>()->composing()->value_name("/POINTER=VALUE"),
-      "change a value of the description first; may be given again");
+  options.add_threads("threads to estimate for");
+  options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no description was given; see 'grit check --help'");
+  options.threads();
   const auto registry = options.registry();
   for (const std::string& file : options.words()) check_one(file, options, *registry);
   return ExitStatus::done;

@@ -1,6 +1,7 @@
 // The commands, one file each.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -34,5 +35,8 @@ ExitStatus plugins_command(const std::vector<std::string>& words);
 ExitStatus describe_command(const std::vector<std::string>& words);
 
 std::span<const Command> commands();
+
+/// Does the work; what it throws goes to standard error and becomes the status.
+ExitStatus report(const std::function<ExitStatus()>& work);
 
 }  // namespace grit

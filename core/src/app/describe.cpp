@@ -1,18 +1,18 @@
+#include <iomanip>
 #include <iostream>
 
 #include "app/options.hpp"
 #include "app/reference.hpp"
+#include "grit/error.hpp"
 #include "input/reference.hpp"
+#include "plugins/nearest.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
 namespace {
 
 /// A section of a description, by its key; empty if there is none of this name.
-std::string section_text(const Registry& registry, const std::string& name) {
-  SceneDescription scene(registry);
-  Parameters all;
-  scene.declare(all);
+std::string section_text(const Parameters& all, const std::string& name) {
   for (const Parameter& section : all.entries()) {
     if (section.name() != name) continue;
     Parameters one;
@@ -22,15 +22,45 @@ std::string section_text(const Registry& registry, const std::string& name) {
   return "";
 }
 
+void print_names(const Parameters& all, const Registry& registry) {
+  std::cout << "sections of a description\n";
+  for (const Parameter& section : all.entries())
+    std::cout << "  " << std::left << std::setw(20) << section.name() << section.doc() << '\n';
+  std::string kind;
+  for (const Installed& one : registry.installed()) {
+    if (kind != one.kind) std::cout << '\n' << (kind = one.kind) << '\n';
+    std::cout << "  " << one.name << '\n';
+  }
+}
+
 }  // namespace
 
 ExitStatus describe_command(const std::vector<std::string>& words) {
   Options options(command("describe"));
   if (!options.read(words)) return ExitStatus::done;
   const auto registry = options.registry();
+  SceneDescription scene(*registry);
+  Parameters all;
+  scene.declare(all);
+  if (options.words().empty()) {
+    print_names(all, *registry);
+    return ExitStatus::done;
+  }
   const std::string name = options.only_word("name");
-  const std::string section = section_text(*registry, name);
-  std::cout << (section.empty() ? component_text(*registry, name) : section);
+  if (const std::string section = section_text(all, name); !section.empty()) {
+    std::cout << section;
+    return ExitStatus::done;
+  }
+  std::vector<std::string> names;
+  for (const Parameter& section : all.entries()) names.push_back(section.name());
+  for (const Installed& one : registry->installed()) names.push_back(one.name);
+  if (std::ranges::find(names, name) == names.end()) {
+    const auto meant = nearest(name, names);
+    throw PluginError("there is no section and no component \"" + name + '"' +
+                      (meant ? "; did you mean \"" + *meant + "\"? 'grit describe'" : "; 'grit describe'") +
+                      " lists them all");
+  }
+  std::cout << component_text(*registry, name, false);
   return ExitStatus::done;
 }
 

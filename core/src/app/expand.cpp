@@ -4,16 +4,31 @@
 #include "input/scene.hpp"
 
 namespace grit {
+namespace {
+
+/// Names files by their whole paths, as `whole` does: what is printed may be saved anywhere.
+void name_files(Description& plain, const Description& whole) {
+  if (plain.is_string() && whole.is_string()) plain = whole;
+  if (plain.is_array() && whole.is_array())
+    for (std::size_t i = 0; i < std::min(plain.size(), whole.size()); ++i) name_files(plain[i], whole[i]);
+  if (plain.is_object() && whole.is_object())
+    for (auto& [key, value] : plain.items())
+      if (const auto same = whole.find(key); same != whole.end()) name_files(value, *same);
+}
+
+}  // namespace
 
 ExitStatus expand_command(const std::vector<std::string>& words) {
   Options options(command("expand"));
-  options.add()("set", boost::program_options::value<std::vector<std::string>>()->composing()->value_name("/POINTER=VALUE"),
-                "change a value first; may be given again");
+  options.add_set();
   if (!options.read(words)) return ExitStatus::done;
+  const std::string file = options.only_word("description");
   const auto registry = options.registry();
-  const Document document = load_document(options.only_word("description"), options.list("set"), *registry);
-  read_scene(document, *registry);  // what is printed can be run
-  std::cout << document.json().dump(2) << '\n';
+  const Document document = load_document(file, options.list("set"), *registry);
+  const Scene scene = read_scene(document, *registry);  // what is printed can be run
+  Description plain = document.json();
+  name_files(plain, resolved(*scene.description));
+  std::cout << plain.dump(2) << '\n';
   return ExitStatus::done;
 }
 

@@ -1,25 +1,25 @@
 // grit: the command line.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <iostream>
 
 #include "app/command.hpp"
 #include "grit/error.hpp"
+#include "output/build_facts.hpp"
+#include "plugins/nearest.hpp"
 
 namespace grit {
 
 std::span<const Command> commands() {
   static constexpr std::array<Command, 6> all{{
-      {"run", "FILE… [options]", "Runs descriptions, one after the other. Ctrl-C saves what there is and stops.",
-       run_command},
-      {"check", "FILE… [options]",
-       "Says what would run: components, state and who asked for it, the time step and its limit, memory, time.",
+      {"run", "FILE…", "Runs descriptions, one after the other. Ctrl-C saves what there is and stops.", run_command},
+      {"check", "FILE…", "Says what would run: components, state, time step and its limit, memory, time.",
        check_command},
-      {"expand", "FILE [options]", "Prints the plain description: extended, set, its scenario expanded, in SI.",
-       expand_command},
-      {"schema", "[options]", "Prints the JSON Schema of everything installed, for editors.", schema_command},
-      {"plugins", "[NAME] [options]", "Lists what is installed; one in full.", plugins_command},
-      {"describe", "NAME [options]", "Prints the parameters of a component, or of a section of a description.",
+      {"expand", "FILE", "Prints the plain description: extended, set, its scenario expanded.", expand_command},
+      {"schema", "", "Prints the JSON Schema of everything installed, for editors.", schema_command},
+      {"plugins", "[NAME]", "Lists what is installed; one in full.", plugins_command},
+      {"describe", "[NAME]", "Prints the parameters of a section of a description, or of a component.",
        describe_command},
   }};
   return all;
@@ -27,15 +27,34 @@ std::span<const Command> commands() {
 
 namespace {
 
+const Command& named(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Command& c : commands()) {
+    if (name == c.name) return c;
+    names.emplace_back(c.name);
+  }
+  const auto meant = nearest(name, names);
+  throw UsageError((name.starts_with('-') ? "there is no option \"" : "there is no command \"") + name + '"' +
+                   (meant ? "; did you mean \"" + *meant + "\"? See" : "; see") + " 'grit --help'");
+}
+
 void print_usage(std::ostream& out) {
   out << "grit, discrete elements for sand, shear zones and silos\n\nusage: grit COMMAND [options]\n\n";
   for (const Command& c : commands()) {
-    std::string head = std::string("  grit ") + c.name + ' ' + c.synopsis;
-    head.resize(std::max<std::size_t>(head.size() + 2, 34), ' ');
-    out << head << c.doc << '\n';
+    const std::string head = std::string("  ") + c.name + ' ' + c.synopsis;
+    const auto width = static_cast<std::size_t>(std::ranges::count_if(head, [](char b) { return (b & 0xC0) != 0x80; }));
+    out << head << std::string(20 - width, ' ') << c.doc << '\n';
   }
-  out << "\n'grit COMMAND --help' says more. Exit status: 0 done, 1 usage, 2 description, 3 plugin, 4 numerics,\n"
-         "5 files or disk, 130 interrupted and saved.\n";
+  out << "\n'grit COMMAND --help' says more, 'grit --version' which grit this is.\n"
+         "Exit status: 0 done, 1 usage, 2 description, 3 plugin, 4 numerics, 5 files or disk,\n"
+         "70 defect of the program, 130 interrupted and saved.\n";
+}
+
+void print_version() {
+  const BuildFacts& build = build_facts();
+  std::cout << "grit " << build.version << (*build.revision == 0 ? "" : " (") << build.revision
+            << (*build.revision == 0 ? "" : ")") << ", " << build.compiler << ", " << build.build_type << ", "
+            << build.instruction_set << '\n';
 }
 
 ExitStatus main(const std::vector<std::string>& words) {
@@ -43,39 +62,58 @@ ExitStatus main(const std::vector<std::string>& words) {
     print_usage(std::cerr);
     return ExitStatus::usage;
   }
-  if (words[0] == "--help" || words[0] == "-h" || words[0] == "help") {
+  const std::string& first = words[0];
+  if (first == "--help" || first == "-h" || first == "help") {
+    if (words.size() > 1) return named(words[1]).main({"--help"});
     print_usage(std::cout);
     return ExitStatus::done;
   }
-  const auto found =
-      std::find_if(commands().begin(), commands().end(), [&](const Command& c) { return words[0] == c.name; });
-  if (found == commands().end()) throw UsageError("there is no command \"" + words[0] + "\"; see 'grit --help'");
-  return found->main({words.begin() + 1, words.end()});
+  if (first == "--version") {
+    print_version();
+    return ExitStatus::done;
+  }
+  return named(first).main({words.begin() + 1, words.end()});
 }
 
 }  // namespace
+
+ExitStatus report(const std::function<ExitStatus()>& work) {
+  const auto say = [](const std::string& text, ExitStatus status) {
+    std::cerr << "grit: " << text << std::endl;
+    return status;
+  };
+  try {
+    const ExitStatus status = work();
+    // A full disk behind a redirection shows here at the latest.
+    if (!std::cout.flush()) throw FileError("standard output cannot be written: is the disk full?");
+    return status;
+  } catch (const UsageError& error) {
+    return say(error.what(), ExitStatus::usage);
+  } catch (const DescriptionError& error) {
+    // As compilers have it, file:line first, so that editors find the places.
+    std::cerr << error.what() << std::endl;
+    const std::size_t count = error.problems().size();
+    return say(count == 1 ? "1 problem in the description" : std::to_string(count) + " problems in the description",
+               ExitStatus::description);
+  } catch (const PluginError& error) {
+    return say(error.what(), ExitStatus::plugin);
+  } catch (const NumericsError& error) {
+    return say(error.what(), ExitStatus::numerics);
+  } catch (const FileError& error) {
+    return say(error.what(), ExitStatus::files);
+  } catch (const Error& error) {
+    return say(error.what(), ExitStatus::description);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return say(error.what(), ExitStatus::files);
+  } catch (const std::bad_alloc&) {
+    return say("there is not enough memory for this scene; 'grit check' says how much it needs", ExitStatus::files);
+  } catch (const std::exception& error) {
+    return say(std::string("a defect of grit or of a plugin, please report it: ") + error.what(), ExitStatus::defect);
+  }
+}
+
 }  // namespace grit
 
 int main(int count, char** arguments) {
-  using grit::ExitStatus;
-  const auto fail = [](const std::exception& error, ExitStatus status) {
-    std::cerr << "grit: " << error.what() << '\n';
-    return static_cast<int>(status);
-  };
-  try {
-    return static_cast<int>(grit::main({arguments + 1, arguments + count}));
-  } catch (const grit::UsageError& error) {
-    return fail(error, ExitStatus::usage);
-  } catch (const grit::PluginError& error) {
-    return fail(error, ExitStatus::plugin);
-  } catch (const grit::NumericsError& error) {
-    return fail(error, ExitStatus::numerics);
-  } catch (const grit::FileError& error) {
-    return fail(error, ExitStatus::files);
-  } catch (const grit::Error& error) {
-    return fail(error, ExitStatus::description);
-  } catch (const std::bad_alloc& error) {
-    return fail(std::runtime_error("there is not enough memory for this scene; 'grit check' says how much it needs"),
-                ExitStatus::files);
-  }
+  return static_cast<int>(grit::report([&] { return grit::main({arguments + 1, arguments + count}); }));
 }

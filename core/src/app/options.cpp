@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <boost/dll/runtime_symbol_info.hpp>
+#include <charconv>
 #include <iostream>
+#include <thread>
 
 #include "engines/builtin.hpp"
 #include "scene/sphere_body.hpp"
@@ -13,6 +15,25 @@ namespace po = boost::program_options;
 Options::Options(const Command& command) : command_(command) {
   visible_.add_options()("plugin-path", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
                          "look for plugins here first; may be given again")("help,h", "say this and stop");
+}
+
+void Options::add_set() {
+  visible_.add_options()("set", po::value<std::vector<std::string>>()->composing()->value_name("/POINTER=VALUE"),
+                         "change a value of the description first, e.g. --set /seed=2; may be given again");
+}
+
+void Options::add_threads(const char* doc) {
+  const unsigned all = std::max(1u, std::thread::hardware_concurrency());
+  visible_.add_options()("threads", po::value<std::string>()->default_value(std::to_string(all))->value_name("N"), doc);
+}
+
+unsigned Options::threads() const {
+  const auto text = get<std::string>("threads");
+  unsigned number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number < 1 || number > 1024)
+    throw UsageError("--threads takes a number from 1 to 1024, not \"" + text + '"');
+  return number;
 }
 
 bool Options::read(const std::vector<std::string>& words) {
@@ -30,7 +51,10 @@ bool Options::read(const std::vector<std::string>& words) {
   }
   words_ = list("words");
   if (!has("help")) return true;
-  std::cout << "grit " << command_.name << ' ' << command_.synopsis << "\n\n" << command_.doc << "\n\n" << visible_;
+  std::cout << "grit " << command_.name << ' ' << command_.synopsis << (*command_.synopsis == 0 ? "" : " ")
+            << "[options]\n\n"
+            << command_.doc << "\n\n"
+            << visible_;
   return false;
 }
 
@@ -40,8 +64,9 @@ std::vector<std::string> Options::list(const char* name) const {
 
 std::string Options::only_word(const char* what) const {
   if (words_.size() != 1)
-    throw UsageError(std::string("one ") + what + " is wanted, " + std::to_string(words_.size()) +
-                     " were given; see 'grit " + command_.name + " --help'");
+    throw UsageError(std::string("'grit ") + command_.name + "' takes one " + what + ", not " +
+                     (words_.empty() ? "none" : std::to_string(words_.size())) + "; see 'grit " + command_.name +
+                     " --help'");
   return words_.front();
 }
 

@@ -16,6 +16,10 @@ class Options {
  public:
   /// `doc` and `synopsis` are what --help says first. Every command has --plugin-path and --help.
   explicit Options(const Command& command);
+  /// --set, for commands that read a description; list("set") has what was given.
+  void add_set();
+  /// --threads; threads() checks what was given.
+  void add_threads(const char* doc);
   boost::program_options::options_description_easy_init add() { return visible_.add_options(); }
   /// Reads. Returns false if --help was asked for, and prints it. Throws UsageError.
   bool read(const std::vector<std::string>& words);
@@ -27,6 +31,8 @@ class Options {
     return values_[name].as<T>();
   }
   std::vector<std::string> list(const char* name) const;
+  /// Throws UsageError if it is not from 1 to 1024.
+  unsigned threads() const;
   /// The one positional word that a command takes. Throws UsageError.
   std::string only_word(const char* what) const;
   /// Built-in components, and the plugins of --plugin-path, GRIT_PLUGIN_PATH, and of this installation.

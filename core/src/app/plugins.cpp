@@ -3,6 +3,7 @@
 
 #include "app/options.hpp"
 #include "app/reference.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 
@@ -11,16 +12,24 @@ ExitStatus plugins_command(const std::vector<std::string>& words) {
   if (!options.read(words)) return ExitStatus::done;
   const auto registry = options.registry();
   if (!options.words().empty()) {
-    std::cout << component_text(*registry, options.only_word("name"));
+    std::cout << component_text(*registry, options.only_word("name"), true);
     return ExitStatus::done;
   }
+  ExitStatus status = ExitStatus::done;
   for (const Installed& one : registry->installed()) {
-    const PluginInfo& info = registry->info(one.kind, one.name);
-    std::cout << std::left << std::setw(10) << one.kind << std::setw(20) << one.name << std::setw(8) << info.version
-              << info.doc << (one.file.empty() ? "" : "\n" + std::string(38, ' ') + one.file.lexically_normal().string())
-              << '\n';
+    const std::string file = one.file.empty() ? "" : "\n" + std::string(38, ' ') + one.file.lexically_normal().string();
+    std::cout << std::left << std::setw(10) << one.kind << std::setw(20) << one.name << std::setw(8);
+    try {
+      const PluginInfo& info = registry->info(one.kind, one.name);
+      std::cout << info.version << info.doc << file << std::endl;
+    } catch (const PluginError& error) {  // the others are listed all the same
+      std::cout << "-"
+                << "cannot be loaded" << file << std::endl;
+      std::cerr << "grit: " << error.what() << std::endl;
+      status = ExitStatus::plugin;
+    }
   }
-  return ExitStatus::done;
+  return status;
 }
 
 }  // namespace grit

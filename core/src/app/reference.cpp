@@ -6,22 +6,26 @@
 #include "grit/error.hpp"
 #include "input/reference.hpp"
 #include "plugins/component.hpp"
+#include "plugins/nearest.hpp"
 
 namespace grit {
 namespace {
+
+std::string table(Parameters& parameters) {
+  return parameters.entries().empty() && !parameters.choice() ? "no parameters\n" : reference_text(parameters);
+}
 
 template <class Interface>
 std::string parameters_text(const Registry& registry, const std::string& name) {
   Parameters parameters;
   const auto component = registry.make<Interface>(name);
   component->declare(parameters);
-  std::string text = reference_text(parameters);
+  std::string text = table(parameters);
   if constexpr (std::same_as<Interface, ContactLaw>) {
     Parameters material, pair;
     component->declare_material("a", material);
     component->declare_interface("a", "a", pair);
-    text += "\nof each material:\n" + reference_text(material) + "\nof each interface of two materials:\n" +
-            reference_text(pair);
+    text += "\nof each material:\n" + table(material) + "\nof each interface of two materials:\n" + table(pair);
   }
   return text;
 }
@@ -37,19 +41,26 @@ std::string parameters_text(const Registry& registry, const std::string& kind, c
 
 }  // namespace
 
-std::string component_text(const Registry& registry, const std::string& name) {
+std::string component_text(const Registry& registry, const std::string& name, bool in_full) {
   std::string text;
-  std::string all;
+  std::vector<std::string> names;
   for (const Installed& one : registry.installed()) {
-    all += (all.empty() ? "" : ", ") + one.name;
+    names.push_back(one.name);
     if (one.name != name) continue;
     const PluginInfo& info = registry.info(one.kind, one.name);
-    text += (text.empty() ? "" : "\n") + one.kind + " \"" + name + "\" " + info.version + ": " + info.doc + '\n' +
-            (one.file.empty() ? "built in" : one.file.string()) + "\nSDK " + std::to_string(info.tag.sdk_version) + ", " +
-            info.tag.compiler + ", " + info.tag.library_abi + ", " + info.tag.instruction_set + "\n\n" +
-            parameters_text(registry, one.kind, one.name);
+    text += (text.empty() ? "" : "\n") + one.kind + " \"" + name + "\" " + info.version + ": " + info.doc + '\n';
+    if (in_full)
+      text += (one.file.empty() ? "built in" : one.file.lexically_normal().string()) + "\nSDK " +
+              std::to_string(info.tag.sdk_version) + ", " + info.tag.compiler + ", " + info.tag.library_abi + ", " +
+              info.tag.instruction_set + '\n';
+    text += '\n' + parameters_text(registry, one.kind, one.name);
   }
-  if (text.empty()) throw PluginError("nothing is installed under the name \"" + name + "\"; there is: " + all);
+  if (text.empty()) {
+    const auto meant = nearest(name, names);
+    throw PluginError("nothing is installed under the name \"" + name + '"' +
+                      (meant ? "; did you mean \"" + *meant + "\"? 'grit plugins'" : "; 'grit plugins'") +
+                      " lists all");
+  }
   return text;
 }
 

@@ -31,13 +31,47 @@ std::vector<WallShape> wall_shapes(const SceneDescription& scene) {
   return shapes;
 }
 
-ExitStatus run_one(const std::filesystem::path& file, const Options& options, const Registry& registry,
-                   const std::filesystem::path& folder) {
-  const unsigned threads = options.get<unsigned>("threads");
-  const Scene scene = load_scene(file, options.list("set"), registry);
+/// A description that was read, and where its results go.
+struct Job {
+  std::string file;
+  std::filesystem::path folder;
+  Scene scene;
+};
+
+std::vector<Job> jobs_of(const Options& options) {
+  const auto& files = options.words();
+  std::vector<Job> jobs;
+  for (const std::string& file : files) {
+    std::filesystem::path folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
+    if (!options.has("out") || files.size() > 1) folder /= std::filesystem::path(file).stem();
+    for (const Job& other : jobs)
+      if (folder == other.folder)
+        throw UsageError(other.file + " and " + file + " would both write to " + folder.string() +
+                         "; run them one by one, each with its own --out");
+    if (!options.has("overwrite") && std::filesystem::exists(folder / "run.json"))
+      throw FileError(folder.string() +
+                      " holds the results of a run; choose another folder (--out DIR) or replace them (--overwrite)");
+    jobs.push_back({file, std::move(folder), {}});
+  }
+  return jobs;
+}
+
+/// All of them before the first is run, so that a slip in the last shows at once.
+void read_all(std::vector<Job>& jobs, const Options& options, const Registry& registry) {
+  std::vector<Problem> problems;
+  for (Job& job : jobs) try {
+      job.scene = load_scene(job.file, options.list("set"), registry);
+    } catch (const DescriptionError& error) {
+      for (const Problem& problem : error.problems()) problems.push_back(problem);
+    }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+}
+
+ExitStatus run_one(const Job& job, const Options& options, const Registry& registry) {
+  const auto& [file, folder, scene] = job;
+  const unsigned threads = options.threads();
+  const bool quiet = options.has("quiet");
   const SceneDescription& description = *scene.description;
-  if (description.stages.empty())
-    throw Error(file.string() + ": /stages is empty, so that there is nothing to run; add a stage");
 
   ResultsOptions results{.folder = folder,
                          .existing = options.has("overwrite") ? Existing::overwrite : Existing::refuse,
@@ -52,25 +86,30 @@ ExitStatus run_one(const std::filesystem::path& file, const Options& options, co
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};
   ResultsFolder recorder(std::move(results));
 
-  std::cerr << file.string() << ": " << description.title << std::endl;
+  const auto say = [&](const std::string& line) {
+    if (!quiet) std::cerr << line << std::endl;
+  };
+  say(description.title.empty() ? file : file + ": " + description.title);
   Simulation simulation(description, make_bodies(description, run_state(description)), threads);
-  std::cerr << simulation.positions().size() << " bodies, " << threads << (threads == 1 ? " thread" : " threads")
-            << ", results in " << folder.string() << std::endl;
+  say(std::to_string(simulation.positions().size()) + " bodies, " + std::to_string(threads) +
+      (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
 
   ProgressBar bar(isatty(STDERR_FILENO) != 0);
   CurveSummary summary_curves(recorder, description.output.summary, [&](const std::string& line) {
     bar.end();
-    std::cerr << line << std::endl;
+    say(line);
   });
   RunControl control;
   control.interrupted = &interrupted;
-  if (!options.has("quiet")) control.progress = [&](const Progress& now) { bar.show(now); };
+  if (!quiet) control.progress = [&](const Progress& now) { bar.show(now); };
   const RunSummary summary = run(scene, simulation, summary_curves, control);
   bar.end();
 
   std::cout << summary_curves.text();
+  double all = 1e-9;
+  for (const PhaseTime& phase : summary.phases) all += phase.seconds;
   const auto share = [&](double seconds) {
-    return std::to_string(static_cast<int>(std::lround(100 * seconds / std::max(summary.wall_seconds, 1e-9)))) + " %";
+    return std::to_string(static_cast<int>(std::lround(100 * seconds / all))) + " %";
   };
   std::cout << summary.steps << " steps of " << summary.bodies << " bodies in " << duration_text(summary.wall_seconds)
             << ", " << std::round(1e-4 * summary.particle_steps_per_second) / 100 << " M particle-steps/s (";
@@ -93,27 +132,31 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   Options options(command("run"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(
-      "threads", po::value<unsigned>()->default_value(std::max(1u, std::thread::hardware_concurrency()))->value_name("N"),
-      "threads; results are the same bits for any number")(
-      "set", po::value<std::vector<std::string>>()->composing()->value_name("/POINTER=VALUE"),
-      "change a value of the description; may be given again")("overwrite", "replace results that are there")(
-      "quiet,q", "no progress");
+      "overwrite", "replace results that are there")("quiet,q", "no progress, only what came of it");
+  options.add_threads("threads; results are the same bits for any number");
+  options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no description was given; see 'grit run --help'");
-  if (options.get<unsigned>("threads") < 1 || options.get<unsigned>("threads") > 1024)
-    throw UsageError("--threads takes a number from 1 to 1024");
+  options.threads();
+  auto jobs = jobs_of(options);
   const auto registry = options.registry();
+  read_all(jobs, options, *registry);
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  for (const std::string& word : options.words()) {
-    const std::filesystem::path file(word);
-    std::filesystem::path folder =
-        options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : std::filesystem::path("results");
-    if (!options.has("out") || options.words().size() > 1) folder /= file.stem();
-    const ExitStatus status = run_one(file, options, *registry, folder);
-    if (status != ExitStatus::done) return status;
+  ExitStatus status = ExitStatus::done;
+  for (const Job& job : jobs) {
+    const ExitStatus one = report([&] {
+      try {
+        return run_one(job, options, *registry);
+      } catch (const NumericsError& error) {
+        throw NumericsError(job.file + ": " + error.what());
+      }
+    });
+    if (status == ExitStatus::done) status = one;
+    // What went wrong with the numerics of one scene says nothing of the next.
+    if (one != ExitStatus::done && one != ExitStatus::numerics) break;
   }
-  return ExitStatus::done;
+  return status;
 }
 
 }  // namespace grit

@@ -89,6 +89,10 @@ Handle rows_of(hid_t dataset, const Shape& shape, std::size_t first, std::size_t
 }
 
 hid_t open_file(const std::filesystem::path& path, Mode mode) {
+  // A file that a full disk keeps from being closed would be closed again when the process exits, and crash it. All
+  // others are closed by then. Only before the first call that opens the library does this count.
+  static const herr_t no_cleanup = H5dont_atexit();
+  static_cast<void>(no_cleanup);
   // Per thread, where HDF5 is built for threads: so at every file, not once.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const auto where = path.string();
@@ -129,16 +133,18 @@ hid_t open_file(const std::filesystem::path& path, Mode mode) {
 
 void Object::set_attribute(const std::string& name, std::string_view text) {
   const auto what = "write attribute '" + name + "'";
+  // Of variable length: h5py gives these as str, those of fixed length as bytes.
   const auto string = owned(H5Tcopy(H5T_C_S1), H5Tclose, where_, what);
-  checked(H5Tset_size(string.id(), std::max<std::size_t>(text.size(), 1)), where_, what);
-  checked(H5Tset_strpad(string.id(), H5T_STR_NULLPAD), where_, what);
+  checked(H5Tset_size(string.id(), H5T_VARIABLE), where_, what);
   checked(H5Tset_cset(string.id(), H5T_CSET_UTF8), where_, what);
   const auto scalar = space({}, where_);
   if (has_attribute(name)) checked(H5Adelete(handle_.id(), name.c_str()), where_, what);
   const auto attribute =
       owned(H5Acreate2(handle_.id(), name.c_str(), string.id(), scalar.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
             where_, what);
-  checked(H5Awrite(attribute.id(), string.id(), text.empty() ? "" : text.data()), where_, what);
+  const std::string terminated(text);
+  const char* value = terminated.c_str();
+  checked(H5Awrite(attribute.id(), string.id(), &value), where_, what);
 }
 
 void Object::set_number(const std::string& name, Number type, const void* value) {
@@ -159,9 +165,12 @@ std::string Object::text(const std::string& name) const {
   const auto what = "read attribute '" + name + "'";
   const auto attribute = owned(H5Aopen(handle_.id(), name.c_str(), H5P_DEFAULT), H5Aclose, where_, what);
   const auto string = owned(H5Aget_type(attribute.id()), H5Tclose, where_, what);
-  std::string text(H5Tget_size(string.id()), '\0');
-  checked(H5Aread(attribute.id(), string.id(), text.data()), where_, what);
-  return text.substr(0, text.find('\0'));
+  if (H5Tis_variable_str(string.id()) <= 0) throw FileError(where_ + ": attribute '" + name + "' is no text of grit's");
+  char* value = nullptr;
+  checked(H5Aread(attribute.id(), string.id(), &value), where_, what);
+  std::string text(value == nullptr ? "" : value);
+  H5free_memory(value);
+  return text;
 }
 
 void Object::get_number(const std::string& name, Number type, void* value) const {

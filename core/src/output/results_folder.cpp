@@ -77,7 +77,7 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
     for (auto& kept : kept_) {
       const auto group = file.group(probes[kept.probe].name);
       kept.steps = group.dataset("step").read<double>();
-      kept.values = group.dataset(probes[kept.probe].channels[kept.channel].name).read<double>();
+      kept.values = group.dataset(kept.channel ? probes[kept.probe].channels[*kept.channel].name : "time").read<double>();
     }
   } else {
     series_.emplace(path, probes, options_.flushing);
@@ -91,7 +91,7 @@ void ResultsFolder::sample(std::size_t probe, const World& world, std::span<cons
   for (auto& kept : kept_)
     if (kept.probe == probe) {
       kept.steps.push_back(static_cast<double>(world.step()));
-      kept.values.push_back(values[kept.channel].front());
+      kept.values.push_back(kept.channel ? values[*kept.channel].front() : world.time());
     }
 }
 
@@ -113,7 +113,8 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
 
 ResultsFolder::Kept ResultsFolder::find(const std::string& name, std::span<const ProbeGroup> probes) const {
   std::string there;
-  for (std::size_t probe = 0; probe < probes.size(); ++probe)
+  for (std::size_t probe = 0; probe < probes.size(); ++probe) {
+    if (probes[probe].name + "/time" == name) return {probe, std::nullopt, "time", "s", {}, {}};
     for (std::size_t channel = 0; channel < probes[probe].channels.size(); ++channel) {
       const auto& found = probes[probe].channels[channel];
       if (hdf5::product(found.shape) != 1) continue;
@@ -121,6 +122,7 @@ ResultsFolder::Kept ResultsFolder::find(const std::string& name, std::span<const
       if (full == name) return {probe, channel, spelled(found.name), found.unit, {}, {}};
       there += (there.empty() ? "" : ", ") + full;
     }
+  }
   throw Error("picture: no probe has a channel '" + name +
               "' of one number; there are: " + (there.empty() ? "none" : there));
 }

@@ -13,7 +13,7 @@
 
 namespace grit {
 
-/// A picture drawn at the end: channels as "probe/channel", one curve a panel; see grain_view() for view and color.
+/// A picture drawn at the end: channels, or the time of the samples, as "probe/channel", one curve a panel; see grain_view() for view and color.
 struct PictureRequest {
   std::string x;
   std::vector<std::string> y;
@@ -56,7 +56,8 @@ class ResultsFolder final : public Recorder {
  private:
   /// A channel that the picture shows, kept in memory.
   struct Kept {
-    std::size_t probe, channel;
+    std::size_t probe;
+    std::optional<std::size_t> channel;  ///< nothing: the time of the samples
     std::string label, unit;
     std::vector<double> steps, values;
   };

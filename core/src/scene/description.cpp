@@ -363,7 +363,7 @@ void StageDescription::declare(Parameters& p) {
   p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage has failed");
   p.add("change", change)
       .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
-           any_of(SceneDescription::changeable(), "").substr(7) + " (strain_rate)");
+           any_of(SceneDescription::changeable(), "").substr(7) + "; of domain only strain_rate");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
   p.add("expect", expect).doc("what the stage must have reached");
   p.check(
@@ -390,15 +390,17 @@ void StageDescription::declare(Parameters& p) {
 // ---- output
 
 void PictureDescription::declare(Parameters& p) {
-  p.add("x", x).required().doc("series of the horizontal axis: probe/channel, e.g. test/shear_displacement");
+  p.add("x", x).required().doc("series of the horizontal axis: probe/channel or probe/time, e.g. test/shear_displacement");
   p.add("y", y).required().entries(1).doc("series of the vertical axis");
   p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the grains are drawn");
-  p.add("color", color).doc("what colours the grains");
+  p.add("color", color)
+      .one_of({"rotation", "displacement", "speed"})
+      .doc("what colours the grains: rotation about the line of sight, displacement along the first axis, speed");
 }
 void OutputDescription::declare(Parameters& p) {
-  p.add("frames", frames).doc("when frames are written, besides the end of every stage");
-  p.add("picture", picture).doc("curve and view of the grains that the report begins with");
-  p.add("summary", summary).doc("series whose last values are printed at the end: probe/channel");
+  p.add("frames", frames).doc("when frames are written, besides the end of the run; neither given: never");
+  p.add("picture", picture).doc("curves and view of the grains, drawn at the end");
+  p.add("summary", summary).doc("series whose largest and last values are printed at the end: probe/channel");
 }
 
 // ---- the scene

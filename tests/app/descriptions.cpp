@@ -1,0 +1,212 @@
+// Descriptions that cannot be run: exit status 2. And what `check`, `expand` and `schema` say of those that can.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+TEST(Descriptions, EveryProblemIsToldAtOnceWithItsPlace) {
+  const OwnFolder folder;
+  folder.write("bad.json", R"({
+  "contacts": {"type": "linear-roling"},
+  "materials": {"sand": {"density": "2600 kPa"}},
+  "bodies": {"grains": {"type": "sphere", "materials": "sand", "grains": {"type": "list", "grains": [
+    {"position": [0, 0, 0], "radius": "-1 mm"}
+  ]}}},
+  "walls": {"floor": {"type": "plane", "material": "steel"}},
+  "stages": [{"name": "wait", "until": {"type": "step", "value": 200}, "limit": "1 s"}]
+}
+)");
+  for (const char* command : {"run", "check", "expand"}) {
+    const auto outcome = grit_in(folder.path(), {command, "bad.json"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    // file:line, pointer, found, nearest, allowed
+    EXPECT_THAT(
+        outcome.err,
+        AllOf(
+            HasSubstr("bad.json:2: /contacts/type: unknown contact \"linear-roling\"; did you mean \"linear-rolling\"? "
+                      "allowed are hertz-mindlin, linear-frictional, linear-rolling"),
+            HasSubstr("bad.json:3: /materials/sand/density: "), HasSubstr("kPa"), HasSubstr("kg/m^3"),
+            HasSubstr("bad.json:4: /bodies/grains/materials: "), HasSubstr("\"material\""),
+            HasSubstr("bad.json:5: /bodies/grains/grains/grains/0/radius: found -1 mm; allowed is above 0 mm"),
+            HasSubstr("bad.json:7: /walls/floor/material: found the material \"steel\", which is not described"),
+            HasSubstr("bad.json:8: /stages/0/until/type: unknown condition \"step\"; did you mean \"steps\"?"),
+            EndsWith("problems in the description\n")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST(Descriptions, OneProblemIsOneLineAndTheCount) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto outcome = grit_in(folder.path(), {"run", "two.json", "--set", "/seed=x"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, AllOf(StartsWith("--set: /seed: found the text \"x\"; allowed is an integer"),
+                                 EndsWith("\ngrit: 1 problem in the description\n")));
+}
+
+TEST(Descriptions, SetsAreCheckedToo) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto said = [&](const std::string& set) {
+    const auto outcome = grit_in(folder.path(), {"check", "two.json", "--set", set});
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(said("nonsense"), HasSubstr("found \"nonsense\"; allowed is /pointer=value"));
+  EXPECT_THAT(said("/stages/7/name=x"), HasSubstr("no entry \"7\" in /stages, which has 1"));
+  EXPECT_THAT(said("/guards/overlaps=1"),
+              AllOf(HasSubstr("--set: /guards/overlaps"), HasSubstr("did you mean \"overlap\"?")));
+}
+
+TEST(Descriptions, WhatIsNoDescriptionIsToldApart) {
+  const OwnFolder folder;
+  folder.write("empty.json", "");
+  folder.write("comma.json", "{\n  \"seed\": 1,\n}\n");
+  folder.write("list.json", "[]");
+  folder.write("nothing.json", "{}");
+  folder.write("child.json", R"({"extends": "parent.json"})");
+  const auto said = [&](const char* file) {
+    const auto outcome = grit_in(folder.path(), {"run", file});
+    EXPECT_EQ(outcome.status, 2) << file;
+    return outcome.err;
+  };
+  EXPECT_THAT(said("empty.json"), HasSubstr("empty.json:1: not JSON"));
+  EXPECT_THAT(said("comma.json"), HasSubstr("comma.json:3: not JSON"));
+  EXPECT_THAT(said("list.json"), HasSubstr("list.json:1: found a list; a description is an object"));
+  EXPECT_THAT(said("nothing.json"), AllOf(HasSubstr("missing key \"contacts\""), HasSubstr("missing key \"stages\"")));
+  EXPECT_THAT(said("child.json"), HasSubstr("parent.json"));
+}
+
+TEST(Descriptions, FilesThatCannotBeReadAreAMatterOfFiles) {
+  const OwnFolder folder;
+  std::filesystem::create_directory(folder / "directory.json");
+  auto outcome = grit_in(folder.path(), {"run", "missing.json"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("missing.json: cannot be read: No such file or directory"));
+  outcome = grit_in(folder.path(), {"run", "directory.json"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("directory.json: cannot be read: it is a directory"));
+}
+
+TEST(Check, SaysWhatWouldRun) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto outcome = grit_in(folder.path(), {"check", "two.json", "--threads", "1"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("two.json: two grains"), HasSubstr("linear-rolling"), HasSubstr("time step: "),
+                    HasSubstr("critical"), HasSubstr("memory: "), HasSubstr("bodies: 2"),
+                    HasSubstr("touching pairs at the start: 1"), HasSubstr("estimated time on 1 thread ")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+/// What `expand` makes of a file, from this folder.
+std::string expanded(const std::filesystem::path& folder, const std::string& file) {
+  const auto outcome = grit_in(folder, {"expand", file});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return outcome.out;
+}
+
+class Sims : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Sims, ExpandToPlainDescriptionsThatStayAsTheyAre) {
+  const OwnFolder folder;
+  const std::string plain = expanded(folder.path(), GetParam());
+  EXPECT_FALSE(json::parse(plain).contains("scenario"));
+  EXPECT_FALSE(json::parse(plain).contains("extends"));
+  folder.write("plain.json", plain);
+  EXPECT_EQ(expanded(folder.path(), "plain.json"), plain);
+}
+
+/// The small ones alone: the big ones differ from them in numbers, and hold tens of thousands of grains.
+class SmallSims : public Sims {};
+
+TEST_P(SmallSims, AreCheckedWhenPlainAsTheyWereBefore) {
+  const OwnFolder folder;
+  folder.write("plain.json", expanded(folder.path(), GetParam()));
+  const auto rest = [&](const std::string& file) {
+    const auto outcome = grit_in(folder.path(), {"check", file, "--threads", "1"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out.substr(outcome.out.find('\n'));
+  };
+  EXPECT_EQ(rest("plain.json"), rest(GetParam()));
+}
+
+/// The descriptions of sims/ whose names begin with this.
+std::vector<std::filesystem::path> sims(const std::string& start) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(GRIT_SOURCE_DIR "/sims"))
+    if (entry.path().extension() == ".json" && entry.path().filename().string().starts_with(start))
+      files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
+  std::string name = info.param.parent_path().filename().string() + "_" + info.param.stem().string();
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(sims("")), name_of);
+INSTANTIATE_TEST_SUITE_P(All, SmallSims, testing::ValuesIn(sims("quick")), name_of);
+
+TEST(Expand, NamesFilesSoThatTheyAreFoundFromAnywhere) {
+  const OwnFolder folder;
+  auto scene = json::parse(two_grains);
+  scene["bodies"]["grains"]["grains"] = {{"type", "file"}, {"path", "grains.txt"}};
+  folder.write("inner/scene.json", scene.dump());
+  folder.write("inner/grains.txt", "0 0 0 1e-3\n");
+  folder.write("elsewhere/plain.json", expanded(folder.path(), "inner/scene.json"));
+  const auto outcome = grit_in(folder.path(), {"check", "elsewhere/plain.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("bodies: 1,"));
+}
+
+TEST(Expand, AppliesSets) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto outcome = grit_in(folder.path(), {"expand", "two.json", "--set", "/seed=7", "--set", "/title=\"other\""});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out).at("seed"), 7);
+  EXPECT_EQ(json::parse(outcome.out).at("title"), "other");
+}
+
+TEST(Schema, IsAJsonSchema) {
+  const OwnFolder folder;
+  const auto outcome = grit_in(folder.path(), {"schema"});
+  EXPECT_EQ(outcome.status, 0);
+  const auto schema = json::parse(outcome.out);
+  EXPECT_EQ(schema.at("$schema"), "http://json-schema.org/draft-07/schema#");
+  EXPECT_EQ(schema.at("type"), "object");
+}
+
+TEST(Output, AFullDiskBehindARedirectionIsNoticed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"schema"}, {"expand", "two.json"}, {"check", "two.json"}, {"plugins"}, {"describe", "walls"}}) {
+    const auto outcome = grit_in(folder.path(), words, "/dev/full");
+    EXPECT_EQ(outcome.status, 5) << words[0];
+    EXPECT_THAT(outcome.err, HasSubstr("standard output cannot be written"));
+  }
+}
+
+}  // namespace
+}  // namespace grit

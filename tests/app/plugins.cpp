@@ -1,0 +1,90 @@
+// What is installed, and plugins that cannot be loaded: exit status 3.
+#include <gmock/gmock.h>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+TEST(Plugins, ListsWhatIsInstalled) {
+  const OwnFolder folder;
+  const auto outcome = grit_in(folder.path(), {"plugins"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("contact   linear-rolling"), HasSubstr("lib/grit/contacts/linear-rolling.so"),
+                    HasSubstr("engine    gravity"), HasSubstr("scenario  direct-shear")));
+}
+
+TEST(Plugins, TellsOneInFull) {
+  const OwnFolder folder;
+  const auto outcome = grit_in(folder.path(), {"plugins", "linear-rolling"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("contact \"linear-rolling\" "), HasSubstr("linear-rolling.so\nSDK "),
+                                 HasSubstr("contact_modulus"), HasSubstr("of each interface of two materials"),
+                                 Not(HasSubstr("/../"))));
+}
+
+TEST(Plugins, MissesAnUnknownNameWithTheNearest) {
+  const OwnFolder folder;
+  for (const char* command : {"plugins", "describe"}) {
+    const auto outcome = grit_in(folder.path(), {command, "linear-roling"});
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("did you mean \"linear-rolling\"?"));
+  }
+  EXPECT_THAT(grit_in(folder.path(), {"describe", "wall"}).err, HasSubstr("did you mean \"walls\"?"));
+}
+
+TEST(Describe, TellsSectionsAndComponents) {
+  const OwnFolder folder;
+  auto outcome = grit_in(folder.path(), {"describe", "stages"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("unbalanced-force"), HasSubstr("ramps")));
+  outcome = grit_in(folder.path(), {"describe", "gravity"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("engine \"gravity\""), HasSubstr("acceleration")));
+  outcome = grit_in(folder.path(), {"describe"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("\n  stages "), HasSubstr("\n  linear-rolling\n")));
+}
+
+/// A folder of plugins in which linear-rolling is no library.
+std::string broken_plugins(const OwnFolder& folder) {
+  folder.write("broken/contacts/linear-rolling.so", "no library");
+  return (folder / "broken").string();
+}
+
+TEST(Plugins, ABrokenOneStopsARunThatNeedsIt) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto outcome = grit_in(folder.path(), {"run", "two.json", "--plugin-path", broken_plugins(folder)});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, AllOf(StartsWith("grit: contact plugin \"linear-rolling\""),
+                                 HasSubstr("broken/contacts/linear-rolling.so"), HasSubstr("cannot be opened")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST(Plugins, ABrokenOneDoesNotHideTheOthers) {
+  const OwnFolder folder;
+  const auto outcome = grit_in(folder.path(), {"plugins", "--plugin-path", broken_plugins(folder)});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("broken/contacts/linear-rolling.so"));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("cannot be loaded"), HasSubstr("scenario  direct-shear")));
+}
+
+TEST(Plugins, TheEnvironmentNamesFoldersToo) {
+  const OwnFolder folder;
+  const auto outcome = shell(
+      folder.path(), "GRIT_PLUGIN_PATH='" + broken_plugins(folder) + "' '" GRIT_BINARY "' plugins linear-rolling");
+  EXPECT_EQ(outcome.status, 3);
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,195 @@
+// Runs and how they end: exit status 0, 4, 5 and 130.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+const std::string hdf5_signature = "\x89HDF\r\n\x1a\n";
+
+class Runs : public testing::Test {
+ protected:
+  Runs() { folder.write("two.json", two_grains); }
+  Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
+  json run_json(const std::string& results) const { return json::parse(text_of(folder / (results + "/run.json"))); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+
+  OwnFolder folder;
+};
+
+TEST_F(Runs, LeaveResults) {
+  const auto outcome = grit({"run", "two.json", "--threads", "1"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("two.json: two grains\n2 bodies, 1 thread, results in results/two\n"),
+                                 HasSubstr("stage \"part\" ended")));
+  EXPECT_THAT(outcome.out, AllOf(StartsWith("packing/kinetic_energy: peak "), HasSubstr("200 steps of 2 bodies in "),
+                                 HasSubstr("particle-steps/s"), EndsWith("results: results/two\n")));
+  const auto run = run_json("results/two");
+  EXPECT_EQ(run.at("status"), "done");
+  EXPECT_EQ(run.at("steps"), 200);
+  EXPECT_EQ(run.at("bodies"), 2);
+  EXPECT_EQ(run.at("threads"), 1);
+  for (const char* name : {"series.h5", "frames/000000.h5"})
+    EXPECT_THAT(text_of(folder / (std::string("results/two/") + name)), StartsWith(hdf5_signature));
+  for (const char* name : {"frames.xdmf", "description.json", "packing.txt"})
+    EXPECT_TRUE(exists(std::string("results/two/") + name)) << name;
+}
+
+TEST_F(Runs, CanBeRunAgainFromWhatTheyLeave) {
+  ASSERT_EQ(grit({"run", "two.json", "--out", "first"}).status, 0);
+  const auto again = grit({"run", "first/description.json", "--out", "second"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(text_of(folder / "first/packing.txt"), text_of(folder / "second/packing.txt"));
+  EXPECT_EQ(run_json("first").at("description"), run_json("second").at("description"));
+}
+
+TEST_F(Runs, QuietOnesOnlySayWhatCameOfThem) {
+  const auto outcome = grit({"run", "two.json", "--quiet"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, HasSubstr("results: results/two"));
+}
+
+TEST_F(Runs, TakeSets) {
+  ASSERT_EQ(grit({"run", "two.json", "--out", "set", "--set", "/stages/0/until/value=20", "--set", "/seed=5"}).status,
+            0);
+  EXPECT_EQ(run_json("set").at("steps"), 20);
+  EXPECT_EQ(run_json("set").at("seed"), 5);
+  EXPECT_EQ(run_json("set").at("description").at("stages").at(0).at("until").at("value"), 20);
+}
+
+TEST_F(Runs, DoNotReplaceOthersUnlessToldTo) {
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  const auto before = text_of(folder / "results/two/run.json");
+  const auto refused = grit({"run", "two.json"});
+  EXPECT_EQ(refused.status, 5);
+  EXPECT_THAT(refused.err,
+              AllOf(HasSubstr("results/two holds the results of a run"), HasSubstr("--out"), HasSubstr("--overwrite")));
+  EXPECT_EQ(text_of(folder / "results/two/run.json"), before);
+  EXPECT_EQ(grit({"run", "two.json", "--overwrite"}).status, 0);
+  EXPECT_NE(text_of(folder / "results/two/run.json"), before);
+}
+
+TEST_F(Runs, GoOneAfterTheOther) {
+  folder.write("other.json", two_grains);
+  EXPECT_EQ(grit({"run", "two.json", "other.json", "--out", "both"}).status, 0);
+  EXPECT_EQ(run_json("both/two").at("status"), "done");
+  EXPECT_EQ(run_json("both/other").at("status"), "done");
+}
+
+TEST_F(Runs, AreAllReadBeforeTheFirstBegins) {
+  folder.write("bad.json", "{\"sede\": 1}");
+  EXPECT_EQ(grit({"run", "two.json", "bad.json"}).status, 2);
+  EXPECT_FALSE(exists("results"));
+}
+
+TEST_F(Runs, GoOnWithTheNextWhenNumericsFail) {
+  auto scene = json::parse(two_grains);
+  scene["guards"]["travel"] = 1e-6;
+  folder.write("tight.json", scene.dump());
+  const auto outcome = grit({"run", "tight.json", "two.json"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_EQ(run_json("results/tight").at("status"), "failed");
+  EXPECT_EQ(run_json("results/two").at("status"), "done");
+}
+
+TEST_F(Runs, StopWhenAGuardTrips) {
+  const auto outcome = grit({"run", "two.json", "--set", "/guards/travel=1e-6"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: two.json: step "), HasSubstr("stage \"part\": body "),
+                                 HasSubstr("more than /guards/travel 1e-06")));
+  const auto run = run_json("results/two");
+  EXPECT_EQ(run.at("status"), "failed");
+  EXPECT_THAT(run.at("message").get<std::string>(), HasSubstr("/guards/travel"));
+}
+
+TEST_F(Runs, StopWhenAStageDoesNotEnd) {
+  const auto outcome = grit({"run", "two.json", "--set", "/stages/0/limit=1e-6"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("stage \"part\" did not end within its limit"), HasSubstr("/stages/0/limit")));
+}
+
+TEST_F(Runs, RefuseATimeStepAboveTheCriticalOne) {
+  const auto outcome = grit({"run", "two.json", "--set", "/time_step/value=1"});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("critical"), HasSubstr("allow_unstable")));
+}
+
+TEST_F(Runs, NeedAPlaceToWrite) {
+  auto outcome = grit({"run", "two.json", "--out", "two.json/results"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("two.json/results: cannot make the folder of results: Not a directory"));
+  if (::geteuid() == 0) return;  // to whom every folder is open
+  std::filesystem::create_directory(folder / "closed");
+  std::filesystem::permissions(folder / "closed",
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  outcome = grit({"run", "two.json", "--out", "closed/results"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("Permission denied"));
+}
+
+TEST_F(Runs, SayThatTheDiskIsFull) {
+  std::filesystem::create_directory(folder / "small");
+  const std::string in_a_small_disk = "unshare -rm bash -c 'mount -t tmpfs -o size=48k tmpfs small && ";
+  if (shell(folder.path(), in_a_small_disk + "true'").status != 0) GTEST_SKIP() << "no mounts for this user";
+  const auto outcome =
+      shell(folder.path(), in_a_small_disk + "\"" GRIT_BINARY
+                                             "\" run two.json --out small/results "
+                                             "--set /output/frames/every_steps=1 --set /stages/0/until/value=100000'");
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("small/results/"), HasSubstr("No space left on device")));
+}
+
+class Interrupted : public Runs, public testing::WithParamInterface<int> {};
+
+TEST_P(Interrupted, RunsAreSaved) {
+  Program program(grit_with({"run", "two.json", "--set", R"(/stages/0/until={"type": "time", "value": "1000 h"})",
+                             "--set", "/stages/0/limit=\"2000 h\"", "--set", "/output/frames/every_steps=100000000",
+                             "--set", "/probes/packing/every_steps=10000"}),
+                  folder.path());
+  ASSERT_TRUE(program.wait_for("1/1 part"));  // the first report of progress
+  program.interrupt(GetParam());
+  const auto outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted; what was reached is saved in results/two"));
+  EXPECT_THAT(outcome.out, HasSubstr("results: results/two"));
+  const auto run = run_json("results/two");
+  EXPECT_EQ(run.at("status"), "interrupted");
+  EXPECT_GT(run.at("steps"), 0);
+  EXPECT_THAT(text_of(folder / "results/two/series.h5"), StartsWith(hdf5_signature));
+  EXPECT_TRUE(exists("results/two/frames/000000.h5"));
+  EXPECT_TRUE(exists("results/two/packing.txt"));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "results"))
+    EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
+}
+
+INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGINT, SIGTERM),
+                         [](const auto& info) { return info.param == SIGINT ? "CtrlC" : "Termination"; });
+
+TEST_F(Runs, AnInterruptedOneKeepsTheOthersFromBeginning) {
+  folder.write("other.json", two_grains);
+  Program program(grit_with({"run", "two.json", "other.json", "--set", "/stages/0/until/value=1000000000", "--set",
+                             "/stages/0/limit=\"2000 h\"", "--set", "/output/frames/every_steps=1000000000", "--set",
+                             "/probes/packing/every_steps=10000"}),
+                  folder.path());
+  ASSERT_TRUE(program.wait_for("1/1 part"));
+  program.interrupt();
+  EXPECT_EQ(program.finish().status, 130);
+  EXPECT_FALSE(exists("results/other"));
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,105 @@
+// What the command says of itself, and of words that make no sense: exit status 0 and 1.
+#include <gmock/gmock.h>
+
+#include <sstream>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+const std::vector<std::string> all_commands{"run", "check", "expand", "schema", "plugins", "describe"};
+
+std::size_t widest_line(const std::string& text) {
+  std::size_t widest = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) widest = std::max(widest, line.size());
+  return widest;
+}
+
+TEST(Usage, HelpNamesEveryCommandAndStatus) {
+  const OwnFolder folder;
+  const auto help = grit_in(folder.path(), {"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.err, IsEmpty());
+  for (const auto& command : all_commands) EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
+  EXPECT_THAT(help.out, HasSubstr("0 done, 1 usage, 2 description, 3 plugin, 4 numerics, 5 files or disk"));
+  EXPECT_THAT(help.out, HasSubstr("130 interrupted and saved"));
+  EXPECT_LE(widest_line(help.out), 100u);
+  EXPECT_EQ(grit_in(folder.path(), {"-h"}).out, help.out);
+  EXPECT_EQ(grit_in(folder.path(), {"help"}).out, help.out);
+}
+
+TEST(Usage, EveryCommandHasHelp) {
+  const OwnFolder folder;
+  for (const auto& command : all_commands) {
+    const auto help = grit_in(folder.path(), {command, "--help"});
+    EXPECT_EQ(help.status, 0) << command;
+    EXPECT_THAT(help.err, IsEmpty());
+    EXPECT_THAT(help.out,
+                AllOf(StartsWith("grit " + command + " "), HasSubstr("[options]\n\n"), HasSubstr("--plugin-path")));
+    EXPECT_LE(widest_line(help.out), 100u) << command;
+    EXPECT_EQ(grit_in(folder.path(), {"help", command}).out, help.out);
+  }
+}
+
+TEST(Usage, VersionSaysWhatWasBuilt) {
+  const OwnFolder folder;
+  const auto version = grit_in(folder.path(), {"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, StartsWith("grit " GRIT_VERSION));
+}
+
+TEST(Usage, NoWordsShowTheHelpAsAnError) {
+  const OwnFolder folder;
+  const auto nothing = grit_in(folder.path(), {});
+  EXPECT_EQ(nothing.status, 1);
+  EXPECT_THAT(nothing.out, IsEmpty());
+  EXPECT_THAT(nothing.err, HasSubstr("usage: grit COMMAND [options]"));
+}
+
+struct Wrong {
+  std::vector<std::string> words;
+  std::string said;
+};
+
+TEST(Usage, WrongWordsAreNamed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  for (const auto& [words, said] : std::vector<Wrong>{
+           {{"rnu"}, "there is no command \"rnu\"; did you mean \"run\"? See 'grit --help'"},
+           {{"frobnicate"}, "there is no command \"frobnicate\"; see 'grit --help'"},
+           {{"--verbose"}, "there is no option \"--verbose\"; see 'grit --help'"},
+           {{"help", "rnu"}, "there is no command \"rnu\"; did you mean \"run\"?"},
+           {{"run"}, "no description was given; see 'grit run --help'"},
+           {{"check"}, "no description was given; see 'grit check --help'"},
+           {{"expand"}, "'grit expand' takes one description, not none; see 'grit expand --help'"},
+           {{"expand", "two.json", "two.json"}, "takes one description, not 2"},
+           {{"schema", "two.json"}, "'grit schema' takes no file"},
+           {{"plugins", "box", "plane"}, "'grit plugins' takes one name, not 2"},
+           {{"run", "two.json", "--frobnicate"}, "unrecognised option '--frobnicate'; see 'grit run --help'"},
+           {{"run", "two.json", "--thr", "2"}, "unrecognised option '--thr'"},
+           {{"run", "two.json", "--out"}, "the required argument for option '--out' is missing"},
+           {{"run", "two.json", "--threads", "0"}, "--threads takes a number from 1 to 1024, not \"0\""},
+           {{"run", "two.json", "--threads=-1"}, "--threads takes a number from 1 to 1024, not \"-1\""},
+           {{"run", "two.json", "--threads", "many"}, "--threads takes a number from 1 to 1024, not \"many\""},
+           {{"check", "two.json", "--threads", "0"}, "--threads takes a number from 1 to 1024, not \"0\""},
+           {{"run", "two.json", "./two.json"},
+            "two.json and ./two.json would both write to results/two; run them one by one, each with its own --out"},
+       }) {
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 1) << said;
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_THAT(outcome.err, AllOf(StartsWith("grit: "), HasSubstr(said)));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Runs a page of the documentation in a folder of its own: writes its ```json NAME blocks to files, runs the commands of its
+# ```sh blocks in order, and its ```python blocks where h5py is there; sees that what its links name exists.
+#   run_page.sh ROOT GRIT PAGE              PAGE is a path below ROOT
+#   run_page.sh --self-test ROOT GRIT       sees that wrong pages are noticed
+set -euo pipefail
+
+# not_run COMMAND: whether a command builds, installs or edits, and so is not run from within a test.
+not_run() { [[ $1 =~ ^(cmake|ctest|sudo|git|clang-format|clang-tidy)\  || $1 =~ ^(\./)?scripts/ ]]; }
+
+run_page() {
+  local root=$1 grit=$2 page=$3 line language='' name='' text='' number=0 failed=0
+  place=$(mktemp -d)
+  trap 'rm -rf "$place"' EXIT
+  mkdir -p "$place/build/bin"
+  ln -s "$grit" "$place/build/bin/grit"
+  for entry in "$root"/*; do
+    [[ -e $place/$(basename "$entry") || $(basename "$entry") == build* || $(basename "$entry") == results* ]] ||
+      ln -s "$entry" "$place/"
+  done
+
+  complain() { echo "$page:$number: $1"; failed=1; }
+  run_line() {
+    local command=$1 log=$place/.log
+    if not_run "$command"; then
+      if [[ $command =~ ^(\./)?(scripts/[a-z-]+\.sh) ]]; then
+        [[ -x $root/${BASH_REMATCH[2]} ]] || complain "cannot be run: ${BASH_REMATCH[2]}"
+      fi
+      return 0
+    fi
+    (cd "$place" && bash -euo pipefail -c "$command") > "$log" 2>&1 < /dev/null || {
+      complain "failed: $command"
+      tail -n 20 "$log"
+    }
+  }
+  end_block() {
+    case $language in
+      json)
+        if [[ -n $name ]]; then printf '%s' "$text" > "$place/$name"; fi ;;
+      python)
+        python=''
+        for candidate in python3 /usr/bin/python3; do
+          "$candidate" -c 'import h5py' 2> /dev/null && python=$candidate && break
+        done
+        if [[ -n $python ]]; then
+          (cd "$place" && "$python" -c "$text") > "$place/.log" 2>&1 || { complain "python failed"; cat "$place/.log"; }
+        fi ;;
+    esac
+  }
+
+  while IFS= read -r line; do
+    number=$((number + 1))
+    if [[ -z $language && $line == '```'* ]]; then
+      read -r language name <<< "${line#\`\`\`} " || true
+      language=${language:-text} text=''
+    elif [[ -n $language && $line == '```' ]]; then
+      end_block
+      language='' name=''
+    elif [[ $language == sh ]]; then
+      [[ $line =~ ^[[:space:]]*(#|$) ]] || run_line "$line"
+    elif [[ -n $language ]]; then
+      text+=$line$'\n'
+    else
+      while [[ $line =~ \]\(([^\)#]+)(#[^\)]*)?\)(.*) ]]; do
+        local target=${BASH_REMATCH[1]} line=${BASH_REMATCH[3]}
+        [[ $target == http* || -e $(dirname "$root/$page")/$target ]] || complain "there is no $target"
+      done
+    fi
+  done < "$root/$page"
+  return "$failed"
+}
+
+self_test() {
+  local root=$1 grit=$2 wrong failed=0
+  copy=$(mktemp -d)
+  local pages=(
+    $'```sh\nbuild/bin/grit run nothing.json\n```'
+    $'```json bad.json\n{"titel": 1}\n```\n```sh\nbuild/bin/grit check bad.json\n```'
+    $'```sh\n./scripts/nothing.sh\n```'
+    'see [this](nothing.md)'
+  )
+  for wrong in "${pages[@]}"; do
+    printf '%s\n' "$wrong" > "$copy/page.md"
+    if (run_page "$copy" "$grit" page.md) > /dev/null; then
+      printf 'not noticed:\n%s\n' "$wrong"
+      failed=1
+    fi
+  done
+  printf '%s\n' $'```sh\nbuild/bin/grit --version  # a comment\n```\n[this](page.md) and [that](https://example.org/x)' > "$copy/page.md"
+  (run_page "$copy" "$grit" page.md) || failed=1
+  rm -rf "$copy"
+  return "$failed"
+}
+
+case ${1-} in
+  --self-test) self_test "$2" "$3" ;;
+  *) run_page "$@" ;;
+esac

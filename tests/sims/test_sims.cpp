@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "engines/builtin.hpp"
+#include "input/scene.hpp"
+#include "input/schema.hpp"
+#include "scene/sphere_body.hpp"
+#include "schema_check.hpp"
+
+namespace grit {
+namespace {
+
+const std::filesystem::path sims_folder = GRIT_SOURCE_DIR "/sims";
+
+const Registry& registry() {
+  static const auto all = [] {
+    auto made = std::make_unique<Registry>(std::vector<std::filesystem::path>{GRIT_PLUGIN_DIR});
+    made->add(sphere_body());
+    for (const PluginInfo& engine : builtin_engines()) made->add(engine);
+    return made;
+  }();
+  return *all;
+}
+
+const SchemaCheck& schema() {
+  static const SchemaCheck check(scene_schema(registry()));
+  return check;
+}
+
+class Sims : public testing::TestWithParam<std::filesystem::path> {
+ protected:
+  /// The file with one key changed, where it can still extend its neighbours.
+  std::filesystem::path spoilt() const {
+    std::ifstream stream(GetParam());
+    auto json = nlohmann::json::parse(stream);
+    json["titel"] = "no key of a description";
+    if (json.contains("extends"))
+      json["extends"] = (GetParam().parent_path() / json["extends"].get<std::string>()).string();
+    const auto path = std::filesystem::path(testing::TempDir()) / ("grit-spoilt-" + name_of(GetParam()) + ".json");
+    std::ofstream(path) << json;
+    return path;
+  }
+
+ public:
+  static std::string name_of(const std::filesystem::path& file) {
+    std::string name = std::filesystem::relative(file, sims_folder).replace_extension().string();
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+    return name;
+  }
+};
+
+TEST_P(Sims, AreTakenByTheKernel) { EXPECT_EQ(kernel_refusal(GetParam(), registry()), ""); }
+
+TEST_P(Sims, AreTakenByTheSchema) { EXPECT_EQ(schema().refusal(GetParam()), ""); }
+
+TEST_P(Sims, AreRefusedByBothWithAWrongKey) {
+  const auto file = spoilt();
+  EXPECT_THAT(kernel_refusal(file, registry()), testing::HasSubstr("titel"));
+  EXPECT_NE(schema().refusal(file), "");
+  std::filesystem::remove(file);
+}
+
+std::vector<std::filesystem::path> files() {
+  std::vector<std::filesystem::path> all;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(sims_folder))
+    if (entry.path().extension() == ".json") all.push_back(entry.path());
+  std::ranges::sort(all);
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(files()),
+                         [](const auto& info) { return Sims::name_of(info.param); });
+
+}  // namespace
+}  // namespace grit
