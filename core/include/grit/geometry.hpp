@@ -50,6 +50,8 @@ class Geometry {
   /// After the parameters were read.
   virtual void prepare() {}
   virtual Bounds bounds() const = 0;
+  /// Whether bodies are inside of bounds(), as in a container, so that averages end at its near side.
+  virtual bool hollow() const { return false; }
   /// Area that carries pressure [m²]; 0 if there is none to speak of.
   virtual double area() const = 0;
   /// Mean unit normal, towards the side of the bodies; zero if there is none to speak of.

@@ -93,13 +93,13 @@ class Run {
 
   RunSummary operator()() {
     RunSummary summary;
-    simulation_.find_forces();
     for (const auto& [name, probe] : scene_.description->probes) observers_.emplace_back(name, probe, simulation_);
     std::vector<ProbeGroup> groups;
     for (const Observer& observer : observers_) groups.push_back(observer.group());
     recorder_.begin(simulation_, groups);
     summary.status = "done";
     try {
+      simulation_.find_forces();
       for (std::size_t i = 0; i < scene_.stages.size() && !interrupted(); ++i) stage(i);
       if (interrupted()) summary.status = "interrupted";
     } catch (const NumericsError& error) {

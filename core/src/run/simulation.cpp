@@ -494,11 +494,13 @@ Region Simulation::region(double margin) const {
     };
     if (const std::string name = side(scene_->specimen.low); !name.empty()) {
       const std::size_t w = wall(name);
-      region.low[k] = walls_.geometry(w).bounds().high[k] + walls_.pose(w).shift[k] + margin;
+      const Bounds bounds = walls_.geometry(w).bounds();
+      region.low[k] = (walls_.geometry(w).hollow() ? bounds.low : bounds.high)[k] + walls_.pose(w).shift[k] + margin;
     }
     if (const std::string name = side(scene_->specimen.high); !name.empty()) {
       const std::size_t w = wall(name);
-      region.high[k] = walls_.geometry(w).bounds().low[k] + walls_.pose(w).shift[k] - margin;
+      const Bounds bounds = walls_.geometry(w).bounds();
+      region.high[k] = (walls_.geometry(w).hollow() ? bounds.high : bounds.low)[k] + walls_.pose(w).shift[k] - margin;
     }
   }
   return region;

@@ -17,6 +17,7 @@ class Box : public Geometry {
   void declare(Parameters& p) override;
   void prepare() override;
   Bounds bounds() const override { return {low_, high_}; }
+  bool hollow() const override { return inside_; }
   /// None: no single pressure acts on all faces.
   double area() const override { return 0; }
   Vec3 normal() const override { return Vec3::Zero(); }
