@@ -40,7 +40,7 @@ Description periodic() {
 void expect_same_bits(const Description& d) {
   Trial one(d, 1), two(d, 2), three(d, 3);
   ASSERT_EQ(three.world().threads(), 3u);
-  const std::size_t steps = 120;
+  const std::size_t steps = 250;
   for (int round = 0; round < 4; ++round) {
     for (Trial* t : {&one, &two, &three}) t->step(steps);
     ASSERT_TRUE(same_bits(one.world(), two.world())) << "2 threads, step " << one.world().step();

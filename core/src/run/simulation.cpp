@@ -48,6 +48,13 @@ std::string number(double value) {
   return text.str();
 }
 
+/// How fast the periods change [m/s], half a step ago as the velocities.
+Vec3 growth_of_period(const Clock& clock) {
+  const Vec3 period = clock.cell.high - clock.cell.low;
+  if (clock.last_time_step == 0) return period.cwiseProduct(clock.cell.strain_rate);
+  return (period - clock.period_before) / clock.last_time_step;
+}
+
 }  // namespace
 
 Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads)
@@ -109,6 +116,10 @@ void Simulation::apply(const SceneDescription& scene) {
       bodies_.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
     }
     clock_.cell.strain_rate = scene.domain.strain_rate;
+    // Images change their velocities with the bodies.
+    const Vec3 period = clock_.cell.high - clock_.cell.low;
+    for (int k = 0; k < 3; ++k)
+      if (clock_.cell.periodic[k]) clock_.period_before[k] -= clock_.last_time_step * change_of_rate[k] * period[k];
   }
   loads_.resize(walls_.size());
   surfaces_.resize(walls_.size());
@@ -124,15 +135,13 @@ void Simulation::apply(const SceneDescription& scene) {
 }
 
 void Simulation::update_shifts() {
-  const Vec3 period = clock_.cell.high - clock_.cell.low;
+  const Vec3 period = clock_.cell.high - clock_.cell.low, growth = growth_of_period(clock_);
   for (std::uint8_t image = 0; image < 27; ++image) {
     const auto shift = image_shift(image);
     double position[3], velocity[3];
     for (int k = 0; k < 3; ++k) {
       position[k] = shift[k] != 0 ? shift[k] * period[k] : 0;
-      velocity[k] = shift[k] != 0 && clock_.last_time_step > 0
-                        ? shift[k] * (period[k] - clock_.period_before[k]) / clock_.last_time_step
-                        : 0;
+      velocity[k] = shift[k] != 0 ? shift[k] * growth[k] : 0;
     }
     shifts_[image] = {{position[0], position[1], position[2], 0}, {velocity[0], velocity[1], velocity[2], 0}};
   }
@@ -171,7 +180,7 @@ bool Simulation::search_is_due() {
 }
 
 void Simulation::wrap() {
-  const Vec3 period = clock_.cell.high - clock_.cell.low;
+  const Vec3 period = clock_.cell.high - clock_.cell.low, growth = growth_of_period(clock_);
   for (std::size_t i = 0; i < bodies_.count(); ++i) {
     Vec3 x = xyz(bodies_.position[i]), v = xyz(bodies_.velocity[i]);
     bool moved = false;
@@ -185,7 +194,7 @@ void Simulation::wrap() {
       }
       const double periods = std::floor((x[k] - clock_.cell.low[k]) / period[k]);
       if (periods == 0) continue;
-      x[k] -= periods * period[k], v[k] -= periods * period[k] * clock_.cell.strain_rate[k];
+      x[k] -= periods * period[k], v[k] -= periods * growth[k];
       if (x[k] >= clock_.cell.high[k]) x[k] = clock_.cell.low[k];
       moved = true;
     }
@@ -297,9 +306,17 @@ void Simulation::advance() {
                         .drift = dt,
                         .strain_rate = clock_.cell.strain_rate,
                         .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
+  // The mean flow at a body grows as the body goes with it: without that, bodies would fall behind the cell's sides.
+  const Vec3 growth = clock_.last_time_step * clock_.cell.strain_rate;
+  const bool flows = !growth.isZero(0.0);
   {
     const Stopwatch watch(phases_[motion].seconds);
     team_.each(chunk_motion_.size(), [&](std::size_t chunk) {
+      const std::size_t end = std::min(bodies_.count(), (chunk + 1) * chunk_bodies);
+      for (std::size_t i = chunk * chunk_bodies; flows && i < end; ++i) {
+        Row& v = bodies_.velocity[i];
+        v.x += growth.x() * v.x, v.y += growth.y() * v.y, v.z += growth.z() * v.z;
+      }
       chunk_motion_[chunk] = move_bodies(chunk, bodies_, pairs_, sum_.data(), step);
     });
   }

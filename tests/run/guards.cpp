@@ -1,0 +1,129 @@
+// Each guard trips where it should, saying what, who, when and what to do; none trips on a run that is fine.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "grit/error.hpp"
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Pushes every body with a force that is not a number from the fifth step on.
+class Poison final : public Engine {
+ public:
+  void declare(Parameters&) override {}
+  Phase phase() const override { return Phase::forces; }
+  void forces(const World& world, std::span<Row> force, std::span<Row>) const override {
+    if (world.step() >= 5) force.back().y = std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+Description two(double gap, double speed) {
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}},
+                              {{{0, 0, 0}, 1e-3, {speed, 0, 0}}, {{2e-3 + gap, 0, 0}, 1e-3, {-speed, 0, 0}}});
+  d["time_step"]["value"] = 1e-6;
+  return d;
+}
+
+std::string complaint(const Description& d, std::size_t steps) {
+  try {
+    Trial t(d);
+    t.step(steps);
+  } catch (const NumericsError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Guards, LeaveAGoodRunAlone) {
+  EXPECT_EQ(complaint(two(1e-5, 1), 600), "");
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, 2e-3}, 1e-3}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["domain"] = {{"low", {-1, -1, -1}}, {"high", {1, 1, 1}}};
+  d["time_step"]["safety"] = 0.1;  // a bounce may win (ω dt)²/4 of the energy
+  EXPECT_EQ(complaint(d, 20000), "") << "a bouncing ball neither gains energy nor leaves";
+}
+
+TEST(Guards, Overlap) {
+  // The deepest overlap is v/ω = 1.3 mm at 20 m/s, far beyond a fifth of a radius.
+  const std::string text = complaint(two(0, 20), 200);
+  EXPECT_THAT(text, testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 0 at \\(.*\\) m overlaps body 1 by 0\\.[0-9]+ of its "
+                                          "radius, more than /guards/overlap 0\\.2; the contact modulus may be too low for this "
+                                          "load, or bodies began inside each other"));
+  Description allowed = two(0, 2);
+  EXPECT_EQ(complaint(allowed, 200), "");
+  allowed["guards"]["overlap"] = 0.02;
+  EXPECT_THAT(complaint(allowed, 200), HasSubstr("more than /guards/overlap 0.02"));
+
+  Description wall = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, 0.7e-3}, 1e-3}});
+  wall["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  EXPECT_THAT(complaint(wall, 1), HasSubstr("step 0, time 0 s: body 0 at (0, 0, 0.0007) m overlaps wall \"floor\" by 0.3 of"));
+}
+
+TEST(Guards, Travel) {
+  EXPECT_EQ(complaint(two(1, 49), 3), "");
+  EXPECT_THAT(complaint(two(1, 51), 3),
+              HasSubstr("step 1, time 1e-06 s: body 0 at (5.1e-05, 0, 0) m moves 0.051 of its radius in one step, more than "
+                        "/guards/travel 0.05; bodies may overlap too much at the start, a wall may be too fast, or the time step"));
+}
+
+TEST(Guards, EnergyFromNowhere) {
+  // ω dt = 2.2: each touch throws the ball back faster.
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
+                              {{{0, 0, 1.01e-3}, 1e-3}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
+  EXPECT_THAT(complaint(d, 3000),
+              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: energy came from nowhere: [0-9.e+-]+ J more than was put in, "
+                                    "[0-9.e+-]+ of the largest energy so far; /guards/energy allows 0\\.05; the time step may be "
+                                    "too large for the stiffest contact; try a smaller /time_step/safety"));
+  d["time_step"]["value"] = 0.1 * dt;
+  EXPECT_EQ(complaint(d, 3000), "");
+}
+
+TEST(Guards, NotANumber) {
+  static const PluginInfo poison = [] {
+    PluginInfo info;
+    info.kind = "engine", info.name = "poison", info.version = "1.0.0", info.doc = "for tests";
+    info.make_engine = []() -> Engine* { return new Poison; };
+    return info;
+  }();
+  installed().add(poison);
+  Description d = two(1, 1);
+  d["engines"]["poison"] = {{"type", "poison"}};
+  EXPECT_EQ(complaint(d, 5), "");
+  EXPECT_THAT(complaint(d, 6), testing::MatchesRegex("step 6, time 6e-06 s: body [01] at .* has a velocity that is not a number; "
+                                                     "two bodies may have begun at one place, or the time step is too large"));
+}
+
+TEST(Guards, LeftTheDomain) {
+  Description d = two(1e-3, 1);
+  d["domain"] = {{"low", {-2e-3, -2e-3, -2e-3}}, {"high", {6e-3, 2e-3, 2e-3}}};
+  d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {30, 0, 0};
+  EXPECT_THAT(complaint(d, 1000), testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.006.*\\) m left the domain "
+                                                        "through its upper x side; close the domain there with a wall, or make it "
+                                                        "larger"));
+  d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {0, 0, -30};
+  EXPECT_THAT(complaint(d, 1000), HasSubstr("left the domain through its lower z side"));
+}
+
+TEST(Guards, StepAboveTheCriticalOne) {
+  Description d = two(0, 1);
+  d["time_step"]["value"] = 1e-4;
+  EXPECT_THAT(complaint(d, 1), testing::MatchesRegex("step 0, time 0 s: the time step 0.0001 s is above the critical one, "
+                                                     "[0-9.e-]+ s; leave out /time_step/value, or say \"allow_unstable\": true"));
+  d["time_step"]["allow_unstable"] = true;
+  d["guards"] = {{"travel", 1e9}, {"overlap", 1e9}};
+  EXPECT_EQ(complaint(d, 1), "");
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,127 @@
+// Periodic sides: no body can tell where they are, at rest or in a cell that deforms.
+#include <gtest/gtest.h>
+
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+const Vec3 period(6e-3, 7e-3, 8e-3);
+
+Description in_cell(std::vector<Grain> grains, const Vec3& shift, const Vec3& strain_rate = Vec3::Zero()) {
+  for (Grain& g : grains) {
+    g.position += shift;
+    for (int k = 0; k < 3; ++k) {
+      g.position[k] -= std::floor(g.position[k] / period[k]) * period[k];
+      if (g.position[k] >= period[k]) g.position[k] = 0;
+    }
+  }
+  Description d = description("linear-rolling", {{"contact_modulus", 1e6}}, grains);
+  d["domain"] = {{"low", {0, 0, 0}},
+                 {"high", vector(period)},
+                 {"periodic", {true, true, true}},
+                 {"strain_rate", vector(strain_rate)}};
+  d["time_step"]["value"] = 2e-6;
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  return d;
+}
+
+/// Largest difference of forces, moments, and velocities apart from the mean flow, over the largest of each.
+double apart(const Trial& a, const Trial& b, std::uint32_t bodies) {
+  double worst = 0;
+  const auto compare = [&](auto quantity) {
+    double difference = 0, size = 0;
+    for (std::uint32_t id = 0; id < bodies; ++id) {
+      const Vec3 qa = quantity(a, id), qb = quantity(b, id);
+      difference = std::max(difference, (qa - qb).norm()), size = std::max(size, qa.norm());
+    }
+    worst = std::max(worst, difference / size);
+  };
+  compare([](const Trial& t, std::uint32_t id) { return xyz(t.world().forces()[index_of(t.world(), id)]); });
+  compare([](const Trial& t, std::uint32_t id) { return xyz(t.world().moments()[index_of(t.world(), id)]); });
+  compare([](const Trial& t, std::uint32_t id) {
+    const Cell& cell = t.world().cell();
+    const std::size_t i = index_of(t.world(), id);
+    // Velocities are half a step old, and so is their flow.
+    const Vec3 v = xyz(t.world().velocities()[i]), dt = Vec3::Constant(t.world().clock().last_time_step);
+    const Vec3 from_middle = xyz(t.world().positions()[i]) - 0.5 * (cell.low + cell.high);
+    const Vec3 before = from_middle.cwiseQuotient(Vec3::Ones() + cell.strain_rate.cwiseProduct(dt));
+    return Vec3(v - cell.strain_rate.cwiseProduct(before));
+  });
+  return worst;
+}
+
+TEST(Periodic, GrainsThatMeetAcrossASideFeelTheSame) {
+  // Aslant and spinning, through a face, an edge and a corner.
+  const std::vector<Grain> two{{{2.2e-3, 3e-3, 3.1e-3}, 0.5e-3, {3, 1, 0.5}, {100, 200, -300}},
+                               {{3.4e-3, 3.5e-3, 3.6e-3}, 0.8e-3, {-1, -0.5, 0}, {0, -500, 50}}};
+  for (const Vec3& shift : {Vec3(3.2e-3, 0, 0), Vec3(3.2e-3, 3.75e-3, 0), Vec3(-2.8e-3, 3.75e-3, 4.65e-3)}) {
+    Trial middle(in_cell(two, Vec3::Zero())), across(in_cell(two, shift));
+    std::size_t touching = 0;
+    for (int i = 0; i < 400; ++i) {
+      middle.step(), across.step();
+      ASSERT_EQ(middle.world().pair_count(), across.world().pair_count());
+      if (middle.world().pair_count() == 0) continue;
+      ++touching;
+      ASSERT_LT(apart(middle, across, 2), 1e-9) << middle.world().step();
+    }
+    EXPECT_GT(touching, 50u);
+    EXPECT_EQ(middle.world().pair_count(), 0u) << "they came and went";
+  }
+}
+
+TEST(Periodic, PackingMayBeShiftedAndWrapped) {
+  const auto grains = jumble({6, 7, 8}, 1e-3, 0.1, 9);
+  const auto bodies = static_cast<std::uint32_t>(grains.size());
+  for (const Vec3& rate : {Vec3(0, 0, 0), Vec3(-30, 20, -10)}) {
+    // With a mean flow bodies begin at rest in it wherever they are.
+    Trial one(in_cell(grains, Vec3::Zero(), rate)), other(in_cell(grains, {1.3e-3, -2.9e-3, 5.1e-3}, rate));
+    EXPECT_LT(apart(one, other, bodies), 1e-12);
+    one.step(60), other.step(60);
+    EXPECT_GT(one.world().pair_count(), 500u);
+    // Sums in another order part at round-off, and colliding grains part faster.
+    EXPECT_LT(apart(one, other, bodies), 1e-9) << rate.transpose();
+  }
+}
+
+TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {
+  // Too far apart to touch, from any place, for 25 % of strain: positions keep their places in the cell.
+  auto grains = jumble({6, 7, 8}, 1e-3, 0, 10);
+  for (Grain& g : grains) g.radius *= 0.3;
+  Trial t(in_cell(grains, {0.3e-3, 0, 0}, {-50, 40, 0}));
+  const Cell first = t.world().cell();
+  std::vector<Vec3> places;
+  for (std::uint32_t id = 0; id < grains.size(); ++id)
+    places.push_back((t.position(id) - first.low).cwiseQuotient(first.high - first.low));
+  t.step(2500);
+  const Cell& last = t.world().cell();
+  // Each step multiplies the sides by 1 + dt ε̇.
+  EXPECT_NEAR((last.high - last.low).x() / period.x(), std::pow(1 - 50 * 2e-6, 2500), 1e-12);
+  EXPECT_NEAR((last.high - last.low).y() / period.y(), std::pow(1 + 40 * 2e-6, 2500), 1e-12);
+  EXPECT_NEAR((last.high - last.low).z() / period.z(), 1, 1e-14);
+  double worst = 0;
+  for (std::uint32_t id = 0; id < grains.size(); ++id) {
+    Vec3 moved = (t.position(id) - last.low).cwiseQuotient(last.high - last.low) - places[id];
+    for (int k = 0; k < 3; ++k) moved[k] -= std::round(moved[k]);
+    worst = std::max(worst, moved.norm());
+  }
+  EXPECT_LT(worst, 1e-11) << "round-off of 2500 steps";
+}
+
+TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {
+  auto d = [&](const Vec3& shift) {
+    return in_cell(jumble({6, 7, 8}, 1e-3, 0.1, 9), shift, {-30, 20, -10});
+  };
+  Trial one(d(Vec3::Zero())), other(d({1.3e-3, -2.9e-3, 5.1e-3}));
+  Description faster = d(Vec3::Zero());
+  faster["domain"]["strain_rate"] = {20, -40, 0};
+  const Scene then = scene_of(faster);
+  one.step(20), other.step(20);
+  for (Trial* t : {&one, &other}) t->world().begin_stage("then", *then.stages[0].start), t->world().find_forces();
+  one.step(20), other.step(20);
+  // The flow of the step before the change counts by its new rate: dt ε̇² over the cell, against what grains do.
+  EXPECT_LT(apart(one, other, 6 * 7 * 8), 5e-5);
+}
+
+}  // namespace
+}  // namespace grit::test
