@@ -87,7 +87,7 @@ TEST(ClosedCycle, ThereAndBackLeavesNothing) {
         400, law);
     ASSERT_GT(course.most, 1e-3) << law;
     // Round-off of places of 3 mm against ways of 1 µm.
-    EXPECT_LT(course.left, 1e-9 * course.most) << law;
+    EXPECT_LT(course.left, 1e-12 * course.most) << law;
   }
 }
 
