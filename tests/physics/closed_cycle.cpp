@@ -20,7 +20,8 @@ struct Place {
 /// Where body `id` is to be at a share 0 … 1 of the way.
 using Way = std::function<Place(std::uint32_t id, double share)>;
 
-/// Leads bodies along a way: each is so heavy that nothing else moves it. Forces give it the velocity of the coming step.
+/// Leads bodies along a way: each is so heavy that nothing else moves it. Forces give it the velocity of the coming
+/// step.
 struct Leader final : Engine {
   static inline Way way;
   static inline double steps = 0;
@@ -98,7 +99,8 @@ TEST(ClosedCycle, PressingShearingEasingShearingBackDoesNotRatchet) {
     const double shear = std::clamp(way - 1, 0.0, 1.0) - std::clamp(way - 3, 0.0, 1.0), angle = 2e-4 * shear;
     return id == 0 ? still() : Place{(reach - 3e-6 * press) * Vec3(std::cos(angle), std::sin(angle), 0), 0};
   };
-  const Course once = lead(square, 400), ten = lead([&](std::uint32_t id, double s) { return square(id, 10 * s); }, 4000);
+  const Course once = lead(square, 400),
+               ten = lead([&](std::uint32_t id, double s) { return square(id, 10 * s); }, 4000);
   ASSERT_GT(once.most, 1e-3);
   EXPECT_LT(once.left, 1e-9 * once.most);
   EXPECT_LT(ten.left, 2e-8 * ten.most) << "ten rounds, ten times the round-off";

@@ -27,9 +27,9 @@ Description pair(const std::string& law, Description material, double gap, doubl
   material["density"] = density;
   const double share = mass(radius_b) / (mass(radius_a) + mass(radius_b));
   const double along = std::sqrt((radius_a + radius_b) * (radius_a + radius_b) - offset * offset) + gap;
-  Description d = description(law, material,
-                              {{Vec3::Zero(), radius_a, {share * speed, 0, 0}},
-                               {{along, offset, 0}, radius_b, {(share - 1) * speed, 0, 0}}});
+  Description d = description(
+      law, material,
+      {{Vec3::Zero(), radius_a, {share * speed, 0, 0}}, {{along, offset, 0}, radius_b, {(share - 1) * speed, 0, 0}}});
   d["time_step"]["value"] = dt;
   return d;
 }
@@ -95,8 +95,8 @@ TEST(Collision, ErrorIsOfSecondOrderInTheStep) {
 }
 
 TEST(Collision, EnergyComesBackButForThePartingStep) {
-  // The spring of leap-frog is exact for the energy ½ m v² + ½ k x(t) x(t + dt); that product is not zero in the step in
-  // which the spheres meet and in that in which they part, but (v dt/2)² at most.
+  // The spring of leap-frog is exact for the energy ½ m v² + ½ k x(t) x(t + dt); that product is not zero in the step
+  // in which the spheres meet and in that in which they part, but (v dt/2)² at most.
   const Spring spring;
   for (const double safety : {0.1, 0.01}) {
     Trial limits(pair("linear-rolling", smooth(), 0, 1e-9));
@@ -146,6 +146,8 @@ struct Damped {
   const char* law;
   Description material;
   double duration;  ///< of the elastic collision, about [s]
+
+  friend void PrintTo(const Damped& damped, std::ostream* out) { *out << damped.law; }
 };
 class Restitution : public testing::TestWithParam<Damped> {};
 
@@ -174,7 +176,8 @@ TEST_P(Restitution, OutIsIn) {
 }
 INSTANTIATE_TEST_SUITE_P(Collision, Restitution,
                          testing::Values(Damped{"linear-frictional", {{"contact_modulus", modulus}}, Spring().duration},
-                                         Damped{"hertz-mindlin", {{"young_modulus", 1e9}, {"poisson_ratio", 0.25}}, 3e-5}),
+                                         Damped{
+                                             "hertz-mindlin", {{"young_modulus", 1e9}, {"poisson_ratio", 0.25}}, 3e-5}),
                          [](const auto& info) { return std::string(info.index == 0 ? "Linear" : "Hertz"); });
 
 }  // namespace

@@ -37,8 +37,8 @@ TEST(Conservation, CloudKeepsMomentumAndAngularMomentum) {
   for (int i = 0; i < 1500; ++i) t.step(), most = std::max(most, t.world().pair_count());
   const Momenta after = momenta(t.world());
   EXPECT_GT(most, 150u);
-  // Each pair's two forces, and the arms of its moments, cancel; sums over 1500 steps leave round-off alone. Positions of
-  // whole and velocities of half steps belong together here: a drift goes along its velocity.
+  // Each pair's two forces, and the arms of its moments, cancel; sums over 1500 steps leave round-off alone. Positions
+  // of whole and velocities of half steps belong together here: a drift goes along its velocity.
   EXPECT_LT((after.linear - before.linear).norm(), 2e-15 * before.linear_size);
   EXPECT_LT((after.angular - before.angular).norm(), 3e-14 * before.angular_size);
 }

@@ -1,5 +1,5 @@
-// Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 1 to 3, by whole runs: overlap, force and duration of elastic
-// impacts after Hertz, and rebounds with dashpots.
+// Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 1 to 3, by whole runs: overlap, force and duration of
+// elastic impacts after Hertz, and rebounds with dashpots.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,6 +15,7 @@ struct Impact {
   double modulus, poisson, density, radius, speed;
   bool plane;  ///< rigid; else an identical sphere that comes as fast from the other side
 
+  friend void PrintTo(const Impact& impact, std::ostream* out) { *out << impact.name; }
   double mass() const { return density * 4 / 3 * std::numbers::pi * std::pow(radius, 3); }
   double closing() const { return plane ? speed : 2 * speed; }
   double effective_mass() const { return plane ? mass() : mass() / 2; }

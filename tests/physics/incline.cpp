@@ -1,5 +1,5 @@
-// One sphere on a plane: sliding, rolling without slip, resting; each limit from both sides. The plane is level and gravity
-// leans, so that nothing but the physics is aslant.
+// One sphere on a plane: sliding, rolling without slip, resting; each limit from both sides. The plane is level and
+// gravity leans, so that nothing but the physics is aslant.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,8 +21,7 @@ Description on_plane(const std::string& law, double friction, double slope, Desc
   material["friction_angle"] = std::atan(friction);
   Description d = description(law, material, {{{0, 0, radius - sunk}, radius}});
   d["walls"]["slope"] = plane(Vec3::Zero(), Vec3::UnitZ());
-  d["engines"]["gravity"] = {{"type", "gravity"},
-                             {"acceleration", {g * std::sin(angle), 0, -g * std::cos(angle)}}};
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {g * std::sin(angle), 0, -g * std::cos(angle)}}};
   return d;
 }
 /// Shear that is damped, so that the spring of a new contact soon rests.
@@ -50,7 +49,8 @@ Rates rates(const Description& d, double time) {
   for (; t.world().time() < time; t.step()) {
     const Vec3 now(t.world().time(), t.velocity(0).x(), t.spin(0).y());
     const double weight = n / (n + 1), before = now[0] - mean[0];
-    tt += weight * before * before, tv += weight * before * (now[1] - mean[1]), tw += weight * before * (now[2] - mean[2]);
+    tt += weight * before * before, tv += weight * before * (now[1] - mean[1]),
+        tw += weight * before * (now[2] - mean[2]);
     mean += (now - mean) / ++n;
   }
   return {tv / tt, tw / tt};

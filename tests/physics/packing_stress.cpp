@@ -36,7 +36,8 @@ TEST(PackingStress, OfContactsIsThatOfWalls) {
   t.step(20);
   Mat3 inside = mean_stress(t.world(), t.world().specimen());
   // Newton's law, moved about: it holds at every instant to round-off.
-  EXPECT_LT((inside - from_outside(t.world())).norm(), 1e-14 * inside.norm()) << inside << "\n\n" << from_outside(t.world());
+  EXPECT_LT((inside - from_outside(t.world())).norm(), 1e-14 * inside.norm()) << inside << "\n\n"
+                                                                              << from_outside(t.world());
 
   while (unrest(t.world()).unbalanced_force > 1e-9 && t.world().step() < 20000) t.step(100);
   ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-9);

@@ -52,9 +52,10 @@ TEST(Guards, LeaveAGoodRunAlone) {
 TEST(Guards, Overlap) {
   // The deepest overlap is v/ω = 1.3 mm at 20 m/s, far beyond a fifth of a radius.
   const std::string text = complaint(two(0, 20), 200);
-  EXPECT_THAT(text, testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 0 at \\(.*\\) m overlaps body 1 by 0\\.[0-9]+ of its "
-                                          "radius, more than /guards/overlap 0\\.2; the contact modulus may be too low for this "
-                                          "load, or bodies began inside each other"));
+  EXPECT_THAT(text, testing::MatchesRegex(
+                        "step [0-9]+, time [0-9.e-]+ s: body 0 at \\(.*\\) m overlaps body 1 by 0\\.[0-9]+ of its "
+                        "radius, more than /guards/overlap 0\\.2; the contact modulus may be too low for this "
+                        "load, or bodies began inside each other"));
   Description allowed = two(0, 2);
   EXPECT_EQ(complaint(allowed, 200), "");
   allowed["guards"]["overlap"] = 0.02;
@@ -62,14 +63,17 @@ TEST(Guards, Overlap) {
 
   Description wall = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, 0.7e-3}, 1e-3}});
   wall["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
-  EXPECT_THAT(complaint(wall, 1), HasSubstr("step 0, time 0 s: body 0 at (0, 0, 0.0007) m overlaps wall \"floor\" by 0.3 of"));
+  EXPECT_THAT(complaint(wall, 1),
+              HasSubstr("step 0, time 0 s: body 0 at (0, 0, 0.0007) m overlaps wall \"floor\" by 0.3 of"));
 }
 
 TEST(Guards, Travel) {
   EXPECT_EQ(complaint(two(1, 49), 3), "");
-  EXPECT_THAT(complaint(two(1, 51), 3),
-              HasSubstr("step 1, time 1e-06 s: body 0 at (5.1e-05, 0, 0) m moves 0.051 of its radius in one step, more than "
-                        "/guards/travel 0.05; bodies may overlap too much at the start, a wall may be too fast, or the time step"));
+  EXPECT_THAT(
+      complaint(two(1, 51), 3),
+      HasSubstr(
+          "step 1, time 1e-06 s: body 0 at (5.1e-05, 0, 0) m moves 0.051 of its radius in one step, more than "
+          "/guards/travel 0.05; bodies may overlap too much at the start, a wall may be too fast, or the time step"));
 }
 
 TEST(Guards, EnergyFromNowhere) {
@@ -82,9 +86,10 @@ TEST(Guards, EnergyFromNowhere) {
   d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
   d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
   EXPECT_THAT(complaint(d, 3000),
-              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: energy came from nowhere: [0-9.e+-]+ J more than was put in, "
-                                    "[0-9.e+-]+ of the largest energy so far; /guards/energy allows 0\\.05; the time step may be "
-                                    "too large for the stiffest contact; try a smaller /time_step/safety"));
+              testing::MatchesRegex(
+                  "step [0-9]+, time [0-9.e-]+ s: energy came from nowhere: [0-9.e+-]+ J more than was put in, "
+                  "[0-9.e+-]+ of the largest energy so far; /guards/energy allows 0\\.05; the time step may be "
+                  "too large for the stiffest contact; try a smaller /time_step/safety"));
   d["time_step"]["value"] = 0.1 * dt;
   EXPECT_EQ(complaint(d, 3000), "");
 }
@@ -100,17 +105,19 @@ TEST(Guards, NotANumber) {
   Description d = two(1, 1);
   d["engines"]["poison"] = {{"type", "poison"}};
   EXPECT_EQ(complaint(d, 5), "");
-  EXPECT_THAT(complaint(d, 6), testing::MatchesRegex("step 6, time 6e-06 s: body [01] at .* has a velocity that is not a number; "
-                                                     "two bodies may have begun at one place, or the time step is too large"));
+  EXPECT_THAT(complaint(d, 6),
+              testing::MatchesRegex("step 6, time 6e-06 s: body [01] at .* has a velocity that is not a number; "
+                                    "two bodies may have begun at one place, or the time step is too large"));
 }
 
 TEST(Guards, LeftTheDomain) {
   Description d = two(1e-3, 1);
   d["domain"] = {{"low", {-2e-3, -2e-3, -2e-3}}, {"high", {6e-3, 2e-3, 2e-3}}};
   d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {30, 0, 0};
-  EXPECT_THAT(complaint(d, 1000), testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.006.*\\) m left the domain "
-                                                        "through its upper x side; close the domain there with a wall, or make it "
-                                                        "larger"));
+  EXPECT_THAT(complaint(d, 1000),
+              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.006.*\\) m left the domain "
+                                    "through its upper x side; close the domain there with a wall, or make it "
+                                    "larger"));
   d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {0, 0, -30};
   EXPECT_THAT(complaint(d, 1000), HasSubstr("left the domain through its lower z side"));
 }
@@ -118,8 +125,9 @@ TEST(Guards, LeftTheDomain) {
 TEST(Guards, StepAboveTheCriticalOne) {
   Description d = two(0, 1);
   d["time_step"]["value"] = 1e-4;
-  EXPECT_THAT(complaint(d, 1), testing::MatchesRegex("step 0, time 0 s: the time step 0.0001 s is above the critical one, "
-                                                     "[0-9.e-]+ s; leave out /time_step/value, or say \"allow_unstable\": true"));
+  EXPECT_THAT(complaint(d, 1),
+              testing::MatchesRegex("step 0, time 0 s: the time step 0.0001 s is above the critical one, "
+                                    "[0-9.e-]+ s; leave out /time_step/value, or say \"allow_unstable\": true"));
   d["time_step"]["allow_unstable"] = true;
   d["guards"] = {{"travel", 1e9}, {"overlap", 1e9}};
   EXPECT_EQ(complaint(d, 1), "");

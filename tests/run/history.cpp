@@ -9,12 +9,13 @@ namespace grit::test {
 namespace {
 
 Description packing(double speed = 0.1) {
-  Description d = description("linear-rolling", {{"contact_modulus", 1e6}, {"twisting_stiffness", 0.3}, {"twisting_limit", 0.1}},
-                              jumble({7, 7, 7}, 1e-3, speed, 4));
+  Description d =
+      description("linear-rolling", {{"contact_modulus", 1e6}, {"twisting_stiffness", 0.3}, {"twisting_limit", 0.1}},
+                  jumble({7, 7, 7}, 1e-3, speed, 4));
   for (int axis = 0; axis < 3; ++axis)
     for (const bool up : {true, false})
-      d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]] = side(
-          axis, up ? 0 : 7e-3, Vec3::Zero(), Vec3::Constant(7e-3), up);
+      d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]] =
+          side(axis, up ? 0 : 7e-3, Vec3::Zero(), Vec3::Constant(7e-3), up);
   d["time_step"]["value"] = 2e-6;
   d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
   return d;

@@ -36,7 +36,8 @@ Bodies scattered(std::size_t count, const Vec3& low, const Vec3& high, double sm
     Vec3 x;
     for (int k = 0; k < 3; ++k) {
       x[k] = low[k] + random.uniform() * (high[k] - low[k]);
-      if (i % 4 == 0 && random.uniform() < 0.6) x[k] = random.uniform() < 0.5 ? low[k] : std::nextafter(high[k], low[k]);
+      if (i % 4 == 0 && random.uniform() < 0.6)
+        x[k] = random.uniform() < 0.5 ? low[k] : std::nextafter(high[k], low[k]);
     }
     bodies.add(x, smallest * std::pow(10, random.uniform()), 1, 1, 0);
   }
@@ -120,9 +121,11 @@ TEST(NeighbourSearch, MissesNoPairOfFastGrainsBetweenMovingWalls) {
       d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]] =
           plane(up ? low : high, up ? Vec3(Vec3::Unit(axis)) : Vec3(-Vec3::Unit(axis)));
   d["walls"]["high_z"]["motion"]["velocity"] = {0, 0, -1};
-  d["walls"]["block"] = {{"type", "box"}, {"low", vector(block - Vec3(5e-4, 1e-3, 2e-4))},
+  d["walls"]["block"] = {{"type", "box"},
+                         {"low", vector(block - Vec3(5e-4, 1e-3, 2e-4))},
                          {"high", vector(block + Vec3(5e-4, 1e-3, 2e-4))},
-                         {"inside", false}, {"material", "grain"},
+                         {"inside", false},
+                         {"material", "grain"},
                          {"motion", {{"spin", {0, 1000, 0}}}}};
   expect_no_missed_pair(d, 600);
 }
@@ -130,7 +133,9 @@ TEST(NeighbourSearch, MissesNoPairOfFastGrainsBetweenMovingWalls) {
 TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {
   for (const double rate : {-200.0, 200.0}) {
     Description d = fast(1);
-    d["domain"] = {{"low", {0, 0, 0}}, {"high", {6e-3, 6e-3, 6e-3}}, {"periodic", {true, true, true}},
+    d["domain"] = {{"low", {0, 0, 0}},
+                   {"high", {6e-3, 6e-3, 6e-3}},
+                   {"periodic", {true, true, true}},
                    {"strain_rate", {rate, -0.5 * rate, 0}}};
     expect_no_missed_pair(d, 600);
   }

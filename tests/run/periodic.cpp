@@ -109,9 +109,7 @@ TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {
 }
 
 TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {
-  auto d = [&](const Vec3& shift) {
-    return in_cell(jumble({6, 7, 8}, 1e-3, 0.1, 9), shift, {-30, 20, -10});
-  };
+  auto d = [&](const Vec3& shift) { return in_cell(jumble({6, 7, 8}, 1e-3, 0.1, 9), shift, {-30, 20, -10}); };
   Trial one(d(Vec3::Zero())), other(d({1.3e-3, -2.9e-3, 5.1e-3}));
   Description faster = d(Vec3::Zero());
   faster["domain"]["strain_rate"] = {20, -40, 0};

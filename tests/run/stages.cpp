@@ -44,7 +44,9 @@ Description shrinking(const Description& until, double rate) {
   Description d = lone(until);
   d.erase("walls");
   d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {5e-3, 5e-3, 5e-3};
-  d["domain"] = {{"low", {0, 0, 0}}, {"high", {1e-2, 1e-2, 1e-2}}, {"periodic", {true, true, true}},
+  d["domain"] = {{"low", {0, 0, 0}},
+                 {"high", {1e-2, 1e-2, 1e-2}},
+                 {"periodic", {true, true, true}},
                  {"strain_rate", {rate, 0, 0}}};
   return d;
 }
@@ -115,8 +117,10 @@ TEST(Stage, EndsAtRest) {
 }
 
 TEST(Stage, IsNotAtRestWithoutContacts) {
-  Description d = lone({{"type", "any"}, {"of", {steps(250), {{"type", "unbalanced-force"}, {"below", 1e9}},
-                                                {{"type", "kinetic-energy"}, {"below", 1e9}}}}});
+  Description d = lone(
+      {{"type", "any"},
+       {"of",
+        {steps(250), {{"type", "unbalanced-force"}, {"below", 1e9}}, {{"type", "kinetic-energy"}, {"below", 1e9}}}}});
   EXPECT_EQ(run(d).summary().steps, 250u) << "flying is not resting";
 }
 
@@ -131,7 +135,8 @@ TEST(Stage, EndsAtAVoidRatio) {
 TEST(Stage, EndsWhenAllOrAnyHold) {
   EXPECT_EQ(steps_until({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}}), 50u);
   EXPECT_EQ(steps_until({{"type", "any"}, {"of", {steps(20), seconds(5e-4)}}}), 20u);
-  EXPECT_EQ(steps_until({{"type", "all"}, {"of", {steps(20), {{"type", "any"}, {"of", {steps(60), steps(40)}}}}}}), 40u);
+  EXPECT_EQ(steps_until({{"type", "all"}, {"of", {steps(20), {{"type", "any"}, {"of", {steps(60), steps(40)}}}}}}),
+            40u);
 }
 
 TEST(Stage, TellsHowFarItIs) {
@@ -148,9 +153,10 @@ TEST(Stage, ThatNeverEndsFailsLoudly) {
   const Done done = run(d);
   EXPECT_EQ(done.summary().status, "failed");
   EXPECT_EQ(done.summary().steps, 100u);
-  EXPECT_THAT(done.summary().message,
-              testing::AllOf(HasSubstr("stage \"only\" did not end within its limit of 0.0009995 s"), HasSubstr("time 0.001 s"),
-                             HasSubstr("give it more time (/stages/0/limit) or a condition that it can reach")));
+  EXPECT_THAT(
+      done.summary().message,
+      testing::AllOf(HasSubstr("stage \"only\" did not end within its limit of 0.0009995 s"), HasSubstr("time 0.001 s"),
+                     HasSubstr("give it more time (/stages/0/limit) or a condition that it can reach")));
   EXPECT_EQ(done.notes.finished, 1);
   EXPECT_THAT(done.notes.ended, testing::IsEmpty());
 }
@@ -187,10 +193,13 @@ TEST(Stage, ChangeTakesEffectAndStays) {
 
 TEST(Stage, RampsGoInIncrementsOneAfterTheOther) {
   Description d = lone(steps(30));
-  d["stages"][0]["ramps"] = {{{"pointer", "/walls/floor/motion/velocity/0"}, {"from", 0}, {"to", 4}, {"duration", 16 * dt},
-                              {"increments", 4}},
-                             {{"pointer", "/walls/floor/motion/velocity/0"}, {"from", 4}, {"to", 10}, {"duration", 4 * dt},
-                              {"increments", 2}}};
+  d["stages"][0]["ramps"] = {
+      {{"pointer", "/walls/floor/motion/velocity/0"}, {"from", 0}, {"to", 4}, {"duration", 16 * dt}, {"increments", 4}},
+      {{"pointer", "/walls/floor/motion/velocity/0"},
+       {"from", 4},
+       {"to", 10},
+       {"duration", 4 * dt},
+       {"increments", 2}}};
   d["probes"]["speed"] = {{"type", "watch"}, {"every_steps", 1}};
   watched() = [](const World& w) { return w.walls()[0].velocity.x(); };
   std::vector<double> expected;  // of the step that ended
