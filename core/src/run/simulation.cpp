@@ -24,8 +24,6 @@ constexpr std::uint64_t reorder_every = 8;
 // The time step is raised only when it could be so much larger, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
 constexpr std::uint64_t energy_check_every = 500;
-// Contacts form within the skin between two searches.
-constexpr std::uint64_t time_step_check_every = 500;
 
 using Seconds = std::chrono::duration<double>;
 
@@ -155,12 +153,13 @@ void Simulation::update_surfaces() {
   }
 }
 
+double Simulation::approach() const {
+  return std::max(2 * clock_.body_travel + clock_.strain_travel, clock_.body_travel + clock_.wall_travel);
+}
+
 bool Simulation::search_is_due() {
   if (search_now_) return true;
-  const auto used = [&] {
-    return std::max(2 * clock_.body_travel + clock_.strain_travel, clock_.body_travel + clock_.wall_travel);
-  };
-  if (used() < clock_.skin) return false;
+  if (approach() < clock_.skin) return false;
   // The sum of the largest speeds is a bound; the true travel is often far less and worth a look.
   // In a cell that deforms, travel is what a body does apart from the mean flow.
   Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
@@ -176,7 +175,8 @@ bool Simulation::search_is_due() {
     largest = std::max(largest, (xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from))
                                     .squaredNorm());
   clock_.body_travel = std::sqrt(largest);
-  return used() > 0.8 * clock_.skin;
+  clock_.stepped_travel = std::min(clock_.stepped_travel, approach());
+  return approach() > 0.8 * clock_.skin;
 }
 
 void Simulation::wrap() {
@@ -238,6 +238,7 @@ void Simulation::search() {
 }
 
 void Simulation::set_time_step() {
+  clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
   const TimeStepDescription& wish = scene_->time_step;
   clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(),
                                                    0.25 * least_skin * mean_diameter_);
@@ -261,7 +262,7 @@ void Simulation::find_forces() {
   {
     const Stopwatch watch(phases_[searching].seconds);
     if (search_is_due()) search();
-    else if (clock_.step % time_step_check_every == 0) set_time_step();
+    else if (approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
   }
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
   const double dt = clock_.forces_step == clock_.step ? 0 : clock_.last_time_step;

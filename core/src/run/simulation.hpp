@@ -34,6 +34,7 @@ struct Clock {
   std::uint64_t last_search = 0;      ///< step
   double skin = 0;                    ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
+  double stepped_travel = 0;  ///< how far pairs had come together when the time step was set, m
 };
 
 /// Energies and work, for the guard against energy from nowhere.
@@ -101,6 +102,8 @@ class Simulation final : public World {
   void apply(const SceneDescription& scene);
   bool search_is_due();
   void adapt_skin();
+  /// How much closer two bodies, or a body and a wall, can have come since the last search [m].
+  double approach() const;
   void search();
   void wrap();
   void set_time_step();
