@@ -15,7 +15,7 @@ namespace grit {
 namespace {
 
 // Measured on one core of a 2-core AMD EPYC (Zen 3): 4 to 5 M particle-steps/s in dense packings; a bound to plan with.
-constexpr double planning_speed = 3e6;
+constexpr double planning_speed = 6e6;
 // A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this share of the
 // cloud's.
 constexpr double dense_step_share = 0.6;

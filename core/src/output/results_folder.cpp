@@ -23,6 +23,14 @@ std::vector<Row> grains_by_id(const World& world) {
   return grains;
 }
 
+/// What another description needs besides the grains: the cell, if it repeats.
+std::string comment_on(const World& world, const std::string& title) {
+  const Cell& cell = world.cell();
+  if (!(cell.periodic[0] || cell.periodic[1] || cell.periodic[2])) return title;
+  const Vec3 &a = cell.low, &b = cell.high;
+  return fmt::format("{}\ncell {} {} {} to {} {} {}, m", title, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+}
+
 /// Makes the folder, or sees to it that what is there may be used.
 std::filesystem::path prepared(const ResultsOptions& options) {
   const auto& folder = options.folder;
@@ -106,7 +114,8 @@ void ResultsFolder::flush() { series_->flush(); }
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (series_) series_->close();
-  if (summary.status != "failed") write_packing(options_.folder / "packing.txt", grains_by_id(world), options_.title);
+  if (summary.status != "failed") write_packing(options_.folder / "packing.txt", grains_by_id(world),
+                                                 comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
 }
