@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "grit/error.hpp"
 #include "support/packing.hpp"
@@ -74,6 +77,35 @@ TEST(Guards, Travel) {
       HasSubstr(
           "step 1, time 1e-06 s: body 0 at (5.1e-05, 0, 0) m moves 0.051 of its radius in one step, more than "
           "/guards/travel 0.05; bodies may overlap too much at the start, a wall may be too fast, or the time step"));
+}
+
+TEST(Guards, WallThatPassesThroughBodies) {
+  Description d = two(1, 0);
+  d["walls"]["lid"] = plane({0, 0, 1}, -Vec3::UnitZ());
+  d["walls"]["lid"]["motion"]["velocity"] = {1000, 0, 49};
+  EXPECT_EQ(complaint(d, 3), "") << "however fast it slides along itself";
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, 51};
+  EXPECT_THAT(complaint(d, 3), HasSubstr("wall \"lid\" moves 0.051 of the smallest radius in one step, more than "
+                                         "/guards/travel 0.05; a wall that fast passes through bodies"));
+}
+
+TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {
+  Description d = description("hertz-mindlin", {{"young_modulus", 1e8}, {"poisson_ratio", 0.2}},
+                              {{{0, 0, 0}, 1e-3, {0.2, 0, 0}}, {{2.0001e-3, 0, 0}, 1e-3, {-0.2, 0, 0}}});
+  Trial t(d);
+  const double first = t.world().dt();
+  double overlap = 0, least = first;
+  while (t.world().step() < 2000 && !(overlap > 0 && t.world().contacts().empty())) {
+    t.step();
+    for (const Contact& c : t.world().contacts()) overlap = std::max(overlap, c.overlap);
+    least = std::min(least, t.world().dt());
+  }
+  ASSERT_GT(overlap, 5e-6);
+  // k grows as the root of the overlap; the pair's own limit is 2 / sqrt(2 k / m).
+  const double mass = 2600 * 4 / 3 * std::numbers::pi * 1e-9, modulus = 1e8 / (1 - 0.04) / 2;
+  const double k = 2 * modulus * std::sqrt(0.5e-3 * overlap);
+  EXPECT_LE(least, 0.8 * 2 / std::sqrt(2 * k / mass) * 1.05) << "a fifth more overlap is 5 % of the step";
+  EXPECT_LT(least, 0.8 * first);
 }
 
 TEST(Guards, EnergyFromNowhere) {

@@ -1,6 +1,7 @@
 #include "contact/team.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace grit {
 namespace {
@@ -45,6 +46,7 @@ void Team::run(std::size_t chunks, Call call, void* context) {
   std::uint32_t done = done_.load(std::memory_order_acquire);
   for (int i = 0; i < spins && done != all; ++i) pause(), done = done_.load(std::memory_order_acquire);
   while (done != all) done_.wait(done, std::memory_order_acquire), done = done_.load(std::memory_order_acquire);
+  if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void Team::take_chunks(std::uint64_t generation) {
@@ -53,7 +55,11 @@ void Team::take_chunks(std::uint64_t generation) {
     if (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel)) continue;
     // The job cannot end before this chunk is done, so that call_ and context_ are its own.
     const std::uint64_t chunks = chunks_of(ticket);
-    call_(context_, next_of(ticket));
+    try {
+      call_(context_, next_of(ticket));
+    } catch (...) {
+      if (!failed_.exchange(true)) failure_ = std::current_exception();
+    }
     if (done_.fetch_add(1, std::memory_order_acq_rel) + 1 == chunks) done_.notify_one();
     ticket = ticket_.load(std::memory_order_acquire);
   }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <thread>
 #include <type_traits>
 #include <vector>
@@ -22,7 +23,7 @@ class Team {
   unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
   /// Calls work(chunk) for chunk = 0 … chunks − 1 (fewer than 2²⁰), from any thread in any order, and returns when all are
-  /// done. `work` must not throw. Not reentrant.
+  /// done. If `work` throws, one of its exceptions is thrown on then. Not reentrant.
   template <class Work>
   void each(std::size_t chunks, Work&& work) {
     if (workers_.empty() || chunks < 2) {
@@ -46,6 +47,8 @@ class Team {
   std::atomic<bool> stop_{false};
   Call call_ = nullptr;
   void* context_ = nullptr;
+  std::atomic<bool> failed_{false};
+  std::exception_ptr failure_;
   std::vector<std::thread> workers_;
 };
 

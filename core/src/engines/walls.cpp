@@ -199,6 +199,14 @@ void Walls::drive(double dt) {
   }
 }
 
+double Walls::critical_time_step() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t wall = 0; wall < size(); ++wall)
+    if (const auto& free = setups_[wall].motion.free; free && states_[wall].stiffness > 0)
+      least = std::min(least, 2 * std::sqrt(free->mass / states_[wall].stiffness));
+  return least;
+}
+
 void Walls::move(double dt) {
   for (WallState& state : states_) {
     state.pose.shift += dt * state.velocity;

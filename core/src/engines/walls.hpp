@@ -65,6 +65,8 @@ class Walls {
   void add(std::size_t wall, const Vec3& force, const Vec3& moment, double stiffness, std::uint32_t touches);
   /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them.
   void drive(double dt);
+  /// Of free walls on the springs that now touch them, 2 √(m / k) [s]; infinite without any.
+  double critical_time_step() const;
   /// Moves and turns the walls by one step of dt [s].
   void move(double dt);
 

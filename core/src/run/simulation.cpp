@@ -23,6 +23,8 @@ constexpr std::uint64_t soon = 60, late = 600;
 constexpr std::uint64_t reorder_every = 8;
 // The time step is raised only when it could be so much larger, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
+// Springs that stiffen with overlap, as Hertz's do: the time step is set anew whenever the largest has grown so much.
+constexpr double overlap_growth = 1.2, least_stepped_overlap = 1e-3;
 constexpr std::uint64_t energy_check_every = 500;
 
 using Seconds = std::chrono::duration<double>;
@@ -238,10 +240,12 @@ void Simulation::search() {
 }
 
 void Simulation::set_time_step() {
+  clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
   clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
   const TimeStepDescription& wish = scene_->time_step;
   clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(),
                                                    0.25 * least_skin * mean_diameter_);
+  clock_.critical_time_step = std::min(clock_.critical_time_step, walls_.critical_time_step());
   if (wish.value) {
     clock_.time_step = *wish.value;
     if (*wish.value > clock_.critical_time_step && !wish.allow_unstable)
@@ -251,7 +255,10 @@ void Simulation::set_time_step() {
     return;
   }
   const double safe = wish.safety * clock_.critical_time_step;
-  if (!std::isfinite(safe)) throw Error("there is no body, so that there is no time step; give /time_step/value");
+  if (!std::isfinite(safe))
+    throw Error(bodies_.count() == 0 ? "there is no body, so that there is no time step; give /time_step/value"
+                                     : "contacts have no stiffness to speak of, so that no time step is too long; make "
+                                       "them stiffer, or give /time_step/value");
   if (clock_.time_step == 0 || safe < clock_.time_step || safe > raise_when * clock_.time_step) clock_.time_step = safe;
 }
 
@@ -293,7 +300,11 @@ void Simulation::find_forces() {
     for (const auto& engine : force_engines_) engine->forces(*this, force, moment);
     for (std::size_t i = 0; i < bodies_.count(); ++i) sum_[i].force += force[i], sum_[i].moment += moment[i];
   }
-  check_overlap(chunk_overlap_.empty() ? 0 : *std::max_element(chunk_overlap_.begin(), chunk_overlap_.end()));
+  clock_.overlap = chunk_overlap_.empty() ? 0 : *std::max_element(chunk_overlap_.begin(), chunk_overlap_.end());
+  check_overlap(clock_.overlap);
+  if (clock_.overlap > overlap_growth * clock_.stepped_overlap ||
+      walls_.critical_time_step() < clock_.critical_time_step)
+    set_time_step();
   if (clock_.step % energy_check_every == 0) check_energy();
 }
 
@@ -341,12 +352,21 @@ void Simulation::advance() {
   clock_.body_travel += dt * fastest;
   clock_.strain_travel += dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + clock_.skin);
   double wall_speed = 0;
-  for (const WallState& wall : walls_.states()) {
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const WallState& wall = walls_.states()[w];
     double arm = 0;
     if (!wall.spin.isZero(0.0))
       for (std::size_t i = 0; i < bodies_.count(); ++i)
         arm = std::max(arm, (xyz(bodies_.position[i]) - (wall.pose.about + wall.pose.shift)).norm() + largest_radius_);
-    wall_speed = std::max(wall_speed, wall.velocity.norm() + wall.spin.norm() * arm);
+    const double turning = wall.spin.norm() * arm, speed = wall.velocity.norm() + turning;
+    // A flat wall may slide along itself as fast as it likes.
+    const Vec3 normal = wall.pose.turn * walls_.geometry(w).normal();
+    const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
+    if (!(dt * closing <= scene_->guards.travel * smallest_radius_) && bodies_.count() > 0)
+      fail("wall \"" + walls_.name(w) + "\" moves " + number(dt * closing / smallest_radius_) +
+               " of the smallest radius in one step, more than /guards/travel " + number(scene_->guards.travel),
+           "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step smaller");
+    wall_speed = std::max(wall_speed, speed);
   }
   clock_.wall_travel += dt * wall_speed;
 

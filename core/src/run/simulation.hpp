@@ -35,6 +35,7 @@ struct Clock {
   double skin = 0;                    ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
   double stepped_travel = 0;  ///< how far pairs had come together when the time step was set, m
+  double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
 };
 
 /// Energies and work, for the guard against energy from nowhere.
