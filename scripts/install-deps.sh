@@ -14,7 +14,8 @@ packages=(
   libvalijson-dev
   nlohmann-json3-dev
   libgtest-dev libgmock-dev libbenchmark-dev
-  librsvg2-bin                       # pictures of the report as PNG
+  librsvg2-bin                       # pictures of the documentation as PNG
+  python3 python3-h5py               # tests of the loops' instructions and of the README
 )
 
 missing=()
