@@ -19,7 +19,8 @@ Region specimen_between(const Description& low, const Description& high) {
 }
 
 TEST(Specimen, EndsAtTheInnerFacesOfAContainer) {
-  const Region region = specimen_between({"container", "container", "container"}, {"container", "container", "container"});
+  const Region region =
+      specimen_between({"container", "container", "container"}, {"container", "container", "container"});
   EXPECT_EQ(region.low, Vec3(0, 0, 0));
   EXPECT_EQ(region.high, Vec3(1, 2, 3));
 }

@@ -9,7 +9,7 @@ class BodyKind {
  public:
   virtual ~BodyKind() = default;
   virtual void declare(Parameters& parameters) = 0;
-  virtual double volume(double radius) const = 0;             ///< m³
+  virtual double volume(double radius) const = 0;                ///< m³
   virtual double inertia(double radius, double mass) const = 0;  ///< kg m², about any axis through the centre
 };
 

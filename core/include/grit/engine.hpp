@@ -17,10 +17,10 @@ enum class Phase {
 
 /// What the kernel's own integration does; engines of phase `settings` write it.
 struct MotionSettings {
-  Vec3 gravity = Vec3::Zero();     ///< m/s²
-  double local_damping = 0;        ///< λ in F (1 − λ sgn(F v))
-  bool hold_rotation = false;      ///< spins stay as they are
-  bool hold_translation = false;   ///< velocities stay as they are
+  Vec3 gravity = Vec3::Zero();    ///< m/s²
+  double local_damping = 0;       ///< λ in F (1 − λ sgn(F v))
+  bool hold_rotation = false;     ///< spins stay as they are
+  bool hold_translation = false;  ///< velocities stay as they are
 };
 
 class Engine {
@@ -30,7 +30,8 @@ class Engine {
   virtual Phase phase() const = 0;
   virtual StateRequest needs() const { return {}; }
   virtual void settings(MotionSettings&) const {}
-  /// Adds to force and moment of each body (rows by index). Must give the same sums in whatever order bodies are stored.
+  /// Adds to force and moment of each body (rows by index). Must give the same sums in whatever order bodies are
+  /// stored.
   virtual void forces(const World&, std::span<Row> /*force*/, std::span<Row> /*moment*/) const {}
 };
 

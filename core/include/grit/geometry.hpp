@@ -56,8 +56,8 @@ class Geometry {
   virtual double area() const = 0;
   /// Mean unit normal, towards the side of the bodies; zero if there is none to speak of.
   virtual Vec3 normal() const = 0;
-  /// Appends the touches of each sphere, in the order of the spheres and, for one sphere, by feature. What is touched at
-  /// an edge or corner that two faces share counts once.
+  /// Appends the touches of each sphere, in the order of the spheres and, for one sphere, by feature. What is touched
+  /// at an edge or corner that two faces share counts once.
   virtual void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const = 0;
   /// Whether a sphere is within `reach` of the shape: may say yes too often, never no when it touches.
   virtual bool near(const Pose& pose, const Vec3& centre, double reach) const = 0;

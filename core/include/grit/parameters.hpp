@@ -29,7 +29,9 @@ class Parameters;
 
 /// Something with parameters of its own: an object in a description.
 template <class T>
-concept Declarable = requires(T& object, Parameters& parameters) { object.declare(parameters); };
+concept Declarable = requires(T& object, Parameters& parameters) {
+  object.declare(parameters);
+};
 
 /// An object whose kind a description chooses by its key "type": a plugin, or one of a few built-in variants.
 class Choice {
@@ -78,9 +80,8 @@ struct MapTarget {
 };
 
 using Target = std::variant<double*, std::optional<double>*, std::int64_t*, bool*, std::string*, Vec3*,
-                            std::optional<Vec3>*, std::array<bool, 3>*, std::vector<double>*,
-                            std::vector<std::string>*, Description*, ObjectTarget, OptionalTarget, ListTarget,
-                            MapTarget>;
+                            std::optional<Vec3>*, std::array<bool, 3>*, std::vector<double>*, std::vector<std::string>*,
+                            Description*, ObjectTarget, OptionalTarget, ListTarget, MapTarget>;
 
 /// One declared parameter. The setters return the parameter itself, so that a declaration reads as one sentence.
 class Parameter {
@@ -135,8 +136,8 @@ class Parameter {
   std::size_t least_entries_ = 0;
 };
 
-/// Reports a problem that lies between parameters: the key at fault ("" for the whole object, "wall/motion" for what lies
-/// deeper), what was found, what is allowed.
+/// Reports a problem that lies between parameters: the key at fault ("" for the whole object, "wall/motion" for what
+/// lies deeper), what was found, what is allowed.
 using Complain = std::function<void(std::string_view key, std::string_view found, std::string_view allowed)>;
 
 /// What must hold between the parameters of one object.
@@ -152,8 +153,7 @@ class Parameters {
   /// Declares a number, flag, text, vector or list held in `member`; its present value is the default. The member must
   /// outlive this object.
   template <class T>
-    requires(!Declarable<T> && !std::derived_from<T, Choice>)
-  Parameter& add(std::string name, T& member) {
+  requires(!Declarable<T> && !std::derived_from<T, Choice>) Parameter& add(std::string name, T& member) {
     return entries_.emplace_back(std::move(name), Target(&member));
   }
   /// Declares a nested object whose key "type" makes the choice.
@@ -162,8 +162,7 @@ class Parameters {
   }
   /// Declares a nested object.
   template <Declarable T>
-    requires(!std::derived_from<T, Choice>)
-  Parameter& add(std::string name, T& member) {
+  requires(!std::derived_from<T, Choice>) Parameter& add(std::string name, T& member) {
     return entries_.emplace_back(std::move(name), ObjectTarget{[&member](Parameters& p) { member.declare(p); }});
   }
   /// Declares an object that may be left out.
@@ -174,8 +173,8 @@ class Parameters {
                                                 [&member](Parameters& p) { member.emplace().declare(p); },
                                                 [&member](Parameters& p) { member->declare(p); }});
   }
-  /// Says that the key "type" of this very object makes a choice, and that the parameters of what is chosen stand beside
-  /// those declared here. Whoever reads or writes the object lets the choice declare them once it is made.
+  /// Says that the key "type" of this very object makes a choice, and that the parameters of what is chosen stand
+  /// beside those declared here. Whoever reads or writes the object lets the choice declare them once it is made.
   void choose(Choice& choice) { choice_ = &choice; }
 
   /// Declares a list of objects.
@@ -188,8 +187,9 @@ class Parameters {
   }
   /// Declares objects by name. `make` gives a new entry; by default it is default-constructed.
   template <Declarable T>
-  Parameter& add(std::string name, std::map<std::string, T>& member,
-                 std::type_identity_t<std::function<T(const std::string&)>> make = [](const std::string&) { return T(); }) {
+  Parameter& add(
+      std::string name, std::map<std::string, T>& member,
+      std::type_identity_t<std::function<T(const std::string&)>> make = [](const std::string&) { return T(); }) {
     auto names = [&member] {
       std::vector<std::string> result;
       for (const auto& entry : member) result.push_back(entry.first);
@@ -208,7 +208,8 @@ class Parameters {
   }
   /// Says that further keys of this object cannot be known, so that nobody calls them unknown.
   void leave_open() { open_ = true; }
-  /// Adds a check that runs after the keys `about` were read without a problem; without keys, after the whole object was.
+  /// Adds a check that runs after the keys `about` were read without a problem; without keys, after the whole object
+  /// was.
   void check(std::function<void(const Complain&)> check, std::vector<std::string> about = {}) {
     checks_.push_back({std::move(check), std::move(about)});
   }

@@ -60,14 +60,14 @@ struct Contact {
 /// A wall at one instant.
 struct WallView {
   std::string name;
-  Vec3 position;         ///< displacement since the start of the run [m]
-  Vec3 stage_position;   ///< displacement since the start of the stage [m]
-  Vec3 velocity, spin;   ///< m/s, rad/s
-  Vec3 force;            ///< that the bodies exert on the wall [N]
-  Vec3 moment;           ///< the same about the wall's reference point [N m]
-  double area = 0;       ///< m²; 0 where the geometry has none
-  double pressure = 0;   ///< normal force over area, > 0 in compression [Pa]
-  Vec3 normal;           ///< mean unit normal, towards the bodies; zero where the geometry has none
+  Vec3 position;        ///< displacement since the start of the run [m]
+  Vec3 stage_position;  ///< displacement since the start of the stage [m]
+  Vec3 velocity, spin;  ///< m/s, rad/s
+  Vec3 force;           ///< that the bodies exert on the wall [N]
+  Vec3 moment;          ///< the same about the wall's reference point [N m]
+  double area = 0;      ///< m²; 0 where the geometry has none
+  double pressure = 0;  ///< normal force over area, > 0 in compression [Pa]
+  Vec3 normal;          ///< mean unit normal, towards the bodies; zero where the geometry has none
   std::uint32_t touches = 0;
 };
 
@@ -82,7 +82,7 @@ class World {
 
   // Bodies by index; an index may belong to another body after any step, an id never changes.
   virtual std::span<const std::uint32_t> ids() const = 0;
-  virtual std::span<const Row> positions() const = 0;  ///< centre [m], w: radius [m]
+  virtual std::span<const Row> positions() const = 0;   ///< centre [m], w: radius [m]
   virtual std::span<const Row> velocities() const = 0;  ///< half a step before time() [m/s], w: 1/mass [1/kg]
   virtual std::span<const Row> spins() const = 0;  ///< half a step before time() [rad/s], w: 1/inertia [1/(kg m²)]
   virtual std::span<const std::uint8_t> materials() const = 0;
@@ -107,9 +107,9 @@ class World {
 
 /// What the whole world's motion amounts to: the figures that tell whether it rests.
 struct Unrest {
-  double kinetic_energy;     ///< J, translation and rotation, at time()
-  double unbalanced_force;   ///< mean net force of a body over the mean contact force; 0 without contacts
-  double mean_contact_force; ///< N
+  double kinetic_energy;      ///< J, translation and rotation, at time()
+  double unbalanced_force;    ///< mean net force of a body over the mean contact force; 0 without contacts
+  double mean_contact_force;  ///< N
 };
 Unrest unrest(const World& world);
 

@@ -1,5 +1,5 @@
-// Hands everything on to the results, says on the way what each stage reached, and keeps the curves that the description
-// wants summed up at the end.
+// Hands everything on to the results, says on the way what each stage reached, and keeps the curves that the
+// description wants summed up at the end.
 #pragma once
 
 #include <functional>

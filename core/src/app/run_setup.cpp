@@ -44,10 +44,12 @@ std::vector<std::string> who_asked(const SceneDescription& scene) {
     for (const auto& [engine_name, engine] : scene.engines)
       if (engine.engine->needs().has(state)) add("engine " + engine_name);
     if (picture_state(scene).has(state)) add("the picture");
-    lines.push_back(std::string(name) + (who.empty() ? ": off" : ": " + std::to_string(bytes) + " bytes a body, for " + who));
+    lines.push_back(std::string(name) +
+                    (who.empty() ? ": off" : ": " + std::to_string(bytes) + " bytes a body, for " + who));
   }
   for (const StateField& field : scene.contacts->state())
-    lines.push_back(field.name + ": 8 bytes a contact, for contact law " + scene.contacts.type() + " (" + field.doc + ")");
+    lines.push_back(field.name + ": 8 bytes a contact, for contact law " + scene.contacts.type() + " (" + field.doc +
+                    ")");
   return lines;
 }
 

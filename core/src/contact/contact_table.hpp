@@ -17,8 +17,8 @@ struct alignas(64) StateLine {
   double lane[block_size]{};
 };
 
-/// Pairs are filed by the chunk of their lower body, those that touch first, so that blocks are full of touching lanes and
-/// the distance test is most that the others cost. Memory of contacts moves along when the table is rebuilt.
+/// Pairs are filed by the chunk of their lower body, those that touch first, so that blocks are full of touching lanes
+/// and the distance test is most that the others cost. Memory of contacts moves along when the table is rebuilt.
 class ContactTable {
  public:
   /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed.
@@ -76,7 +76,7 @@ class ContactTable {
   LargeArray<ContactRow> row_;
   // Candidates by their b: inbox_start_[b] … inbox_far_[b] touched when the table was built, the rest did not.
   std::vector<std::uint32_t> inbox_, inbox_start_, inbox_far_;
-  std::vector<std::uint8_t> near_;  // of each candidate: touched when the table was built
+  std::vector<std::uint8_t> near_;             // of each candidate: touched when the table was built
   std::vector<std::vector<Candidate>> found_;  // by chunk
 };
 

@@ -104,7 +104,8 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, double skin)
   }
 
   // A class a factor of 2.5 in radius: with 1:3 gradings one class, beyond that as many as it takes.
-  const int classes = largest <= 3.01 * smallest ? 1 : 1 + static_cast<int>(std::log(largest / smallest) / std::log(2.5));
+  const int classes =
+      largest <= 3.01 * smallest ? 1 : 1 + static_cast<int>(std::log(largest / smallest) / std::log(2.5));
   const auto class_of = [&](double radius) {
     if (classes == 1) return 0;
     const double place = std::log(radius / smallest) / std::log(largest / smallest) * classes;

@@ -32,8 +32,8 @@ inline std::array<int, 3> image_shift(std::uint8_t image) {
 /// The order of bodies along a space-filling (Morton) curve through cells of about the largest diameter.
 std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell);
 
-/// Finds all pairs nearer than `skin`. Bodies must lie inside the periods of `cell`, if any. Bodies are filed by size: a
-/// class spans a factor of two in radius, so that small grains do not search the cells of large ones.
+/// Finds all pairs nearer than `skin`. Bodies must lie inside the periods of `cell`, if any. Bodies are filed by size:
+/// a class spans a factor of two in radius, so that small grains do not search the cells of large ones.
 class NeighbourSearch {
  public:
   /// Throws DescriptionError-free grit::Error if a period is shorter than twice the reach of two bodies.

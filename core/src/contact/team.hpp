@@ -10,8 +10,8 @@
 
 namespace grit {
 
-/// A few threads that sleep when there is nothing to do and never wait for a thread that has no chunk in hand, so that a
-/// busy neighbour on one core costs no more than its share.
+/// A few threads that sleep when there is nothing to do and never wait for a thread that has no chunk in hand, so that
+/// a busy neighbour on one core costs no more than its share.
 class Team {
  public:
   /// `threads` in all, the caller included; at least 1.
@@ -22,15 +22,17 @@ class Team {
 
   unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
-  /// Calls work(chunk) for chunk = 0 … chunks − 1 (fewer than 2²⁰), from any thread in any order, and returns when all are
-  /// done. If `work` throws, one of its exceptions is thrown on then. Not reentrant.
+  /// Calls work(chunk) for chunk = 0 … chunks − 1 (fewer than 2²⁰), from any thread in any order, and returns when all
+  /// are done. If `work` throws, one of its exceptions is thrown on then. Not reentrant.
   template <class Work>
   void each(std::size_t chunks, Work&& work) {
     if (workers_.empty() || chunks < 2) {
       for (std::size_t i = 0; i < chunks; ++i) work(i);
       return;
     }
-    run(chunks, [](void* context, std::size_t i) { (*static_cast<std::remove_reference_t<Work>*>(context))(i); }, &work);
+    run(
+        chunks, [](void* context, std::size_t i) { (*static_cast<std::remove_reference_t<Work>*>(context))(i); },
+        &work);
   }
 
  private:

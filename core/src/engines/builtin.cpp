@@ -26,7 +26,9 @@ class LocalDamping final : public Engine {
         .symbol("lambda")
         .at_least(0)
         .below(1)
-        .doc("lessens forces that speed a body up, adds to those that slow it down: F (1 - lambda sgn(F v)), each component");
+        .doc(
+            "lessens forces that speed a body up, adds to those that slow it down: F (1 - lambda sgn(F v)), each "
+            "component");
   }
   Phase phase() const override { return Phase::settings; }
   void settings(MotionSettings& settings) const override { settings.local_damping = coefficient_; }

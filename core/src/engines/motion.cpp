@@ -41,6 +41,8 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs,
   const MotionSettings& settings = step.settings;
   const Quad gravity_kick = quad(Vec3(settings.gravity * step.kick));
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
+  // The mean flow at a body grows as the body goes with it: without that, bodies would fall behind the cell's sides.
+  const Quad growth = rate * step.flowed;
   // The fourth number of a row (radius, 1/mass, 1/inertia) stays as it is.
   const Quad kick = settings.hold_translation ? Quad{} : Quad{step.kick, step.kick, step.kick, 0};
   const Quad turn_kick = settings.hold_rotation ? Quad{} : Quad{step.kick, step.kick, step.kick, 0};
@@ -54,6 +56,7 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs,
     pairs.gather(i, force, moment);
     Quad x = load(bodies.position[i]), v = load(bodies.velocity[i]), w = load(bodies.spin[i]);
     const double inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
+    v += growth * v;
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);

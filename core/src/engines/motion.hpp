@@ -10,10 +10,11 @@ namespace grit {
 /// One step of the leap-frog.
 struct MotionStep {
   MotionSettings settings;
-  double kick;         ///< s: from the last mid-step to the next, the time over which forces act
-  double drift;        ///< s: the step
-  Vec3 strain_rate;    ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
-  Vec3 centre;         ///< where that flow is zero [m]
+  double kick;       ///< s: from the last mid-step to the next, the time over which forces act
+  double drift;      ///< s: the step
+  double flowed;     ///< s: the step before, in which bodies went with the mean flow
+  Vec3 strain_rate;  ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
+  Vec3 centre;       ///< where that flow is zero [m]
 };
 
 /// What a chunk's bodies did.
@@ -23,7 +24,8 @@ struct Motion {
 };
 
 /// Moves the bodies of one chunk. `sum` holds what contacts did to them as a.
-Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, const BodySum* sum, const MotionStep& step);
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
+                   const MotionStep& step);
 
 /// Net force and moment of one body, gravity included, before damping; w is 0.
 BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,

@@ -64,8 +64,8 @@ double facing(const WallSetup& setup, const Pose& pose) {
 }
 
 /// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
-/// in one step if the touches are springs, and leaves no error behind when the specimen swells or shrinks steadily. Such
-/// a wall takes energy out, whatever it presses on.
+/// in one step if the touches are springs, and leaves no error behind when the specimen swells or shrinks steadily.
+/// Such a wall takes energy out, whatever it presses on.
 double servo_velocity(const WallSetup& setup, int axis, WallState& state, double dt) {
   const ServoDescription& servo = *setup.motion.servo;
   const double along = facing(setup, state.pose), side = along < 0 ? -1 : 1;

@@ -85,7 +85,8 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
     for (auto& kept : kept_) {
       const auto group = file.group(probes[kept.probe].name);
       kept.steps = group.dataset("step").read<double>();
-      kept.values = group.dataset(kept.channel ? probes[kept.probe].channels[*kept.channel].name : "time").read<double>();
+      kept.values =
+          group.dataset(kept.channel ? probes[kept.probe].channels[*kept.channel].name : "time").read<double>();
     }
   } else {
     series_.emplace(path, probes, options_.flushing);
@@ -114,8 +115,8 @@ void ResultsFolder::flush() { series_->flush(); }
 
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (series_) series_->close();
-  if (summary.status != "failed") write_packing(options_.folder / "packing.txt", grains_by_id(world),
-                                                 comment_on(world, options_.title));
+  if (summary.status != "failed")
+    write_packing(options_.folder / "packing.txt", grains_by_id(world), comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
 }

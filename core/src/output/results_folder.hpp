@@ -13,7 +13,8 @@
 
 namespace grit {
 
-/// A picture drawn at the end: channels, or the time of the samples, as "probe/channel", one curve a panel; see grain_view() for view and color.
+/// A picture drawn at the end: channels, or the time of the samples, as "probe/channel", one curve a panel; see
+/// grain_view() for view and color.
 struct PictureRequest {
   std::string x;
   std::vector<std::string> y;

@@ -21,8 +21,8 @@ struct Flushing {
 /// One group a probe with `time` [s], `step` and one dataset a channel: first dimension the samples, then the channel's
 /// shape; attributes `units` (UDUNITS) and `long_name`. What was flushed stays readable if the process is killed. If
 /// that happens within a flush that opens a new chunk (2048 numbers), the samples of this chunk may be counted but not
-/// readable: 7 of 600 writers killed while they did nothing but flush left such a tail. Resuming mends it. All functions
-/// throw FileError.
+/// readable: 7 of 600 writers killed while they did nothing but flush left such a tail. Resuming mends it. All
+/// functions throw FileError.
 class Series {
  public:
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing = {});

@@ -3,24 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <sstream>
 
 #include "grit/error.hpp"
 #include "run/conditions.hpp"
+#include "run/number.hpp"
+#include "run/stopwatch.hpp"
 
 namespace grit {
 namespace {
 
-using Wall = std::chrono::steady_clock;
-
-double seconds_since(Wall::time_point start) { return std::chrono::duration<double>(Wall::now() - start).count(); }
-
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(4);
-  text << value;
-  return text.str();
-}
+using Instant = std::chrono::steady_clock::time_point;
 
 /// Says when something that happens again and again is due.
 class Schedule {
@@ -60,8 +52,8 @@ class Observer {
   }
   ProbeGroup group() const { return {name_, description_->probe->channels()}; }
   bool watches(const std::string& stage) const {
-    return description_->stages.empty() || std::find(description_->stages.begin(), description_->stages.end(), stage) !=
-                                               description_->stages.end();
+    return description_->stages.empty() ||
+           std::find(description_->stages.begin(), description_->stages.end(), stage) != description_->stages.end();
   }
   Schedule& schedule() { return schedule_; }
   void sample(std::size_t index, const World& world, Recorder& recorder) {
@@ -86,7 +78,10 @@ class Observer {
 class Run {
  public:
   Run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control)
-      : scene_(scene), simulation_(simulation), recorder_(recorder), control_(control),
+      : scene_(scene),
+        simulation_(simulation),
+        recorder_(recorder),
+        control_(control),
         frames_(scene.description->output.frames) {
     phases_ = {{"probes", 0}, {"output", 0}};
   }
@@ -123,7 +118,7 @@ class Run {
     for (Observer& observer : observers_) observer.schedule().restart(simulation_);
     frames_.restart(simulation_);
     ramped_ = 0;
-    wall_start_ = last_report_ = Wall::now();
+    wall_start_ = last_report_ = std::chrono::steady_clock::now();
     last_report_steps_ = simulation_.step();
 
     for (;;) {
@@ -135,12 +130,9 @@ class Run {
       if (interrupted()) return;  // here, where positions and forces are of one instant
       if (simulation_.time() - start_.time > stage.limit)
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
-                            " s; " + reached() +
-                            "; give it more time (/stages/" + std::to_string(index) +
+                            " s; " + reached() + "; give it more time (/stages/" + std::to_string(index) +
                             "/limit) or a condition that it can reach");
-      const auto begin = Wall::now();
-      simulation_.advance();
-      stepping_ += seconds_since(begin);
+      step_bodies();
       report(index, stage);
     }
     const std::string what = reached();
@@ -155,9 +147,12 @@ class Run {
   }
 
   void step_forces() {
-    const auto begin = Wall::now();
+    const Stopwatch watch(stepping_);
     simulation_.find_forces();
-    stepping_ += seconds_since(begin);
+  }
+  void step_bodies() {
+    const Stopwatch watch(stepping_);
+    simulation_.advance();
   }
 
   /// Applies the increments of the stage's ramps that are due; ramps follow one another.
@@ -177,30 +172,32 @@ class Run {
   }
 
   void observe(bool all) {
-    const auto begin = Wall::now();
+    sample(all);
+    if (frames_.is_due(simulation_)) frame();
+  }
+
+  void sample(bool all) {
+    const Stopwatch watch(phases_[0].seconds);
     for (std::size_t i = 0; i < observers_.size(); ++i) {
       Observer& observer = observers_[i];
       if (!observer.watches(simulation_.stage())) continue;
       const bool due = observer.schedule().is_due(simulation_);
       if (due || all) observer.sample(i, simulation_, recorder_);
     }
-    if (frames_.is_due(simulation_)) frame();
     if (simulation_.step() % 100 == 0 && simulation_.positions().size() > 0)
-      contact_sum_ += 2.0 * static_cast<double>(simulation_.pair_count()) /
-                      static_cast<double>(simulation_.positions().size()),
+      contact_sum_ +=
+          2.0 * static_cast<double>(simulation_.pair_count()) / static_cast<double>(simulation_.positions().size()),
           ++contact_samples_;
-    phases_[0].seconds += seconds_since(begin);
   }
 
   void frame() {
     if (last_frame_ == simulation_.step()) return;
     last_frame_ = simulation_.step();
-    const auto begin = Wall::now();
+    const Stopwatch watch(phases_[1].seconds);
     std::vector<FieldGroup> fields;
     for (const Observer& observer : observers_)
       if (observer.in_frames()) fields.push_back(observer.fields(simulation_));
     recorder_.frame(simulation_, fields);
-    phases_[1].seconds += seconds_since(begin);
   }
 
   void report(std::size_t index, const StageDescription& stage) {
@@ -215,7 +212,7 @@ class Run {
     now.time = simulation_.time();
     now.particle_steps_per_second = static_cast<double>(simulation_.step() - last_report_steps_) *
                                     static_cast<double>(simulation_.positions().size()) / since;
-    last_report_ = Wall::now(), last_report_steps_ = simulation_.step();
+    last_report_ = std::chrono::steady_clock::now(), last_report_steps_ = simulation_.step();
     control_.progress(now);
   }
 
@@ -255,7 +252,7 @@ class Run {
   StageStart start_;
   std::size_t ramped_ = 0;
   std::uint64_t last_frame_ = ~0ull, last_report_steps_ = 0, contact_samples_ = 0;
-  Wall::time_point wall_start_, last_report_;
+  Instant wall_start_, last_report_;
   double stepping_ = 0, contact_sum_ = 0;
   std::vector<PhaseTime> phases_;
 };

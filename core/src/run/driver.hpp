@@ -28,8 +28,8 @@ struct RunControl {
   std::function<void(const Progress&)> progress;   ///< called a few times a second
 };
 
-/// Runs all stages. Returns what came of it: status "done", "interrupted" or "failed" (a guard, a stage that did not end,
-/// an expectation that was not met; the message says which); in all three cases everything was recorded, the last
+/// Runs all stages. Returns what came of it: status "done", "interrupted" or "failed" (a guard, a stage that did not
+/// end, an expectation that was not met; the message says which); in all three cases everything was recorded, the last
 /// instant included. Other errors are thrown.
 RunSummary run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control);
 

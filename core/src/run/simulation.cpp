@@ -1,14 +1,14 @@
 #include "run/simulation.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
 
 #include "contact/critical_step.hpp"
 #include "grit/error.hpp"
+#include "run/number.hpp"
+#include "run/stopwatch.hpp"
 
 namespace grit {
 namespace {
@@ -26,27 +26,6 @@ constexpr double raise_when = 1.1;
 // Springs that stiffen with overlap, as Hertz's do: the time step is set anew whenever the largest has grown so much.
 constexpr double overlap_growth = 1.2, least_stepped_overlap = 1e-3;
 constexpr std::uint64_t energy_check_every = 500;
-
-using Seconds = std::chrono::duration<double>;
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += Seconds(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(4);
-  text << value;
-  return text.str();
-}
 
 /// How fast the periods change [m/s], half a step ago as the velocities.
 Vec3 growth_of_period(const Clock& clock) {
@@ -122,7 +101,7 @@ void Simulation::apply(const SceneDescription& scene) {
       if (clock_.cell.periodic[k]) clock_.period_before[k] -= clock_.last_time_step * change_of_rate[k] * period[k];
   }
   loads_.resize(walls_.size());
-  surfaces_.resize(walls_.size());
+  surfaces_.resize(walls_.size()), arms_.resize(walls_.size());
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallDescription& wall = scene.walls.at(walls_.name(w));
     surfaces_[w].geometry = wall.geometry.get();
@@ -174,8 +153,8 @@ bool Simulation::search_is_due() {
   }
   double largest = 0;
   for (std::size_t i = 0; i < bodies_.count(); ++i)
-    largest = std::max(largest, (xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from))
-                                    .squaredNorm());
+    largest = std::max(largest,
+                       (xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from)).squaredNorm());
   clock_.body_travel = std::sqrt(largest);
   clock_.stepped_travel = std::min(clock_.stepped_travel, approach());
   return approach() > 0.8 * clock_.skin;
@@ -189,8 +168,9 @@ void Simulation::wrap() {
     for (int k = 0; k < 3; ++k) {
       if (!clock_.cell.periodic[k]) {
         if (x[k] < clock_.cell.low[k] || x[k] > clock_.cell.high[k])
-          fail_at_body(i, "left the domain through its " + std::string(x[k] < clock_.cell.low[k] ? "lower" : "upper") +
-                              " " + "xyz"[k] + " side",
+          fail_at_body(i,
+                       "left the domain through its " + std::string(x[k] < clock_.cell.low[k] ? "lower" : "upper") +
+                           " " + "xyz"[k] + " side",
                        "close the domain there with a wall, or make it larger");
         continue;
       }
@@ -234,6 +214,11 @@ void Simulation::search() {
   wall_contacts_.rebuild(bodies_, surfaces_, clock_.skin, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
   clock_.body_travel = clock_.wall_travel = clock_.strain_travel = 0;
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    arms_[w] = 0;
+    for (std::size_t i = 0; i < bodies_.count(); ++i)
+      arms_[w] = std::max(arms_[w], (xyz(bodies_.position[i]) - walls_.reference(w)).norm() + largest_radius_);
+  }
   ++clock_.rebuilds;
   search_now_ = false;
   set_time_step();
@@ -243,8 +228,8 @@ void Simulation::set_time_step() {
   clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
   clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
   const TimeStepDescription& wish = scene_->time_step;
-  clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(),
-                                                   0.25 * least_skin * mean_diameter_);
+  clock_.critical_time_step =
+      critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), 0.25 * least_skin * mean_diameter_);
   clock_.critical_time_step = std::min(clock_.critical_time_step, walls_.critical_time_step());
   if (wish.value) {
     clock_.time_step = *wish.value;
@@ -280,15 +265,15 @@ void Simulation::find_forces() {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
       std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
                 BodySum{});
-      chunk_overlap_[chunk] =
-          pairs_.evaluate(chunk, *law_, bodies_, one_material_, shifts_.data(), dt, sum_.data());
+      chunk_overlap_[chunk] = pairs_.evaluate(chunk, *law_, bodies_, one_material_, shifts_.data(), dt, sum_.data());
     });
   }
   if (!surfaces_.empty()) {
     const Stopwatch watch(phases_[wall_touches].seconds);
     team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {
-      chunk_overlap_[chunk] = std::max(chunk_overlap_[chunk], wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_,
-                                                                                    surfaces_, dt, sum_.data()));
+      chunk_overlap_[chunk] =
+          std::max(chunk_overlap_[chunk],
+                   wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_, dt, sum_.data()));
     });
     wall_contacts_.loads(loads_);
     walls_.clear_forces();
@@ -316,19 +301,12 @@ void Simulation::advance() {
   const MotionStep step{.settings = settings_,
                         .kick = clock_.last_time_step > 0 ? 0.5 * (clock_.last_time_step + dt) : 0.5 * dt,
                         .drift = dt,
+                        .flowed = clock_.last_time_step,
                         .strain_rate = clock_.cell.strain_rate,
                         .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
-  // The mean flow at a body grows as the body goes with it: without that, bodies would fall behind the cell's sides.
-  const Vec3 growth = clock_.last_time_step * clock_.cell.strain_rate;
-  const bool flows = !growth.isZero(0.0);
   {
     const Stopwatch watch(phases_[motion].seconds);
     team_.each(chunk_motion_.size(), [&](std::size_t chunk) {
-      const std::size_t end = std::min(bodies_.count(), (chunk + 1) * chunk_bodies);
-      for (std::size_t i = chunk * chunk_bodies; flows && i < end; ++i) {
-        Row& v = bodies_.velocity[i];
-        v.x += growth.x() * v.x, v.y += growth.y() * v.y, v.z += growth.z() * v.z;
-      }
       chunk_motion_[chunk] = move_bodies(chunk, bodies_, pairs_, sum_.data(), step);
     });
   }
@@ -354,18 +332,16 @@ void Simulation::advance() {
   double wall_speed = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_.states()[w];
-    double arm = 0;
-    if (!wall.spin.isZero(0.0))
-      for (std::size_t i = 0; i < bodies_.count(); ++i)
-        arm = std::max(arm, (xyz(bodies_.position[i]) - (wall.pose.about + wall.pose.shift)).norm() + largest_radius_);
+    const double arm = arms_[w] + clock_.body_travel + clock_.strain_travel + clock_.wall_travel;
     const double turning = wall.spin.norm() * arm, speed = wall.velocity.norm() + turning;
     // A flat wall may slide along itself as fast as it likes.
     const Vec3 normal = wall.pose.turn * walls_.geometry(w).normal();
     const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
     if (!(dt * closing <= scene_->guards.travel * smallest_radius_) && bodies_.count() > 0)
-      fail("wall \"" + walls_.name(w) + "\" moves " + number(dt * closing / smallest_radius_) +
-               " of the smallest radius in one step, more than /guards/travel " + number(scene_->guards.travel),
-           "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step smaller");
+      fail(
+          "wall \"" + walls_.name(w) + "\" moves " + number(dt * closing / smallest_radius_) +
+              " of the smallest radius in one step, more than /guards/travel " + number(scene_->guards.travel),
+          "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step smaller");
     wall_speed = std::max(wall_speed, speed);
   }
   clock_.wall_travel += dt * wall_speed;
@@ -381,8 +357,9 @@ void Simulation::advance() {
                             : Vec3(clock_.cell.strain_rate.cwiseProduct(xyz(bodies_.position[i]) - centre()));
       const double travel = dt * (v - flow).norm(), radius = bodies_.position[i].w;
       if (travel > scene_->guards.travel * radius)
-        fail_at_body(i, "moves " + number(travel / radius) + " of its radius in one step, more than /guards/travel " +
-                            number(scene_->guards.travel),
+        fail_at_body(i,
+                     "moves " + number(travel / radius) + " of its radius in one step, more than /guards/travel " +
+                         number(scene_->guards.travel),
                      "bodies may overlap too much at the start, a wall may be too fast, or the time step too large");
     }
   }
@@ -391,9 +368,8 @@ void Simulation::advance() {
 void Simulation::check_overlap(double largest) const {
   if (largest <= scene_->guards.overlap) return;
   for (const Contact& contact : contacts()) {
-    const double radius = contact.with_wall
-                              ? bodies_.position[contact.a].w
-                              : std::min(bodies_.position[contact.a].w, bodies_.position[contact.b].w);
+    const double radius = contact.with_wall ? bodies_.position[contact.a].w
+                                            : std::min(bodies_.position[contact.a].w, bodies_.position[contact.b].w);
     if (contact.overlap <= scene_->guards.overlap * radius) continue;
     fail_at_body(contact.a,
                  "overlaps " +
@@ -545,9 +521,9 @@ Region Simulation::region(double margin) const {
 }
 
 std::size_t Simulation::memory() const {
-  const std::size_t bodies = bodies_.count() * (4 * sizeof(Row) + sizeof(BodySum) + 5 +
-                                                (bodies_.rotation.empty() ? 0 : sizeof(Vec3)) +
-                                                (bodies_.displacement.empty() ? 0 : sizeof(Vec3)));
+  const std::size_t bodies =
+      bodies_.count() * (4 * sizeof(Row) + sizeof(BodySum) + 5 + (bodies_.rotation.empty() ? 0 : sizeof(Vec3)) +
+                         (bodies_.displacement.empty() ? 0 : sizeof(Vec3)));
   const std::size_t pair = sizeof(ContactRow) + fields_.size() * sizeof(double) + 3 * sizeof(std::uint32_t) + 2 +
                            (periodic_ ? 1 : 0) + sizeof(Candidate);
   return bodies + pairs_.candidates() * pair;

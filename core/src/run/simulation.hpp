@@ -22,19 +22,19 @@ namespace grit {
 
 /// Everything that goes from one step to the next, apart from bodies, contacts and walls, which keep their own.
 struct Clock {
-  double time = 0;              ///< s
+  double time = 0;  ///< s
   std::uint64_t step = 0;
-  double time_step = 0;         ///< of the next step, s
-  double last_time_step = 0;    ///< of the one before; 0 at the start
+  double time_step = 0;       ///< of the next step, s
+  double last_time_step = 0;  ///< of the one before; 0 at the start
   double critical_time_step = 0;
   std::uint64_t forces_step = ~0ull;  ///< at which contacts were last brought up to date
   Cell cell;
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;
-  std::uint64_t last_search = 0;      ///< step
-  double skin = 0;                    ///< of the present candidates, m
+  std::uint64_t last_search = 0;                               ///< step
+  double skin = 0;                                             ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
-  double stepped_travel = 0;  ///< how far pairs had come together when the time step was set, m
+  double stepped_travel = 0;                ///< how far pairs had come together when the time step was set, m
   double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
 };
 
@@ -142,6 +142,8 @@ class Simulation final : public World {
   std::vector<ImageShift> shifts_;
   std::vector<WallSurface> surfaces_;
   std::vector<WallLoad> loads_;
+  std::vector<double>
+      arms_;  // of walls that spin: how far from its reference point bodies reached at the last search [m]
   std::vector<double> chunk_overlap_;
   std::vector<Motion> chunk_motion_;
   std::vector<PhaseTime> phases_;

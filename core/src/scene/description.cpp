@@ -390,7 +390,8 @@ void StageDescription::declare(Parameters& p) {
 // ---- output
 
 void PictureDescription::declare(Parameters& p) {
-  p.add("x", x).required().doc("series of the horizontal axis: probe/channel or probe/time, e.g. test/shear_displacement");
+  p.add("x", x).required().doc(
+      "series of the horizontal axis: probe/channel or probe/time, e.g. test/shear_displacement");
   p.add("y", y).required().entries(1).doc("series of the vertical axis");
   p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the grains are drawn");
   p.add("color", color)

@@ -90,7 +90,7 @@ struct ServoDescription {
   std::string axis = "z";
   double pressure = 0;      ///< Pa, compression positive
   double max_velocity = 0;  ///< m/s
-  double gain = 1;        ///< share of the force's error that one step takes away
+  double gain = 1;          ///< share of the force's error that one step takes away
   void declare(Parameters& p);
 };
 struct FollowDescription {

@@ -10,8 +10,8 @@
 
 namespace grit {
 
-/// Asks for pages of 2 MiB, of which the processor's address cache holds the whole of a scene; with those of 4 KiB a step
-/// of 50 000 grains took about a tenth longer.
+/// Asks for pages of 2 MiB, of which the processor's address cache holds the whole of a scene; with those of 4 KiB a
+/// step of 50 000 grains took about a tenth longer.
 template <class T>
 struct LargePages {
   using value_type = T;

@@ -84,10 +84,7 @@ void DirectShear::declare(Parameters& p) {
       .above(0)
       .at_most(0.1)
       .doc("during shear, with the rate velocity over height; sets the velocity");
-  p.add("velocity", velocity_)
-      .unit("m/s")
-      .at_least(0)
-      .doc("of the upper frame; 0: as the inertial number says");
+  p.add("velocity", velocity_).unit("m/s").at_least(0).doc("of the upper frame; 0: as the inertial number says");
   p.add("preparation_inertial_number", preparation_inertial_number_)
       .above(0)
       .at_most(0.1)
@@ -147,8 +144,12 @@ Description DirectShear::expand() const {
   const bool periodic = depth_boundary_ == "periodic";
 
   Description d;
-  d["title"] = "direct shear, " + std::to_string(std::lround(normal_stress_ * 1e-3)) + " kPa, e0 = " +
-               [&] { std::ostringstream e; e.precision(3); e << void_ratio_; return e.str(); }();
+  d["title"] = "direct shear, " + std::to_string(std::lround(normal_stress_ * 1e-3)) + " kPa, e0 = " + [&] {
+    std::ostringstream e;
+    e.precision(3);
+    e << void_ratio_;
+    return e.str();
+  }();
   d["seed"] = seed_;
   d["contacts"] = {{"type", "linear-rolling"}};
   d["materials"]["sand"] = {{"density", density_}, {"friction_angle", friction_angle_}};
@@ -207,7 +208,8 @@ Description DirectShear::expand() const {
                           {"edge_b", vector(0, -depth_, 0)},
                           {"two_sided", false}},
                          "frame");
-  walls["platen"]["motion"]["servo"] = {{"axis", "z"}, {"pressure", normal_stress_}, {"max_velocity", preparation_speed}};
+  walls["platen"]["motion"]["servo"] = {
+      {"axis", "z"}, {"pressure", normal_stress_}, {"max_velocity", preparation_speed}};
   if (!periodic) {
     walls["front"] = plane(vector(0, 0, 0), vector(0, 1, 0), "smooth");
     walls["back"] = plane(vector(0, depth_, 0), vector(0, -1, 0), "smooth");
@@ -216,8 +218,8 @@ Description DirectShear::expand() const {
                    {"high", {"lower-right", periodic ? "" : "back", "platen"}}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.3}};
 
-  // Preparation: compacted with high friction, which is then lowered until the grains have settled far enough. Aprons keep
-  // the gap between the frames closed, so that no sand is lost.
+  // Preparation: compacted with high friction, which is then lowered until the grains have settled far enough. Aprons
+  // keep the gap between the frames closed, so that no sand is lost.
   const auto friction = [](double angle) -> Description { return {{"sand", {{"friction_angle", angle}}}}; };
   const double loose_angle = compaction_friction_angle(void_ratio_ + aim_above);
   Description compact;
@@ -255,17 +257,16 @@ Description DirectShear::expand() const {
     motion = drive;
     if (std::string(wall) != "platen") motion["follow"] = {{"wall", "platen"}, {"axes", "z"}};
   }
-  shear["until"] = {
-      {"type", "displacement"}, {"wall", "platen"}, {"axis", "x"}, {"value", shear_displacement_}};
+  shear["until"] = {{"type", "displacement"}, {"wall", "platen"}, {"axis", "x"}, {"value", shear_displacement_}};
   shear["limit"] = 1.1 * duration;
   d["stages"] = Description::array({compact, densify, settle, shear});
 
-  const std::string tau =
-      "(upper_left_force_x + upper_right_force_x + upper_apron_force_x + platen_force_x) / " + std::to_string(-area * 1e6) +
-      "e-6";
-  const std::string platen_at_shear = "(" + std::to_string(cloud_height * 1e3) + "e-3 + platen_travel_z - platen_stage_travel_z)";
+  const std::string tau = "-(upper_left_force_x + upper_right_force_x + upper_apron_force_x + platen_force_x) / area";
   auto& test = d["probes"]["test"];
   test = {{"type", "formula"}, {"stages", {"shear"}}, {"every_time", duration / curve_samples}};
+  test["constants"] = {
+      {"area", {{"value", area}, {"doc", "of the box, seen from above [m2]"}}},
+      {"start_height", {{"value", cloud_height}, {"doc", "of the platen at the start of the run [m]"}}}};
   test["curves"]["shear_displacement"] = {
       {"formula", "platen_stage_travel_x"}, {"unit", "m"}, {"doc", "displacement of the upper frame"}};
   test["curves"]["shear_stress"] = {
@@ -274,18 +275,20 @@ Description DirectShear::expand() const {
       {"formula", "platen_pressure"}, {"unit", "Pa"}, {"doc", "on the platen, compression positive"}};
   test["curves"]["stress_ratio"] = {
       {"formula", tau + " / platen_pressure"}, {"unit", "1"}, {"doc", "shear stress over normal stress"}};
-  test["curves"]["volumetric_strain"] = {{"formula", "platen_stage_travel_z / " + platen_at_shear},
-                                         {"unit", "1"},
-                                         {"doc", "rise of the platen over the specimen's height, dilation positive"}};
+  test["curves"]["volumetric_strain"] = {
+      {"formula", "platen_stage_travel_z / (start_height + platen_travel_z - platen_stage_travel_z)"},
+      {"unit", "1"},
+      {"doc", "rise of the platen over the specimen's height, dilation positive"}};
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {
       {"type", "packing"}, {"driven_by", "platen"}, {"driven_axis", "x"}, {"every_time", duration / 100}};
   d["probes"]["force-chains"] = {{"type", "force-chains"}, {"every_time", duration / 100}, {"stages", {"shear"}}};
-  d["output"] = {
-      {"frames", {{"every_time", duration / frames_in_shear}}},
-      {"picture",
-       {{"x", "test/shear_displacement"}, {"y", {"test/stress_ratio", "test/volumetric_strain"}}, {"color", "rotation"}}},
-      {"summary", {"test/stress_ratio", "test/volumetric_strain"}}};
+  d["output"] = {{"frames", {{"every_time", duration / frames_in_shear}}},
+                 {"picture",
+                  {{"x", "test/shear_displacement"},
+                   {"y", {"test/stress_ratio", "test/volumetric_strain"}},
+                   {"color", "rotation"}}},
+                 {"summary", {"test/stress_ratio", "test/volumetric_strain"}}};
   return d;
 }
 

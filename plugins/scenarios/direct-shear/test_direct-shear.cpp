@@ -45,8 +45,8 @@ std::string refusal(const Description& keys) {
   return "";
 }
 
-// The expansion of all defaults, so that a change of it is seen for what it is. After a wanted change, replace the file by
-// what the test has written.
+// The expansion of all defaults, so that a change of it is seen for what it is. After a wanted change, replace the file
+// by what the test has written.
 TEST(DirectShear, ExpandsToTheGoldenDescription) {
   const Description now = made()->expand();
   std::ifstream file("expansion.json");
@@ -111,7 +111,8 @@ TEST(DirectShear, FillsTheBoxAtTheWantedVoidRatio) {
 TEST(DirectShear, LeavesAGapOfTheLargestGrainHalfWayUp) {
   const Description d = made()->expand();
   for (const char* side : {"left", "right"}) {
-    const double low = d["walls"]["lower-" + std::string(side)]["high"][2], high = d["walls"]["upper-" + std::string(side)]["low"][2];
+    const double low = d["walls"]["lower-" + std::string(side)]["high"][2],
+                 high = d["walls"]["upper-" + std::string(side)]["low"][2];
     EXPECT_NEAR(high - low, 0.75e-3, 1e-15);
     EXPECT_NEAR(0.5 * (high + low), 12.5e-3, 1e-15);
   }

@@ -35,7 +35,8 @@ struct LinearNormal {
     return {a.stiffness * b.stiffness / (a.stiffness + b.stiffness)};
   }
   template <unsigned Features, class L>
-  [[gnu::always_inline]] static grit::Response<L> evaluate(const grit::ContactPoint<L>& at, const Pair<L>& pair, State<L>&) {
+  [[gnu::always_inline]] static grit::Response<L> evaluate(const grit::ContactPoint<L>& at, const Pair<L>& pair,
+                                                           State<L>&) {
     return {.normal_force = pair.stiffness * at.overlap};
   }
   static grit::Stiffness stiffness(const grit::PairSize&, const Pair<double>& pair) {

@@ -19,8 +19,8 @@ struct Stiffness {
   double damping_ratio = 0;  ///< of the pair, 0 … 1
 };
 
-/// The pair whose stiffness is asked for. A wall has radius_b = radius_a and inverse_mass_b = 0; a body that only happens
-/// to have both says `wall = false`.
+/// The pair whose stiffness is asked for. A wall has radius_b = radius_a and inverse_mass_b = 0; a body that only
+/// happens to have both says `wall = false`.
 struct PairSize {
   double radius_a, radius_b;              ///< m
   double inverse_mass_a, inverse_mass_b;  ///< 1/kg

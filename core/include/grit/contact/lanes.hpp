@@ -1,6 +1,6 @@
 // Lanes: what a contact law computes with. `double` in the reference twin, the machine's widest SIMD type in the loop.
-// Lanes have to stay in registers, so that all functions on them are inlined by force: compilers were seen to leave calls
-// in a loop as large as a law, which pass lanes through memory and cost a factor of three.
+// Lanes have to stay in registers, so that all functions on them are inlined by force: compilers were seen to leave
+// calls in a loop as large as a law, which pass lanes through memory and cost a factor of three.
 #pragma once
 
 #include <algorithm>
@@ -37,13 +37,14 @@ static_assert(block_size % lane_width<Lane> == 0);
 // The branch of a law. Both sides are evaluated.
 [[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 template <class T, class Abi>
-[[gnu::always_inline]] inline stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& condition, stdx::simd<T, Abi> yes,
-                          const stdx::simd<T, Abi>& no) {
+[[gnu::always_inline]] inline stdx::simd<T, Abi> select(const stdx::simd_mask<T, Abi>& condition,
+                                                        stdx::simd<T, Abi> yes, const stdx::simd<T, Abi>& no) {
   stdx::where(!condition, yes) = no;
   return yes;
 }
 template <class L>
-[[gnu::always_inline]] inline Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes, const Vec<L>& no) {
+[[gnu::always_inline]] inline Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes,
+                                            const Vec<L>& no) {
   return {select(condition, yes.x, no.x), select(condition, yes.y, no.y), select(condition, yes.z, no.z)};
 }
 
@@ -100,7 +101,7 @@ template <class L, class Index>
     }
     return {std::bit_cast<L>(x), std::bit_cast<L>(y), std::bit_cast<L>(z), std::bit_cast<L>(w)};
   } else {
-    const auto column = [&](double Row::* member) { return L([&](auto k) { return base[index(k)].*member; }); };
+    const auto column = [&](double Row::*member) { return L([&](auto k) { return base[index(k)].*member; }); };
     return {column(&Row::x), column(&Row::y), column(&Row::z), column(&Row::w)};
   }
 }

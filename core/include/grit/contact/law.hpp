@@ -1,5 +1,5 @@
-// How a contact law is written. The author writes a struct; the loop over thousands of contacts is here, and is compiled
-// inside the plugin.
+// How a contact law is written. The author writes a struct; the loop over thousands of contacts is here, and is
+// compiled inside the plugin.
 //
 //   struct MyLaw {
 //     struct Material  { double modulus = 1e8; void declare(Parameters&); };      // of one material
@@ -19,8 +19,8 @@
 //     static double energy(const PairSize&, const Pair<double>&, const State<double>&);
 //   };
 //
-// evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also called
-// for lanes that do not touch; their results are discarded, so that they only must not trap.
+// evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
+// called for lanes that do not touch; their results are discarded, so that they only must not trap.
 #pragma once
 
 #include <algorithm>
@@ -68,15 +68,16 @@ struct ContactPoint {
 /// What a law answers.
 template <class L>
 struct Response {
-  L normal_force{};   ///< N, > 0 pushes apart
-  Vec<L> shear{};     ///< N, on b, in the contact plane
-  Vec<L> moment{};    ///< N m, on b; the opposite acts on a
+  L normal_force{};  ///< N, > 0 pushes apart
+  Vec<L> shear{};    ///< N, on b, in the contact plane
+  Vec<L> moment{};   ///< N m, on b; the opposite acts on a
 };
 
 namespace detail {
 
 template <class L>
-[[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a, const Vec<L>& spin_b, double dt) {
+[[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
+                                                const Vec<L>& spin_b, double dt) {
   Turn<L> turn;
   turn.normal = normal;
   turn.bisector = normal + before;
@@ -131,14 +132,14 @@ template <class L>
   else value.copy_to(to, stdx::element_aligned);
 }
 
-
 /// Blocks ahead of which bodies are asked for; 1 and 4 are slower beyond the caches.
 constexpr std::size_t bodies_ahead = 2;
 
 /// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
 /// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
-[[gnu::flatten, gnu::noinline]] void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+[[gnu::flatten, gnu::noinline]] void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table,
+                                               std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
@@ -150,7 +151,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
     if (block + bodies_ahead < batch.last_block) {
       for (std::size_t k = 0; k < block_size; ++k) {
         const std::uint32_t b = batch.b[(block + bodies_ahead) * block_size + k];
-        __builtin_prefetch(batch.position + b), __builtin_prefetch(batch.velocity + b), __builtin_prefetch(batch.spin + b);
+        __builtin_prefetch(batch.position + b), __builtin_prefetch(batch.velocity + b),
+            __builtin_prefetch(batch.spin + b);
       }
     }
     std::uint32_t touching_now = 0;
@@ -168,9 +170,10 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       if constexpr (Periodic) {
         if (batch.image != nullptr)
           for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
-        if (shifted) branch = branch + load_rows<L>(&batch.shifts->position, [&](std::size_t k) {
-                                         return image(k) * (sizeof(ImageShift) / sizeof(Row));
-                                       }).xyz();
+        if (shifted)
+          branch = branch + load_rows<L>(&batch.shifts->position, [&](std::size_t k) {
+                              return image(k) * (sizeof(ImageShift) / sizeof(Row));
+                            }).xyz();
       }
       const L square = dot(branch, branch), reach = pa.w + pb.w;
       const auto touches = square < reach * reach;
@@ -189,9 +192,10 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       const RowLanes<L> vb = load_rows<L>(batch.velocity, index_b), wb = load_rows<L>(batch.spin, index_b);
       Vec<L> velocity = vb.xyz() - va.xyz();
       if constexpr (Periodic) {
-        if (shifted) velocity = velocity + load_rows<L>(&batch.shifts->velocity, [&](std::size_t k) {
-                                             return image(k) * (sizeof(ImageShift) / sizeof(Row));
-                                           }).xyz();
+        if (shifted)
+          velocity = velocity + load_rows<L>(&batch.shifts->velocity, [&](std::size_t k) {
+                                  return image(k) * (sizeof(ImageShift) / sizeof(Row));
+                                }).xyz();
       }
       const L distance = max(sqrt(square), L(1e-300));
       const Vec<L> normal = (L(1.0) / distance) * branch;
@@ -228,7 +232,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
 
-      // The force acts at the middle of the overlap, so that the arms add up to the branch: no angular momentum is made.
+      // The force acts at the middle of the overlap, so that the arms add up to the branch: no angular momentum is
+      // made.
       const Vec<L> none{zero, zero, zero};
       const L half = L(0.5) * at.overlap;
       const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
@@ -245,7 +250,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
         store(force, row[k].force);
         sum[ia[k]].force -= force;
       });
-      store_rows(moment_b.x, moment_b.y, moment_b.z, overlap, [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
+      store_rows(moment_b.x, moment_b.y, moment_b.z, overlap,
+                 [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
       store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
                  [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
@@ -257,7 +263,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
 
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact.
 template <class Law, unsigned Features, class L>
-[[gnu::flatten]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+[[gnu::flatten]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
+                                std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
