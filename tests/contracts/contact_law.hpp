@@ -235,6 +235,43 @@ TEST_P(ContactLawContract, PlaceInBlockDoesNotMatter) {
     }
 }
 
+TEST_P(ContactLawContract, WithinAChunkBothBodiesHaveTheirSums) {
+  for (const bool periodic : {false, true}) {
+    Pairs across = scene(periodic, true), within = across;
+    across.evaluate(), within.evaluate_within();
+    std::vector<BodySum> expected;
+    for (std::size_t i = 0; i < across.count(); ++i) expected.push_back(across.sum(i));
+    for (std::size_t c = 0; c < across.places(); ++c)
+      if (across.touching(c)) {
+        expected[across.b(c)].force += across.row(c).force;
+        expected[across.b(c)].moment += across.row(c).moment;
+      }
+    for (std::size_t i = 0; i < across.count(); ++i) {
+      const Vec3 force = vec(expected[i].force), moment = vec(expected[i].moment);
+      EXPECT_LE((vec(within.sum(i).force) - force).norm(), 1e-15 * force.norm()) << i;
+      EXPECT_LE((vec(within.sum(i).moment) - moment).norm(), 1e-15 * moment.norm()) << i;
+    }
+    for (std::size_t c = 0; c < across.places(); ++c) EXPECT_EQ(within.state(c), across.state(c)) << c;
+  }
+}
+
+TEST_P(ContactLawContract, AskedAgainAnswersTheSameAndRemembersNothingNew) {
+  const auto fields = law_->state();
+  Pairs pairs = scene(true, true);
+  Pairs once = pairs;
+  pairs.evaluate_again();
+  for (std::size_t c = 0; c < pairs.places(); ++c) {
+    ASSERT_EQ(pairs.touching(c), once.touching(c));
+    if (!pairs.touching(c)) continue;
+    const double force = scale(pairs, c, "N"), moment = scale(pairs, c, "N m");
+    EXPECT_LE((vec(pairs.row(c).force) - vec(once.row(c).force)).norm(), 1e-14 * force) << c;
+    EXPECT_LE((vec(pairs.row(c).moment) - vec(once.row(c).moment)).norm(), 1e-14 * moment) << c;
+    EXPECT_EQ(pairs.row(c).force.w, once.row(c).force.w) << c;
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      EXPECT_NEAR(pairs.state(c, f), once.state(c, f), 1e-14 * scale(pairs, c, fields[f].unit)) << c << fields[f].name;
+  }
+}
+
 TEST_P(ContactLawContract, ForcesAndMomentsBalance) {
   Pairs pairs = scene(true, true);
   for (std::size_t c = 0; c < pairs.places(); ++c) {

@@ -71,8 +71,12 @@ class Pairs {
   double overlap(std::size_t place) const { return row_[place].moment.w; }
   double largest_overlap() const { return largest_overlap_; }
 
-  void evaluate() { run(false); }
-  void evaluate_reference() { run(true); }
+  void evaluate() { run(&ContactLaw::evaluate_pairs); }
+  void evaluate_reference() { run(&ContactLaw::evaluate_pairs_reference); }
+  /// As a chunk that has all bodies: sums of both, no rows.
+  void evaluate_within() { run(&ContactLaw::evaluate_pairs, true); }
+  /// Once more at the same instant.
+  void evaluate_again() { run(&ContactLaw::evaluate_pairs, false, true); }
   /// Moves all bodies through one step, then evaluates.
   void step() {
     for (std::size_t i = 0; i < count(); ++i) {
@@ -105,7 +109,7 @@ class Pairs {
     std::replace(b_.begin(), b_.end(), pad_, last);
     pad_ = last;
   }
-  void run(bool reference) {
+  void run(void (ContactLaw::*evaluate)(PairBatch&) const noexcept, bool within = false, bool again = false) {
     sum_.assign(position_.size(), {});
     PairBatch batch{.position = position_.data(),
                     .velocity = velocity_.data(),
@@ -117,14 +121,15 @@ class Pairs {
                     .shifts = shifts.data(),
                     .first_block = 0,
                     .last_block = a_.size() / block_size,
+                    .last_body = static_cast<std::uint32_t>(count() - 1),
                     .dt = dt,
+                    .again = again,
                     .state = state_.data(),
                     .touching = touching_.data(),
-                    .row = row_.data(),
+                    .row = within ? nullptr : row_.data(),
                     .sum = sum_.data(),
                     .largest_overlap = std::numeric_limits<double>::quiet_NaN()};
-    if (reference) law_.evaluate_pairs_reference(batch);
-    else law_.evaluate_pairs(batch);
+    (law_.*evaluate)(batch);
     largest_overlap_ = batch.largest_overlap;
   }
 

@@ -29,7 +29,7 @@ inline Vec3 xyz(const Row& row) { return {row.x, row.y, row.z}; }
 /// A vector whose components are lanes: `double` in the reference twin, a SIMD type in the batch loop.
 template <class L>
 struct Vec {
-  L x{}, y{}, z{};
+  L x, y, z;
 
   [[gnu::always_inline]] friend Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   [[gnu::always_inline]] friend Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }

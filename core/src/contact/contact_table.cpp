@@ -7,11 +7,21 @@
 namespace grit {
 namespace {
 
-/// Where a touching pair's memory lay before the rebuild, filed by the pair's lower body as it is now.
+/// A touching pair before the rebuild, filed by its lower body as it is now.
 struct Memory {
-  std::uint32_t other, slot;
+  std::uint32_t other;
   bool swapped;
 };
+
+/// Room for `count` without copying what is there.
+template <class Array>
+void make_room(Array& array, std::size_t count) {
+  if (array.capacity() < count) {
+    Array().swap(array);
+    array.reserve(count + count / 16);
+  }
+  array.resize(count);
+}
 
 }  // namespace
 
@@ -31,44 +41,74 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
         const auto slot = static_cast<std::uint32_t>(block * block_size + std::countr_zero(mask));
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
-        use(std::min(p, q), Memory{std::max(p, q), slot, p > q});
+        use(std::min(p, q), Memory{std::max(p, q), p > q}, slot);
       }
   };
-  each_memory([&](std::uint32_t lower, const Memory&) { ++memory_start[lower + 1]; });
+  each_memory([&](std::uint32_t lower, const Memory&, std::size_t) { ++memory_start[lower + 1]; });
   std::partial_sum(memory_start.begin(), memory_start.end(), memory_start.begin());
   std::vector<Memory> memories(memory_start.back());
+  LargeArray<double> remembered(memories.size() * field_count);
   auto next = memory_start;
-  each_memory([&](std::uint32_t lower, const Memory& memory) { memories[next[lower]++] = memory; });
+  each_memory([&](std::uint32_t lower, const Memory& memory, std::size_t slot) {
+    const std::size_t m = next[lower]++;
+    memories[m] = memory;
+    for (std::size_t f = 0; f < field_count; ++f)
+      remembered[m * field_count + f] = state_[slot / block_size * field_count + f].lane[slot % block_size];
+  });
 
-  // Candidates, chunk by chunk, touching ones first.
+  // Candidates, chunk by chunk: those within the chunk first, of either sort touching ones first.
   const std::size_t chunk_count = chunks_of(count);
-  found_.resize(chunk_count);
+  found_.resize(chunk_count), within_.resize(chunk_count);
   team.each(chunk_count, [&](std::size_t chunk) {
     auto& found = found_[chunk];
     found.clear();
     const std::size_t first = chunk * chunk_bodies, last = std::min(count, first + chunk_bodies);
     for (std::size_t i = first; i < last; ++i) search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
-    std::stable_partition(found.begin(), found.end(), [](const Candidate& c) { return c.touching != 0; });
+    const auto touching = [](const Candidate& c) { return c.touching != 0; };
+    const auto across =
+        std::stable_partition(found.begin(), found.end(), [=](const Candidate& c) { return c.b < last; });
+    std::stable_partition(found.begin(), across, touching), std::stable_partition(across, found.end(), touching);
+    within_[chunk] = static_cast<std::size_t>(across - found.begin());
   });
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
-  for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) {
-    const auto own = static_cast<std::uint32_t>((found_[chunk].size() + block_size - 1) / block_size);
-    chunks_[chunk] = {blocks, blocks + own};
-    blocks += own;
-  }
+  const auto take = [&](std::size_t pairs) {
+    const std::uint32_t first = blocks;
+    blocks += static_cast<std::uint32_t>((pairs + block_size - 1) / block_size);
+    return Blocks{first, blocks};
+  };
+  for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) chunks_[chunk].within = take(within_[chunk]);
+  first_cross_ = std::size_t{blocks} * block_size;
+  for (std::size_t chunk = 0; chunk < chunk_count; ++chunk)
+    chunks_[chunk].across = take(found_[chunk].size() - within_[chunk]);
 
   const std::size_t slots = std::size_t{blocks} * block_size;
-  const auto old_state = std::move(state_);
   // Padding pairs a body with the one that is far away.
   const auto pad = static_cast<std::uint32_t>(count);
-  a_.resize(slots), b_.resize(slots), near_.resize(slots), image_.resize(periodic ? slots : 0);
-  row_.assign(slots, {});
+  make_room(a_, slots), make_room(b_, slots), make_room(near_, slots), make_room(image_, periodic ? slots : 0);
+  make_room(row_, slots - first_cross_), make_room(state_, std::size_t{blocks} * field_count);
   touching_.assign(blocks, 0);
-  state_.assign(std::size_t{blocks} * field_count, {});
   team.each(chunk_count, [&](std::size_t chunk) {
-    std::size_t slot = std::size_t{chunks_[chunk].first_block} * block_size;
-    for (const Candidate& c : found_[chunk]) {
+    for (const Blocks own : {chunks_[chunk].within, chunks_[chunk].across})
+      std::fill(state_.begin() + static_cast<std::ptrdiff_t>(own.first * field_count),
+                state_.begin() + static_cast<std::ptrdiff_t>(own.last * field_count), StateLine{});
+    const auto row_of = [&](std::uint32_t block) {
+      return row_.begin() + static_cast<std::ptrdiff_t>(block * block_size - first_cross_);
+    };
+    std::fill(row_of(chunks_[chunk].across.first), row_of(chunks_[chunk].across.last), ContactRow{});
+    const auto pad_to = [&](std::size_t slot, std::uint32_t block) {
+      for (; slot < std::size_t{block} * block_size; ++slot) {
+        a_[slot] = static_cast<std::uint32_t>(chunk * chunk_bodies), b_[slot] = pad, near_[slot] = 0;
+        if (periodic) image_[slot] = 0;
+      }
+    };
+    std::size_t slot = std::size_t{chunks_[chunk].within.first} * block_size;
+    for (std::size_t n = 0; n < found_[chunk].size(); ++n) {
+      if (n == within_[chunk]) {
+        pad_to(slot, chunks_[chunk].within.last);
+        slot = std::size_t{chunks_[chunk].across.first} * block_size;
+      }
+      const Candidate& c = found_[chunk][n];
       a_[slot] = c.a, b_[slot] = c.b, near_[slot] = c.touching;
       if (periodic) image_[slot] = c.image;
       for (std::uint32_t m = memory_start[c.a]; m < memory_start[c.a + 1]; ++m) {
@@ -77,15 +117,13 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         touching_[slot / block_size] |= static_cast<std::uint8_t>(1u << (slot % block_size));
         for (std::size_t f = 0; f < field_count; ++f)
           state_[slot / block_size * field_count + f].lane[slot % block_size] =
-              old_state[memory.slot / block_size * field_count + f].lane[memory.slot % block_size] *
-              (memory.swapped ? fields_[f].swap : 1.0);
+              remembered[m * field_count + f] * (memory.swapped ? fields_[f].swap : 1.0);
       }
       ++slot;
     }
-    for (; slot < std::size_t{chunks_[chunk].last_block} * block_size; ++slot) {
-      a_[slot] = static_cast<std::uint32_t>(std::min(count - 1, chunk * chunk_bodies)), b_[slot] = pad, near_[slot] = 0;
-      if (periodic) image_[slot] = 0;
-    }
+    const bool none_across = found_[chunk].size() == within_[chunk];
+    std::vector<Candidate>().swap(found_[chunk]);
+    pad_to(slot, none_across ? chunks_[chunk].within.last : chunks_[chunk].across.last);
   });
   make_inbox(count);
 }
@@ -93,14 +131,15 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
 void ContactTable::make_inbox(std::size_t bodies) {
   const auto pad = static_cast<std::uint32_t>(bodies);
   inbox_start_.assign(bodies + 1, 0), inbox_far_.assign(bodies, 0);
-  for (std::size_t c = 0; c < b_.size(); ++c)
+  for (std::size_t c = first_cross_; c < b_.size(); ++c)
     if (b_[c] != pad) ++inbox_start_[b_[c] + 1], inbox_far_[b_[c]] += near_[c];
   std::partial_sum(inbox_start_.begin(), inbox_start_.end(), inbox_start_.begin());
   inbox_.resize(inbox_start_.back());
   std::vector<std::uint32_t> next_near(inbox_start_.begin(), inbox_start_.end() - 1), next_far(bodies);
   for (std::size_t i = 0; i < bodies; ++i) next_far[i] = inbox_far_[i] += inbox_start_[i];
-  for (std::size_t c = 0; c < b_.size(); ++c)
-    if (b_[c] != pad) inbox_[near_[c] != 0 ? next_near[b_[c]]++ : next_far[b_[c]]++] = static_cast<std::uint32_t>(c);
+  for (std::size_t c = first_cross_; c < b_.size(); ++c)
+    if (b_[c] != pad)
+      inbox_[near_[c] != 0 ? next_near[b_[c]]++ : next_far[b_[c]]++] = static_cast<std::uint32_t>(c - first_cross_);
 }
 
 void ContactTable::set_fields(std::span<const StateField> fields) {
@@ -114,26 +153,69 @@ void ContactTable::set_fields(std::span<const StateField> fields) {
   state_ = std::move(state);
 }
 
-double ContactTable::evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
-                              const ImageShift* shifts, double dt, BodySum* sum) {
-  PairBatch batch{.position = bodies.position.data(),
-                  .velocity = bodies.velocity.data(),
-                  .spin = bodies.spin.data(),
-                  .a = a_.data(),
-                  .b = b_.data(),
-                  .image = image_.empty() ? nullptr : image_.data(),
-                  .material = one_material ? nullptr : bodies.material.data(),
-                  .shifts = shifts,
-                  .first_block = chunks_[chunk].first_block,
-                  .last_block = chunks_[chunk].last_block,
-                  .dt = dt,
-                  .state = state_.empty() ? nullptr : state_.front().lane,
-                  .touching = touching_.data(),
-                  .row = row_.data(),
-                  .sum = sum,
-                  .largest_overlap = 0};
-  law.evaluate_pairs(batch);
-  return batch.largest_overlap;
+PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const {
+  return {.position = at.bodies.position.data(),
+          .velocity = at.bodies.velocity.data(),
+          .spin = at.bodies.spin.data(),
+          .a = a_.data(),
+          .b = b_.data(),
+          .image = image_.empty() ? nullptr : image_.data(),
+          .material = at.one_material ? nullptr : at.bodies.material.data(),
+          .shifts = at.shifts,
+          .first_block = blocks.first,
+          .last_block = blocks.last,
+          .last_body = last_body,
+          .dt = at.dt,
+          .again = at.again,
+          .state = nullptr,
+          .touching = nullptr,
+          .row = nullptr,
+          .sum = nullptr,
+          .largest_overlap = 0};
+}
+
+double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum) {
+  const std::size_t first_body = chunk * chunk_bodies;
+  const std::size_t last_body = std::min(at.bodies.count(), first_body + chunk_bodies) - 1;
+  // All bodies of the chunk are needed soon, in an order that the machine does not foresee.
+  for (std::size_t i = first_body; i <= last_body; i += 64 / sizeof(Row))
+    __builtin_prefetch(&at.bodies.position[i]), __builtin_prefetch(&at.bodies.velocity[i]),
+        __builtin_prefetch(&at.bodies.spin[i]);
+  double largest = 0;
+  for (const Blocks blocks : {chunks_[chunk].within, chunks_[chunk].across}) {
+    if (blocks.first == blocks.last) continue;
+    PairBatch pairs = batch(blocks, at, static_cast<std::uint32_t>(last_body));
+    pairs.state = state_.empty() ? nullptr : state_.front().lane;
+    pairs.touching = touching_.data();
+    const std::size_t first = std::size_t{blocks.first} * block_size;
+    pairs.row = first < first_cross_ ? nullptr : row_.data() + (first - first_cross_);
+    pairs.sum = sum;
+    at.law.evaluate_pairs(pairs);
+    largest = std::max(largest, pairs.largest_overlap);
+  }
+  return largest;
+}
+
+void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
+                                  std::vector<ContactRow>& rows, std::vector<BodySum>& sum) const {
+  const std::size_t fields = fields_.size(), first = first_block * block_size;
+  const auto part = [](auto& array, std::size_t from, std::size_t to) {
+    return std::vector(array.begin() + static_cast<std::ptrdiff_t>(from),
+                       array.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  // A batch of its own: blocks from 0 on, memory and sums that nobody keeps.
+  auto state = part(state_, first_block * fields, last_block * fields);
+  auto touching = part(touching_, first_block, last_block);
+  rows.assign((last_block - first_block) * block_size, {});
+  PairBatch pairs = batch({0, static_cast<std::uint32_t>(last_block - first_block)}, at, 0);
+  pairs.a += first, pairs.b += first;
+  if (pairs.image != nullptr) pairs.image += first;
+  pairs.again = true;
+  pairs.state = state.empty() ? nullptr : state.front().lane;
+  pairs.touching = touching.data();
+  pairs.row = rows.data();
+  pairs.sum = sum.data();
+  at.law.evaluate_pairs(pairs);
 }
 
 std::vector<double> ContactTable::state(std::size_t c) const {
@@ -141,6 +223,11 @@ std::vector<double> ContactTable::state(std::size_t c) const {
   for (std::size_t f = 0; f < numbers.size(); ++f)
     numbers[f] = state_[c / block_size * fields_.size() + f].lane[c % block_size];
   return numbers;
+}
+
+std::size_t ContactTable::memory() const {
+  const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
+  return bytes(a_, b_, image_, touching_, state_, row_, inbox_, inbox_start_, inbox_far_, near_);
 }
 
 std::size_t ContactTable::touching_count() const {

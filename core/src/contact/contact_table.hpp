@@ -1,6 +1,7 @@
 // All candidate pairs, what touching ones remember, and what they do this step.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,7 +19,8 @@ struct alignas(64) StateLine {
 };
 
 /// Pairs are filed by the chunk of their lower body, those that touch first, so that blocks are full of touching lanes
-/// and the distance test is most that the others cost. Memory of contacts moves along when the table is rebuilt.
+/// and the distance test is most that the others cost. Pairs within a chunk add to the sums of both bodies; only pairs
+/// across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
 class ContactTable {
  public:
   /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed.
@@ -27,18 +29,42 @@ class ContactTable {
   /// Makes room for another set of fields; the leading ones that both have are kept.
   void set_fields(std::span<const StateField> fields);
 
+  /// What the law needs to know of an instant.
+  struct Instant {
+    const ContactLaw& law;
+    const Bodies& bodies;
+    bool one_material;
+    const ImageShift* shifts;
+    double dt;           ///< s
+    bool again = false;  ///< this instant has been evaluated before
+  };
   /// Evaluates one chunk: fills its rows, adds to the sums of its bodies. Returns the largest overlap over a radius.
-  double evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
-                  const ImageShift* shifts, double dt, BodySum* sum);
+  double evaluate(std::size_t chunk, const Instant& at, BodySum* sum);
+  /// What an evaluated instant's contacts do, one after the other: use(candidate, row).
+  template <class Use>
+  void each_touching(const Instant& at, Use use) const {
+    std::vector<ContactRow> rows;
+    std::vector<BodySum> sum(at.bodies.count());
+    for (std::size_t block = 0; block < touching_.size(); block += blocks_at_once) {
+      const std::size_t last = std::min(touching_.size(), block + blocks_at_once);
+      evaluate_again(block, last, at, rows, sum);
+      for (std::size_t c = block * block_size; c < last * block_size; ++c)
+        if (touches(c)) use(c, rows[c - block * block_size]);
+    }
+  }
+  /// From a to b [m].
+  Vec3 branch(std::size_t c, const Bodies& bodies, const ImageShift* shifts) const {
+    return xyz(bodies.position[b_[c]]) - xyz(bodies.position[a_[c]]) + xyz(shifts[image(c)].position);
+  }
 
-  /// Adds what the contacts do to `body` as their b. Always in the same order.
+  /// Adds what the contacts across chunks do to `body` as their b. Always in the same order.
   void gather(std::size_t body, Quad& force, Quad& moment) const {
     const std::uint32_t* entry = inbox_.data() + inbox_start_[body];
     const std::uint32_t* const far = inbox_.data() + inbox_far_[body];
     const std::uint32_t* const end = inbox_.data() + inbox_start_[body + 1];
     for (; entry != far; ++entry) add(row_[*entry], force, moment);
     for (; entry != end; ++entry)
-      if (touches(*entry)) add(row_[*entry], force, moment);
+      if (touches(first_cross_ + *entry)) add(row_[*entry], force, moment);
   }
 
   /// Asks for the memory that gather() will read.
@@ -53,31 +79,42 @@ class ContactTable {
   std::uint32_t a(std::size_t c) const { return a_[c]; }
   std::uint32_t b(std::size_t c) const { return b_[c]; }
   std::uint8_t image(std::size_t c) const { return image_.empty() ? 0 : image_[c]; }
-  const ContactRow& row(std::size_t c) const { return row_[c]; }
   /// Memory of candidate c.
   std::vector<double> state(std::size_t c) const;
   std::size_t touching_count() const;
+  /// Bytes held.
+  std::size_t memory() const;
 
  private:
-  struct Chunk {
-    std::uint32_t first_block = 0, last_block = 0;
+  static constexpr std::size_t blocks_at_once = 64;
+  struct Blocks {
+    std::uint32_t first = 0, last = 0;
   };
+  struct Chunk {
+    Blocks within, across;
+  };
+  PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
+  void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at, std::vector<ContactRow>& rows,
+                      std::vector<BodySum>& sum) const;
   static void add(const ContactRow& row, Quad& force, Quad& moment) {
     force += load(row.force), moment += load(row.moment);
   }
   void make_inbox(std::size_t bodies);
 
   std::vector<Chunk> chunks_;
+  // Candidates: those within all chunks come before those across.
   std::vector<std::uint32_t> a_, b_;
   std::vector<std::uint8_t> image_;  // empty without periodic boundaries
   std::vector<std::uint8_t> touching_;
   std::vector<StateField> fields_;
   LargeArray<StateLine> state_;  // [block][field]
+  std::size_t first_cross_ = 0;  // the first candidate across chunks, which has the first row
   LargeArray<ContactRow> row_;
-  // Candidates by their b: inbox_start_[b] … inbox_far_[b] touched when the table was built, the rest did not.
+  // Rows by their b: inbox_start_[b] … inbox_far_[b] touched when the table was built, the rest did not.
   std::vector<std::uint32_t> inbox_, inbox_start_, inbox_far_;
   std::vector<std::uint8_t> near_;             // of each candidate: touched when the table was built
   std::vector<std::vector<Candidate>> found_;  // by chunk
+  std::vector<std::size_t> within_;            // by chunk: how many of them are within it
 };
 
 }  // namespace grit

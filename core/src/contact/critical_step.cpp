@@ -36,8 +36,7 @@ double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const
     for (std::size_t c = 0; c < pairs.candidates(); ++c) {
       const std::uint32_t a = pairs.a(c), b = pairs.b(c);
       if (b == count) continue;
-      const Vec3 branch = xyz(bodies.position[b]) - xyz(bodies.position[a]) + xyz(shifts[pairs.image(c)].position);
-      const double overlap = bodies.position[a].w + bodies.position[b].w - branch.norm();
+      const double overlap = bodies.position[a].w + bodies.position[b].w - pairs.branch(c, bodies, shifts).norm();
       if (overlap > -near) use(a, b, std::max(overlap, 0.0));
     }
   };

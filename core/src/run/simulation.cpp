@@ -257,7 +257,7 @@ void Simulation::find_forces() {
     else if (approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
   }
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
-  const double dt = clock_.forces_step == clock_.step ? 0 : clock_.last_time_step;
+  const bool again = clock_.forces_step == clock_.step;
   clock_.forces_step = clock_.step;
   {
     const Stopwatch watch(phases_[pair_contacts].seconds);
@@ -265,15 +265,15 @@ void Simulation::find_forces() {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
       std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
                 BodySum{});
-      chunk_overlap_[chunk] = pairs_.evaluate(chunk, *law_, bodies_, one_material_, shifts_.data(), dt, sum_.data());
+      chunk_overlap_[chunk] = pairs_.evaluate(chunk, instant(again), sum_.data());
     });
   }
   if (!surfaces_.empty()) {
     const Stopwatch watch(phases_[wall_touches].seconds);
     team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {
       chunk_overlap_[chunk] =
-          std::max(chunk_overlap_[chunk],
-                   wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_, dt, sum_.data()));
+          std::max(chunk_overlap_[chunk], wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_,
+                                                                  again ? 0 : clock_.last_time_step, sum_.data()));
     });
     wall_contacts_.loads(loads_);
     walls_.clear_forces();
@@ -386,11 +386,13 @@ double Simulation::elastic_energy() const {
   for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
     if (!pairs_.touches(c)) continue;
     const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
+    const double overlap =
+        bodies_.position[a].w + bodies_.position[b].w - pairs_.branch(c, bodies_, shifts_.data()).norm();
     energy += law_->energy({.radius_a = bodies_.position[a].w,
                             .radius_b = bodies_.position[b].w,
                             .inverse_mass_a = bodies_.velocity[a].w,
                             .inverse_mass_b = bodies_.velocity[b].w,
-                            .overlap = pairs_.row(c).moment.w},
+                            .overlap = overlap},
                            bodies_.material[a], bodies_.material[b], pairs_.state(c));
   }
   wall_contacts_.each([&](const WallContacts::Touching& t) {
@@ -459,13 +461,10 @@ std::span<const Row> Simulation::moments() const {
 std::span<const Contact> Simulation::contacts() const {
   if (contact_step_ == clock_.step) return contact_list_;
   contact_list_.clear();
-  for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
-    if (!pairs_.touches(c)) continue;
-    const ContactRow& row = pairs_.row(c);
-    const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
-    const Vec3 branch = xyz(bodies_.position[b]) - xyz(bodies_.position[a]) + xyz(shifts_[pairs_.image(c)].position);
-    contact_list_.push_back({.a = a,
-                             .b = b,
+  pairs_.each_touching(instant(true), [&](std::size_t c, const ContactRow& row) {
+    const Vec3 branch = pairs_.branch(c, bodies_, shifts_.data());
+    contact_list_.push_back({.a = pairs_.a(c),
+                             .b = pairs_.b(c),
                              .with_wall = false,
                              .branch = branch,
                              .normal = branch.normalized(),
@@ -473,7 +472,7 @@ std::span<const Contact> Simulation::contacts() const {
                              .moment = xyz(row.moment),
                              .normal_force = row.force.w,
                              .overlap = row.moment.w});
-  }
+  });
   wall_contacts_.each([&](const WallContacts::Touching& t) {
     const double arm = bodies_.position[t.touch->body].w - t.touch->overlap;
     contact_list_.push_back({.a = t.touch->body,
@@ -524,9 +523,7 @@ std::size_t Simulation::memory() const {
   const std::size_t bodies =
       bodies_.count() * (4 * sizeof(Row) + sizeof(BodySum) + 5 + (bodies_.rotation.empty() ? 0 : sizeof(Vec3)) +
                          (bodies_.displacement.empty() ? 0 : sizeof(Vec3)));
-  const std::size_t pair = sizeof(ContactRow) + fields_.size() * sizeof(double) + 3 * sizeof(std::uint32_t) + 2 +
-                           (periodic_ ? 1 : 0) + sizeof(Candidate);
-  return bodies + pairs_.candidates() * pair;
+  return bodies + pairs_.memory();
 }
 
 void Simulation::fail(const std::string& what, const std::string& advice) const {

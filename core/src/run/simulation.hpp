@@ -101,6 +101,9 @@ class Simulation final : public World {
   enum Part { searching, pair_contacts, wall_touches, motion, part_count };
 
   void apply(const SceneDescription& scene);
+  ContactTable::Instant instant(bool again) const {
+    return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, again};
+  }
   bool search_is_due();
   void adapt_skin();
   /// How much closer two bodies, or a body and a wall, can have come since the last search [m].

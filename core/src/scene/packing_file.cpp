@@ -57,10 +57,10 @@ std::string read_grain(std::string_view line, Row& grain) {
   for (std::string_view word; !(word = next_word(line)).empty(); ++found) {
     if (found >= 4) continue;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *numbers[found]);
-    const std::string where = std::string(names[found]) + " is \"" + std::string(word.substr(0, 40)) + "\"";
-    if (error == std::errc::invalid_argument || end != word.data() + word.size()) return where + ", not a number";
-    if (error != std::errc() || !std::isfinite(*numbers[found]))
-      return where + ", not a finite number in double's range";
+    const bool number = error != std::errc::invalid_argument && end == word.data() + word.size();
+    if (number && error == std::errc() && std::isfinite(*numbers[found])) continue;
+    return std::string(names[found]) + " is \"" + std::string(word.substr(0, 40)) + "\", not a " +
+           (number ? "finite number in double's range" : "number");
   }
   if (found != 4) return "found " + std::to_string(found) + " numbers; a grain is four: x y z radius, in m";
   if (!(grain.w > 0)) return "radius is " + std::to_string(grain.w) + " m; it must be above 0";

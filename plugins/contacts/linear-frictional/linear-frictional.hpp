@@ -99,7 +99,9 @@ struct LinearFrictional {
       response.shear = spring;
       if constexpr ((Features & with_shear_damping) != 0) {
         const L dash = dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass);
-        const L sticking = select(dot(trial, trial) <= limit * limit, dash, L(0.0));
+        // Clearly below the limit, so that a contact that has just slid is not taken for one that sticks when asked
+        // again.
+        const L sticking = select(dot(trial, trial) < L(1 - 1e-12) * limit * limit, dash, L(0.0));
         response.shear = shortened(spring - sticking * at.tangential(at.velocity), limit);
       }
     }

@@ -28,7 +28,7 @@ struct ImageShift {
   Row position, velocity;
 };
 
-/// Candidate pairs of one chunk of bodies. All a's of a chunk belong to it, so no two threads write one sum.
+/// Candidate pairs of one chunk of bodies. All a's belong to it, and all b's or none, so no two threads write one sum.
 struct PairBatch {
   // bodies, by index: centre [m] and radius [m]; velocity [m/s] and 1/mass [1/kg]; spin [rad/s] and 1/inertia
   const Row* position;
@@ -41,12 +41,15 @@ struct PairBatch {
   const std::uint8_t* material;  ///< of each body; null when all are of one material
   const ImageShift* shifts;
   std::size_t first_block, last_block;
-  double dt;  ///< s
+  std::uint32_t last_body;  ///< of the chunk
+  double dt;                ///< s
+  bool again;               ///< the step is in the memory already: forces alone are wanted
   // memory and results
   double* state;           ///< [block][field][block_size]
   std::uint8_t* touching;  ///< [block], a bit a lane
-  ContactRow* row;         ///< [candidate]
-  BodySum* sum;            ///< [body]; only a's are added here, b's are gathered from the rows
+  ContactRow* row;         ///< [candidate, from the first of first_block]: what it does to b; null where b is of the
+                           ///< chunk too, and has its sum as a has
+  BodySum* sum;            ///< [body]
   double largest_overlap;  ///< out: largest overlap over the smaller radius
 };
 

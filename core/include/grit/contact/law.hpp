@@ -21,6 +21,8 @@
 //
 // evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
 // called for lanes that do not touch; their results are discarded, so that they only must not trap.
+// It is asked again at an instant that it has seen, with the memory that it left, dt = 0 and a turn that turns nothing,
+// and answers the same.
 #pragma once
 
 #include <algorithm>
@@ -75,14 +77,15 @@ struct Response {
 
 namespace detail {
 
+/// `turns` is 1; 0 leaves out the change of normal.
 template <class L>
 [[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
-                                                const Vec<L>& spin_b, double dt) {
+                                                const Vec<L>& spin_b, double dt, const L& turns) {
   Turn<L> turn;
   turn.normal = normal;
   turn.bisector = normal + before;
   // Opposite normals, half a turn within a step, have no bisector; the guard against fast bodies trips long before.
-  turn.over = L(1.0) / max(dot(turn.bisector, normal), L(1e-6));
+  turn.over = turns / max(dot(turn.bisector, normal), L(1e-6));
   const L half = L(0.25 * dt) * dot(spin_a + spin_b, normal);  // tan(angle / 2), Cayley's form of a rotation
   const L scale = L(1.0) / (L(1.0) + half * half);
   turn.cosine = (L(1.0) - half * half) * scale;
@@ -121,34 +124,28 @@ template <class Law, class L>
   return pair;
 }
 
-template <class L>
-[[gnu::always_inline]] inline L load_lanes(const double* from) {
-  if constexpr (lane_width<L> == 1) return *from;
-  else return L(from, stdx::element_aligned);
-}
-template <class L>
-[[gnu::always_inline]] inline void store_lanes(const L& value, double* to) {
-  if constexpr (lane_width<L> == 1) *to = value;
-  else value.copy_to(to, stdx::element_aligned);
-}
-
-/// Blocks ahead of which bodies are asked for; 1 and 4 are slower beyond the caches.
+/// Blocks ahead of which bodies of other chunks are asked for: some 100 ns, as long as memory takes.
 constexpr std::size_t bodies_ahead = 2;
 
 /// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
 /// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
-[[gnu::flatten, gnu::noinline]] void pair_loop(PairBatch& batch, const typename Law::template Pair<double>* table,
+[[gnu::flatten, gnu::noinline]] void pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
+  const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
   const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
+  const double remembered_dt = batch.again ? 0 : batch.dt;
+  const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
+  const std::size_t first_row = batch.first_block * block_size;
+  const std::uint32_t last_body = batch.last_body;
 
   for (std::size_t block = batch.first_block; block < batch.last_block; ++block) {
     const std::uint32_t before = batch.touching[block];
-    if (block + bodies_ahead < batch.last_block) {
+    if (batch.row != nullptr && block + bodies_ahead < batch.last_block) {
       for (std::size_t k = 0; k < block_size; ++k) {
         const std::uint32_t b = batch.b[(block + bodies_ahead) * block_size + k];
         __builtin_prefetch(batch.position + b), __builtin_prefetch(batch.velocity + b),
@@ -180,9 +177,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       const std::uint32_t bits_now = detail::bits(touches);
       double* const state_at = batch.state + block * fields * block_size + sub;
       if (bits_now == 0) {
-        if ((before >> sub & ((1u << width) - 1)) != 0) {
+        if ((before >> sub & ((1u << width) - 1u)) != 0) {
           for (std::size_t f = 0; f < fields; ++f) store_lanes(L(0.0), state_at + f * block_size);
-          for (std::size_t k = 0; k < width; ++k) batch.row[first + k] = {};
+          for (std::size_t k = 0; k < width && batch.row != nullptr; ++k) batch.row[first - first_row + k] = {};
         }
         continue;
       }
@@ -208,13 +205,13 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       at.overlap = max(reach - distance, L(0.0));
       at.radius_a = pa.w, at.radius_b = pb.w;
       at.inverse_mass_a = va.w, at.inverse_mass_b = vb.w;
-      at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), batch.dt);
+      at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), remembered_dt, turns);
       // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips. The
       // spins act on the normal of the middle of the step, as the velocities do.
       at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), L(0.5) * at.turn.bisector) +
                     ((reach - distance_before) * per_dt) * (normal - normal_before);
       at.spin = wb.xyz() - wa.xyz();
-      at.dt = dt;
+      at.dt = L(remembered_dt);
       largest = max(largest, at.overlap / max(min(pa.w, pb.w), L(1e-300)));
 
       State state{};
@@ -244,21 +241,31 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       const L normal_force = select(touches, response.normal_force, zero);
       const L overlap = select(touches, at.overlap, zero);
 
-      ContactRow* const row = batch.row + first;
       BodySum* const sum = batch.sum;
-      store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Quad& force) {
-        store(force, row[k].force);
-        sum[ia[k]].force -= force;
-      });
-      store_rows(moment_b.x, moment_b.y, moment_b.z, overlap,
-                 [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
+      if (batch.row == nullptr) {
+        // Padding, which belongs to no chunk, adds its zero to the last body.
+        const auto own_b = [=](std::size_t k) { return std::min(ib[k], last_body); };
+        store_rows(force.x, force.y, force.z, zero, [=](std::size_t k, const Quad& force) {
+          sum[ia[k]].force -= force;
+          sum[own_b(k)].force += force;
+        });
+        store_rows(moment_b.x, moment_b.y, moment_b.z, zero,
+                   [=](std::size_t k, const Quad& moment) { sum[own_b(k)].moment += moment; });
+      } else {
+        ContactRow* const row = batch.row + (first - first_row);
+        store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Quad& force) {
+          store(force, row[k].force);
+          sum[ia[k]].force -= force;
+        });
+        store_rows(moment_b.x, moment_b.y, moment_b.z, overlap,
+                   [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
+      }
       store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
                  [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
   }
-  if constexpr (width == 1) batch.largest_overlap = largest;
-  else batch.largest_overlap = stdx::hmax(largest);
+  out.largest_overlap = detail::largest(largest);
 }
 
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact.
@@ -295,7 +302,7 @@ template <class Law, unsigned Features, class L>
     at.overlap = lanes([](const WallTouch& t) { return t.overlap; });
     at.radius_a = at.radius_b = pa.w;
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
-    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt);
+    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
     // The last term takes the wall's velocity where the sphere's surface would be: none slips that a wall carries along
     // as it turns, or that pivots about an edge.
     at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), L(0.5) * at.turn.bisector) +
