@@ -1,0 +1,30 @@
+"""What is promised and what is wanted. docs/performance.md has the same in words."""
+
+# grit's particle-steps per second over a peer's: (law, grains, threads, peer) → (promised, wanted)
+RATIOS = {
+    ('rolling', 10000, 1, 'liggghts'): (4.5, 6),
+    ('rolling', 10000, 1, 'lammps'): (4.5, 6),
+    ('rolling', 10000, 1, 'yade'): (25, None),
+    ('rolling', 50000, 1, 'liggghts'): (4, 6),
+    ('rolling', 50000, 1, 'lammps'): (4, 6),
+    ('no-rolling', 50000, 1, 'lammps'): (2.5, 4),
+    ('hertz', 10000, 1, 'lammps'): (3, 5),
+    ('hertz', 50000, 1, 'lammps'): (3, 5),
+}
+
+
+def verdict(figure, promised, wanted, at_most=False):
+    """In words, how a figure stands to its bounds; those of a ratio of costs are upper ones."""
+    if promised is None:
+        return ''
+    holds = (lambda bound: figure <= bound) if at_most else (lambda bound: figure >= bound)
+    if wanted is not None and holds(wanted):
+        return 'as wanted'
+    return 'holds' if holds(promised) else '**misses**'
+
+
+def in_words(promised, wanted, at_most=False):
+    if promised is None:
+        return ''
+    sign = '≤' if at_most else '≥'
+    return f'{sign} {promised:g}' + (f', wanted {wanted:g}' if wanted is not None else '')

@@ -1,0 +1,110 @@
+"""The machine that figures are taken on, and processes that are timed there."""
+import datetime
+import os
+import platform
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+# Other processes that take more than this share of one core during a run have disturbed it.
+DISTURBED = 0.05
+
+
+class Complaint(Exception):
+    """Something that whoever called can mend: where, what was found, what is allowed, what to do."""
+
+
+class Run(NamedTuple):
+    output: str
+    seconds: float
+    others: float  # cores that all other processes kept busy meanwhile
+
+
+def facts():
+    cpu = next((line.split(':', 1)[1].strip() for line in Path('/proc/cpuinfo').read_text().splitlines()
+                if line.startswith('model name')), platform.processor() or 'unknown')
+    return {'cpu': cpu, 'cores': os.cpu_count(), 'system': platform.platform(),
+            'load_average': [round(x, 2) for x in os.getloadavg()],
+            'date': datetime.datetime.now(datetime.timezone.utc).strftime('%Y-%m-%dT%H:%M:%SZ'),
+            'command': ' '.join([os.path.relpath(sys.argv[0]), *sys.argv[1:]])}
+
+
+def head(state):
+    """The lines above a table: where and when its figures were taken."""
+    lines = [f"`{state['command']}`, {state['date']}",
+             f"{state['cpu']}, {state['cores']} cores, {state['system']}; load at the start "
+             + ' '.join(map(str, state['load_average']))]
+    lines += [f'{key}: {value}' for key, value in state.items()
+              if key not in ('cpu', 'cores', 'system', 'load_average', 'date', 'command')]
+    return '\n'.join(f'- {line}' for line in lines) + '\n'
+
+
+def cores(threads):
+    """The cores that so many threads are pinned to."""
+    mine = sorted(os.sched_getaffinity(0))
+    if threads > len(mine):
+        raise Complaint(f'{threads} threads were asked for, but this process may use {len(mine)} cores; '
+                        'ask for fewer (--threads)')
+    return mine[:threads]
+
+
+def _all_busy():
+    # user, nice, system, irq, softirq; what the host of a virtual machine takes away is not seen
+    ticks = [int(word) for word in Path('/proc/stat').read_text().split('\n', 1)[0].split()[1:]]
+    return (ticks[0] + ticks[1] + ticks[2] + ticks[5] + ticks[6]) / os.sysconf('SC_CLK_TCK')
+
+
+def _own_busy():
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+def pinned(command, threads):
+    taskset = shutil.which('taskset')
+    if taskset is None:
+        raise Complaint('there is no `taskset`, without which threads wander; install util-linux')
+    return [taskset, '-c', ','.join(map(str, cores(threads))), *map(str, command)]
+
+
+def run(command, threads, folder, environment=None, timeout=1800):
+    """Runs a command pinned to as many cores as it has threads. Raises CalledProcessError if it fails."""
+    environment = os.environ | {'OMP_NUM_THREADS': '1'} | (environment or {})
+    start, busy, own = time.perf_counter(), _all_busy(), _own_busy()
+    # A session of its own, so that what it started ends with it.
+    process = subprocess.Popen(pinned(command, threads), cwd=folder, env=environment, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, errors='replace', start_new_session=True)
+    try:
+        output, _ = process.communicate(timeout=timeout)
+    except BaseException:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        raise
+    seconds = time.perf_counter() - start
+    others = max(0.0, (_all_busy() - busy) - (_own_busy() - own)) / seconds
+    if process.returncode != 0:
+        raise subprocess.CalledProcessError(process.returncode, command, output)
+    return Run(output, seconds, others)
+
+
+def say(line):
+    print(line, file=sys.stderr, flush=True)
+
+
+def main(work):
+    """Calls work() and turns what it raises into a line on standard error and an exit status."""
+    name = os.path.relpath(sys.argv[0])
+    try:
+        sys.exit(work())
+    except Complaint as complaint:
+        say(f'{name}: {complaint}')
+        sys.exit(2)
+    except subprocess.CalledProcessError as error:
+        say(f'{name}: exit status {error.returncode} of: ' + ' '.join(map(str, error.cmd)))
+        say('\n'.join((error.output or '').splitlines()[-20:]))
+        sys.exit(1)
+    except KeyboardInterrupt:
+        sys.exit(130)

@@ -1,0 +1,216 @@
+"""Periodic packings as text, `x y z r` a line in m: made by grit, made larger by repeating them, read for peers."""
+import hashlib
+import json
+import math
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from . import grit
+from .machine import Complaint, say
+
+ROOT = Path(__file__).resolve().parents[2]
+STORE = ROOT / 'results' / 'bench'
+PACK, PRESS = (ROOT / 'bench' / 'scenes' / name for name in ('pack.json', 'press.json'))
+PRESSURE = 150e3  # Pa
+
+UNIFORM = {'type': 'uniform', 'smallest': 0.25e-3, 'largest': 0.75e-3}
+# Equal mass in each of ten classes whose diameters grow by the same factor: grains of all sizes, most of them small.
+_SIEVES = [0.25e-3 * 10 ** (i / 10) for i in range(11)]
+WIDE = {'type': 'sieve', 'diameters': _SIEVES, 'passing': [i / 10 for i in range(11)]}
+
+
+class Cell(NamedTuple):
+    low: tuple
+    high: tuple
+
+    def sides(self):
+        return tuple(high - low for low, high in zip(self.low, self.high))
+
+
+class Packing(NamedTuple):
+    path: Path
+    cell: Cell
+    grains: int
+    digest: str  # the first letters of the file's SHA-256
+
+    def settings(self, cell=True):
+        """What turns a scene of bench/scenes into one of this packing, and of its cell."""
+        grains = {'/bodies/sand/grains/path': str(self.path)}
+        if not cell:
+            return grains
+        return grains | {'/domain/low': list(self.cell.low), '/domain/high': list(self.cell.high)}
+
+    def rows(self):
+        """x, y, z, r of each grain, from the cell's lower corner."""
+        with open(self.path, encoding='utf-8') as lines:
+            for line in lines:
+                words = line.partition('#')[0].split()
+                if words:
+                    x, y, z, r = map(float, words)
+                    yield x - self.cell.low[0], y - self.cell.low[1], z - self.cell.low[2], r
+
+    def __str__(self):
+        return f'{self.path.parent.name if self.path.name == "packing.txt" else self.path.name} (sha256 {self.digest})'
+
+
+def read(path, side=None):
+    """A packing of any origin. Its cell stands in a comment, or is a cube from the origin whose side is given."""
+    path = Path(path).resolve()
+    if not path.is_file():
+        raise Complaint(f'{path}: no such packing; name a file of lines `x y z r` in m, or leave out --packing and '
+                        'one is made')
+    grains, cell, digest = 0, None, hashlib.sha256()
+    number = r'([-+0-9.eE]+)'
+    with open(path, 'rb') as lines:
+        for count, raw in enumerate(lines, 1):
+            digest.update(raw)
+            line = raw.decode('utf-8', 'replace')
+            if line.startswith('#'):
+                if match := re.match(rf'# cell {number} {number} {number} to {number} {number} {number}', line):
+                    ends = tuple(map(float, match.groups()))
+                    cell = Cell(ends[:3], ends[3:])
+            elif words := line.partition('#')[0].split():
+                try:
+                    fine = len(words) == 4 and all(math.isfinite(float(word)) for word in words)
+                except ValueError:
+                    fine = False
+                if not fine:
+                    raise Complaint(f'{path}:{count}: found "{line.strip()[:60]}"; a grain is four numbers: x y z r, '
+                                    'in m')
+                grains += 1
+    if side is not None:
+        cell = Cell((0.0,) * 3, (side,) * 3)
+    if cell is None:
+        raise Complaint(f'{path}: does not say its cell; allowed is a comment `# cell x y z to x y z, m`, or say its '
+                        'side in m: --side 0.0109')
+    return Packing(path, cell, grains, digest.hexdigest()[:12])
+
+
+def made(program, name, count, sizes=None, seed=1):
+    """A dense packing under PRESSURE that grit makes once; its folder's name has what it was made from."""
+    sizes = sizes or UNIFORM
+    recipe = json.dumps([PACK.read_text(), PRESS.read_text(), PRESSURE, count, sizes, seed], sort_keys=True)
+    folder = STORE / f'{name}-{count}-seed{seed}-{hashlib.sha256(recipe.encode()).hexdigest()[:8]}'
+    if not folder.is_dir():
+        say(f'making {folder.relative_to(ROOT)} …')
+        # A cloud with 70 % of the volume empty lets grains be placed at once.
+        side = (_solids(sizes, count) / 0.3) ** (1 / 3)
+        part = folder.with_name(folder.name + '.part')
+        done = grit.run(program, PACK, part, threads=None, settings={
+            '/seed': seed, '/domain/high': [side] * 3, '/bodies/sand/grains/high': [side] * 3,
+            '/bodies/sand/grains/count': count, '/bodies/sand/grains/sizes': sizes})
+        _press(program, part, _pressure(done))
+        _into_cell(part / 'packing.txt')
+        part.rename(folder)
+    return read(folder / 'packing.txt')
+
+
+def _into_cell(path):
+    """Grains that have crossed a side since the last search stand outside of the cell; puts them back."""
+    lines = path.read_text(encoding='utf-8').splitlines()
+    cell = read(path).cell
+    with open(path, 'w', encoding='utf-8') as out:
+        for line in lines:
+            if not line.startswith('#'):
+                *place, radius = map(float, line.split())
+                place = [low + (x - low) % (high - low) for x, low, high in zip(place, *cell)]
+                line = ' '.join(map(repr, [*map(min, place, cell.high), radius]))
+            out.write(line + '\n')
+
+
+def _press(program, folder, pressure):
+    """Closes or opens the cell, again and again, until its grains rest under PRESSURE."""
+    # Pa per volumetric strain, for the first try; afterwards as found.
+    stiffness = 8e7
+    for _ in range(20):
+        say(f'  {pressure / 1e3:.0f} kPa')
+        if abs(pressure / PRESSURE - 1) < 0.05:
+            return
+        # Not too far at once: what touches little is soft.
+        strain = max(-0.005, min(0.005, (pressure - PRESSURE) / stiffness))
+        before = pressure
+        rate = math.copysign(5.0, strain)
+        # A run does not read what it writes.
+        start = (folder / 'packing.txt').rename(folder / 'before.txt')
+        _into_cell(start)
+        done = grit.run(program, PRESS, folder, threads=None, settings=read(start).settings() | {
+            '/domain/strain_rate': [rate] * 3, '/stages/0/until/value': abs(strain / (3 * rate))})
+        pressure = _pressure(done)
+        if (found := (before - pressure) / strain) > 0:
+            stiffness = min(3e8, max(1e7, found))
+    raise Complaint(f'{folder}: the packing does not come to {PRESSURE / 1e3:g} kPa; found {pressure / 1e3:.0f} kPa; '
+                    'try another seed')
+
+
+def _pressure(done):
+    """The mean stress that a run ended with [Pa], from what it printed."""
+    return float(re.search(r'^packing/mean_stress: .*final (\S+)', done.output, re.M).group(1))
+
+
+def _run_once(program, scene, folder, settings):
+    """The packing that a scene ends with; the folder gets its name when all is done, so that none is half made."""
+    if not folder.is_dir():
+        say(f'making {folder.relative_to(ROOT)} …')
+        part = folder.with_name(folder.name + '.part')
+        grit.run(program, scene, part, threads=None, settings=settings)
+        part.rename(folder)
+    return read(folder / 'packing.txt')
+
+
+def _solids(sizes, count):
+    """Volume of the grains [m³], from the moments of their distribution."""
+    if sizes['type'] == 'uniform':
+        a, b = sizes['smallest'], sizes['largest']
+        mean_cube = (b**4 - a**4) / (4 * (b - a))
+    else:
+        # In a class with its mass spread evenly over the diameter, numbers go with 1/d³.
+        number = mass = 0.0
+        for a, b, low, high in zip(sizes['diameters'], sizes['diameters'][1:], sizes['passing'], sizes['passing'][1:]):
+            share = high - low
+            mass += share
+            number += share * (a + b) / (2 * a * a * b * b)
+        mean_cube = mass / number
+    return count * math.pi / 6 * mean_cube
+
+
+def repeated(packing, times):
+    """The packing set side by side so many times along each axis."""
+    nx, ny, nz = times
+    count = packing.grains * nx * ny * nz
+    folder = STORE / f'repeated-{count}-{packing.digest}-{nx}x{ny}x{nz}'
+    path = folder / 'packing.txt'
+    if not path.is_file():
+        say(f'making {folder.relative_to(ROOT)} …')
+        folder.mkdir(parents=True, exist_ok=True)
+        a, b, c = packing.cell.sides()
+        rows = list(packing.rows())
+        part = folder / 'packing.txt.part'
+        with open(part, 'w', encoding='utf-8') as out:
+            out.write(f'# {packing}, {nx} x {ny} x {nz} times\n# cell 0 0 0 to {a * nx!r} {b * ny!r} {c * nz!r}, m\n')
+            for i in range(nx):
+                for j in range(ny):
+                    for k in range(nz):
+                        out.writelines(
+                            f'{min(x + i * a, nx * a)!r} {min(y + j * b, ny * b)!r} {min(z + k * c, nz * c)!r} {r!r}\n'
+                            for x, y, z, r in rows)
+        part.rename(path)
+    return read(path)
+
+
+def dense(program, grains):
+    """The packing of the dense box: diameters 0.25 … 0.75 mm in equal numbers, void ratio about 0.58, 150 kPa."""
+    return made(program, 'dense', grains)
+
+
+def wide(program, grains):
+    """Diameters 0.25 … 2.5 mm, of equal mass in classes that grow by the same factor."""
+    return made(program, 'wide', grains, WIDE)
+
+
+def filled_silo(program):
+    """The grains of bench/scenes/silo.json, at rest on its closed floor."""
+    fill = PACK.with_name('silo-fill.json')
+    digest = hashlib.sha256((fill.read_text() + fill.with_name('silo.json').read_text()).encode()).hexdigest()[:8]
+    folder = STORE / f'silo-{digest}'
+    return _run_once(program, fill, folder, {})

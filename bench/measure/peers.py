@@ -1,0 +1,143 @@
+"""The dense box in the other codes: what they are given, how they are run, what they say."""
+import json
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+from . import grit, machine
+from .machine import Complaint
+
+ROOT = Path(__file__).resolve().parents[2]
+INPUTS = ROOT / 'bench' / 'peers'
+STORE = ROOT / 'results' / 'bench'
+PROGRAMS = {'yade': 'yade', 'liggghts': 'liggghts', 'lammps': 'lmp'}
+CODES = ('grit', *PROGRAMS)
+
+# What each code calls the law. bench/README.md says what still differs.
+LAWS = {
+    'rolling': {'grit': 'linear-rolling', 'liggghts': 'hooke/stiffness, epsd2', 'lammps': 'granular hooke, sds',
+                'yade': 'CohFrict 6D, moments'},
+    'no-rolling': {'grit': 'linear-frictional', 'liggghts': 'hooke/stiffness', 'lammps': 'gran/hooke/history',
+                   'yade': 'Cundall-Strack'},
+    'hertz': {'grit': 'hertz-mindlin', 'liggghts': 'hertz', 'lammps': 'gran/hertz/history', 'yade': 'Hertz-Mindlin'},
+}
+SCENES = {'rolling': 'dense-box.json', 'no-rolling': 'dense-box-no-rolling.json', 'hertz': 'dense-box-hertz.json'}
+
+TIME_STEP = 2.5e-7  # s
+RATE = 10.0         # 1/s, of the axis that shortens
+SKIN = 3e-5         # m; of 2e-5 … 15e-5 the best within noise, for LAMMPS and LIGGGHTS
+MODULUS, SHEAR_TO_NORMAL, YOUNG, POISSON, RESTITUTION = 300e6, 0.3, 3.64e9, 0.3, 0.85
+# LAMMPS and LIGGGHTS have one stiffness for all pairs: modulus × 0.24 mm, the mean of 2 Ra Rb / (Ra + Rb) over contacts.
+STIFFNESS = MODULUS * 0.24e-3
+FRICTION = math.tan(math.radians(18))
+# 1/s. About 5 % of critical for the mean pair, which gives a restitution of 0.85.
+DAMPING = 8e4
+# LAMMPS multiplies Hertz's by √(overlap × reduced radius), 1.1e-5 m at the mean contact, which is softer than above.
+DAMPING_HERTZ = 0.77 * DAMPING / 1.1e-5
+
+
+def versions(codes, program):
+    said = {}
+    for code in codes:
+        if code == 'grit':
+            said[code] = grit.version(program)
+        else:
+            package = subprocess.run(['dpkg-query', '-W', '-f', '${Version}', code], capture_output=True, text=True)
+            said[code] = package.stdout.strip() or 'version unknown'
+    return said
+
+
+def installed(code):
+    return code == 'grit' or shutil.which(PROGRAMS[code]) is not None
+
+
+class Box:
+    """One packing, ready for every code."""
+
+    def __init__(self, packing, program):
+        self.packing, self.program = packing, program
+        self.folder = STORE / 'compare' / packing.digest
+        self._data = self._rows = None
+
+    def run(self, code, law, threads, warm, steps):
+        """Particle-steps per second, contacts per grain, and the cores that other processes kept busy meanwhile."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        return getattr(self, '_' + code)(law, threads, warm, steps)
+
+    def _grit(self, law, threads, warm, steps):
+        settings = self.packing.settings() | {'/stages/0/until/value': warm, '/stages/1/until/value': steps}
+        window = grit.window(self.program, ROOT / 'bench' / 'scenes' / SCENES[law], self.folder / 'grit', threads,
+                             settings)
+        return window.particle_steps_per_second(), window.contacts_per_grain, window.others
+
+    def _yade(self, law, threads, warm, steps):
+        given = {'grains': str(self._plain()), 'sides': self.packing.cell.sides(), 'law': law, 'density': 2600.0,
+                 'mu': FRICTION, 'modulus': MODULUS, 'shear_to_normal': SHEAR_TO_NORMAL, 'young': YOUNG,
+                 'poisson': POISSON, 'restitution': RESTITUTION, 'dt': TIME_STEP, 'rate': RATE, 'warm': warm,
+                 'steps': steps}
+        done = machine.run(['yade', f'-j{threads}', '-n', '-x', INPUTS / 'dense-box.yade.py'], threads, self.folder,
+                           {'DENSE_BOX': json.dumps(given), 'OMP_NUM_THREADS': str(threads),
+                            'OMP_PROC_BIND': 'true', 'OMP_PLACES': 'cores'})
+        found = re.search(r'^RESULT (\[.*\])', done.output, re.M)
+        if not found:
+            raise Complaint('yade ended without a result; it said:\n' + done.output[-2000:])
+        seconds, before, after = json.loads(found.group(1))
+        return self.packing.grains * steps / seconds, (before + after) / 2, done.others
+
+    def _lammps(self, law, threads, warm, steps):
+        kn, kt, gamma = STIFFNESS, SHEAR_TO_NORMAL * STIFFNESS, DAMPING
+        if law == 'hertz':
+            shear = YOUNG / (2 * (1 + POISSON))
+            kn, kt, gamma = 4 * shear / (3 * (1 - POISSON)), 4 * shear / (2 - POISSON), DAMPING_HERTZ
+        values = {'law': law.replace('-', '_'), 'kn': kn, 'kt': kt, 'gamma': gamma, 'mu': FRICTION, 'rolling': 0.8, 'rate': RATE}
+        return self._molecular('lammps', values, threads, warm, steps)
+
+    def _liggghts(self, law, threads, warm, steps):
+        values = {'model': 'hertz' if law == 'hertz' else 'hooke/stiffness',
+                  'resistance': 'epsd2' if law == 'rolling' else 'off', 'kn': STIFFNESS,
+                  'kt': SHEAR_TO_NORMAL * STIFFNESS, 'gamma': DAMPING, 'mu': FRICTION, 'rolling': 0.8, 'young': YOUNG,
+                  'poisson': POISSON, 'restitution': RESTITUTION, 'half': RATE / 2, 'less': -RATE}
+        # It does not work out formulas within a command.
+        for axis, side, rate in zip('xyz', self.packing.cell.sides(), (RATE / 2, RATE / 2, -RATE)):
+            values |= {f'{axis}high': side, f'v{axis}': rate * side / 2, f'v{axis}_low': -rate * side / 2}
+        return self._molecular('liggghts', values, threads, warm, steps)
+
+    def _molecular(self, code, values, threads, warm, steps):
+        """LAMMPS and LIGGGHTS, one rank a core."""
+        values |= {'data': self._atoms(), 'skin': SKIN, 'dt': TIME_STEP, 'warm': warm, 'steps': steps}
+        command = [PROGRAMS[code], '-in', INPUTS / f'dense-box.{code}', '-log', 'none']
+        for name, value in values.items():
+            command += ['-var', name, f'{value:.12e}' if isinstance(value, float) else value]
+        if threads > 1:
+            command = ['mpirun', '--allow-run-as-root', '-np', threads, '--bind-to', 'core', *command]
+        done = machine.run(command, threads, self.folder)
+        timed = re.search(r'^TIMED$(.*?)^END$', done.output, re.M | re.S)
+        loop = timed and re.search(rf'^Loop time of (\S+) on \d+ procs for {steps} steps', timed.group(1), re.M)
+        contacts = re.findall(r'^CONTACTS (\S+)$', done.output, re.M)
+        if not loop or len(contacts) != 2:
+            raise Complaint(f'{code} ended without a result; it said:\n{done.output[-2000:]}')
+        return self.packing.grains * steps / float(loop.group(1)), sum(map(float, contacts)) / 2, done.others
+
+    def _plain(self):
+        """The grains without a comment, from the cell's corner."""
+        path = self.folder / 'grains.txt'
+        if self._rows is None:
+            self._rows = path
+            with open(path, 'w', encoding='utf-8') as out:
+                out.writelines(f'{x!r} {y!r} {z!r} {r!r}\n' for x, y, z, r in self.packing.rows())
+        return path
+
+    def _atoms(self):
+        """LAMMPS's data file."""
+        path = self.folder / 'atoms.data'
+        if self._data is None:
+            self._data = path
+            with open(path, 'w', encoding='utf-8') as out:
+                out.write(f'dense box\n\n{self.packing.grains} atoms\n1 atom types\n\n')
+                out.writelines(f'0.0 {side!r} {axis}lo {axis}hi\n' for axis, side in zip('xyz', self.packing.cell.sides()))
+                out.write('\nAtoms\n\n')
+                out.writelines(f'{i} 1 {2 * r!r} 2600.0 {x!r} {y!r} {z!r}\n'
+                               for i, (x, y, z, r) in enumerate(self.packing.rows(), 1))
+        return path
