@@ -1,0 +1,93 @@
+// Dense grains for kernels that are timed alone: all that touches the kernel's inner types stands here.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+
+#include "support/packing.hpp"
+#include "support/scene.hpp"
+
+namespace grit::bench {
+
+inline constexpr double spacing = 0.5e-3;  // m
+inline constexpr double time_step = 2.5e-7;
+
+/// About so many grains on a jumbled cubic lattice. Each touches some four and a half others, as in sand.
+inline std::vector<test::Grain> grains(std::size_t about) {
+  const int side = static_cast<int>(std::lround(std::cbrt(static_cast<double>(about))));
+  auto all = test::jumble({side, side, side}, spacing, 0.01, 1);
+  for (test::Grain& grain : all) grain.radius *= 1.02;
+  return all;
+}
+
+/// The parameters that the dense box has.
+inline Description material(const std::string& law) {
+  if (law == "hertz-mindlin") return {{"young_modulus", 3.64e9}, {"poisson_ratio", 0.3}, {"restitution", 0.85}};
+  if (law == "linear-frictional") return {{"contact_modulus", 300e6}, {"restitution", 0.85}};
+  return {{"contact_modulus", 300e6}};
+}
+
+/// Bodies, their contacts and what acts on them, without a scene's stages and guards.
+class Dense {
+ public:
+  Dense(const std::string& law, std::size_t about)
+      : scene_(test::scene_of(test::description(law, material(law), {{Vec3::Zero(), spacing}}))), team_(1) {
+    law_ = scene_.description->contacts.get();
+    const std::array<std::string, 1> names{"grain"};
+    law_->mix(names);
+    for (const test::Grain& g : grains(about)) {
+      const double mass = 2600 * 4 / 3 * std::numbers::pi * std::pow(g.radius, 3);
+      bodies_.add(g.position, g.radius, mass, 0.4 * mass * g.radius * g.radius, 0, g.velocity, g.spin);
+    }
+    bodies_.finish({});
+    const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
+    cell_ = {-open, open};
+    bodies_.reorder(spatial_order(bodies_, cell_));
+    sum_.assign(bodies_.count() + 1, {});
+    search();
+    contacts();
+    search();  // now that it is known what touches
+    contacts();
+  }
+
+  void search() {
+    search_.build(bodies_, cell_, 0.06 * spacing);
+    pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_);
+  }
+  void contacts() {
+    for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) {
+      const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+      std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
+                BodySum{});
+      pairs_.evaluate(chunk, *law_, bodies_, true, &no_shift_, time_step, sum_.data());
+    }
+  }
+  /// All of the arithmetic, but nothing comes to move: else the grains would fly apart.
+  void motion() {
+    MotionStep step{
+        .settings = {}, .kick = 0, .drift = 0, .flowed = 0, .strain_rate = Vec3::Zero(), .centre = Vec3::Zero()};
+    step.settings.local_damping = 0.08;
+    for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk)
+      move_bodies(chunk, bodies_, pairs_, sum_.data(), step);
+  }
+
+  std::size_t count() const { return bodies_.count(); }
+  std::size_t touching() const { return pairs_.touching_count(); }
+
+ private:
+  Scene scene_;
+  std::shared_ptr<ContactLaw> law_;
+  Team team_;
+  Bodies bodies_;
+  Cell cell_;
+  NeighbourSearch search_;
+  ContactTable pairs_;
+  LargeArray<BodySum> sum_;
+  ImageShift no_shift_{};
+};
+
+}  // namespace grit::bench
