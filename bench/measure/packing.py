@@ -87,10 +87,10 @@ def read(path, side=None):
     return Packing(path, cell, grains, digest.hexdigest()[:12])
 
 
-def made(program, name, count, sizes=None, seed=1):
-    """A dense packing under PRESSURE that grit makes once; its folder's name has what it was made from."""
-    sizes = sizes or UNIFORM
-    recipe = json.dumps([PACK.read_text(), PRESS.read_text(), PRESSURE, count, sizes, seed], sort_keys=True)
+def made(program, name, count, sizes, void_ratio, seed=1):
+    """A dense packing under PRESSURE that grit makes once; its folder's name has what it was made from. It shrinks to
+    `void_ratio` in one go."""
+    recipe = json.dumps([PACK.read_text(), PRESS.read_text(), PRESSURE, count, sizes, void_ratio, seed], sort_keys=True)
     folder = STORE / f'{name}-{count}-seed{seed}-{hashlib.sha256(recipe.encode()).hexdigest()[:8]}'
     if not folder.is_dir():
         say(f'making {folder.relative_to(ROOT)} …')
@@ -99,7 +99,8 @@ def made(program, name, count, sizes=None, seed=1):
         part = folder.with_name(folder.name + '.part')
         done = grit.run(program, PACK, part, threads=None, settings={
             '/seed': seed, '/domain/high': [side] * 3, '/bodies/sand/grains/high': [side] * 3,
-            '/bodies/sand/grains/count': count, '/bodies/sand/grains/sizes': sizes})
+            '/bodies/sand/grains/count': count, '/bodies/sand/grains/sizes': sizes,
+            '/stages/0/until/below': 1.2 * void_ratio, '/stages/1/until/below': void_ratio})
         _press(program, part, _pressure(done))
         _into_cell(part / 'packing.txt')
         part.rename(folder)
@@ -128,7 +129,7 @@ def _press(program, folder, pressure):
         if abs(pressure / PRESSURE - 1) < 0.05:
             return
         # Not too far at once: what touches little is soft.
-        strain = max(-0.005, min(0.005, (pressure - PRESSURE) / stiffness))
+        strain = max(-0.005, min(0.005, (pressure - PRESSURE) / stiffness)) if pressure > 0.1 * PRESSURE else -0.01
         before = pressure
         rate = math.copysign(5.0, strain)
         # A run does not read what it writes.
@@ -200,12 +201,12 @@ def repeated(packing, times):
 
 def dense(program, grains):
     """The packing of the dense box: diameters 0.25 … 0.75 mm in equal numbers, void ratio about 0.58, 150 kPa."""
-    return made(program, 'dense', grains)
+    return made(program, 'dense', grains, UNIFORM, 0.59)
 
 
 def wide(program, grains):
     """Diameters 0.25 … 2.5 mm, of equal mass in classes that grow by the same factor."""
-    return made(program, 'wide', grains, WIDE)
+    return made(program, 'wide', grains, WIDE, 0.4)
 
 
 def filled_silo(program):

@@ -1,0 +1,120 @@
+"""usage: test_bench.py ROOT GRIT [what unittest takes]
+
+Runs the scripts of bench/ as a user would, on 500 grains, and every scene of bench/scenes through `grit check`.
+"""
+import json
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT, GRIT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+BENCH = ROOT / 'bench'
+
+
+def call(*words):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=60)
+
+
+def lattice(path, per_side=8, spacing=0.5e-3, comment=True):
+    """Grains that overlap a little, in a periodic cell that they fill."""
+    numbers = random.Random(1)
+    side = per_side * spacing
+    with open(path, 'w', encoding='utf-8') as out:
+        if comment:
+            out.write(f'# cell 0 0 0 to {side} {side} {side}, m\n')
+        for place in range(per_side ** 3):
+            x, y, z = (spacing * (place // per_side ** axis % per_side + 0.5) for axis in range(3))
+            out.write(f'{x} {y} {z} {spacing * numbers.uniform(0.498, 0.504)}\n')
+    return path
+
+
+class Bench(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.place = Path(cls.folder.name)
+        cls.packing = lattice(cls.place / 'packing.txt')
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def refused(self, done, *parts):
+        self.assertEqual(done.returncode, 2, done.stderr)
+        for part in parts:
+            self.assertIn(part, done.stderr)
+        self.assertNotIn('Traceback', done.stderr)
+
+    def test_each_script_explains_itself(self):
+        for script in ('compare', 'rows', 'check', 'roofline'):
+            done = call(BENCH / script, '--help')
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn('usage:', done.stdout)
+
+    def test_compare_times_every_law(self):
+        out = self.place / 'compare.json'
+        done = call(BENCH / 'compare', '--grit', GRIT, '--codes', 'grit', '--threads', 1, '--packing', self.packing, '--rounds', 2,
+                    '--warm-up', 20, '--steps', 50, '--attempts', 1, '--json', out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = json.loads(out.read_text(encoding='utf-8'))['rows']
+        self.assertEqual([row['law'] for row in rows], ['rolling', 'no-rolling', 'hertz'])
+        for row in rows:
+            self.assertEqual((row['code'], row['grains'], row['threads']), ('grit', 512, 1))
+            self.assertGreater(row['contacts_per_grain'], 1)
+            self.assertTrue(0 < row['lowest'] <= row['median'] <= row['highest'])
+            self.assertIn(f"| grit | {row['law']}", done.stdout)
+
+    def test_wrong_use_is_explained(self):
+        compare = [BENCH / 'compare', '--grit', GRIT]
+        self.refused(call(BENCH / 'compare', '--grit', self.place / 'nothing'), 'no such program', 'build it')
+        self.refused(call(*compare, '--packing', self.place / 'nothing.txt'), 'no such packing', 'leave out --packing')
+        self.refused(call(*compare, '--laws', 'rolling,rocking'), '"rocking"', 'allowed are rolling, no-rolling, hertz')
+        self.refused(call(*compare, '--codes', 'esys'), '"esys"', 'allowed are grit')
+        self.refused(call(*compare, '--rounds', 0), 'at least 1')
+        bare = lattice(self.place / 'bare.txt', comment=False)
+        self.refused(call(*compare, '--packing', bare), 'does not say its cell', '--side')
+        wrong = self.place / 'wrong.txt'
+        wrong.write_text('# cell 0 0 0 to 1 1 1, m\n0 0 0\n', encoding='utf-8')
+        self.refused(call(*compare, '--packing', wrong), 'wrong.txt:2', 'x y z r')
+        self.refused(call(BENCH / 'rows', '--grit', GRIT, 'speed'), 'no row "speed"', 'allowed are threads')
+        self.refused(call(BENCH / 'check', 'no-such-commit'), 'no such commit')
+        self.refused(call(BENCH / 'roofline', self.place / 'nothing.json'), 'no such file', 'bench_kernels')
+
+    def test_roofline_draws_what_kernels_measured(self):
+        kernels = self.place / 'kernels.json'
+        one = {'contacts_per_grain': 4.5, 'run_type': 'iteration'}
+        kernels.write_text(json.dumps({'benchmarks': [
+            {'name': 'machine/triad/629145600', 'bytes_per_s': 2e10}, {'name': 'machine/triad/4194304', 'bytes_per_s': 9e10},
+            {'name': 'machine/multiply-add', 'flops_per_s': 5e10},
+            one | {'name': 'contacts/linear-rolling/10000', 'contacts_per_s': 5e7},
+            one | {'name': 'motion/10000', 'grains_per_s': 8e7}]}), encoding='utf-8')
+        picture = self.place / 'roofline.svg'
+        done = call(BENCH / 'roofline', kernels, '--out', picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('| contacts, linear-rolling | 10000 | 20.0 |', done.stdout)
+        self.assertEqual(picture.read_text(encoding='utf-8').count('stroke-width="2" fill='), 2)
+
+    def test_every_scene_is_a_description(self):
+        scenes = sorted((BENCH / 'scenes').glob('*.json'))
+        self.assertGreater(len(scenes), 5)
+        boxes = ['/bodies/sand/grains/path', '/domain/high']
+        settings = {'dense-box': boxes, 'press': boxes, 'silo': boxes[:1]}
+        for scene in scenes:
+            words = []
+            for name, pointers in settings.items():
+                if scene.stem.startswith(name) and scene.stem != 'silo-fill':
+                    values = {'/bodies/sand/grains/path': str(self.packing), '/domain/high': [4e-3] * 3}
+                    for pointer in pointers:
+                        words += ['--set', f'{pointer}={json.dumps(values[pointer])}']
+            # As many grains as it takes to see that the scene is one.
+            if '"cloud"' in scene.read_text(encoding='utf-8'):
+                words += ['--set', '/bodies/sand/grains/count=200']
+            with self.subTest(scene=scene.name):
+                done = call(GRIT, 'check', scene, *words)
+                self.assertEqual(done.returncode, 0, done.stderr)
+
+
+unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
