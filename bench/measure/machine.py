@@ -97,6 +97,9 @@ def say(line):
 def main(work):
     """Calls work() and turns what it raises into a line on standard error and an exit status."""
     name = os.path.relpath(sys.argv[0])
+    # Both ways of being stopped end what was started and clear up.
+    for stop in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(stop, signal.default_int_handler)
     try:
         sys.exit(work())
     except Complaint as complaint:
