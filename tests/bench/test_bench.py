@@ -15,7 +15,7 @@ BENCH = ROOT / 'bench'
 
 
 def call(*words):
-    return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=60)
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=120)
 
 
 def lattice(path, per_side=8, spacing=0.5e-3, comment=True):
