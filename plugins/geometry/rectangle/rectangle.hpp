@@ -1,7 +1,7 @@
 // A flat rectangle in space.
 #pragma once
 
-#include "grit/geometry.hpp"
+#include "../sheet.hpp"
 
 namespace grit {
 
@@ -9,22 +9,19 @@ namespace grit {
 class Rectangle : public Geometry {
  public:
   void declare(Parameters& p) override;
-  void prepare() override;
-  Bounds bounds() const override;
-  double area() const override { return length_a_ * length_b_; }
-  Vec3 normal() const override { return normal_; }
+  void prepare() override { sheet_.prepare(); }
+  Bounds bounds() const override { return sheet_.bounds(); }
+  double area() const override { return sheet_.length_a * sheet_.length_b; }
+  Vec3 normal() const override { return sheet_.axes.col(2); }
   void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
   std::vector<Vec3> triangles() const override;
 
  private:
-  struct Frame;
-  Frame frame(const Pose& pose) const;
+  Vec3 offset(const Sheet::Frame& at, const Vec3& centre) const;
 
-  Vec3 corner_ = Vec3::Zero(), edge_a_ = Vec3::UnitX(), edge_b_ = Vec3::UnitY();
+  Sheet sheet_;
   bool two_sided_ = true;
-  Vec3 along_a_ = Vec3::UnitX(), along_b_ = Vec3::UnitY(), normal_ = Vec3::UnitZ();  // unit
-  double length_a_ = 1, length_b_ = 1;
 };
 
 }  // namespace grit
