@@ -1,0 +1,225 @@
+// A rectangular sheet with straight grooves cut into it. See README.md.
+#include "saw-tooth.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <sstream>
+
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+namespace {
+
+constexpr double same_length = 1e-9;  // of a period: room for decimals written by hand
+constexpr double most_grooves = 1e6;  // each is drawn, and a feature's number has 32 bits
+
+std::string number(double value) { return (std::ostringstream() << value).str(); }
+
+}  // namespace
+
+/// Where a tooth or a floor is closest to a centre, in the section.
+struct SawTooth::Closest {
+  Vec2 offset = Vec2::Zero();  // from there to the centre
+  double squared = std::numeric_limits<double>::infinity();
+  double height = -std::numeric_limits<double>::infinity();  // of the centre above the highest of its faces
+  const Face* face = nullptr;                                // where it is closest
+  const Face* highest = nullptr;
+  bool inside_face = false, in_valley = false;  // whether it is closest there within the face, or in a valley
+};
+
+void SawTooth::declare(Parameters& p) {
+  constexpr double right_angle = std::numbers::pi / 2;
+  sheet_.declare(p);
+  p.add("depth", depth_).unit("m").symbol("h").required().above(0).doc("of a groove, from the tips down to its bottom");
+  p.add("inclination", inclination_)
+      .unit("rad")
+      .symbol("α")
+      .above(0)
+      .below(right_angle)
+      .doc("of the flanks against the sheet; if the second differs, of the one that falls along edge_a");
+  p.add("second_inclination", second_inclination_)
+      .unit("rad")
+      .symbol("α_2")
+      .above(0)
+      .below(right_angle)
+      .doc("of the flank that rises along edge_a; default: that of the first");
+  p.add("floor", floor_).unit("m").symbol("f").at_least(0).doc("width of the flat bottom of a groove; 0: it is sharp");
+  p.add("spacing", given_spacing_)
+      .unit("m")
+      .symbol("s")
+      .above(0)
+      .doc("from groove to groove; flat lands are left between them; default: the width of a groove, no lands");
+  p.add("offset", offset_).unit("m").symbol("o").doc("from the corner along edge_a to where some groove begins");
+  p.check([this](const Complain& complain) {
+    const Widths width = widths();
+    if (width.spacing < (1 - same_length) * width.groove())
+      complain("spacing", number(width.spacing) + " m",
+               "at least the width of a groove, its flanks and its floor: " + number(width.groove()) + " m");
+    const double grooves = sheet_.edge_a.norm() / width.spacing;
+    if (grooves > most_grooves)
+      complain(given_spacing_ ? "spacing" : "depth", number(grooves) + " grooves on the sheet",
+               "at most " + number(most_grooves));
+  });
+}
+
+SawTooth::Widths SawTooth::widths() const {
+  Widths width{.falling = depth_ / std::tan(inclination_),
+               .floor = floor_,
+               .rising = depth_ / std::tan(second_inclination_.value_or(inclination_)),
+               .spacing = 0};
+  width.spacing = given_spacing_.value_or(width.groove());
+  return width;
+}
+
+void SawTooth::prepare() {
+  sheet_.prepare();
+  Widths width = widths();
+  spacing_ = width.spacing;
+  double land = spacing_ - width.groove();
+  if (std::abs(land) < same_length * spacing_) {  // no sliver of a land, and no overlapping teeth
+    const double factor = spacing_ / width.groove();
+    width.falling *= factor, width.floor *= factor, width.rising *= factor;
+    land = 0;
+  }
+  tooth_ = width.rising + land + width.falling;
+
+  const std::array<Vec2, 5> corners{Vec2(0, -depth_), Vec2(width.rising, 0), Vec2(width.rising + land, 0),
+                                    Vec2(tooth_, -depth_), Vec2(tooth_ + width.floor, -depth_)};
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const Vec2 edge = corners[i + 1] - corners[i], along = edge.normalized();
+    faces_[i] = {.start = corners[i],
+                 .along = along,
+                 .normal = {-along.y(), along.x()},
+                 .length = edge.norm(),
+                 .from_valley = corners[i].y() < 0,
+                 .to_valley = corners[i + 1].y() < 0};
+  }
+
+  // The first period is the one that the sheet starts in; what the border leaves only a sliver of is left out.
+  const double sliver = same_length * spacing_, before = offset_ - width.rising - land;
+  start_ = before + spacing_ * std::floor((sliver - before) / spacing_);
+  first_ = 0, last_ = std::numeric_limits<int>::max();
+  first_ = feature_at(sliver), last_ = feature_at(sheet_.length_a - sliver);
+}
+
+/// The tooth or floor that spans `a`; beyond the sheet its first or last.
+int SawTooth::feature_at(double a) const {
+  const double period = std::floor((a - start_) / spacing_);
+  const bool on_floor = floor_ > 0 && a - start_ - period * spacing_ > tooth_;
+  return static_cast<int>(std::clamp<double>(2 * period + on_floor, first_, last_));
+}
+
+std::span<const SawTooth::Face> SawTooth::faces(int feature) const {
+  return std::span(faces_).subspan(feature % 2 == 0 ? 0 : 3, feature % 2 == 0 ? 3 : 1);
+}
+
+/// The part of a face that is on the sheet, from and to where along it; none if that is no more than rounding.
+std::optional<std::pair<double, double>> SawTooth::extent(int feature, const Face& face) const {
+  if (face.length == 0) return {};
+  double from = 0, to = face.length;
+  const double start = period_start(feature) + face.start.x();
+  if (feature == first_) from = std::max(from, -start / face.along.x());
+  if (feature == last_) to = std::min(to, (sheet_.length_a - start) / face.along.x());
+  const bool cut = from > 0 || to < face.length;
+  if (cut && to - from < same_length / 3 * spacing_) return {};  // of three faces on a sliver one has a third of it
+  return std::pair(from, to);
+}
+
+SawTooth::Closest SawTooth::closest(int feature, const Vec2& centre) const {
+  Closest best;
+  for (const Face& face : faces(feature)) {
+    const auto part = extent(feature, face);
+    if (!part) continue;
+    const Vec2 from_start = centre - Vec2(period_start(feature), 0) - face.start;
+    const double along = face.along.dot(from_start), height = face.normal.dot(from_start);
+    if (height > best.height) {
+      best.height = height;
+      best.highest = &face;
+    }
+    const double nearest = std::clamp(along, part->first, part->second);
+    const Vec2 offset = from_start - nearest * face.along;
+    if (offset.squaredNorm() < best.squared) {
+      best.squared = offset.squaredNorm();
+      best.offset = offset;
+      best.face = &face;
+      best.inside_face = nearest == along;
+      best.in_valley = (along < 0 && face.from_valley) || (along > face.length && face.to_valley);
+    }
+  }
+  return best;
+}
+
+/// From the closest point of the box that just holds the grooves.
+Vec3 SawTooth::beyond(const Vec3& place) const {
+  return place - place.cwiseMax(Vec3(0, 0, -depth_)).cwiseMin(Vec3(sheet_.length_a, sheet_.length_b, 0));
+}
+
+void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
+  const Sheet::Frame at = sheet_.at(pose);
+  for (const Sphere& sphere : spheres) {
+    const double squared_radius = sphere.radius * sphere.radius;
+    const Vec3 place = at.place(sphere.centre), beyond = this->beyond(place);
+    if (!(beyond.squaredNorm() < squared_radius)) continue;
+    const double past_end = beyond.y();
+    const double half_width = std::sqrt(squared_radius - past_end * past_end - beyond.z() * beyond.z());
+    const bool over = beyond.x() == 0 && past_end == 0;
+    const int own = feature_at(place.x()), last = feature_at(place.x() + half_width);
+    for (int feature = feature_at(place.x() - half_width); feature <= last; ++feature) {
+      const Closest to = closest(feature, {place.x(), place.z()});
+      const double squared = to.squared + past_end * past_end;
+      if (!(squared < squared_radius)) continue;
+      // What is under the centre is always touched. Of the rest not what is seen from behind, and no valley: there the
+      // face that shares it comes closer.
+      if (feature != own && (to.height < 0 || to.in_valley)) continue;
+      Vec3 away(to.offset.x(), past_end, to.offset.y());
+      double distance = std::sqrt(squared);
+      if (over && to.height < 0) {
+        away = {to.highest->normal.x(), 0, to.highest->normal.y()};
+        distance = to.height;
+      } else if (to.inside_face && past_end == 0) {  // however close the centre is
+        const double side = to.offset.dot(to.face->normal) < 0 ? -1 : 1;
+        away = {side * to.face->normal.x(), 0, side * to.face->normal.y()};
+      }
+      touches.push_back(
+          {-(at.axes * away).normalized(), sphere.radius - distance, sphere.body, static_cast<std::uint32_t>(feature)});
+    }
+  }
+}
+
+bool SawTooth::near(const Pose& pose, const Vec3& centre, double reach) const {
+  return beyond(sheet_.at(pose).place(centre)).squaredNorm() <= reach * reach;
+}
+
+Bounds SawTooth::bounds() const {
+  const Bounds tips = sheet_.bounds();
+  const Vec3 down = -depth_ * normal();
+  return {tips.low.cwiseMin(tips.low + down), tips.high.cwiseMax(tips.high + down)};
+}
+
+std::vector<Vec3> SawTooth::triangles() const {
+  std::vector<Vec3> corners;
+  for (int feature = first_; feature <= last_; ++feature)
+    for (const Face& face : faces(feature)) {
+      const auto part = extent(feature, face);
+      if (!part) continue;
+      const Vec2 start = Vec2(period_start(feature), 0) + face.start, left = start + part->first * face.along,
+                 right = start + part->second * face.along;
+      const Vec3 a(left.x(), 0, left.y()), b(right.x(), 0, right.y()), along_b(0, sheet_.length_b, 0);
+      for (const Vec3& place : {a, b, Vec3(b + along_b), a, Vec3(b + along_b), Vec3(a + along_b)})
+        corners.push_back(sheet_.corner + sheet_.axes * place);
+    }
+  return corners;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "geometry",
+                                     .name = "saw-tooth",
+                                     .version = "1.0.0",
+                                     .doc = "rectangular sheet with straight grooves, solid behind",
+                                     .make_geometry = []() -> grit::Geometry* { return new grit::SawTooth; }};
+  return &info;
+}
