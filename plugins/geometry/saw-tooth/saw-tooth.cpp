@@ -170,9 +170,9 @@ void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vec
       const Closest to = closest(feature, {place.x(), place.z()});
       const double squared = to.squared + past_end * past_end;
       if (!(squared < squared_radius)) continue;
-      // What is under the centre is always touched. Of the rest not what is seen from behind, and no valley: there the
-      // face that shares it comes closer.
-      if (feature != own && (to.height < 0 || to.in_valley)) continue;
+      // What is under the centre is always touched. Of the rest no valley is: there the face that shares it comes
+      // closer, and whatever is seen from behind is seen at its valley.
+      if (feature != own && to.in_valley) continue;
       Vec3 away(to.offset.x(), past_end, to.offset.y());
       double distance = std::sqrt(squared);
       if (over && to.height < 0) {
