@@ -97,9 +97,9 @@ void SawTooth::prepare() {
                  .to_valley = corners[i + 1].y() < 0};
   }
 
-  // The first period is the one that the sheet starts in; what the border leaves only a sliver of is left out.
+  // The first period is the one that the sheet starts in. A tooth or floor of which it has but a sliver is left out.
   const double sliver = same_length * spacing_, before = offset_ - width.rising - land;
-  start_ = before + spacing_ * std::floor((sliver - before) / spacing_);
+  start_ = before + spacing_ * std::floor(-before / spacing_);
   first_ = 0, last_ = std::numeric_limits<int>::max();
   first_ = feature_at(sliver), last_ = feature_at(sheet_.length_a - sliver);
 }

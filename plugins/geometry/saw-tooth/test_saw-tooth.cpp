@@ -219,9 +219,14 @@ TEST(SawTooth, FlankPushesAlongItsNormal) {
   ASSERT_EQ(left.size(), 1u);
   EXPECT_LE((left[0].normal - Vec3(root, 0, -root)).norm(), 1e-15);
   EXPECT_EQ(left[0].feature, right[0].feature) << "both flanks of a tooth";
-  const Touch on_it = touches_of(*sheet, {0.63, 0.5, -0.03}, 0.025).at(0);
-  EXPECT_LE((on_it.normal - right[0].normal).norm(), 1e-15) << "a centre on the flank";
-  EXPECT_NEAR(on_it.overlap, 0.025, 1e-12 * 0.025);
+}
+
+TEST(SawTooth, FlankPushesAlongItsNormalHoweverCloseTheCentre) {
+  const Vec3 normal(std::sin(30 * degree), 0, std::cos(30 * degree)),
+      centre = Vec3(0.05, 0.5, -0.05 * std::tan(30 * degree)) + 1e-12 * normal;
+  const Touch touch = touches_of(*Grooves{.inclination = 30 * degree}.made(), centre, 0.025).at(0);
+  EXPECT_LE((touch.normal + normal).norm(), 1e-15);
+  EXPECT_NEAR(touch.overlap, 0.025 - 1e-12, 1e-12 * 0.025);
 }
 
 TEST(SawTooth, TipCountsOnce) {
@@ -266,6 +271,7 @@ TEST(SawTooth, LargeGrainTouchesSeveralTipsOnceEach) {
     EXPECT_NEAR(touches[i].overlap, radius - std::hypot(x, height), 1e-12 * radius);
     EXPECT_LE((touches[i].normal - Vec3(x, 0, -height).normalized()).norm(), 1e-14);
     EXPECT_EQ(touches[i].feature, 2 * (first + i));
+    EXPECT_EQ(touches[i].body, 0u);
   }
 }
 
@@ -354,6 +360,10 @@ TEST(SawTooth, EndsInAValleyAsAnEdge) {
   const auto sharp_end = touches_of(*Grooves{.offset = -0.1}.made(), {-0.03, 0.5, -0.14}, 0.055);
   ASSERT_EQ(sharp_end.size(), 1u);
   EXPECT_LE((sharp_end[0].normal - Vec3(0.6, 0, 0.8)).norm(), 1e-14);
+  for (int valleys = 1; valleys < 50; ++valleys) {  // whichever way the place of the last is rounded
+    const double end = 0.2 * valleys - 0.1;
+    EXPECT_EQ(touches_of(*Grooves{.length_a = end}.made(), {end + 0.03, 0.5, -0.14}, 0.055).size(), 1u) << end;
+  }
   const auto corner = touches_of(*sheet, {-0.02, -0.03, -0.04}, 0.08);
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_LE((corner[0].normal - Vec3(2, 3, -6) / 7).norm(), 1e-14);
