@@ -34,6 +34,13 @@ void touch(benchmark::State& state, const Description& wall) {
   const std::pair<const char*, Description> walls[] = {
       {"plane", {{"type", "plane"}}},
       {"rectangle", {{"type", "rectangle"}, {"corner", {0, 0, 0}}, {"edge_a", {1, 0, 0}}, {"edge_b", {0, 1, 0}}}},
+      {"saw-tooth",
+       {{"type", "saw-tooth"},
+        {"corner", {0, 0, 0}},
+        {"edge_a", {1, 0, 0}},
+        {"edge_b", {0, 1, 0}},
+        {"depth", 0.01},
+        {"spacing", 0.02}}},
       {"container", {{"type", "box"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}}},
       {"block", {{"type", "box"}, {"low", {0, 0, -1}}, {"high", {1, 1, 0}}, {"inside", false}}},
   };

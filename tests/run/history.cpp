@@ -61,7 +61,7 @@ TEST(History, OutlivesASearchAndANewOrder) {
     const Memories before = memories(t);
     const std::vector<std::uint32_t> order(t.world().ids().begin(), t.world().ids().end());
     const std::uint64_t rebuilds = t.world().clock().rebuilds;
-    t.world().change(*t.scene().stages[0].start);
+    t.world().search_next();
     t.world().find_forces();
     ASSERT_EQ(t.world().clock().rebuilds, rebuilds + 1);
     const Memories after = memories(t);
@@ -89,7 +89,7 @@ TEST(History, GoesAlongWhenTwoBodiesChangePlaces) {
   std::size_t now_swapped = 0, ever_swapped = 0, never_swapped = 0;
   for (int i = 0; i < 1200; ++i) {
     steady.step();
-    searching.world().change(*searching.scene().stages[0].start);
+    searching.world().search_next();
     searching.step();
     now_swapped = 0;
     const Memories a = memories(steady), b = memories(searching, &now_swapped);
@@ -107,7 +107,7 @@ TEST(History, SearchingAtEveryStepOrRarelyGivesTheSameWay) {
   std::size_t swapped = 0;
   for (int i = 0; i < 150; ++i) {
     rarely.step();
-    always.world().change(*always.scene().stages[0].start);
+    always.world().search_next();
     always.step();
   }
   EXPECT_LT(rarely.world().clock().rebuilds, 40u);

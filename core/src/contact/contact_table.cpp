@@ -197,13 +197,13 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
 }
 
 void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
-                                  std::vector<ContactRow>& rows, std::vector<BodySum>& sum) const {
+                                  std::vector<ContactRow>& rows) const {
   const std::size_t fields = fields_.size(), first = first_block * block_size;
   const auto part = [](auto& array, std::size_t from, std::size_t to) {
     return std::vector(array.begin() + static_cast<std::ptrdiff_t>(from),
                        array.begin() + static_cast<std::ptrdiff_t>(to));
   };
-  // A batch of its own: blocks from 0 on, memory and sums that nobody keeps.
+  // A batch of its own: blocks from 0 on, and memory that nobody keeps.
   auto state = part(state_, first_block * fields, last_block * fields);
   auto touching = part(touching_, first_block, last_block);
   rows.assign((last_block - first_block) * block_size, {});
@@ -214,7 +214,6 @@ void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_bloc
   pairs.state = state.empty() ? nullptr : state.front().lane;
   pairs.touching = touching.data();
   pairs.row = rows.data();
-  pairs.sum = sum.data();
   at.law.evaluate_pairs(pairs);
 }
 

@@ -44,10 +44,9 @@ class ContactTable {
   template <class Use>
   void each_touching(const Instant& at, Use use) const {
     std::vector<ContactRow> rows;
-    std::vector<BodySum> sum(at.bodies.count());
     for (std::size_t block = 0; block < touching_.size(); block += blocks_at_once) {
       const std::size_t last = std::min(touching_.size(), block + blocks_at_once);
-      evaluate_again(block, last, at, rows, sum);
+      evaluate_again(block, last, at, rows);
       for (std::size_t c = block * block_size; c < last * block_size; ++c)
         if (touches(c)) use(c, rows[c - block * block_size]);
     }
@@ -94,8 +93,8 @@ class ContactTable {
     Blocks within, across;
   };
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
-  void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at, std::vector<ContactRow>& rows,
-                      std::vector<BodySum>& sum) const;
+  void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
+                      std::vector<ContactRow>& rows) const;
   static void add(const ContactRow& row, Quad& force, Quad& moment) {
     force += load(row.force), moment += load(row.moment);
   }

@@ -133,6 +133,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     WallLoad& load = chunk.load[t.wall];
     load.force += force;
     load.moment += (point - walls[t.wall].reference()).cross(force) + xyz(chunk.row[i].moment);
+    ++load.touches;
+    if (!walls[t.wall].gives_way) continue;
     const PairSize size{.radius_a = x.w,
                         .radius_b = x.w,
                         .inverse_mass_a = bodies.velocity[t.body].w,
@@ -140,7 +142,6 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                         .overlap = t.overlap,
                         .wall = true};
     load.stiffness += law.stiffness(size, bodies.material[t.body], t.material).normal;
-    ++load.touches;
   }
   return batch.largest_overlap;
 }

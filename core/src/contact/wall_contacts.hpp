@@ -17,6 +17,7 @@ namespace grit {
 struct WallSurface {
   std::shared_ptr<const Geometry> geometry;
   std::uint32_t material = 0;
+  bool gives_way = false;  ///< moved by what presses on it, which asks how stiffly
   Pose pose;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the last step, like those of the bodies
 

@@ -34,6 +34,8 @@ Vec3 growth_of_period(const Clock& clock) {
   return (period - clock.period_before) / clock.last_time_step;
 }
 
+bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high == b.high; }
+
 }  // namespace
 
 Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads)
@@ -104,12 +106,16 @@ void Simulation::apply(const SceneDescription& scene) {
   surfaces_.resize(walls_.size()), arms_.resize(walls_.size());
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallDescription& wall = scene.walls.at(walls_.name(w));
+    // Candidates stay what they are, unless a wall has become another.
+    if (surfaces_[w].geometry == nullptr || !same(surfaces_[w].geometry->bounds(), wall.geometry.get()->bounds()))
+      search_now_ = true;
     surfaces_[w].geometry = wall.geometry.get();
+    surfaces_[w].gives_way = wall.motion.servo || wall.motion.free;
     surfaces_[w].material = static_cast<std::uint32_t>(
         std::find(material_names_.begin(), material_names_.end(), wall.material) - material_names_.begin());
   }
   energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
-  search_now_ = true;
+  time_step_now_ = true;
   net_step_ = contact_step_ = wall_step_ = ~0ull;
 }
 
@@ -225,6 +231,7 @@ void Simulation::search() {
 }
 
 void Simulation::set_time_step() {
+  time_step_now_ = false;
   clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
   clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
   const TimeStepDescription& wish = scene_->time_step;
@@ -254,7 +261,7 @@ void Simulation::find_forces() {
   {
     const Stopwatch watch(phases_[searching].seconds);
     if (search_is_due()) search();
-    else if (approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
+    else if (time_step_now_ || approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
   }
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
   const bool again = clock_.forces_step == clock_.step;
@@ -461,6 +468,7 @@ std::span<const Row> Simulation::moments() const {
 std::span<const Contact> Simulation::contacts() const {
   if (contact_step_ == clock_.step) return contact_list_;
   contact_list_.clear();
+  contact_list_.reserve(pairs_.touching_count() + wall_contacts_.touching_count());
   pairs_.each_touching(instant(true), [&](std::size_t c, const ContactRow& row) {
     const Vec3 branch = pairs_.branch(c, bodies_, shifts_.data());
     contact_list_.push_back({.a = pairs_.a(c),
@@ -487,6 +495,15 @@ std::span<const Contact> Simulation::contacts() const {
   });
   contact_step_ = clock_.step;
   return contact_list_;
+}
+
+double Simulation::mean_contact_force() const {
+  double sum = 0;
+  std::size_t count = 0;
+  pairs_.each_touching(instant(true),
+                       [&](std::size_t, const ContactRow& row) { sum += std::abs(row.force.w), ++count; });
+  wall_contacts_.each([&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), ++count; });
+  return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
 std::span<const WallView> Simulation::walls() const {

@@ -55,6 +55,8 @@ class Simulation final : public World {
   /// Changes settings within a stage.
   void change(const SceneDescription& scene);
 
+  /// Has find_forces() look for neighbours anew, whether or not it is due.
+  void search_next() { search_now_ = true; }
   /// Forces at time(), searching neighbours first if need be. Throws NumericsError if a guard trips.
   void find_forces();
   /// One step; find_forces() must have been called at this instant. Throws NumericsError if a guard trips.
@@ -90,6 +92,7 @@ class Simulation final : public World {
   std::span<const Row> forces() const override;
   std::span<const Row> moments() const override;
   std::span<const Contact> contacts() const override;
+  double mean_contact_force() const override;
   std::span<const WallView> walls() const override;
   const Cell& cell() const override { return clock_.cell; }
   Region specimen() const override { return region(0); }
@@ -151,7 +154,7 @@ class Simulation final : public World {
   std::vector<Motion> chunk_motion_;
   std::vector<PhaseTime> phases_;
   double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
-  bool one_material_ = true, periodic_ = false, search_now_ = true;
+  bool one_material_ = true, periodic_ = false, search_now_ = true, time_step_now_ = true;
 
   // What probes ask for, worked out at most once an instant.
   mutable std::vector<Row> net_force_, net_moment_;

@@ -46,6 +46,12 @@ double share_inside(const Vec3& start, const Vec3& branch, const Region& region)
 
 }  // namespace
 
+double World::mean_contact_force() const {
+  double sum = 0;
+  for (const Contact& contact : contacts()) sum += std::abs(contact.normal_force);
+  return contacts().empty() ? 0 : sum / static_cast<double>(contacts().size());
+}
+
 Unrest unrest(const World& world) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
   const double half_step = 0.5 * world.dt();
@@ -54,16 +60,14 @@ Unrest unrest(const World& world) {
     return velocity.w > 0 ? 0.5 / velocity.w * (xyz(velocity) + half_step * velocity.w * xyz(force)).squaredNorm()
                           : 0.0;
   };
-  double kinetic = 0, net = 0, normal = 0;
+  double kinetic = 0, net = 0;
   std::size_t movable = 0;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     kinetic += energy(velocities[i], forces[i]) + energy(spins[i], moments[i]);
     if (velocities[i].w > 0) net += xyz(forces[i]).norm(), ++movable;
   }
-  const auto contacts = world.contacts();
-  for (const auto& contact : contacts) normal += std::abs(contact.normal_force);
+  const double normal = world.mean_contact_force();
   if (movable > 0) net /= static_cast<double>(movable);
-  if (!contacts.empty()) normal /= static_cast<double>(contacts.size());
   return {.kinetic_energy = kinetic, .unbalanced_force = normal > 0 ? net / normal : 0, .mean_contact_force = normal};
 }
 

@@ -14,6 +14,11 @@ void permute(Array& values, std::span<const std::uint32_t> order) {
 
 }  // namespace
 
+void Bodies::reserve(std::size_t more) {
+  const std::size_t all = count() + more + 1;
+  position.reserve(all), velocity.reserve(all), spin.reserve(all), material.reserve(all), id.reserve(all);
+}
+
 void Bodies::add(const Vec3& centre, double radius, double mass, double inertia, std::uint8_t body_material,
                  const Vec3& v, const Vec3& w) {
   position.push_back({centre.x(), centre.y(), centre.z(), radius});

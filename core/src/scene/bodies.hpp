@@ -23,6 +23,8 @@ struct Bodies {
   std::vector<Vec3> displacement;  ///< since the start of the stage [m]; empty unless asked for
 
   std::size_t count() const { return id.size(); }
+  /// Makes room for so many more, and the padding.
+  void reserve(std::size_t more);
   /// Adds a body (before finish()). Its id is its place.
   void add(const Vec3& centre, double radius, double mass, double inertia, std::uint8_t material,
            const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero());

@@ -34,8 +34,9 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
     }
     const auto* cloud = std::get_if<CloudGrains>(&group.grains.value());
     const auto* file = std::get_if<FileGrains>(&group.grains.value());
-    for (const Row& g : cloud != nullptr ? make_cloud(*cloud, cell, random, bodies.position) : read_packing(file->path))
-      add(xyz(g), g.w, Vec3::Zero(), Vec3::Zero());
+    const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, bodies.position) : read_packing(file->path);
+    bodies.reserve(grains.size());
+    for (const Row& g : grains) add(xyz(g), g.w, Vec3::Zero(), Vec3::Zero());
   }
   for (const Row& x : bodies.position)
     for (int k = 0; k < 3; ++k)

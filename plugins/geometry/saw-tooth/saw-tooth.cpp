@@ -21,12 +21,12 @@ std::string number(double value) { return (std::ostringstream() << value).str();
 
 /// Where a tooth or a floor is closest to a centre, in the section.
 struct SawTooth::Closest {
-  Vec2 offset = Vec2::Zero();  // from there to the centre
+  double past = 0, above = 0;  // where the centre is from there: along the face, beyond what it has, and off it
   double squared = std::numeric_limits<double>::infinity();
   double height = -std::numeric_limits<double>::infinity();  // of the centre above the highest of its faces
   const Face* face = nullptr;                                // where it is closest
   const Face* highest = nullptr;
-  bool inside_face = false, in_valley = false;  // whether it is closest there within the face, or in a valley
+  bool in_valley = false;
 };
 
 void SawTooth::declare(Parameters& p) {
@@ -129,24 +129,17 @@ std::optional<std::pair<double, double>> SawTooth::extent(int feature, const Fac
 
 SawTooth::Closest SawTooth::closest(int feature, const Vec2& centre) const {
   Closest best;
+  const double start = period_start(feature);
   for (const Face& face : faces(feature)) {
     const auto part = extent(feature, face);
     if (!part) continue;
-    const Vec2 from_start = centre - Vec2(period_start(feature), 0) - face.start;
-    const double along = face.along.dot(from_start), height = face.normal.dot(from_start);
-    if (height > best.height) {
-      best.height = height;
-      best.highest = &face;
-    }
-    const double nearest = std::clamp(along, part->first, part->second);
-    const Vec2 offset = from_start - nearest * face.along;
-    if (offset.squaredNorm() < best.squared) {
-      best.squared = offset.squaredNorm();
-      best.offset = offset;
-      best.face = &face;
-      best.inside_face = nearest == along;
-      best.in_valley = (along < 0 && face.from_valley) || (along > face.length && face.to_valley);
-    }
+    const double x = centre.x() - start - face.start.x(), z = centre.y() - face.start.y();
+    const double along = face.along.x() * x + face.along.y() * z, height = face.normal.x() * x + face.normal.y() * z;
+    if (height > best.height) best.height = height, best.highest = &face;
+    const double past = along - std::clamp(along, part->first, part->second), squared = past * past + height * height;
+    if (!(squared < best.squared)) continue;
+    best.squared = squared, best.past = past, best.above = height, best.face = &face;
+    best.in_valley = (along < 0 && face.from_valley) || (along > face.length && face.to_valley);
   }
   return best;
 }
@@ -173,14 +166,16 @@ void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vec
       // What is under the centre is always touched. Of the rest no valley is: there the face that shares it comes
       // closer, and whatever is seen from behind is seen at its valley.
       if (feature != own && to.in_valley) continue;
-      Vec3 away(to.offset.x(), past_end, to.offset.y());
+      const Face& face = *to.face;
+      Vec3 away(to.past * face.along.x() + to.above * face.normal.x(), past_end,
+                to.past * face.along.y() + to.above * face.normal.y());
       double distance = std::sqrt(squared);
       if (over && to.height < 0) {
         away = {to.highest->normal.x(), 0, to.highest->normal.y()};
         distance = to.height;
-      } else if (to.inside_face && past_end == 0) {  // however close the centre is
-        const double side = to.offset.dot(to.face->normal) < 0 ? -1 : 1;
-        away = {side * to.face->normal.x(), 0, side * to.face->normal.y()};
+      } else if (to.past == 0 && past_end == 0) {  // however close the centre is
+        const double side = to.above < 0 ? -1 : 1;
+        away = {side * face.normal.x(), 0, side * face.normal.y()};
       }
       touches.push_back(
           {-(at.axes * away).normalized(), sphere.radius - distance, sphere.body, static_cast<std::uint32_t>(feature)});

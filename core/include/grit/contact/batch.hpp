@@ -49,7 +49,7 @@ struct PairBatch {
   std::uint8_t* touching;  ///< [block], a bit a lane
   ContactRow* row;         ///< [candidate, from the first of first_block]: what it does to b; null where b is of the
                            ///< chunk too, and has its sum as a has
-  BodySum* sum;            ///< [body]
+  BodySum* sum;            ///< [body]; null where nobody asks for sums
   double largest_overlap;  ///< out: largest overlap over the smaller radius
 };
 

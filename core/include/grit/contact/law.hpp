@@ -255,13 +255,14 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
         ContactRow* const row = batch.row + (first - first_row);
         store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Quad& force) {
           store(force, row[k].force);
-          sum[ia[k]].force -= force;
+          if (sum != nullptr) sum[ia[k]].force -= force;
         });
         store_rows(moment_b.x, moment_b.y, moment_b.z, overlap,
                    [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
       }
-      store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
-                 [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
+      if (sum != nullptr)
+        store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
+                   [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
   }
