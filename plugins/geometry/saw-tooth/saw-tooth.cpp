@@ -100,13 +100,14 @@ void SawTooth::prepare() {
   // The first period is the one that the sheet starts in. A tooth or floor of which it has but a sliver is left out.
   const double sliver = same_length * spacing_, before = offset_ - width.rising - land;
   start_ = before + spacing_ * std::floor(-before / spacing_);
+  per_spacing_ = 1 / spacing_;
   first_ = 0, last_ = std::numeric_limits<int>::max();
   first_ = feature_at(sliver), last_ = feature_at(sheet_.length_a - sliver);
 }
 
 /// The tooth or floor that spans `a`; beyond the sheet its first or last.
 int SawTooth::feature_at(double a) const {
-  const double period = std::floor((a - start_) / spacing_);
+  const double period = std::floor((a - start_) * per_spacing_);
   const bool on_floor = floor_ > 0 && a - start_ - period * spacing_ > tooth_;
   return static_cast<int>(std::clamp<double>(2 * period + on_floor, first_, last_));
 }

@@ -53,6 +53,7 @@ class SawTooth : public Geometry {
   double depth_ = 0, inclination_ = std::numbers::pi / 4, floor_ = 0, offset_ = 0;
   std::optional<double> second_inclination_, given_spacing_;
   double spacing_ = 1, start_ = 0, tooth_ = 1;  // of a period: length, start of the first, width of its tooth
+  double per_spacing_ = 1;
   int first_ = 0, last_ = 0;                    // features on the sheet
   std::array<Face, 4> faces_{};                 // of a period: rising flank, land, falling flank, floor
 };
