@@ -120,6 +120,25 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   EXPECT_THAT(text_of(folder / "run/picture.svg"), AllOf(HasSubstr("shear displacement [mm]"), HasSubstr(">0.800<")));
 }
 
+TEST(ResultsFolder, WritesGrainsInsideThePeriodicCell) {
+  const Folder folder;
+  NumberedWorld world;
+  world.make_periodic({1, 1, 1}, {3, 3, 3});
+  world.box.periodic = {true, true, false};
+  world.add(0, {0.9, 3.1, 3.1}, 0.25);
+  ResultsFolder results(options(folder / "run"));
+  RunSummary summary;
+  summary.status = "done";
+  results.begin(world, probes);
+  results.finish(world, summary);
+  const std::vector<Row> grains = read_packing(folder / "run/packing.txt");
+  ASSERT_EQ(grains.size(), 1u);
+  EXPECT_DOUBLE_EQ(grains[0].x, 2.9);
+  EXPECT_DOUBLE_EQ(grains[0].y, 1.1);
+  EXPECT_EQ(grains[0].z, 3.1);
+  EXPECT_EQ(grains[0].w, 0.25);
+}
+
 TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
   const Folder folder;
   const auto world = world_of_two();

@@ -84,6 +84,17 @@ TEST(Periodic, PackingMayBeShiftedAndWrapped) {
   }
 }
 
+TEST(Periodic, TakesABodyJustPastASideAndNoneFarther) {
+  const auto at = [](double x) {
+    Description d = in_cell({{Vec3(3e-3, 3e-3, 3e-3), 1e-3}}, Vec3::Zero());
+    d["bodies"]["grains"]["grains"]["grains"][0]["position"][0] = x;
+    return d;
+  };
+  const Trial past(at(-0.9e-3));
+  EXPECT_DOUBLE_EQ(past.world().positions()[0].x, period.x() - 0.9e-3);
+  EXPECT_THROW(Trial(at(-1.1e-3)), Error);
+}
+
 TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {
   // Too far apart to touch, from any place, for 25 % of strain: positions keep their places in the cell.
   auto grains = jumble({6, 7, 8}, 1e-3, 0, 10);

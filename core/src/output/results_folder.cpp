@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "grit/error.hpp"
@@ -18,8 +19,17 @@ std::vector<Row> grains_by_id(const World& world) {
   std::vector<std::uint32_t> order(world.ids().size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
+  // Between two searches bodies may be past a periodic side.
+  const Cell& cell = world.cell();
+  const auto inside = [&](double x, int axis) {
+    const double period = cell.high[axis] - cell.low[axis];
+    return cell.periodic[axis] ? x - period * std::floor((x - cell.low[axis]) / period) : x;
+  };
   std::vector<Row> grains;
-  for (const auto body : order) grains.push_back(world.positions()[body]);
+  for (const auto body : order) {
+    const Row& x = world.positions()[body];
+    grains.push_back({inside(x.x, 0), inside(x.y, 1), inside(x.z, 2), x.w});
+  }
   return grains;
 }
 

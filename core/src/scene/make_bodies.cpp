@@ -39,10 +39,12 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
     for (const Row& g : grains) add(xyz(g), g.w, Vec3::Zero(), Vec3::Zero());
   }
   for (const Row& x : bodies.position)
-    for (int k = 0; k < 3; ++k)
-      if (!(xyz(x)[k] >= cell.low[k] && xyz(x)[k] <= cell.high[k]))
+    for (int k = 0; k < 3; ++k) {
+      const double over = cell.periodic[k] ? x.w : 0;  // just past a periodic side a body is inside at the other
+      if (!(xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over))
         throw Error("a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
                     ") m lies outside the domain; enlarge /domain or move the body");
+    }
   bodies.finish(state);
   return bodies;
 }
