@@ -1,21 +1,26 @@
-# What `cmake --install` gives: the library, the command, the SDK's headers and its CMake package. Plugins install
-# themselves (GritPlugin.cmake). The package also stands in the build folder, for plugins that are built against that.
+# What `cmake --install` gives: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the
+# plugins; the launcher as <prefix>/bin/grit; the SDK's headers and its CMake package. Builds for several instruction sets
+# can be installed in one prefix: only that folder and the targets of the package are each one's own. The package also
+# stands in the build folder, for plugins that are built against that.
 include(CMakePackageConfigHelpers)
+set(own ${CMAKE_INSTALL_LIBDIR}/grit/${GRIT_ARCH})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/grit)
 set(build_package ${PROJECT_BINARY_DIR}/lib/cmake/grit)
 
 set_target_properties(grit_sdk PROPERTIES EXPORT_NAME sdk)
-install(TARGETS grit grit_sdk EXPORT grit LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS grit grit_sdk EXPORT grit LIBRARY DESTINATION ${own})
 install(DIRECTORY core/include/grit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 if(TARGET grit_app)
-  set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  install(TARGETS grit_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS grit_app RUNTIME DESTINATION ${own})
+  install(TARGETS grit_launcher RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
+file(REMOVE_RECURSE ${build_package})  # what another GRIT_ARCH left would be offered beside this one
 write_basic_package_version_file(${build_package}/grit-config-version.cmake COMPATIBILITY SameMinorVersion)
 configure_file(cmake/grit-config.cmake ${build_package}/grit-config.cmake COPYONLY)
 configure_file(cmake/GritPlugin.cmake ${build_package}/GritPlugin.cmake COPYONLY)
 install(FILES cmake/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
         DESTINATION ${package})
-install(EXPORT grit NAMESPACE grit:: FILE grit-targets.cmake DESTINATION ${package})
-export(EXPORT grit NAMESPACE grit:: FILE ${build_package}/grit-targets.cmake)
+install(EXPORT grit NAMESPACE grit:: FILE grit-targets.cmake DESTINATION ${package}/${GRIT_ARCH})
+export(EXPORT grit NAMESPACE grit:: FILE ${build_package}/${GRIT_ARCH}/grit-targets.cmake)

@@ -1,6 +1,8 @@
 # grit_plugin(<kind folder> <name> [LIBRARIES …]): builds <name>.cpp of the current folder into
 # <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, where there is one and the project has found GTest, into a
-# test that sees the same code and runs in the plugin's folder. The target grit_plugins is all plugins of a project. Part of the installed SDK.
+# test that sees the same code and runs in the plugin's folder. `cmake --install` puts the plugin where grit of the same
+# instruction set looks, lib/grit/<arch>. The target grit_plugins is all plugins of a project. Part of the installed SDK.
+include(GNUInstallDirs)
 include(GoogleTest)
 
 function(grit_plugin folder name)
@@ -17,8 +19,8 @@ function(grit_plugin folder name)
   target_link_libraries(${target} PRIVATE ${target}_objects grit::grit)
   set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
                         LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/grit/${folder}
-                        INSTALL_RPATH "$ORIGIN/../..;$ORIGIN/../../../${CMAKE_INSTALL_LIBDIR}")
-  install(TARGETS ${target} LIBRARY DESTINATION lib/grit/${folder})
+                        INSTALL_RPATH "$ORIGIN/..")
+  install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/grit/${GRIT_ARCH}/${folder})
   if(NOT TARGET grit_plugins)
     add_custom_target(grit_plugins)
   endif()

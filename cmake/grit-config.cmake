@@ -1,7 +1,22 @@
 # find_package(grit): the targets grit::sdk (to compile against) and grit::grit (to link), and the function grit_plugin.
+# GRIT_ARCH says for which of the installed instruction sets; where one is installed, that one unless set.
+file(GLOB installed RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/*/grit-targets.cmake)
+list(TRANSFORM installed REPLACE "/.*" "")
+list(LENGTH installed count)
+if(NOT GRIT_ARCH AND count EQUAL 1)
+  set(GRIT_ARCH ${installed})
+endif()
+if(NOT GRIT_ARCH IN_LIST installed)
+  list(JOIN installed ", " installed)
+  set(grit_FOUND FALSE)
+  set(grit_NOT_FOUND_MESSAGE "GRIT_ARCH is \"${GRIT_ARCH}\": say with -DGRIT_ARCH= for which of the installed \
+instruction sets to build: ${installed}")
+  return()
+endif()
+
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)
 find_dependency(nlohmann_json 3.11)
-include(${CMAKE_CURRENT_LIST_DIR}/grit-targets.cmake)
+include(${CMAKE_CURRENT_LIST_DIR}/${GRIT_ARCH}/grit-targets.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/GritPlugin.cmake)

@@ -56,6 +56,17 @@ TEST(Usage, VersionSaysWhatWasBuilt) {
   EXPECT_THAT(version.out, StartsWith("grit " GRIT_VERSION));
 }
 
+TEST(Usage, AnInstructionSetThatIsNotTheBuildsOwnIsRefused) {
+  const OwnFolder folder;
+  const auto outcome = shell(folder.path(), "GRIT_ISA=x86-64-v9 '" GRIT_BINARY "' --version");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err,
+              StartsWith("grit: GRIT_ISA=x86-64-v9: this build has one instruction set, \"" GRIT_ARCH "\" ("));
+  for (const auto* allowed : {"", GRIT_ARCH})
+    EXPECT_EQ(shell(folder.path(), std::string("GRIT_ISA='") + allowed + "' '" GRIT_BINARY "' --version").status, 0);
+}
+
 TEST(Usage, NoWordsShowTheHelpAsAnError) {
   const OwnFolder folder;
   const auto nothing = grit_in(folder.path(), {});

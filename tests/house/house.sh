@@ -46,7 +46,9 @@ check() {
     -exec grep -nHE '' {} + | sed -E 's@^([^:]*:[0-9]+:[^#]*)#.*@\1@' |
     grep -E -e '-Ofast|-f(fast|unsafe|finite|associative|reciprocal)-math' | report "not the same bits"
 
-  sources core | grep -v '^core/src/app/' |
+  sources core/src/launcher | find_in '#include ("|<grit/)' | report "the launcher includes grit"
+
+  sources core | grep -vE '^core/src/(app|launcher)/' |
     find_in 'std::(cout|cerr|clog)|(^|[^A-Za-z0-9_])((v|f|vf)?printf|f?puts|putchar|abort|_?[eE]xit|quick_exit) *\(' |
     report "library code prints or exits"
   return 0
@@ -86,6 +88,8 @@ self_test() {
   allowed core/include/grit/planted.hpp '#include "grit/contact/law.hpp"'
   planted "a plugin includes the kernel" plugins/probes/planted/planted.cpp '#include "contact/planted.hpp"'
   allowed plugins/probes/planted/test_planted.cpp '#include "contact/planted.hpp"'
+  planted "the launcher includes grit" core/src/launcher/planted.cpp '#include "plugins/build_facts.hpp"'
+  planted "the launcher includes grit" core/src/launcher/planted.cpp '#include <grit/error.hpp>'
   planted "HDF5 outside output/" core/src/run/planted.cpp '#include <hdf5.h>'
   planted "HDF5 outside output/" plugins/probes/planted/planted.cpp '#include <H5Cpp.h>'
   allowed core/src/output/planted.cpp '#include <hdf5.h>'
@@ -101,6 +105,7 @@ self_test() {
   for line in 'std::cout << 1;' 'std::printf("1");' '  std::abort();' 'exit(1);' 'fprintf(stderr, "1");'; do
     planted "library code prints or exits" core/src/scene/planted.cpp "$line"
     allowed core/src/app/planted.cpp "$line"
+    allowed core/src/launcher/planted.cpp "$line"
   done
   allowed core/src/scene/planted.cpp 'std::snprintf(text, 4, "1"); on_exit_of(x); // never exit(1)'
 

@@ -10,6 +10,7 @@
 #include <ostream>
 
 #include "grit/error.hpp"
+#include "plugins/build_facts.hpp"
 #include "plugins/component.hpp"
 #include "plugins/loader.hpp"
 #include "plugins/nearest.hpp"
@@ -191,6 +192,7 @@ TEST_P(LoaderTag, RefusesTheMismatch) {
   EXPECT_THAT(error, HasSubstr("\n  " + line + "\n"));
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 2) << "more than this one mismatch:\n" << error;
   EXPECT_THAT(error, HasSubstr("rebuild it against this SDK: cmake --fresh -S SOURCES -B BUILD -Dgrit_DIR="));
+  EXPECT_THAT(error, HasSubstr(std::string("/lib/cmake/grit -DGRIT_ARCH=") + build_facts().arch + " && "));
 }
 
 std::vector<TagCase> tag_cases() {
@@ -351,6 +353,16 @@ TEST(Registry, SearchesOptionThenVariableThenBeside) {
   ::unsetenv("GRIT_PLUGIN_PATH");
   EXPECT_THAT(directories, ElementsAre("/a", "/b", "/c", "/d", "/beside"));
   EXPECT_THAT(plugin_directories({}, "/beside"), ElementsAre("/beside"));
+}
+
+TEST(Registry, SearchesTheFolderOfItsInstructionSetFirst) {
+  const auto folder = fs::temp_directory_path() / ("grit-test-" + std::to_string(::getpid()));
+  const auto own = folder / "both" / build_facts().arch;
+  fs::create_directories(own);
+  fs::create_directories(folder / "one/another");
+  const auto directories = plugin_directories({folder / "both", folder / "one"}, "/beside");
+  fs::remove_all(folder);
+  EXPECT_THAT(directories, ElementsAre(own, folder / "both", folder / "one", "/beside"));
 }
 
 TEST(Nearest, CountsEdits) {

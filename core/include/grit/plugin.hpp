@@ -32,7 +32,7 @@ struct BuildTag {
   std::uint32_t sdk_version;
   char compiler[48];         ///< e.g. "gcc 12"
   char library_abi[48];      ///< e.g. "libstdc++ cxx11 20220819"
-  char instruction_set[64];  ///< e.g. "x86-64 avx2 fma"
+  char instruction_set[64];  ///< e.g. "x86-64-v3", "x86-64-v2 avx"
   Layout row, contact_row, body_sum, pair_batch, wall_batch;
   char reserved[256];
 };
@@ -53,6 +53,23 @@ constexpr void put(char (&target)[N], long number) {
   do digits[--last] = static_cast<char>('0' + number % 10);
   while ((number /= 10) > 0);
   put(target, digits + last);
+}
+
+/// The highest level of x86-64, 1 to 4, all of whose instructions the compiler may use; 0 for another architecture.
+constexpr long x86_64_level() {
+#if !defined(__x86_64__)
+  return 0;
+#elif !defined(__SSE4_2__) || !defined(__POPCNT__)
+  return 1;
+#elif !defined(__AVX2__) || !defined(__BMI__) || !defined(__BMI2__) || !defined(__F16C__) || !defined(__FMA__) || \
+    !defined(__LZCNT__) || !defined(__MOVBE__)
+  return 2;
+#elif !defined(__AVX512F__) || !defined(__AVX512BW__) || !defined(__AVX512CD__) || !defined(__AVX512DQ__) || \
+    !defined(__AVX512VL__)
+  return 3;
+#else
+  return 4;
+#endif
 }
 
 template <class T>
@@ -90,17 +107,23 @@ constexpr BuildTag build_tag() {
 #else
   detail::put(tag.instruction_set, "unknown");
 #endif
+  const long level = detail::x86_64_level();
+  if (level > 1) {
+    detail::put(tag.instruction_set, "-v");
+    detail::put(tag.instruction_set, level);
+  }
+  // Vector instructions beyond the level.
 #if defined(__AVX__)
-  detail::put(tag.instruction_set, " avx");
+  if (level < 3) detail::put(tag.instruction_set, " avx");
 #endif
 #if defined(__AVX2__)
-  detail::put(tag.instruction_set, " avx2");
+  if (level < 3) detail::put(tag.instruction_set, " avx2");
 #endif
 #if defined(__FMA__)
-  detail::put(tag.instruction_set, " fma");
+  if (level < 3) detail::put(tag.instruction_set, " fma");
 #endif
 #if defined(__AVX512F__)
-  detail::put(tag.instruction_set, " avx512f");
+  if (level < 4) detail::put(tag.instruction_set, " avx512f");
 #endif
   tag.row = detail::layout_of<Row>();
   tag.contact_row = detail::layout_of<ContactRow>();

@@ -1,12 +1,13 @@
 // grit: the command line.
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
 #include "app/command.hpp"
 #include "grit/error.hpp"
-#include "output/build_facts.hpp"
+#include "plugins/build_facts.hpp"
 #include "plugins/nearest.hpp"
 
 namespace grit {
@@ -46,6 +47,7 @@ void print_usage(std::ostream& out) {
     out << head << std::string(20 - width, ' ') << c.doc << '\n';
   }
   out << "\n'grit COMMAND --help' says more, 'grit --version' which grit this is.\n"
+         "GRIT_ISA chooses among installed instruction sets, GRIT_PLUGIN_PATH adds folders of plugins.\n"
          "Exit status: 0 done, 1 usage, 2 description, 3 plugin, 4 numerics, 5 files or disk,\n"
          "70 defect of the program, 130 interrupted and saved.\n";
 }
@@ -54,10 +56,21 @@ void print_version() {
   const BuildFacts& build = build_facts();
   std::cout << "grit " << build.version << (*build.revision == 0 ? "" : " (") << build.revision
             << (*build.revision == 0 ? "" : ")") << ", " << build.compiler << ", " << build.build_type << ", "
-            << build.instruction_set << '\n';
+            << build.instruction_set << " (-march=" << build.arch << ")\n";
+}
+
+/// Installed builds are chosen from before one starts. A build by itself must not let another choice pass unnoticed.
+void check_instruction_set() {
+  const char* const wanted = std::getenv("GRIT_ISA");
+  const BuildFacts& build = build_facts();
+  if (wanted == nullptr || *wanted == 0 || wanted == std::string(build.arch)) return;
+  throw Error(std::string("GRIT_ISA=") + wanted + ": this build has one instruction set, \"" + build.arch + "\" (" +
+              build.instruction_set + ")\n  unset GRIT_ISA, build with -DGRIT_ARCH=" + wanted +
+              ", or install several with scripts/package.sh");
 }
 
 ExitStatus main(const std::vector<std::string>& words) {
+  check_instruction_set();
   if (words.empty()) {
     print_usage(std::cerr);
     return ExitStatus::usage;

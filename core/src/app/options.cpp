@@ -1,12 +1,12 @@
 #include "app/options.hpp"
 
 #include <algorithm>
-#include <boost/dll/runtime_symbol_info.hpp>
 #include <charconv>
 #include <iostream>
 #include <thread>
 
 #include "engines/builtin.hpp"
+#include "plugins/loader.hpp"
 #include "scene/sphere_body.hpp"
 
 namespace grit {
@@ -71,9 +71,7 @@ std::string Options::only_word(const char* what) const {
 }
 
 std::unique_ptr<Registry> Options::registry() const {
-  const std::filesystem::path binary = boost::dll::program_location().string();
-  auto registry = std::make_unique<Registry>(
-      plugin_directories(list("plugin-path"), std::filesystem::weakly_canonical(binary).parent_path() / "../lib/grit"));
+  auto registry = std::make_unique<Registry>(plugin_directories(list("plugin-path"), library_directory()));
   registry->add(sphere_body());
   for (const PluginInfo& engine : builtin_engines()) registry->add(engine);
   return registry;

@@ -4,6 +4,7 @@
 #include "app/options.hpp"
 #include "app/reference.hpp"
 #include "grit/error.hpp"
+#include "plugins/build_facts.hpp"
 
 namespace grit {
 
@@ -15,6 +16,9 @@ ExitStatus plugins_command(const std::vector<std::string>& words) {
     std::cout << component_text(*registry, options.only_word("name"), true);
     return ExitStatus::done;
   }
+  const BuildFacts& build = build_facts();
+  std::cout << "grit " << build.version << ", instruction set " << build.instruction_set << " (-march=" << build.arch
+            << ")\n\n";
   ExitStatus status = ExitStatus::done;
   for (const Installed& one : registry->installed()) {
     const std::string file = one.file.empty() ? "" : "\n" + std::string(38, ' ') + one.file.lexically_normal().string();

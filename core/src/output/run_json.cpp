@@ -12,7 +12,7 @@
 
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
-#include "output/build_facts.hpp"
+#include "plugins/build_facts.hpp"
 
 namespace grit {
 namespace {
@@ -69,6 +69,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
              {"revision", build.revision},
              {"compiler", build.compiler},
              {"build_type", build.build_type},
+             {"arch", build.arch},
              {"instruction_set", build.instruction_set}}},
            {"host",
             {{"name", host_name()},

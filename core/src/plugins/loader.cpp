@@ -11,6 +11,7 @@
 
 #include "grit/error.hpp"
 #include "plugins/boundary.hpp"
+#include "plugins/build_facts.hpp"
 
 namespace grit {
 namespace {
@@ -31,16 +32,16 @@ std::string text(const Layout& layout) {
   return std::to_string(layout.size) + " bytes aligned to " + std::to_string(layout.alignment);
 }
 
-/// The package of the SDK beside this library, installed or in a build folder.
+/// The package of the SDK: lib/cmake/grit, where this library is in lib/grit of a build folder, or installed in
+/// lib/grit/<instruction set>.
 std::string sdk_package() {
-  static const char here = 0;
-  std::error_code none;
-  return (boost::dll::symbol_location_ptr(&here, none).parent_path() / "cmake/grit").string();
+  const auto above = library_directory().parent_path();
+  return ((above.filename() == "grit" ? above.parent_path() : above) / "cmake/grit").string();
 }
 
 std::string rebuild() {
   return "rebuild it against this SDK: cmake --fresh -S SOURCES -B BUILD -Dgrit_DIR=" + sdk_package() +
-         " && cmake --build BUILD --clean-first";
+         " -DGRIT_ARCH=" + build_facts().arch + " && cmake --build BUILD --clean-first";
 }
 
 /// Keeps a library open until the process ends, and on purpose beyond the destructors of statics: objects, exceptions
@@ -53,6 +54,12 @@ const Library& keep(Library library) {
 }
 
 }  // namespace
+
+std::filesystem::path library_directory() {
+  static const char here = 0;
+  std::error_code none;
+  return std::filesystem::weakly_canonical(boost::dll::symbol_location_ptr(&here, none)).parent_path();
+}
 
 std::vector<std::string> mismatches(const BuildTag& expected, const BuildTag& found) {
   std::vector<std::string> all;

@@ -9,6 +9,9 @@
 
 namespace grit {
 
+/// The directory of this library: the plugins that come with it are there too.
+std::filesystem::path library_directory();
+
 /// Every difference between two build tags, each as "what: expected …, found …"; none if a plugin with the tag `found`
 /// may be used by a kernel with the tag `expected`. Reads no further than what `found` proves to have.
 std::vector<std::string> mismatches(const BuildTag& expected, const BuildTag& found);

@@ -52,7 +52,8 @@ class Registry {
   mutable std::map<Key, const PluginInfo*> loaded_;
 };
 
-/// The directories of --plugin-path (in order), GRIT_PLUGIN_PATH (colon-separated), then `beside`.
+/// The directories of --plugin-path (in order), GRIT_PLUGIN_PATH (colon-separated), then `beside`. Before each of the
+/// user's comes its folder named after this build's `arch`, if there is one: a folder of plugins can serve several.
 std::vector<std::filesystem::path> plugin_directories(const std::vector<std::string>& option,
                                                       const std::filesystem::path& beside);
 

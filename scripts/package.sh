@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Builds grit for several instruction sets and installs them side by side; the command bin/grit picks one at each start.
+#   package.sh [TARGET [LEVEL…]] [-- ARGUMENTS OF CMAKE…]
+# TARGET is a folder, or a file that ends in .tar.gz: grit.tar.gz unless given. LEVEL is what -march= takes: x86-64-v2,
+# x86-64-v3 and x86-64-v4 unless given. Builds are kept in build-package/<LEVEL>; GRIT_PACKAGE_BUILDS names another folder.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+words=()
+while [[ $# != 0 && $1 != -- ]]; do
+  words+=("$1")
+  shift
+done
+[[ $# == 0 ]] || shift
+target=$(realpath -m "${words[0]-grit.tar.gz}")
+levels=("${words[@]:1}")
+[[ ${#levels[@]} != 0 ]] || levels=(x86-64-v2 x86-64-v3 x86-64-v4)
+builds=$(realpath -m "${GRIT_PACKAGE_BUILDS-$root/build-package}")
+
+prefix=$target
+if [[ $target == *.tar.gz ]]; then
+  stage=$(mktemp -d)
+  trap 'rm -rf "$stage"' EXIT
+  prefix=$stage/$(basename "$target" .tar.gz)
+fi
+
+# All are built before one is installed: half a package would run, but not with the best that a processor has.
+for level in "${levels[@]}"; do
+  cmake -S "$root" -B "$builds/$level" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" \
+    -DGRIT_ARCH="$level" -DGRIT_TESTS=OFF -DGRIT_BENCH=OFF "$@"
+  cmake --build "$builds/$level"
+done
+for level in "${levels[@]}"; do
+  cmake --install "$builds/$level" > "$builds/$level/install.log"
+done
+
+if [[ $target == *.tar.gz ]]; then
+  mkdir -p "$(dirname "$target")"
+  tar -C "$stage" --owner=0 --group=0 -czf "$target" "$(basename "$prefix")"
+fi
+echo "package: ${levels[*]} in $target"
