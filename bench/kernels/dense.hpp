@@ -72,7 +72,7 @@ class Dense {
         .settings = {}, .kick = 0, .drift = 0, .flowed = 0, .strain_rate = Vec3::Zero(), .centre = Vec3::Zero()};
     step.settings.local_damping = 0.08;
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk)
-      move_bodies(chunk, bodies_, pairs_, sum_.data(), step);
+      pairs_.gather(chunk, sum_.data()), move_bodies(chunk, bodies_, sum_.data(), step);
   }
 
   std::size_t count() const { return bodies_.count(); }

@@ -1,5 +1,8 @@
-// The same bits for any number of threads.
+// The same bits for any number of threads, and whether or not forces are asked for.
 #include <gtest/gtest.h>
+
+#include <array>
+#include <deque>
 
 #include "support/packing.hpp"
 
@@ -37,21 +40,50 @@ Description periodic() {
   return d;
 }
 
+/// Springs that stiffen, so that the time step follows the overlaps.
+Description stiffening() {
+  Description d = boxed();
+  d["contacts"]["type"] = "hertz-mindlin";
+  d["materials"]["grain"] = {{"density", 2600}, {"young_modulus", 1e7}, {"poisson_ratio", 0.2}, {"restitution", 0.5}};
+  return d;
+}
+
 void expect_same_bits(const Description& d) {
-  Trial one(d, 1), two(d, 2), three(d, 3);
-  ASSERT_EQ(three.world().threads(), 3u);
+  Trial asked(d, 1);
+  std::deque<Trial> others;
+  const std::array<unsigned, 4> threads{1, 2, 3, 7};
+  for (const unsigned count : threads) others.emplace_back(d, count);
+  ASSERT_EQ(others.back().world().threads(), 7u);
   const std::size_t steps = 250;
   for (int round = 0; round < 4; ++round) {
-    for (Trial* t : {&one, &two, &three}) t->step(steps);
-    ASSERT_TRUE(same_bits(one.world(), two.world())) << "2 threads, step " << one.world().step();
-    ASSERT_TRUE(same_bits(one.world(), three.world())) << "3 threads, step " << one.world().step();
+    asked.step(steps);
+    for (std::size_t i = 0; i < threads.size(); ++i) {
+      others[i].step_on(steps);
+      ASSERT_TRUE(same_bits(asked.world(), others[i].world()))
+          << threads[i] << " threads, step " << asked.world().step();
+    }
   }
-  EXPECT_GT(one.world().pair_count(), 2744u) << "a packing";
-  EXPECT_GT(one.world().clock().rebuilds, 8u) << "bodies are put in order anew in between";
+  EXPECT_GT(asked.world().pair_count(), 2744u) << "a packing";
+  EXPECT_GT(asked.world().clock().rebuilds, 8u) << "bodies are put in order anew in between";
 }
 
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
 TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
+TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }
+
+TEST(SameBits, OfTwoThatCollideThoughTheFirstTouchShortensTheTimeStep) {
+  const Description d = description("hertz-mindlin", {{"young_modulus", 1e8}, {"poisson_ratio", 0.2}},
+                                    {{{0, 0, 0}, 1e-3, {0.2, 0, 0}}, {{2.0001e-3, 0, 0}, 1e-3, {-0.2, 0, 0}}});
+  Trial asked(d), other(d);
+  const double first = asked.world().dt();
+  double least = first;
+  while (least == first || asked.world().pair_count() > 0) {
+    asked.step(3), other.step_on(3);
+    ASSERT_TRUE(same_bits(asked.world(), other.world())) << "step " << asked.world().step();
+    least = std::min(least, asked.world().dt());
+  }
+  EXPECT_LT(least, 0.8 * first);
+}
 
 TEST(SameBits, AreToldFromOthers) {
   Trial one(periodic()), other(periodic());

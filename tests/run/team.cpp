@@ -21,5 +21,16 @@ TEST(Team, HandsOnWhatWorkThrowsAndWorksOn) {
   }
 }
 
+TEST(Team, TakesEachChunkOnce) {
+  for (const unsigned threads : {1u, 2u, 7u}) {
+    Team team(threads);
+    for (const std::size_t chunks : {1, 2, 3, 6, 100}) {
+      std::vector<std::atomic<int>> taken(chunks);
+      for (int pass = 0; pass < 100; ++pass) team.each(chunks, [&](std::size_t chunk) { ++taken[chunk]; });
+      for (const auto& times : taken) EXPECT_EQ(times, 100) << threads << " threads, " << chunks << " chunks";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace grit

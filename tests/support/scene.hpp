@@ -76,6 +76,13 @@ class Trial {
     for (; steps > 0; --steps) simulation_.advance(), simulation_.find_forces();
   }
 
+  /// The same to the same bits, in one pass a step.
+  void step_on(std::size_t steps) {
+    simulation_.advance();
+    for (; steps > 1; --steps) simulation_.step_on();
+    simulation_.find_forces();
+  }
+
   Simulation& world() { return simulation_; }
   const Simulation& world() const { return simulation_; }
   const Scene& scene() const { return scene_; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <utility>
 
 namespace grit {
 namespace {
@@ -12,6 +13,9 @@ struct Memory {
   std::uint32_t other;
   bool swapped;
 };
+
+/// Rows that are asked for beforehand: some 100 ns, as long as memory takes.
+constexpr std::uint32_t gather_ahead = 48;
 
 /// Room for `count` without copying what is there.
 template <class Array>
@@ -130,16 +134,48 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
 
 void ContactTable::make_inbox(std::size_t bodies) {
   const auto pad = static_cast<std::uint32_t>(bodies);
-  inbox_start_.assign(bodies + 1, 0), inbox_far_.assign(bodies, 0);
+  std::vector<std::uint32_t> next_near(bodies, 0), next_far(bodies, 0);
+  const auto next = [&](std::size_t c) -> std::uint32_t& { return (near_[c] != 0 ? next_near : next_far)[b_[c]]; };
   for (std::size_t c = first_cross_; c < b_.size(); ++c)
-    if (b_[c] != pad) ++inbox_start_[b_[c] + 1], inbox_far_[b_[c]] += near_[c];
-  std::partial_sum(inbox_start_.begin(), inbox_start_.end(), inbox_start_.begin());
-  inbox_.resize(inbox_start_.back());
-  std::vector<std::uint32_t> next_near(inbox_start_.begin(), inbox_start_.end() - 1), next_far(bodies);
-  for (std::size_t i = 0; i < bodies; ++i) next_far[i] = inbox_far_[i] += inbox_start_[i];
+    if (b_[c] != pad) ++next(c);
+  std::uint32_t place = 0;
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies, first + chunk_bodies);
+    const auto lay_out = [&](std::vector<std::uint32_t>& counts) {
+      for (std::size_t i = first; i < last; ++i) place += std::exchange(counts[i], place);
+    };
+    chunks_[chunk].inbox_first = place;
+    lay_out(next_near);
+    chunks_[chunk].inbox_far = place;
+    lay_out(next_far);
+    chunks_[chunk].inbox_last = place;
+  }
+  inbox_.resize(place);
   for (std::size_t c = first_cross_; c < b_.size(); ++c)
-    if (b_[c] != pad)
-      inbox_[near_[c] != 0 ? next_near[b_[c]]++ : next_far[b_[c]]++] = static_cast<std::uint32_t>(c - first_cross_);
+    if (b_[c] != pad) inbox_[next(c)++] = {static_cast<std::uint32_t>(c - first_cross_), b_[c]};
+}
+
+void ContactTable::gather(std::size_t chunk, BodySum* sum) const {
+  const auto add = [=, this](const Letter& letter) {
+    sum[letter.body].force += load(row_[letter.row].force), sum[letter.body].moment += load(row_[letter.row].moment);
+  };
+  const Chunk& own = chunks_[chunk];
+  for (std::uint32_t e = own.inbox_first; e < own.inbox_far; ++e) {
+    if (e + gather_ahead < own.inbox_far) __builtin_prefetch(&row_[inbox_[e + gather_ahead].row]);
+    add(inbox_[e]);
+  }
+  for (std::uint32_t e = own.inbox_far; e < own.inbox_last; ++e)
+    if (touches(first_cross_ + inbox_[e].row)) add(inbox_[e]);
+}
+
+std::vector<std::vector<std::uint32_t>> ContactTable::reached() const {
+  std::vector<std::vector<std::uint32_t>> reached(chunks_.size());
+  for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk)
+    for (std::uint32_t e = chunks_[chunk].inbox_first; e < chunks_[chunk].inbox_last; ++e) {
+      auto& from = reached[a_[first_cross_ + inbox_[e].row] / chunk_bodies];
+      if (from.empty() || from.back() != chunk) from.push_back(static_cast<std::uint32_t>(chunk));
+    }
+  return reached;
 }
 
 void ContactTable::set_fields(std::span<const StateField> fields) {
@@ -165,6 +201,9 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .first_block = blocks.first,
           .last_block = blocks.last,
           .last_body = last_body,
+          .next = nullptr,
+          .next_first = 0,
+          .next_count = 0,
           .dt = at.dt,
           .again = at.again,
           .state = nullptr,
@@ -175,24 +214,28 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
 }
 
 double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum) {
-  const std::size_t first_body = chunk * chunk_bodies;
-  const std::size_t last_body = std::min(at.bodies.count(), first_body + chunk_bodies) - 1;
-  // All bodies of the chunk are needed soon, in an order that the machine does not foresee.
-  for (std::size_t i = first_body; i <= last_body; i += 64 / sizeof(Row))
-    __builtin_prefetch(&at.bodies.position[i]), __builtin_prefetch(&at.bodies.velocity[i]),
-        __builtin_prefetch(&at.bodies.spin[i]);
+  const auto bodies = static_cast<std::uint32_t>(at.bodies.count());
+  const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(bodies, (chunk + 1) * chunk_bodies));
+  const Blocks within = chunks_[chunk].within, across = chunks_[chunk].across;
   double largest = 0;
-  for (const Blocks blocks : {chunks_[chunk].within, chunks_[chunk].across}) {
-    if (blocks.first == blocks.last) continue;
-    PairBatch pairs = batch(blocks, at, static_cast<std::uint32_t>(last_body));
+  const auto evaluate = [&](Blocks blocks, PairBatch pairs) {
+    if (blocks.first == blocks.last) return;
     pairs.state = state_.empty() ? nullptr : state_.front().lane;
     pairs.touching = touching_.data();
-    const std::size_t first = std::size_t{blocks.first} * block_size;
-    pairs.row = first < first_cross_ ? nullptr : row_.data() + (first - first_cross_);
     pairs.sum = sum;
     at.law.evaluate_pairs(pairs);
     largest = std::max(largest, pairs.largest_overlap);
-  }
+  };
+  // Meanwhile the bodies of other chunks are fetched, then those of the chunk that is likely to come next.
+  PairBatch own = batch(within, at, end - 1);
+  own.next = b_.data() + std::size_t{across.first} * block_size;
+  own.next_count = static_cast<std::uint32_t>((across.last - across.first) * block_size);
+  evaluate(within, own);
+  PairBatch others = batch(across, at, end - 1);
+  others.row = row_.data() + (std::size_t{across.first} * block_size - first_cross_);
+  others.next_first = end;
+  others.next_count = std::min(bodies, end + static_cast<std::uint32_t>(chunk_bodies)) - end;
+  evaluate(across, others);
   return largest;
 }
 
@@ -226,7 +269,7 @@ std::vector<double> ContactTable::state(std::size_t c) const {
 
 std::size_t ContactTable::memory() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
-  return bytes(a_, b_, image_, touching_, state_, row_, inbox_, inbox_start_, inbox_far_, near_);
+  return bytes(a_, b_, image_, touching_, state_, row_, inbox_, near_);
 }
 
 std::size_t ContactTable::touching_count() const {

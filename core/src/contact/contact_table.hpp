@@ -38,7 +38,8 @@ class ContactTable {
     double dt;           ///< s
     bool again = false;  ///< this instant has been evaluated before
   };
-  /// Evaluates one chunk: fills its rows, adds to the sums of its bodies. Returns the largest overlap over a radius.
+  /// Evaluates one chunk: fills its rows, adds to the sums of its bodies, by index, and touches no others. Returns the
+  /// largest overlap over a radius.
   double evaluate(std::size_t chunk, const Instant& at, BodySum* sum);
   /// What an evaluated instant's contacts do, one after the other: use(candidate, row).
   template <class Use>
@@ -56,22 +57,10 @@ class ContactTable {
     return xyz(bodies.position[b_[c]]) - xyz(bodies.position[a_[c]]) + xyz(shifts[image(c)].position);
   }
 
-  /// Adds what the contacts across chunks do to `body` as their b. Always in the same order.
-  void gather(std::size_t body, Quad& force, Quad& moment) const {
-    const std::uint32_t* entry = inbox_.data() + inbox_start_[body];
-    const std::uint32_t* const far = inbox_.data() + inbox_far_[body];
-    const std::uint32_t* const end = inbox_.data() + inbox_start_[body + 1];
-    for (; entry != far; ++entry) add(row_[*entry], force, moment);
-    for (; entry != end; ++entry)
-      if (touches(first_cross_ + *entry)) add(row_[*entry], force, moment);
-  }
-
-  /// Asks for the memory that gather() will read.
-  void prefetch(std::size_t body) const {
-    for (std::uint32_t e = inbox_start_[body]; e < inbox_far_[body]; ++e) {
-      __builtin_prefetch(&row_[inbox_[e]].force);
-    }
-  }
+  /// Adds what contacts across chunks do to the bodies of this one as their b. Always in the same order.
+  void gather(std::size_t chunk, BodySum* sum) const;
+  /// Of each chunk the others that have a b of its candidates.
+  std::vector<std::vector<std::uint32_t>> reached() const;
 
   std::size_t candidates() const { return a_.size(); }
   bool touches(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
@@ -91,27 +80,28 @@ class ContactTable {
   };
   struct Chunk {
     Blocks within, across;
+    std::uint32_t inbox_first = 0, inbox_far = 0, inbox_last = 0;
+  };
+  /// Where a row of another chunk goes.
+  struct Letter {
+    std::uint32_t row, body;
   };
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
                       std::vector<ContactRow>& rows) const;
-  static void add(const ContactRow& row, Quad& force, Quad& moment) {
-    force += load(row.force), moment += load(row.moment);
-  }
   void make_inbox(std::size_t bodies);
 
   std::vector<Chunk> chunks_;
   // Candidates: those within all chunks come before those across.
-  std::vector<std::uint32_t> a_, b_;
-  std::vector<std::uint8_t> image_;  // empty without periodic boundaries
+  LargeArray<std::uint32_t> a_, b_;
+  LargeArray<std::uint8_t> image_;  // empty without periodic boundaries
   std::vector<std::uint8_t> touching_;
   std::vector<StateField> fields_;
   LargeArray<StateLine> state_;  // [block][field]
   std::size_t first_cross_ = 0;  // the first candidate across chunks, which has the first row
   LargeArray<ContactRow> row_;
-  // Rows by their b: inbox_start_[b] … inbox_far_[b] touched when the table was built, the rest did not.
-  std::vector<std::uint32_t> inbox_, inbox_start_, inbox_far_;
-  std::vector<std::uint8_t> near_;             // of each candidate: touched when the table was built
+  LargeArray<Letter> inbox_;       // by the chunk of b, those that touched when the table was built first; then by b
+  LargeArray<std::uint8_t> near_;  // of each candidate: touched when the table was built
   std::vector<std::vector<Candidate>> found_;  // by chunk
   std::vector<std::size_t> within_;            // by chunk: how many of them are within it
 };

@@ -18,6 +18,7 @@ struct WallSurface {
   std::shared_ptr<const Geometry> geometry;
   std::uint32_t material = 0;
   bool gives_way = false;  ///< moved by what presses on it, which asks how stiffly
+  bool free = false;       ///< moved by nothing else
   Pose pose;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< of the last step, like those of the bodies
 

@@ -7,9 +7,6 @@
 namespace grit {
 namespace {
 
-/// Bodies whose contacts are asked for beforehand: some 100 ns, as long as memory takes.
-constexpr std::size_t gather_ahead = 8;
-
 Quad quad(const Vec3& v) { return Quad{v.x(), v.y(), v.z(), 0}; }
 
 /// Lessens components that speed the body up, adds to those that slow it down; does nothing to a body at rest.
@@ -23,20 +20,7 @@ Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
 }  // namespace
 
-BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
-                  const Vec3& gravity) {
-  Quad force = load(sum[body].force), moment = load(sum[body].moment);
-  pairs.gather(body, force, moment);
-  BodySum net;
-  store(force, net.force), store(moment, net.moment);
-  const double mass = 1 / bodies.velocity[body].w;
-  net.force.x += mass * gravity.x(), net.force.y += mass * gravity.y(), net.force.z += mass * gravity.z();
-  net.force.w = net.moment.w = 0;
-  return net;
-}
-
-Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
-                   const MotionStep& step) {
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
   const Quad gravity_kick = quad(Vec3(settings.gravity * step.kick));
@@ -51,9 +35,7 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs,
   const double damping = settings.local_damping;
   Quad fastest{}, poison{};
   for (std::size_t i = first; i < last; ++i) {
-    if (i + gather_ahead < last) pairs.prefetch(i + gather_ahead);
-    Quad force = load(sum[i].force), moment = load(sum[i].moment);
-    pairs.gather(i, force, moment);
+    const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(bodies.position[i]), v = load(bodies.velocity[i]), w = load(bodies.spin[i]);
     const double inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
     v += growth * v;

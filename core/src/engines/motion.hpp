@@ -1,7 +1,8 @@
-// From forces to positions: one pass over the bodies gathers, damps and integrates.
+// From forces to positions: one pass over the bodies damps and integrates.
 #pragma once
 
-#include "contact/contact_table.hpp"
+#include "contact/search.hpp"
+#include "grit/contact/batch.hpp"
 #include "grit/engine.hpp"
 #include "scene/bodies.hpp"
 
@@ -23,12 +24,7 @@ struct Motion {
   bool finite = true;        ///< no velocity is inf or NaN
 };
 
-/// Moves the bodies of one chunk. `sum` holds what contacts did to them as a.
-Motion move_bodies(std::size_t chunk, Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
-                   const MotionStep& step);
-
-/// Net force and moment of one body, gravity included, before damping; w is 0.
-BodySum net_force(std::size_t body, const Bodies& bodies, const ContactTable& pairs, const BodySum* sum,
-                  const Vec3& gravity);
+/// Moves the bodies of one chunk under `sum`, by index.
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
 }  // namespace grit

@@ -21,6 +21,7 @@ double stage_travel(const DisplacementCondition& c, const World& world) {
 struct Met {
   const Simulation& simulation;
   const StageStart& start;
+  bool without_forces;
 
   bool look_now() const { return (simulation.step() - start.step) % slow_conditions_every == 0; }
 
@@ -37,11 +38,12 @@ struct Met {
   }
   bool operator()(const UnbalancedForceCondition& c) const {
     if (!look_now()) return false;
+    if (without_forces) return true;
     const Unrest now = unrest(simulation);
     return now.mean_contact_force > 0 && now.unbalanced_force < c.below;
   }
   bool operator()(const KineticEnergyCondition& c) const {
-    return look_now() && simulation.kinetic_energy_ratio() < c.below;
+    return look_now() && (without_forces || simulation.kinetic_energy_ratio() < c.below);
   }
   bool operator()(const VoidRatioCondition& c) const {
     if (!look_now()) return false;
@@ -49,13 +51,14 @@ struct Met {
     return (!c.below || e < *c.below) && (!c.above || e > *c.above);
   }
   bool operator()(const PressureCondition& c) const {
-    return std::abs(wall(simulation, c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
+    return without_forces ||
+           std::abs(wall(simulation, c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
   }
   bool operator()(const AllCondition& c) const {
-    return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return is_met(*one, simulation, start); });
+    return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one->is.value()); });
   }
   bool operator()(const AnyCondition& c) const {
-    return std::any_of(c.of.begin(), c.of.end(), [&](const auto& one) { return is_met(*one, simulation, start); });
+    return std::any_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one->is.value()); });
   }
   bool operator()(std::monostate) const { return true; }
 };
@@ -92,7 +95,11 @@ struct Progress {
 }  // namespace
 
 bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  return std::visit(Met{simulation, start}, condition.is.value());
+  return std::visit(Met{simulation, start, false}, condition.is.value());
+}
+
+bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
+  return std::visit(Met{simulation, start, true}, condition.is.value());
 }
 
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start) {

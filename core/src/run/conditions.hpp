@@ -21,6 +21,9 @@ inline constexpr std::uint64_t slow_conditions_every = 100;
 /// Whether the condition holds. Between looks, slow conditions count as not met.
 bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
 
+/// The same without looking at forces: false where the condition surely does not hold.
+bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
+
 /// How far on the way the stage is, 0 … 1, where the condition tells.
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start);
 

@@ -14,25 +14,32 @@ namespace {
 
 using Instant = std::chrono::steady_clock::time_point;
 
+constexpr std::uint64_t contacts_counted_every = 100;
+
 /// Says when something that happens again and again is due.
 class Schedule {
  public:
   explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
   void restart(const World& world) { first_time_ = world.time(), first_step_ = world.step(), count_ = 0; }
-  bool is_due(const World& world) {
-    bool due = false;
-    if (cadence_.every_steps > 0)
-      due = (world.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
-    if (cadence_.every_time) {
-      // Counted, not summed up, so that the instants do not drift.
-      const double next = first_time_ + static_cast<double>(count_) * *cadence_.every_time;
-      if (world.time() >= next - 0.5 * world.dt()) due = true, ++count_;
-    }
+  bool is_due(const World& world) const {
+    return due_by_time(world) || (cadence_.every_steps > 0 &&
+                                  (world.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0);
+  }
+  /// The same, and goes on to the next time.
+  bool take(const World& world) {
+    const bool due = is_due(world);
+    if (due_by_time(world)) ++count_;
     return due;
   }
   bool never() const { return !cadence_.every_time && cadence_.every_steps == 0; }
 
  private:
+  bool due_by_time(const World& world) const {
+    // Counted, not summed up, so that the instants do not drift.
+    return cadence_.every_time &&
+           world.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * world.dt();
+  }
+
   Cadence cadence_;
   double first_time_ = 0;
   std::uint64_t first_step_ = 0, count_ = 0;
@@ -123,12 +130,19 @@ class Run {
 
     for (;;) {
       ramp(stage, plan);
+      // Asked before forces, whose time step may be another: a stage ends the same, whoever looks.
+      const bool may_end = may_be_met(stage.until, simulation_, start_);
+      if (!may_end && !is_looked_at(stage)) {
+        step_on();
+        report(index, stage);
+        continue;
+      }
       step_forces();
-      const bool met = is_met(stage.until, simulation_, start_);
+      const bool met = may_end && is_met(stage.until, simulation_, start_);
       observe(met);
       if (met) break;
       if (interrupted()) return;  // here, where positions and forces are of one instant
-      if (simulation_.time() - start_.time > stage.limit)
+      if (too_late(stage))
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
                             " s; " + reached() + "; give it more time (/stages/" + std::to_string(index) +
                             "/limit) or a condition that it can reach");
@@ -146,6 +160,20 @@ class Run {
     }
   }
 
+  bool too_late(const StageDescription& stage) const { return simulation_.time() - start_.time > stage.limit; }
+  bool is_time_to_count() const { return simulation_.step() % contacts_counted_every == 0; }
+  /// Whether somebody may ask for the forces of this instant.
+  bool is_looked_at(const StageDescription& stage) {
+    return interrupted() || too_late(stage) || is_time_to_count() || frames_.is_due(simulation_) ||
+           std::any_of(observers_.begin(), observers_.end(), [&](Observer& observer) {
+             return observer.watches(simulation_.stage()) && observer.schedule().is_due(simulation_);
+           });
+  }
+
+  void step_on() {
+    const Stopwatch watch(stepping_);
+    simulation_.step_on();
+  }
   void step_forces() {
     const Stopwatch watch(stepping_);
     simulation_.find_forces();
@@ -173,7 +201,7 @@ class Run {
 
   void observe(bool all) {
     sample(all);
-    if (frames_.is_due(simulation_)) frame();
+    if (frames_.take(simulation_)) frame();
   }
 
   void sample(bool all) {
@@ -181,10 +209,10 @@ class Run {
     for (std::size_t i = 0; i < observers_.size(); ++i) {
       Observer& observer = observers_[i];
       if (!observer.watches(simulation_.stage())) continue;
-      const bool due = observer.schedule().is_due(simulation_);
+      const bool due = observer.schedule().take(simulation_);
       if (due || all) observer.sample(i, simulation_, recorder_);
     }
-    if (simulation_.step() % 100 == 0 && simulation_.positions().size() > 0)
+    if (is_time_to_count() && simulation_.positions().size() > 0)
       contact_sum_ +=
           2.0 * static_cast<double>(simulation_.pair_count()) / static_cast<double>(simulation_.positions().size()),
           ++contact_samples_;

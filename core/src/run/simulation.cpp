@@ -1,9 +1,12 @@
 #include "run/simulation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "contact/critical_step.hpp"
 #include "grit/error.hpp"
@@ -26,6 +29,8 @@ constexpr double raise_when = 1.1;
 // Springs that stiffen with overlap, as Hertz's do: the time step is set anew whenever the largest has grown so much.
 constexpr double overlap_growth = 1.2, least_stepped_overlap = 1e-3;
 constexpr std::uint64_t energy_check_every = 500;
+// Of so many chunks one is timed: a look at the clock takes some 30 ns, a chunk some 20 µs.
+constexpr std::uint64_t timed_every = 8;
 
 /// How fast the periods change [m/s], half a step ago as the velocities.
 Vec3 growth_of_period(const Clock& clock) {
@@ -60,8 +65,7 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
   if (count > 0) mean_diameter_ = diameters / static_cast<double>(count), solid_density_ = mass / volume;
   clock_.skin = least_skin * mean_diameter_;
   sum_.assign(count + 1, {});
-  chunk_overlap_.assign(chunks_of(count), 0);
-  chunk_motion_.assign(chunks_of(count), {});
+  chunk_.assign(chunks_of(count), {});
   begin_stage("", scene);
 }
 
@@ -111,11 +115,13 @@ void Simulation::apply(const SceneDescription& scene) {
       search_now_ = true;
     surfaces_[w].geometry = wall.geometry.get();
     surfaces_[w].gives_way = wall.motion.servo || wall.motion.free;
+    surfaces_[w].free = bool(wall.motion.free);
     surfaces_[w].material = static_cast<std::uint32_t>(
         std::find(material_names_.begin(), material_names_.end(), wall.material) - material_names_.begin());
   }
   energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
   time_step_now_ = true;
+  stiffens_ = law_stiffens();
   net_step_ = contact_step_ = wall_step_ = ~0ull;
 }
 
@@ -217,6 +223,7 @@ void Simulation::search() {
   }
   search_.build(bodies_, clock_.cell, clock_.skin);
   pairs_.rebuild(bodies_, search_, periodic_, fields_, order, team_);
+  readiness_.build(pairs_.reached());
   wall_contacts_.rebuild(bodies_, surfaces_, clock_.skin, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
   clock_.body_travel = clock_.wall_travel = clock_.strain_travel = 0;
@@ -254,7 +261,7 @@ void Simulation::set_time_step() {
   if (clock_.time_step == 0 || safe < clock_.time_step || safe > raise_when * clock_.time_step) clock_.time_step = safe;
 }
 
-void Simulation::find_forces() {
+bool Simulation::prepare() {
   net_step_ = contact_step_ = wall_step_ = ~0ull;
   update_shifts();
   update_surfaces();
@@ -266,60 +273,178 @@ void Simulation::find_forces() {
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
   const bool again = clock_.forces_step == clock_.step;
   clock_.forces_step = clock_.step;
-  {
-    const Stopwatch watch(phases_[pair_contacts].seconds);
-    team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {
-      const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
-      std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
-                BodySum{});
-      chunk_overlap_[chunk] = pairs_.evaluate(chunk, instant(again), sum_.data());
-    });
-  }
+  return again;
+}
+
+template <class Work>
+void Simulation::pass(Work work) {
+  const Stopwatch watch(passes_);
+  team_.each(chunk_.size(), [&](std::size_t chunk) {
+    Laps laps((chunk + clock_.step) % timed_every == 0);
+    work(chunk, laps);
+  });
+}
+
+void Simulation::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps) {
+  Chunk& own = chunk_[chunk];
+  const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+  std::fill(sum + first, sum + last, BodySum{});
+  own.overlap = pairs_.evaluate(chunk, instant(again), sum);
+  laps(own.seconds[pair_contacts]);
+  if (surfaces_.empty()) return;
+  own.overlap = std::max(own.overlap, wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_,
+                                                              again ? 0 : clock_.last_time_step, sum));
+  laps(own.seconds[wall_touches]);
+}
+
+void Simulation::move(std::size_t chunk, const BodySum* sum, const MotionStep& step) {
+  chunk_[chunk].motion = move_bodies(chunk, bodies_, sum, step);
+}
+
+void Simulation::sum_forces(bool again) {
+  pass([&](std::size_t chunk, Laps& laps) { evaluate(chunk, again, sum_.data(), laps); });
+  pass([&](std::size_t chunk, Laps& laps) {
+    pairs_.gather(chunk, sum_.data());
+    laps(chunk_[chunk].seconds[motion]);
+  });
+}
+
+void Simulation::take_loads() {
   if (!surfaces_.empty()) {
-    const Stopwatch watch(phases_[wall_touches].seconds);
-    team_.each(chunk_overlap_.size(), [&](std::size_t chunk) {
-      chunk_overlap_[chunk] =
-          std::max(chunk_overlap_[chunk], wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_,
-                                                                  again ? 0 : clock_.last_time_step, sum_.data()));
-    });
     wall_contacts_.loads(loads_);
     walls_.clear_forces();
     for (std::size_t w = 0; w < loads_.size(); ++w)
       walls_.add(w, loads_[w].force, loads_[w].moment, loads_[w].stiffness, loads_[w].touches);
   }
+  clock_.overlap = 0;
+  for (const Chunk& chunk : chunk_) clock_.overlap = std::max(clock_.overlap, chunk.overlap);
+  check_overlap(clock_.overlap);
+}
+
+void Simulation::find_forces() {
+  const bool look = springs_may_stiffen();
+  sum_forces(prepare());
   if (!force_engines_.empty()) {
     std::vector<Row> force(bodies_.count()), moment(bodies_.count());
     for (const auto& engine : force_engines_) engine->forces(*this, force, moment);
     for (std::size_t i = 0; i < bodies_.count(); ++i) sum_[i].force += force[i], sum_[i].moment += moment[i];
   }
-  clock_.overlap = chunk_overlap_.empty() ? 0 : *std::max_element(chunk_overlap_.begin(), chunk_overlap_.end());
-  check_overlap(clock_.overlap);
-  if (clock_.overlap > overlap_growth * clock_.stepped_overlap ||
-      walls_.critical_time_step() < clock_.critical_time_step)
+  take_loads();
+  if ((look && springs_stiffen(clock_.overlap)) || walls_.critical_time_step() < clock_.critical_time_step)
     set_time_step();
   if (clock_.step % energy_check_every == 0) check_energy();
 }
 
+MotionStep Simulation::next_motion() const {
+  const double dt = clock_.time_step;
+  return {.settings = settings_,
+          .kick = clock_.last_time_step > 0 ? 0.5 * (clock_.last_time_step + dt) : 0.5 * dt,
+          .drift = dt,
+          .flowed = clock_.last_time_step,
+          .strain_rate = clock_.cell.strain_rate,
+          .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
+}
+
 void Simulation::advance() {
+  const MotionStep next = next_motion();
+  pass([&](std::size_t chunk, Laps& laps) {
+    move(chunk, sum_.data(), next);
+    laps(chunk_[chunk].seconds[motion]);
+  });
+  end_step();
+}
+
+/// Forces decide on nothing that bodies must wait for: neither the time step, nor what engines add.
+bool Simulation::in_one_pass() const {
+  const bool free_walls = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& wall) { return wall.free; });
+  return force_engines_.empty() && !free_walls && clock_.step % energy_check_every != 0 && !springs_may_stiffen();
+}
+
+/// Asked before forces, whoever wants them, so that the time step does not depend on that.
+bool Simulation::springs_may_stiffen() const {
+  return springs_stiffen(clock_.overlap + clock_.last_approach / smallest_radius_);
+}
+
+bool Simulation::springs_stiffen(double overlap) const {
+  return stiffens_ && overlap > overlap_growth * clock_.stepped_overlap;
+}
+
+bool Simulation::law_stiffens() const {
+  const auto stiffness = [this](std::size_t a, std::size_t b, bool wall, double overlap) {
+    const double r = smallest_radius_, per_mass = 1 / (solid_density_ * r * r * r);
+    return law_
+        ->stiffness({.radius_a = r,
+                     .radius_b = r,
+                     .inverse_mass_a = per_mass,
+                     .inverse_mass_b = wall ? 0 : per_mass,
+                     .overlap = overlap * r,
+                     .wall = wall},
+                    a, b)
+        .normal;
+  };
+  for (std::size_t a = 0; a < material_names_.size(); ++a)
+    for (std::size_t b = 0; b < material_names_.size(); ++b)
+      for (const bool wall : {false, true})
+        for (double overlap = 1e-6; overlap < 1; overlap *= 4)
+          if (stiffness(a, b, wall, overlap) != stiffness(a, b, wall, 0)) return true;
+  return false;
+}
+
+void Simulation::step_on() {
+  if (!in_one_pass()) {
+    find_forces();
+    advance();
+    return;
+  }
+  const bool again = prepare();
+  const MotionStep next = next_motion();
+  readiness_.restart();
+  pass([&](std::size_t chunk, Laps& laps) {
+    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all.
+    alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
+    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+    BodySum* const own = here.data() - first;
+    evaluate(chunk, again, own, laps);
+    const bool at_once = readiness_.waits_for_itself(chunk);
+    if (!at_once) std::copy(own + first, own + last, sum_.data() + first);
+    readiness_.evaluated(chunk, [&](std::size_t ready) {
+      BodySum* const sum = at_once && ready == chunk ? own : sum_.data();
+      pairs_.gather(ready, sum);
+      move(ready, sum, next);
+    });
+    laps(chunk_[chunk].seconds[motion]);
+  });
+  try {
+    take_loads();
+    end_step();
+  } catch (const NumericsError&) {
+    show_forces();
+    throw;
+  }
+}
+
+void Simulation::show_forces() {
+  const bool finite = std::all_of(chunk_.begin(), chunk_.end(), [](const Chunk& c) { return c.motion.finite; });
+  if (finite) {
+    update_surfaces();
+    sum_forces(true);
+  } else {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    const Row row{unknown, unknown, unknown, unknown};
+    sum_.assign(sum_.size(), {row, row});
+  }
+  net_step_ = contact_step_ = wall_step_ = ~0ull;
+}
+
+void Simulation::end_step() {
   const double dt = clock_.time_step;
   walls_.drive(dt);
   for (const WallState& wall : walls_.states())
     energy_.work += dt * (-wall.force.dot(wall.velocity) - wall.moment.dot(wall.spin));
-  const MotionStep step{.settings = settings_,
-                        .kick = clock_.last_time_step > 0 ? 0.5 * (clock_.last_time_step + dt) : 0.5 * dt,
-                        .drift = dt,
-                        .flowed = clock_.last_time_step,
-                        .strain_rate = clock_.cell.strain_rate,
-                        .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
-  {
-    const Stopwatch watch(phases_[motion].seconds);
-    team_.each(chunk_motion_.size(), [&](std::size_t chunk) {
-      chunk_motion_[chunk] = move_bodies(chunk, bodies_, pairs_, sum_.data(), step);
-    });
-  }
   double fastest = 0;
   bool finite = true;
-  for (const Motion& one : chunk_motion_) fastest = std::max(fastest, one.largest_speed), finite = finite && one.finite;
+  for (const Chunk& chunk : chunk_)
+    fastest = std::max(fastest, chunk.motion.largest_speed), finite = finite && chunk.motion.finite;
   walls_.move(dt);
   clock_.time += dt;
   ++clock_.step;
@@ -335,7 +460,8 @@ void Simulation::advance() {
   clock_.last_time_step = dt;
 
   clock_.body_travel += dt * fastest;
-  clock_.strain_travel += dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + clock_.skin);
+  const double strained = dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + clock_.skin);
+  clock_.strain_travel += strained;
   double wall_speed = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_.states()[w];
@@ -352,6 +478,7 @@ void Simulation::advance() {
     wall_speed = std::max(wall_speed, speed);
   }
   clock_.wall_travel += dt * wall_speed;
+  clock_.last_approach = dt * std::max(2 * fastest, fastest + wall_speed) + strained;
 
   if (!finite || dt * fastest > scene_->guards.travel * smallest_radius_) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
@@ -374,18 +501,22 @@ void Simulation::advance() {
 
 void Simulation::check_overlap(double largest) const {
   if (largest <= scene_->guards.overlap) return;
-  for (const Contact& contact : contacts()) {
-    const double radius = contact.with_wall ? bodies_.position[contact.a].w
-                                            : std::min(bodies_.position[contact.a].w, bodies_.position[contact.b].w);
-    if (contact.overlap <= scene_->guards.overlap * radius) continue;
-    fail_at_body(contact.a,
-                 "overlaps " +
-                     (contact.with_wall ? "wall \"" + walls_.name(contact.b) + "\""
-                                        : "body " + std::to_string(bodies_.id[contact.b])) +
-                     " by " + number(contact.overlap / radius) + " of its radius, more than /guards/overlap " +
-                     number(scene_->guards.overlap),
-                 "the contact modulus may be too low for this load, or bodies began inside each other");
-  }
+  // Bodies may have moved since, so that the largest overlap is looked for, not the one that is too large.
+  const auto share = [this](const Contact& c) {
+    const double radius = bodies_.position[c.a].w;
+    return c.overlap / (c.with_wall ? radius : std::min(radius, bodies_.position[c.b].w));
+  };
+  const auto all = contacts();
+  const auto worst =
+      std::max_element(all.begin(), all.end(), [&](const Contact& c, const Contact& d) { return share(c) < share(d); });
+  const Contact& contact = *worst;
+  fail_at_body(contact.a,
+               "overlaps " +
+                   (contact.with_wall ? "wall \"" + walls_.name(contact.b) + "\""
+                                      : "body " + std::to_string(bodies_.id[contact.b])) +
+                   " by " + number(largest) + " of its radius, more than /guards/overlap " +
+                   number(scene_->guards.overlap),
+               "the contact modulus may be too low for this load, or bodies began inside each other");
 }
 
 double Simulation::elastic_energy() const {
@@ -448,12 +579,24 @@ void Simulation::check_energy() {
          "the time step may be too large for the stiffest contact; try a smaller /time_step/safety");
 }
 
+std::vector<PhaseTime> Simulation::phases() const {
+  std::array<double, part_count> timed{};
+  for (const Chunk& chunk : chunk_)
+    for (std::size_t part = 0; part < part_count; ++part) timed[part] += chunk.seconds[part];
+  const double all = std::accumulate(timed.begin(), timed.end(), 0.0);
+  auto phases = phases_;
+  for (std::size_t part = 0; part < part_count && all > 0; ++part) phases[part].seconds += passes_ * timed[part] / all;
+  return phases;
+}
+
 std::span<const Row> Simulation::forces() const {
   if (net_step_ != clock_.step) {
     net_force_.resize(bodies_.count()), net_moment_.resize(bodies_.count());
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
-      const BodySum net = net_force(i, bodies_, pairs_, sum_.data(), settings_.gravity);
-      net_force_[i] = net.force, net_moment_[i] = net.moment;
+      const Vec3 weight = settings_.gravity / bodies_.velocity[i].w;
+      net_force_[i] = sum_[i].force, net_moment_[i] = sum_[i].moment;
+      net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
+      net_force_[i].w = net_moment_[i].w = 0;
     }
     net_step_ = clock_.step;
   }

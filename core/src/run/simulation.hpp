@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact/contact_table.hpp"
+#include "contact/readiness.hpp"
 #include "contact/search.hpp"
 #include "contact/team.hpp"
 #include "contact/wall_contacts.hpp"
@@ -15,6 +16,7 @@
 #include "engines/walls.hpp"
 #include "grit/world.hpp"
 #include "run/recorder.hpp"
+#include "run/stopwatch.hpp"
 #include "scene/bodies.hpp"
 #include "scene/description.hpp"
 
@@ -34,6 +36,7 @@ struct Clock {
   std::uint64_t last_search = 0;                               ///< step
   double skin = 0;                                             ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
+  double last_approach = 0;                 ///< by how much the last step let bodies come closer at most, m
   double stepped_travel = 0;                ///< how far pairs had come together when the time step was set, m
   double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
 };
@@ -61,6 +64,10 @@ class Simulation final : public World {
   void find_forces();
   /// One step; find_forces() must have been called at this instant. Throws NumericsError if a guard trips.
   void advance();
+  /// find_forces() and advance(), to the same bits, in one pass over the bodies where nothing else hinders it. Nobody
+  /// may ask for forces until find_forces() is called again; contacts remember theirs. Throws NumericsError if a guard
+  /// trips, and has the forces of where it stopped.
+  void step_on();
 
   /// Kinetic over elastic energy; infinite where nothing is stored.
   double kinetic_energy_ratio() const;
@@ -69,7 +76,7 @@ class Simulation final : public World {
   unsigned threads() const { return team_.threads(); }
   std::size_t pair_count() const { return pairs_.touching_count(); }
   std::size_t candidate_count() const { return pairs_.candidates(); }
-  const std::vector<PhaseTime>& phases() const { return phases_; }
+  std::vector<PhaseTime> phases() const;
   const Walls& wall_states() const { return walls_; }
   double skin() const { return clock_.skin; }
   /// Bytes held by bodies and contacts.
@@ -107,6 +114,27 @@ class Simulation final : public World {
   ContactTable::Instant instant(bool again) const {
     return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, again};
   }
+  /// All that comes before the contacts. Returns whether this instant has been evaluated before.
+  bool prepare();
+  /// Shares work(chunk, laps) among the threads.
+  template <class Work>
+  void pass(Work work);
+  /// Contacts of one chunk with others and with walls.
+  void evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
+  void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
+  void sum_forces(bool again);
+  /// What the chunks found, for walls and guards.
+  void take_loads();
+  bool in_one_pass() const;
+  /// Whether springs at this overlap are so much stiffer than when the time step was set that it must be set anew.
+  bool springs_stiffen(double overlap) const;
+  bool springs_may_stiffen() const;
+  bool law_stiffens() const;
+  MotionStep next_motion() const;
+  /// All that comes after the motion of bodies.
+  void end_step();
+  /// For whoever looks at what has failed.
+  void show_forces();
   bool search_is_due();
   void adapt_skin();
   /// How much closer two bodies, or a body and a wall, can have come since the last search [m].
@@ -150,11 +178,19 @@ class Simulation final : public World {
   std::vector<WallLoad> loads_;
   std::vector<double>
       arms_;  // of walls that spin: how far from its reference point bodies reached at the last search [m]
-  std::vector<double> chunk_overlap_;
-  std::vector<Motion> chunk_motion_;
+  /// What was found of a chunk, and the time it took where that was taken.
+  struct alignas(64) Chunk {
+    double overlap = 0;
+    Motion motion;
+    std::array<double, part_count> seconds{};
+  };
+  std::vector<Chunk> chunk_;
+  Readiness readiness_;
   std::vector<PhaseTime> phases_;
+  double passes_ = 0;  // s, in which the threads shared chunks
   double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
   bool one_material_ = true, periodic_ = false, search_now_ = true, time_step_now_ = true;
+  bool stiffens_ = true;  // springs of the law, with overlap
 
   // What probes ask for, worked out at most once an instant.
   mutable std::vector<Row> net_force_, net_moment_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <utility>
 
 namespace grit {
 
@@ -20,6 +21,24 @@ class Stopwatch {
  private:
   double& seconds_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Splits time into laps of several phases, or does nothing.
+class Laps {
+ public:
+  explicit Laps(bool on) : on_(on) {
+    if (on_) last_ = std::chrono::steady_clock::now();
+  }
+  /// Adds the time since the last lap to a phase.
+  void operator()(double& seconds) {
+    if (!on_) return;
+    const auto now = std::chrono::steady_clock::now();
+    seconds += std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  bool on_;
+  std::chrono::steady_clock::time_point last_;
 };
 
 }  // namespace grit

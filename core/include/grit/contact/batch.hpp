@@ -42,8 +42,11 @@ struct PairBatch {
   const ImageShift* shifts;
   std::size_t first_block, last_block;
   std::uint32_t last_body;  ///< of the chunk
-  double dt;                ///< s
-  bool again;               ///< the step is in the memory already: forces alone are wanted
+  // bodies that will be wanted next, for the processor to fetch meanwhile
+  const std::uint32_t* next;             ///< their indices; null where they lie one behind the other
+  std::uint32_t next_first, next_count;  ///< where they do: from which on; how many in either case
+  double dt;                             ///< s
+  bool again;                            ///< the step is in the memory already: forces alone are wanted
   // memory and results
   double* state;           ///< [block][field][block_size]
   std::uint8_t* touching;  ///< [block], a bit a lane

@@ -124,8 +124,35 @@ template <class Law, class L>
   return pair;
 }
 
-/// Blocks ahead of which bodies of other chunks are asked for: some 100 ns, as long as memory takes.
-constexpr std::size_t bodies_ahead = 2;
+/// Has the processor fetch what comes next: memory takes as long as several contacts, and loads of bodies come in an
+/// order that it does not foresee.
+class Ahead {
+ public:
+  [[gnu::always_inline]] Ahead(const PairBatch& batch, std::size_t fields) : batch_(batch), fields_(fields) {
+    const std::size_t blocks = std::max<std::size_t>(1, batch.last_block - batch.first_block);
+    share_ = (batch.next_count + blocks - 1) / blocks;
+    // A cache line holds two rows.
+    step_ = batch.next == nullptr ? 64 / sizeof(Row) : 1;
+    share_ = (share_ + step_ - 1) / step_ * step_;
+  }
+  /// A share of the bodies, and what the contacts of the block after next remember.
+  [[gnu::always_inline]] void operator()(std::size_t block) const {
+    const double* const state = batch_.state + (block + 2) * fields_ * block_size;
+    if (block + 2 < batch_.last_block)
+      for (std::size_t f = 0; f < fields_; ++f) __builtin_prefetch(state + f * block_size, 1);
+    const std::size_t first = (block - batch_.first_block) * share_;
+    const std::size_t last = std::min<std::size_t>(batch_.next_count, first + share_);
+    for (std::size_t k = first; k < last; k += step_) {
+      const std::size_t i = batch_.next != nullptr ? batch_.next[k] : batch_.next_first + k;
+      __builtin_prefetch(batch_.position + i), __builtin_prefetch(batch_.velocity + i),
+          __builtin_prefetch(batch_.spin + i);
+    }
+  }
+
+ private:
+  const PairBatch& batch_;
+  std::size_t fields_, share_, step_;
+};
 
 /// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
 /// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
@@ -142,16 +169,11 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
+  const Ahead ahead(batch, fields);
 
   for (std::size_t block = batch.first_block; block < batch.last_block; ++block) {
     const std::uint32_t before = batch.touching[block];
-    if (batch.row != nullptr && block + bodies_ahead < batch.last_block) {
-      for (std::size_t k = 0; k < block_size; ++k) {
-        const std::uint32_t b = batch.b[(block + bodies_ahead) * block_size + k];
-        __builtin_prefetch(batch.position + b), __builtin_prefetch(batch.velocity + b),
-            __builtin_prefetch(batch.spin + b);
-      }
-    }
+    ahead(block);
     std::uint32_t touching_now = 0;
     for (std::size_t sub = 0; sub < block_size; sub += width) {
       const std::size_t first = block * block_size + sub;
