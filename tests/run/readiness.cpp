@@ -15,34 +15,27 @@ class Evaluation : public testing::Test {
     readiness_.build({{1, 2}, {}, {3}, {}});
     readiness_.restart();
   }
-  std::vector<std::size_t> moved_after(std::size_t chunk) {
-    std::vector<std::size_t> moved;
-    readiness_.evaluated(chunk, [&](std::size_t c) { moved.push_back(c); });
-    return moved;
+  /// Whether each may move at once.
+  std::vector<bool> in_order(std::initializer_list<std::size_t> chunks) {
+    std::vector<bool> may;
+    for (const std::size_t chunk : chunks) may.push_back(readiness_.evaluated(chunk));
+    return may;
   }
   Readiness readiness_;
 };
 
 TEST_F(Evaluation, InRisingOrderLetsEachMoveAtOnce) {
-  for (std::size_t chunk = 0; chunk < 4; ++chunk) {
-    EXPECT_TRUE(readiness_.waits_for_itself(chunk));
-    EXPECT_THAT(moved_after(chunk), ElementsAre(chunk));
-  }
+  EXPECT_THAT(in_order({0, 1, 2, 3}), ElementsAre(true, true, true, true));
 }
 
-TEST_F(Evaluation, InFallingOrderHasThemWaitForWhoLooksAtThem) {
-  EXPECT_FALSE(readiness_.waits_for_itself(3));
-  EXPECT_THAT(moved_after(3), ElementsAre());
-  EXPECT_THAT(moved_after(2), ElementsAre(3));
-  EXPECT_THAT(moved_after(1), ElementsAre());
-  EXPECT_THAT(moved_after(0), ElementsAre(0, 1, 2));
+TEST_F(Evaluation, HoldsBackThoseThatOthersHaveYetToLookAt) {
+  EXPECT_THAT(in_order({3, 1, 0, 2}), ElementsAre(false, false, true, true));
 }
 
 TEST_F(Evaluation, BeginsAnew) {
-  moved_after(3), moved_after(0);
+  in_order({0, 1, 2, 3});
   readiness_.restart();
-  EXPECT_THAT(moved_after(3), ElementsAre());
-  EXPECT_THAT(moved_after(0), ElementsAre(0));
+  EXPECT_THAT(in_order({3, 2, 1, 0}), ElementsAre(false, false, false, true));
 }
 
 }  // namespace

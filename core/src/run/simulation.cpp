@@ -399,21 +399,28 @@ void Simulation::step_on() {
   const bool again = prepare();
   const MotionStep next = next_motion();
   readiness_.restart();
+  const auto gather_and_move = [&](std::size_t chunk, BodySum* sum) {
+    pairs_.gather(chunk, sum);
+    move(chunk, sum, next);
+  };
   pass([&](std::size_t chunk, Laps& laps) {
     // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
     const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
     BodySum* const own = here.data() - first;
     evaluate(chunk, again, own, laps);
-    const bool at_once = readiness_.waits_for_itself(chunk);
-    if (!at_once) std::copy(own + first, own + last, sum_.data() + first);
-    readiness_.evaluated(chunk, [&](std::size_t ready) {
-      BodySum* const sum = at_once && ready == chunk ? own : sum_.data();
-      pairs_.gather(ready, sum);
-      move(ready, sum, next);
-    });
+    chunk_[chunk].moved = readiness_.evaluated(chunk);
+    if (chunk_[chunk].moved) gather_and_move(chunk, own);
+    else std::copy(own + first, own + last, sum_.data() + first);
     laps(chunk_[chunk].seconds[motion]);
   });
+  late_.clear();
+  for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
+    if (!chunk_[chunk].moved) late_.push_back(chunk);
+  if (!late_.empty()) {
+    const Stopwatch watch(phases_[motion].seconds);
+    team_.each(late_.size(), [&](std::size_t k) { gather_and_move(late_[k], sum_.data()); });
+  }
   try {
     take_loads();
     end_step();

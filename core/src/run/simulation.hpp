@@ -182,10 +182,12 @@ class Simulation final : public World {
   struct alignas(64) Chunk {
     double overlap = 0;
     Motion motion;
+    bool moved = false;
     std::array<double, part_count> seconds{};
   };
   std::vector<Chunk> chunk_;
   Readiness readiness_;
+  std::vector<std::size_t> late_;  // chunks that could not move at once
   std::vector<PhaseTime> phases_;
   double passes_ = 0;  // s, in which the threads shared chunks
   double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
