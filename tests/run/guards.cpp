@@ -108,6 +108,21 @@ TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {
   EXPECT_LT(least, 0.8 * first);
 }
 
+TEST(Guards, LeaveTheForcesOfWhereTheRunStopped) {
+  const double modulus = 1e6, radius = 1e-3;
+  Description d = description("linear-frictional", {{"contact_modulus", modulus}, {"friction_angle", 0}},
+                              {{{0, 0, 0}, radius, {0.5, 0, 0}}, {{2.0001 * radius, 0, 0}, radius, {-0.5, 0, 0}}});
+  d["time_step"] = {{"safety", 0.05}};
+  d["guards"] = {{"overlap", 0.02}};
+  Trial t(d);
+  EXPECT_THROW(for (int i = 0; i < 1000; ++i) t.world().step_on(), NumericsError);
+  const auto x = t.world().positions(), f = t.world().forces();
+  const double overlap = 2 * radius - (x[1].x - x[0].x);
+  ASSERT_GT(overlap, 0.02 * radius);
+  EXPECT_NEAR(f[1].x, modulus * radius * overlap, 1e-12 * f[1].x);
+  EXPECT_EQ(f[0].x, -f[1].x);
+}
+
 TEST(Guards, EnergyFromNowhere) {
   // ω dt = 2.2: each touch throws the ball back faster.
   Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},

@@ -367,13 +367,23 @@ MotionStep Simulation::next_motion() const {
           .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
 }
 
+template <class Work>
+void Simulation::and_show_forces(Work work) {
+  try {
+    work();
+  } catch (const NumericsError&) {
+    show_forces();
+    throw;
+  }
+}
+
 void Simulation::advance() {
   const MotionStep next = next_motion();
   pass([&](std::size_t chunk, Laps& laps) {
     move(chunk, sum_.data(), next);
     laps(chunk_[chunk].seconds[motion]);
   });
-  end_step();
+  and_show_forces([this] { end_step(); });
 }
 
 /// Forces decide on nothing that bodies must wait for: neither the time step, nor what engines add.
@@ -443,13 +453,7 @@ void Simulation::step_on() {
     const Stopwatch watch(phases_[motion].seconds);
     team_.each(late_.size(), [&](std::size_t k) { gather_and_move(late_[k], sum_.data()); });
   }
-  try {
-    take_loads();
-    end_step();
-  } catch (const NumericsError&) {
-    show_forces();
-    throw;
-  }
+  and_show_forces([this] { take_loads(), end_step(); });
 }
 
 void Simulation::show_forces() {

@@ -135,7 +135,9 @@ class Simulation final : public World {
   MotionStep next_motion() const;
   /// All that comes after the motion of bodies.
   void end_step();
-  /// For whoever looks at what has failed.
+  /// Does what may find that the run has failed; then forces are those of where the bodies are.
+  template <class Work>
+  void and_show_forces(Work work);
   void show_forces();
   bool search_is_due();
   void adapt_skin();
