@@ -56,10 +56,7 @@ class Dense {
 
   void search() {
     search_.build(bodies_, cell_, 0.06 * spacing);
-    const auto find = [this](std::size_t chunk, std::vector<Candidate>& found) {
-      search_.neighbours_of_chunk(bodies_, chunk, found);
-    };
-    pairs_.rebuild(bodies_, find, false, law_->state(), {}, team_);
+    pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_);
   }
   void contacts() {
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) {

@@ -8,6 +8,7 @@ RATIOS = {
     ('rolling', 50000, 1, 'liggghts'): (4, 6),
     ('rolling', 50000, 1, 'lammps'): (4, 6),
     ('no-rolling', 50000, 1, 'lammps'): (2.5, 4),
+    ('hertz', 10000, 1, 'lammps'): (3, 5),
     ('hertz', 50000, 1, 'lammps'): (3, 5),
 }
 

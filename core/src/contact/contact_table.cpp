@@ -29,8 +29,8 @@ void make_room(Array& array, std::size_t count) {
 
 }  // namespace
 
-void ContactTable::rebuild(const Bodies& bodies, const Find& find, bool periodic, std::span<const StateField> fields,
-                           std::span<const std::uint32_t> order, Team& team) {
+void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic,
+                           std::span<const StateField> fields, std::span<const std::uint32_t> order, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   std::vector<std::uint32_t> now(count);
@@ -66,8 +66,8 @@ void ContactTable::rebuild(const Bodies& bodies, const Find& find, bool periodic
   team.each(chunk_count, [&](std::size_t chunk) {
     auto& found = found_[chunk];
     found.clear();
-    const std::size_t last = std::min(count, (chunk + 1) * chunk_bodies);
-    find(chunk, found);
+    const std::size_t first = chunk * chunk_bodies, last = std::min(count, first + chunk_bodies);
+    for (std::size_t i = first; i < last; ++i) search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
     const auto touching = [](const Candidate& c) { return c.touching != 0; };
     const auto across =
         std::stable_partition(found.begin(), found.end(), [=](const Candidate& c) { return c.b < last; });

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,11 +23,8 @@ struct alignas(64) StateLine {
 /// across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
 class ContactTable {
  public:
-  /// Appends the candidates of a chunk, by a and then by b; called from any thread.
-  using Find = std::function<void(std::size_t chunk, std::vector<Candidate>&)>;
-  /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed. All pairs that
-  /// touched must be candidates again, unless they have parted.
-  void rebuild(const Bodies& bodies, const Find& find, bool periodic, std::span<const StateField> fields,
+  /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed.
+  void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
                std::span<const std::uint32_t> order, Team& team);
   /// Makes room for another set of fields; the leading ones that both have are kept.
   void set_fields(std::span<const StateField> fields);

@@ -36,9 +36,8 @@ double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const
     for (std::size_t c = 0; c < pairs.candidates(); ++c) {
       const std::uint32_t a = pairs.a(c), b = pairs.b(c);
       if (b == count) continue;
-      const double touch = bodies.position[a].w + bodies.position[b].w, reach = touch + near;
-      const double square = pairs.branch(c, bodies, shifts).squaredNorm();
-      if (square < reach * reach) use(a, b, std::max(touch - std::sqrt(square), 0.0));
+      const double overlap = bodies.position[a].w + bodies.position[b].w - pairs.branch(c, bodies, shifts).norm();
+      if (overlap > -near) use(a, b, std::max(overlap, 0.0));
     }
   };
 

@@ -1,7 +1,6 @@
 // Neighbour search on cell grids, one a size class.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -41,11 +40,6 @@ class NeighbourSearch {
   void build(const Bodies& bodies, const Cell& cell, double skin);
   /// Appends the candidates whose a is `body`, by b.
   void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
-  /// The same for each body of a chunk.
-  void neighbours_of_chunk(const Bodies& bodies, std::size_t chunk, std::vector<Candidate>& candidates) const {
-    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
-    for (std::size_t i = first; i < last; ++i) neighbours(bodies, static_cast<std::uint32_t>(i), candidates);
-  }
 
  private:
   struct Grid {

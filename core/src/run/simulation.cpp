@@ -20,9 +20,6 @@ namespace {
 // searches and the more pairs to test; 0.06 was best or within 3 % of it at 10 000 and 50 000 grains. A cloud under
 // compaction has few pairs to test and searches all the time: it is better off with a wide one.
 constexpr double least_skin = 0.06, most_skin = 0.4;
-// A wide skin has a list, of which pairs nearer than this share of it are picked. In flow from a bin shares of 0.1 …
-// 0.3 and wide skins of 0.4 … 1.2 differ by less than the machine's noise.
-constexpr double near_share = 0.3;
 // The skin grows when a search comes sooner than this many steps after the last, and shrinks when it comes later.
 constexpr std::uint64_t soon = 60, late = 600;
 // A search after which bodies are put in spatial order again.
@@ -225,11 +222,8 @@ void Simulation::search() {
     bodies_.reorder(order);
   }
   search_.build(bodies_, clock_.cell, clock_.skin);
-  const double wide = clock_.skin, thin = std::max(least_skin * mean_diameter_, near_share * wide);
-  clock_.near_skin = thin < 0.5 * wide ? thin : wide;
-  if (clock_.near_skin < clock_.skin) list_.build(bodies_, search_, team_);
-  else list_.clear();
-  file_contacts(order);
+  pairs_.rebuild(bodies_, search_, periodic_, fields_, order, team_);
+  readiness_.build(pairs_.reached());
   wall_contacts_.rebuild(bodies_, surfaces_, clock_.skin, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
   clock_.body_travel = clock_.wall_travel = clock_.strain_travel = 0;
@@ -243,26 +237,13 @@ void Simulation::search() {
   set_time_step();
 }
 
-double Simulation::soon_touching() const { return 0.25 * least_skin * mean_diameter_; }
-
-void Simulation::file_contacts(std::span<const std::uint32_t> order) {
-  const bool listed = clock_.near_skin < clock_.skin;
-  const auto find = [&](std::size_t chunk, std::vector<Candidate>& found) {
-    if (listed) list_.near(bodies_, shifts_.data(), chunk, clock_.near_skin, found);
-    else search_.neighbours_of_chunk(bodies_, chunk, found);
-  };
-  pairs_.rebuild(bodies_, find, periodic_, fields_, order, team_);
-  readiness_.build(pairs_.reached());
-  clock_.near_travel = 0;
-}
-
 void Simulation::set_time_step() {
   time_step_now_ = false;
   clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
   clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
   const TimeStepDescription& wish = scene_->time_step;
   clock_.critical_time_step =
-      critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), soon_touching());
+      critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), 0.25 * least_skin * mean_diameter_);
   clock_.critical_time_step = std::min(clock_.critical_time_step, walls_.critical_time_step());
   if (wish.value) {
     clock_.time_step = *wish.value;
@@ -287,10 +268,7 @@ bool Simulation::prepare() {
   {
     const Stopwatch watch(phases_[searching].seconds);
     if (search_is_due()) search();
-    else {
-      if (clock_.near_skin < clock_.skin && clock_.near_travel + soon_touching() > clock_.near_skin) file_contacts({});
-      if (time_step_now_ || approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
-    }
+    else if (time_step_now_ || approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
   }
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
   const bool again = clock_.forces_step == clock_.step;
@@ -495,7 +473,6 @@ void Simulation::end_step() {
   clock_.body_travel += dt * fastest;
   const double strained = dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + clock_.skin);
   clock_.strain_travel += strained;
-  clock_.near_travel += 2 * dt * fastest + strained;
   double wall_speed = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_.states()[w];

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "contact/contact_table.hpp"
-#include "contact/neighbour_list.hpp"
 #include "contact/readiness.hpp"
 #include "contact/search.hpp"
 #include "contact/team.hpp"
@@ -34,9 +33,8 @@ struct Clock {
   Cell cell;
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;
-  std::uint64_t last_search = 0;          ///< step
-  double skin = 0;                        ///< of the last search, m
-  double near_skin = 0, near_travel = 0;  ///< of the present candidates, and how much closer pairs have come since, m
+  std::uint64_t last_search = 0;                               ///< step
+  double skin = 0;                                             ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
   double last_approach = 0;                 ///< by how much the last step let bodies come closer at most, m
   double stepped_travel = 0;                ///< how far pairs had come together when the time step was set, m
@@ -144,10 +142,6 @@ class Simulation final : public World {
   /// How much closer two bodies, or a body and a wall, can have come since the last search [m].
   double approach() const;
   void search();
-  /// Makes the table of contacts anew from the candidates that are near.
-  void file_contacts(std::span<const std::uint32_t> order);
-  /// Gap below which pairs count as touching where the time step is concerned [m].
-  double soon_touching() const;
   void wrap();
   void set_time_step();
   void update_shifts();
@@ -177,7 +171,6 @@ class Simulation final : public World {
   WallContacts wall_contacts_;
   Walls walls_;
   NeighbourSearch search_;
-  NeighbourList list_;
 
   LargeArray<BodySum> sum_;
   LargeArray<Row> reference_;  // positions at the last search
