@@ -63,7 +63,7 @@ class Dense {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
       std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
                 BodySum{});
-      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step}, sum_.data());
+      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, 0}, sum_.data());
     }
   }
   /// All of the arithmetic, but nothing comes to move: else the grains would fly apart.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <ostream>
@@ -49,12 +50,14 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
   }
 
   /// Pairs that touch, nearly touch, part and meet, every seventh place padding, with a history of some steps.
-  Pairs scene(bool periodic, bool materials) {
+  /// `lonely`: each in a block of its own.
+  Pairs scene(bool periodic, bool materials, bool lonely = false) {
     Pairs pairs(*law_, dt_);
     pairs.one_material = !materials;
     if (periodic) pairs.shifts = {{}, {{40, 0, 0, 0}, {0.5, 0, 0, 0}}, {{-3, 40, 7, 0}, {0, -0.5, 0.2, 0}}};
-    for (int n = 0; n < 60; ++n) {
+    for (int n = 0; n < (lonely ? 180 : 60); ++n) {
       if (n % 7 == 3) pairs.skip();
+      while (lonely && pairs.places() / block_size < static_cast<std::size_t>(n)) pairs.skip();
       const double radius_a = uniform(0.5, 1.5), radius_b = uniform(0.5, 1.5);
       const Vec3 centre = vector(30), normal = direction();
       const auto image = static_cast<std::uint8_t>(periodic ? n % 3 : 0);
@@ -149,31 +152,63 @@ TEST_P(ContactLawContract, RemembersOnlyWhatItsParametersNeed) {
 
 TEST_P(ContactLawContract, LanesAgreeWithScalarTwin) {
   const auto fields = law_->state();
-  for (const bool periodic : {false, true})
-    for (const bool materials : {false, true}) {
-      Pairs lanes = scene(periodic, materials), twin = lanes;
-      lanes.evaluate(), twin.evaluate_reference();
-      int touching = 0;
-      for (std::size_t c = 0; c < lanes.places(); ++c) {
-        ASSERT_EQ(lanes.touching(c), twin.touching(c));
-        if (!lanes.touching(c)) continue;
-        ++touching;
-        const double eps = round_off(lanes, c), force = scale(lanes, c, "N"), moment = scale(lanes, c, "N m");
-        EXPECT_LE((vec(lanes.row(c).force) - vec(twin.row(c).force)).norm(), eps * force) << c;
-        EXPECT_LE((vec(lanes.row(c).moment) - vec(twin.row(c).moment)).norm(), eps * moment) << c;
-        EXPECT_NEAR(lanes.row(c).force.w, twin.row(c).force.w, eps * force) << c;
-        EXPECT_NEAR(lanes.overlap(c), twin.overlap(c), eps * twin.overlap(c)) << c;
-        const auto a = lanes.a(c);
-        EXPECT_LE((vec(lanes.sum(a).force) - vec(twin.sum(a).force)).norm(), eps * force) << c;
-        EXPECT_LE((vec(lanes.sum(a).moment) - vec(twin.sum(a).moment)).norm(), eps * moment) << c;
-        for (std::size_t f = 0; f < fields.size(); ++f)
-          EXPECT_NEAR(lanes.state(c, f), twin.state(c, f), eps * scale(lanes, c, fields[f].unit))
-              << c << fields[f].name;
-      }
-      EXPECT_NEAR(lanes.largest_overlap(), twin.largest_overlap(), 1e-13);
-      EXPECT_GT(touching, 20);
-      EXPECT_LT(touching, 58);
+  for (const auto& [periodic, materials, lonely] : {std::array{false, false, false},
+                                                    {false, true, false},
+                                                    {true, false, false},
+                                                    {true, true, false},
+                                                    {false, false, true},
+                                                    {true, true, true}}) {
+    Pairs lanes = scene(periodic, materials, lonely), twin = lanes;
+    lanes.evaluate(), twin.evaluate_reference();
+    int touching = 0;
+    for (std::size_t c = 0; c < lanes.places(); ++c) {
+      ASSERT_EQ(lanes.touching(c), twin.touching(c));
+      if (!lanes.touching(c)) continue;
+      ++touching;
+      const double eps = round_off(lanes, c), force = scale(lanes, c, "N"), moment = scale(lanes, c, "N m");
+      EXPECT_LE((vec(lanes.row(c).force) - vec(twin.row(c).force)).norm(), eps * force) << c;
+      EXPECT_LE((vec(lanes.row(c).moment) - vec(twin.row(c).moment)).norm(), eps * moment) << c;
+      EXPECT_NEAR(lanes.row(c).force.w, twin.row(c).force.w, eps * force) << c;
+      EXPECT_NEAR(lanes.overlap(c), twin.overlap(c), eps * twin.overlap(c)) << c;
+      const auto a = lanes.a(c);
+      EXPECT_LE((vec(lanes.sum(a).force) - vec(twin.sum(a).force)).norm(), eps * force) << c;
+      EXPECT_LE((vec(lanes.sum(a).moment) - vec(twin.sum(a).moment)).norm(), eps * moment) << c;
+      for (std::size_t f = 0; f < fields.size(); ++f)
+        EXPECT_NEAR(lanes.state(c, f), twin.state(c, f), eps * scale(lanes, c, fields[f].unit)) << c << fields[f].name;
     }
+    EXPECT_NEAR(lanes.largest_overlap(), twin.largest_overlap(), 1e-13);
+    EXPECT_GT(touching, lonely ? 70 : 20);
+    EXPECT_LT(touching, lonely ? 174 : 58);
+  }
+}
+
+TEST_P(ContactLawContract, BlockWhereNoneTouchesSleepsUntilOneCan) {
+  Pairs pairs(*law_, dt_);
+  const double nearest = 0.25;
+  for (std::size_t c = 0; c < block_size; ++c) {
+    const double gap = nearest + static_cast<double>((c + 3) % block_size);
+    const auto a = pairs.add({.position = {100.0 * static_cast<double>(c), 0, 0}, .radius = 1});
+    pairs.pair(a, pairs.add({.position = vec(pairs.position(a)) + Vec3(2 + gap, 0, 0), .radius = 1}));
+  }
+  const std::size_t first = block_size - 3;
+  pairs.asleep_until = {0}, pairs.closing = 3;
+  pairs.evaluate();
+  const float until = pairs.asleep_until[0];
+  EXPECT_LE(until, 3 + nearest);
+  EXPECT_GT(until, 3 + nearest - 1e-5);
+  pairs.position(pairs.b(first)).x -= nearest + 0.01;
+  pairs.closing = std::nextafter(until, 0.0f);
+  pairs.evaluate();
+  EXPECT_FALSE(pairs.touching(first));
+  pairs.closing = until;
+  pairs.evaluate();
+  EXPECT_TRUE(pairs.touching(first));
+  // It is awake as long as one touches, and sleeps again after.
+  pairs.closing = 0;
+  pairs.position(pairs.b(first)).x += 0.51;
+  pairs.evaluate();
+  EXPECT_FALSE(pairs.touching(first));
+  EXPECT_NEAR(pairs.asleep_until[0], 0.5, 1e-5);
 }
 
 TEST_P(ContactLawContract, LanesThatDoNotTouchAreZero) {

@@ -62,7 +62,12 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
         EXPECT_TRUE(pairs.emplace(c.a, c.b, c.image).second) << "found twice";
         const Vec3 branch = xyz(bodies.position[c.b]) - xyz(bodies.position[c.a]);
         if (c.image == 0) {
-          EXPECT_EQ(c.touching != 0, branch.norm() < bodies.position[c.a].w + bodies.position[c.b].w);
+          const double gap = branch.norm() - bodies.position[c.a].w - bodies.position[c.b].w;
+          EXPECT_EQ(c.touching(), gap < 0);
+          if (!c.touching()) {
+            EXPECT_LE(c.gap, gap);
+            EXPECT_GE(c.gap, gap * (1 - 1e-6));
+          }
         }
       }
       const auto all = brute_force({bodies.position.data(), bodies.count()}, cell, skin);

@@ -121,14 +121,18 @@ class Pairs {
                     .shifts = shifts.data(),
                     .first_block = 0,
                     .last_block = a_.size() / block_size,
+                    .last_near = a_.size() / block_size,
                     .last_body = static_cast<std::uint32_t>(count() - 1),
+                    .nobody = pad_,
                     .next = nullptr,
                     .next_first = 0,
                     .next_count = 0,
                     .dt = dt,
                     .again = again,
+                    .closing = closing,
                     .state = state_.data(),
                     .touching = touching_.data(),
+                    .asleep_until = asleep_until.empty() ? nullptr : asleep_until.data(),
                     .row = within ? nullptr : row_.data(),
                     .sum = sum_.data(),
                     .largest_overlap = std::numeric_limits<double>::quiet_NaN()};
@@ -151,7 +155,9 @@ class Pairs {
  public:
   double dt;
   bool one_material = true;
-  std::vector<ImageShift> shifts;  ///< the first must be none
+  double closing = 0;
+  std::vector<float> asleep_until;  ///< by block; empty: none sleeps
+  std::vector<ImageShift> shifts;   ///< the first must be none
 };
 
 inline Vec3 vec(const Row& row) { return xyz(row); }

@@ -60,7 +60,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       remembered[m * field_count + f] = state_[slot / block_size * field_count + f].lane[slot % block_size];
   });
 
-  // Candidates, chunk by chunk: those within the chunk first, of either sort touching ones first.
+  // Candidates, chunk by chunk: those within the chunk first, of either sort the nearest first.
   const std::size_t chunk_count = chunks_of(count);
   found_.resize(chunk_count), within_.resize(chunk_count);
   team.each(chunk_count, [&](std::size_t chunk) {
@@ -68,10 +68,10 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     found.clear();
     const std::size_t first = chunk * chunk_bodies, last = std::min(count, first + chunk_bodies);
     for (std::size_t i = first; i < last; ++i) search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
-    const auto touching = [](const Candidate& c) { return c.touching != 0; };
+    const auto nearer = [](const Candidate& c, const Candidate& d) { return c.gap < d.gap; };
     const auto across =
         std::stable_partition(found.begin(), found.end(), [=](const Candidate& c) { return c.b < last; });
-    std::stable_partition(found.begin(), across, touching), std::stable_partition(across, found.end(), touching);
+    std::stable_sort(found.begin(), across, nearer), std::stable_sort(across, found.end(), nearer);
     within_[chunk] = static_cast<std::size_t>(across - found.begin());
   });
   chunks_.resize(chunk_count);
@@ -79,7 +79,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   const auto take = [&](std::size_t pairs) {
     const std::uint32_t first = blocks;
     blocks += static_cast<std::uint32_t>((pairs + block_size - 1) / block_size);
-    return Blocks{first, blocks};
+    return Blocks{first, first, blocks};
   };
   for (std::size_t chunk = 0; chunk < chunk_count; ++chunk) chunks_[chunk].within = take(within_[chunk]);
   first_cross_ = std::size_t{blocks} * block_size;
@@ -91,7 +91,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   const auto pad = static_cast<std::uint32_t>(count);
   make_room(a_, slots), make_room(b_, slots), make_room(near_, slots), make_room(image_, periodic ? slots : 0);
   make_room(row_, slots - first_cross_), make_room(state_, std::size_t{blocks} * field_count);
-  touching_.assign(blocks, 0);
+  touching_.assign(blocks, 0), asleep_until_.resize(blocks);
   team.each(chunk_count, [&](std::size_t chunk) {
     for (const Blocks own : {chunks_[chunk].within, chunks_[chunk].across})
       std::fill(state_.begin() + static_cast<std::ptrdiff_t>(own.first * field_count),
@@ -113,7 +113,12 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         slot = std::size_t{chunks_[chunk].across.first} * block_size;
       }
       const Candidate& c = found_[chunk][n];
-      a_[slot] = c.a, b_[slot] = c.b, near_[slot] = c.touching;
+      a_[slot] = c.a, b_[slot] = c.b, near_[slot] = c.touching();
+      if (slot % block_size == 0) {
+        asleep_until_[slot / block_size] = c.gap;
+        Blocks& own = n < within_[chunk] ? chunks_[chunk].within : chunks_[chunk].across;
+        if (c.touching()) own.near = static_cast<std::uint32_t>(slot / block_size + 1);
+      }
       if (periodic) image_[slot] = c.image;
       for (std::uint32_t m = memory_start[c.a]; m < memory_start[c.a + 1]; ++m) {
         const Memory& memory = memories[m];
@@ -200,14 +205,18 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .shifts = at.shifts,
           .first_block = blocks.first,
           .last_block = blocks.last,
+          .last_near = blocks.near,
           .last_body = last_body,
+          .nobody = static_cast<std::uint32_t>(at.bodies.count()),
           .next = nullptr,
           .next_first = 0,
           .next_count = 0,
           .dt = at.dt,
           .again = at.again,
+          .closing = at.closing,
           .state = nullptr,
           .touching = nullptr,
+          .asleep_until = nullptr,
           .row = nullptr,
           .sum = nullptr,
           .largest_overlap = 0};
@@ -222,6 +231,7 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
     if (blocks.first == blocks.last) return;
     pairs.state = state_.empty() ? nullptr : state_.front().lane;
     pairs.touching = touching_.data();
+    pairs.asleep_until = asleep_until_.data();
     pairs.sum = sum;
     at.law.evaluate_pairs(pairs);
     largest = std::max(largest, pairs.largest_overlap);
@@ -229,7 +239,7 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
   // Meanwhile the bodies of other chunks are fetched, then those of the chunk that is likely to come next.
   PairBatch own = batch(within, at, end - 1);
   own.next = b_.data() + std::size_t{across.first} * block_size;
-  own.next_count = static_cast<std::uint32_t>((across.last - across.first) * block_size);
+  own.next_count = static_cast<std::uint32_t>((across.near - across.first) * block_size);
   evaluate(within, own);
   PairBatch others = batch(across, at, end - 1);
   others.row = row_.data() + (std::size_t{across.first} * block_size - first_cross_);
@@ -250,7 +260,8 @@ void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_bloc
   auto state = part(state_, first_block * fields, last_block * fields);
   auto touching = part(touching_, first_block, last_block);
   rows.assign((last_block - first_block) * block_size, {});
-  PairBatch pairs = batch({0, static_cast<std::uint32_t>(last_block - first_block)}, at, 0);
+  const auto blocks = static_cast<std::uint32_t>(last_block - first_block);
+  PairBatch pairs = batch({0, blocks, blocks}, at, 0);
   pairs.a += first, pairs.b += first;
   if (pairs.image != nullptr) pairs.image += first;
   pairs.again = true;
@@ -269,7 +280,7 @@ std::vector<double> ContactTable::state(std::size_t c) const {
 
 std::size_t ContactTable::memory() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
-  return bytes(a_, b_, image_, touching_, state_, row_, inbox_, near_);
+  return bytes(a_, b_, image_, touching_, asleep_until_, state_, row_, inbox_, near_);
 }
 
 std::size_t ContactTable::touching_count() const {

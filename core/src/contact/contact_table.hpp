@@ -18,9 +18,9 @@ struct alignas(64) StateLine {
   double lane[block_size]{};
 };
 
-/// Pairs are filed by the chunk of their lower body, those that touch first, so that blocks are full of touching lanes
-/// and the distance test is most that the others cost. Pairs within a chunk add to the sums of both bodies; only pairs
-/// across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
+/// Pairs are filed by the chunk of their lower body, the nearest first, so that blocks are full of touching lanes and
+/// the others can be left asleep until they may have come near. Pairs within a chunk add to the sums of both bodies;
+/// only pairs across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
 class ContactTable {
  public:
   /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed.
@@ -36,6 +36,7 @@ class ContactTable {
     bool one_material;
     const ImageShift* shifts;
     double dt;           ///< s
+    double closing;      ///< what two bodies can have come closer since the search at most, summed up over steps [m]
     bool again = false;  ///< this instant has been evaluated before
   };
   /// Evaluates one chunk: fills its rows, adds to the sums of its bodies, by index, and touches no others. Returns the
@@ -50,6 +51,20 @@ class ContactTable {
       evaluate_again(block, last, at, rows);
       for (std::size_t c = block * block_size; c < last * block_size; ++c)
         if (touches(c)) use(c, rows[c - block * block_size]);
+    }
+  }
+  /// Calls use(candidate, distance) for pairs whose surfaces are nearer than `near` [m], or touch.
+  template <class Use>
+  void each_near(const Bodies& bodies, const ImageShift* shifts, double closing, double near, Use use) const {
+    for (std::size_t c = 0; c < candidates(); ++c) {
+      const std::size_t block = c / block_size;
+      if (c % block_size == 0 && touching_[block] == 0 && closing + near < asleep_until_[block]) {
+        c += block_size - 1;
+        continue;
+      }
+      const double reach = bodies.position[a_[c]].w + bodies.position[b_[c]].w + near;
+      const double square = branch(c, bodies, shifts).squaredNorm();
+      if (square < reach * reach) use(c, std::sqrt(square));
     }
   }
   /// From a to b [m].
@@ -76,7 +91,7 @@ class ContactTable {
  private:
   static constexpr std::size_t blocks_at_once = 64;
   struct Blocks {
-    std::uint32_t first = 0, last = 0;
+    std::uint32_t first = 0, near = 0, last = 0;  ///< from `near` on none touched when the table was built
   };
   struct Chunk {
     Blocks within, across;
@@ -96,6 +111,7 @@ class ContactTable {
   LargeArray<std::uint32_t> a_, b_;
   LargeArray<std::uint8_t> image_;  // empty without periodic boundaries
   std::vector<std::uint8_t> touching_;
+  std::vector<float> asleep_until_;  // of blocks where none touches: what has to have closed before one can [m]
   std::vector<StateField> fields_;
   LargeArray<StateLine> state_;  // [block][field]
   std::size_t first_cross_ = 0;  // the first candidate across chunks, which has the first row

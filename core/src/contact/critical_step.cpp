@@ -16,7 +16,7 @@ double demand(const Stiffness& k, double radius, double inverse_mass, double inv
 }  // namespace
 
 double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const WallContacts& walls,
-                          const ContactLaw& law, const ImageShift* shifts, double near) {
+                          const ContactLaw& law, const ImageShift* shifts, double closing, double near) {
   const std::size_t count = bodies.count();
   if (count == 0) return std::numeric_limits<double>::infinity();
   std::vector<double> sum(count, 0.0);
@@ -32,19 +32,17 @@ double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const
   const auto own_demand = [&](const Stiffness& k, std::size_t i) {
     return demand(k, bodies.position[i].w, bodies.velocity[i].w, bodies.spin[i].w);
   };
-  const auto each_pair = [&](auto&& use) {
-    for (std::size_t c = 0; c < pairs.candidates(); ++c) {
-      const std::uint32_t a = pairs.a(c), b = pairs.b(c);
-      if (b == count) continue;
-      const double overlap = bodies.position[a].w + bodies.position[b].w - pairs.branch(c, bodies, shifts).norm();
-      if (overlap > -near) use(a, b, std::max(overlap, 0.0));
-    }
+  struct Pair {
+    std::uint32_t a, b;
   };
-
-  each_pair([&](std::uint32_t a, std::uint32_t b, double overlap) {
+  std::vector<Pair> near_pairs;
+  pairs.each_near(bodies, shifts, closing, near, [&](std::size_t c, double distance) {
+    const std::uint32_t a = pairs.a(c), b = pairs.b(c);
+    const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
     const Stiffness k = law.stiffness(size_of(a, b, overlap), bodies.material[a], bodies.material[b]);
     sum[a] += own_demand(k, a), sum[b] += own_demand(k, b);
     damping = std::max(damping, k.damping_ratio);
+    near_pairs.push_back({a, b});
   });
   walls.each([&](const WallContacts::Touching& t) {
     const std::uint32_t a = t.touch->body;
@@ -61,7 +59,7 @@ double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const
     largest = std::max(largest, 2 * own_demand(k, i));
     largest = std::max(largest, sum[i]);
   }
-  each_pair([&](std::uint32_t a, std::uint32_t b, double) { largest = std::max(largest, sum[a] + sum[b]); });
+  for (const auto& [a, b] : near_pairs) largest = std::max(largest, sum[a] + sum[b]);
   return 2 / std::sqrt(largest) * (std::sqrt(1 + damping * damping) - damping);
 }
 

@@ -20,6 +20,12 @@ std::uint64_t spread(std::uint64_t x) {  // bits of x to every third place
   return (x | x << 2) & 0x1249249249249249;
 }
 
+/// Above zero, but not above `gap` if that is.
+float rounded_down(double gap) {
+  const auto near = static_cast<float>(gap);
+  return std::max(near > gap ? std::nextafter(near, 0.0f) : near, std::numeric_limits<float>::min());
+}
+
 struct Box {
   Vec3 low, high;
 };
@@ -183,8 +189,10 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
             }
             const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
             const double touch = own.w + b.w, near = touch + skin_;
-            if (square < near * near)
-              candidates.push_back({body, other, image, static_cast<std::uint8_t>(square < touch * touch)});
+            if (square < near * near) {
+              const float gap = square < touch * touch ? 0 : rounded_down(std::sqrt(square) - touch);
+              candidates.push_back({body, other, gap, image});
+            }
           }
         }
       }

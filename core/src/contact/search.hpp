@@ -19,8 +19,9 @@ inline std::size_t chunks_of(std::size_t bodies) { return (bodies + chunk_bodies
 /// A pair whose surfaces are nearer than the skin; a < b by index.
 struct Candidate {
   std::uint32_t a, b;
-  std::uint8_t image;     ///< which periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
-  std::uint8_t touching;  ///< whether they touch already
+  float gap;           ///< between their surfaces [m]; 0 where they touch, else not more than it is
+  std::uint8_t image;  ///< which periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
+  bool touching() const { return gap == 0; }
 };
 
 /// The shift that an image stands for, in periods.

@@ -226,7 +226,7 @@ void Simulation::search() {
   readiness_.build(pairs_.reached());
   wall_contacts_.rebuild(bodies_, surfaces_, clock_.skin, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
-  clock_.body_travel = clock_.wall_travel = clock_.strain_travel = 0;
+  clock_.body_travel = clock_.wall_travel = clock_.strain_travel = clock_.closing = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     arms_[w] = 0;
     for (std::size_t i = 0; i < bodies_.count(); ++i)
@@ -242,8 +242,8 @@ void Simulation::set_time_step() {
   clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
   clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
   const TimeStepDescription& wish = scene_->time_step;
-  clock_.critical_time_step =
-      critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), 0.25 * least_skin * mean_diameter_);
+  clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), clock_.closing,
+                                                 0.25 * least_skin * mean_diameter_);
   clock_.critical_time_step = std::min(clock_.critical_time_step, walls_.critical_time_step());
   if (wish.value) {
     clock_.time_step = *wish.value;
@@ -489,6 +489,8 @@ void Simulation::end_step() {
     wall_speed = std::max(wall_speed, speed);
   }
   clock_.wall_travel += dt * wall_speed;
+  // Not 2 body_travel + strain_travel, which a look at where bodies really are makes smaller again.
+  clock_.closing += 2 * dt * fastest + strained;
   clock_.last_approach = dt * std::max(2 * fastest, fastest + wall_speed) + strained;
 
   if (!finite || dt * fastest > scene_->guards.travel * smallest_radius_) {

@@ -36,8 +36,9 @@ struct Clock {
   std::uint64_t last_search = 0;                               ///< step
   double skin = 0;                                             ///< of the present candidates, m
   double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
-  double last_approach = 0;                 ///< by how much the last step let bodies come closer at most, m
-  double stepped_travel = 0;                ///< how far pairs had come together when the time step was set, m
+  double closing = 0;         ///< by how much two bodies can have come closer since, summed up step by step, m
+  double last_approach = 0;   ///< by how much the last step let bodies come closer at most, m
+  double stepped_travel = 0;  ///< how far pairs had come together when the time step was set, m
   double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
 };
 
@@ -112,7 +113,7 @@ class Simulation final : public World {
 
   void apply(const SceneDescription& scene);
   ContactTable::Instant instant(bool again) const {
-    return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, again};
+    return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, clock_.closing, again};
   }
   /// All that comes before the contacts. Returns whether this instant has been evaluated before.
   bool prepare();

@@ -41,15 +41,19 @@ struct PairBatch {
   const std::uint8_t* material;  ///< of each body; null when all are of one material
   const ImageShift* shifts;
   std::size_t first_block, last_block;
+  std::size_t last_near;    ///< from this block on pairs were apart when they were filed: most are asleep
   std::uint32_t last_body;  ///< of the chunk
+  std::uint32_t nobody;     ///< index of a body that is far away from all others; padding has it as b
   // bodies that will be wanted next, for the processor to fetch meanwhile
   const std::uint32_t* next;             ///< their indices; null where they lie one behind the other
   std::uint32_t next_first, next_count;  ///< where they do: from which on; how many in either case
   double dt;                             ///< s
   bool again;                            ///< the step is in the memory already: forces alone are wanted
+  double closing;                        ///< by how much two bodies can have come closer at most, a sum over steps [m]
   // memory and results
   double* state;           ///< [block][field][block_size]
   std::uint8_t* touching;  ///< [block], a bit a lane
+  float* asleep_until;     ///< [block]: where none touches, none will before `closing` is as large; null: look at all
   ContactRow* row;         ///< [candidate, from the first of first_block]: what it does to b; null where b is of the
                            ///< chunk too, and has its sum as a has
   BodySum* sum;            ///< [body]; null where nobody asks for sums

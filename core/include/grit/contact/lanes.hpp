@@ -193,12 +193,30 @@ template <class L>
   std::memcpy(to, &value, sizeof value);
 }
 
+/// Lane k is number(k).
+template <class L, class Number>
+[[gnu::always_inline]] inline L gather_lanes(Number number) {
+  if constexpr (lane_width<L> == 1) return number(0);
+  else return L([&](std::size_t k) { return number(k); });
+}
+[[gnu::always_inline]] inline double lane(double number, std::size_t) { return number; }
+template <std::size_t N>
+[[gnu::always_inline]] inline double lane(const Pack<N>& pack, std::size_t k) {
+  return pack[k];
+}
 [[gnu::always_inline]] inline double largest(double lane) { return lane; }
 template <std::size_t N>
 [[gnu::always_inline]] inline double largest(const Pack<N>& lanes) {
-  double most = lanes[0];
-  for (std::size_t k = 1; k < N; ++k) most = max(most, lanes[k]);
-  return most;
+  Pack<N> most = lanes;
+  for (std::size_t step = N / 2; step > 0; step /= 2)
+    most = max(most, Pack<N>([&](std::size_t k) { return most[(k + step) % N]; }));
+  return most[0];
+}
+
+[[gnu::always_inline]] inline double smallest(double lane) { return lane; }
+template <std::size_t N>
+[[gnu::always_inline]] inline double smallest(const Pack<N>& lanes) {
+  return -largest(-lanes);
 }
 
 }  // namespace detail

@@ -26,6 +26,8 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 #include <map>
 #include <type_traits>
 #include <utility>
@@ -109,8 +111,7 @@ template <class Law, class L, class Index>
   typename Law::template Pair<L> pair;
   for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m) {
     const auto number = [&](std::size_t k) { return reinterpret_cast<const double*>(table + index(k))[m]; };
-    if constexpr (lane_width<L> == 1) member<L>(pair, m) = number(0);
-    else member<L>(pair, m) = L([&](auto k) { return number(k); });
+    member<L>(pair, m) = gather_lanes<L>(number);
   }
   return pair;
 }
@@ -129,16 +130,16 @@ template <class Law, class L>
 class Ahead {
  public:
   [[gnu::always_inline]] Ahead(const PairBatch& batch, std::size_t fields) : batch_(batch), fields_(fields) {
-    const std::size_t blocks = std::max<std::size_t>(1, batch.last_block - batch.first_block);
+    const std::size_t blocks = std::max<std::size_t>(1, batch.last_near - batch.first_block);
     share_ = (batch.next_count + blocks - 1) / blocks;
     // A cache line holds two rows.
     step_ = batch.next == nullptr ? 64 / sizeof(Row) : 1;
     share_ = (share_ + step_ - 1) / step_ * step_;
   }
-  /// A share of the bodies, and what the contacts of the block after next remember.
+  /// A share of the bodies, and what contacts of the block after next remember, if any touches.
   [[gnu::always_inline]] void operator()(std::size_t block) const {
     const double* const state = batch_.state + (block + 2) * fields_ * block_size;
-    if (block + 2 < batch_.last_block)
+    if (block + 2 < batch_.last_block && batch_.touching[block + 2] != 0)
       for (std::size_t f = 0; f < fields_; ++f) __builtin_prefetch(state + f * block_size, 1);
     const std::size_t first = (block - batch_.first_block) * share_;
     const std::size_t last = std::min<std::size_t>(batch_.next_count, first + share_);
@@ -154,11 +155,62 @@ class Ahead {
   std::size_t fields_, share_, step_;
 };
 
+/// Touching pairs out of registers that few of theirs fill, to be evaluated together: among grains that flow most
+/// candidates do not touch, and which of them do changes all the time.
+template <std::size_t Fields>
+class Waiting {
+ public:
+  void add(std::size_t place) { place_[count_++] = place; }
+  bool none() const { return count_ == 0; }
+  bool has_room_for_a_block() const { return count_ + block_size <= most; }
+
+  /// Them as a batch of their own, which adds to the same sums.
+  PairBatch take(const PairBatch& from) {
+    const std::size_t blocks = (count_ + block_size - 1) / block_size;
+    for (std::size_t k = 0; k < blocks * block_size; ++k) {
+      const bool used = k < count_;
+      a_[k] = from.a[place_[used ? k : 0]], b_[k] = used ? from.b[place_[k]] : from.nobody;
+      image_[k] = used && from.image != nullptr ? from.image[place_[k]] : 0;
+      for (std::size_t f = 0; f < Fields; ++f) memory(state_, k, f) = used ? memory(from.state, place_[k], f) : 0;
+    }
+    PairBatch own = from;
+    own.a = a_, own.b = b_, own.image = from.image != nullptr ? image_ : nullptr;
+    own.first_block = 0, own.last_block = own.last_near = blocks, own.next_count = 0;
+    own.state = state_, own.touching = touching_, own.asleep_until = nullptr;
+    own.row = from.row != nullptr ? row_ : nullptr;
+    return own;
+  }
+  /// Puts what they remember and their rows back to their places; none are left.
+  void put_back(const PairBatch& to) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      for (std::size_t f = 0; f < Fields; ++f) memory(to.state, place_[k], f) = memory(state_, k, f);
+      if (to.row != nullptr) to.row[place_[k] - to.first_block * block_size] = row_[k];
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t most = 64;
+  static double& memory(double* state, std::size_t place, std::size_t f) {
+    return state[(place / block_size * Fields + f) * block_size + place % block_size];
+  }
+
+  std::size_t count_ = 0;
+  std::size_t place_[most];
+  std::uint32_t a_[most], b_[most];
+  std::uint8_t image_[most], touching_[most / block_size] = {};
+  alignas(64) double state_[most * Fields + block_size];
+  ContactRow row_[most];
+};
+
 /// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
 /// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
+/// Begins with block `from` and goes on until `waiting` is full, if it is given; returns the block that comes next. All
+/// pairs take the one way through the arithmetic, so that one has the same bits wherever it stands.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
-[[gnu::flatten, gnu::noinline]] void pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
-                                               std::size_t materials) {
+[[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
+                                                      std::size_t materials, std::size_t from,
+                                                      Waiting<Law::fields_used(Features)>* waiting) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
@@ -170,11 +222,18 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
   const Ahead ahead(batch, fields);
+  // A register with fewer touching lanes than this has them wait: that costs a lane's share of a register and little
+  // more.
+  constexpr int few = width * 3 / 4;
 
-  for (std::size_t block = batch.first_block; block < batch.last_block; ++block) {
-    const std::uint32_t before = batch.touching[block];
+  std::size_t block = from;
+  for (; block < batch.last_block; ++block) {
+    if (waiting != nullptr && !waiting->has_room_for_a_block()) break;
     ahead(block);
+    const std::uint32_t before = batch.touching[block];
+    if (before == 0 && batch.asleep_until != nullptr && batch.closing < batch.asleep_until[block]) continue;
     std::uint32_t touching_now = 0;
+    L gap(std::numeric_limits<double>::max());
     for (std::size_t sub = 0; sub < block_size; sub += width) {
       const std::size_t first = block * block_size + sub;
       const std::uint32_t* ia = batch.a + first;
@@ -182,6 +241,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       const auto index_a = [=](std::size_t k) { return ia[k]; };
       const auto index_b = [=](std::size_t k) { return ib[k]; };
       const auto image = [&](std::size_t k) { return batch.image[first + k]; };
+      const auto shift = [&](std::size_t k) { return image(k) * (sizeof(ImageShift) / sizeof(Row)); };
 
       const RowLanes<L> pa = load_rows<L>(batch.position, index_a), pb = load_rows<L>(batch.position, index_b);
       Vec<L> branch = pb.xyz() - pa.xyz();
@@ -189,32 +249,31 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       if constexpr (Periodic) {
         if (batch.image != nullptr)
           for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
-        if (shifted)
-          branch = branch + load_rows<L>(&batch.shifts->position, [&](std::size_t k) {
-                              return image(k) * (sizeof(ImageShift) / sizeof(Row));
-                            }).xyz();
+        if (shifted) branch = branch + load_rows<L>(&batch.shifts->position, shift).xyz();
       }
       const L square = dot(branch, branch), reach = pa.w + pb.w;
       const auto touches = square < reach * reach;
-      const std::uint32_t bits_now = detail::bits(touches);
+      const std::uint32_t now = bits(touches);
       double* const state_at = batch.state + block * fields * block_size + sub;
-      if (bits_now == 0) {
-        if ((before >> sub & ((1u << width) - 1u)) != 0) {
-          for (std::size_t f = 0; f < fields; ++f) store_lanes(L(0.0), state_at + f * block_size);
-          for (std::size_t k = 0; k < width && batch.row != nullptr; ++k) batch.row[first - first_row + k] = {};
+      touching_now |= now << sub;
+      if (now == 0 || (waiting != nullptr && std::popcount(now) < few)) {
+        constexpr std::uint32_t all = (1u << width) - 1u;
+        for (std::uint32_t gone = before >> sub & all & ~now; gone != 0; gone &= gone - 1) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(gone));
+          for (std::size_t f = 0; f < fields; ++f) state_at[f * block_size + k] = 0;
+          if (batch.row != nullptr) batch.row[first - first_row + k] = {};
         }
+        for (std::uint32_t here = now; here != 0; here &= here - 1)
+          waiting->add(first + static_cast<std::size_t>(std::countr_zero(here)));
+        gap = min(gap, sqrt(square) - reach);
         continue;
       }
-      touching_now |= bits_now << sub;
 
       const RowLanes<L> va = load_rows<L>(batch.velocity, index_a), wa = load_rows<L>(batch.spin, index_a);
       const RowLanes<L> vb = load_rows<L>(batch.velocity, index_b), wb = load_rows<L>(batch.spin, index_b);
       Vec<L> velocity = vb.xyz() - va.xyz();
       if constexpr (Periodic) {
-        if (shifted)
-          velocity = velocity + load_rows<L>(&batch.shifts->velocity, [&](std::size_t k) {
-                                  return image(k) * (sizeof(ImageShift) / sizeof(Row));
-                                }).xyz();
+        if (shifted) velocity = velocity + load_rows<L>(&batch.shifts->velocity, shift).xyz();
       }
       const L distance = max(sqrt(square), L(1e-300));
       const Vec<L> normal = (L(1.0) / distance) * branch;
@@ -287,8 +346,30 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
                    [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
+    // The sum and its parts are rounded, by far less than what is taken off.
+    if (touching_now == 0 && batch.asleep_until != nullptr)
+      batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));
   }
   out.largest_overlap = detail::largest(largest);
+  return block;
+}
+
+/// All pairs of a batch.
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
+void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+  constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind>;
+  Waiting<Law::fields_used(Features)> waiting;
+  double largest = 0;
+  for (std::size_t next = batch.first_block; next < batch.last_block;) {
+    next = loop(batch, table, materials, next, &waiting);
+    largest = std::max(largest, batch.largest_overlap);
+    if (waiting.none()) continue;
+    PairBatch together = waiting.take(batch);
+    loop(together, table, materials, 0, nullptr);
+    waiting.put_back(batch);
+    largest = std::max(largest, together.largest_overlap);
+  }
+  batch.largest_overlap = largest;
 }
 
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact.
@@ -303,10 +384,7 @@ template <class Law, unsigned Features, class L>
     const std::size_t used = std::min(width, batch.count - first);
     // Lanes past the end repeat the last touch and are not stored.
     const auto touch = [&](std::size_t k) -> const WallTouch& { return batch.touch[first + std::min(k, used - 1)]; };
-    const auto lanes = [&](auto get) {
-      if constexpr (width == 1) return get(touch(0));
-      else return L([&](auto k) { return get(touch(k)); });
-    };
+    const auto lanes = [&](auto get) { return gather_lanes<L>([&](std::size_t k) { return get(touch(k)); }); };
     const auto vector = [&](auto get) {
       return Vec<L>{lanes([&](const WallTouch& t) { return get(t)[0]; }),
                     lanes([&](const WallTouch& t) { return get(t)[1]; }),
@@ -336,8 +414,7 @@ template <class Law, unsigned Features, class L>
     State state{};
     for (std::size_t f = 0; f < fields; ++f) {
       const auto number = [&](std::size_t k) { return batch.state[(first + std::min(k, used - 1)) * fields + f]; };
-      if constexpr (width == 1) member<L>(state, f) = number(0);
-      else member<L>(state, f) = L([&](auto k) { return number(k); });
+      member<L>(state, f) = gather_lanes<L>(number);
     }
     const auto kind = [&](std::size_t k) {
       const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
@@ -347,20 +424,16 @@ template <class Law, unsigned Features, class L>
 
     const Vec<L> force = response.normal_force * normal + response.shear;
     const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
-    const auto put = [&](const L& lane, std::size_t k) {
-      if constexpr (width == 1) return static_cast<void>(k), lane;
-      else return static_cast<double>(lane[k]);
-    };
     for (std::size_t k = 0; k < used; ++k) {
-      for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = put(member<L>(state, f), k);
-      const Quad on_wall{put(force.x, k), put(force.y, k), put(force.z, k), put(response.normal_force, k)};
+      for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = lane(member<L>(state, f), k);
+      const Quad on_wall{lane(force.x, k), lane(force.y, k), lane(force.z, k), lane(response.normal_force, k)};
       ContactRow& row = batch.row[first + k];
       store(on_wall, row.force);
-      row.moment = {put(response.moment.x, k), put(response.moment.y, k), put(response.moment.z, k),
-                    put(at.overlap, k)};
+      row.moment = {lane(response.moment.x, k), lane(response.moment.y, k), lane(response.moment.z, k),
+                    lane(at.overlap, k)};
       BodySum& sum = batch.sum[touch(k).body];
       sum.force -= on_wall;
-      sum.moment += Quad{put(moment_a.x, k), put(moment_a.y, k), put(moment_a.z, k), 0};
+      sum.moment += Quad{lane(moment_a.x, k), lane(moment_a.y, k), lane(moment_a.z, k), 0};
       largest = std::max(largest, touch(k).overlap / batch.position[touch(k).body].w);
     }
   }
@@ -430,10 +503,10 @@ class LawPlugin final : public ContactLaw {
     with_features([&]<unsigned F>() {
       // The twin and mixtures take the general loop; the other two are worth their compilation.
       const bool general = lane_width<L> == 1 || batch.material != nullptr;
-      if (general) detail::pair_loop<Law, F, L, true, false>(batch, table_.data(), count_);
+      if (general) detail::evaluate_pairs<Law, F, L, true, false>(batch, table_.data(), count_);
       else if constexpr (lane_width<L> > 1) {
-        if (batch.image == nullptr) detail::pair_loop<Law, F, L, false, true>(batch, table_.data(), count_);
-        else detail::pair_loop<Law, F, L, true, true>(batch, table_.data(), count_);
+        if (batch.image == nullptr) detail::evaluate_pairs<Law, F, L, false, true>(batch, table_.data(), count_);
+        else detail::evaluate_pairs<Law, F, L, true, true>(batch, table_.data(), count_);
       }
     });
   }
