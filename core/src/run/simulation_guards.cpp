@@ -1,0 +1,104 @@
+// How a run finds out that it has failed, and says so.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "grit/error.hpp"
+#include "run/number.hpp"
+#include "run/simulation.hpp"
+
+namespace grit {
+
+void Simulation::check_overlap(double largest) const {
+  if (largest <= scene_->guards.overlap) return;
+  // Bodies may have moved since, so that the largest overlap is looked for, not the one that is too large.
+  const auto share = [this](const Contact& c) {
+    const double radius = bodies_.position[c.a].w;
+    return c.overlap / (c.with_wall ? radius : std::min(radius, bodies_.position[c.b].w));
+  };
+  const auto all = contacts();
+  const auto worst =
+      std::max_element(all.begin(), all.end(), [&](const Contact& c, const Contact& d) { return share(c) < share(d); });
+  const Contact& contact = *worst;
+  fail_at_body(contact.a,
+               "overlaps " +
+                   (contact.with_wall ? "wall \"" + walls_.name(contact.b) + "\""
+                                      : "body " + std::to_string(bodies_.id[contact.b])) +
+                   " by " + number(largest) + " of its radius, more than /guards/overlap " +
+                   number(scene_->guards.overlap),
+               "the contact modulus may be too low for this load, or bodies began inside each other");
+}
+
+double Simulation::elastic_energy() const {
+  double energy = 0;
+  for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
+    if (!pairs_.touches(c)) continue;
+    const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
+    const double overlap =
+        bodies_.position[a].w + bodies_.position[b].w - pairs_.branch(c, bodies_, shifts_.data()).norm();
+    energy += law_->energy({.radius_a = bodies_.position[a].w,
+                            .radius_b = bodies_.position[b].w,
+                            .inverse_mass_a = bodies_.velocity[a].w,
+                            .inverse_mass_b = bodies_.velocity[b].w,
+                            .overlap = overlap},
+                           bodies_.material[a], bodies_.material[b], pairs_.state(c));
+  }
+  wall_contacts_.each([&](const WallContacts::Touching& t) {
+    const std::uint32_t a = t.touch->body;
+    const double r = bodies_.position[a].w;
+    energy += law_->energy({.radius_a = r,
+                            .radius_b = r,
+                            .inverse_mass_a = bodies_.velocity[a].w,
+                            .inverse_mass_b = 0,
+                            .overlap = t.touch->overlap,
+                            .wall = true},
+                           bodies_.material[a], t.touch->material, t.state);
+  });
+  return energy;
+}
+
+double Simulation::kinetic_energy_ratio() const {
+  const double elastic = elastic_energy();
+  return elastic > 0 ? unrest(*this).kinetic_energy / elastic : std::numeric_limits<double>::infinity();
+}
+
+double Simulation::gravitational() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < bodies_.count(); ++i)
+    energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
+  return energy;
+}
+
+void Simulation::check_energy() {
+  // The work of a deforming cell, of engines and of held bodies is not kept; nor is gravity along a periodic axis.
+  bool kept = clock_.cell.strain_rate.isZero(0.0) && force_engines_.empty() && !settings_.hold_rotation &&
+              !settings_.hold_translation;
+  for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
+  if (!kept) return;
+  const double energy = unrest(*this).kinetic_energy + elastic_energy(), stored = energy + gravitational();
+  if (std::isnan(energy_.stored_at_start)) {
+    energy_ = {.stored_at_start = stored, .work = 0, .largest = energy};
+    return;
+  }
+  energy_.largest = std::max(energy_.largest, energy);
+  const double gained = stored - energy_.stored_at_start - energy_.work;
+  if (gained > scene_->guards.energy * energy_.largest)
+    fail("energy came from nowhere: " + number(gained) + " J more than was put in, " +
+             number(gained / energy_.largest) + " of the largest energy so far; /guards/energy allows " +
+             number(scene_->guards.energy),
+         "the time step may be too large for the stiffest contact; try a smaller /time_step/safety");
+}
+
+void Simulation::fail(const std::string& what, const std::string& advice) const {
+  throw NumericsError("step " + std::to_string(clock_.step) + ", time " + number(clock_.time) + " s" +
+                      (stage_.empty() ? "" : ", stage \"" + stage_ + "\"") + ": " + what + "; " + advice);
+}
+
+void Simulation::fail_at_body(std::size_t body, const std::string& what, const std::string& advice) const {
+  const Vec3 x = xyz(bodies_.position[body]);
+  fail("body " + std::to_string(bodies_.id[body]) + " at (" + number(x.x()) + ", " + number(x.y()) + ", " +
+           number(x.z()) + ") m " + what,
+       advice);
+}
+
+}  // namespace grit

@@ -1,0 +1,100 @@
+// The world as probes see it.
+#include <cmath>
+#include <limits>
+
+#include "grit/error.hpp"
+#include "run/simulation.hpp"
+
+namespace grit {
+
+std::span<const Row> Simulation::forces() const {
+  if (net_step_ != clock_.step) {
+    net_force_.resize(bodies_.count()), net_moment_.resize(bodies_.count());
+    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+      const Vec3 weight = settings_.gravity / bodies_.velocity[i].w;
+      net_force_[i] = sum_[i].force, net_moment_[i] = sum_[i].moment;
+      net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
+      net_force_[i].w = net_moment_[i].w = 0;
+    }
+    net_step_ = clock_.step;
+  }
+  return net_force_;
+}
+
+std::span<const Row> Simulation::moments() const {
+  static_cast<void>(forces());
+  return net_moment_;
+}
+
+std::span<const Contact> Simulation::contacts() const {
+  if (contact_step_ == clock_.step) return contact_list_;
+  contact_list_.clear();
+  contact_list_.reserve(pairs_.touching_count() + wall_contacts_.touching_count());
+  pairs_.each_touching(instant(true), [&](std::size_t c, const ContactRow& row) {
+    const Vec3 branch = pairs_.branch(c, bodies_, shifts_.data());
+    contact_list_.push_back({.a = pairs_.a(c),
+                             .b = pairs_.b(c),
+                             .with_wall = false,
+                             .branch = branch,
+                             .normal = branch.normalized(),
+                             .force = xyz(row.force),
+                             .moment = xyz(row.moment),
+                             .normal_force = row.force.w,
+                             .overlap = row.moment.w});
+  });
+  wall_contacts_.each([&](const WallContacts::Touching& t) {
+    const double arm = bodies_.position[t.touch->body].w - t.touch->overlap;
+    contact_list_.push_back({.a = t.touch->body,
+                             .b = t.touch->wall,
+                             .with_wall = true,
+                             .branch = arm * t.touch->normal,
+                             .normal = t.touch->normal,
+                             .force = xyz(t.row->force),
+                             .moment = xyz(t.row->moment),
+                             .normal_force = t.row->force.w,
+                             .overlap = t.touch->overlap});
+  });
+  contact_step_ = clock_.step;
+  return contact_list_;
+}
+
+double Simulation::mean_contact_force() const {
+  double sum = 0;
+  std::size_t count = 0;
+  pairs_.each_touching(instant(true),
+                       [&](std::size_t, const ContactRow& row) { sum += std::abs(row.force.w), ++count; });
+  wall_contacts_.each([&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), ++count; });
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+std::span<const WallView> Simulation::walls() const {
+  if (wall_step_ != clock_.step) walls_.view(wall_views_), wall_step_ = clock_.step;
+  return wall_views_;
+}
+
+Region Simulation::region(double margin) const {
+  Region region{clock_.cell.low, clock_.cell.high};
+  const auto wall = [&](const std::string& name) -> std::size_t {
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+      if (walls_.name(w) == name) return w;
+    throw Error("the specimen is bounded by wall \"" + name + "\", which does not exist");
+  };
+  for (int k = 0; k < 3; ++k) {
+    const auto side = [&](const std::vector<std::string>& names) {
+      return names.size() == 3 ? names[static_cast<std::size_t>(k)] : std::string();
+    };
+    if (const std::string name = side(scene_->specimen.low); !name.empty()) {
+      const std::size_t w = wall(name);
+      const Bounds bounds = walls_.geometry(w).bounds();
+      region.low[k] = (walls_.geometry(w).hollow() ? bounds.low : bounds.high)[k] + walls_.pose(w).shift[k] + margin;
+    }
+    if (const std::string name = side(scene_->specimen.high); !name.empty()) {
+      const std::size_t w = wall(name);
+      const Bounds bounds = walls_.geometry(w).bounds();
+      region.high[k] = (walls_.geometry(w).hollow() ? bounds.high : bounds.low)[k] + walls_.pose(w).shift[k] - margin;
+    }
+  }
+  return region;
+}
+
+}  // namespace grit
