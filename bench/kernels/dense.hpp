@@ -55,7 +55,8 @@ class Dense {
   }
 
   void search() {
-    search_.build(bodies_, cell_, 0.06 * spacing);
+    skins_.lay_on(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0);
+    search_.build(bodies_, cell_, skins_);
     pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_);
   }
   void contacts() {
@@ -63,7 +64,7 @@ class Dense {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
       std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
                 BodySum{});
-      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, 0}, sum_.data());
+      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data());
     }
   }
   /// All of the arithmetic, but nothing comes to move: else the grains would fly apart.
@@ -84,6 +85,7 @@ class Dense {
   Team team_;
   Bodies bodies_;
   Cell cell_;
+  Skins skins_;
   NeighbourSearch search_;
   ContactTable pairs_;
   LargeArray<BodySum> sum_;

@@ -135,6 +135,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     pad_to(slot, none_across ? chunks_[chunk].within.last : chunks_[chunk].across.last);
   });
   make_inbox(count);
+  find_reached();
 }
 
 void ContactTable::make_inbox(std::size_t bodies) {
@@ -173,14 +174,13 @@ void ContactTable::gather(std::size_t chunk, BodySum* sum) const {
     if (touches(first_cross_ + inbox_[e].row)) add(inbox_[e]);
 }
 
-std::vector<std::vector<std::uint32_t>> ContactTable::reached() const {
-  std::vector<std::vector<std::uint32_t>> reached(chunks_.size());
+void ContactTable::find_reached() {
+  reached_.assign(chunks_.size(), {});
   for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk)
     for (std::uint32_t e = chunks_[chunk].inbox_first; e < chunks_[chunk].inbox_last; ++e) {
-      auto& from = reached[a_[first_cross_ + inbox_[e].row] / chunk_bodies];
+      auto& from = reached_[a_[first_cross_ + inbox_[e].row] / chunk_bodies];
       if (from.empty() || from.back() != chunk) from.push_back(static_cast<std::uint32_t>(chunk));
     }
-  return reached;
 }
 
 void ContactTable::set_fields(std::span<const StateField> fields) {
@@ -213,7 +213,7 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .next_count = 0,
           .dt = at.dt,
           .again = at.again,
-          .closing = at.closing,
+          .closing = 0,
           .state = nullptr,
           .touching = nullptr,
           .asleep_until = nullptr,
@@ -227,8 +227,9 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
   const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(bodies, (chunk + 1) * chunk_bodies));
   const Blocks within = chunks_[chunk].within, across = chunks_[chunk].across;
   double largest = 0;
-  const auto evaluate = [&](Blocks blocks, PairBatch pairs) {
+  const auto evaluate = [&](Blocks blocks, PairBatch pairs, double closing) {
     if (blocks.first == blocks.last) return;
+    pairs.closing = closing;
     pairs.state = state_.empty() ? nullptr : state_.front().lane;
     pairs.touching = touching_.data();
     pairs.asleep_until = asleep_until_.data();
@@ -240,12 +241,12 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
   PairBatch own = batch(within, at, end - 1);
   own.next = b_.data() + std::size_t{across.first} * block_size;
   own.next_count = static_cast<std::uint32_t>((across.near - across.first) * block_size);
-  evaluate(within, own);
+  evaluate(within, own, closing_within(chunk, at.skins));
   PairBatch others = batch(across, at, end - 1);
   others.row = row_.data() + (std::size_t{across.first} * block_size - first_cross_);
   others.next_first = end;
   others.next_count = std::min(bodies, end + static_cast<std::uint32_t>(chunk_bodies)) - end;
-  evaluate(across, others);
+  evaluate(across, others, closing_across(chunk, at.skins));
   return largest;
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "contact/search.hpp"
+#include "contact/skins.hpp"
 #include "contact/team.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "scene/bodies.hpp"
@@ -35,8 +37,8 @@ class ContactTable {
     const Bodies& bodies;
     bool one_material;
     const ImageShift* shifts;
-    double dt;           ///< s
-    double closing;      ///< what two bodies can have come closer since the search at most, summed up over steps [m]
+    double dt;  ///< s
+    const Skins& skins;
     bool again = false;  ///< this instant has been evaluated before
   };
   /// Evaluates one chunk: fills its rows, adds to the sums of its bodies, by index, and touches no others. Returns the
@@ -53,18 +55,32 @@ class ContactTable {
         if (touches(c)) use(c, rows[c - block * block_size]);
     }
   }
-  /// Calls use(candidate, distance) for pairs whose surfaces are nearer than `near` [m], or touch.
+  /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces are
+  /// nearer than `near` [m], or touch.
   template <class Use>
-  void each_near(const Bodies& bodies, const ImageShift* shifts, double closing, double near, Use use) const {
-    for (std::size_t c = 0; c < candidates(); ++c) {
-      const std::size_t block = c / block_size;
-      if (c % block_size == 0 && touching_[block] == 0 && closing + near < asleep_until_[block]) {
-        c += block_size - 1;
-        continue;
-      }
+  void each_near(std::size_t chunk, const Bodies& bodies, const ImageShift* shifts, const Skins& skins, double near,
+                 Use use) const {
+    const auto take = [&](std::size_t c) {
       const double reach = bodies.position[a_[c]].w + bodies.position[b_[c]].w + near;
       const double square = branch(c, bodies, shifts).squaredNorm();
       if (square < reach * reach) use(c, std::sqrt(square));
+    };
+    const auto asleep = [&](std::size_t block, double closing) {
+      return touching_[block] == 0 && closing + near < asleep_until_[block];
+    };
+    const auto take_all = [&](Blocks blocks, double closing) {
+      for (std::size_t block = blocks.first; block < blocks.last; ++block)
+        if (!asleep(block, closing))
+          for (std::size_t k = 0; k < block_size; ++k) take(block * block_size + k);
+    };
+    const Chunk& own = chunks_[chunk];
+    take_all(own.within, closing_within(chunk, skins)), take_all(own.across, closing_across(chunk, skins));
+    std::size_t from = chunks_.size();
+    double closing = 0;
+    for (std::uint32_t e = own.inbox_first; e < own.inbox_last; ++e) {
+      const std::size_t c = first_cross_ + inbox_[e].row, other = a_[c] / chunk_bodies;
+      if (other != from) from = other, closing = closing_across(other, skins);
+      if (!asleep(c / block_size, closing)) take(c);
     }
   }
   /// From a to b [m].
@@ -75,7 +91,7 @@ class ContactTable {
   /// Adds what contacts across chunks do to the bodies of this one as their b. Always in the same order.
   void gather(std::size_t chunk, BodySum* sum) const;
   /// Of each chunk the others that have a b of its candidates.
-  std::vector<std::vector<std::uint32_t>> reached() const;
+  const std::vector<std::vector<std::uint32_t>>& reached() const { return reached_; }
 
   std::size_t candidates() const { return a_.size(); }
   bool touches(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
@@ -101,10 +117,19 @@ class ContactTable {
   struct Letter {
     std::uint32_t row, body;
   };
+  /// By how much two bodies of a chunk, or one of it and one of another, can have come closer since the search at most,
+  /// summed up step by step [m].
+  static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.walked(chunk); }
+  double closing_across(std::size_t chunk, const Skins& skins) const {
+    double furthest = 0;
+    for (const std::uint32_t other : reached_[chunk]) furthest = std::max(furthest, skins.walked(other));
+    return skins.walked(chunk) + furthest;
+  }
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,
                       std::vector<ContactRow>& rows) const;
   void make_inbox(std::size_t bodies);
+  void find_reached();
 
   std::vector<Chunk> chunks_;
   // Candidates: those within all chunks come before those across.
@@ -118,8 +143,9 @@ class ContactTable {
   LargeArray<ContactRow> row_;
   LargeArray<Letter> inbox_;       // by the chunk of b, those that touched when the table was built first; then by b
   LargeArray<std::uint8_t> near_;  // of each candidate: touched when the table was built
-  std::vector<std::vector<Candidate>> found_;  // by chunk
-  std::vector<std::size_t> within_;            // by chunk: how many of them are within it
+  std::vector<std::vector<std::uint32_t>> reached_;  // by chunk
+  std::vector<std::vector<Candidate>> found_;        // by chunk
+  std::vector<std::size_t> within_;                  // by chunk: how many of them are within it
 };
 
 }  // namespace grit

@@ -11,10 +11,45 @@ namespace grit {
 /// A lower bound of 2 / ω_max [s]. Each body's mass and inertia are shared out among its contacts in proportion to what
 /// they ask for; ω_max² is then at most the largest over the contacts of Q_a + Q_b, with Q the sum over a body's
 /// contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I) (the element bound of Irons and Treharne,
-/// doi 10.1002/eqe.4290010107; Gershgorin's rows give the same without rotations). Pairs nearer than `near` [m] count
-/// as touching (`closing` as in ContactTable::Instant), and every body has at least one contact with its like. Viscous
-/// damping ζ lowers it by √(1 + ζ²) − ζ.
-double critical_time_step(const Bodies& bodies, const ContactTable& pairs, const WallContacts& walls,
-                          const ContactLaw& law, const ImageShift* shifts, double closing, double near);
+/// doi 10.1002/eqe.4290010107; Gershgorin's rows give the same without rotations). Pairs nearer than `near` count as
+/// touching, and every body has at least one contact with its like. Viscous damping ζ lowers it by √(1 + ζ²) − ζ.
+///
+/// Contacts form and part where bodies move, so that chunks are looked at anew when their bodies have gone far enough,
+/// each by itself.
+class CriticalStep {
+ public:
+  struct Instant {
+    const Bodies& bodies;
+    const ContactTable& pairs;
+    const WallContacts& walls;
+    const ContactLaw& law;
+    const ImageShift* shifts;
+    const Skins& skins;
+    double near;  ///< m
+  };
+  /// Looks at all chunks.
+  double find(const Instant& at, Team& team);
+  /// Looks at those of which something has gone further than `way` [m] since they were looked at.
+  double renew(const Instant& at, double way, Team& team);
+  /// Whether there are any.
+  bool due(const Skins& skins, double way) const;
+
+ private:
+  struct Pair {
+    std::uint32_t a, b;
+  };
+  struct Chunk {
+    double largest = 0, damping = 0;  ///< 1/s² and a ratio, of its contacts
+    double walked = 0;                ///< when it was looked at [m]
+    std::vector<Pair> near;
+  };
+  double look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
+  void ask(std::size_t chunk, const Instant& at);
+  void compare(std::size_t chunk);
+
+  std::vector<double> demand_;  // by body, 1/s²
+  std::vector<Chunk> chunk_;
+  double walls_walked_ = 0;
+};
 
 }  // namespace grit

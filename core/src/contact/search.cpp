@@ -90,19 +90,21 @@ int NeighbourSearch::Grid::index(int axis, double x) const {
   return static_cast<int>(std::floor(std::clamp(place, -1e9, 1e9)));
 }
 
-void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, double skin) {
-  cell_ = cell, skin_ = skin;
+void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins& skins) {
+  cell_ = cell, skins_ = skins;
   any_periodic_ = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
   grids_.clear();
   if (bodies.count() == 0) return;
-  double smallest = std::numeric_limits<double>::max(), largest = 0;
+  double smallest = std::numeric_limits<double>::max(), largest = 0, thinnest = skins.largest();
+  for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk)
+    thinnest = std::min(thinnest, skins.of_chunk(chunk));
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     smallest = std::min(smallest, bodies.position[i].w), largest = std::max(largest, bodies.position[i].w);
   }
   for (int k = 0; k < 3; ++k) {
     period_[k] = cell.periodic[k] ? cell.high[k] - cell.low[k] : 0;
     per_period_[k] = cell.periodic[k] ? 1 / period_[k] : 0;
-    const double shortest = 2 * (2 * largest + skin);
+    const double shortest = 4 * (largest + skins.largest());
     if (cell.periodic[k] && period_[k] < shortest)
       throw Error("the periodic cell is " + std::to_string(period_[k] * 1e3) + " mm along " + "xyz"[k] +
                   ", shorter than twice the reach of its largest bodies, " + std::to_string(shortest * 1e3) +
@@ -120,15 +122,17 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, double skin)
   grids_.resize(classes);
   std::vector<std::vector<std::uint32_t>> members(classes);
   for (std::uint32_t i = 0; i < bodies.count(); ++i) {
-    const int c = class_of(bodies.position[i].w);
+    const double radius = bodies.position[i].w;
+    const int c = class_of(radius);
     members[c].push_back(i);
-    grids_[c].largest_radius = std::max(grids_[c].largest_radius, bodies.position[i].w);
+    grids_[c].largest_radius = std::max(grids_[c].largest_radius, radius);
+    grids_[c].largest_reach = std::max(grids_[c].largest_reach, radius + skins.of_body(i));
   }
   const Box box = extent(bodies, cell);
   const Vec3 length = box.high - box.low;
   for (int c = 0; c < classes; ++c) {
     Grid& grid = grids_[c];
-    grid.size = cells(length, std::max(2 * grid.largest_radius + skin, 1e-300), members[c].size());
+    grid.size = cells(length, std::max(2 * (grid.largest_radius + thinnest), 1e-300), members[c].size());
     grid.origin = box.low;
     for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[k] / length[k] : 0;
     const auto cell_of = [&](std::uint32_t i) {
@@ -149,10 +153,10 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
   const std::size_t before = candidates.size();
   const Row* const position = bodies.position.data();
   const Row own = position[body];
-  const double centre[3] = {own.x, own.y, own.z};
+  const double centre[3] = {own.x, own.y, own.z}, skin = skins_.of_body(body);
   for (const Grid& grid : grids_) {
     if (grid.body.empty()) continue;
-    const double reach = own.w + grid.largest_radius + skin_;
+    const double reach = own.w + skin + grid.largest_reach;
     int first[3], last[3];
     for (int k = 0; k < 3; ++k) {
       first[k] = grid.index(k, centre[k] - reach), last[k] = grid.index(k, centre[k] + reach);
@@ -188,7 +192,7 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
               }
             }
             const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            const double touch = own.w + b.w, near = touch + skin_;
+            const double touch = own.w + b.w, near = touch + (skin + skins_.of_body(other));
             if (square < near * near) {
               const float gap = square < touch * touch ? 0 : rounded_down(std::sqrt(square) - touch);
               candidates.push_back({body, other, gap, image});

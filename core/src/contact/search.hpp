@@ -6,17 +6,14 @@
 #include <span>
 #include <vector>
 
-#include "contact/team.hpp"
+#include "contact/chunks.hpp"
+#include "contact/skins.hpp"
 #include "grit/world.hpp"
 #include "scene/bodies.hpp"
 
 namespace grit {
 
-/// Bodies of one chunk; passes over bodies and their contacts go chunk by chunk, whatever the number of threads.
-inline constexpr std::size_t chunk_bodies = 256;
-inline std::size_t chunks_of(std::size_t bodies) { return (bodies + chunk_bodies - 1) / chunk_bodies; }
-
-/// A pair whose surfaces are nearer than the skin; a < b by index.
+/// A pair whose surfaces are nearer than both skins are wide; a < b by index.
 struct Candidate {
   std::uint32_t a, b;
   float gap;           ///< between their surfaces [m]; 0 where they touch, else not more than it is
@@ -33,19 +30,19 @@ inline std::array<int, 3> image_shift(std::uint8_t image) {
 /// The order of bodies along a space-filling (Morton) curve through cells of about the largest diameter.
 std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell);
 
-/// Finds all pairs nearer than `skin`. Bodies must lie inside the periods of `cell`, if any. Bodies are filed by size:
-/// a class spans a factor of two in radius, so that small grains do not search the cells of large ones.
+/// Finds all pairs nearer than their skins. Bodies must lie inside the periods of `cell`, if any. Bodies are filed by
+/// size: a class spans a factor of 2.5 in radius, so that small grains do not search the cells of large ones.
 class NeighbourSearch {
  public:
   /// Throws DescriptionError-free grit::Error if a period is shorter than twice the reach of two bodies.
-  void build(const Bodies& bodies, const Cell& cell, double skin);
+  void build(const Bodies& bodies, const Cell& cell, const Skins& skins);
   /// Appends the candidates whose a is `body`, by b.
   void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
 
  private:
   struct Grid {
-    double largest_radius = 0;
-    Vec3 origin, per_length;  ///< cell index = (x − origin) · per_length
+    double largest_radius = 0, largest_reach = 0;  ///< m, without and with the skin
+    Vec3 origin, per_length;                       ///< cell index = (x − origin) · per_length
     std::array<int, 3> size{1, 1, 1};
     std::vector<std::uint32_t> start, body;  ///< bodies of cell c: body[start[c]] … body[start[c + 1]]
 
@@ -55,7 +52,7 @@ class NeighbourSearch {
   Cell cell_;
   Vec3 period_, per_period_;
   bool any_periodic_ = false;
-  double skin_ = 0;
+  Skins skins_;
   std::vector<Grid> grids_;
 };
 

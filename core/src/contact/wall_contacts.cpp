@@ -11,7 +11,7 @@ auto key(const WallTouch& t) { return std::tuple(t.wall, t.body, t.feature); }
 
 }  // namespace
 
-void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> walls, double skin,
+void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> walls, const Skins& skins,
                            std::span<const StateField> fields, std::span<const std::uint32_t> order) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
@@ -46,6 +46,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
     chunk.candidate.clear();
     chunk.candidate_start.assign(1, 0);
     const std::size_t first = c * chunk_bodies, last = std::min(count, first + chunk_bodies);
+    const double skin = skins.of_chunk(c) + skins.of_walls();
     for (const WallSurface& wall : walls) {
       for (std::size_t i = first; i < last; ++i)
         if (wall.geometry->near(wall.pose, xyz(bodies.position[i]), bodies.position[i].w + skin))

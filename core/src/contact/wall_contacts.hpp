@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "contact/search.hpp"
+#include "contact/chunks.hpp"
+#include "contact/skins.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
 #include "scene/bodies.hpp"
@@ -38,8 +39,8 @@ struct WallLoad {
 /// that memory is handed on by walking along two sorted lists.
 class WallContacts {
  public:
-  /// Which bodies may come to touch which wall while surfaces move by less than `skin` in all.
-  void rebuild(const Bodies& bodies, std::span<const WallSurface> walls, double skin,
+  /// Which bodies may come to touch which wall while neither goes further than its skin is wide.
+  void rebuild(const Bodies& bodies, std::span<const WallSurface> walls, const Skins& skins,
                std::span<const StateField> fields, std::span<const std::uint32_t> order);
   void set_fields(std::span<const StateField> fields);
 
@@ -58,9 +59,13 @@ class WallContacts {
   /// All touches, in their order.
   template <class Use>
   void each(Use use) const {
-    for (const Chunk& chunk : chunks_)
-      for (std::size_t i = 0; i < chunk.touch.size(); ++i)
-        use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
+    for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) each(chunk, use);
+  }
+  template <class Use>
+  void each(std::size_t c, Use use) const {
+    const Chunk& chunk = chunks_[c];
+    for (std::size_t i = 0; i < chunk.touch.size(); ++i)
+      use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
   }
   std::size_t touching_count() const;
 

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <utility>
 
-#include "contact/critical_step.hpp"
 #include "grit/error.hpp"
 #include "run/number.hpp"
 #include "run/stopwatch.hpp"
@@ -16,12 +15,12 @@
 namespace grit {
 namespace {
 
-// Skin as a share of the mean diameter. On the dense periodic box of bench/ 0.02 … 0.1 were tried: the wider, the fewer
-// searches and the more pairs to test; 0.06 was best or within 3 % of it at 10 000 and 50 000 grains. A cloud under
-// compaction has few pairs to test and searches all the time: it is better off with a wide one.
-constexpr double least_skin = 0.06, most_skin = 0.4;
-// The skin grows when a search comes sooner than this many steps after the last, and shrinks when it comes later.
-constexpr std::uint64_t soon = 60, late = 600;
+// Skins as a share of the mean diameter, and for how many steps they are to last where they are wider than the least.
+// On the dense periodic box of bench/ 0.01 … 0.05 were tried: the wider, the fewer searches and the more pairs to test;
+// 0.03 was best or within 3 % of it at 10 000 and 50 000 grains.
+constexpr double least_skin = 0.03, most_skin = 0.4, steps_of_skin = 100;
+// The time step is set anew for bodies that have gone so far, in mean diameters; pairs nearer than the other touch.
+constexpr double stepped_way = 0.03, as_good_as_touching = 0.015;
 // A search after which bodies are put in spatial order again.
 constexpr std::uint64_t reorder_every = 8;
 // The time step is raised only when it could be so much larger, so that it does not follow every small change.
@@ -63,7 +62,6 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
     one_material_ = one_material_ && bodies_.material[i] == 0;
   }
   if (count > 0) mean_diameter_ = diameters / static_cast<double>(count), solid_density_ = mass / volume;
-  clock_.skin = least_skin * mean_diameter_;
   sum_.assign(count + 1, {});
   chunk_.assign(chunks_of(count), {});
   begin_stage("", scene);
@@ -146,15 +144,15 @@ void Simulation::update_surfaces() {
   }
 }
 
-double Simulation::approach() const {
-  return std::max(2 * clock_.body_travel + clock_.strain_travel, clock_.body_travel + clock_.wall_travel);
-}
-
 bool Simulation::search_is_due() {
   if (search_now_) return true;
-  if (approach() < clock_.skin) return false;
-  // The sum of the largest speeds is a bound; the true travel is often far less and worth a look.
-  // In a cell that deforms, travel is what a body does apart from the mean flow.
+  Skins& skins = clock_.skins;
+  if (skins.walls_gone() > skins.of_walls()) return true;
+  const auto worn = [&](std::size_t chunk) {
+    return skins.gone(chunk) + 0.5 * clock_.strain_travel > skins.of_chunk(chunk);
+  };
+  // The sum of the largest speeds is a bound; the true way is often far less and worth a look.
+  // In a cell that deforms it is what a body goes apart from the mean flow.
   Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
   if (!clock_.cell.strain_rate.isZero(0.0)) {
     from = 0.5 * (reference_cell_.low + reference_cell_.high), to = centre();
@@ -163,13 +161,18 @@ bool Simulation::search_is_due() {
         stretch[k] = (clock_.cell.high[k] - clock_.cell.low[k]) / (reference_cell_.high[k] - reference_cell_.low[k]);
       else from[k] = to[k] = 0;
   }
-  double largest = 0;
-  for (std::size_t i = 0; i < bodies_.count(); ++i)
-    largest = std::max(largest,
-                       (xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from)).squaredNorm());
-  clock_.body_travel = std::sqrt(largest);
-  clock_.stepped_travel = std::min(clock_.stepped_travel, approach());
-  return approach() > 0.8 * clock_.skin;
+  for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
+    if (!worn(chunk)) continue;
+    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+    double largest = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 away = xyz(bodies_.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from);
+      largest = std::max(largest, away.squaredNorm());
+    }
+    skins.found(chunk, std::sqrt(largest));
+    if (skins.gone(chunk) + 0.5 * clock_.strain_travel > 0.95 * skins.of_chunk(chunk)) return true;
+  }
+  return false;
 }
 
 void Simulation::wrap() {
@@ -198,35 +201,44 @@ void Simulation::wrap() {
   }
 }
 
-/// By the number of steps alone, so that a run is the same on every machine.
-void Simulation::adapt_skin() {
-  const std::uint64_t steps = clock_.step - clock_.last_search;
-  clock_.last_search = clock_.step;
-  if (search_now_) return;
+/// By speeds alone, so that a run is the same on every machine.
+void Simulation::lay_on_skins() {
+  const double least = least_skin * mean_diameter_;
   double most = most_skin * mean_diameter_;
   for (int k = 0; k < 3; ++k)
     if (clock_.cell.periodic[k])
-      most = std::min(most, 0.5 * (clock_.cell.high[k] - clock_.cell.low[k]) - 2 * largest_radius_);
-  const double least = least_skin * mean_diameter_;
-  if (steps < soon) clock_.skin *= 1.5;
-  if (steps > late) clock_.skin /= 1.25;
-  clock_.skin = std::max(least, std::min(most, clock_.skin));
+      most = std::min(most, 0.25 * (clock_.cell.high[k] - clock_.cell.low[k]) - largest_radius_);
+  const auto skin = [&](double speed) {
+    return std::max(least, std::min(most, steps_of_skin * clock_.time_step * speed));
+  };
+  const Vec3 rate = clock_.cell.strain_rate, middle = rate.isZero(0.0) ? Vec3::Zero() : centre();
+  std::vector<double> skins(chunk_.size());
+  team_.each(chunk_.size(), [&](std::size_t chunk) {
+    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+    double fastest = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 flow = rate.cwiseProduct(xyz(bodies_.position[i]) - middle);
+      fastest = std::max(fastest, (xyz(bodies_.velocity[i]) - flow).squaredNorm());
+    }
+    skins[chunk] = skin(std::sqrt(fastest));
+  });
+  clock_.skins.lay_on(skins, skin(clock_.wall_speed));
+  clock_.strain_travel = 0;
 }
 
 void Simulation::search() {
   wrap();
-  adapt_skin();
   std::vector<std::uint32_t> order;
   if (clock_.rebuilds % reorder_every == 0) {
     order = spatial_order(bodies_, clock_.cell);
     bodies_.reorder(order);
   }
-  search_.build(bodies_, clock_.cell, clock_.skin);
+  lay_on_skins();
+  search_.build(bodies_, clock_.cell, clock_.skins);
   pairs_.rebuild(bodies_, search_, periodic_, fields_, order, team_);
   readiness_.build(pairs_.reached());
-  wall_contacts_.rebuild(bodies_, surfaces_, clock_.skin, fields_, order);
+  wall_contacts_.rebuild(bodies_, surfaces_, clock_.skins, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
-  clock_.body_travel = clock_.wall_travel = clock_.strain_travel = clock_.closing = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     arms_[w] = 0;
     for (std::size_t i = 0; i < bodies_.count(); ++i)
@@ -237,14 +249,19 @@ void Simulation::search() {
   set_time_step();
 }
 
+CriticalStep::Instant Simulation::near_contacts() const {
+  return {bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), clock_.skins, as_good_as_touching * mean_diameter_};
+}
+
 void Simulation::set_time_step() {
   time_step_now_ = false;
   clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
-  clock_.stepped_travel = approach();  // contacts form within a wide skin long before the next search
+  choose_time_step(critical_.find(near_contacts(), team_));
+}
+
+void Simulation::choose_time_step(double contacts_allow) {
   const TimeStepDescription& wish = scene_->time_step;
-  clock_.critical_time_step = critical_time_step(bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), clock_.closing,
-                                                 0.25 * least_skin * mean_diameter_);
-  clock_.critical_time_step = std::min(clock_.critical_time_step, walls_.critical_time_step());
+  clock_.critical_time_step = std::min(contacts_allow, walls_.critical_time_step());
   if (wish.value) {
     clock_.time_step = *wish.value;
     if (*wish.value > clock_.critical_time_step && !wish.allow_unstable)
@@ -268,7 +285,10 @@ bool Simulation::prepare() {
   {
     const Stopwatch watch(phases_[searching].seconds);
     if (search_is_due()) search();
-    else if (time_step_now_ || approach() > clock_.stepped_travel + least_skin * mean_diameter_) set_time_step();
+    else if (time_step_now_) set_time_step();
+    // Contacts form long before the next search.
+    else if (critical_.due(clock_.skins, stepped_way * mean_diameter_))
+      choose_time_step(critical_.renew(near_contacts(), stepped_way * mean_diameter_, team_));
   }
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
   const bool again = clock_.forces_step == clock_.step;
@@ -470,13 +490,18 @@ void Simulation::end_step() {
   }
   clock_.last_time_step = dt;
 
-  clock_.body_travel += dt * fastest;
-  const double strained = dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * (2 * largest_radius_ + clock_.skin);
+  const double strained =
+      dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * 2 * (largest_radius_ + clock_.skins.largest());
   clock_.strain_travel += strained;
+  double furthest = 0;
+  for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
+    clock_.skins.go(chunk, dt * chunk_[chunk].motion.largest_speed, 0.5 * strained);
+    furthest = std::max(furthest, clock_.skins.gone(chunk));
+  }
   double wall_speed = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_.states()[w];
-    const double arm = arms_[w] + clock_.body_travel + clock_.strain_travel + clock_.wall_travel;
+    const double arm = arms_[w] + furthest + clock_.strain_travel + clock_.skins.walls_gone();
     const double turning = wall.spin.norm() * arm, speed = wall.velocity.norm() + turning;
     // A flat wall may slide along itself as fast as it likes.
     const Vec3 normal = wall.pose.turn * walls_.geometry(w).normal();
@@ -488,9 +513,8 @@ void Simulation::end_step() {
           "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step smaller");
     wall_speed = std::max(wall_speed, speed);
   }
-  clock_.wall_travel += dt * wall_speed;
-  // Not 2 body_travel + strain_travel, which a look at where bodies really are makes smaller again.
-  clock_.closing += 2 * dt * fastest + strained;
+  clock_.wall_speed = wall_speed;
+  clock_.skins.walls_go(dt * wall_speed);
   clock_.last_approach = dt * std::max(2 * fastest, fastest + wall_speed) + strained;
 
   if (!finite || dt * fastest > scene_->guards.travel * smallest_radius_) {

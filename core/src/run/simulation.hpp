@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "contact/contact_table.hpp"
+#include "contact/critical_step.hpp"
 #include "contact/readiness.hpp"
 #include "contact/search.hpp"
+#include "contact/skins.hpp"
 #include "contact/team.hpp"
 #include "contact/wall_contacts.hpp"
 #include "engines/motion.hpp"
@@ -33,12 +35,10 @@ struct Clock {
   Cell cell;
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;
-  std::uint64_t last_search = 0;                               ///< step
-  double skin = 0;                                             ///< of the present candidates, m
-  double body_travel = 0, wall_travel = 0, strain_travel = 0;  ///< upper bounds since the last rebuild, m
-  double closing = 0;         ///< by how much two bodies can have come closer since, summed up step by step, m
-  double last_approach = 0;   ///< by how much the last step let bodies come closer at most, m
-  double stepped_travel = 0;  ///< how far pairs had come together when the time step was set, m
+  Skins skins;               ///< of the present candidates
+  double strain_travel = 0;  ///< what the mean flow of the cell moved two bodies since the last search, at most [m]
+  double wall_speed = 0;     ///< of the fastest point of a wall near bodies, at most, in the last step [m/s]
+  double last_approach = 0;  ///< by how much the last step let bodies come closer at most, m
   double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
 };
 
@@ -79,7 +79,6 @@ class Simulation final : public World {
   std::size_t candidate_count() const { return pairs_.candidates(); }
   std::vector<PhaseTime> phases() const;
   const Walls& wall_states() const { return walls_; }
-  double skin() const { return clock_.skin; }
   /// Bytes held by bodies and contacts.
   std::size_t memory() const;
   const WallContacts& wall_contacts() const { return wall_contacts_; }
@@ -113,7 +112,7 @@ class Simulation final : public World {
 
   void apply(const SceneDescription& scene);
   ContactTable::Instant instant(bool again) const {
-    return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, clock_.closing, again};
+    return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, clock_.skins, again};
   }
   /// All that comes before the contacts. Returns whether this instant has been evaluated before.
   bool prepare();
@@ -139,12 +138,13 @@ class Simulation final : public World {
   void and_show_forces(Work work);
   void show_forces();
   bool search_is_due();
-  void adapt_skin();
-  /// How much closer two bodies, or a body and a wall, can have come since the last search [m].
-  double approach() const;
+  void lay_on_skins();
   void search();
   void wrap();
+  /// For what contacts ask now.
   void set_time_step();
+  void choose_time_step(double contacts_allow);
+  CriticalStep::Instant near_contacts() const;
   void update_shifts();
   void update_surfaces();
   void check_overlap(double largest) const;
@@ -172,6 +172,7 @@ class Simulation final : public World {
   WallContacts wall_contacts_;
   Walls walls_;
   NeighbourSearch search_;
+  CriticalStep critical_;
 
   LargeArray<BodySum> sum_;
   LargeArray<Row> reference_;  // positions at the last search
