@@ -119,6 +119,7 @@ std::span<const SawTooth::Face> SawTooth::faces(int feature) const {
 /// The part of a face that is on the sheet, from and to where along it; none if that is no more than rounding.
 std::optional<std::pair<double, double>> SawTooth::extent(int feature, const Face& face) const {
   if (face.length == 0) return {};
+  if (feature != first_ && feature != last_) return std::pair(0.0, face.length);
   double from = 0, to = face.length;
   const double start = period_start(feature) + face.start.x();
   if (feature == first_) from = std::max(from, -start / face.along.x());
