@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "support/scene.hpp"
+#include "support/verified.hpp"
 
 namespace grit::test {
 namespace {
@@ -62,10 +63,10 @@ TEST_P(ChungOoi, OverlapForceAndDuration) {
   } while (t.position(0).z() < impact.radius);
   const double speed = t.velocity(0).z(), duration = t.world().time() - (t.position(0).z() - impact.radius) / speed;
   // The step, of second order: (dt/duration)² = 6e-8, and what the largest of a step misses.
-  EXPECT_NEAR(overlap / impact.overlap(), 1, 1e-7);
-  EXPECT_NEAR(force / impact.force(), 1, 1e-7);
-  EXPECT_NEAR(duration / impact.duration(), 1, 1e-7);
-  EXPECT_NEAR(speed / impact.speed, 1, 1e-10);
+  verify("overlap [m]", overlap, impact.overlap(), 1e-7);
+  verify("force [N]", force, impact.force(), 1e-7);
+  verify("duration [s]", duration, impact.duration(), 1e-7);
+  verify("speed of rebound [m/s]", speed, impact.speed, 1e-10);
   EXPECT_EQ(t.spin(0).norm(), 0);
 }
 
@@ -76,7 +77,9 @@ TEST_P(ChungOoi, ReboundsAsTheRestitutionSays) {
     do t.step();
     while (t.position(0).z() < impact.radius);
     // Velocities half a step old in the dashpot: first order, a fifth of dt/duration at most.
-    EXPECT_NEAR(t.velocity(0).z() / impact.speed, e, 1e-4) << e;
+    char what[32];
+    std::snprintf(what, sizeof what, "restitution of %.1f", e);
+    verify(what, t.velocity(0).z() / impact.speed, e, 1e-4, 1);
   }
 }
 

@@ -180,5 +180,23 @@ TEST(Guards, StepAboveTheCriticalOne) {
   EXPECT_EQ(complaint(d, 1), "");
 }
 
+TEST(Guards, CountTheWorkOfAServoByTheForcesAtBothEndsOfAStep) {
+  // A servo moves because of the force at the start of a step; by that alone its work would come out far too small.
+  constexpr double radius = 1e-3;
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, radius}, radius}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["lid"] = {{"type", "rectangle"},
+                       {"corner", {-radius, radius, 2 * radius}},
+                       {"edge_a", {2 * radius, 0, 0}},
+                       {"edge_b", {0, -2 * radius, 0}},
+                       {"material", "grain"},
+                       {"motion", {{"servo", {{"axis", "z"}, {"pressure", 2e4}, {"max_velocity", 0.05}}}}}};
+  d["time_step"]["safety"] = 0.05;
+  d["guards"] = {{"energy", 1e-4}};
+  Trial t(d);
+  EXPECT_NO_THROW(t.step(5000));
+  EXPECT_GT(t.world().wall_states().states()[1].force.norm(), 0.07) << "the lid presses";
+}
+
 }  // namespace
 }  // namespace grit::test

@@ -1,5 +1,6 @@
 #include "contact/critical_step.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,16 +10,30 @@
 namespace grit {
 namespace {
 
-/// What one contact asks of one of its bodies, 1/s².
-double demand(const Stiffness& k, double radius, double inverse_mass, double inverse_inertia) {
+/// What the springs of one contact ask of one of its bodies, 1/s².
+double demand(const Stiffness& k, const Bodies& bodies, std::size_t i) {
+  const double radius = bodies.position[i].w, inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
   const double sliding = k.shear * (inverse_mass + radius * radius * inverse_inertia) + k.rolling * inverse_inertia;
   return std::max({k.normal * inverse_mass, sliding, k.twisting * inverse_inertia});
+}
+
+/// What its dashpots ask of either, by direction, 1/s; of two bodies at once, or of one and a wall.
+Mat3 dashpots(const Stiffness& k, const Vec3& normal, double inverse_mass) {
+  const double along = 2 * k.damping_ratio * std::sqrt(k.normal * inverse_mass);
+  // The dashpot in shear turns the bodies, too: as much in any direction is more than it asks for.
+  const double across = 2 * k.shear_damping_ratio * std::sqrt(3.5 * k.shear * inverse_mass);
+  return along * normal * normal.transpose() + across * Mat3::Identity();
+}
+
+double largest_eigenvalue(const Mat3& symmetric) {
+  if (symmetric.isZero(0.0)) return 0;
+  return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[2];
 }
 
 }  // namespace
 
 double CriticalStep::find(const Instant& at, Team& team) {
-  demand_.assign(at.bodies.count(), 0.0);
+  demand_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
   walls_walked_ = at.skins.walls_walked();
   std::vector<std::size_t> all(chunk_.size());
@@ -43,12 +58,10 @@ double CriticalStep::renew(const Instant& at, double way, Team& team) {
 
 double CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
   team.each(chunks.size(), [&](std::size_t k) { ask(chunks[k], at); });
-  team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k]); });
-  double largest = 0, damping = 0;
-  for (const Chunk& chunk : chunk_)
-    largest = std::max(largest, chunk.largest), damping = std::max(damping, chunk.damping);
-  if (chunk_.empty()) return std::numeric_limits<double>::infinity();
-  return 2 / std::sqrt(largest) * (std::sqrt(1 + damping * damping) - damping);
+  team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at.pairs); });
+  double spring = 0, dashpot = 0;
+  for (const Chunk& chunk : chunk_) spring = std::max(spring, chunk.spring), dashpot = std::max(dashpot, chunk.dashpot);
+  return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring));
 }
 
 /// What contacts ask of the bodies of a chunk.
@@ -65,38 +78,44 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
                     .inverse_mass_b = bodies.velocity[b].w,
                     .overlap = overlap};
   };
-  double damping = 0;
-  const auto own_demand = [&](const Stiffness& k, std::size_t i) {
-    damping = std::max(damping, k.damping_ratio);
-    return demand(k, bodies.position[i].w, bodies.velocity[i].w, bodies.spin[i].w);
-  };
-  std::array<double, chunk_bodies> asked{};
+  std::array<double, chunk_bodies> springs{};
+  std::array<Mat3, chunk_bodies> damped;
+  damped.fill(Mat3::Zero());
   at.pairs.each_near(chunk, bodies, at.shifts, at.skins, at.near, [&](std::size_t c, double distance) {
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
     const Stiffness k = at.law.stiffness(size_of(a, b, overlap), bodies.material[a], bodies.material[b]);
+    Mat3 along = Mat3::Zero();
+    if (k.damping_ratio > 0 || k.shear_damping_ratio > 0)
+      along =
+          dashpots(k, at.pairs.branch(c, bodies, at.shifts).normalized(), bodies.velocity[a].w + bodies.velocity[b].w);
     for (const std::uint32_t i : {a, b})
-      if (first <= i && i < last) asked[i - first] += own_demand(k, i);
-    own.near.push_back({a, b});
+      if (first <= i && i < last) springs[i - first] += demand(k, bodies, i), damped[i - first] += along;
+    own.near.push_back(static_cast<std::uint32_t>(c));
   });
-  at.walls.each(chunk, [&](const WallContacts::Touching& t) {
-    const std::uint32_t a = t.touch->body;
-    PairSize size = size_of(a, a, t.touch->overlap);
+  at.walls.each_near(chunk, bodies, at.surfaces, at.near, [&](const Touch& touch, const WallSurface& wall) {
+    const std::uint32_t a = touch.body;
+    PairSize size = size_of(a, a, std::max(touch.overlap - at.near, 0.0));
     size.inverse_mass_b = 0, size.wall = true;
-    asked[a - first] += own_demand(at.law.stiffness(size, bodies.material[a], t.touch->material), a);
+    const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
+    springs[a - first] += demand(k, bodies, a);
+    damped[a - first] += dashpots(k, touch.normal, bodies.velocity[a].w);
   });
-  own.largest = 0;
+  own.spring = own.dashpot = 0;
   for (std::size_t i = first; i < last; ++i) {
-    const double alone = own_demand(at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]), i);
-    demand_[i] = std::max(asked[i - first], alone);
-    own.largest = std::max({own.largest, 2 * alone, demand_[i]});
+    const Stiffness k = at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]);
+    const double alone = demand(k, bodies, i);
+    demand_[i] = std::max(springs[i - first], alone);
+    own.spring = std::max({own.spring, 2 * alone, demand_[i]});
+    const Mat3 pair = dashpots(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
+    own.dashpot = std::max({own.dashpot, largest_eigenvalue(damped[i - first]), largest_eigenvalue(pair)});
   }
-  own.damping = damping;
 }
 
-void CriticalStep::compare(std::size_t chunk) {
-  for (const auto& [a, b] : chunk_[chunk].near)
-    chunk_[chunk].largest = std::max(chunk_[chunk].largest, demand_[a] + demand_[b]);
+/// What they ask of the two of a pair.
+void CriticalStep::compare(std::size_t chunk, const ContactTable& pairs) {
+  double& spring = chunk_[chunk].spring;
+  for (const std::uint32_t c : chunk_[chunk].near) spring = std::max(spring, demand_[pairs.a(c)] + demand_[pairs.b(c)]);
 }
 
 }  // namespace grit

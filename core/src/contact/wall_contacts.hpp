@@ -59,13 +59,26 @@ class WallContacts {
   /// All touches, in their order.
   template <class Use>
   void each(Use use) const {
-    for (std::size_t chunk = 0; chunk < chunks_.size(); ++chunk) each(chunk, use);
+    for (const Chunk& chunk : chunks_)
+      for (std::size_t i = 0; i < chunk.touch.size(); ++i)
+        use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
   }
+  /// What bodies of a chunk would touch if they were larger by `near` [m], at this instant: overlaps are as much
+  /// larger.
   template <class Use>
-  void each(std::size_t c, Use use) const {
+  void each_near(std::size_t c, const Bodies& bodies, std::span<const WallSurface> walls, double near, Use use) const {
     const Chunk& chunk = chunks_[c];
-    for (std::size_t i = 0; i < chunk.touch.size(); ++i)
-      use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
+    std::vector<Sphere> spheres;
+    std::vector<Touch> found;
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      spheres.clear(), found.clear();
+      for (std::uint32_t n = chunk.candidate_start[w]; n < chunk.candidate_start[w + 1]; ++n) {
+        const Row& x = bodies.position[chunk.candidate[n]];
+        spheres.push_back({{x.x, x.y, x.z}, x.w + near, chunk.candidate[n]});
+      }
+      if (!spheres.empty()) walls[w].geometry->touch(walls[w].pose, spheres, found);
+      for (const Touch& touch : found) use(touch, walls[w]);
+    }
   }
   std::size_t touching_count() const;
 

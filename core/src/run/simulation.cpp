@@ -250,7 +250,14 @@ void Simulation::search() {
 }
 
 CriticalStep::Instant Simulation::near_contacts() const {
-  return {bodies_, pairs_, wall_contacts_, *law_, shifts_.data(), clock_.skins, as_good_as_touching * mean_diameter_};
+  return {.bodies = bodies_,
+          .pairs = pairs_,
+          .walls = wall_contacts_,
+          .surfaces = surfaces_,
+          .law = *law_,
+          .shifts = shifts_.data(),
+          .skins = clock_.skins,
+          .near = as_good_as_touching * mean_diameter_};
 }
 
 void Simulation::set_time_step() {
@@ -469,9 +476,11 @@ void Simulation::show_forces() {
 
 void Simulation::end_step() {
   const double dt = clock_.time_step;
+  // Half of what the walls do in a step by the forces at its start, half by those at its end: a servo moves because of
+  // the former.
+  energy_.work += 0.5 * clock_.last_time_step * power_of_walls();
   walls_.drive(dt);
-  for (const WallState& wall : walls_.states())
-    energy_.work += dt * (-wall.force.dot(wall.velocity) - wall.moment.dot(wall.spin));
+  energy_.work += 0.5 * dt * power_of_walls();
   double fastest = 0;
   bool finite = true;
   for (const Chunk& chunk : chunk_)

@@ -45,7 +45,7 @@ struct Clock {
 /// Energies and work, for the guard against energy from nowhere.
 struct EnergyBook {
   double stored_at_start = 0;  ///< J, kinetic, elastic and gravitational, when the present settings began
-  double work = 0;             ///< J, done by walls since then
+  double work = 0;             ///< J, done by walls since then, but for half of the last step
   double largest = 0;          ///< J, largest kinetic and elastic energy since then
 };
 
@@ -151,6 +151,8 @@ class Simulation final : public World {
   void check_energy();
   double elastic_energy() const;
   double gravitational() const;
+  /// What walls do by the forces on them as they moved last [W].
+  double power_of_walls() const;
   Region region(double margin) const;
   Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
   [[noreturn]] void fail(const std::string& what, const std::string& advice) const;

@@ -62,6 +62,12 @@ double Simulation::kinetic_energy_ratio() const {
   return elastic > 0 ? unrest(*this).kinetic_energy / elastic : std::numeric_limits<double>::infinity();
 }
 
+double Simulation::power_of_walls() const {
+  double power = 0;
+  for (const WallState& wall : walls_.states()) power -= wall.force.dot(wall.velocity) + wall.moment.dot(wall.spin);
+  return power;
+}
+
 double Simulation::gravitational() const {
   double energy = 0;
   for (std::size_t i = 0; i < bodies_.count(); ++i)
@@ -76,12 +82,13 @@ void Simulation::check_energy() {
   for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
   if (!kept) return;
   const double energy = unrest(*this).kinetic_energy + elastic_energy(), stored = energy + gravitational();
+  const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
   if (std::isnan(energy_.stored_at_start)) {
-    energy_ = {.stored_at_start = stored, .work = 0, .largest = energy};
+    energy_ = {.stored_at_start = stored, .work = -last_half, .largest = energy};
     return;
   }
   energy_.largest = std::max(energy_.largest, energy);
-  const double gained = stored - energy_.stored_at_start - energy_.work;
+  const double gained = stored - energy_.stored_at_start - (energy_.work + last_half);
   if (gained > scene_->guards.energy * energy_.largest)
     fail("energy came from nowhere: " + number(gained) + " J more than was put in, " +
              number(gained / energy_.largest) + " of the largest energy so far; /guards/energy allows " +

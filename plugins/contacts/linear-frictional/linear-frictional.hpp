@@ -110,7 +110,10 @@ struct LinearFrictional {
 
   static Stiffness stiffness(const PairSize& size, const Pair<double>& pair) {
     const double kn = spring_in_line(pair.modulus_a, size.radius_a, pair.modulus_b, size.radius_b);
-    return {.normal = kn, .shear = pair.friction > 0 ? pair.shear_ratio * kn : 0, .damping_ratio = pair.damping};
+    return {.normal = kn,
+            .shear = pair.friction > 0 ? pair.shear_ratio * kn : 0,
+            .damping_ratio = pair.damping,
+            .shear_damping_ratio = pair.friction > 0 ? pair.shear_damping : 0};
   }
   static double energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Stiffness k = stiffness(size, pair);

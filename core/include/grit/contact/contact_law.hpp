@@ -12,11 +12,12 @@ namespace grit {
 
 /// Stiffnesses of one contact, for the time step, and its viscous damping as a fraction of critical.
 struct Stiffness {
-  double normal = 0;         ///< N/m
-  double shear = 0;          ///< N/m
-  double rolling = 0;        ///< N m/rad, about axes in the contact plane
-  double twisting = 0;       ///< N m/rad, about the normal
-  double damping_ratio = 0;  ///< of the pair, 0 … 1
+  double normal = 0;               ///< N/m
+  double shear = 0;                ///< N/m
+  double rolling = 0;              ///< N m/rad, about axes in the contact plane
+  double twisting = 0;             ///< N m/rad, about the normal
+  double damping_ratio = 0;        ///< of the normal dashpot: over what is critical for the pair
+  double shear_damping_ratio = 0;  ///< of a dashpot beside the shear spring; critical is 2 √(k_s m* / 3.5)
 };
 
 /// The pair whose stiffness is asked for. A wall has radius_b = radius_a and inverse_mass_b = 0; a body that only

@@ -1,0 +1,124 @@
+// The longest stable step of systems whose fastest mode is known, found from both sides, beside the critical step that
+// grit reckons with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "grit/contact/restitution.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius, shear_ratio = 0.3;
+const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+constexpr double squeeze = 1e-3, trembling = 1e-9;  // of the radius; of the squeeze
+
+Description material(double restitution) {
+  Description m{{"density", density}, {"contact_modulus", modulus}, {"friction_angle", "60 deg"}};
+  m["shear_to_normal_stiffness"] = shear_ratio;
+  if (restitution < 1) m["restitution"] = restitution;
+  return m;
+}
+
+/// The largest speed after so many steps, over the one at the start.
+double growth(Description d, double dt, int steps) {
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
+  Trial t(d);
+  const auto fastest = [&] {
+    double fastest = 0;
+    for (const Row& v : t.world().velocities()) fastest = std::max(fastest, xyz(v).norm());
+    return fastest;
+  };
+  const double before = fastest();
+  double largest = 0;
+  for (int done = 0; done < steps; done += 10) {
+    t.step(10);
+    largest = std::max(largest, fastest());
+    if (largest > 1e6 * before) break;  // still far from opening a contact
+  }
+  return largest / before;
+}
+
+double critical(Description d) {
+  d["time_step"] = {{"value", 1e-9}};
+  return Trial(d).world().clock().critical_time_step;
+}
+
+/// A mode that is known to be the fastest starts to grow between 0.5 % below and 0.5 % above this step.
+void expect_limit(const Description& d, double limit) {
+  EXPECT_LT(growth(d, 0.995 * limit, 4000), 20) << "stable below";
+  EXPECT_GT(growth(d, 1.005 * limit, 4000), 1e6) << "unstable above";
+}
+
+/// The step [s] at which a mode of λ² = `spring` and damping rate `dashpot` starts to grow: 4 = 2 dt D + dt² Q.
+double limit_of(double spring, double dashpot) {
+  return (std::sqrt(dashpot * dashpot + 4 * spring) - dashpot) / spring;
+}
+
+/// A sphere between two plates that press on it and do not move; it starts towards one of them.
+Description pressed(double restitution, bool rough) {
+  Description m = material(restitution);
+  if (!rough) m["friction_angle"] = 0;
+  const double speed = trembling * squeeze * radius * std::sqrt(2 * stiffness / mass);
+  Description d = description("linear-frictional", m, {{Vec3::Zero(), radius, {0, 0, speed}}});
+  d["walls"]["low"] = plane({0, 0, -(1 - squeeze) * radius}, Vec3::UnitZ());
+  d["walls"]["high"] = plane({0, 0, (1 - squeeze) * radius}, -Vec3::UnitZ());
+  return d;
+}
+
+TEST(TimeStep, SphereBetweenPlatesStartsToGrowWhereItIsSaidTo) {
+  for (const double e : {1.0, 0.8, 0.5, 0.2, 0.05}) {
+    SCOPED_TRACE("restitution " + std::to_string(e));
+    // Both contacts act along one line: twice the spring, twice the dashpot.
+    const double dashpot = 2 * damping_of_restitution(e) * std::sqrt(stiffness * mass);
+    const double limit = limit_of(2 * stiffness / mass, 2 * dashpot / mass);
+    expect_limit(pressed(e, false), limit);
+    EXPECT_NEAR(critical(pressed(e, false)) / limit, 1, 1e-12);
+    EXPECT_LE(critical(pressed(e, true)), limit);
+  }
+}
+
+/// Spheres on a simple cubic lattice, each moving against all of its neighbours along x.
+Description lattice(const std::string& law, double restitution) {
+  constexpr int sides = 4;
+  constexpr double spacing = 2 * radius * (1 - squeeze);
+  const double speed = trembling * squeeze * radius * std::sqrt(stiffness / mass);
+  std::vector<Grain> grains;
+  for (int x = 0; x < sides; ++x)
+    for (int y = 0; y < sides; ++y)
+      for (int z = 0; z < sides; ++z)
+        grains.push_back(
+            {spacing * Vec3(x + 0.5, y + 0.5, z + 0.5), radius, {(x + y + z) % 2 == 0 ? speed : -speed, 0, 0}});
+  Description d = description(law, material(restitution), grains);
+  d["domain"] = {
+      {"low", {0, 0, 0}}, {"high", vector(Vec3::Constant(sides * spacing))}, {"periodic", {true, true, true}}};
+  return d;
+}
+
+TEST(TimeStep, LatticeStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
+  for (const std::string law : {"linear-rolling", "linear-frictional"})
+    for (const double e : {1.0, 0.5, 0.1}) {
+      if (law == "linear-rolling" && e < 1) continue;  // has no dashpots
+      SCOPED_TRACE(law + ", restitution " + std::to_string(e));
+      // Against neighbours twice as far as against a fixed point: two of them press, four shear.
+      const double dashpot = 2 * damping_of_restitution(e) * std::sqrt(stiffness * mass / 2);
+      const double limit = limit_of((4 + 8 * shear_ratio) * stiffness / mass, 4 * dashpot / mass);
+      const Description d = lattice(law, e);
+      expect_limit(d, limit);
+      EXPECT_LE(critical(d), limit);
+      EXPECT_GE(critical(d), 0.5 * limit) << "not shorter than it need be";
+    }
+}
+
+TEST(TimeStep, AtTheDefaultSafetyNothingGrows) {
+  // Many dashpots on one body: the damping of each alone would allow steps beyond the limit.
+  for (const double e : {1.0, 0.5, 0.1, 0.02})
+    for (const Description& d : {pressed(e, true), lattice("linear-frictional", e)})
+      EXPECT_LT(growth(d, 0.8 * critical(d), 4000), 20) << "restitution " << e;
+}
+
+}  // namespace
+}  // namespace grit::test
