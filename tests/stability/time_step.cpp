@@ -113,6 +113,20 @@ TEST(TimeStep, LatticeStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     }
 }
 
+TEST(TimeStep, LatticeDampedInShearStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
+  for (const double e : {0.8, 0.5, 0.1}) {
+    SCOPED_TRACE("restitution " + std::to_string(e));
+    Description d = lattice("linear-frictional", e);
+    d["contacts"]["shear_damping"] = true;
+    const double ratio = damping_of_restitution(e), shear = shear_ratio * stiffness;
+    const double along = 2 * ratio * std::sqrt(stiffness * mass / 2), across = 2 * ratio * std::sqrt(shear * mass / 7);
+    const double limit = limit_of((4 + 8 * shear_ratio) * stiffness / mass, (4 * along + 8 * across) / mass);
+    expect_limit(d, limit);
+    EXPECT_LE(critical(d), limit);
+    EXPECT_GE(critical(d), 0.5 * limit) << "not shorter than it need be";
+  }
+}
+
 TEST(TimeStep, AtTheDefaultSafetyNothingGrows) {
   // Many dashpots on one body: the damping of each alone would allow steps beyond the limit.
   for (const double e : {1.0, 0.5, 0.1, 0.02})

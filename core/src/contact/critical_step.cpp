@@ -17,18 +17,33 @@ double demand(const Stiffness& k, const Bodies& bodies, std::size_t i) {
   return std::max({k.normal * inverse_mass, sliding, k.twisting * inverse_inertia});
 }
 
-/// What its dashpots ask of either, by direction, 1/s; of two bodies at once, or of one and a wall.
-Mat3 dashpots(const Stiffness& k, const Vec3& normal, double inverse_mass) {
-  const double along = 2 * k.damping_ratio * std::sqrt(k.normal * inverse_mass);
-  // The dashpot in shear turns the bodies, too: as much in any direction is more than it asks for.
-  const double across = 2 * k.shear_damping_ratio * std::sqrt(3.5 * k.shear * inverse_mass);
-  return along * normal * normal.transpose() + across * Mat3::Identity();
-}
+/// What dashpots ask of a body, 1/s, by direction: of its velocity, of its spin times √(I/m), and of both together.
+struct Dashpots {
+  Mat3 velocity = Mat3::Zero(), spin = Mat3::Zero();
+  Vec3 both = Vec3::Zero();
 
-double largest_eigenvalue(const Mat3& symmetric) {
-  if (symmetric.isZero(0.0)) return 0;
-  return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[2];
-}
+  /// One contact, whose normal points out of the body; of two bodies, each bears what both together are worth.
+  void add(const Stiffness& k, const Vec3& normal, double inverse_mass) {
+    const double along = 2 * k.damping_ratio * std::sqrt(k.normal * inverse_mass);
+    const double across = 2 * k.shear_damping_ratio * std::sqrt(k.shear * inverse_mass / slide);
+    const Mat3 line = normal * normal.transpose(), plane = across * (Mat3::Identity() - line);
+    velocity += along * line + plane;
+    spin += (slide - 1) * plane;
+    both += std::sqrt(slide - 1) * across * normal;
+  }
+  /// An upper bound of the largest eigenvalue of the whole; nothing new if it can't be more than `so_far`.
+  double largest(double so_far) const {
+    if (velocity.trace() + spin.trace() <= so_far) return so_far;
+    const double a = eigenvalue(velocity), b = eigenvalue(spin);
+    return 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + both.squaredNorm());
+  }
+
+ private:
+  static constexpr double slide = 3.5;  // 1 + m r²/I of a solid sphere
+  static double eigenvalue(const Mat3& symmetric) {
+    return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  }
+};
 
 }  // namespace
 
@@ -79,18 +94,19 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
                     .overlap = overlap};
   };
   std::array<double, chunk_bodies> springs{};
-  std::array<Mat3, chunk_bodies> damped;
-  damped.fill(Mat3::Zero());
+  std::array<Dashpots, chunk_bodies> damped;
   at.pairs.each_near(chunk, bodies, at.shifts, at.skins, at.near, [&](std::size_t c, double distance) {
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
     const Stiffness k = at.law.stiffness(size_of(a, b, overlap), bodies.material[a], bodies.material[b]);
-    Mat3 along = Mat3::Zero();
-    if (k.damping_ratio > 0 || k.shear_damping_ratio > 0)
-      along =
-          dashpots(k, at.pairs.branch(c, bodies, at.shifts).normalized(), bodies.velocity[a].w + bodies.velocity[b].w);
-    for (const std::uint32_t i : {a, b})
-      if (first <= i && i < last) springs[i - first] += demand(k, bodies, i), damped[i - first] += along;
+    const bool dashpots = k.damping_ratio > 0 || k.shear_damping_ratio > 0;
+    const Vec3 normal = dashpots ? at.pairs.branch(c, bodies, at.shifts).normalized() : Vec3::Zero();
+    const auto ask = [&](std::uint32_t i, const Vec3& out) {
+      if (i < first || i >= last) return;
+      springs[i - first] += demand(k, bodies, i);
+      if (dashpots) damped[i - first].add(k, out, bodies.velocity[a].w + bodies.velocity[b].w);
+    };
+    ask(a, normal), ask(b, -normal);
     own.near.push_back(static_cast<std::uint32_t>(c));
   });
   at.walls.each_near(chunk, bodies, at.surfaces, at.near, [&](const Touch& touch, const WallSurface& wall) {
@@ -99,7 +115,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     size.inverse_mass_b = 0, size.wall = true;
     const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
     springs[a - first] += demand(k, bodies, a);
-    damped[a - first] += dashpots(k, touch.normal, bodies.velocity[a].w);
+    damped[a - first].add(k, touch.normal, bodies.velocity[a].w);
   });
   own.spring = own.dashpot = 0;
   for (std::size_t i = first; i < last; ++i) {
@@ -107,8 +123,10 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     const double alone = demand(k, bodies, i);
     demand_[i] = std::max(springs[i - first], alone);
     own.spring = std::max({own.spring, 2 * alone, demand_[i]});
-    const Mat3 pair = dashpots(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
-    own.dashpot = std::max({own.dashpot, largest_eigenvalue(damped[i - first]), largest_eigenvalue(pair)});
+    Dashpots pair;
+    pair.add(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
+    own.dashpot = std::max(own.dashpot, damped[i - first].largest(own.dashpot));
+    own.dashpot = std::max(own.dashpot, pair.largest(own.dashpot));
   }
 }
 
