@@ -9,6 +9,7 @@ set(build_package ${PROJECT_BINARY_DIR}/lib/cmake/grit)
 
 set_target_properties(grit_sdk PROPERTIES EXPORT_NAME sdk)
 install(TARGETS grit grit_sdk EXPORT grit LIBRARY DESTINATION ${own})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/lib/grit/studies DESTINATION ${own} OPTIONAL)
 install(DIRECTORY core/include/grit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 if(TARGET grit_app)
   set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN")

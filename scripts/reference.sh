@@ -29,6 +29,10 @@ page() { printf '# %s\nWritten by `scripts/reference.sh` from what `grit describ
   page 'Sections of a description'
   tables $(names 'sections of a description')
 } > "$pages/sections.md"
+{
+  page "Files for 'grit chart'"
+  tables $(names "files for 'grit chart'")
+} > "$pages/study.md"
 for kind in body contact engine geometry probe scenario; do
   {
     page "Parameters of each $kind"

@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(plugins scene input contact engines run output app)
+rooms=(plugins scene input contact engines run output study app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {
@@ -39,8 +39,8 @@ check() {
 
   sources core plugins tests bench | grep -vE '^(core/src|tests)/output/' | find_in '#include [<"]([a-z0-9/]*/)?(hdf5|H5[A-Za-z]+)(_hl)?\.h' |
     report "HDF5 outside output/"
-  sources core plugins bench | grep -vE '^core/(include/grit/(description|parameters)\.hpp|src/(input|output|app)/)' |
-    grep -vE '^plugins/(scenarios/|.*/test_[^/]*$)' | find_in 'nlohmann' | report "JSON outside input/, output/, scenarios"
+  sources core plugins bench | grep -vE '^core/(include/grit/(description|parameters)\.hpp|src/(input|output|study|app)/)' |
+    grep -vE '^plugins/(scenarios/|.*/test_[^/]*$)' | find_in 'nlohmann' | report "JSON outside input/, output/, study/, scenarios"
 
   find . -path './build*' -prune -o -type f \( -name CMakeLists.txt -o -name '*.cmake' -o -name 'CMake*Presets.json' \) \
     -exec grep -nHE '' {} + | sed -E 's@^([^:]*:[0-9]+:[^#]*)#.*@\1@' |
@@ -93,9 +93,9 @@ self_test() {
   planted "HDF5 outside output/" core/src/run/planted.cpp '#include <hdf5.h>'
   planted "HDF5 outside output/" plugins/probes/planted/planted.cpp '#include <H5Cpp.h>'
   allowed core/src/output/planted.cpp '#include <hdf5.h>'
-  planted "JSON outside input/, output/, scenarios" core/src/run/planted.cpp '#include <nlohmann/json.hpp>'
-  planted "JSON outside input/, output/, scenarios" core/include/grit/planted.hpp '#include <nlohmann/json_fwd.hpp>'
-  planted "JSON outside input/, output/, scenarios" plugins/probes/planted/planted.cpp '#include <nlohmann/json.hpp>'
+  planted "JSON outside input/, output/, study/, scenarios" core/src/run/planted.cpp '#include <nlohmann/json.hpp>'
+  planted "JSON outside input/, output/, study/, scenarios" core/include/grit/planted.hpp '#include <nlohmann/json_fwd.hpp>'
+  planted "JSON outside input/, output/, study/, scenarios" plugins/probes/planted/planted.cpp '#include <nlohmann/json.hpp>'
   for place in core/src/{input,output,app}/planted.cpp plugins/scenarios/planted/planted.cpp tests/planted.cpp; do
     allowed "$place" '#include <nlohmann/json.hpp>'
   done

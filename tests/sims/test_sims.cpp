@@ -10,6 +10,7 @@
 #include "input/schema.hpp"
 #include "scene/sphere_body.hpp"
 #include "schema_check.hpp"
+#include "study/variants.hpp"
 
 namespace grit {
 namespace {
@@ -65,15 +66,29 @@ TEST_P(Sims, AreRefusedByBothWithAWrongKey) {
   std::filesystem::remove(file);
 }
 
-std::vector<std::filesystem::path> files() {
+/// Descriptions, or studies of some.
+std::vector<std::filesystem::path> files(bool studies) {
   std::vector<std::filesystem::path> all;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(sims_folder))
-    if (entry.path().extension() == ".json") all.push_back(entry.path());
+    if (entry.path().extension() == ".json" && (entry.path().parent_path().filename() == "studies") == studies)
+      all.push_back(entry.path());
   std::ranges::sort(all);
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(files()),
+INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(files(false)),
+                         [](const auto& info) { return Sims::name_of(info.param); });
+
+class Studies : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Studies, AskForRunsThatTheKernelTakes) {
+  const StudyDescription study = load_study(GetParam());
+  for (const Variant& variant : variants(study))
+    EXPECT_NO_THROW(load_scene(study.scene, sets_of(study, variant, study.seeds.values.front()), registry()))
+        << variant.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Studies, testing::ValuesIn(files(true)),
                          [](const auto& info) { return Sims::name_of(info.param); });
 
 }  // namespace

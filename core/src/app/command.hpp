@@ -33,6 +33,8 @@ ExitStatus expand_command(const std::vector<std::string>& words);
 ExitStatus schema_command(const std::vector<std::string>& words);
 ExitStatus plugins_command(const std::vector<std::string>& words);
 ExitStatus describe_command(const std::vector<std::string>& words);
+ExitStatus chart_command(const std::vector<std::string>& words);
+ExitStatus advise_command(const std::vector<std::string>& words);
 
 std::span<const Command> commands();
 

@@ -7,6 +7,7 @@
 #include "input/reference.hpp"
 #include "plugins/nearest.hpp"
 #include "scene/description.hpp"
+#include "study/description.hpp"
 
 namespace grit {
 namespace {
@@ -22,10 +23,19 @@ std::string section_text(const Parameters& all, const std::string& name) {
   return "";
 }
 
+/// What a file for `grit chart` says.
+std::string study_text() {
+  StudyDescription study;
+  Parameters parameters;
+  study.declare(parameters);
+  return reference_text(parameters);
+}
+
 void print_names(const Parameters& all, const Registry& registry) {
   std::cout << "sections of a description\n";
   for (const Parameter& section : all.entries())
     std::cout << "  " << std::left << std::setw(20) << section.name() << section.doc() << '\n';
+  std::cout << "\nfiles for 'grit chart'\n  study\n";
   std::string kind;
   for (const Installed& one : registry.installed()) {
     if (kind != one.kind) std::cout << '\n' << (kind = one.kind) << '\n';
@@ -51,7 +61,11 @@ ExitStatus describe_command(const std::vector<std::string>& words) {
     std::cout << section;
     return ExitStatus::done;
   }
-  std::vector<std::string> names;
+  if (name == "study") {
+    std::cout << study_text();
+    return ExitStatus::done;
+  }
+  std::vector<std::string> names{"study"};
   for (const Parameter& section : all.entries()) names.push_back(section.name());
   for (const Installed& one : registry->installed()) names.push_back(one.name);
   if (std::ranges::find(names, name) == names.end()) {

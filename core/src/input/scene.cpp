@@ -129,6 +129,13 @@ Document expanded(const Document& document, const Registry& registry) {
 
 }  // namespace
 
+std::string scenario_type(const Document& document) {
+  const auto scenario = document.json().find("scenario");
+  if (scenario == document.json().end() || !scenario->is_object()) return "";
+  const auto type = scenario->find("type");
+  return type != scenario->end() && type->is_string() ? type->get<std::string>() : "";
+}
+
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
                        const Registry& registry) {
   Document document = Document::load(path);

@@ -26,6 +26,9 @@ struct Scene {
   std::vector<StagePlan> stages;                        ///< one for each of description->stages
 };
 
+/// The scenario that a description is of; empty if it is plain.
+std::string scenario_type(const Document& document);
+
 /// Reads a description with what it extends, applies `sets` ("/pointer=value") in order, and expands its scenario if it
 /// has one; its other keys are merged onto the expansion. The result is plain, and not yet checked. Throws FileError,
 /// DescriptionError, PluginError.

@@ -38,6 +38,14 @@ Description load_average() {
   return count == 3 ? Description(load) : Description();
 }
 
+/// Of all threads of this process, since it began.
+double cpu_seconds() {
+  timespec time{};
+  return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time) == 0
+             ? static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec)
+             : 0;
+}
+
 Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
 
 Description plugin(const PluginUsed& used) {
@@ -87,6 +95,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"critical_time_step_s", nullptr},
            {"contacts_per_body", nullptr},
            {"wall_s", 0.0},
+           {"cpu_s", 0.0},
            {"particle_steps_per_s", nullptr},
            {"rebuilds", nullptr},
            {"phases_s", Description::object()},
@@ -146,6 +155,7 @@ void RunJson::progress(const World& world) {
   json_["time_step_s"] = world.dt();
   json_["bodies"] = world.ids().size();
   json_["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  json_["cpu_s"] = cpu_seconds();
 }
 
 void RunJson::write() const {

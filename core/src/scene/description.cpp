@@ -179,6 +179,12 @@ BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) 
 void BodiesDescription::declare(Parameters& p) {
   p.choose(kind);
   p.add("material", material).required().doc("name of their material");
+  p.add("heavier_below", heavier_below)
+      .unit("m")
+      .at_least(0)
+      .doc(
+          "grains of a smaller diameter than this get the mass and inertia of one of it, so that they allow a longer "
+          "time step (differential density scaling); not where gravity acts");
   p.add("grains", grains).required().doc("where they are and how large");
 }
 
@@ -499,6 +505,16 @@ void SceneDescription::declare(Parameters& p) {
     const References known("material", keys(materials), complain);
     for (const auto& [name, group] : bodies) known.check("bodies/" + name + "/material", group.material);
   });
+  p.check(
+      [this](const Complain& complain) {
+        MotionSettings settings;
+        for (const auto& [name, engine] : engines) engine.engine->settings(settings);
+        for (const auto& [name, group] : bodies)
+          if (group.heavier_below > 0 && !settings.gravity.isZero(0.0))
+            complain("bodies/" + name + "/heavier_below", "heavier grains where gravity acts",
+                     "0: their weight would grow with their mass");
+      },
+      {"bodies", "engines"});
   p.check_names([this](const Complain& complain) {
     const References known("material", keys(materials), complain);
     for (const auto& [name, wall] : walls) known.check("walls/" + name + "/material", wall.material);

@@ -79,6 +79,7 @@ struct PlacedGrains {
 struct BodiesDescription {
   Component<BodyKind> kind;
   std::string material;
+  double heavier_below = 0;  ///< m
   OneOf<CloudGrains, FileGrains, PlacedGrains> grains{"source of grains"};
   explicit BodiesDescription(const Registry& registry);
   void declare(Parameters& p);

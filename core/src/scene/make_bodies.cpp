@@ -25,8 +25,9 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
     const auto found = scene.materials.find(group.material);
     const auto material = static_cast<std::uint8_t>(std::distance(scene.materials.begin(), found));
     const auto add = [&](const Vec3& centre, double radius, const Vec3& velocity, const Vec3& spin) {
-      const double mass = found->second.density * group.kind->volume(radius);
-      bodies.add(centre, radius, mass, group.kind->inertia(radius, mass), material, velocity, spin);
+      const double inert = std::max(radius, 0.5 * group.heavier_below);
+      const double mass = found->second.density * group.kind->volume(inert);
+      bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
     };
     if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
       for (const PlacedGrain& g : placed->grains) add(g.position, g.radius, g.velocity, g.spin);

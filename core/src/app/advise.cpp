@@ -1,0 +1,137 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "app/options.hpp"
+#include "grit/error.hpp"
+#include "input/scene.hpp"
+#include "plugins/loader.hpp"
+#include "study/advice.hpp"
+
+namespace grit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "2%", "2 %" or 0.02.
+double share_of(const std::string& text) {
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = std::string::npos;
+  }
+  std::string rest = used == std::string::npos ? "?" : text.substr(used);
+  std::erase(rest, ' ');
+  if (!(rest.empty() || rest == "%") || !(value > 0))
+    throw UsageError("--tolerance takes a share above 0, such as 2% or 0.02, not \"" + text + '"');
+  return rest == "%" ? value / 100 : value;
+}
+
+/// The charts that came with grit, for scenes of one scenario. Throws UsageError if there is none.
+std::vector<ChartedStudy> shipped_studies(const std::string& scenario, const std::vector<std::string>& figures) {
+  const fs::path folder = library_directory() / "studies";
+  std::vector<ChartedStudy> studies;
+  std::string known;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.path().extension() != ".json") continue;
+      if (read_charted_study(entry.path(), {}).scenario != scenario || scenario.empty()) {
+        known += (known.empty() ? "" : ", ") + entry.path().string();
+        continue;
+      }
+      studies.push_back(read_charted_study(entry.path(), figures));
+    }
+  if (studies.empty())
+    throw UsageError((scenario.empty() ? "the description has no scenario, by which a study could be found"
+                                       : "no study of scenario \"" + scenario + "\" came with this grit") +
+                     "; name a chart.json with --study" + (known.empty() ? "" : ", of your own or one of " + known));
+  std::ranges::sort(studies, {}, &ChartedStudy::file);
+  return studies;
+}
+
+std::string changes(const Evidence& one) {
+  if (one.figure.empty()) return "is the finest that was tried";
+  return fmt::format("changes {} by {:.1f} % ± {:.1f} %", one.figure, 100 * one.error, 100 * one.standard_error);
+}
+
+std::string why(const Evidence& one, double tolerance) {
+  switch (confidence(one, tolerance)) {
+    case Confidence::certain:
+      return "certain";
+    case Confidence::likely:
+      return "likely: the samples scatter by more than the tolerance leaves";
+    case Confidence::untold:
+      return "cannot be told: no more than the samples scatter; a study with more seeds would tell";
+    case Confidence::impossible:
+      return "too much";
+  }
+  return "";
+}
+
+void print(const ChartedStudy& study, const std::string& file, double tolerance, const std::vector<Advice>& advices) {
+  std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant)\n\n", file, 100 * tolerance,
+                           study.title, study.file.string(), study.samples);
+  double cost = 1, error = 0;
+  std::string sets;
+  for (const Advice& advice : advices) {
+    if (advice.now == nullptr) {
+      std::cout << fmt::format("  {}: {}\n", advice.setting, advice.found);
+      continue;
+    }
+    std::cout << fmt::format("  {}: {} here; {}\n", advice.setting, advice.now->level, changes(*advice.now));
+    if (advice.cheaper.empty()) std::cout << "      nothing cheaper was tried\n";
+    for (const Evidence* one : advice.cheaper)
+      std::cout << fmt::format("    {} {}: {:.2f} times cheaper, {}, {}\n",
+                               one == advice.best && advice.taken ? "→" : " ", one->level, advice.now->cost / one->cost,
+                               changes(*one), why(*one, tolerance));
+    if (!advice.taken) continue;
+    cost *= advice.now->cost / advice.best->cost, error += advice.best->error;
+    for (const auto& set : advice.best->sets) sets += " --set '" + set + '\'';
+  }
+  if (sets.empty()) {
+    std::cout << "\nnothing that the study tried may be relaxed\n";
+    return;
+  }
+  std::cout << fmt::format(
+      "\ntogether about {:.1f} times cheaper; the errors add up to {:.1f} % at most, if settings do not act on each "
+      "other\n  grit run {}{}\n",
+      cost, 100 * error, file, sets);
+}
+
+}  // namespace
+
+ExitStatus advise_command(const std::vector<std::string>& words) {
+  namespace po = boost::program_options;
+  Options options(command("advise"));
+  options.add()("tolerance", po::value<std::string>()->default_value("5%")->value_name("SHARE"),
+                "error that is good enough, e.g. 2% or 0.02")(
+      "study", po::value<std::vector<std::string>>()->composing()->value_name("CHART"),
+      "chart.json of a study; may be given again; default: those that came with grit for the same scenario")(
+      "figure", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+      "figure that counts; may be given again; default: all of the study");
+  options.add_set();
+  if (!options.read(words)) return ExitStatus::done;
+  const std::string file = options.only_word("description");
+  const double tolerance = share_of(options.get<std::string>("tolerance"));
+  const auto registry = options.registry();
+  const auto sets = options.list("set");
+  const Description now = resolved(*load_scene(file, sets, *registry).description);
+  const auto same = [&](const std::vector<std::string>& more) {
+    auto all = sets;
+    all.insert(all.end(), more.begin(), more.end());
+    return resolved(*load_scene(file, all, *registry).description) == now;
+  };
+  std::vector<ChartedStudy> studies;
+  for (const auto& chart : options.list("study")) studies.push_back(read_charted_study(chart, options.list("figure")));
+  if (studies.empty()) studies = shipped_studies(scenario_type(Document::load(file)), options.list("figure"));
+  for (const ChartedStudy& study : studies) {
+    if (&study != &studies.front()) std::cout << '\n';
+    print(study, file, tolerance, advise(study, tolerance, same));
+  }
+  return ExitStatus::done;
+}
+
+}  // namespace grit

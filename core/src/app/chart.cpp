@@ -1,0 +1,208 @@
+#include <unistd.h>
+
+#include <boost/dll/runtime_symbol_info.hpp>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+
+#include "app/options.hpp"
+#include "app/progress_bar.hpp"
+#include "grit/error.hpp"
+#include "input/scene.hpp"
+#include "output/atomic_file.hpp"
+#include "output/read_results.hpp"
+#include "plugins/build_facts.hpp"
+#include "study/batch.hpp"
+#include "study/chart.hpp"
+#include "study/chart_page.hpp"
+
+namespace grit {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+extern "C" void on_chart_interrupt(int signal) {
+  interrupted.store(true);
+  std::signal(signal, SIG_DFL);
+}
+
+/// One run of the study.
+struct Run {
+  std::string name;
+  std::filesystem::path folder;
+  BatchJob job;
+};
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Whether a folder has what this program would make of this description; a failure of its numerics counts.
+bool is_there(const std::filesystem::path& folder, const Description& description) {
+  const auto run = read_run_json(folder);
+  if (!run) return false;
+  const std::string status = run->value("status", "");
+  return (status == "done" || status == "failed") && run->at("description") == description &&
+         run->at("grit").at("revision") == build_facts().revision;
+}
+
+/// The runs that are missing; counts all. Throws DescriptionError if a setting makes a description that is none.
+std::vector<Run> missing_runs(const StudyDescription& study, const std::filesystem::path& out, const Options& options,
+                              const Registry& registry, std::size_t& all) {
+  std::vector<Run> runs;
+  std::set<std::filesystem::path> folders;
+  const unsigned threads = options.get<unsigned>("threads");
+  for (const Variant& variant : variants(study))
+    for (const double seed : study.seeds.values) {
+      const auto sets = sets_of(study, variant, seed);
+      const auto folder = out / folder_of(variant, seed);
+      ++all;
+      if (!folders.insert(folder).second)
+        throw UsageError("two variants would both be kept in " + folder.string() +
+                         "; give their levels labels that differ in "
+                         "more than punctuation");
+      // As run.json has it, whose numbers went through text.
+      const Description description =
+          Description::parse(resolved(*load_scene(study.scene, sets, registry).description).dump());
+      if (is_there(folder, description)) continue;
+      Run run{variant.name + ", seed " + std::to_string(static_cast<long long>(seed)), folder, {}};
+      run.job.log = folder / "log.txt";
+      run.job.words = {boost::dll::program_location().string(),
+                       "run",
+                       study.scene,
+                       "--out",
+                       folder.string(),
+                       "--overwrite",
+                       "--quiet",
+                       "--threads",
+                       std::to_string(threads)};
+      for (const auto& set : sets) run.job.words.insert(run.job.words.end(), {"--set", set});
+      for (const auto& path : options.list("plugin-path"))
+        run.job.words.insert(run.job.words.end(), {"--plugin-path", path});
+      runs.push_back(std::move(run));
+    }
+  return runs;
+}
+
+/// One line for the whole study.
+class StudyProgress {
+ public:
+  StudyProgress(std::size_t all, std::size_t missing, bool quiet)
+      : all_(all), missing_(missing), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+  void ended() { ++ended_; }
+  void show(std::size_t at_work) {
+    const auto now = std::chrono::steady_clock::now();
+    if (quiet_ || now - shown_ < (terminal_ ? std::chrono::milliseconds(500) : std::chrono::seconds(10))) return;
+    shown_ = now;
+    const double elapsed = std::chrono::duration<double>(now - began_).count();
+    std::string text = std::to_string(all_ - missing_ + ended_) + " of " + std::to_string(all_) + " runs, " +
+                       std::to_string(at_work) + " at work";
+    if (ended_ > 0)
+      text += ", about " +
+              duration_text(elapsed / static_cast<double>(ended_) * static_cast<double>(missing_ - ended_)) + " left";
+    if (terminal_) std::cerr << '\r' << text << "\033[K" << std::flush;
+    else std::cerr << text << std::endl;
+    open_ = terminal_;
+  }
+  void end() {
+    if (open_) std::cerr << std::endl;
+    open_ = false;
+  }
+
+ private:
+  std::size_t all_, missing_, ended_ = 0;
+  bool quiet_, terminal_, open_ = false;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now(), shown_{};
+};
+
+void run_missing(const std::vector<Run>& runs, std::size_t all, const Options& options) {
+  std::vector<BatchJob> jobs;
+  for (const Run& run : runs) jobs.push_back(run.job);
+  StudyProgress progress(all, runs.size(), options.has("quiet"));
+  std::string trouble;
+  run_batch(jobs, options.get<unsigned>("jobs"), interrupted,
+            {.ended =
+                 [&](std::size_t i, int status) {
+                   progress.ended();
+                   const bool usable = status == static_cast<int>(ExitStatus::done) ||
+                                       status == static_cast<int>(ExitStatus::numerics) ||
+                                       status == static_cast<int>(ExitStatus::interrupted);
+                   if (!usable && trouble.empty() && !interrupted.load())
+                     trouble = runs[i].name + " ended with status " + std::to_string(status) + ":\n" +
+                               text_of(runs[i].job.log) + "\n" + runs[i].job.log.string() + " has this";
+                   return usable;
+                 },
+             .waiting = [&](std::size_t at_work) { progress.show(at_work); }});
+  progress.end();
+  if (!trouble.empty()) throw FileError(trouble);
+}
+
+void print(const Chart& chart) {
+  for (const VariantResult& one : chart.variants) {
+    std::cout << "  " << one.variant.name << ": ";
+    if (one.complete()) {
+      char line[160];
+      std::snprintf(line, sizeof line, "%.1f core-seconds, largest error %.2f %% ± %.2f (%s)\n", one.core_seconds,
+                    100 * one.of_worst().error, 100 * one.of_worst().standard_error, one.worst.c_str());
+      std::cout << line;
+      continue;
+    }
+    const auto failed = std::ranges::find_if(one.samples, [](const Sample& s) { return s.status != "done"; });
+    std::cout << (failed == one.samples.end() ? "no reference to compare with"
+                  : failed->message.empty()   ? "not run to its end"
+                                              : failed->message)
+              << '\n';
+  }
+  std::cout << verdict(chart) << '\n';
+}
+
+}  // namespace
+
+ExitStatus chart_command(const std::vector<std::string>& words) {
+  namespace po = boost::program_options;
+  Options options(command("chart"));
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  options.add()("out", po::value<std::string>()->value_name("DIR"), "folder of runs and chart; default: results/NAME")(
+      "jobs", po::value<unsigned>()->default_value(cores)->value_name("N"), "runs at once")(
+      "threads", po::value<unsigned>()->default_value(1)->value_name("N"), "threads of each run")(
+      "dry", "lists the runs and stops")("quiet,q", "no progress, only what came of it");
+  if (!options.read(words)) return ExitStatus::done;
+  const std::filesystem::path file = options.only_word("study");
+  for (const char* name : {"jobs", "threads"})
+    if (const unsigned n = options.get<unsigned>(name); n < 1 || n > 1024)
+      throw UsageError(std::string("--") + name + " takes a number from 1 to 1024, not " + std::to_string(n));
+  const auto registry = options.registry();
+  const StudyDescription study = load_study(file);
+  const std::filesystem::path out =
+      options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : "results" / file.stem();
+  std::size_t all = 0;
+  const auto runs = missing_runs(study, out, options, *registry, all);
+  if (options.has("dry")) {
+    for (const Run& run : runs) std::cout << run.name << '\n';
+    std::cout << runs.size() << " of " << all << " runs are missing in " << out.string() << '\n';
+    return ExitStatus::done;
+  }
+  if (!options.has("quiet"))
+    std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
+              << " runs to do, results in " << out.string() << std::endl;
+  std::signal(SIGINT, on_chart_interrupt);
+  std::signal(SIGTERM, on_chart_interrupt);
+  run_missing(runs, all, options);
+  if (interrupted.load()) {
+    std::cerr << "interrupted; the same command goes on with the runs that are missing" << std::endl;
+    return ExitStatus::interrupted;
+  }
+  const Chart chart = make_chart(study, out);
+  write_atomically(out / "chart.json", to_json(chart).dump(2) + "\n");
+  write_atomically(out / "chart.csv", to_csv(chart));
+  write_atomically(out / "chart.html", chart_page(chart));
+  print(chart);
+  std::cout << "chart: " << (out / "chart.html").string() << '\n';
+  return chart.reference.empty() ? ExitStatus::numerics : ExitStatus::done;
+}
+
+}  // namespace grit

@@ -1,0 +1,44 @@
+#include "output/read_results.hpp"
+
+#include <fstream>
+
+#include "grit/error.hpp"
+#include "output/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "nothing" : text;
+}
+
+}  // namespace
+
+SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name) {
+  const auto path = folder / "series.h5";
+  if (!std::filesystem::exists(path)) throw FileError(path.string() + ": there is no such file");
+  const hdf5::File file(path, hdf5::Mode::read);
+  const auto slash = name.find('/');
+  const std::string probe = name.substr(0, slash), channel = slash == std::string::npos ? "" : name.substr(slash + 1);
+  if (!file.has(probe))
+    throw FileError(path.string() + ": there is no probe \"" + probe + "\" but " + listed(file.names()));
+  const auto group = file.group(probe);
+  if (channel.empty() || !group.has(channel))
+    throw FileError(path.string() + ": probe \"" + probe + "\" has no channel \"" + channel + "\" but " +
+                    listed(group.names()));
+  const auto dataset = group.dataset(channel);
+  return {dataset.has_attribute("units") ? dataset.text("units") : "1",
+          dataset.has_attribute("long_name") ? dataset.text("long_name") : "", dataset.rows(), dataset.read<double>()};
+}
+
+std::optional<Description> read_run_json(const std::filesystem::path& folder) {
+  std::ifstream file(folder / "run.json");
+  if (!file) return std::nullopt;
+  Description json = Description::parse(file, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  return json;
+}
+
+}  // namespace grit

@@ -1,0 +1,26 @@
+// Reads back what a run has left in its folder.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/description.hpp"
+
+namespace grit {
+
+/// A channel over all samples of its probe.
+struct SampledChannel {
+  std::string unit, doc;
+  std::size_t samples = 0;
+  std::vector<double> values;  ///< sample after sample; one number each, or as many as the channel's shape has
+};
+
+/// `name` is "probe/channel"; "probe/time" is there for each probe. Throws FileError, which lists what there is.
+SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name);
+
+/// run.json; nothing if there is none, or none that can be read.
+std::optional<Description> read_run_json(const std::filesystem::path& folder);
+
+}  // namespace grit

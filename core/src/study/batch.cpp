@@ -1,0 +1,77 @@
+#include "study/batch.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstring>
+#include <map>
+#include <thread>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+constexpr auto look_every = std::chrono::milliseconds(50);
+
+pid_t start(const BatchJob& job) {
+  std::vector<char*> words;
+  for (const auto& word : job.words) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  std::filesystem::create_directories(job.log.parent_path());
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
+  pid_t pid = 0;
+  const int error = ::posix_spawn(&pid, words.front(), &files, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (error != 0)
+    throw FileError(job.words.front() + " cannot be started, or " + job.log.string() +
+                    " not be written: " + std::strerror(error));
+  return pid;
+}
+
+}  // namespace
+
+void run_batch(std::span<const BatchJob> jobs, std::size_t at_once, const std::atomic<bool>& interrupted,
+               const BatchEvents& events) {
+  std::map<pid_t, std::size_t> at_work;
+  std::size_t next = 0;
+  bool go_on = true, told = false;
+  const auto stop_all = [&] {
+    for (const auto& [pid, index] : at_work) ::kill(pid, SIGTERM);
+  };
+  try {
+    while (true) {
+      go_on = go_on && !interrupted.load();
+      if (!go_on && !std::exchange(told, true)) stop_all();
+      while (go_on && next < jobs.size() && at_work.size() < at_once) {
+        at_work.emplace(start(jobs[next]), next);
+        ++next;
+      }
+      if (at_work.empty()) return;
+      int status = 0;
+      const pid_t pid = ::waitpid(-1, &status, WNOHANG);
+      if (const auto found = at_work.find(pid); found != at_work.end()) {
+        const std::size_t index = found->second;
+        at_work.erase(found);
+        go_on = events.ended(index, WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status)) && go_on;
+        continue;
+      }
+      events.waiting(at_work.size());
+      std::this_thread::sleep_for(look_every);
+    }
+  } catch (...) {
+    stop_all();
+    for (const auto& [pid, index] : at_work) ::waitpid(pid, nullptr, 0);
+    throw;
+  }
+}
+
+}  // namespace grit

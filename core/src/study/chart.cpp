@@ -1,0 +1,317 @@
+#include "study/chart.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "grit/error.hpp"
+#include "input/scene.hpp"
+#include "output/read_results.hpp"
+
+namespace grit {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+/// Places at which curves are compared.
+constexpr std::size_t places = 200;
+
+Sample read_sample(const StudyDescription& study, double seed, const std::filesystem::path& folder) {
+  Sample sample;
+  sample.seed = seed, sample.status = "missing";
+  const auto run = read_run_json(folder);
+  if (!run) return sample;
+  const auto number = [&](const char* key) { return run->at(key).is_number() ? run->at(key).get<double>() : 0.0; };
+  sample.status = run->at("status").get<std::string>(), sample.message = run->at("message").get<std::string>();
+  sample.core_seconds = number("cpu_s"), sample.steps = number("steps");
+  sample.particle_steps_per_second = number("particle_steps_per_s"), sample.bodies = number("bodies");
+  if (sample.status != "done") return sample;
+  for (const auto& [name, figure] : study.figures) sample.figures[name] = take_figure(figure, folder);
+  return sample;
+}
+
+bool all_done(const VariantResult& result) {
+  return std::ranges::all_of(result.samples, [](const Sample& sample) { return sample.status == "done"; });
+}
+
+/// Samples of a figure at the places where it is compared: one for a value.
+struct Sampled {
+  std::vector<double> mean, variance;  ///< variance NaN of one sample
+};
+
+/// By place, then by sample; a value has one place.
+std::vector<std::vector<double>> values_at(const std::vector<const Figure*>& figures, const std::vector<double>& x) {
+  std::vector<std::vector<double>> values(figures.front()->x.empty() ? 1 : x.size());
+  for (std::size_t k = 0; k < values.size(); ++k)
+    for (const Figure* figure : figures) values[k].push_back(figure->x.empty() ? figure->y.front() : at(*figure, x[k]));
+  return values;
+}
+
+Sampled sampled(const std::vector<std::vector<double>>& by_place) {
+  Sampled result;
+  for (const auto& values : by_place) {
+    const auto count = static_cast<double>(values.size());
+    double sum = 0, squares = 0;
+    for (const double value : values) sum += value;
+    for (const double value : values) squares += (value - sum / count) * (value - sum / count);
+    result.mean.push_back(sum / count);
+    result.variance.push_back(count > 1 ? squares / (count - 1) : unknown);
+  }
+  return result;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::vector<const Figure*> figures_of(const VariantResult& result, const std::string& name) {
+  std::vector<const Figure*> all;
+  for (const Sample& sample : result.samples) all.push_back(&sample.figures.at(name));
+  return all;
+}
+
+/// Where both can be compared: what all curves have.
+std::vector<double> shared_places(const std::vector<const Figure*>& a, const std::vector<const Figure*>& b) {
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto* figures : {&a, &b})
+    for (const Figure* figure : *figures) {
+      if (figure->x.empty()) return {};
+      low = std::max(low, figure->x.front()), high = std::min(high, figure->x.back());
+    }
+  std::vector<double> x(places);
+  for (std::size_t k = 0; k < places; ++k)
+    x[k] = std::clamp(low + (high - low) * static_cast<double>(k) / (places - 1), low, high);
+  return low <= high ? x : std::vector<double>();
+}
+
+/// Sample by sample, so that what samples of one seed have in common is not taken for scatter of the difference. A
+/// reference from elsewhere is one for all samples.
+Deviation deviation(const std::vector<const Figure*>& from, const std::vector<const Figure*>& reference, double scale,
+                    const std::string& name) {
+  const auto x = shared_places(from, reference);
+  if (x.empty() && !from.front()->x.empty())
+    throw Error("/figures/" + name + ": the curve and its reference have no abscissa in common; mind the units");
+  const Sampled own = sampled(values_at(from, x));
+  auto differences = values_at(from, x);
+  const auto others = values_at(reference, x);
+  for (std::size_t k = 0; k < differences.size(); ++k)
+    for (std::size_t s = 0; s < differences[k].size(); ++s)
+      differences[k][s] -= others[k][others[k].size() > 1 ? s : 0];
+  const Sampled difference = sampled(differences);
+  return {.mean = own.mean.size() == 1 ? own.mean.front() : root_mean_square(own.mean),
+          .error = root_mean_square(difference.mean) / scale,
+          .standard_error = std::sqrt(mean_of(difference.variance) / static_cast<double>(from.size())) / scale,
+          .scatter = std::sqrt(mean_of(own.variance)) / scale};
+}
+
+/// The reference of each figure, and what its errors are divided by.
+void find_references(Chart& chart) {
+  for (const auto& [name, figure] : chart.study.figures) {
+    Figure reference;
+    if (figure.value) reference.y = {*figure.value};
+    else if (figure.curve) reference = read_reference(*figure.curve);
+    else if (all_done(chart.finest())) {
+      const auto finest = figures_of(chart.finest(), name);
+      const auto x = shared_places(finest, finest);
+      reference = {x, sampled(values_at(finest, x)).mean, finest.front()->unit, finest.front()->x_unit};
+    } else {
+      continue;
+    }
+    double largest = 0;
+    for (const double y : reference.y) largest = std::max(largest, std::abs(y));
+    const double scale = figure.scale.value_or(largest);
+    if (scale == 0)
+      throw Error("/figures/" + name + ": its reference is 0, to which no error can be put in relation; give a scale");
+    chart.reference[name] = std::move(reference), chart.scale[name] = scale;
+  }
+}
+
+void find_deviations(Chart& chart) {
+  for (VariantResult& result : chart.variants) {
+    if (!all_done(result)) continue;
+    for (const auto& [name, reference] : chart.reference) {
+      const auto& figure = chart.study.figures.at(name);
+      const bool exact = figure.value || figure.curve;
+      const auto others = exact ? std::vector<const Figure*>{&reference} : figures_of(chart.finest(), name);
+      Deviation& own = result.deviations[name] =
+          deviation(figures_of(result, name), others, chart.scale.at(name), name);
+      // The finest is the reference, and no further from it than its samples scatter.
+      if (!exact && &result == &chart.finest()) own.error = 0, own.standard_error = 0;
+    }
+    for (const auto& [name, one] : result.deviations)
+      if (result.worst.empty() || one.error > result.of_worst().error) result.worst = name;
+  }
+}
+
+void find_effects(Chart& chart) {
+  std::vector<std::size_t> usual;
+  for (const auto& [name, setting] : chart.study.settings) usual.push_back(setting.usual_level());
+  const auto with = [&](std::size_t k, std::size_t level) {
+    auto levels = usual;
+    levels[k] = level;
+    return std::ranges::find_if(chart.variants, [&](const auto& one) { return one.variant.levels == levels; });
+  };
+  std::size_t k = 0;
+  for (const auto& [name, setting] : chart.study.settings) {
+    const auto finest = with(k, setting.finest_level());
+    for (std::size_t level = 0; level < setting.finest_level(); ++level) {
+      const auto own = with(k, level);
+      if (!all_done(*own) || !all_done(*finest)) continue;
+      Effect effect{name, setting.label(level), own->core_seconds / finest->core_seconds, {}};
+      for (const auto& [figure, scale] : chart.scale)
+        effect.deviations[figure] = deviation(figures_of(*own, figure), figures_of(*finest, figure), scale, figure);
+      chart.effects.push_back(std::move(effect));
+    }
+    ++k;
+  }
+}
+
+void find_front(Chart& chart) {
+  for (VariantResult& one : chart.variants) {
+    if (!one.complete()) continue;
+    one.on_front = std::ranges::none_of(chart.variants, [&](const VariantResult& other) {
+      return other.complete() && &other != &one && other.core_seconds <= one.core_seconds &&
+             other.of_worst().error <= one.of_worst().error &&
+             (other.core_seconds < one.core_seconds || other.of_worst().error < one.of_worst().error);
+    });
+  }
+  for (std::size_t i = 0; i < chart.variants.size(); ++i) {
+    const VariantResult& one = chart.variants[i];
+    if (!one.complete() || one.of_worst().error > chart.study.tolerance) continue;
+    if (!chart.cheapest || one.core_seconds < chart.variants[*chart.cheapest].core_seconds) chart.cheapest = i;
+  }
+}
+
+Description or_null(double value) { return std::isfinite(value) ? Description(value) : Description(); }
+
+Description to_json(const std::map<std::string, Deviation>& deviations) {
+  Description json = Description::object();
+  for (const auto& [name, one] : deviations)
+    json[name] = {{"mean", or_null(one.mean)},
+                  {"error", or_null(one.error)},
+                  {"standard_error", or_null(one.standard_error)},
+                  {"scatter", or_null(one.scatter)}};
+  return json;
+}
+
+std::string quoted(const std::string& text) {
+  std::string all = "\"";
+  for (const char c : text) all += c == '"' ? "\"\"" : std::string(1, c);
+  return all + '"';
+}
+
+}  // namespace
+
+Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
+  Chart chart;
+  chart.study = std::move(study);
+  chart.scenario = scenario_type(Document::load(chart.study.scene));
+  for (Variant& variant : variants(chart.study)) {
+    VariantResult& result = chart.variants.emplace_back();
+    result.variant = std::move(variant);
+    double done = 0;
+    for (const double seed : chart.study.seeds.values) {
+      const Sample& sample =
+          result.samples.emplace_back(read_sample(chart.study, seed, folder / folder_of(result.variant, seed)));
+      if (sample.status != "done") continue;
+      ++done, result.core_seconds += sample.core_seconds, result.steps += sample.steps;
+      result.particle_steps_per_second += sample.particle_steps_per_second;
+    }
+    for (double* sum : {&result.core_seconds, &result.steps, &result.particle_steps_per_second})
+      *sum /= std::max(1.0, done);
+  }
+  find_references(chart);
+  find_deviations(chart);
+  find_effects(chart);
+  find_front(chart);
+  return chart;
+}
+
+Description to_json(const Chart& chart) {
+  Description json = {
+      {"title", chart.study.title},
+      {"scene", std::filesystem::proximate(chart.study.scene).string()},
+      {"scenario", chart.scenario},
+      {"tolerance", chart.study.tolerance},
+      {"samples", chart.study.seeds.values.size()},
+      {"settings", Description::object()},
+      {"figures", Description::object()},
+      {"variants", Description::array()},
+      {"effects", Description::array()},
+      {"cheapest", chart.cheapest ? Description(chart.variants[*chart.cheapest].variant.name) : Description()}};
+  for (const auto& [name, setting] : chart.study.settings) {
+    Description levels = Description::array();
+    for (std::size_t level = 0; level < setting.levels(); ++level)
+      levels.push_back({{"label", setting.label(level)}, {"sets", setting.sets(level)}});
+    json["settings"][name] = {
+        {"about", setting.about}, {"usual", setting.label(setting.usual_level())}, {"levels", levels}};
+  }
+  for (const auto& [name, figure] : chart.study.figures)
+    json["figures"][name] = {{"type", figure.what.type()},
+                             {"of", figure.of},
+                             {"reference", figure.value   ? "value"
+                                           : figure.curve ? "curve"
+                                                          : "finest"},
+                             {"scale", chart.scale.contains(name) ? Description(chart.scale.at(name)) : Description()}};
+  for (const VariantResult& one : chart.variants) {
+    Description levels = Description::object(), samples = Description::array();
+    std::size_t k = 0;
+    for (const auto& [name, setting] : chart.study.settings) levels[name] = setting.label(one.variant.levels[k++]);
+    for (const Sample& sample : one.samples)
+      samples.push_back({{"seed", sample.seed},
+                         {"folder", folder_of(one.variant, sample.seed).string()},
+                         {"status", sample.status},
+                         {"message", sample.message},
+                         {"core_seconds", sample.core_seconds},
+                         {"steps", sample.steps},
+                         {"bodies", sample.bodies},
+                         {"particle_steps_per_s", sample.particle_steps_per_second}});
+    json["variants"].push_back({{"name", one.variant.name},
+                                {"levels", levels},
+                                {"core_seconds", one.core_seconds},
+                                {"steps", one.steps},
+                                {"particle_steps_per_s", one.particle_steps_per_second},
+                                {"worst_figure", one.worst},
+                                {"on_front", one.on_front},
+                                {"figures", to_json(one.deviations)},
+                                {"samples", samples}});
+  }
+  for (const Effect& effect : chart.effects)
+    json["effects"].push_back({{"setting", effect.setting},
+                               {"level", effect.level},
+                               {"cost", effect.cost},
+                               {"figures", to_json(effect.deviations)}});
+  return json;
+}
+
+std::string to_csv(const Chart& chart) {
+  std::string text = "variant";
+  for (const auto& [name, setting] : chart.study.settings) text += ',' + quoted(name);
+  text += ",figure,mean,error,standard_error,scatter,core_seconds,steps,particle_steps_per_s,samples_done,samples\n";
+  for (const VariantResult& one : chart.variants) {
+    std::string head = quoted(one.variant.name);
+    std::size_t k = 0;
+    for (const auto& [name, setting] : chart.study.settings)
+      head += ',' + quoted(setting.label(one.variant.levels[k++]));
+    const auto done = std::ranges::count(one.samples, "done", &Sample::status);
+    for (const auto& [name, figure] : chart.study.figures) {
+      const auto found = one.deviations.find(name);
+      const Deviation figures = found == one.deviations.end() ? Deviation() : found->second;
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted(name), figures.mean, figures.error,
+                          figures.standard_error, figures.scatter, one.core_seconds, one.steps,
+                          one.particle_steps_per_second, done, one.samples.size());
+    }
+  }
+  return text;
+}
+
+}  // namespace grit

@@ -1,0 +1,77 @@
+// Speed against accuracy: what the runs of a study cost, and how far they are from the reference.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/description.hpp"
+#include "study/description.hpp"
+#include "study/figures.hpp"
+#include "study/variants.hpp"
+
+namespace grit {
+
+/// One run: a variant with a seed.
+struct Sample {
+  double seed = 0;
+  std::string status;   ///< "done", "failed" or "missing"
+  std::string message;  ///< why it failed
+  double core_seconds = 0, steps = 0, particle_steps_per_second = 0, bodies = 0;
+  std::map<std::string, Figure> figures;
+};
+
+/// A figure of a variant beside the reference. Shares are of the figure's scale; NaN where it cannot be told: the
+/// scatter of one sample.
+struct Deviation {
+  double mean = std::numeric_limits<double>::quiet_NaN();   ///< over samples; of a curve, its root mean square
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< |mean − reference|; of a curve, root mean square
+  double standard_error =
+      std::numeric_limits<double>::quiet_NaN();               ///< of that difference, from its scatter between samples
+  double scatter = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation between samples
+};
+
+struct VariantResult {
+  Variant variant;
+  std::vector<Sample> samples;
+  double core_seconds = 0, steps = 0, particle_steps_per_second = 0;  ///< means of the samples that are done
+  std::map<std::string, Deviation> deviations;                        ///< by figure; empty if a sample failed
+  std::string worst;                                                  ///< figure with the largest error
+  bool on_front = false;                                              ///< no other is both cheaper and nearer
+
+  bool complete() const { return !deviations.empty(); }
+  const Deviation& of_worst() const { return deviations.at(worst); }
+};
+
+/// What one setting does alone, the others as usual: a level beside the finest.
+struct Effect {
+  std::string setting, level;
+  double cost = 0;                              ///< over that of the finest level
+  std::map<std::string, Deviation> deviations;  ///< by figure, with the finest level as the reference
+};
+
+struct Chart {
+  StudyDescription study;
+  std::string scenario;                 ///< of the scene; empty if it has none
+  std::vector<VariantResult> variants;  ///< the finest last
+  std::map<std::string, Figure> reference;
+  std::map<std::string, double> scale;  ///< what errors are divided by
+  std::vector<Effect> effects;
+  std::optional<std::size_t> cheapest;  ///< variant of least cost within the tolerance
+
+  const VariantResult& finest() const { return variants.back(); }
+};
+
+/// Reads what is in the runs' folders below `folder`. Throws FileError if a run that is done lacks a channel, Error if
+/// an error cannot be put in relation because the reference is zero.
+Chart make_chart(StudyDescription study, const std::filesystem::path& folder);
+
+/// chart.json: everything above but whole curves.
+Description to_json(const Chart& chart);
+/// One row a variant and figure.
+std::string to_csv(const Chart& chart);
+
+}  // namespace grit

@@ -1,0 +1,15 @@
+// The chart as a page that opens from disk: nothing is fetched, nothing runs.
+#pragma once
+
+#include <string>
+
+#include "study/chart.hpp"
+
+namespace grit {
+
+std::string chart_page(const Chart& chart);
+
+/// One sentence or two: the cheapest variant that is good enough, and what it saves.
+std::string verdict(const Chart& chart);
+
+}  // namespace grit

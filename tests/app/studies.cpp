@@ -1,0 +1,171 @@
+// Speed against accuracy: `chart` runs a study, `advise` applies it.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two grains part; the step varies, and whether there is damping. The seed changes nothing.
+constexpr auto study = R"({
+  "title": "two grains part",
+  "scene": "two.json",
+  "set": {"/stages/0/until": {"type": "time", "value": "20 us"}},
+  "settings": {
+    "safety": {"pointers": ["/time_step/safety"], "values": [0.8, 0.1, 0.01]},
+    "damping": {"pointers": ["/engines/damping/coefficient"], "values": [0.5, 0], "usual": "0"}
+  },
+  "seeds": {"values": [1, 2]},
+  "figures": {"energy": {"type": "last", "of": "packing/kinetic_energy"}},
+  "tolerance": 0.01
+}
+)";
+
+class Studies : public testing::Test {
+ protected:
+  Studies() {
+    auto scene = json::parse(two_grains);
+    scene["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0}};
+    scene["output"].erase("frames");
+    folder.write("two.json", scene.dump());
+    folder.write("study.json", study);
+  }
+  Outcome grit(std::vector<std::string> words) { return grit_in(folder.path(), std::move(words)); }
+  json chart() const { return json::parse(text_of(folder / "results/study/chart.json")); }
+  OwnFolder folder;
+};
+
+TEST_F(Studies, AreRunChartedAndNotRunAgain) {
+  const auto first = grit({"chart", "study.json", "--jobs", "2"});
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_THAT(first.err, HasSubstr("8 of 8 runs to do"));
+  EXPECT_THAT(first.out, AllOf(HasSubstr("  usual: "), HasSubstr("  safety=0.1: "), HasSubstr("Cheapest within 1.0 %"),
+                               HasSubstr("chart: results/study/chart.html")));
+  const auto all = chart();
+  ASSERT_EQ(all.at("variants").size(), 4u);
+  const auto error = [&](int variant) {
+    return all.at("variants")[variant].at("figures").at("energy").at("error").get<double>();
+  };
+  EXPECT_EQ(all.at("variants")[3].at("name"), "finest");
+  EXPECT_EQ(error(3), 0);
+  EXPECT_GT(error(0), error(2)) << "a longer step is further off";
+  EXPECT_GT(error(1), 0.1) << "damping takes energy away";
+  EXPECT_GT(all.at("variants")[3].at("steps"), all.at("variants")[0].at("steps"));
+  EXPECT_THAT(text_of(folder / "results/study/chart.html"), HasSubstr("two grains part"));
+  EXPECT_THAT(text_of(folder / "results/study/chart.csv"), HasSubstr("\"safety=0.1\""));
+
+  const auto second = grit({"chart", "study.json"});
+  EXPECT_EQ(second.status, 0);
+  EXPECT_THAT(second.err, HasSubstr("0 of 8 runs to do"));
+  EXPECT_EQ(second.out, first.out);
+  // What is missing, and what another description made, is run again.
+  std::filesystem::remove(folder / "results/study/runs/usual/seed-1/run.json");
+  folder.write("study.json", std::string(study).replace(std::string(study).find("0.1,"), 4, "0.2,"));
+  EXPECT_THAT(
+      grit({"chart", "study.json", "--dry"}).out,
+      AllOf(HasSubstr("usual, seed 1\n"), HasSubstr("safety=0.2, seed 2\n"), HasSubstr("3 of 8 runs are missing")));
+}
+
+TEST_F(Studies, TellWhereAVariantFails) {
+  const auto outcome = grit({"chart", "study.json"});
+  ASSERT_EQ(outcome.status, 0);
+  auto changed = json::parse(study);
+  changed["settings"]["travel"] = {{"pointers", {"/guards/travel"}}, {"values", {1e-9, 0.05}}, {"usual", "0.05"}};
+  folder.write("study.json", changed.dump());
+  const auto failing = grit({"chart", "study.json"});
+  EXPECT_EQ(failing.status, 0) << failing.err;
+  EXPECT_THAT(failing.out, HasSubstr("more than /guards/travel 1e-09"));
+  EXPECT_THAT(text_of(folder / "results/study/chart.html"), HasSubstr("more than /guards/travel 1e-09"));
+}
+
+TEST_F(Studies, EndWithStatus4IfTheReferenceFails) {
+  auto changed = json::parse(study);
+  changed["settings"]["travel"] = {{"pointers", {"/guards/travel"}}, {"values", {0.05, 1e-9}}};
+  folder.write("study.json", changed.dump());
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.out, HasSubstr("nothing to compare with"));
+}
+
+TEST_F(Studies, BeginNothingThatCannotBeRun) {
+  auto changed = json::parse(study);
+  changed["settings"]["safety"]["pointers"] = {"/time_step/safty"};
+  folder.write("typo.json", changed.dump());
+  const auto typo = grit({"chart", "typo.json"});
+  EXPECT_EQ(typo.status, 2);
+  EXPECT_THAT(typo.err, AllOf(HasSubstr("/time_step/safty"), HasSubstr("did you mean \"safety\"")));
+  folder.write("key.json", R"({"scene": "two.json", "setting": {}})");
+  const auto key = grit({"chart", "key.json"});
+  EXPECT_EQ(key.status, 2);
+  EXPECT_THAT(key.err, AllOf(HasSubstr("key.json:1: /setting"), HasSubstr("settings")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  EXPECT_EQ(grit({"chart"}).status, 1);
+  EXPECT_EQ(grit({"chart", "study.json", "--jobs", "0"}).status, 1);
+}
+
+TEST_F(Studies, SayWhichChannelThereIs) {
+  auto changed = json::parse(study);
+  changed["figures"]["energy"]["of"] = "packing/energy";
+  folder.write("study.json", changed.dump());
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("has no channel \"energy\""), HasSubstr("kinetic_energy")));
+}
+
+TEST_F(Studies, AreInterruptedAndGoOn) {
+  auto changed = json::parse(study);
+  changed["set"]["/stages/0/until"]["value"] = "1 s";
+  changed["set"]["/stages/0/limit"] = "2 s";
+  folder.write("long.json", changed.dump());
+  Program program(grit_with({"chart", "long.json", "--jobs", "2"}), folder.path());
+  ASSERT_TRUE(program.wait_for("at work"));
+  program.interrupt();
+  const auto outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_THAT(outcome.err, HasSubstr("the same command goes on"));
+  EXPECT_THAT(grit({"chart", "long.json", "--dry"}).out, HasSubstr("8 of 8 runs are missing"));
+}
+
+TEST_F(Studies, GiveAdvice) {
+  ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
+  const std::string chart = "results/study/chart.json";
+  // Such short runs cost nothing but noise.
+  auto charted = this->chart();
+  for (auto& effect : charted["effects"])
+    effect["cost"] = effect["setting"] == "damping" ? 1.0 : effect["level"] == "0.8" ? 0.01 : 0.1;
+  folder.write(chart, charted.dump());
+  const std::vector<std::string> same_run = {"--set", R"(/stages/0/until={"type": "time", "value": "20 us"})"};
+  const auto advise = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"advise", "two.json", "--study", chart};
+    words.insert(words.end(), same_run.begin(), same_run.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return grit(words);
+  };
+  const auto fine = advise({"--set", "/time_step/safety=0.01", "--tolerance", "1%"});
+  ASSERT_EQ(fine.status, 0) << fine.err;
+  EXPECT_THAT(fine.out, AllOf(HasSubstr("safety: 0.01 here"), HasSubstr("→ 0.1: 10.00 times cheaper"),
+                              HasSubstr("grit run two.json --set '/time_step/safety=0.1'"), HasSubstr("too much"),
+                              HasSubstr(chart)));
+  const auto coarse = advise({"--set", "/time_step/safety=0.8", "--tolerance", "0.01"});
+  EXPECT_THAT(coarse.out,
+              AllOf(HasSubstr("nothing cheaper was tried"), HasSubstr("nothing that the study tried may be relaxed")));
+  EXPECT_THAT(advise({"--set", "/time_step/safety=0.3"}).out,
+              HasSubstr("a value that the study did not try; it tried 0.8, 0.1, 0.01"));
+  EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
+  EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);
+  EXPECT_EQ(grit({"advise", "two.json", "--study", "two.json"}).status, 5);
+  const auto none = grit({"advise", "two.json"});
+  EXPECT_EQ(none.status, 1);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("no scenario"), HasSubstr("--study")));
+}
+
+}  // namespace
+}  // namespace grit

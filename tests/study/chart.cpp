@@ -1,0 +1,190 @@
+#include "study/chart.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "made_runs.hpp"
+#include "study/chart_page.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using testing::DoubleNear;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two settings of two levels, two seeds; the runs are made by hand.
+class Charts : public testing::Test {
+ protected:
+  static constexpr auto value_figure = R"({"end": {"type": "last", "of": "test/y", "against": "test/x"}})";
+
+  Chart chart(const std::string& figures = value_figure, const std::string& more = "") {
+    folder.write("scene.json", "{}");
+    const auto path = folder.write("study.json", R"({"title": "a < b", "scene": "scene.json", "settings": {
+      "rate": {"pointers": ["/r"], "values": ["fast", "slow"]}, "size": {"pointers": ["/s"], "values": [2, 1]}},
+      "seeds": {"values": )" + seeds + R"(}, "figures": )" +
+                                                     figures + more + "}");
+    return make_chart(load_study(path), folder.path());
+  }
+  void make(const std::string& variant, double cost, double first, double second) {
+    make_run(folder / ("runs/" + variant + "/seed-1"), cost, first);
+    make_run(folder / ("runs/" + variant + "/seed-2"), cost, second);
+  }
+  void make_all() {
+    make("usual", 1, 1.3, 1.5);
+    make("rate=slow", 3, 1.0, 1.2);
+    make("size=1", 2, 1.2, 1.4);
+    make("finest", 6, 1.0, 1.0);
+  }
+  OwnFolder folder;
+  std::string seeds = "[1, 2]";
+};
+
+TEST_F(Charts, ErrorIsOfMeansAndItsStandardErrorOfDifferences) {
+  make_all();
+  const Chart all = chart();
+  ASSERT_EQ(all.variants.size(), 4u);
+  const Deviation& usual = all.variants[0].deviations.at("end");
+  EXPECT_DOUBLE_EQ(usual.mean, 1.4);
+  EXPECT_NEAR(usual.error, 0.4, 1e-15);
+  EXPECT_NEAR(usual.scatter, std::sqrt(0.02), 1e-15);
+  EXPECT_NEAR(usual.standard_error, std::sqrt(0.02 / 2), 1e-15);
+  EXPECT_EQ(all.finest().deviations.at("end").error, 0);
+}
+
+TEST_F(Charts, EffectOfASettingIsBesideItsOwnFinestTheOthersAsUsual) {
+  make_all();
+  const Chart all = chart();
+  ASSERT_EQ(all.effects.size(), 2u);
+  EXPECT_EQ(all.effects[0].setting, "rate");
+  EXPECT_EQ(all.effects[0].level, "fast");
+  EXPECT_DOUBLE_EQ(all.effects[0].cost, 1.0 / 3);
+  EXPECT_NEAR(all.effects[0].deviations.at("end").error, 0.3, 1e-15);
+  // Seed by seed the difference is the same, however far the seeds are apart.
+  EXPECT_NEAR(all.effects[0].deviations.at("end").standard_error, 0, 1e-15);
+  EXPECT_NEAR(all.effects[1].deviations.at("end").error, 0.1, 1e-15);
+}
+
+TEST_F(Charts, FrontHasWhatNoneBeatsInBoth) {
+  make_all();
+  make("size=1", 3.5, 1.2, 1.4);  // dearer and further off than rate=slow
+  const Chart all = chart();
+  EXPECT_TRUE(all.variants[0].on_front);
+  EXPECT_TRUE(all.variants[1].on_front);
+  EXPECT_FALSE(all.variants[2].on_front);
+  EXPECT_TRUE(all.variants[3].on_front);
+}
+
+TEST_F(Charts, CheapestKeepsEveryFigureWithinTheTolerance) {
+  make_all();
+  EXPECT_EQ(chart(value_figure, R"(, "tolerance": 0.5)").cheapest, 0u);
+  EXPECT_EQ(chart(value_figure, R"(, "tolerance": 0.35)").cheapest, 2u);
+  EXPECT_EQ(chart(value_figure, R"(, "tolerance": 0.2)").cheapest, 1u);
+  const Chart strict = chart(value_figure, R"(, "tolerance": 0.01)");
+  EXPECT_EQ(strict.cheapest, 3u);
+  EXPECT_THAT(verdict(strict), HasSubstr("Only the finest"));
+  // The second figure does not hold where the first does.
+  const auto two =
+      R"({"end": {"type": "last", "of": "test/y"}, "small": {"type": "last", "of": "test/y", "scale": 0.1}})";
+  const Chart both = chart(two, R"(, "tolerance": 0.5)");
+  EXPECT_EQ(both.cheapest, 3u);
+  EXPECT_EQ(both.variants[0].worst, "small");
+}
+
+TEST_F(Charts, VerdictSaysWhatItCannotBeSureOf) {
+  make_all();
+  EXPECT_THAT(verdict(chart(value_figure, R"(, "tolerance": 0.2)")),
+              testing::AllOf(HasSubstr("rate=slow"), HasSubstr("2.00 times cheaper"), HasSubstr("10 % ± 10 %"),
+                             HasSubstr("more seeds would tell")));
+  EXPECT_THAT(verdict(chart(value_figure, R"(, "tolerance": 0.9)")), Not(HasSubstr("more seeds would tell")));
+}
+
+TEST_F(Charts, CurvesAreComparedWhereBothAre) {
+  for (const auto& [variant, offset] :
+       {std::pair("usual", 0.5), std::pair("rate=slow", 0.0), std::pair("size=1", 0.0), std::pair("finest", 0.0)})
+    for (const char* seed : {"/seed-1", "/seed-2"}) {
+      const auto run = folder / ("runs/" + std::string(variant) + seed);
+      make_run_json(run, 1);
+      // y = 2 x + offset on other samples, and further than the reference.
+      if (offset == 0) make_series(run, {0, 1, 4}, {0, 2, 8});
+      else make_series(run, {0, 3, 5}, {offset, 6 + offset, 10 + offset});
+    }
+  const Chart all = chart(R"({"curve": {"type": "curve", "of": "test/y", "against": "test/x"}})");
+  EXPECT_NEAR(all.variants[0].deviations.at("curve").error, 0.5 / 8, 1e-14);
+  EXPECT_NEAR(all.variants[0].deviations.at("curve").scatter, 0, 1e-14);
+}
+
+TEST_F(Charts, ReferenceMayComeFromElsewhere) {
+  make_all();
+  const Chart all = chart(R"({"end": {"type": "last", "of": "test/y", "value": 2}})");
+  EXPECT_NEAR(all.finest().deviations.at("end").error, 0.5, 1e-15);
+  EXPECT_NEAR(all.variants[0].deviations.at("end").error, 0.3, 1e-15);
+  EXPECT_NEAR(all.variants[0].deviations.at("end").standard_error, 0.5 * std::sqrt(0.01), 1e-15);
+  folder.write("lab.csv", "x,y\n0,0\n0.5,2\n");
+  const Chart curve = chart(R"({"c": {"type": "curve", "of": "test/y", "against": "test/x",
+    "curve": {"file": "lab.csv", "x": "x", "y": "y"}}})");
+  // y = 1.4 x against 4 x up to 0.5, over the largest, 2.
+  EXPECT_NEAR(curve.variants[0].deviations.at("c").error, 2.6 / 2 * 0.5 / std::sqrt(3), 2e-3);
+}
+
+TEST_F(Charts, AReferenceOfZeroWantsAScale) {
+  make_all();
+  make("finest", 6, 0, 0);
+  EXPECT_THROW(chart(), Error);
+  EXPECT_NEAR(chart(R"({"end": {"type": "last", "of": "test/y", "scale": 2}})").variants[0].of_worst().error, 0.7,
+              1e-15);
+}
+
+TEST_F(Charts, OneSampleHasNoScatter) {
+  make_all();
+  seeds = "[1]";
+  const Chart one = chart();
+  EXPECT_TRUE(std::isnan(one.variants[0].of_worst().scatter));
+  EXPECT_EQ(to_json(one)["variants"][0]["figures"]["end"]["scatter"], nullptr);
+}
+
+TEST_F(Charts, FailuresAreToldAndCountNowhere) {
+  make_all();
+  make_run_json(folder / "runs/usual/seed-2", 0.5, "failed", "step 7: it <broke>");
+  std::filesystem::remove_all(folder / "runs/size=1/seed-1");
+  const Chart all = chart();
+  EXPECT_FALSE(all.variants[0].complete());
+  EXPECT_FALSE(all.variants[2].complete());
+  EXPECT_TRUE(all.variants[1].complete());
+  EXPECT_TRUE(all.effects.empty()) << "both lack the usual";
+  const std::string page = chart_page(all);
+  EXPECT_THAT(page, HasSubstr("step 7: it &lt;broke&gt;"));
+  EXPECT_THAT(page, HasSubstr("not run to its end"));
+}
+
+TEST_F(Charts, WithoutTheFinestThereIsNothingToCompareWith) {
+  make_all();
+  make_run_json(folder / "runs/finest/seed-1", 6, "failed", "it broke");
+  const Chart all = chart();
+  EXPECT_TRUE(all.reference.empty());
+  EXPECT_THAT(verdict(all), HasSubstr("nothing to compare with"));
+  EXPECT_THAT(chart_page(all), HasSubstr("it broke"));
+}
+
+TEST_F(Charts, PageHasAllAndFetchesNothing) {
+  make_all();
+  const std::string page = chart_page(chart());
+  EXPECT_THAT(page, HasSubstr("a &lt; b"));
+  for (const char* name : {"usual", "rate=slow", "size=1", "finest"}) EXPECT_THAT(page, HasSubstr(name));
+  EXPECT_THAT(page, Not(HasSubstr("src=")));
+  EXPECT_THAT(page, Not(HasSubstr("href=")));
+  EXPECT_THAT(page, Not(HasSubstr("nan")));
+}
+
+TEST_F(Charts, TableHasOneRowAVariantAndFigure) {
+  make_all();
+  const std::string csv = to_csv(chart());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_THAT(csv, HasSubstr("\"rate=slow\",\"slow\",\"2\",\"end\",1.1,"));
+}
+
+}  // namespace
+}  // namespace grit

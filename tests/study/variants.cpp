@@ -1,0 +1,101 @@
+#include "study/variants.hpp"
+
+#include <gmock/gmock.h>
+
+#include "grit/error.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+StudyDescription study_of(const std::string& settings, const std::string& more = "") {
+  const OwnFolder folder;
+  folder.write("scene.json", "{}");
+  return load_study(folder.write("study.json", R"({"scene": "scene.json", "settings": )" + settings + R"(,
+    "figures": {"peak": {"type": "maximum", "of": "test/y"}})" +
+                                                   more + "}"));
+}
+
+std::string problems_of(const std::string& settings, const std::string& more = "") {
+  try {
+    study_of(settings, more);
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::vector<std::string> names(const StudyDescription& study) {
+  std::vector<std::string> all;
+  for (const Variant& variant : variants(study)) all.push_back(variant.name);
+  return all;
+}
+
+constexpr auto two_settings = R"({
+  "rate": {"pointers": ["/rate"], "values": [3, 2, 1], "usual": "2"},
+  "size": {"pointers": ["/a", "/b"], "values": [["1 mm", "2 mm"], [0.1, null]], "labels": ["coarse", "fine"]}
+})";
+
+TEST(Variants, OneAtATimeBeginsWithTheUsualAndEndsWithTheFinest) {
+  EXPECT_THAT(names(study_of(two_settings)), ElementsAre("usual", "rate=3", "rate=1", "size=fine", "finest"));
+}
+
+TEST(Variants, CrossedHasEveryCombinationOnce) {
+  EXPECT_THAT(names(study_of(two_settings, R"(, "vary": "crossed")")),
+              ElementsAre("usual", "rate=3", "rate=1", "rate=3, size=fine", "size=fine", "finest"));
+}
+
+TEST(Variants, TheUsualMayBeTheFinest) {
+  EXPECT_THAT(names(study_of(R"({"rate": {"pointers": ["/rate"], "values": [2, 1], "usual": "1"}})")),
+              ElementsAre("rate=2", "usual"));
+}
+
+TEST(Variants, SetWhatTheStudyTheLevelsAndTheSeedSay) {
+  const auto study = study_of(two_settings, R"(, "set": {"/title": "x"}, "seeds": {"pointer": "/s", "values": [4]})");
+  EXPECT_THAT(sets_of(study, variants(study).back(), 4),
+              ElementsAre("/title=\"x\"", "/rate=1", "/a=0.1", "/b=null", "/s=4"));
+  EXPECT_THAT(sets_of(study, variants(study).front(), 4),
+              ElementsAre("/title=\"x\"", "/rate=2", "/a=\"1 mm\"", "/b=\"2 mm\"", "/s=4"));
+}
+
+TEST(Variants, HaveFoldersWithoutOddCharacters) {
+  EXPECT_EQ(folder_of({{}, "modulus=300 MPa, a/b=../x"}, 2), "runs/modulus=300_MPa,_a_b=.._x/seed-2");
+}
+
+TEST(Studies, SayWhatIsWrong) {
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1]}})"), HasSubstr("/settings/r/values"));
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 1]}})"), HasSubstr("the level \"1\" twice"));
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "usual": "3"}})"),
+              HasSubstr("/settings/r/usual: found \"3\"; allowed is one of the labels"));
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r", "/s"], "values": [[1, 2], 3]}})"),
+              HasSubstr("/settings/r/values/1: found 3; allowed is a list of 2 values"));
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "labels": ["a"]}})"), HasSubstr("1 labels"));
+  EXPECT_THAT(problems_of("{}"), HasSubstr("/settings"));
+  EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1, 1]})"), HasSubstr("/seeds/values/0"));
+  EXPECT_THAT(problems_of(two_settings, R"(, "colour": 1)"), HasSubstr("/colour"));
+}
+
+TEST(Studies, AFigureIsOfAChannelAndHasTheReferenceOfItsKind) {
+  const auto figure = [](const std::string& text) {
+    const OwnFolder folder;
+    folder.write("scene.json", "{}");
+    try {
+      load_study(folder.write("study.json", R"({"scene": "scene.json", "settings": {"r": {"pointers": ["/r"],
+        "values": [1, 2]}}, "figures": {"f": )" +
+                                                text + "}}"));
+    } catch (const DescriptionError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(figure(R"({"type": "curve", "of": "test/y", "against": "test/x"})"), "");
+  EXPECT_THAT(figure(R"({"type": "last", "of": "y"})"), HasSubstr("/figures/f/of: found \"y\""));
+  EXPECT_THAT(figure(R"({"type": "curve", "of": "test/y", "value": 1})"), HasSubstr("/figures/f/value"));
+  EXPECT_THAT(figure(R"({"type": "largest", "of": "test/y"})"), HasSubstr("unknown figure \"largest\""));
+}
+
+}  // namespace
+}  // namespace grit
