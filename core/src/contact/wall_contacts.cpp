@@ -1,13 +1,28 @@
 #include "contact/wall_contacts.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace grit {
 namespace {
 
 auto key(const WallTouch& t) { return std::tuple(t.wall, t.body, t.feature); }
+
+/// A point counts as one of a plane within so many radii: round-off of positions a thousand radii away is far less.
+constexpr double on_plane = 1e-9;
+/// Cosine between normals of one surface that goes on in another wall or face.
+constexpr double goes_on = 0.9;
+
+/// Whether what touches at the lesser overlap is where the plane of the deeper touch is anyway: the edge of a face
+/// beside it that goes on in its plane, or the same edge again.
+bool hidden(const WallTouch& lesser, const WallTouch& deeper, double radius) {
+  const double along = (radius - lesser.overlap) * lesser.normal.dot(deeper.normal);
+  return std::abs(along - (radius - deeper.overlap)) <= on_plane * radius;
+}
 
 }  // namespace
 
@@ -76,7 +91,6 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     chunk.touch.clear(), chunk.state.clear(), chunk.row.clear();
     return 0;
   }
-  const std::size_t fields = fields_.size();
   chunk.touch.swap(chunk.touch_before), chunk.state.swap(chunk.state_before);
   chunk.touch.clear();
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
@@ -103,15 +117,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     }
   }
 
-  chunk.state.assign(chunk.touch.size() * fields, 0.0);
-  std::size_t old = 0;
-  for (std::size_t i = 0; i < chunk.touch.size(); ++i) {
-    WallTouch& t = chunk.touch[i];
-    while (old < chunk.touch_before.size() && key(chunk.touch_before[old]) < key(t)) ++old;
-    if (old == chunk.touch_before.size() || key(chunk.touch_before[old]) != key(t)) continue;
-    t.normal_before = chunk.touch_before[old].normal;
-    for (std::size_t f = 0; f < fields; ++f) chunk.state[i * fields + f] = chunk.state_before[old * fields + f];
-  }
+  leave_out_hidden(chunk, bodies);
+  hand_on_memories(chunk);
   chunk.row.resize(chunk.touch.size());
   WallBatch batch{.position = bodies.position.data(),
                   .velocity = bodies.velocity.data(),
@@ -145,6 +152,67 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     load.stiffness += law.stiffness(size, bodies.material[t.body], t.material).normal;
   }
   return batch.largest_overlap;
+}
+
+void WallContacts::leave_out_hidden(Chunk& chunk, const Bodies& bodies) {
+  if (chunk.touch.size() < 2) return;
+  constexpr std::uint32_t none = ~0u;
+  std::array<std::uint32_t, chunk_bodies> latest;  // touch of each body
+  latest.fill(none);
+  auto& before = chunk.same_body_before;
+  auto& hide = chunk.hide;
+  before.assign(chunk.touch.size(), none), hide.assign(chunk.touch.size(), false);
+  bool any = false;
+  for (std::uint32_t i = 0; i < chunk.touch.size(); ++i) {
+    const WallTouch& t = chunk.touch[i];
+    before[i] = std::exchange(latest[t.body % chunk_bodies], i);
+    const double radius = bodies.position[t.body].w;
+    for (std::uint32_t j = before[i]; j != none && !hide[i]; j = before[j]) {
+      if (hide[j]) continue;
+      const bool later_is_lesser = t.overlap <= chunk.touch[j].overlap;
+      const std::uint32_t lesser = later_is_lesser ? i : j, deeper = later_is_lesser ? j : i;
+      if (hidden(chunk.touch[lesser], chunk.touch[deeper], radius)) any = hide[lesser] = true;
+    }
+  }
+  if (!any) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < chunk.touch.size(); ++i)
+    if (!hide[i]) chunk.touch[kept++] = chunk.touch[i];
+  chunk.touch.resize(kept);
+}
+
+void WallContacts::hand_on_memories(Chunk& chunk) const {
+  const std::size_t fields = fields_.size();
+  chunk.state.assign(chunk.touch.size() * fields, 0.0);
+  const auto hand_on = [&](std::size_t from, std::size_t to) {
+    chunk.touch[to].normal_before = chunk.touch_before[from].normal;
+    for (std::size_t f = 0; f < fields; ++f) chunk.state[to * fields + f] = chunk.state_before[from * fields + f];
+  };
+  auto &fresh = chunk.fresh, &gone = chunk.gone;
+  fresh.clear(), gone.clear();
+  std::uint32_t old = 0;
+  for (std::uint32_t i = 0; i < chunk.touch.size(); ++i) {
+    const auto own = key(chunk.touch[i]);
+    for (; old < chunk.touch_before.size() && key(chunk.touch_before[old]) < own; ++old) gone.push_back(old);
+    if (old < chunk.touch_before.size() && key(chunk.touch_before[old]) == own) hand_on(old++, i);
+    else fresh.push_back(i);
+  }
+  if (fresh.empty()) return;
+  for (; old < chunk.touch_before.size(); ++old) gone.push_back(old);
+  // What goes on in another wall's surface remembers what it did on the one that it left.
+  for (const std::uint32_t i : fresh) {
+    const WallTouch& t = chunk.touch[i];
+    auto best = gone.end();
+    double nearest = goes_on;
+    for (auto g = gone.begin(); g != gone.end(); ++g) {
+      const WallTouch& left = chunk.touch_before[*g];
+      const double cosine = left.normal.dot(t.normal);
+      if (left.body == t.body && left.material == t.material && cosine > nearest) best = g, nearest = cosine;
+    }
+    if (best == gone.end()) continue;
+    hand_on(*best, i);
+    gone.erase(best);
+  }
 }
 
 void WallContacts::loads(std::span<WallLoad> loads) const {

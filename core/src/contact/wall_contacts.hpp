@@ -92,7 +92,15 @@ class WallContacts {
     std::vector<WallLoad> load;  // by wall
     std::vector<Sphere> spheres;
     std::vector<Touch> found;
+    std::vector<std::uint32_t> same_body_before, fresh, gone;  // indices of touches
+    std::vector<bool> hide;
   };
+  /// Leaves out touches where the surface of another touch of the same body goes on: edges of coplanar faces, and edges
+  /// that faces share, count once, whatever walls they belong to.
+  static void leave_out_hidden(Chunk& chunk, const Bodies& bodies);
+  /// From the touches of the last step to those of this one.
+  void hand_on_memories(Chunk& chunk) const;
+
   std::vector<Chunk> chunks_;
   std::vector<StateField> fields_;
 };

@@ -1,0 +1,111 @@
+// Surfaces made of several walls: edges between coplanar faces are not felt, shared ones count once.
+#include <gmock/gmock.h>
+
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+// So heavy that the ball presses its way 7e-4 of its radius into the floor.
+constexpr double radius = 1e-3, tile = 4e-3, gravity = 2e4;
+
+Description rectangle(const Vec3& corner, const Vec3& a, const Vec3& b) {
+  return {{"type", "rectangle"},
+          {"corner", vector(corner)},
+          {"edge_a", vector(a)},
+          {"edge_b", vector(b)},
+          {"material", "grain"}};
+}
+
+Description rolling_ball(const std::string& law, const Vec3& place, const Vec3& velocity, double friction_angle) {
+  Description d = description(law, {{"friction_angle", friction_angle}}, {{place, radius, velocity}});
+  if (law == "hertz-mindlin") d["materials"]["grain"]["young_modulus"] = 1e9;
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -gravity}}};
+  if (law == "linear-rolling") d["materials"]["grain"]["rolling_limit"] = 2e-5;
+  d["time_step"]["value"] = 1e-6;
+  return d;
+}
+
+/// A floor of 3 × 3 tiles about the origin.
+void tile_floor(Description& d) {
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      d["walls"]["tile" + std::to_string(3 * x + y + 5)] =
+          rectangle(Vec3((x - 0.5) * tile, (y - 0.5) * tile, 0), tile * Vec3::UnitX(), tile * Vec3::UnitY());
+}
+
+/// Paths over an edge, along an edge, over a vertex, and askew.
+struct Path {
+  Vec3 from, velocity;
+};
+class Seams : public testing::TestWithParam<std::tuple<std::string, int, double>> {};
+
+TEST_P(Seams, OfCoplanarWallsAreNotFelt) {
+  const auto& [law, number, friction] = GetParam();
+  const Path paths[] = {{{-0.7 * tile, 0.1e-3, 0}, {0.2, 0, 0}},
+                        {{-0.7 * tile, 0.5 * tile, 0}, {0.2, 0, 0}},
+                        {{-0.7 * tile, -0.7 * tile, 0}, {0.14, 0.14, 0}},
+                        {{-0.7 * tile, -0.6 * tile, 0}, {0.18, 0.07, 0}}};
+  const Path& path = paths[number];
+  Description tiles = rolling_ball(law, path.from + Vec3(0, 0, 0.9995 * radius), path.velocity, friction);
+  Description whole = tiles;
+  tile_floor(tiles);
+  whole["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  Trial on_tiles(tiles), on_whole(whole);
+  int touching = 0;
+  for (int step = 0; step < 100000 && on_whole.position(0).x() < 0.6 * tile; ++step) {
+    on_tiles.step(), on_whole.step();
+    const auto contacts = on_whole.world().contacts();
+    ASSERT_EQ(on_tiles.world().contacts().size(), contacts.size()) << on_whole.position(0).transpose();
+    touching += static_cast<int>(contacts.size());
+    const double weight = gravity * on_whole.mass(0);
+    ASSERT_LE((xyz(on_tiles.world().forces()[0]) - xyz(on_whole.world().forces()[0])).norm(), 1e-12 * weight)
+        << on_whole.position(0).transpose();
+    ASSERT_LE((xyz(on_tiles.world().moments()[0]) - xyz(on_whole.world().moments()[0])).norm(),
+              1e-12 * weight * radius);
+  }
+  EXPECT_GT(on_whole.position(0).x(), 0.6 * tile) << "it got across";
+  EXPECT_GT(touching, 10000) << "it rolled on the floor";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Seams,
+                         testing::Combine(testing::Values("linear-frictional", "linear-rolling", "hertz-mindlin"),
+                                          testing::Range(0, 4), testing::Values(0.05, 0.5)));
+
+TEST(Corners, AreTouchedOnceByEachFace) {
+  Description d =
+      description("linear-frictional", {{"friction_angle", 0.3}}, {{Vec3::Constant(0.999 * radius), radius}});
+  d["walls"]["floor"] = rectangle(Vec3::Zero(), tile * Vec3::UnitX(), tile * Vec3::UnitY());
+  d["walls"]["left"] = rectangle(Vec3::Zero(), tile * Vec3::UnitY(), tile * Vec3::UnitZ());
+  d["walls"]["front"] = rectangle(Vec3::Zero(), tile * Vec3::UnitX(), tile * Vec3::UnitZ());
+  const Trial trial(d);
+  EXPECT_EQ(trial.world().contacts().size(), 3u);
+  const Vec3 force = xyz(trial.world().forces()[0]);
+  EXPECT_NEAR(force.x(), force.z(), 1e-12 * force.z());
+  EXPECT_NEAR(force.y(), force.z(), 1e-12 * force.z());
+}
+
+TEST(Corners, AnEdgeThatTwoFacesShareCountsOnce) {
+  // The ball hangs over the edge of a step, touched by its top and its side at the same edge.
+  const Vec3 out = Vec3(1, 0, 1).normalized();
+  Description d = description("linear-frictional", {{"friction_angle", 0.3}}, {{0.999 * radius * out, radius}});
+  d["walls"]["top"] = rectangle(Vec3(-tile, -tile, 0), tile * Vec3::UnitX(), 2 * tile * Vec3::UnitY());
+  Description alone = d;
+  d["walls"]["side"] = rectangle(Vec3(0, -tile, -tile), 2 * tile * Vec3::UnitY(), tile * Vec3::UnitZ());
+  const Trial both(d), one(alone);
+  ASSERT_EQ(both.world().contacts().size(), 1u);
+  EXPECT_LE((xyz(both.world().forces()[0]) - xyz(one.world().forces()[0])).norm(),
+            1e-12 * xyz(one.world().forces()[0]).norm());
+}
+
+TEST(Corners, AShallowValleyKeepsBothFaces) {
+  const double slope = 0.05;
+  Description d = description("linear-frictional", {{"friction_angle", 0.3}},
+                              {{Vec3(0, 0, 0.999 * radius / std::cos(slope)), radius}});
+  d["walls"]["left"] = plane(Vec3::Zero(), Vec3(std::sin(slope), 0, std::cos(slope)));
+  d["walls"]["right"] = plane(Vec3::Zero(), Vec3(-std::sin(slope), 0, std::cos(slope)));
+  EXPECT_EQ(Trial(d).world().contacts().size(), 2u);
+}
+
+}  // namespace
+}  // namespace grit::test
