@@ -64,13 +64,18 @@ class Dense {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
       std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.begin() + static_cast<std::ptrdiff_t>(last),
                 BodySum{});
-      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data());
+      pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data(), nullptr);
     }
   }
   /// All of the arithmetic, but nothing comes to move: else the grains would fly apart.
   void motion() {
-    MotionStep step{
-        .settings = {}, .kick = 0, .drift = 0, .flowed = 0, .strain_rate = Vec3::Zero(), .centre = Vec3::Zero()};
+    MotionStep step{.settings = {},
+                    .kick = 0,
+                    .drift = 0,
+                    .flowed = 0,
+                    .strain_rate = Vec3::Zero(),
+                    .centre = Vec3::Zero(),
+                    .energies = false};
     step.settings.local_damping = 0.08;
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk)
       pairs_.gather(chunk, sum_.data()), move_bodies(chunk, bodies_, sum_.data(), step);

@@ -480,7 +480,7 @@ TEST_P(ContactLawContract, ForceIsTheSlopeOfTheEnergy) {
     Pairs pairs = two(overlap);
     pairs.step();
     const auto energy = [&](double at) {
-      return law_->energy(size(pairs, at), 0, 0, std::vector<double>(pairs.fields(), 0.0));
+      return law_->energy(size(pairs, at), 0, 0, std::vector<double>(pairs.fields(), 0.0)).total();
     };
     const double h = 1e-4 * overlap;
     EXPECT_NEAR((energy(overlap + h) - energy(overlap - h)) / (2 * h), pairs.row(0).force.w,
@@ -490,7 +490,7 @@ TEST_P(ContactLawContract, ForceIsTheSlopeOfTheEnergy) {
       go(more, start);
       Pairs less = more, at = more;
       go(more, little), go(less, -little);
-      const auto stored = [&](Pairs& p) { return law_->energy(size(p, overlap), 0, 0, p.state(0)); };
+      const auto stored = [&](Pairs& p) { return law_->energy(size(p, overlap), 0, 0, p.state(0)).total(); };
       return std::pair((stored(more) - stored(less)) / (2 * little), at);
     };
     auto [force, slipped] = slope(slip, 1e-2 * overlap, 1e-4 * overlap);
@@ -638,9 +638,11 @@ TEST_P(ContactLawContract, StiffnessAndEnergyOfAWallFitItsForces) {
     PairSize deeper = size, flatter = size;
     deeper.overlap += h, flatter.overlap -= h;
     const std::vector<double> clean(law_->state().size(), 0.0);
-    EXPECT_NEAR((law_->energy(deeper, 0, surface, clean) - law_->energy(flatter, 0, surface, clean)) / (2 * h),
-                normal(overlap), 1e-6 * normal(overlap));
-    const double kept = law_->energy(size, 0, surface, slid.state()) - law_->energy(size, 0, surface, clean);
+    const auto stored = [&](const PairSize& s, const std::vector<double>& state) {
+      return law_->energy(s, 0, surface, state).total();
+    };
+    EXPECT_NEAR((stored(deeper, clean) - stored(flatter, clean)) / (2 * h), normal(overlap), 1e-6 * normal(overlap));
+    const double kept = stored(size, slid.state()) - stored(size, clean);
     EXPECT_NEAR(kept, 0.5 * k.shear * little * little, 1e-6 * 0.5 * k.shear * little * little + 1e-12 * k.normal * h);
   }
 }

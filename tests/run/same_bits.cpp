@@ -67,6 +67,25 @@ void expect_same_bits(const Description& d) {
   EXPECT_GT(asked.world().clock().rebuilds, 8u) << "bodies are put in order anew in between";
 }
 
+/// The ledger of energies takes loops of its own, and is summed in one order.
+void expect_ledger_changes_nothing(const Description& d) {
+  Trial without(d, 2), with(d, 2, BodyState::energy), other(d, 7, BodyState::energy);
+  for (Trial* trial : {&with, &other}) trial->world().energies();
+  for (Trial* trial : {&without, &with, &other}) trial->step_on(700);
+  EXPECT_TRUE(same_bits(without.world(), with.world()));
+  const EnergyLedger a = with.world().energies(), b = other.world().energies();
+  EXPECT_GT(a.friction, 0);
+  for (const auto entry : {&EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::viscosity,
+                           &EnergyLedger::local_damping, &EnergyLedger::gravitational, &EnergyLedger::walls})
+    EXPECT_EQ(a.*entry, b.*entry);
+}
+
+TEST(SameBits, WhetherOrNotEnergiesAreKept) {
+  expect_ledger_changes_nothing(boxed());
+  expect_ledger_changes_nothing(periodic());
+  expect_ledger_changes_nothing(stiffening());
+}
+
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
 TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
 TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }

@@ -144,7 +144,7 @@ TEST(MeanStress, OfAnEmptyOrEndlessBoxIsZero) {
 
 TEST(Unrest, BringsVelocitiesUpToTime) {
   FakeWorld world;
-  world.time_step = 0.2;
+  world.time_step = 0.2, world.steps = 1;
   world.add(Vec3::Zero(), 0.1, Vec3(1, 2, 3), Vec3(4, 5, 6));
   const double mass = 1 / world.velocity[0].w, inertia = 1 / world.spin[0].w;
   world.force[0] = {mass * 10, 0, -mass * 10, 0};
@@ -152,6 +152,9 @@ TEST(Unrest, BringsVelocitiesUpToTime) {
   // Half a step of 0.1 s adds (1, 0, −1) m/s and (0, 2, 0) rad/s.
   const double exact = 0.5 * mass * Vec3(2, 2, 2).squaredNorm() + 0.5 * inertia * Vec3(4, 7, 6).squaredNorm();
   EXPECT_NEAR(unrest(world).kinetic_energy, exact, 1e-12 * exact);
+  world.steps = 0;  // velocities are of time 0 there
+  const double start = 0.5 * mass * Vec3(1, 2, 3).squaredNorm() + 0.5 * inertia * Vec3(4, 5, 6).squaredNorm();
+  EXPECT_NEAR(unrest(world).kinetic_energy, start, 1e-12 * start);
 }
 
 TEST(Unrest, ComparesNetForcesWithContactForces) {

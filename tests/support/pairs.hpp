@@ -135,7 +135,8 @@ class Pairs {
                     .asleep_until = asleep_until.empty() ? nullptr : asleep_until.data(),
                     .row = within ? nullptr : row_.data(),
                     .sum = sum_.data(),
-                    .largest_overlap = std::numeric_limits<double>::quiet_NaN()};
+                    .largest_overlap = std::numeric_limits<double>::quiet_NaN(),
+                    .losses = nullptr};
     (law_.*evaluate)(batch);
     largest_overlap_ = batch.largest_overlap;
   }
@@ -185,7 +186,8 @@ class WallPair {
                     .state = state_.data(),
                     .row = &row,
                     .sum = &sum,
-                    .largest_overlap = 0};
+                    .largest_overlap = 0,
+                    .losses = nullptr};
     law_.evaluate_walls(batch);
   }
   void clear() { state_.assign(state_.size(), 0.0); }

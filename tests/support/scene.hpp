@@ -67,9 +67,9 @@ inline std::size_t index_of(const World& world, std::uint32_t id) {
 /// The first stage of a description, step by step; forces and positions always belong together.
 class Trial {
  public:
-  explicit Trial(const Description& plain, unsigned threads = 1)
+  explicit Trial(const Description& plain, unsigned threads = 1, StateRequest state = {})
       : scene_(scene_of(plain)),
-        simulation_(*scene_.stages.front().start, make_bodies(*scene_.description, {}), threads) {
+        simulation_(*scene_.stages.front().start, make_bodies(*scene_.description, state), threads) {
     simulation_.find_forces();
   }
   void step(std::size_t steps = 1) {

@@ -15,6 +15,7 @@ namespace grit {
 enum class BodyState : unsigned {
   rotation = 1,      ///< cumulative rotation vector [rad]
   displacement = 2,  ///< displacement since the start of the stage [m], unwrapped
+  energy = 4,        ///< the ledger of energies, of all bodies together
 };
 
 /// A set of BodyState.
@@ -71,6 +72,23 @@ struct WallView {
   std::uint32_t touches = 0;
 };
 
+/// Where the energy is, and what came in and went out since a component first asked [J].
+struct EnergyLedger {
+  double kinetic = 0;                                                  ///< translation and rotation
+  double elastic_normal = 0, elastic_shear = 0, elastic_rolling = 0;   ///< in contacts; rolling with twisting
+  double gravitational = 0;                                            ///< against the first instant
+  double walls = 0;                                                    ///< work done by walls
+  double settings = 0;                                                 ///< put in by changes of the description
+  double friction = 0, rolling = 0, viscosity = 0, local_damping = 0;  ///< dissipated
+  /// What there is and was dissipated, less what there was and was put in: made by errors of the time step and of the
+  /// law. NaN where something takes part whose work is not kept: a deforming cell, engines that add forces, held
+  /// bodies.
+  double closure_error = 0;
+
+  double elastic() const { return elastic_normal + elastic_shear + elastic_rolling; }
+  double dissipated() const { return friction + rolling + viscosity + local_damping; }
+};
+
 class World {
  public:
   virtual ~World() = default;
@@ -104,7 +122,9 @@ class World {
   /// The part of the specimen that lies `margin` or more off its walls; periodic sides have no margin.
   virtual Region interior(double margin) const = 0;
   virtual double mean_diameter() const = 0;  ///< by number [m]
-  virtual double solid_density() const = 0;  ///< mean over the bodies' volume [kg/m³]
+  virtual double solid_density() const = 0;  ///< mass over volume of all bodies, scaled masses too [kg/m³]
+  /// For components that asked for BodyState::energy.
+  virtual EnergyLedger energies() const { return {}; }
 };
 
 /// What the whole world's motion amounts to: the figures that tell whether it rests.

@@ -36,7 +36,8 @@ StateRequest run_state(const SceneDescription& scene) { return requested_state(s
 std::vector<std::string> who_asked(const SceneDescription& scene) {
   std::vector<std::string> lines;
   for (const auto& [state, name, bytes] : {std::tuple(BodyState::rotation, "rotation", sizeof(Vec3)),
-                                           std::tuple(BodyState::displacement, "displacement", sizeof(Vec3))}) {
+                                           std::tuple(BodyState::displacement, "displacement", sizeof(Vec3)),
+                                           std::tuple(BodyState::energy, "energies", std::size_t{0})}) {
     std::string who;
     const auto add = [&](const std::string& one) { who += (who.empty() ? "" : ", ") + one; };
     for (const auto& [probe_name, probe] : scene.probes)
@@ -44,8 +45,9 @@ std::vector<std::string> who_asked(const SceneDescription& scene) {
     for (const auto& [engine_name, engine] : scene.engines)
       if (engine.engine->needs().has(state)) add("engine " + engine_name);
     if (picture_state(scene).has(state)) add("the picture");
-    lines.push_back(std::string(name) +
-                    (who.empty() ? ": off" : ": " + std::to_string(bytes) + " bytes a body, for " + who));
+    lines.push_back(std::string(name) + (who.empty()  ? ": off"
+                                         : bytes == 0 ? ": kept, for " + who
+                                                      : ": " + std::to_string(bytes) + " bytes a body, for " + who));
   }
   for (const StateField& field : scene.contacts->state())
     lines.push_back(field.name + ": 8 bytes a contact, for contact law " + scene.contacts.type() + " (" + field.doc +

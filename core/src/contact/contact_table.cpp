@@ -219,10 +219,11 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .asleep_until = nullptr,
           .row = nullptr,
           .sum = nullptr,
-          .largest_overlap = 0};
+          .largest_overlap = 0,
+          .losses = nullptr};
 }
 
-double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum) {
+double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses) {
   const auto bodies = static_cast<std::uint32_t>(at.bodies.count());
   const auto end = static_cast<std::uint32_t>(std::min<std::size_t>(bodies, (chunk + 1) * chunk_bodies));
   const Blocks within = chunks_[chunk].within, across = chunks_[chunk].across;
@@ -234,6 +235,7 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
     pairs.touching = touching_.data();
     pairs.asleep_until = asleep_until_.data();
     pairs.sum = sum;
+    pairs.losses = losses;
     at.law.evaluate_pairs(pairs);
     largest = std::max(largest, pairs.largest_overlap);
   };

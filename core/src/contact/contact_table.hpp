@@ -43,7 +43,7 @@ class ContactTable {
   };
   /// Evaluates one chunk: fills its rows, adds to the sums of its bodies, by index, and touches no others. Returns the
   /// largest overlap over a radius.
-  double evaluate(std::size_t chunk, const Instant& at, BodySum* sum);
+  double evaluate(std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses);
   /// What an evaluated instant's contacts do, one after the other: use(candidate, row).
   template <class Use>
   void each_touching(const Instant& at, Use use) const {

@@ -84,7 +84,7 @@ void WallContacts::set_fields(std::span<const StateField> fields) {
 }
 
 double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies& bodies, bool one_material,
-                              std::span<const WallSurface> walls, double dt, BodySum* sum) {
+                              std::span<const WallSurface> walls, double dt, BodySum* sum, Losses* losses) {
   Chunk& chunk = chunks_[c];
   chunk.load.assign(walls.size(), {});
   if (chunk.candidate.empty()) {
@@ -130,7 +130,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                   .state = chunk.state.data(),
                   .row = chunk.row.data(),
                   .sum = sum,
-                  .largest_overlap = 0};
+                  .largest_overlap = 0,
+                  .losses = losses};
   law.evaluate_walls(batch);
 
   for (std::size_t i = 0; i < chunk.touch.size(); ++i) {

@@ -44,10 +44,10 @@ class WallContacts {
                std::span<const StateField> fields, std::span<const std::uint32_t> order);
   void set_fields(std::span<const StateField> fields);
 
-  /// Finds and evaluates the touches of one chunk; adds to the sums of its bodies. Returns the largest overlap over a
-  /// radius.
+  /// Finds and evaluates the touches of one chunk; adds to the sums of its bodies, and to `losses` unless they are
+  /// null. Returns the largest overlap over a radius.
   double evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
-                  std::span<const WallSurface> walls, double dt, BodySum* sum);
+                  std::span<const WallSurface> walls, double dt, BodySum* sum, Losses* losses);
   /// Loads on all walls, summed chunk by chunk.
   void loads(std::span<WallLoad> loads) const;
 

@@ -18,9 +18,10 @@ Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
 
 Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
-}  // namespace
+double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
+template <bool Energies>
+Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
   const Quad gravity_kick = quad(Vec3(settings.gravity * step.kick));
@@ -34,6 +35,7 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const 
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
   Quad fastest{}, poison{};
+  double damped_energy = 0, fallen = 0;
   for (std::size_t i = first; i < last; ++i) {
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(bodies.position[i]), v = load(bodies.velocity[i]), w = load(bodies.spin[i]);
@@ -42,9 +44,16 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const 
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
-    if (damping > 0) push = damped(push, v - flow, damping), twist = damped(twist, w, damping);
+    if (damping > 0) {
+      const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
+      if constexpr (Energies)
+        damped_energy += product(push - pushed, v + 0.5 * pushed) / inverse_mass +
+                         product(twist - twisted, w + 0.5 * twisted) / inverse_inertia;
+      push = pushed, twist = twisted;
+    }
     v += push, w += twist;
     x += v * drift;
+    if constexpr (Energies) fallen += step.drift * product(quad(settings.gravity), v) / inverse_mass;
     store(x, bodies.position[i]), store(v, bodies.velocity[i]), store(w, bodies.spin[i]);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;
@@ -55,7 +64,13 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const 
   if (!bodies.displacement.empty())
     for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
   return {std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]),
-          poison[0] == 0 && poison[1] == 0 && poison[2] == 0};
+          poison[0] == 0 && poison[1] == 0 && poison[2] == 0, damped_energy, fallen};
+}
+
+}  // namespace
+
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
+  return step.energies ? move<true>(chunk, bodies, sum, step) : move<false>(chunk, bodies, sum, step);
 }
 
 }  // namespace grit

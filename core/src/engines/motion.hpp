@@ -16,12 +16,15 @@ struct MotionStep {
   double flowed;     ///< s: the step before, in which bodies went with the mean flow
   Vec3 strain_rate;  ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
   Vec3 centre;       ///< where that flow is zero [m]
+  bool energies;     ///< whether Motion's are asked for
 };
 
 /// What a chunk's bodies did.
 struct Motion {
   double largest_speed = 0;  ///< upper bound of the speeds against the mean flow, m/s
   bool finite = true;        ///< no velocity is inf or NaN
+  double damped = 0;         ///< what local damping took away [J]
+  double fallen = 0;         ///< work of gravity [J]
 };
 
 /// Moves the bodies of one chunk under `sum`, by index.

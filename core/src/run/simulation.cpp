@@ -80,11 +80,13 @@ void Simulation::change(const SceneDescription& scene) {
 }
 
 void Simulation::apply(const SceneDescription& scene) {
+  const double elastic_before = flows_.begun ? elastic_energy().total() : 0;
   scene_ = &scene;
   law_ = scene.contacts.get();
   law_->mix(material_names_);
   fields_ = law_->state();
   pairs_.set_fields(fields_), wall_contacts_.set_fields(fields_);
+  if (flows_.begun) flows_.settings += elastic_energy().total() - elastic_before;
   settings_ = {};
   force_engines_.clear();
   for (const auto& [name, engine] : scene.engines) {
@@ -316,11 +318,13 @@ void Simulation::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& lap
   Chunk& own = chunk_[chunk];
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
   std::fill(sum + first, sum + last, BodySum{});
-  own.overlap = pairs_.evaluate(chunk, instant(again), sum);
+  own.losses = {};
+  Losses* const losses = bodies_.energies ? &own.losses : nullptr;
+  own.overlap = pairs_.evaluate(chunk, instant(again), sum, losses);
   laps(own.seconds[pair_contacts]);
   if (surfaces_.empty()) return;
   own.overlap = std::max(own.overlap, wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_,
-                                                              again ? 0 : clock_.last_time_step, sum));
+                                                              again ? 0 : clock_.last_time_step, sum, losses));
   laps(own.seconds[wall_touches]);
 }
 
@@ -345,6 +349,11 @@ void Simulation::take_loads() {
   }
   clock_.overlap = 0;
   for (const Chunk& chunk : chunk_) clock_.overlap = std::max(clock_.overlap, chunk.overlap);
+  if (bodies_.energies)
+    for (const Chunk& chunk : chunk_) {
+      flows_.lost.friction += chunk.losses.friction, flows_.lost.rolling += chunk.losses.rolling;
+      flows_.lost.viscosity += chunk.losses.viscosity;
+    }
   check_overlap(clock_.overlap);
 }
 
@@ -369,7 +378,8 @@ MotionStep Simulation::next_motion() const {
           .drift = dt,
           .flowed = clock_.last_time_step,
           .strain_rate = clock_.cell.strain_rate,
-          .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre()};
+          .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre(),
+          .energies = bodies_.energies};
 }
 
 template <class Work>
@@ -478,9 +488,11 @@ void Simulation::end_step() {
   const double dt = clock_.time_step;
   // Half of what the walls do in a step by the forces at its start, half by those at its end: a servo moves because of
   // the former.
-  energy_.work += 0.5 * clock_.last_time_step * power_of_walls();
+  const double work_at_start = 0.5 * clock_.last_time_step * power_of_walls();
   walls_.drive(dt);
-  energy_.work += 0.5 * dt * power_of_walls();
+  const double work = work_at_start + 0.5 * dt * power_of_walls();
+  energy_.work += work, flows_.walls += work;
+  for (const Chunk& chunk : chunk_) flows_.damped += chunk.motion.damped, flows_.fallen += chunk.motion.fallen;
   double fastest = 0;
   bool finite = true;
   for (const Chunk& chunk : chunk_)

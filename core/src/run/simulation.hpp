@@ -49,6 +49,16 @@ struct EnergyBook {
   double largest = 0;          ///< J, largest kinetic and elastic energy since then
 };
 
+/// What has gone in and out since a component first asked [J].
+struct EnergyFlows {
+  bool begun = false;
+  double at_start = 0;
+  Losses lost;
+  double damped = 0, fallen = 0;
+  double walls = 0;  ///< but for half of the last step
+  double settings = 0;
+};
+
 class Simulation final : public World {
  public:
   /// Bodies as made for this scene; `state` is what its components ask for.
@@ -106,6 +116,7 @@ class Simulation final : public World {
   Region interior(double margin) const override { return region(margin); }
   double mean_diameter() const override { return mean_diameter_; }
   double solid_density() const override { return solid_density_; }
+  EnergyLedger energies() const override;
 
  private:
   enum Part { searching, pair_contacts, wall_touches, motion, part_count };
@@ -149,7 +160,11 @@ class Simulation final : public World {
   void update_surfaces();
   void check_overlap(double largest) const;
   void check_energy();
-  double elastic_energy() const;
+  ElasticEnergy elastic_energy() const;
+  /// At time(), by the forces that act there.
+  double kinetic_energy() const;
+  /// Whether all work is reckoned with: not that of a deforming cell, of engines that add forces and of held bodies.
+  bool all_work_is_kept() const;
   double gravitational() const;
   /// What walls do by the forces on them as they moved last [W].
   double power_of_walls() const;
@@ -169,6 +184,7 @@ class Simulation final : public World {
   Team team_;
   Clock clock_;
   EnergyBook energy_;
+  mutable EnergyFlows flows_;
   Bodies bodies_;
   ContactTable pairs_;
   WallContacts wall_contacts_;
@@ -187,6 +203,7 @@ class Simulation final : public World {
   /// What was found of a chunk, and the time it took where that was taken.
   struct alignas(64) Chunk {
     double overlap = 0;
+    Losses losses;
     Motion motion;
     bool moved = false;
     std::array<double, part_count> seconds{};

@@ -29,43 +29,9 @@ void Simulation::check_overlap(double largest) const {
                "the contact modulus may be too low for this load, or bodies began inside each other");
 }
 
-double Simulation::elastic_energy() const {
-  double energy = 0;
-  for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
-    if (!pairs_.touches(c)) continue;
-    const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
-    const double overlap =
-        bodies_.position[a].w + bodies_.position[b].w - pairs_.branch(c, bodies_, shifts_.data()).norm();
-    energy += law_->energy({.radius_a = bodies_.position[a].w,
-                            .radius_b = bodies_.position[b].w,
-                            .inverse_mass_a = bodies_.velocity[a].w,
-                            .inverse_mass_b = bodies_.velocity[b].w,
-                            .overlap = overlap},
-                           bodies_.material[a], bodies_.material[b], pairs_.state(c));
-  }
-  wall_contacts_.each([&](const WallContacts::Touching& t) {
-    const std::uint32_t a = t.touch->body;
-    const double r = bodies_.position[a].w;
-    energy += law_->energy({.radius_a = r,
-                            .radius_b = r,
-                            .inverse_mass_a = bodies_.velocity[a].w,
-                            .inverse_mass_b = 0,
-                            .overlap = t.touch->overlap,
-                            .wall = true},
-                           bodies_.material[a], t.touch->material, t.state);
-  });
-  return energy;
-}
-
 double Simulation::kinetic_energy_ratio() const {
-  const double elastic = elastic_energy();
+  const double elastic = elastic_energy().total();
   return elastic > 0 ? unrest(*this).kinetic_energy / elastic : std::numeric_limits<double>::infinity();
-}
-
-double Simulation::power_of_walls() const {
-  double power = 0;
-  for (const WallState& wall : walls_.states()) power -= wall.force.dot(wall.velocity) + wall.moment.dot(wall.spin);
-  return power;
 }
 
 double Simulation::gravitational() const {
@@ -76,12 +42,11 @@ double Simulation::gravitational() const {
 }
 
 void Simulation::check_energy() {
-  // The work of a deforming cell, of engines and of held bodies is not kept; nor is gravity along a periodic axis.
-  bool kept = clock_.cell.strain_rate.isZero(0.0) && force_engines_.empty() && !settings_.hold_rotation &&
-              !settings_.hold_translation;
+  bool kept = all_work_is_kept();
+  // There is no potential along a periodic axis.
   for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
   if (!kept) return;
-  const double energy = unrest(*this).kinetic_energy + elastic_energy(), stored = energy + gravitational();
+  const double energy = unrest(*this).kinetic_energy + elastic_energy().total(), stored = energy + gravitational();
   const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
   if (std::isnan(energy_.stored_at_start)) {
     energy_ = {.stored_at_start = stored, .work = -last_half, .largest = energy};

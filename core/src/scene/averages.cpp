@@ -54,8 +54,8 @@ double World::mean_contact_force() const {
 
 Unrest unrest(const World& world) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
-  const double half_step = 0.5 * world.dt();
-  // Velocities are half a step old; the acceleration that now acts brings them up to time().
+  // Velocities are half a step old, but for the first; the acceleration that now acts brings them up to time().
+  const double half_step = world.step() > 0 ? 0.5 * world.dt() : 0;
   const auto energy = [half_step](const Row& velocity, const Row& force) {
     return velocity.w > 0 ? 0.5 / velocity.w * (xyz(velocity) + half_step * velocity.w * xyz(force)).squaredNorm()
                           : 0.0;

@@ -34,6 +34,7 @@ void Bodies::finish(StateRequest state) {
   velocity.push_back({});
   spin.push_back({});
   material.push_back(0);
+  energies = state.has(BodyState::energy);
   if (state.has(BodyState::rotation)) rotation.assign(count(), Vec3::Zero());
   if (state.has(BodyState::displacement)) displacement.assign(count(), Vec3::Zero());
 }

@@ -21,6 +21,7 @@ struct Bodies {
   std::vector<std::uint8_t> material;
   std::vector<Vec3> rotation;      ///< cumulative [rad]; empty unless asked for
   std::vector<Vec3> displacement;  ///< since the start of the stage [m]; empty unless asked for
+  bool energies = false;           ///< whether a component asked for their ledger
 
   std::size_t count() const { return id.size(); }
   /// Makes room for so many more, and the padding.

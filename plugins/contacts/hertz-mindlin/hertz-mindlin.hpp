@@ -132,6 +132,35 @@ struct HertzMindlin {
     return response;
   }
 
+  /// What springs lose as their stiffness changes with the area of contact counts as slip.
+  template <unsigned Features, class L>
+  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
+                                               const State<L>& after, const Response<L>& response) {
+    const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
+    const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
+    const L kept = min(L(1.0), contact_radius / max(before.contact_radius, L(1e-300)));
+    const auto lost = [&](const Vec<L>& stored, const Vec<L>& now, const L& stiffness_per_ks, const Vec<L>& rate) {
+      const L stiffness = stiffness_per_ks * ks;
+      const L stiffness_before = stiffness_per_ks * L(8.0) * pair.shear_modulus * before.contact_radius;
+      const Vec<L> left = kept * stored;
+      const L given = L(0.5) * (dot(stored, stored) / max(stiffness_before, L(1e-300)) -
+                                dot(left, left) / max(stiffness, L(1e-300)));
+      return select(before.contact_radius > L(0.0), given, L(0.0)) +
+             slip_work(at.turn(left), stretched(at, left, stiffness, rate), now, stiffness);
+    };
+    Loss<L> loss{L(0.0), L(0.0), L(0.0)};
+    if constexpr ((Features & with_damping) != 0)
+      loss.viscosity = dashpot_work(at, response.normal_force, L(2.0 / 3) * kn * at.overlap);
+    if constexpr ((Features & with_shear) != 0)
+      loss.friction = lost({before.shear_x, before.shear_y, before.shear_z},
+                           {after.shear_x, after.shear_y, after.shear_z}, L(1.0), at.velocity);
+    if constexpr ((Features & with_rolling) != 0)
+      loss.rolling =
+          lost({before.rolling_x, before.rolling_y, before.rolling_z},
+               {after.rolling_x, after.rolling_y, after.rolling_z}, pair.rolling * at.radius_a * at.radius_b, at.spin);
+    return loss;
+  }
+
   /// The least overlap over R* that stiffness() reckons with: a contact just made will be deeper soon.
   static constexpr double least_overlap = 1e-4;
 
@@ -146,13 +175,14 @@ struct HertzMindlin {
     const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
     return stiffness_at(size, pair, std::sqrt(radius * std::max(size.overlap, least_overlap * radius)));
   }
-  static double energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
+  static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
     const Stiffness k = stiffness_at(size, pair, std::sqrt(radius * size.overlap));
     const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
     const Vec<double> rolling{state.rolling_x, state.rolling_y, state.rolling_z};
-    return 4.0 / 15 * k.normal * size.overlap * size.overlap + spring_energy(dot(shear, shear), k.shear) +
-           spring_energy(dot(rolling, rolling), k.rolling);
+    return {.normal = 4.0 / 15 * k.normal * size.overlap * size.overlap,
+            .shear = spring_energy(dot(shear, shear), k.shear),
+            .rolling = spring_energy(dot(rolling, rolling), k.rolling)};
   }
 };
 

@@ -108,6 +108,22 @@ struct LinearFrictional {
     return response;
   }
 
+  template <unsigned Features, class L>
+  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
+                                               const State<L>& after, const Response<L>& response) {
+    const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
+    Loss<L> loss{L(0.0), L(0.0), L(0.0)};
+    if constexpr ((Features & with_damping) != 0)
+      loss.viscosity = dashpot_work(at, response.normal_force, kn * at.overlap);
+    if constexpr ((Features & with_shear) != 0) {
+      const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
+      const Vec<L> spring{after.shear_x, after.shear_y, after.shear_z};
+      loss.friction = slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity), spring, ks);
+      loss.viscosity = loss.viscosity - at.dt * dot(response.shear - spring, at.velocity);
+    }
+    return loss;
+  }
+
   static Stiffness stiffness(const PairSize& size, const Pair<double>& pair) {
     const double kn = spring_in_line(pair.modulus_a, size.radius_a, pair.modulus_b, size.radius_b);
     return {.normal = kn,
@@ -115,10 +131,10 @@ struct LinearFrictional {
             .damping_ratio = pair.damping,
             .shear_damping_ratio = pair.friction > 0 ? pair.shear_damping : 0};
   }
-  static double energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
+  static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Stiffness k = stiffness(size, pair);
     const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
-    return 0.5 * k.normal * size.overlap * size.overlap + spring_energy(dot(shear, shear), k.shear);
+    return {.normal = 0.5 * k.normal * size.overlap * size.overlap, .shear = spring_energy(dot(shear, shear), k.shear)};
   }
 };
 

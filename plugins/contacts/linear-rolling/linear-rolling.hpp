@@ -141,6 +141,30 @@ struct LinearRolling {
     return response;
   }
 
+  template <unsigned Features, class L>
+  [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
+                                               const State<L>& after, const Response<L>&) {
+    const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
+    const L angular = ks * at.radius_a * at.radius_b;
+    const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
+    Loss<L> loss{L(0.0), L(0.0), L(0.0)};
+    loss.friction = slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity),
+                              Vec<L>{after.shear_x, after.shear_y, after.shear_z}, ks);
+    if constexpr ((Features & with_rolling) != 0) {
+      const Vec<L> rolling{before.rolling_x, before.rolling_y, before.rolling_z};
+      const L stiffness = pair.rolling * angular;
+      loss.rolling = slip_work(at.turn(rolling), stretched(at, rolling, stiffness, at.spin),
+                               Vec<L>{after.rolling_x, after.rolling_y, after.rolling_z}, stiffness);
+    }
+    if constexpr ((Features & with_twisting) != 0) {
+      const L stiffness = pair.twisting * angular;
+      const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);
+      loss.rolling = loss.rolling +
+                     L(0.5) * (before.twisting + after.twisting) * (trial - after.twisting) / max(stiffness, L(1e-300));
+    }
+    return loss;
+  }
+
   static Stiffness stiffness(const PairSize& size, const Pair<double>& pair) {
     const double kn = spring_in_line(pair.modulus_a, size.radius_a, pair.modulus_b, size.radius_b);
     const double ks = pair.shear_ratio * kn, angular = ks * size.radius_a * size.radius_b;
@@ -149,12 +173,14 @@ struct LinearRolling {
             .rolling = pair.rolling_limit > 0 ? pair.rolling * angular : 0,
             .twisting = pair.twisting_limit > 0 ? pair.twisting * angular : 0};
   }
-  static double energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
+  static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Stiffness k = stiffness(size, pair);
     const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
     const Vec<double> rolling{state.rolling_x, state.rolling_y, state.rolling_z};
-    return 0.5 * k.normal * size.overlap * size.overlap + spring_energy(dot(shear, shear), k.shear) +
-           spring_energy(dot(rolling, rolling), k.rolling) + spring_energy(state.twisting * state.twisting, k.twisting);
+    return {.normal = 0.5 * k.normal * size.overlap * size.overlap,
+            .shear = spring_energy(dot(shear, shear), k.shear),
+            .rolling = spring_energy(dot(rolling, rolling), k.rolling) +
+                       spring_energy(state.twisting * state.twisting, k.twisting)};
   }
 };
 

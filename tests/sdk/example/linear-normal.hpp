@@ -42,7 +42,7 @@ struct LinearNormal {
   static grit::Stiffness stiffness(const grit::PairSize&, const Pair<double>& pair) {
     return {.normal = pair.stiffness};
   }
-  static double energy(const grit::PairSize& size, const Pair<double>& pair, const State<double>&) {
-    return 0.5 * pair.stiffness * size.overlap * size.overlap;
+  static grit::ElasticEnergy energy(const grit::PairSize& size, const Pair<double>& pair, const State<double>&) {
+    return {.normal = 0.5 * pair.stiffness * size.overlap * size.overlap};
   }
 };

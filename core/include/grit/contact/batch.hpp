@@ -28,6 +28,13 @@ struct ImageShift {
   Row position, velocity;
 };
 
+/// What contacts have dissipated in the step that led here [J].
+struct Losses {
+  double friction = 0;
+  double rolling = 0;  ///< with twisting
+  double viscosity = 0;
+};
+
 /// Candidate pairs of one chunk of bodies. All a's belong to it, and all b's or none, so no two threads write one sum.
 struct PairBatch {
   // bodies, by index: centre [m] and radius [m]; velocity [m/s] and 1/mass [1/kg]; spin [rad/s] and 1/inertia
@@ -58,6 +65,7 @@ struct PairBatch {
                            ///< chunk too, and has its sum as a has
   BodySum* sum;            ///< [body]; null where nobody asks for sums
   double largest_overlap;  ///< out: largest overlap over the smaller radius
+  Losses* losses;          ///< added to; null where nobody asks
 };
 
 /// One point where a body touches a wall.
@@ -86,6 +94,7 @@ struct WallBatch {
   ContactRow* row;  ///< [touch]: force on the wall, moment on the wall about the point of contact
   BodySum* sum;     ///< [body]
   double largest_overlap;
+  Losses* losses;  ///< added to; null where nobody asks
 };
 
 }  // namespace grit

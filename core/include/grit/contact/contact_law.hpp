@@ -29,6 +29,13 @@ struct PairSize {
   bool wall = inverse_mass_b == 0 && radius_b == radius_a;
 };
 
+/// What is stored in one contact [J].
+struct ElasticEnergy {
+  double normal = 0, shear = 0;
+  double rolling = 0;  ///< with twisting
+  double total() const { return normal + shear + rolling; }
+};
+
 /// One number that a contact remembers.
 struct StateField {
   std::string name, unit, doc;
@@ -60,9 +67,9 @@ class ContactLaw {
   /// The same by plain scalars, for tests.
   virtual void evaluate_pairs_reference(PairBatch& batch) const noexcept = 0;
   virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
-  /// Elastic energy [J] stored in one contact with the given memory (as many numbers as state()).
-  virtual double energy(const PairSize& pair, std::size_t material_a, std::size_t material_b,
-                        std::span<const double> state) const = 0;
+  /// Stored in one contact with the given memory (as many numbers as state()).
+  virtual ElasticEnergy energy(const PairSize& pair, std::size_t material_a, std::size_t material_b,
+                               std::span<const double> state) const = 0;
 };
 
 }  // namespace grit

@@ -16,7 +16,10 @@
 //     template <unsigned Features, class L> [[gnu::always_inline]]
 //     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
 //     static Stiffness stiffness(const PairSize&, const Pair<double>&);
-//     static double energy(const PairSize&, const Pair<double>&, const State<double>&);
+//     static ElasticEnergy energy(const PairSize&, const Pair<double>&, const State<double>&);
+//     template <unsigned Features, class L>                                       // may be left out: then the ledger
+//     static Loss<L> losses(const ContactPoint<L>&, const Pair<L>&,               // of energies does not close
+//                           const State<L>& before, const State<L>& after, const Response<L>&);
 //   };
 //
 // evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
@@ -77,7 +80,23 @@ struct Response {
   Vec<L> moment{};   ///< N m, on b; the opposite acts on a
 };
 
+/// What one contact has dissipated in the step that led here [J].
+template <class L>
+struct Loss {
+  L friction{}, rolling{}, viscosity{};
+};
+
 namespace detail {
+
+template <class Law, unsigned Features, class L>
+[[gnu::always_inline]] inline Loss<L> losses_of(const ContactPoint<L>& at, const typename Law::template Pair<L>& pair,
+                                                const typename Law::template State<L>& before,
+                                                const typename Law::template State<L>& after,
+                                                const Response<L>& response) {
+  if constexpr (requires { Law::template losses<Features>(at, pair, before, after, response); })
+    return Law::template losses<Features>(at, pair, before, after, response);
+  else return {};
+}
 
 /// `turns` is 1; 0 leaves out the change of normal.
 template <class L>
@@ -93,6 +112,14 @@ template <class L>
   turn.cosine = (L(1.0) - half * half) * scale;
   turn.sine = L(2.0) * half * scale;
   return turn;
+}
+
+template <class L>
+inline void add_lanes(const Loss<L>& lanes, Losses& losses) {
+  for (std::size_t k = 0; k < lane_width<L>; ++k) {
+    losses.friction += lane(lanes.friction, k), losses.rolling += lane(lanes.rolling, k);
+    losses.viscosity += lane(lanes.viscosity, k);
+  }
 }
 
 /// The members of a struct that has nothing but lanes, one after the other. (Not std::bit_cast: that was seen to copy
@@ -207,7 +234,7 @@ class Waiting {
 /// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
 /// Begins with block `from` and goes on until `waiting` is full, if it is given; returns the block that comes next. All
 /// pairs take the one way through the arithmetic, so that one has the same bits wherever it stands.
-template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
                                                       Waiting<Law::fields_used(Features)>* waiting) {
@@ -218,6 +245,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
   const double remembered_dt = batch.again ? 0 : batch.dt;
   const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
+  Loss<L> lost{L(0.0), L(0.0), L(0.0)};
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
@@ -297,16 +325,24 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
 
       State state{};
       for (std::size_t f = 0; f < fields; ++f) member<L>(state, f) = load_lanes<L>(state_at + f * block_size);
-      Response<L> response;
+      [[maybe_unused]] const State before_step = state;
+      typename Law::template Pair<L> pair;
       if constexpr (OneKind) {
-        response = Law::template evaluate<Features>(at, one_kind, state);
+        pair = one_kind;
       } else {
         const auto kind = [&](std::size_t k) {
           return batch.material != nullptr ? batch.material[ia[k]] * materials + batch.material[ib[k]] : 0;
         };
-        response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
+        pair = load_pair<Law, L>(table, kind);
       }
+      const Response<L> response = Law::template evaluate<Features>(at, pair, state);
       const L zero(0.0);
+      if constexpr (Ledger) {
+        const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
+        lost.friction = lost.friction + select(touches, own.friction, zero);
+        lost.rolling = lost.rolling + select(touches, own.rolling, zero);
+        lost.viscosity = lost.viscosity + select(touches, own.viscosity, zero);
+      }
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
 
@@ -351,13 +387,14 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
       batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));
   }
   out.largest_overlap = detail::largest(largest);
+  if constexpr (Ledger) add_lanes(lost, *out.losses);
   return block;
 }
 
 /// All pairs of a batch.
-template <class Law, unsigned Features, class L, bool Periodic, bool OneKind>
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
-  constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind>;
+  constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind, Ledger>;
   Waiting<Law::fields_used(Features)> waiting;
   double largest = 0;
   for (std::size_t next = batch.first_block; next < batch.last_block;) {
@@ -420,7 +457,16 @@ template <class Law, unsigned Features, class L>
       const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
       return own * materials + touch(k).material;
     };
-    const Response<L> response = Law::template evaluate<Features>(at, load_pair<Law, L>(table, kind), state);
+    const State before_step = state;
+    const auto pair = load_pair<Law, L>(table, kind);
+    const Response<L> response = Law::template evaluate<Features>(at, pair, state);
+    if (batch.losses != nullptr) {
+      const Loss<L> lost = losses_of<Law, Features>(at, pair, before_step, state, response);
+      for (std::size_t k = 0; k < used; ++k) {
+        batch.losses->friction += lane(lost.friction, k), batch.losses->rolling += lane(lost.rolling, k);
+        batch.losses->viscosity += lane(lost.viscosity, k);
+      }
+    }
 
     const Vec<L> force = response.normal_force * normal + response.shear;
     const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
@@ -483,7 +529,8 @@ class LawPlugin final : public ContactLaw {
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
     return Law::stiffness(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b]);
   }
-  double energy(const PairSize& pair, std::size_t a, std::size_t b, std::span<const double> state) const override {
+  ElasticEnergy energy(const PairSize& pair, std::size_t a, std::size_t b,
+                       std::span<const double> state) const override {
     State numbers{};
     for (std::size_t f = 0; f < state.size(); ++f) detail::member<double>(numbers, f) = state[f];
     return Law::energy(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b], numbers);
@@ -503,10 +550,11 @@ class LawPlugin final : public ContactLaw {
     with_features([&]<unsigned F>() {
       // The twin and mixtures take the general loop; the other two are worth their compilation.
       const bool general = lane_width<L> == 1 || batch.material != nullptr;
-      if (general) detail::evaluate_pairs<Law, F, L, true, false>(batch, table_.data(), count_);
+      if (batch.losses != nullptr) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
+      else if (general) detail::evaluate_pairs<Law, F, L, true, false, false>(batch, table_.data(), count_);
       else if constexpr (lane_width<L> > 1) {
-        if (batch.image == nullptr) detail::evaluate_pairs<Law, F, L, false, true>(batch, table_.data(), count_);
-        else detail::evaluate_pairs<Law, F, L, true, true>(batch, table_.data(), count_);
+        if (batch.image == nullptr) detail::evaluate_pairs<Law, F, L, false, true, false>(batch, table_.data(), count_);
+        else detail::evaluate_pairs<Law, F, L, true, true, false>(batch, table_.data(), count_);
       }
     });
   }

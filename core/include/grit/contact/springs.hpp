@@ -43,6 +43,22 @@ template <class L>
   return L(2.0) * ratio * sqrt(product);
 }
 
+/// What slipping has dissipated [J] where a spring as stretched() gives it, `trial`, was shortened to `now`: the mean
+/// force of the step over the slipped way.
+template <class L>
+[[gnu::always_inline]] inline L slip_work(const Vec<L>& before, const Vec<L>& trial, const Vec<L>& now,
+                                          const L& stiffness) {
+  return L(0.5) * dot(before + now, trial - now) / max(stiffness, L(1e-300));
+}
+
+/// What a dashpot beside the normal spring `elastic` [N] has dissipated [J]: its force over the mean velocity before
+/// and after this instant, as if no other contact pushed.
+template <class L>
+[[gnu::always_inline]] inline L dashpot_work(const ContactPoint<L>& at, const L& normal_force, const L& elastic) {
+  const L after = dot(at.velocity, at.normal) + L(0.5) * at.dt * normal_force * (at.inverse_mass_a + at.inverse_mass_b);
+  return (elastic - normal_force) * after * at.dt;
+}
+
 /// Elastic energy [J] of a spring that carries the force or moment whose square is given; 0 for no spring.
 inline double spring_energy(double square, double stiffness) { return stiffness > 0 ? 0.5 * square / stiffness : 0.0; }
 

@@ -1,0 +1,188 @@
+// Where energy goes, against closed forms; and how well the ledger closes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/packing.hpp"
+#include "support/verified.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, density = 2500, safety = 0.02;
+const double mass = density * 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+
+Description grains(const std::string& law, const Description& more, const std::vector<Grain>& list) {
+  Description material = more;
+  material["density"] = density;
+  Description d = description(law, material, list);
+  d["time_step"]["safety"] = safety;
+  return d;
+}
+
+/// A world whose ledger begins at once.
+struct Kept : Trial {
+  explicit Kept(const Description& d) : Trial(d, 1, BodyState::energy) { world().energies(); }
+};
+
+double kinetic_at(double speed) { return 0.5 * mass * speed * speed; }
+
+TEST(EnergyLedger, OfAFallIsKineticAndGravitational) {
+  Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius}});
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["time_step"]["value"] = 5e-6;
+  Kept fall(d);
+  fall.step(1000);
+  const EnergyLedger now = fall.world().energies();
+  EXPECT_LE(std::abs(now.closure_error), 1e-12 * now.kinetic);
+  EXPECT_NEAR(now.gravitational, mass * 9.81 * fall.position(0).z(), 1e-12 * now.kinetic);
+}
+
+TEST(EnergyLedger, LocalDampingTakesItsShareOfTheWork) {
+  Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius}});
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.3}};
+  d["time_step"]["value"] = 5e-6;
+  Kept fall(d);
+  fall.step(1000);
+  const EnergyLedger now = fall.world().energies();
+  // A body at rest is not damped: the first half step is free.
+  verify("share of a fall's energy that local damping takes", now.local_damping / -now.gravitational, 0.3, 2e-3);
+  EXPECT_LE(std::abs(now.closure_error), 1e-3 * now.kinetic) << "the half step is braked by whole forces";
+}
+
+TEST(EnergyLedger, ADashpotTakesWhatRestitutionSays) {
+  for (const std::string law : {"linear-frictional", "hertz-mindlin"}) {
+    Description material{{"restitution", 0.5}, {"friction_angle", 0}};
+    if (law == "hertz-mindlin") material["young_modulus"] = 1e8;
+    const double speed = 0.5;
+    Description d =
+        grains(law, material, {{Vec3::Zero(), radius, {speed, 0, 0}}, {{2.01 * radius, 0, 0}, radius, {-speed, 0, 0}}});
+    d["time_step"]["value"] = 2e-8;
+    Kept hit(d);
+    do hit.step();
+    while (hit.velocity(0).x() > 0 || !hit.world().contacts().empty());
+    const EnergyLedger now = hit.world().energies();
+    const double start = 2 * kinetic_at(speed);
+    verify("share of the energy that the dashpot takes at restitution 0.5, " + law, now.viscosity / start, 0.75, 5e-3);
+    verify("closure error over the energy of a damped collision, " + law, now.closure_error / start, 0, 1e-5, 1.0);
+    EXPECT_EQ(now.friction, 0);
+  }
+}
+
+TEST(EnergyLedger, ABallThatSlidesUntilItRollsLosesTwoSevenths) {
+  for (const std::string law : {"linear-frictional", "linear-rolling", "hertz-mindlin"}) {
+    Description material{{"friction_angle", 0.2}};
+    if (law == "linear-rolling") material["rolling_limit"] = 0;
+    if (law == "hertz-mindlin") material["young_modulus"] = 1e8;
+    const double speed = 0.3;
+    Description d = grains(law, material, {{{0, 0, 0.9999 * radius}, radius, {speed, 0, 0}}});
+    d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -100}}};
+    d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+    d["time_step"]["safety"] = 0.1;
+    Kept slide(d);
+    while (slide.spin(0).y() * radius < 0.999 * slide.velocity(0).x()) slide.step(100);
+    slide.step(5000);
+    const EnergyLedger now = slide.world().energies();
+    verify("energy lost over kinetic energy of a ball that slides until it rolls, " + law,
+           now.friction / kinetic_at(speed), 2.0 / 7, law == "hertz-mindlin" ? 1e-2 : 5e-3);
+    verify("closure error over the energy of a ball that slides until it rolls, " + law,
+           now.closure_error / kinetic_at(speed), 0, 5e-3, 1.0);
+  }
+}
+
+TEST(EnergyLedger, RollingResistanceTakesWhatIsLeft) {
+  const double speed = 0.1;
+  Description d = grains("linear-rolling", {{"friction_angle", 0.5}, {"rolling_limit", 0.01}},
+                         {{{0, 0, 0.9999 * radius}, radius, {speed, 0, 0}, {0, speed / radius, 0}}});
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -1000}}};
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["time_step"]["safety"] = 0.1;
+  Kept roll(d);
+  const double start = roll.world().energies().kinetic;
+  while (roll.spin(0).y() > 0) roll.step(100);
+  const EnergyLedger now = roll.world().energies();
+  verify("energy that rolling resistance takes of a ball that rolls to rest, over its kinetic energy",
+         now.rolling / start, 1, 2e-2);
+  verify("closure error over the energy of a ball that rolls to rest", now.closure_error / start, 0, 5e-3, 1.0);
+}
+
+TEST(EnergyLedger, AWallsWorkIsStored) {
+  Description d = grains("linear-frictional", {{"friction_angle", 0}}, {{{0, 0, radius}, radius}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["lid"] = plane({0, 0, 2 * radius}, -Vec3::UnitZ());
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -1e-3};
+  Kept press(d);
+  while (press.world().wall_states().states()[1].pose.shift.z() > -1e-5) press.step(100);
+  const EnergyLedger now = press.world().energies();
+  EXPECT_GT(now.elastic_normal, 0);
+  verify("energy stored over the work of a wall that presses a grain", now.elastic_normal / now.walls, 1, 1e-3);
+  EXPECT_LE(std::abs(now.closure_error), 1e-6 * now.walls);
+}
+
+TEST(EnergyLedger, AChangeOfStiffnessIsPutInBySettings) {
+  Description d =
+      grains("linear-frictional", {{"friction_angle", 0.2}}, {{Vec3::Zero(), radius}, {{1.99 * radius, 0, 0}, radius}});
+  d["materials"]["grain"]["contact_modulus"] = 1e8;
+  d["stages"].push_back({{"name", "stiffer"},
+                         {"change", {{"materials", {{"grain", {{"contact_modulus", 3e8}}}}}}},
+                         {"until", {{"type", "steps"}, {"value", 1}}},
+                         {"limit", 1}});
+  Kept part(d);
+  const double before = part.world().energies().elastic();
+  part.world().begin_stage("stiffer", *part.scene().stages.at(1).start);
+  part.world().find_forces();
+  EnergyLedger now = part.world().energies();
+  EXPECT_NEAR(now.settings, 2 * before, 1e-12 * before);
+  EXPECT_NEAR(now.elastic(), 3 * before, 1e-12 * before);
+  EXPECT_LE(std::abs(now.closure_error), 1e-12 * before);
+  part.step(2000);
+  now = part.world().energies();
+  EXPECT_EQ(now.elastic(), 0) << "they have parted";
+  EXPECT_NEAR(now.kinetic, 3 * before, 2e-3 * before);
+}
+
+/// A packing that is pressed: closure over all that was put in.
+double closure_of_a_packing(double share_of_critical, double modulus) {
+  const Vec3 low = Vec3::Zero(), high = Vec3::Constant(6e-3);
+  Description d = description("linear-rolling", {{"contact_modulus", modulus}, {"density", 2600}},
+                              jumble({6, 6, 6}, 1e-3, 0.005, 5));
+  const char* const names[3][2] = {{"left", "right"}, {"front", "back"}, {"bottom", "lid"}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false})
+      d["walls"][names[axis][up ? 0 : 1]] = side(axis, up ? low[axis] : high[axis], low, high, up);
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -0.2};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
+  d["time_step"]["safety"] = share_of_critical;
+  d["guards"]["overlap"] = 0.9;
+  Kept press(d);
+  while (press.world().time() < 1.5e-3) press.step();
+  const EnergyLedger now = press.world().energies();
+  EXPECT_GT(now.friction, 0.01 * now.walls);
+  EXPECT_GT(now.local_damping, 0.01 * now.walls);
+  EXPECT_GT(now.walls, 0);
+  return std::abs(now.closure_error) / (now.walls + now.dissipated());
+}
+
+TEST(EnergyLedger, OfAPackingClosesBetterWithShorterSteps) {
+  const double coarse = closure_of_a_packing(0.8, 1e7), fine = closure_of_a_packing(0.1, 1e7);
+  verify("closure error of a packing pressed at 0.1 of the critical step, over work and dissipation", fine, 0, 0.01,
+         1.0);
+  EXPECT_LE(fine, 0.5 * coarse);
+}
+
+TEST(EnergyLedger, KnowsWhatItDoesNotKnow) {
+  Description d = grains("linear-rolling", {}, {{Vec3::Constant(3e-3), radius}});
+  d["domain"] = {
+      {"low", {0, 0, 0}}, {"high", {6e-3, 6e-3, 6e-3}}, {"periodic", {true, true, true}}, {"strain_rate", {1, 0, 0}}};
+  d["time_step"]["value"] = 1e-6;
+  EXPECT_TRUE(std::isnan(Kept(d).world().energies().closure_error));
+  d["domain"]["strain_rate"] = {0, 0, 0};
+  EXPECT_EQ(Kept(d).world().energies().closure_error, 0);
+  d["engines"]["hold"] = {{"type", "hold"}};
+  EXPECT_TRUE(std::isnan(Kept(d).world().energies().closure_error));
+}
+
+}  // namespace
+}  // namespace grit::test
