@@ -157,6 +157,19 @@ TEST(NeighbourSearch, MissesNoPairWhereFastGrainsMeetSlowOnes) {
   expect_no_missed_pair(d, 600);
 }
 
+TEST(NeighbourSearch, MissesNoPairOfAMixtureOfOneToAHundred) {
+  // Dust all around a boulder, falling on it while it flies away.
+  constexpr double large = 25e-3, small = 0.25e-3;
+  constexpr int dust = 600;
+  std::vector<Grain> grains{{Vec3::Zero(), large, {3, 0, 0}}};
+  for (int i = 0; i < dust; ++i) {
+    const double z = 1 - (2 * i + 1.0) / dust, around = 2.399963229728653 * i, gap = (i % 7) * 0.05e-3 + 1e-6;
+    const Vec3 out(std::sqrt(1 - z * z) * std::cos(around), std::sqrt(1 - z * z) * std::sin(around), z);
+    grains.push_back({(large + small + gap) * out, small, -0.2 * out + Vec3(i % 3 - 1, i % 5 - 2, 0)});
+  }
+  expect_no_missed_pair(description_of(grains), 1200);
+}
+
 TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {
   for (const double rate : {-200.0, 200.0}) {
     Description d = fast();

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""Writes docs/stability.md and its maps: where methods fail, as the stability tests of a build find it.
+
+  stability.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, and nothing is written
+
+Maps are docs/stability/*.svg.
+"""
+import html
+import json
+import math
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+MAPPED = 'mapped: '
+COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#8a6d00', '#56b4e9']
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 430, 78, 500, 30, 370
+
+HEAD = '''# Where methods fail
+Written by `scripts/stability.py` from what the tests in [tests/stability](../tests/stability) find. Do not edit. Each limit is looked for from both
+sides; beside it stands what is predicted, and what grit does beyond it.
+
+| what | predicted limit | what grit does there |
+| --- | --- | --- |
+| time step | 2/ω of the fastest mode, dashpots and spins included; bound by body ([definitions](definitions.md#time-step)) | refuses an explicit step above it; chooses 0.8 of the bound else; the energy guard trips where a scene defeats both |
+| undamped collisions at a long step | the contact lasts π/(ω dt) steps: 2 at 0.8 of the critical step, and where in a step it begins is chance, so that each rebound is off by a share of the order of the step over the contact's time | nothing: energy is right in the mean of dense packings only. Take a safety of 0.1 or less where single collisions count; the `energy` probe tells |
+| speed: tunnelling | a contact is missed when a step is longer than the sum of what lies on both sides of the middle: a diameter at a thin wall, both diameters at a grain | the travel guard stops at 0.05 radii a step, with body, time and advice |
+| ratio of sizes | none: velocities and forces of both bodies are of the same instants | nothing to do |
+
+'''
+
+
+def ticks(low, high):
+    """Powers of ten, or 1, 2, 5 where there are few."""
+    first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
+    leads = (1,) if last - first > 3 else (1, 2, 5)
+    return [lead * 10.0 ** power for power in range(first, last + 1) for lead in leads
+            if low * 0.999 <= lead * 10.0 ** power <= high * 1.001]
+
+
+def picture(title, series):
+    """Curves over logarithmic axes; those that are predicted are dashed and have no marks."""
+    y_title, x_title = title.split('|')
+    points = [p for curve in series.values() for p in curve if p[1] > 0]
+    own = [p for name, curve in series.items() if not name.startswith('predicted') for p in curve if p[1] > 0]
+    low_x, high_x = min(p[0] for p in points) / 1.15, max(p[0] for p in points) * 1.15
+    low_y, high_y = min(p[1] for p in own) / 2, max(p[1] for p in own) * 2
+    across = lambda x: LEFT + math.log(x / low_x) / math.log(high_x / low_x) * (RIGHT - LEFT)
+    down = lambda y: BOTTOM - math.log(y / low_y) / math.log(high_y / low_y) * (BOTTOM - TOP)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}">',
+           f'<title>{html.escape(y_title)}</title>',
+           '<style>text{font:12px "Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;fill:#222}'
+           '.m{text-anchor:middle}.e{text-anchor:end}.g{stroke:#e4e4e0}.f{stroke:#8a8a86}'
+           '.c{fill:none;stroke-width:1.8}.p{fill:none;stroke:#8a8a86;stroke-dasharray:5 4}</style>',
+           f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>',
+           f'<clipPath id="frame"><rect x="{LEFT}" y="{TOP}" width="{RIGHT - LEFT}" height="{BOTTOM - TOP}"/></clipPath>']
+    for x in ticks(low_x, high_x):
+        out.append(f'<line class="g" x1="{across(x):.1f}" x2="{across(x):.1f}" y1="{TOP}" y2="{BOTTOM}"/>'
+                   f'<text class="m" x="{across(x):.1f}" y="{BOTTOM + 18}">{x:g}</text>')
+    for y in ticks(low_y, high_y):
+        out.append(f'<line class="g" y1="{down(y):.1f}" y2="{down(y):.1f}" x1="{LEFT}" x2="{RIGHT}"/>'
+                   f'<text class="e" x="{LEFT - 8}" y="{down(y) + 4:.1f}">{y:g}</text>')
+    out.append(f'<line class="f" x1="{LEFT}" x2="{RIGHT}" y1="{BOTTOM}" y2="{BOTTOM}"/>'
+               f'<line class="f" x1="{LEFT}" x2="{LEFT}" y1="{TOP}" y2="{BOTTOM}"/>'
+               f'<text x="{LEFT - 60}" y="{TOP - 12}">{html.escape(y_title)}</text>'
+               f'<text class="m" x="{(LEFT + RIGHT) / 2}" y="{BOTTOM + 42}">{html.escape(x_title)}</text>')
+    colour, row = 0, 0
+    for name, curve in series.items():
+        curve = sorted(set(p for p in curve if p[1] > 0))
+        line = ' '.join(f'{across(x):.1f},{down(y):.1f}' for x, y in curve)
+        predicted = name.startswith('predicted')
+        look = 'class="p"' if predicted else f'class="c" stroke="{COLOURS[colour % len(COLOURS)]}"'
+        out.append(f'<polyline {look} clip-path="url(#frame)" points="{line}"/>')
+        if not predicted:
+            out += [f'<circle cx="{across(x):.1f}" cy="{down(y):.1f}" r="3.5" fill="{COLOURS[colour % len(COLOURS)]}"/>'
+                    for x, y in curve]
+            colour += 1
+        y = TOP + 14 + 20 * row
+        out.append(f'<line {look} x1="{RIGHT + 16}" x2="{RIGHT + 40}" y1="{y - 4}" y2="{y - 4}"/>'
+                   f'<text x="{RIGHT + 46}" y="{y}">{html.escape(name)}</text>')
+        row += 1
+    return '\n'.join(out + ['</svg>', ''])
+
+
+def main():
+    build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / 'build').resolve()
+    program = build / 'tests' / 'test_stability'
+    if not program.is_file():
+        print(f'{program}: no such program; build it (cmake --build --preset release)', file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as folder:
+        report = Path(folder) / 'report.json'
+        done = subprocess.run([program, '--gtest_brief=1', f'--gtest_output=json:{report}'], cwd=folder)
+        if done.returncode != 0:
+            print('docs/stability.md is as it was: tests failed', file=sys.stderr)
+            return 1
+        suites = json.loads(report.read_text(encoding='utf-8'))['testsuites']
+    tests, maps = [], {}
+    for suite in suites:
+        for test in suite['testsuite']:
+            tests.append(f"{suite['name']}.{test['name']}")
+            for key, value in test.items():
+                if key.startswith(MAPPED):
+                    y_title, x_title, series, _ = key[len(MAPPED):].split('|')
+                    curves = maps.setdefault(f'{y_title}|{x_title}', {})
+                    curves.setdefault(series, []).append(tuple(map(float, value.split())))
+    folder = ROOT / 'docs' / 'stability'
+    folder.mkdir(exist_ok=True)
+    text = HEAD
+    for title, series in maps.items():
+        name = re.sub('[^a-z0-9]+', '-', title.split('|')[0].lower()).strip('-') + '.svg'
+        (folder / name).write_text(picture(title, series), encoding='utf-8')
+        text += f"## {title.split('|')[0].capitalize()}\n![{title.split('|')[0]}](stability/{name})\n\n"
+        text += '| | ' + title.split('|')[1] + ' | |\n| --- | --- | --- |\n'
+        for one, curve in series.items():
+            if not one.startswith('predicted') or len(set(curve)) == 1:
+                text += ''.join(f'| {one} | {x:g} | {y:.3g} |\n' for x, y in sorted(set(curve)))
+        text += '\n'
+    text += '## What is tested\n' + ''.join(f'- {test}\n' for test in tests)
+    (ROOT / 'docs' / 'stability.md').write_text(text, encoding='utf-8')
+    print(f'docs/stability.md: {len(tests)} tests, {len(maps)} maps')
+    return 0
+
+
+sys.exit(main())

@@ -1,0 +1,101 @@
+// How the error of a collision falls with the time step, for each law, and how it grows towards the critical one.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/mapped.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, density = 2500, speed = 0.1;
+
+struct Law {
+  std::string name, law;
+  Description material;
+};
+
+const std::vector<Law>& laws() {
+  static const std::vector<Law> all{
+      {"linear-frictional", "linear-frictional", {{"contact_modulus", 1e7}, {"friction_angle", 0.4}}},
+      {"linear-frictional, restitution 0.5",
+       "linear-frictional",
+       {{"contact_modulus", 1e7}, {"friction_angle", 0.4}, {"restitution", 0.5}}},
+      {"linear-rolling", "linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.4}}},
+      {"hertz-mindlin", "hertz-mindlin", {{"young_modulus", 1e8}, {"friction_angle", 0.4}}},
+      {"hertz-mindlin, restitution 0.5",
+       "hertz-mindlin",
+       {{"young_modulus", 1e8}, {"friction_angle", 0.4}, {"restitution", 0.5}}}};
+  return all;
+}
+
+/// Velocities (over the speed) and spins (over speed per radius) after an oblique collision that slips and then sticks.
+std::array<double, 12> after(const Law& law, double dt) {
+  Description material = law.material;
+  material["density"] = density;
+  Description d =
+      description(law.law, material,
+                  {{Vec3::Zero(), radius, {speed, 0, 0}},
+                   {{2.5001 * radius, 0.4 * radius, 0.3 * radius}, 1.5 * radius, {-speed, 0.2 * speed, 0}}});
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
+  Trial t(d);
+  bool touched = false;
+  for (int step = 0; step < 10000000; ++step) {
+    t.step();
+    const bool touches = !t.world().contacts().empty();
+    if (touched && !touches) break;
+    touched |= touches;
+  }
+  std::array<double, 12> result{};
+  for (int body = 0; body < 2; ++body)
+    for (int k = 0; k < 3; ++k) {
+      result[static_cast<std::size_t>(6 * body + k)] = t.velocity(static_cast<std::uint32_t>(body))[k] / speed;
+      result[static_cast<std::size_t>(6 * body + 3 + k)] = t.spin(static_cast<std::uint32_t>(body))[k] * radius / speed;
+    }
+  return result;
+}
+
+double distance(const std::array<double, 12>& a, const std::array<double, 12>& b) {
+  double square = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(square);
+}
+
+class Convergence : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(Convergence, OfAnObliqueCollisionInTheTimeStep) {
+  const Law& law = laws()[GetParam()];
+  // Of the linear spring of this modulus; Hertz's contact of the larger one takes about as long.
+  const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+  const double critical = 2 / std::sqrt(1e7 * 1.2 * radius / mass * (1 + 1 / 3.375));
+  const auto exact = after(law, critical / 20000);
+  // Where in a step the contact begins is chance: the mean over several steps that differ a little.
+  const auto error = [&](double share) {
+    double sum = 0;
+    const int trials = 8;
+    for (int i = 0; i < trials; ++i) sum += distance(after(law, share * (1 + 0.02 * i) * critical), exact);
+    return sum / trials;
+  };
+  const auto& map = "error of an oblique collision over its speed|time step over the critical one";
+  double coarse = 0, fine = 0;
+  for (const double share : {0.8, 0.4, 0.2, 0.1, 0.05, 0.025, 0.0125}) {
+    const double found = error(share);
+    map_point(map, law.name, share, found);
+    map_point(map, "predicted first order", share, share);
+    map_point(map, "predicted second order", share, share * share);
+    if (share == 0.2) coarse = found;
+    fine = found;
+  }
+  const double order = std::log(coarse / fine) / std::log(0.2 / 0.0125);
+  testing::Test::RecordProperty("order", std::to_string(order));
+  EXPECT_GT(order, 0.9);
+  EXPECT_LT(fine, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Convergence, testing::Range(std::size_t{0}, laws().size()));
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,74 @@
+// A small grain that hits a large one: none sticks, none gains energy, whatever the ratio of their sizes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/mapped.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double large = 10e-3, speed = 0.1;
+
+struct Outcome {
+  double energy;   ///< after over before
+  double rebound;  ///< normal speed of separation over that of approach
+};
+
+/// The small one flies at the large one at an angle to the line of centres; both spin free.
+Outcome collide(const std::string& law, double ratio, double angle, double safety) {
+  const double small = large / ratio;
+  const Vec3 away = Vec3::UnitX();
+  Description material{{"density", 2500}, {"friction_angle", 0.5}};
+  if (law == "hertz-mindlin") material["young_modulus"] = 1e8;
+  else material["contact_modulus"] = 1e7;
+  Description d =
+      description(law, material,
+                  {{Vec3::Zero(), large},
+                   {(large + small) * away, small, speed * Vec3(-std::cos(angle), std::sin(angle), 0)}});
+  d["time_step"]["safety"] = safety;
+  d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
+  Trial t(d);
+  const auto energy = [&] {
+    double sum = 0;
+    for (const std::uint32_t body : {0u, 1u}) {
+      const double r = body == 0 ? large : small;
+      sum += 0.5 * t.mass(body) * (t.velocity(body).squaredNorm() + 0.4 * r * r * t.spin(body).squaredNorm());
+    }
+    return sum;
+  };
+  const double before = energy();
+  bool touched = false;
+  for (int step = 0; step < 1000000; ++step) {
+    t.step();
+    const bool touches = !t.world().contacts().empty();
+    if (touched && !touches) break;
+    touched |= touches;
+  }
+  const Vec3 normal = (t.position(1) - t.position(0)).normalized();
+  return {energy() / before, (t.velocity(1) - t.velocity(0)).dot(normal) / (speed * std::cos(angle))};
+}
+
+class SizeRatio : public testing::TestWithParam<std::string> {};
+
+TEST_P(SizeRatio, NeitherMakesGrainsStickNorGainEnergy) {
+  for (const double ratio : {1.0, 3.0, 10.0, 30.0, 100.0}) {
+    double most = 0, least_rebound = 1e9;
+    for (double angle = 0.05; angle < 1.2; angle += 0.2) {
+      const Outcome fine = collide(GetParam(), ratio, angle, 0.02);
+      EXPECT_LT(fine.energy, 1 + 2e-3) << "ratio " << ratio << ", angle " << angle;
+      EXPECT_NEAR(fine.rebound, 1, 2e-2) << "ratio " << ratio << ", angle " << angle;
+      const Outcome coarse = collide(GetParam(), ratio, angle, 0.2);
+      most = std::max(most, std::abs(coarse.rebound - 1));
+      least_rebound = std::min(least_rebound, coarse.rebound);
+    }
+    EXPECT_GT(least_rebound, 0.5) << "ratio " << ratio << ": it sticks";
+    map_point("error of the rebound at a fifth of the critical step|ratio of sizes", GetParam(), ratio, most);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SizeRatio, testing::Values("linear-frictional", "linear-rolling", "hertz-mindlin"));
+
+}  // namespace
+}  // namespace grit::test

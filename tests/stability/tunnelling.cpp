@@ -1,0 +1,80 @@
+// How fast a grain may fly at a thin wall or at another grain before it is on the other side within a step, and that
+// the guard stops it long before.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "support/mapped.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, dt = 1e-6;
+
+/// A grain with `travel` radii a step towards a thin wall or a grain that is heavy; the contact so stiff that it turns
+/// back what it stops within a step or two. `offset`: of a step, where it begins.
+Description shot(bool at_wall, double travel, double offset) {
+  const double speed = travel * radius / dt;
+  std::vector<Grain> grains{{Vec3(0, 0, 3 * radius + offset * speed * dt), radius, {0, 0, -speed}}};
+  if (!at_wall) grains.push_back({Vec3(0, 0, 0), radius});
+  Description d =
+      description("linear-frictional", {{"contact_modulus", 1e9}, {"density", 2500}, {"friction_angle", 0}}, grains);
+  if (at_wall)
+    d["walls"]["sheet"] = {{"type", "rectangle"},
+                           {"corner", {-1, -1, 0}},
+                           {"edge_a", {2, 0, 0}},
+                           {"edge_b", {0, 2, 0}},
+                           {"material", "grain"}};
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"energy", 1e99}, {"travel", 1e9}, {"overlap", 1e9}};
+  return d;
+}
+
+/// Of 40 shots that begin at different parts of a step, the share that is seen to touch.
+double seen(bool at_wall, double travel) {
+  constexpr int shots = 40;
+  int count = 0;
+  for (int i = 0; i < shots; ++i) {
+    Trial t(shot(at_wall, travel, static_cast<double>(i) / shots));
+    bool touched = false;
+    for (int step = 0; step * travel < 8 && !touched; ++step) t.step(), touched = !t.world().contacts().empty();
+    count += touched ? 1 : 0;
+  }
+  return static_cast<double>(count) / shots;
+}
+
+/// A step can pass over what is `thick` radii through: the ways in a step between which that begins.
+void expect_limit(bool at_wall, double thick) {
+  EXPECT_EQ(seen(at_wall, 0.97 * thick), 1) << "none is missed below";
+  EXPECT_LT(seen(at_wall, 1.06 * thick), 1) << "some are above";
+  const auto& map = "share of shots whose contact is seen|way in a step, in radii";
+  const std::string name = at_wall ? "thin wall" : "grain";
+  for (double travel = 0.25; travel <= 16; travel *= std::sqrt(2.0)) {
+    const double share = seen(at_wall, travel), predicted = std::min(1.0, thick / travel);
+    EXPECT_NEAR(share, predicted, 0.03);
+    map_point(map, name, travel, share);
+    map_point(map, "predicted, " + name, travel, predicted);
+  }
+}
+
+TEST(Tunnelling, ThroughAThinWallBeginsAtADiameterAStep) { expect_limit(true, 2); }
+TEST(Tunnelling, ThroughAnotherGrainBeginsAtTwoDiametersAStep) { expect_limit(false, 4); }
+
+TEST(Tunnelling, IsStoppedByTheGuardFortyTimesEarlier) {
+  for (const bool at_wall : {true, false}) {
+    Description d = shot(at_wall, 0.049, 0);
+    d["guards"] = {{"energy", 1e99}, {"overlap", 1e9}};
+    Trial slow(d);
+    EXPECT_NO_THROW(slow.step(5));
+    d = shot(at_wall, 0.051, 0);
+    d["guards"] = {{"energy", 1e99}, {"overlap", 1e9}};
+    Trial fast(d);
+    EXPECT_THROW(fast.step(5), NumericsError);
+  }
+}
+
+}  // namespace
+}  // namespace grit::test
