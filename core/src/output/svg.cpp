@@ -12,26 +12,28 @@ void put(std::string& out, double value) {
   out.append(digits, std::to_chars(digits, digits + sizeof digits, rounded).ptr);
 }
 
-void put_escaped(std::string& out, std::string_view text) {
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string all;
   for (const char c : text) switch (c) {
       case '&':
-        out += "&amp;";
+        all += "&amp;";
         break;
       case '<':
-        out += "&lt;";
+        all += "&lt;";
         break;
       case '>':
-        out += "&gt;";
+        all += "&gt;";
         break;
       case '"':
-        out += "&quot;";
+        all += "&quot;";
         break;
       default:
-        out += c;
+        all += c;
     }
+  return all;
 }
-
-}  // namespace
 
 Svg::Svg(double width, double height, std::string_view title, std::string_view style) {
   out_ += R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 )";
@@ -42,7 +44,7 @@ Svg::Svg(double width, double height, std::string_view title, std::string_view s
   attribute("width", width);
   attribute("height", height);
   out_ += ">\n<title>";
-  put_escaped(out_, title);
+  out_ += escaped(title);
   out_ += "</title>\n<style>\n";
   out_ += style;
   out_ += "</style>\n";
@@ -57,7 +59,7 @@ void Svg::close_group() { out_ += "</g>\n"; }
 
 void Svg::clip(std::string_view id, Point corner, double width, double height) {
   out_ += "<clipPath id=\"";
-  put_escaped(out_, id);
+  out_ += escaped(id);
   out_ += "\">\n";
   rectangle(corner, width, height);
   out_ += "</clipPath>\n";
@@ -106,7 +108,7 @@ void Svg::text(Point at, std::string_view text, std::string_view attributes) {
   attribute("x", at.x);
   attribute("y", at.y);
   out_ += '>';
-  put_escaped(out_, text);
+  out_ += escaped(text);
   out_ += "</text>\n";
 }
 

@@ -7,6 +7,9 @@
 
 namespace grit {
 
+/// A text as it stands in SVG and HTML.
+std::string escaped(std::string_view text);
+
 struct Point {
   double x = 0, y = 0;
 };

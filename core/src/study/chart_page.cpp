@@ -16,27 +16,6 @@ namespace {
 constexpr std::array<const char*, 7> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#8a8a86"};
 
-std::string escaped(const std::string& text) {
-  std::string all;
-  for (const char c : text) switch (c) {
-      case '&':
-        all += "&amp;";
-        break;
-      case '<':
-        all += "&lt;";
-        break;
-      case '>':
-        all += "&gt;";
-        break;
-      case '"':
-        all += "&quot;";
-        break;
-      default:
-        all += c;
-    }
-  return all;
-}
-
 /// "2.1 %"; "?" where it cannot be told.
 std::string percent(double share) {
   if (!std::isfinite(share)) return "?";
