@@ -6,15 +6,13 @@
 Maps are docs/stability/*.svg.
 """
 import html
-import json
 import math
 import re
-import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+sys.dont_write_bytecode = True
+import reported  # noqa: E402
+
 MAPPED = 'mapped: '
 COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#8a6d00', '#56b4e9']
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 430, 78, 500, 30, 370
@@ -86,28 +84,14 @@ def picture(title, series):
 
 
 def main():
-    build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / 'build').resolve()
-    program = build / 'tests' / 'test_stability'
-    if not program.is_file():
-        print(f'{program}: no such program; build it (cmake --build --preset release)', file=sys.stderr)
-        return 2
-    with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder) / 'report.json'
-        done = subprocess.run([program, '--gtest_brief=1', f'--gtest_output=json:{report}'], cwd=folder)
-        if done.returncode != 0:
-            print('docs/stability.md is as it was: tests failed', file=sys.stderr)
-            return 1
-        suites = json.loads(report.read_text(encoding='utf-8'))['testsuites']
-    tests, maps = [], {}
-    for suite in suites:
-        for test in suite['testsuite']:
-            tests.append(f"{suite['name']}.{test['name']}")
-            for key, value in test.items():
-                if key.startswith(MAPPED):
-                    y_title, x_title, series, _ = key[len(MAPPED):].split('|')
-                    curves = maps.setdefault(f'{y_title}|{x_title}', {})
-                    curves.setdefault(series, []).append(tuple(map(float, value.split())))
-    folder = ROOT / 'docs' / 'stability'
+    tests, maps = reported.tests('test_stability', 'docs/stability.md'), {}
+    for _, properties in tests:
+        for key, value in properties.items():
+            if key.startswith(MAPPED):
+                y_title, x_title, series, _ = key[len(MAPPED):].split('|')
+                curves = maps.setdefault(f'{y_title}|{x_title}', {})
+                curves.setdefault(series, []).append(tuple(map(float, value.split())))
+    folder = reported.ROOT / 'docs' / 'stability'
     folder.mkdir(exist_ok=True)
     text = HEAD
     for title, series in maps.items():
@@ -119,10 +103,9 @@ def main():
             if not one.startswith('predicted') or len(set(curve)) == 1:
                 text += ''.join(f'| {one} | {x:g} | {y:.3g} |\n' for x, y in sorted(set(curve)))
         text += '\n'
-    text += '## What is tested\n' + ''.join(f'- {test}\n' for test in tests)
-    (ROOT / 'docs' / 'stability.md').write_text(text, encoding='utf-8')
+    text += '## What is tested\n' + ''.join(f'- {name}\n' for name, _ in tests)
+    (reported.ROOT / 'docs' / 'stability.md').write_text(text, encoding='utf-8')
     print(f'docs/stability.md: {len(tests)} tests, {len(maps)} maps')
-    return 0
 
 
-sys.exit(main())
+main()
