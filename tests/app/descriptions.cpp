@@ -50,6 +50,35 @@ TEST(Descriptions, EveryProblemIsToldAtOnceWithItsPlace) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST(Descriptions, CheckSaysWhatHasNoEffect) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto check = [&](std::vector<std::string> sets) {
+    std::vector<std::string> words{"check", "two.json"};
+    for (const auto& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  EXPECT_THAT(check({}), testing::Not(HasSubstr("without effect")));
+  const auto idle =
+      check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})", R"(/engines/hold={"type": "hold"})",
+             "/seed=7", "/bodies/grains/heavier_below=2 mm", "/time_step/value=1e-9", "/time_step/safety=0.5",
+             "/materials/steel={}", R"(/probes/idle={"type": "packing"})",
+             R"(/output/picture={"x": "packing/time", "y": ["packing/kinetic_energy"]})"});
+  EXPECT_THAT(
+      idle, AllOf(HasSubstr("\nwithout effect\n"), HasSubstr("  /engines/damping: with these values it does nothing\n"),
+                  HasSubstr("  /output/picture/color: rotations are held"), HasSubstr("  /seed: nothing is random"),
+                  HasSubstr("  /bodies/grains/heavier_below: no grain is smaller\n"),
+                  HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
+                  HasSubstr("  /probes/idle: it never looks")));
+  EXPECT_THAT(idle, testing::Not(HasSubstr("/engines/hold")));
+  EXPECT_THAT(check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})",
+                     R"(/stages/0/change={"engines": {"damping": {"coefficient": 0.3}}})"}),
+              testing::Not(HasSubstr("without effect")))
+      << "a stage switches it on";
+}
+
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
