@@ -85,7 +85,7 @@ TEST_F(Charts, CheapestKeepsEveryFigureWithinTheTolerance) {
   EXPECT_EQ(chart(value_figure, R"(, "tolerance": 0.2)").cheapest, 1u);
   const Chart strict = chart(value_figure, R"(, "tolerance": 0.01)");
   EXPECT_EQ(strict.cheapest, 3u);
-  EXPECT_THAT(verdict(strict), HasSubstr("Only the finest"));
+  EXPECT_THAT(verdict(strict), HasSubstr("Nothing cheaper than the finest"));
   // The second figure does not hold where the first does.
   const auto two =
       R"({"end": {"type": "last", "of": "test/y"}, "small": {"type": "last", "of": "test/y", "scale": 0.1}})";

@@ -293,7 +293,7 @@ std::string verdict(const Chart& chart) {
   if (!chart.cheapest) return "No variant keeps all figures within " + percent(chart.study.tolerance) + ".";
   const VariantResult& best = chart.variants[*chart.cheapest];
   if (&best == &chart.finest())
-    return "Only the finest settings keep all figures within " + percent(chart.study.tolerance) + ".";
+    return "Nothing cheaper than the finest settings keeps all figures within " + percent(chart.study.tolerance) + ".";
   const Deviation& worst = best.of_worst();
   std::string text = "Cheapest within " + percent(chart.study.tolerance) + ": " + best.variant.name + ", " +
                      cost_text(best.core_seconds) + " of one core";
