@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "app/run_setup.hpp"
-
 namespace grit {
 namespace {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "grit/error.hpp"
 #include "input/scene.hpp"

@@ -287,9 +287,7 @@ th{font-weight:600;vertical-align:bottom}.name{text-align:left}tr.best{backgroun
 }  // namespace
 
 std::string verdict(const Chart& chart) {
-  if (!chart.finest().complete()) {
-    if (chart.reference.empty()) return "The finest settings have no result, so that there is nothing to compare with.";
-  }
+  if (chart.reference.empty()) return "The finest settings have no result, so that there is nothing to compare with.";
   if (!chart.cheapest) return "No variant keeps all figures within " + percent(chart.study.tolerance) + ".";
   const VariantResult& best = chart.variants[*chart.cheapest];
   if (&best == &chart.finest())
