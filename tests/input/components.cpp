@@ -59,6 +59,7 @@ class Law final : public ContactLaw {
   }
   void mix(std::span<const std::string>) override {}
   std::vector<StateField> state() const override { return {}; }
+  LawLoop loop() const override { return {}; }
   void evaluate_pairs(PairBatch&) const noexcept override {}
   void evaluate_walls(WallBatch&) const noexcept override {}
   void evaluate_pairs_reference(PairBatch&) const noexcept override {}

@@ -163,8 +163,8 @@ TEST(Guards, LeftTheDomain) {
   d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {30, 0, 0};
   EXPECT_THAT(complaint(d, 1000),
               testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.006.*\\) m left the domain "
-                                    "through its upper x side; close the domain there with a wall, or make it "
-                                    "larger"));
+                                    "through its upper x side; close the domain there with a wall, make it "
+                                    "larger, or name the side in /domain/open_sides"));
   d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {0, 0, -30};
   EXPECT_THAT(complaint(d, 1000), HasSubstr("left the domain through its lower z side"));
 }

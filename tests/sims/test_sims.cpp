@@ -8,6 +8,7 @@
 #include "engines/builtin.hpp"
 #include "input/scene.hpp"
 #include "input/schema.hpp"
+#include "scene/clump_body.hpp"
 #include "scene/sphere_body.hpp"
 #include "schema_check.hpp"
 #include "study/variants.hpp"
@@ -21,6 +22,7 @@ const Registry& registry() {
   static const auto all = [] {
     auto made = std::make_unique<Registry>(std::vector<std::filesystem::path>{GRIT_PLUGIN_DIR});
     made->add(sphere_body());
+    made->add(clump_body());
     for (const PluginInfo& engine : builtin_engines()) made->add(engine);
     return made;
   }();

@@ -8,6 +8,7 @@
 #include "engines/builtin.hpp"
 #include "input/scene.hpp"
 #include "run/simulation.hpp"
+#include "scene/clump_body.hpp"
 #include "scene/make_bodies.hpp"
 #include "scene/sphere_body.hpp"
 
@@ -18,6 +19,7 @@ inline Registry& installed() {
   static Registry registry({GRIT_PLUGIN_DIR});
   static const bool filled = [] {
     registry.add(sphere_body());
+    registry.add(clump_body());
     for (const PluginInfo& engine : builtin_engines()) registry.add(engine);
     return true;
   }();

@@ -1,6 +1,7 @@
 // Engines act in a step, in a fixed order of phases.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -21,6 +22,7 @@ struct MotionSettings {
   double local_damping = 0;       ///< λ in F (1 − λ sgn(F v))
   bool hold_rotation = false;     ///< spins stay as they are
   bool hold_translation = false;  ///< velocities stay as they are
+  std::optional<int> flat;        ///< axis along which nothing moves, and about which alone bodies turn
 };
 
 class Engine {

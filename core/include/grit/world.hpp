@@ -72,6 +72,31 @@ struct WallView {
   std::uint32_t touches = 0;
 };
 
+/// Of World::clump_of(): a sphere by itself.
+inline constexpr std::uint32_t no_clump = ~0u;
+
+/// A rigid clump of spheres at one instant.
+struct ClumpView {
+  std::uint32_t id;
+  Vec3 centre;          ///< of mass [m]
+  Vec3 velocity, spin;  ///< half a step before time() [m/s, rad/s]
+  Vec3 momentum;        ///< angular, about the centre, half a step before time() [kg m²/s]
+  Vec3 force, moment;   ///< net, gravity and contacts, about the centre, before damping [N, N m]
+  double radius;        ///< of the enclosing sphere [m]
+  double mass;          ///< kg
+  Mat3 axes;            ///< columns: its principal axes
+  Vec3 inertia;         ///< about them [kg m²]
+};
+
+/// A body that has left through an open side of the domain.
+struct Departure {
+  std::uint32_t id;
+  std::uint8_t material;
+  double time;    ///< s, when it was found outside
+  double mass;    ///< kg
+  Vec3 position;  ///< where [m]
+};
+
 /// Where the energy is, and what came in and went out since a component first asked [J].
 struct EnergyLedger {
   double kinetic = 0;                                                  ///< translation and rotation
@@ -106,7 +131,18 @@ class World {
   virtual std::span<const std::uint8_t> materials() const = 0;
   virtual std::span<const Vec3> rotations() const = 0;      ///< empty unless asked for
   virtual std::span<const Vec3> displacements() const = 0;  ///< empty unless asked for
-  /// Net force and moment on each body, gravity and contacts, before damping [N, N m].
+  /// Index into clumps() of each body, or no_clump; empty where there is no clump. A body of a clump has the clump's
+  /// 1/mass beside its velocity and 1 over the clump's least moment of inertia beside its spin.
+  virtual std::span<const std::uint32_t> clump_of() const { return {}; }
+  virtual std::span<const ClumpView> clumps() const { return {}; }
+  /// From its clump's centre to each body [m]; empty where there is no clump.
+  virtual std::span<const Vec3> arms() const { return {}; }
+  /// Of each body's volume what counts, as bodies of a clump overlap; empty where all of it does.
+  virtual std::span<const double> volume_shares() const { return {}; }
+  /// Bodies that have left, in the order in which they did.
+  virtual std::span<const Departure> departures() const { return {}; }
+  /// Net force and moment on each body, gravity and contacts, before damping [N, N m]; of contacts alone on a body of a
+  /// clump.
   virtual std::span<const Row> forces() const = 0;
   virtual std::span<const Row> moments() const = 0;
 
@@ -121,7 +157,7 @@ class World {
   virtual Region specimen() const = 0;
   /// The part of the specimen that lies `margin` or more off its walls; periodic sides have no margin.
   virtual Region interior(double margin) const = 0;
-  virtual double mean_diameter() const = 0;  ///< by number [m]
+  virtual double mean_diameter() const = 0;  ///< by number, of a clump that of the enclosing sphere [m]
   virtual double solid_density() const = 0;  ///< mass over volume of all bodies, scaled masses too [kg/m³]
   /// For components that asked for BodyState::energy.
   virtual EnergyLedger energies() const { return {}; }
@@ -135,8 +171,26 @@ struct Unrest {
 };
 Unrest unrest(const World& world);
 
-/// Volume of voids over volume of solids in a box, by exact sphere–box volumes; overlaps count twice. Periodic images
-/// are counted. Infinite without solids.
+/// Of translation and rotation, `later` seconds after its velocities' instant [J].
+double kinetic_energy_of(const ClumpView& clump, double later);
+
+/// Spheres by themselves and clumps.
+struct Grains {
+  std::vector<Vec3> centre;            ///< m
+  std::vector<std::uint32_t> of_body;  ///< the grain of each body
+};
+Grains grains_of(const World& world);
+
+/// Of a contact: from the centre of the grain of body a, a sphere or a clump, to that of the grain of body b, or to the
+/// touching point of a wall [m].
+struct Branch {
+  Vec3 start, way;
+};
+Branch branch_of(const World& world, const Contact& contact);
+
+/// Volume of voids over volume of solids in a box, by exact sphere–box volumes; overlaps of contacts count twice, those
+/// within a clump once (of a clump that the box cuts, up to how its spheres share them). Periodic images are counted.
+/// Infinite without solids.
 double void_ratio(const World& world, const Region& region);
 
 /// Mean stress of a box, Love–Weber: each contact weighted by the part of its branch inside. Pa, compression positive.

@@ -7,6 +7,7 @@
 
 #include "engines/builtin.hpp"
 #include "plugins/loader.hpp"
+#include "scene/clump_body.hpp"
 #include "scene/sphere_body.hpp"
 
 namespace grit {
@@ -73,6 +74,7 @@ std::string Options::only_word(const char* what) const {
 std::unique_ptr<Registry> Options::registry() const {
   auto registry = std::make_unique<Registry>(plugin_directories(list("plugin-path"), library_directory()));
   registry->add(sphere_body());
+  registry->add(clump_body());
   for (const PluginInfo& engine : builtin_engines()) registry->add(engine);
   return registry;
 }

@@ -7,7 +7,7 @@ namespace {
 
 bool same(const MotionSettings& a, const MotionSettings& b) {
   return a.gravity == b.gravity && a.local_damping == b.local_damping && a.hold_rotation == b.hold_rotation &&
-         a.hold_translation == b.hold_translation;
+         a.hold_translation == b.hold_translation && a.flat == b.flat;
 }
 
 bool is_changed(const SceneDescription& scene, const std::string& section, const std::string& name) {

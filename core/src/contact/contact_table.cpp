@@ -33,10 +33,12 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
                            std::span<const StateField> fields, std::span<const std::uint32_t> order, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
-  std::vector<std::uint32_t> now(count);
+  constexpr std::uint32_t gone = ~0u;
+  std::vector<std::uint32_t> now(std::max(bodies_, count), order.empty() ? 0 : gone);
   if (order.empty()) std::iota(now.begin(), now.end(), 0u);
   else
     for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+  bodies_ = count;
 
   // Old memories by their lower body.
   std::vector<std::uint32_t> memory_start(count + 1, 0);
@@ -45,7 +47,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
         const auto slot = static_cast<std::uint32_t>(block * block_size + std::countr_zero(mask));
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
-        use(std::min(p, q), Memory{std::max(p, q), p > q}, slot);
+        if (p != gone && q != gone) use(std::min(p, q), Memory{std::max(p, q), p > q}, slot);
       }
   };
   each_memory([&](std::uint32_t lower, const Memory&, std::size_t) { ++memory_start[lower + 1]; });

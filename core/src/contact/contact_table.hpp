@@ -25,7 +25,8 @@ struct alignas(64) StateLine {
 /// only pairs across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
 class ContactTable {
  public:
-  /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed.
+  /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed. Bodies that
+  /// are not in it are gone.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
                std::span<const std::uint32_t> order, Team& team);
   /// Makes room for another set of fields; the leading ones that both have are kept.
@@ -131,6 +132,7 @@ class ContactTable {
   void make_inbox(std::size_t bodies);
   void find_reached();
 
+  std::size_t bodies_ = 0;
   std::vector<Chunk> chunks_;
   // Candidates: those within all chunks come before those across.
   LargeArray<std::uint32_t> a_, b_;

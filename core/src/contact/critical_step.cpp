@@ -10,11 +10,38 @@
 namespace grit {
 namespace {
 
-/// What the springs of one contact ask of one of its bodies, 1/s².
-double demand(const Stiffness& k, const Bodies& bodies, std::size_t i) {
+/// How a body gives way to a push at a contact: inverse masses along and across the normal there, at most [1/kg].
+struct Mobility {
+  double along, across;
+};
+Mobility mobility(const Bodies& bodies, std::size_t i, const Vec3& normal) {
   const double radius = bodies.position[i].w, inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
-  const double sliding = k.shear * (inverse_mass + radius * radius * inverse_inertia) + k.rolling * inverse_inertia;
-  return std::max({k.normal * inverse_mass, sliding, k.twisting * inverse_inertia});
+  const std::uint32_t c = bodies.clumps.clump_of(i);
+  if (c == no_clump) return {inverse_mass, inverse_mass + radius * radius * inverse_inertia};
+  const Vec3 arm = bodies.clumps.clump[c].axes * bodies.clumps.of_body[i].place;
+  const double furthest = arm.norm() + radius;
+  return {inverse_mass + arm.cross(normal).squaredNorm() * inverse_inertia,
+          inverse_mass + furthest * furthest * inverse_inertia};
+}
+
+/// What the springs of one contact ask of one of its bodies, 1/s².
+double demand(const Stiffness& k, const Bodies& bodies, std::size_t i, const Vec3& normal) {
+  const double radius = bodies.position[i].w, inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
+  if (bodies.clumps.clump_of(i) == no_clump) {
+    const double sliding = k.shear * (inverse_mass + radius * radius * inverse_inertia) + k.rolling * inverse_inertia;
+    return std::max({k.normal * inverse_mass, sliding, k.twisting * inverse_inertia});
+  }
+  const Mobility gives = mobility(bodies, i, normal);
+  const double apart = k.normal * gives.along + k.shear * gives.across,
+               together = std::max(k.normal, k.shear) * gives.across;
+  return std::min(apart, together) + std::max(k.rolling, k.twisting) * inverse_inertia;
+}
+
+/// What the dashpots of one contact ask of its bodies where a clump is one of them, 1/s.
+double dashpots(const Stiffness& k, const Mobility& a, const Mobility& b, double inverse_mass) {
+  const double along = 2 * k.damping_ratio * std::sqrt(k.normal / inverse_mass);
+  const double across = 2 * k.shear_damping_ratio * std::sqrt(k.shear / (3.5 * inverse_mass));
+  return along * (a.along + b.along) + across * (a.across + b.across);
 }
 
 /// What dashpots ask of a body, 1/s, by direction: of its velocity, of its spin times √(I/m), and of both together.
@@ -72,10 +99,23 @@ double CriticalStep::renew(const Instant& at, double way, Team& team) {
 }
 
 double CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
+  const Clumps& clumps = at.bodies.clumps;
+  if (!clumps.none())
+    for (auto* array : {&clumps_.springs, &clumps_.least, &clumps_.dashpots}) array->resize(at.bodies.count());
   team.each(chunks.size(), [&](std::size_t k) { ask(chunks[k], at); });
-  team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at.pairs); });
+  if (clumps.none()) {
+    team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at); });
+  } else {
+    // A clump's bodies may lie in several chunks.
+    clumps_.dashpot.resize(clumps.clump.size());
+    for (std::size_t c = 0; c < clumps.clump.size(); ++c) gather(c, clumps);
+    team.each(chunk_.size(), [&](std::size_t chunk) { compare(chunk, at); });
+  }
   double spring = 0, dashpot = 0;
-  for (const Chunk& chunk : chunk_) spring = std::max(spring, chunk.spring), dashpot = std::max(dashpot, chunk.dashpot);
+  for (const Chunk& chunk : chunk_) {
+    spring = std::max({spring, chunk.spring, chunk.pair_spring});
+    dashpot = std::max({dashpot, chunk.dashpot, chunk.clump_dashpot});
+  }
   return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring));
 }
 
@@ -86,6 +126,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   own.walked = at.skins.walked(chunk);
   own.near.clear();
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
+  const bool clumps = !bodies.clumps.none();
   const auto size_of = [&](std::size_t a, std::size_t b, double overlap) {
     return PairSize{.radius_a = bodies.position[a].w,
                     .radius_b = bodies.position[b].w,
@@ -93,18 +134,23 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
                     .inverse_mass_b = bodies.velocity[b].w,
                     .overlap = overlap};
   };
-  std::array<double, chunk_bodies> springs{};
+  std::array<double, chunk_bodies> springs{}, clump_dashpots{};
   std::array<Dashpots, chunk_bodies> damped;
   at.pairs.each_near(chunk, bodies, at.shifts, at.skins, at.near, [&](std::size_t c, double distance) {
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
     const Stiffness k = at.law.stiffness(size_of(a, b, overlap), bodies.material[a], bodies.material[b]);
-    const bool dashpots = k.damping_ratio > 0 || k.shear_damping_ratio > 0;
-    const Vec3 normal = dashpots ? at.pairs.branch(c, bodies, at.shifts).normalized() : Vec3::Zero();
+    const bool damps = k.damping_ratio > 0 || k.shear_damping_ratio > 0;
+    const Vec3 normal = damps || clumps ? at.pairs.branch(c, bodies, at.shifts).normalized() : Vec3(Vec3::Zero());
+    const double inverse_mass = bodies.velocity[a].w + bodies.velocity[b].w;
+    const bool of_clump = bodies.clumps.clump_of(a) != no_clump || bodies.clumps.clump_of(b) != no_clump;
+    const double at_arms =
+        damps && of_clump ? dashpots(k, mobility(bodies, a, normal), mobility(bodies, b, normal), inverse_mass) : 0;
     const auto ask = [&](std::uint32_t i, const Vec3& out) {
       if (i < first || i >= last) return;
-      springs[i - first] += demand(k, bodies, i);
-      if (dashpots) damped[i - first].add(k, out, bodies.velocity[a].w + bodies.velocity[b].w);
+      springs[i - first] += demand(k, bodies, i, normal);
+      if (of_clump) clump_dashpots[i - first] += at_arms;
+      else if (damps) damped[i - first].add(k, out, inverse_mass);
     };
     ask(a, normal), ask(b, -normal);
     own.near.push_back(static_cast<std::uint32_t>(c));
@@ -114,26 +160,60 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     PairSize size = size_of(a, a, std::max(touch.overlap - at.near, 0.0));
     size.inverse_mass_b = 0, size.wall = true;
     const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
-    springs[a - first] += demand(k, bodies, a);
-    damped[a - first].add(k, touch.normal, bodies.velocity[a].w);
+    springs[a - first] += demand(k, bodies, a, touch.normal);
+    if (bodies.clumps.clump_of(a) != no_clump)
+      clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, touch.normal), {}, bodies.velocity[a].w);
+    else damped[a - first].add(k, touch.normal, bodies.velocity[a].w);
   });
   own.spring = own.dashpot = 0;
   for (std::size_t i = first; i < last; ++i) {
     const Stiffness k = at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]);
-    const double alone = demand(k, bodies, i);
+    const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
+    const Vec3 across = in_clump ? Vec3(bodies.clumps.clump[bodies.clumps.clump_of(i)].axes *
+                                        bodies.clumps.of_body[i].place.unitOrthogonal())
+                                 : Vec3(Vec3::UnitX());
+    const double alone = demand(k, bodies, i, across);
     demand_[i] = std::max(springs[i - first], alone);
     own.spring = std::max({own.spring, 2 * alone, demand_[i]});
+    if (clumps)
+      clumps_.springs[i] = springs[i - first], clumps_.least[i] = alone,
+      clumps_.dashpots[i] = clump_dashpots[i - first];
+    if (in_clump) {
+      const Mobility gives = mobility(bodies, i, across);
+      own.dashpot = std::max(own.dashpot, dashpots(k, gives, gives, 2 * bodies.velocity[i].w));
+      continue;
+    }
     Dashpots pair;
     pair.add(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
-    own.dashpot = std::max(own.dashpot, damped[i - first].largest(own.dashpot));
+    own.dashpot = std::max(
+        own.dashpot, clump_dashpots[i - first] + damped[i - first].largest(own.dashpot - clump_dashpots[i - first]));
     own.dashpot = std::max(own.dashpot, pair.largest(own.dashpot));
   }
 }
 
-/// What they ask of the two of a pair.
-void CriticalStep::compare(std::size_t chunk, const ContactTable& pairs) {
-  double& spring = chunk_[chunk].spring;
-  for (const std::uint32_t c : chunk_[chunk].near) spring = std::max(spring, demand_[pairs.a(c)] + demand_[pairs.b(c)]);
+void CriticalStep::gather(std::size_t c, const Clumps& clumps) {
+  const Clump& clump = clumps.clump[c];
+  const std::span<const std::uint32_t> bodies(clumps.spheres.data() + clump.first, clump.last - clump.first);
+  double springs = 0, dashpots = 0;
+  for (const std::uint32_t i : bodies) springs += clumps_.springs[i], dashpots += clumps_.dashpots[i];
+  for (const std::uint32_t i : bodies) demand_[i] = std::max(clumps_.least[i], springs);
+  clumps_.dashpot[c] = dashpots;
+}
+
+/// What they ask of the two of a pair, and of clumps as a whole.
+void CriticalStep::compare(std::size_t chunk, const Instant& at) {
+  Chunk& own = chunk_[chunk];
+  own.pair_spring = own.clump_dashpot = 0;
+  for (const std::uint32_t c : own.near)
+    own.pair_spring = std::max(own.pair_spring, demand_[at.pairs.a(c)] + demand_[at.pairs.b(c)]);
+  if (at.bodies.clumps.none()) return;
+  const std::size_t first = chunk * chunk_bodies, last = std::min(at.bodies.count(), first + chunk_bodies);
+  for (std::size_t i = first; i < last; ++i) {
+    const std::uint32_t c = at.bodies.clumps.clump_of(i);
+    if (c == no_clump) continue;
+    own.pair_spring = std::max(own.pair_spring, demand_[i]);
+    own.clump_dashpot = std::max(own.clump_dashpot, clumps_.dashpot[c]);
+  }
 }
 
 }  // namespace grit

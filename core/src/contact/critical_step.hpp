@@ -18,6 +18,10 @@ namespace grit {
 ///
 /// Contacts form and part where bodies move, so that chunks are looked at anew when their bodies have gone far enough,
 /// each by itself.
+///
+/// A clump is a body whose contacts are at the ends of arms: what a spring asks of it is bounded by what its parts
+/// along and across the normal ask by themselves, each by the mass that a push there meets at least. Dashpots are added
+/// up whatever their directions.
 class CriticalStep {
  public:
   struct Instant {
@@ -39,15 +43,23 @@ class CriticalStep {
 
  private:
   struct Chunk {
-    double spring = 0, dashpot = 0;   ///< Q [1/s²] and D [1/s], the largest of its contacts
-    double walked = 0;                ///< when it was looked at [m]
-    std::vector<std::uint32_t> near;  ///< candidates that count as touching
+    double spring = 0, dashpot = 0;             ///< Q [1/s²] and D [1/s], the largest of its bodies by themselves
+    double pair_spring = 0, clump_dashpot = 0;  ///< the largest of its pairs, and of clumps that it has a body of
+    double walked = 0;                          ///< when it was looked at [m]
+    std::vector<std::uint32_t> near;            ///< candidates that count as touching
   };
   double look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void ask(std::size_t chunk, const Instant& at);
-  void compare(std::size_t chunk, const ContactTable& pairs);
+  /// A clump has the demands of all its bodies.
+  void gather(std::size_t clump, const Clumps& clumps);
+  void compare(std::size_t chunk, const Instant& at);
 
   std::vector<double> demand_;  // by body, 1/s²
+  struct OfClumps {
+    std::vector<double> springs, least;  // by body, 1/s²: of its contacts; of one with its like
+    std::vector<double> dashpots;        // by body, 1/s: of contacts of which a clump is part
+    std::vector<double> dashpot;         // by clump
+  } clumps_;
   std::vector<Chunk> chunk_;
   double walls_walked_ = 0;
 };

@@ -109,6 +109,11 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
       throw Error("the periodic cell is " + std::to_string(period_[k] * 1e3) + " mm along " + "xyz"[k] +
                   ", shorter than twice the reach of its largest bodies, " + std::to_string(shortest * 1e3) +
                   " mm, so that a body would meet another one twice; make the cell longer");
+    for (const Clump& clump : bodies.clumps.clump)
+      if (cell.periodic[k] && period_[k] < 2 * clump.furthest + shortest)
+        throw Error("the periodic cell is " + std::to_string(period_[k] * 1e3) + " mm along " + "xyz"[k] +
+                    ", so short that a clump would meet itself, " +
+                    std::to_string((2 * clump.furthest + shortest) * 1e3) + " mm are needed; make the cell longer");
   }
 
   // A class a factor of 2.5 in radius: with 1:3 gradings one class, beyond that as many as it takes.
@@ -154,6 +159,7 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
   const Row* const position = bodies.position.data();
   const Row own = position[body];
   const double centre[3] = {own.x, own.y, own.z}, skin = skins_.of_body(body);
+  const std::uint32_t own_clump = bodies.clumps.clump_of(body);
   for (const Grid& grid : grids_) {
     if (grid.body.empty()) continue;
     const double reach = own.w + skin + grid.largest_reach;
@@ -179,7 +185,7 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
           if (begin == end || grid.body[end - 1] <= body) continue;
           for (std::uint32_t n = begin; n < end; ++n) {
             const std::uint32_t other = grid.body[n];
-            if (other <= body) continue;
+            if (other <= body || (own_clump != no_clump && bodies.clumps.clump_of(other) == own_clump)) continue;
             const Row& b = position[other];
             double d[3] = {b.x - own.x, b.y - own.y, b.z - own.z};
             std::uint8_t image = 0;

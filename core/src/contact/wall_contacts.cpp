@@ -30,11 +30,10 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
                            std::span<const StateField> fields, std::span<const std::uint32_t> order) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
-  if (chunks_.size() != chunks_of(count)) chunks_.resize(chunks_of(count));
-
   // Memories follow their bodies into other chunks.
   if (!order.empty()) {
-    std::vector<std::uint32_t> now(count);
+    constexpr std::uint32_t gone = ~0u;
+    std::vector<std::uint32_t> now(std::max(count, chunks_.size() * chunk_bodies), gone);
     for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
     std::vector<WallTouch> touch;
     std::vector<double> state;
@@ -44,8 +43,10 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
       chunk.touch.clear(), chunk.state.clear(), chunk.row.clear();
     }
     for (WallTouch& t : touch) t.body = now[t.body];
+    chunks_.resize(chunks_of(count));
     std::vector<std::size_t> place(touch.size());
     std::iota(place.begin(), place.end(), std::size_t{0});
+    std::erase_if(place, [&](std::size_t p) { return touch[p].body == gone; });
     std::sort(place.begin(), place.end(), [&](std::size_t p, std::size_t q) { return key(touch[p]) < key(touch[q]); });
     for (const std::size_t p : place) {
       Chunk& chunk = chunks_[touch[p].body / chunk_bodies];
@@ -56,6 +57,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
     }
   }
 
+  chunks_.resize(chunks_of(count));
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
     Chunk& chunk = chunks_[c];
     chunk.candidate.clear();

@@ -52,6 +52,20 @@ class Hold final : public Engine {
   bool rotation_ = true, translation_ = false;
 };
 
+class Planar final : public Engine {
+ public:
+  void declare(Parameters& p) override {
+    p.add("normal", normal_)
+        .one_of({"x", "y", "z"})
+        .doc("axis along which nothing moves, and about which alone bodies turn");
+  }
+  Phase phase() const override { return Phase::settings; }
+  void settings(MotionSettings& settings) const override { settings.flat = normal_[0] - 'x'; }
+
+ private:
+  std::string normal_ = "y";
+};
+
 template <class T>
 PluginInfo engine(const char* name, const char* doc) {
   PluginInfo info;
@@ -63,10 +77,11 @@ PluginInfo engine(const char* name, const char* doc) {
 }  // namespace
 
 std::span<const PluginInfo> builtin_engines() {
-  static const std::array<PluginInfo, 3> engines{
+  static const std::array<PluginInfo, 4> engines{
       engine<Gravity>("gravity", "the same acceleration for every body"),
       engine<LocalDamping>("local-damping", "Cundall's non-viscous damping of forces and moments"),
-      engine<Hold>("hold", "holds rotations or translations, for preparation")};
+      engine<Hold>("hold", "holds rotations or translations, for preparation"),
+      engine<Planar>("planar", "keeps bodies in planes: a two-dimensional scene")};
   return engines;
 }
 

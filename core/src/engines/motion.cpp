@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "engines/clump_motion.hpp"
+
 namespace grit {
 namespace {
 
@@ -20,23 +22,28 @@ Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-template <bool Energies>
+template <bool Energies, bool Clumps>
 Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
-  const Quad gravity_kick = quad(Vec3(settings.gravity * step.kick));
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
   // The mean flow at a body grows as the body goes with it: without that, bodies would fall behind the cell's sides.
   const Quad growth = rate * step.flowed;
   // The fourth number of a row (radius, 1/mass, 1/inertia) stays as it is.
-  const Quad kick = settings.hold_translation ? Quad{} : Quad{step.kick, step.kick, step.kick, 0};
-  const Quad turn_kick = settings.hold_rotation ? Quad{} : Quad{step.kick, step.kick, step.kick, 0};
-  const Quad fall = settings.hold_translation ? Quad{} : gravity_kick;
+  const Quad free = quad(step.free_translation());
+  const Quad kick = step.kick * free, turn_kick = step.kick * quad(step.free_rotation());
+  const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
   Quad fastest{}, poison{};
-  double damped_energy = 0, fallen = 0;
+  double damped_energy = 0, fallen = 0, fastest_carried = 0;
   for (std::size_t i = first; i < last; ++i) {
+    if constexpr (Clumps)
+      if (bodies.clumps.of_body[i].clump != no_clump) {
+        fastest_carried = std::max(fastest_carried, carry(i, bodies, step));
+        poison += load(bodies.velocity[i]) * 0.0 + load(bodies.spin[i]) * 0.0;
+        continue;
+      }
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(bodies.position[i]), v = load(bodies.velocity[i]), w = load(bodies.spin[i]);
     const double inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
@@ -63,14 +70,28 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     for (std::size_t i = first; i < last; ++i) bodies.rotation[i] += step.drift * xyz(bodies.spin[i]);
   if (!bodies.displacement.empty())
     for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
-  return {std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]),
-          poison[0] == 0 && poison[1] == 0 && poison[2] == 0, damped_energy, fallen};
+  const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
+  return {std::max(fastest_free, fastest_carried), poison[0] == 0 && poison[1] == 0 && poison[2] == 0, damped_energy,
+          fallen};
 }
 
 }  // namespace
 
+Vec3 MotionStep::free_translation() const {
+  Vec3 free = settings.hold_translation ? Vec3::Zero() : Vec3::Ones();
+  if (settings.flat) free[*settings.flat] = 0;
+  return free;
+}
+
+Vec3 MotionStep::free_rotation() const {
+  if (settings.hold_rotation) return Vec3::Zero();
+  return settings.flat ? Vec3(Vec3::Unit(*settings.flat)) : Vec3(Vec3::Ones());
+}
+
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
-  return step.energies ? move<true>(chunk, bodies, sum, step) : move<false>(chunk, bodies, sum, step);
+  if (bodies.clumps.none())
+    return step.energies ? move<true, false>(chunk, bodies, sum, step) : move<false, false>(chunk, bodies, sum, step);
+  return step.energies ? move<true, true>(chunk, bodies, sum, step) : move<false, true>(chunk, bodies, sum, step);
 }
 
 }  // namespace grit

@@ -11,12 +11,18 @@ namespace grit {
 /// One step of the leap-frog.
 struct MotionStep {
   MotionSettings settings;
-  double kick;       ///< s: from the last mid-step to the next, the time over which forces act
-  double drift;      ///< s: the step
-  double flowed;     ///< s: the step before, in which bodies went with the mean flow
-  Vec3 strain_rate;  ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
-  Vec3 centre;       ///< where that flow is zero [m]
-  bool energies;     ///< whether Motion's are asked for
+  double kick;         ///< s: from the last mid-step to the next, the time over which forces act
+  double drift;        ///< s: the step
+  double flowed;       ///< s: the step before, in which bodies went with the mean flow
+  Vec3 strain_rate;    ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
+  Vec3 centre;         ///< where that flow is zero [m]
+  Vec3 period;         ///< of the cell after the step [m], 0 along axes that are not periodic
+  Vec3 period_growth;  ///< m/s
+  bool energies;       ///< whether Motion's are asked for
+
+  /// 1 along axes along, or about, which bodies are free to move, 0 along others.
+  Vec3 free_translation() const;
+  Vec3 free_rotation() const;
 };
 
 /// What a chunk's bodies did.
@@ -27,7 +33,7 @@ struct Motion {
   double fallen = 0;         ///< work of gravity [J]
 };
 
-/// Moves the bodies of one chunk under `sum`, by index.
+/// Moves the bodies of one chunk under `sum`, by index; those of clumps follow their clumps, which have moved.
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
 }  // namespace grit

@@ -24,6 +24,7 @@ std::shared_ptr<SceneDescription> read_whole(const Document& document, const Reg
     if (std::ranges::none_of(problems, [&](const Problem& known) { return same(known, problem); }))
       problems.push_back(problem);
   if (!found.empty()) return nullptr;
+  for (auto& [name, group] : scene->bodies) group.kind->prepare();
   for (auto& [name, wall] : scene->walls) wall.geometry->prepare();
   return scene;
 }

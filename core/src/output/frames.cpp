@@ -66,12 +66,36 @@ void write_bodies(hdf5::Group group, const World& world) {
                 [rows = world.spins()](auto i) { return xyz(rows[i]); });
   bodies.scalar<std::int32_t>({"material", "1", "place of the material in the description, from 0", {}},
                               [materials = world.materials()](auto i) { return materials[i]; });
+  if (const auto clump_of = world.clump_of(); !clump_of.empty())
+    bodies.scalar<std::int64_t>({"clump", "1", "id of the clump that the body is part of; -1 by itself", {}},
+                                [&, clumps = world.clumps()](auto i) -> std::int64_t {
+                                  return clump_of[i] == no_clump ? -1 : std::int64_t{clumps[clump_of[i]].id};
+                                });
   if (const auto rotations = world.rotations(); !rotations.empty())
     bodies.vector({"rotation", "rad", "cumulative rotation vector, right-handed", {}},
                   [&](auto i) { return rotations[i]; });
   if (const auto displacements = world.displacements(); !displacements.empty())
     bodies.vector({"displacement", "m", "displacement since the start of the stage", {}},
                   [&](auto i) { return displacements[i]; });
+}
+
+void write_clumps(hdf5::Group group, const World& world) {
+  std::vector<std::int64_t> id;
+  std::vector<double> centre, orientation, spin, radius;
+  for (const ClumpView& clump : world.clumps()) {
+    const Eigen::Quaterniond turn(clump.axes);
+    id.push_back(clump.id), radius.push_back(clump.radius);
+    centre.insert(centre.end(), clump.centre.begin(), clump.centre.end());
+    orientation.insert(orientation.end(), {turn.w(), turn.x(), turn.y(), turn.z()});
+    spin.insert(spin.end(), clump.spin.begin(), clump.spin.end());
+  }
+  const auto n = id.size();
+  put(group, {"id", "1", "number that the clump keeps for the whole run", {}}, {n}, id);
+  put(group, {"centre", "m", "centre of mass", {}}, {n, 3}, centre);
+  put(group, {"orientation", "1", "unit quaternion (w, x, y, z) of the principal axes", {}}, {n, 4}, orientation);
+  put(group, {"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}}, {n, 3},
+      spin);
+  put(group, {"radius", "m", "of the enclosing sphere", {}}, {n}, radius);
 }
 
 void write_contacts(hdf5::Group group, const World& world) {
@@ -170,6 +194,7 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   file.set_attribute("step", world.step());
   file.set_attribute("stage", world.stage());
   write_bodies(file.create_group("bodies"), world);
+  if (!world.clumps().empty()) write_clumps(file.create_group("clumps"), world);
   write_contacts(file.create_group("contacts"), world);
   write_walls(file.create_group("walls"), world, walls_);
   write_probes(file.create_group("probes"), fields);

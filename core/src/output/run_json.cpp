@@ -98,6 +98,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"cpu_s", 0.0},
            {"particle_steps_per_s", nullptr},
            {"rebuilds", nullptr},
+           {"model", nullptr},
            {"phases_s", Description::object()},
            {"stages", Description::array()},
            {"plugins", Description::array()},
@@ -142,6 +143,17 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
   json_["wall_s"] = summary.wall_seconds;
   json_["particle_steps_per_s"] = summary.particle_steps_per_second;
   json_["rebuilds"] = summary.rebuilds;
+  const Model& model = summary.model;
+  json_["model"] = {{"lanes", model.lanes},
+                    {"law_parts", model.law_parts},
+                    {"contact_state", model.contact_state},
+                    {"body_state", model.body_state},
+                    {"one_material", model.one_material},
+                    {"periodic", model.periodic},
+                    {"walls", model.walls},
+                    {"gravity", model.gravity},
+                    {"local_damping", model.local_damping},
+                    {"bytes", model.bytes}};
   for (const auto& phase : summary.phases) json_["phases_s"][phase.name] = phase.seconds;
   json_["host"]["load_average_at_end"] = load_average();
   json_["ended"] = now();

@@ -54,6 +54,9 @@ struct Met {
     return without_forces ||
            std::abs(wall(simulation, c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
   }
+  bool operator()(const LeftCondition& c) const {
+    return simulation.share_left() >= c.share * (1 - 1e-12) || simulation.ids().empty();
+  }
   bool operator()(const AllCondition& c) const {
     return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one->is.value()); });
   }
@@ -74,6 +77,7 @@ struct Progress {
   std::optional<double> operator()(const DisplacementCondition& c) const {
     return stage_travel(c, simulation) / c.value;
   }
+  std::optional<double> operator()(const LeftCondition& c) const { return simulation.share_left() / c.share; }
   std::optional<double> operator()(const AllCondition& c) const {
     std::optional<double> least;
     for (const auto& one : c.of)

@@ -263,10 +263,10 @@ class Run {
     summary.bodies = bodies;
     summary.contacts_per_body = contact_samples_ > 0 ? contact_sum_ / static_cast<double>(contact_samples_) : 0;
     summary.wall_seconds = stepping_;
-    summary.particle_steps_per_second =
-        stepping_ > 0 ? static_cast<double>(bodies) * static_cast<double>(summary.steps) / stepping_ : 0;
+    summary.particle_steps_per_second = stepping_ > 0 ? simulation_.body_steps() / stepping_ : 0;
     summary.rebuilds = simulation_.clock().rebuilds;
     summary.threads = simulation_.threads();
+    summary.model = simulation_.model();
     summary.phases = simulation_.phases();
     summary.phases.insert(summary.phases.end(), phases_.begin(), phases_.end());
   }

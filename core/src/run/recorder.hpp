@@ -29,6 +29,16 @@ struct PhaseTime {
   double seconds = 0;
 };
 
+/// What was stored and computed; the rest was left out, because nothing asked for it.
+struct Model {
+  std::size_t lanes = 1;                   ///< pairs that the contact law's loop takes at once
+  std::vector<std::string> law_parts;      ///< of the contact law, compiled into that loop
+  std::vector<std::string> contact_state;  ///< what each contact remembers
+  std::vector<std::string> body_state;     ///< of bodies, beyond position, velocity and spin
+  bool one_material = true, periodic = false, walls = false, gravity = false, local_damping = false;
+  std::size_t bytes = 0;  ///< held by bodies and contacts
+};
+
 /// How a run ended.
 struct RunSummary {
   std::string status;   ///< "done", "interrupted", "failed"
@@ -44,6 +54,7 @@ struct RunSummary {
   std::size_t rebuilds = 0;  ///< of the neighbour lists
   unsigned threads = 1;
   std::vector<PhaseTime> phases;
+  Model model;
 };
 
 class Recorder {

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "engines/clump_motion.hpp"
 #include "grit/error.hpp"
 #include "run/number.hpp"
 #include "run/stopwatch.hpp"
@@ -53,15 +54,20 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
   clock_.period_before = clock_.cell.high - clock_.cell.low;
 
   const std::size_t count = bodies_.count();
-  double diameters = 0, mass = 0, volume = 0;
+  double diameters = 0, volume = 0;
+  std::size_t grains = bodies_.clumps.clump.size();
   smallest_radius_ = count > 0 ? std::numeric_limits<double>::max() : 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double r = bodies_.position[i].w;
-    diameters += 2 * r, mass += 1 / bodies_.velocity[i].w, volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
     largest_radius_ = std::max(largest_radius_, r), smallest_radius_ = std::min(smallest_radius_, r);
     one_material_ = one_material_ && bodies_.material[i] == 0;
+    if (bodies_.clumps.clump_of(i) != no_clump) continue;
+    ++grains;
+    diameters += 2 * r, mass_ += 1 / bodies_.velocity[i].w, volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
   }
-  if (count > 0) mean_diameter_ = diameters / static_cast<double>(count), solid_density_ = mass / volume;
+  for (const Clump& clump : bodies_.clumps.clump)
+    diameters += 2 * clump.radius, mass_ += 1 / clump.inverse_mass, volume += clump.volume;
+  if (grains > 0) mean_diameter_ = diameters / static_cast<double>(grains), solid_density_ = mass_ / volume;
   sum_.assign(count + 1, {});
   chunk_.assign(chunks_of(count), {});
   begin_stage("", scene);
@@ -93,11 +99,21 @@ void Simulation::apply(const SceneDescription& scene) {
     if (engine.engine->phase() == Phase::settings) engine.engine->settings(settings_);
     else force_engines_.push_back(engine.engine.get());
   }
+  if (settings_.flat) flatten(*settings_.flat);
   // Bodies take part in the mean flow of a deforming cell from its first instant.
   const Vec3 change_of_rate = scene.domain.strain_rate - clock_.cell.strain_rate;
   if (!change_of_rate.isZero(0.0)) {
+    const auto flow = [&](const Vec3& place) -> Vec3 { return change_of_rate.cwiseProduct(place - centre()); };
+    for (Clump& clump : bodies_.clumps.clump) clump.velocity += flow(clump.centre);
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
-      const Vec3 v = change_of_rate.cwiseProduct(xyz(bodies_.position[i]) - centre());
+      Vec3 v = flow(xyz(bodies_.position[i]));
+      if (const std::uint32_t c = bodies_.clumps.clump_of(i); c != no_clump) {
+        const auto& periods = bodies_.clumps.of_body[i].periods;
+        const Vec3 period = clock_.cell.high - clock_.cell.low;
+        v = flow(bodies_.clumps.clump[c].centre);
+        for (int k = 0; k < 3; ++k)
+          if (clock_.cell.periodic[k]) v[k] -= periods[static_cast<std::size_t>(k)] * change_of_rate[k] * period[k];
+      }
       bodies_.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
     }
     clock_.cell.strain_rate = scene.domain.strain_rate;
@@ -122,7 +138,18 @@ void Simulation::apply(const SceneDescription& scene) {
   energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
   time_step_now_ = true;
   stiffens_ = law_stiffens();
-  net_step_ = contact_step_ = wall_step_ = ~0ull;
+  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+}
+
+void Simulation::flatten(int axis) {
+  if (!bodies_.clumps.none())
+    throw Error("clumps turn about all axes, so that they cannot move in a plane; leave out the engine \"planar\"");
+  for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    Vec3 v = xyz(bodies_.velocity[i]), w = xyz(bodies_.spin[i]);
+    v[axis] = 0, w = w.cwiseProduct(Vec3::Unit(axis));
+    bodies_.velocity[i] = {v.x(), v.y(), v.z(), bodies_.velocity[i].w};
+    bodies_.spin[i] = {w.x(), w.y(), w.z(), bodies_.spin[i].w};
+  }
 }
 
 void Simulation::update_shifts() {
@@ -177,30 +204,86 @@ bool Simulation::search_is_due() {
   return false;
 }
 
-void Simulation::wrap() {
-  const Vec3 period = clock_.cell.high - clock_.cell.low, growth = growth_of_period(clock_);
-  for (std::size_t i = 0; i < bodies_.count(); ++i) {
-    Vec3 x = xyz(bodies_.position[i]), v = xyz(bodies_.velocity[i]);
-    bool moved = false;
+bool Simulation::may_leave(int axis, bool high) const {
+  const std::string side = std::string(high ? "+" : "-") + "xyz"[axis];
+  return std::ranges::find(scene_->domain.open_sides, side) != scene_->domain.open_sides.end();
+}
+
+std::vector<bool> Simulation::wrap() {
+  const Cell& cell = clock_.cell;
+  const Vec3 period = cell.high - cell.low, growth = growth_of_period(clock_);
+  std::vector<bool> leaves(bodies_.count(), false);
+  const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
+  const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
+  // A clump leaves as a whole, by its centre.
+  for (Clump& clump : bodies_.clumps.clump)
     for (int k = 0; k < 3; ++k) {
-      if (!clock_.cell.periodic[k]) {
-        if (x[k] < clock_.cell.low[k] || x[k] > clock_.cell.high[k])
-          fail_at_body(i,
-                       "left the domain through its " + std::string(x[k] < clock_.cell.low[k] ? "lower" : "upper") +
-                           " " + "xyz"[k] + " side",
-                       "close the domain there with a wall, or make it larger");
+      if (!cell.periodic[k]) {
+        if (!outside(clump.centre, k) || !may_leave(k, clump.centre[k] > cell.high[k])) continue;
+        for (std::uint32_t s = clump.first; s < clump.last; ++s) leaves[bodies_.clumps.spheres[s]] = true;
         continue;
       }
-      const double periods = std::floor((x[k] - clock_.cell.low[k]) / period[k]);
+      const double periods = periods_off(clump.centre, k);
+      if (periods == 0) continue;
+      clump.centre[k] -= periods * period[k], clump.velocity[k] -= periods * growth[k];
+      for (std::uint32_t s = clump.first; s < clump.last; ++s)
+        bodies_.clumps.of_body[bodies_.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
+            static_cast<std::int8_t>(periods);
+    }
+  for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    Vec3 x = xyz(bodies_.position[i]), v = xyz(bodies_.velocity[i]);
+    const bool in_clump = bodies_.clumps.clump_of(i) != no_clump;
+    bool moved = false;
+    for (int k = 0; k < 3; ++k) {
+      if (!cell.periodic[k]) {
+        const bool high = x[k] > cell.high[k];
+        if (!outside(x, k)) continue;
+        if (!may_leave(k, high))
+          fail_at_body(
+              i, "left the domain through its " + std::string(high ? "upper" : "lower") + " " + "xyz"[k] + " side",
+              "close the domain there with a wall, make it larger, or name the side in /domain/open_sides");
+        if (!in_clump) leaves[i] = true;
+        continue;
+      }
+      const double periods = periods_off(x, k);
       if (periods == 0) continue;
       x[k] -= periods * period[k], v[k] -= periods * growth[k];
-      if (x[k] >= clock_.cell.high[k]) x[k] = clock_.cell.low[k];
+      if (in_clump) bodies_.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
+      else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
       moved = true;
     }
     if (!moved) continue;
     bodies_.position[i] = {x.x(), x.y(), x.z(), bodies_.position[i].w};
     bodies_.velocity[i] = {v.x(), v.y(), v.z(), bodies_.velocity[i].w};
   }
+  return leaves;
+}
+
+void Simulation::take_leave(const std::vector<bool>& leaves) {
+  const auto depart = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass) {
+    departures_.push_back({.id = bodies_.id[i],
+                           .material = bodies_.material[i],
+                           .time = clock_.time,
+                           .mass = 1 / inverse_mass,
+                           .position = x});
+    mass_left_ += 1 / inverse_mass;
+    if (flows_.begun) flows_.settings -= 0.5 / inverse_mass * v.squaredNorm();
+  };
+  std::vector<std::size_t> leaving;
+  for (std::size_t i = 0; i < bodies_.count(); ++i)
+    if (leaves[i]) leaving.push_back(i);
+  std::ranges::sort(leaving, {}, [this](std::size_t i) { return bodies_.id[i]; });
+  for (const std::size_t i : leaving) {
+    const std::uint32_t c = bodies_.clumps.clump_of(i);
+    if (c == no_clump) {
+      depart(i, xyz(bodies_.position[i]), xyz(bodies_.velocity[i]), bodies_.velocity[i].w);
+      if (flows_.begun) flows_.settings -= 0.5 / bodies_.spin[i].w * xyz(bodies_.spin[i]).squaredNorm();
+    } else if (const Clump& clump = bodies_.clumps.clump[c]; bodies_.clumps.spheres[clump.first] == i) {
+      depart(i, clump.centre, clump.velocity, clump.inverse_mass);
+      if (flows_.begun) flows_.settings -= 0.5 * clump.momentum.dot(clump.spin);
+    }
+  }
+  energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
 }
 
 /// By speeds alone, so that a run is the same on every machine.
@@ -229,11 +312,17 @@ void Simulation::lay_on_skins() {
 }
 
 void Simulation::search() {
-  wrap();
+  const std::vector<bool> leaves = wrap();
+  const bool some_leave = std::ranges::find(leaves, true) != leaves.end();
   std::vector<std::uint32_t> order;
-  if (clock_.rebuilds % reorder_every == 0) {
+  if (clock_.rebuilds % reorder_every == 0 || some_leave) {
     order = spatial_order(bodies_, clock_.cell);
+    if (some_leave) {
+      take_leave(leaves);
+      std::erase_if(order, [&](std::uint32_t i) { return leaves[i]; });
+    }
     bodies_.reorder(order);
+    sum_.resize(bodies_.count() + 1), chunk_.resize(chunks_of(bodies_.count()));
   }
   lay_on_skins();
   search_.build(bodies_, clock_.cell, clock_.skins);
@@ -280,6 +369,7 @@ void Simulation::choose_time_step(double contacts_allow) {
     return;
   }
   const double safe = wish.safety * clock_.critical_time_step;
+  if (!std::isfinite(safe) && clock_.time_step > 0) return;  // all bodies have left
   if (!std::isfinite(safe))
     throw Error(bodies_.count() == 0 ? "there is no body, so that there is no time step; give /time_step/value"
                                      : "contacts have no stiffness to speak of, so that no time step is too long; make "
@@ -288,7 +378,7 @@ void Simulation::choose_time_step(double contacts_allow) {
 }
 
 bool Simulation::prepare() {
-  net_step_ = contact_step_ = wall_step_ = ~0ull;
+  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
   update_shifts();
   update_surfaces();
   {
@@ -373,12 +463,18 @@ void Simulation::find_forces() {
 
 MotionStep Simulation::next_motion() const {
   const double dt = clock_.time_step;
+  Vec3 period = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (clock_.cell.periodic[k]) period[k] = clock_.cell.high[k] - clock_.cell.low[k];
+  const Vec3 growth = period.cwiseProduct(clock_.cell.strain_rate);
   return {.settings = settings_,
           .kick = clock_.last_time_step > 0 ? 0.5 * (clock_.last_time_step + dt) : 0.5 * dt,
           .drift = dt,
           .flowed = clock_.last_time_step,
           .strain_rate = clock_.cell.strain_rate,
           .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre(),
+          .period = period + dt * growth,
+          .period_growth = growth,
           .energies = bodies_.energies};
 }
 
@@ -394,6 +490,13 @@ void Simulation::and_show_forces(Work work) {
 
 void Simulation::advance() {
   const MotionStep next = next_motion();
+  const std::size_t clumps = bodies_.clumps.clump.size();
+  if (clumps > 0)
+    pass([&](std::size_t chunk, Laps& laps) {
+      const std::size_t first = std::min(clumps, chunk * chunk_bodies), last = std::min(clumps, first + chunk_bodies);
+      chunk_[chunk].clumps = move_clumps(first, last, bodies_, sum_.data(), next);
+      laps(chunk_[chunk].seconds[motion]);
+    });
   pass([&](std::size_t chunk, Laps& laps) {
     move(chunk, sum_.data(), next);
     laps(chunk_[chunk].seconds[motion]);
@@ -404,7 +507,8 @@ void Simulation::advance() {
 /// Forces decide on nothing that bodies must wait for: neither the time step, nor what engines add.
 bool Simulation::in_one_pass() const {
   const bool free_walls = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& wall) { return wall.free; });
-  return force_engines_.empty() && !free_walls && clock_.step % energy_check_every != 0 && !springs_may_stiffen();
+  return force_engines_.empty() && bodies_.clumps.none() && !free_walls && clock_.step % energy_check_every != 0 &&
+         !springs_may_stiffen();
 }
 
 /// Asked before forces, whoever wants them, so that the time step does not depend on that.
@@ -481,7 +585,7 @@ void Simulation::show_forces() {
     const Row row{unknown, unknown, unknown, unknown};
     sum_.assign(sum_.size(), {row, row});
   }
-  net_step_ = contact_step_ = wall_step_ = ~0ull;
+  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
 }
 
 void Simulation::end_step() {
@@ -492,7 +596,10 @@ void Simulation::end_step() {
   walls_.drive(dt);
   const double work = work_at_start + 0.5 * dt * power_of_walls();
   energy_.work += work, flows_.walls += work;
-  for (const Chunk& chunk : chunk_) flows_.damped += chunk.motion.damped, flows_.fallen += chunk.motion.fallen;
+  for (const Chunk& chunk : chunk_) {
+    flows_.damped += chunk.motion.damped + chunk.clumps.damped;
+    flows_.fallen += chunk.motion.fallen + chunk.clumps.fallen;
+  }
   double fastest = 0;
   bool finite = true;
   for (const Chunk& chunk : chunk_)
@@ -500,6 +607,7 @@ void Simulation::end_step() {
   walls_.move(dt);
   clock_.time += dt;
   ++clock_.step;
+  body_steps_ += static_cast<double>(bodies_.count());
   clock_.period_before = clock_.cell.high - clock_.cell.low;
   if (!clock_.cell.strain_rate.isZero(0.0)) {
     const Vec3 middle = centre();
@@ -567,11 +675,29 @@ std::vector<PhaseTime> Simulation::phases() const {
   return phases;
 }
 
+Model Simulation::model() const {
+  Model model;
+  const LawLoop loop = law_->loop();
+  model.lanes = loop.lanes, model.law_parts = loop.parts;
+  for (const StateField& field : fields_) model.contact_state.push_back(field.name);
+  const auto add = [&](bool there, const char* name) {
+    if (there) model.body_state.push_back(name);
+  };
+  add(!bodies_.rotation.empty(), "rotation"), add(!bodies_.displacement.empty(), "displacement");
+  add(bodies_.energies, "energy"), add(!bodies_.clumps.none(), "clump");
+  model.one_material = one_material_, model.periodic = periodic_, model.walls = walls_.size() > 0;
+  model.gravity = !settings_.gravity.isZero(0.0), model.local_damping = settings_.local_damping > 0;
+  model.bytes = memory();
+  return model;
+}
+
 std::size_t Simulation::memory() const {
   const std::size_t bodies =
       bodies_.count() * (4 * sizeof(Row) + sizeof(BodySum) + 5 + (bodies_.rotation.empty() ? 0 : sizeof(Vec3)) +
                          (bodies_.displacement.empty() ? 0 : sizeof(Vec3)));
-  return bodies + pairs_.memory();
+  const Clumps& clumps = bodies_.clumps;
+  return bodies + pairs_.memory() + clumps.clump.size() * sizeof(Clump) +
+         clumps.of_body.size() * (sizeof(ClumpSphere) + sizeof(std::uint32_t) + sizeof(double));
 }
 
 }  // namespace grit

@@ -86,9 +86,14 @@ class Simulation final : public World {
   const Clock& clock() const { return clock_; }
   unsigned threads() const { return team_.threads(); }
   std::size_t pair_count() const { return pairs_.touching_count(); }
+  /// Share of the mass at the start that has left.
+  double share_left() const { return mass_ > 0 ? mass_left_ / mass_ : 0; }
   std::size_t candidate_count() const { return pairs_.candidates(); }
   std::vector<PhaseTime> phases() const;
   const Walls& wall_states() const { return walls_; }
+  Model model() const;
+  /// Steps of bodies, summed over all.
+  double body_steps() const { return body_steps_; }
   /// Bytes held by bodies and contacts.
   std::size_t memory() const;
   const WallContacts& wall_contacts() const { return wall_contacts_; }
@@ -106,6 +111,11 @@ class Simulation final : public World {
   std::span<const std::uint8_t> materials() const override { return {bodies_.material.data(), bodies_.count()}; }
   std::span<const Vec3> rotations() const override { return bodies_.rotation; }
   std::span<const Vec3> displacements() const override { return bodies_.displacement; }
+  std::span<const std::uint32_t> clump_of() const override;
+  std::span<const ClumpView> clumps() const override;
+  std::span<const Vec3> arms() const override;
+  std::span<const double> volume_shares() const override { return bodies_.clumps.volume_share; }
+  std::span<const Departure> departures() const override { return departures_; }
   std::span<const Row> forces() const override;
   std::span<const Row> moments() const override;
   std::span<const Contact> contacts() const override;
@@ -151,7 +161,12 @@ class Simulation final : public World {
   bool search_is_due();
   void lay_on_skins();
   void search();
-  void wrap();
+  /// Puts bodies back into the periodic cell. Returns which have left through an open side.
+  std::vector<bool> wrap();
+  bool may_leave(int axis, bool high) const;
+  void take_leave(const std::vector<bool>& leaves);
+  /// Stops what moves out of a plane.
+  void flatten(int axis);
   /// For what contacts ask now.
   void set_time_step();
   void choose_time_step(double contacts_allow);
@@ -204,7 +219,7 @@ class Simulation final : public World {
   struct alignas(64) Chunk {
     double overlap = 0;
     Losses losses;
-    Motion motion;
+    Motion motion, clumps;
     bool moved = false;
     std::array<double, part_count> seconds{};
   };
@@ -212,6 +227,9 @@ class Simulation final : public World {
   Readiness readiness_;
   std::vector<std::size_t> late_;  // chunks that could not move at once
   std::vector<PhaseTime> phases_;
+  std::vector<Departure> departures_;
+  double mass_ = 0, mass_left_ = 0;  // kg, at the start and of departures
+  double body_steps_ = 0;
   double passes_ = 0;  // s, in which the threads shared chunks
   double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
   bool one_material_ = true, periodic_ = false, search_now_ = true, time_step_now_ = true;
@@ -219,6 +237,10 @@ class Simulation final : public World {
 
   // What probes ask for, worked out at most once an instant.
   mutable std::vector<Row> net_force_, net_moment_;
+  mutable std::vector<std::uint32_t> clump_of_;
+  mutable std::vector<ClumpView> clump_views_;
+  mutable std::vector<Vec3> arms_of_bodies_;
+  mutable std::uint64_t clump_step_ = ~0ull;
   mutable std::vector<Contact> contact_list_;
   mutable std::vector<WallView> wall_views_;
   mutable std::uint64_t net_step_ = ~0ull, contact_step_ = ~0ull, wall_step_ = ~0ull;

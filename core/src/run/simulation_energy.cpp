@@ -40,7 +40,9 @@ double Simulation::kinetic_energy() const {
   const double half = 0.5 * clock_.last_time_step;
   const auto force = forces(), moment = moments();
   double energy = 0;
+  for (const ClumpView& clump : clumps()) energy += kinetic_energy_of(clump, half);
   for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    if (bodies_.clumps.clump_of(i) != no_clump) continue;
     const Row &v = bodies_.velocity[i], &w = bodies_.spin[i];
     energy += 0.5 / v.w * (xyz(v) + half * v.w * xyz(force[i])).squaredNorm() +
               0.5 / w.w * (xyz(w) + half * w.w * xyz(moment[i])).squaredNorm();

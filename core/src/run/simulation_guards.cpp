@@ -36,8 +36,10 @@ double Simulation::kinetic_energy_ratio() const {
 
 double Simulation::gravitational() const {
   double energy = 0;
+  for (const Clump& clump : bodies_.clumps.clump) energy -= settings_.gravity.dot(clump.centre) / clump.inverse_mass;
   for (std::size_t i = 0; i < bodies_.count(); ++i)
-    energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
+    if (bodies_.clumps.clump_of(i) == no_clump)
+      energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
   return energy;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engines/clump_motion.hpp"
 #include "grit/error.hpp"
 #include "run/simulation.hpp"
 
@@ -11,7 +12,8 @@ std::span<const Row> Simulation::forces() const {
   if (net_step_ != clock_.step) {
     net_force_.resize(bodies_.count()), net_moment_.resize(bodies_.count());
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
-      const Vec3 weight = settings_.gravity / bodies_.velocity[i].w;
+      const bool alone = bodies_.clumps.clump_of(i) == no_clump;
+      const Vec3 weight = alone ? Vec3(settings_.gravity / bodies_.velocity[i].w) : Vec3(Vec3::Zero());
       net_force_[i] = sum_[i].force, net_moment_[i] = sum_[i].moment;
       net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
       net_force_[i].w = net_moment_[i].w = 0;
@@ -24,6 +26,43 @@ std::span<const Row> Simulation::forces() const {
 std::span<const Row> Simulation::moments() const {
   static_cast<void>(forces());
   return net_moment_;
+}
+
+std::span<const std::uint32_t> Simulation::clump_of() const {
+  static_cast<void>(clumps());
+  return clump_of_;
+}
+
+std::span<const Vec3> Simulation::arms() const {
+  static_cast<void>(clumps());
+  return arms_of_bodies_;
+}
+
+std::span<const ClumpView> Simulation::clumps() const {
+  if (bodies_.clumps.none() || clump_step_ == clock_.step) return clump_views_;
+  clump_views_.clear();
+  clump_of_.resize(bodies_.count()), arms_of_bodies_.assign(bodies_.count(), Vec3::Zero());
+  for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    const ClumpSphere& own = bodies_.clumps.of_body[i];
+    clump_of_[i] = own.clump;
+    if (own.clump != no_clump) arms_of_bodies_[i] = bodies_.clumps.clump[own.clump].axes * own.place;
+  }
+  for (const Clump& clump : bodies_.clumps.clump) {
+    const ClumpLoad load = load_of(clump, bodies_, sum_.data());
+    clump_views_.push_back({.id = clump.id,
+                            .centre = clump.centre,
+                            .velocity = clump.velocity,
+                            .spin = clump.spin,
+                            .momentum = clump.momentum,
+                            .force = load.force + settings_.gravity / clump.inverse_mass,
+                            .moment = load.moment,
+                            .radius = clump.radius,
+                            .mass = 1 / clump.inverse_mass,
+                            .axes = clump.axes,
+                            .inertia = clump.inertia});
+  }
+  clump_step_ = clock_.step;
+  return clump_views_;
 }
 
 std::span<const Contact> Simulation::contacts() const {

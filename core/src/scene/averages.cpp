@@ -52,6 +52,12 @@ double World::mean_contact_force() const {
   return contacts().empty() ? 0 : sum / static_cast<double>(contacts().size());
 }
 
+double kinetic_energy_of(const ClumpView& clump, double later) {
+  const Vec3 velocity = clump.velocity + later / clump.mass * clump.force;
+  const Vec3 momentum = clump.axes.transpose() * (clump.momentum + later * clump.moment);
+  return 0.5 * clump.mass * velocity.squaredNorm() + 0.5 * momentum.dot(momentum.cwiseQuotient(clump.inertia));
+}
+
 Unrest unrest(const World& world) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
   // Velocities are half a step old, but for the first; the acceleration that now acts brings them up to time().
@@ -62,7 +68,11 @@ Unrest unrest(const World& world) {
   };
   double kinetic = 0, net = 0;
   std::size_t movable = 0;
+  const auto clump_of = world.clump_of();
+  for (const ClumpView& clump : world.clumps())
+    kinetic += kinetic_energy_of(clump, half_step), net += clump.force.norm(), ++movable;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
+    if (!clump_of.empty() && clump_of[i] != no_clump) continue;
     kinetic += energy(velocities[i], forces[i]) + energy(spins[i], moments[i]);
     if (velocities[i].w > 0) net += xyz(forces[i]).norm(), ++movable;
   }
@@ -71,14 +81,41 @@ Unrest unrest(const World& world) {
   return {.kinetic_energy = kinetic, .unbalanced_force = normal > 0 ? net / normal : 0, .mean_contact_force = normal};
 }
 
+Grains grains_of(const World& world) {
+  Grains grains;
+  const auto positions = world.positions();
+  const auto clump_of = world.clump_of();
+  for (const ClumpView& clump : world.clumps()) grains.centre.push_back(clump.centre);
+  grains.of_body.resize(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const bool alone = clump_of.empty() || clump_of[i] == no_clump;
+    grains.of_body[i] = alone ? static_cast<std::uint32_t>(grains.centre.size()) : clump_of[i];
+    if (alone) grains.centre.push_back(xyz(positions[i]));
+  }
+  return grains;
+}
+
+Branch branch_of(const World& world, const Contact& contact) {
+  Branch branch{xyz(world.positions()[contact.a]), contact.branch};
+  const auto arms = world.arms();
+  if (arms.empty()) return branch;
+  branch.start -= arms[contact.a], branch.way += arms[contact.a];
+  if (!contact.with_wall) branch.way -= arms[contact.b];
+  return branch;
+}
+
 double void_ratio(const World& world, const Region& region) {
   const double volume = region.volume();
   if (!(volume > 0) || !std::isfinite(volume)) return std::numeric_limits<double>::infinity();
   double solid = 0;
-  for (const auto& body : world.positions()) {
-    const Vec3 centre = xyz(body), reach = Vec3::Constant(body.w);
-    for_images(world.cell(), region, centre - reach, centre + reach,
-               [&](const Vec3& shift) { solid += sphere_box_volume(centre + shift, body.w, region.low, region.high); });
+  const auto positions = world.positions();
+  const auto shares = world.volume_shares();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Vec3 centre = xyz(positions[i]), reach = Vec3::Constant(positions[i].w);
+    const double share = shares.empty() ? 1 : shares[i];
+    for_images(world.cell(), region, centre - reach, centre + reach, [&](const Vec3& shift) {
+      solid += share * sphere_box_volume(centre + shift, positions[i].w, region.low, region.high);
+    });
   }
   return solid > 0 ? volume / solid - 1 : std::numeric_limits<double>::infinity();
 }
@@ -87,13 +124,13 @@ Mat3 mean_stress(const World& world, const Region& region) {
   const double volume = region.volume();
   Mat3 sum = Mat3::Zero();
   if (!(volume > 0) || !std::isfinite(volume)) return sum;
-  const auto positions = world.positions();
   for (const auto& contact : world.contacts()) {
-    const Vec3 start = xyz(positions[contact.a]), end = start + contact.branch;
+    const Branch branch = branch_of(world, contact);
+    const Vec3 &start = branch.start, end = start + branch.way;
     double share = 0;
     for_images(world.cell(), region, start.cwiseMin(end), start.cwiseMax(end),
-               [&](const Vec3& shift) { share += share_inside(start + shift, contact.branch, region); });
-    if (share > 0) sum += share * contact.force * contact.branch.transpose();
+               [&](const Vec3& shift) { share += share_inside(start + shift, branch.way, region); });
+    if (share > 0) sum += share * contact.force * branch.way.transpose();
   }
   return sum / volume;
 }

@@ -1,14 +1,17 @@
 #include "scene/bodies.hpp"
 
+#include <algorithm>
+
 namespace grit {
 namespace {
 
+/// Values of `count` bodies and of the padding after them.
 template <class Array>
-void permute(Array& values, std::span<const std::uint32_t> order) {
+void permute(Array& values, std::span<const std::uint32_t> order, std::size_t count) {
   if (values.empty()) return;
-  Array moved(values.size());
+  Array moved(order.size() + values.size() - count);
   for (std::size_t i = 0; i < order.size(); ++i) moved[i] = values[order[i]];
-  for (std::size_t i = order.size(); i < values.size(); ++i) moved[i] = values[i];
+  for (std::size_t i = order.size(); i < moved.size(); ++i) moved[i] = values[count + i - order.size()];
   values.swap(moved);
 }
 
@@ -28,6 +31,31 @@ void Bodies::add(const Vec3& centre, double radius, double mass, double inertia,
   id.push_back(static_cast<std::uint32_t>(id.size()));
 }
 
+void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass,
+                       const Eigen::Quaterniond& orientation, std::uint8_t body_material, const Vec3& v,
+                       const Vec3& w) {
+  Clump clump;
+  clump.id = static_cast<std::uint32_t>(clumps.clump.size());
+  clump.first = static_cast<std::uint32_t>(clumps.spheres.size());
+  clump.centre = centre, clump.velocity = v, clump.spin = w;
+  clump.orientation = orientation, clump.axes = orientation.toRotationMatrix();
+  clump.inertia = mass * radius * radius * shape.inertia;
+  clump.momentum = clump.axes * clump.inertia.cwiseProduct(clump.axes.transpose() * w);
+  clump.inverse_mass = 1 / mass, clump.radius = radius, clump.volume = shape.volume * radius * radius * radius;
+  clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+  for (std::size_t k = 0; k < shape.spheres.size(); ++k) {
+    const Vec3 place = radius * xyz(shape.spheres[k]), arm = clump.axes * place;
+    const double sphere_radius = radius * shape.spheres[k].w;
+    clump.furthest = std::max(clump.furthest, place.norm() + sphere_radius);
+    clumps.spheres.push_back(static_cast<std::uint32_t>(count()));
+    add(centre + arm, sphere_radius, mass, clump.inertia.minCoeff(), body_material, v + w.cross(arm), w);
+    clumps.of_body.push_back({.clump = clump.id, .periods = {}, .place = place});
+    clumps.volume_share.push_back(shape.shares[k]);
+  }
+  clump.last = static_cast<std::uint32_t>(clumps.spheres.size());
+  clumps.clump.push_back(clump);
+}
+
 void Bodies::finish(StateRequest state) {
   constexpr double far_away = 1e150;  // its square is still finite
   position.push_back({far_away, far_away, far_away, 0});
@@ -35,14 +63,34 @@ void Bodies::finish(StateRequest state) {
   spin.push_back({});
   material.push_back(0);
   energies = state.has(BodyState::energy);
+  if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
   if (state.has(BodyState::rotation)) rotation.assign(count(), Vec3::Zero());
   if (state.has(BodyState::displacement)) displacement.assign(count(), Vec3::Zero());
 }
 
 void Bodies::reorder(std::span<const std::uint32_t> order) {
-  permute(position, order), permute(velocity, order), permute(spin, order);
-  permute(id, order), permute(material, order);
-  permute(rotation, order), permute(displacement, order);
+  const std::size_t before = count();
+  permute(position, order, before), permute(velocity, order, before), permute(spin, order, before);
+  permute(id, order, before), permute(material, order, before);
+  permute(rotation, order, before), permute(displacement, order, before);
+  if (clumps.none()) return;
+  permute(clumps.of_body, order, before), permute(clumps.volume_share, order, before);
+  constexpr std::uint32_t gone = ~0u;
+  std::vector<std::uint32_t> now(before, gone);
+  for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+  std::vector<Clump> kept;
+  std::vector<std::uint32_t> spheres;
+  for (Clump clump : clumps.clump) {
+    if (now[clumps.spheres[clump.first]] == gone) continue;
+    const auto first = static_cast<std::uint32_t>(spheres.size());
+    for (std::uint32_t k = clump.first; k < clump.last; ++k) {
+      spheres.push_back(now[clumps.spheres[k]]);
+      clumps.of_body[spheres.back()].clump = static_cast<std::uint32_t>(kept.size());
+    }
+    clump.first = first, clump.last = static_cast<std::uint32_t>(spheres.size());
+    kept.push_back(clump);
+  }
+  clumps.clump.swap(kept), clumps.spheres.swap(spheres);
 }
 
 }  // namespace grit

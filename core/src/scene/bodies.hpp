@@ -7,6 +7,7 @@
 
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
+#include "scene/clumps.hpp"
 #include "scene/large_array.hpp"
 
 namespace grit {
@@ -21,7 +22,8 @@ struct Bodies {
   std::vector<std::uint8_t> material;
   std::vector<Vec3> rotation;      ///< cumulative [rad]; empty unless asked for
   std::vector<Vec3> displacement;  ///< since the start of the stage [m]; empty unless asked for
-  bool energies = false;           ///< whether a component asked for their ledger
+  Clumps clumps;
+  bool energies = false;  ///< whether a component asked for their ledger
 
   std::size_t count() const { return id.size(); }
   /// Makes room for so many more, and the padding.
@@ -29,9 +31,14 @@ struct Bodies {
   /// Adds a body (before finish()). Its id is its place.
   void add(const Vec3& centre, double radius, double mass, double inertia, std::uint8_t material,
            const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero());
+  /// Adds the bodies of a clump (before finish()), whose centre of mass is `centre`, of that size, mass and
+  /// orientation.
+  void add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass,
+                 const Eigen::Quaterniond& orientation, std::uint8_t material, const Vec3& velocity = Vec3::Zero(),
+                 const Vec3& spin = Vec3::Zero());
   /// After the last add(): pads, and allocates the state that was asked for.
   void finish(StateRequest state);
-  /// Puts body order[i] at place i.
+  /// Puts body order[i] at place i. Bodies that are not in `order` are gone.
   void reorder(std::span<const std::uint32_t> order);
 };
 

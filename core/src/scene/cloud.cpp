@@ -160,7 +160,7 @@ std::array<bool, 3> wrapped_axes(const Region& box, const Cell& cell) {
 }  // namespace
 
 std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vector<double> diameters, Random& random,
-                                 std::span<const Row> others) {
+                                 std::span<const Row> others, std::optional<int> flat) {
   const auto wrapped = wrapped_axes(box, cell);
   if (diameters.empty()) return {};
   std::sort(diameters.begin(), diameters.end(), std::greater<>());
@@ -181,6 +181,7 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   std::vector<Row> placed;
   placed.reserve(diameters.size());
   const auto coordinate = [&](int axis, double radius) {
+    if (axis == flat) return 0.5 * (box.low[axis] + box.high[axis]);
     const double margin = wrapped[axis] ? 0 : radius;
     const double at = box.low[axis] + margin + random.uniform() * std::max(0.0, size[axis] - 2 * margin);
     return std::min(at, box.high[axis] - margin);
@@ -211,7 +212,9 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
 
 std::vector<Row> make_cloud(const CloudGrains& cloud, const Cell& cell, Random& random, std::span<const Row> others) {
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(cloud.count, 0));
-  return place_at_random({cloud.low, cloud.high}, cell, draw_diameters(cloud.sizes, count, random), random, others);
+  const std::optional<int> flat = cloud.flat == "none" ? std::nullopt : std::optional(cloud.flat[0] - 'x');
+  return place_at_random({cloud.low, cloud.high}, cell, draw_diameters(cloud.sizes, count, random), random, others,
+                         flat);
 }
 
 }  // namespace grit

@@ -155,6 +155,9 @@ void CloudGrains::declare(Parameters& p) {
   p.add("high", high).unit("m").required().doc("upper corner of the box that is filled");
   p.add("count", count).at_least(1).at_most(4e9).required().doc("number of grains");
   p.add("sizes", sizes).required().doc("their diameters");
+  p.add("flat", flat)
+      .one_of({"none", "x", "y", "z"})
+      .doc("normal of the plane in the middle of the box on which all centres lie, for the engine planar");
   p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
 }
 void FileGrains::declare(Parameters& p) {
@@ -170,6 +173,9 @@ void PlacedGrain::declare(Parameters& p) {
   p.add("radius", radius).unit("m").symbol("R").above(0).required().doc("radius");
   p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity at the start");
   p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity at the start, right-handed");
+  p.add("orientation", orientation)
+      .unit("rad")
+      .doc("of a clump: axis times angle by which it is turned from how its shape is given");
 }
 void PlacedGrains::declare(Parameters& p) {
   p.add("grains", grains).required().entries(1).doc("the grains, one by one");
@@ -251,6 +257,8 @@ void DomainDescription::declare(Parameters& p) {
   p.add("high", high).unit("m").doc("upper corner; left out: open");
   p.add("periodic", periodic).doc("axes along which the domain repeats");
   p.add("strain_rate", strain_rate).unit("1/s").symbol("eps_dot").doc("of the periodic axes, positive in extension");
+  p.add("open_sides", open_sides)
+      .doc("sides through which bodies may leave, and are gone: -x, +x, -y, +y, -z, +z; elsewhere that is an error");
   p.check(
       [this](const Complain& complain) {
         if (low && high) check_box(*low, *high, complain);
@@ -264,6 +272,20 @@ void DomainDescription::declare(Parameters& p) {
         }
       },
       {"low", "high", "periodic", "strain_rate"});
+  p.check(
+      [this](const Complain& complain) {
+        for (std::size_t i = 0; i < open_sides.size(); ++i) {
+          const std::string& side = open_sides[i];
+          const std::string at = "open_sides/" + std::to_string(i);
+          const bool known = side.size() == 2 && (side[0] == '-' || side[0] == '+') && side[1] >= 'x' && side[1] <= 'z';
+          if (!known) complain(at, in_quotes(side), "one of -x, +x, -y, +y, -z, +z");
+          else if (periodic[static_cast<std::size_t>(side[1] - 'x')])
+            complain(at, "a side of a periodic axis", "a side of an axis that is not periodic");
+          else if (!(side[0] == '-' ? low : high))
+            complain(at, "a side that lies nowhere", side[0] == '-' ? "low with it" : "high with it");
+        }
+      },
+      {"low", "high", "periodic", "open_sides"});
 }
 void SpecimenDescription::declare(Parameters& p) {
   p.add("low", low).doc("walls on its lower x, y and z side; \"\" where the domain bounds it");
@@ -335,6 +357,9 @@ void PressureCondition::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall");
   p.add("value", value).unit("Pa").symbol("p").at_least(0).required().doc("pressure on the wall, compression positive");
   p.add("within", within).above(0).at_most(1).doc("relative difference that counts as reached");
+}
+void LeftCondition::declare(Parameters& p) {
+  p.add("share", share).above(0).at_most(1).doc("share of the mass at the start that has left the domain");
 }
 void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at once"); }
 void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which one must hold"); }

@@ -58,6 +58,7 @@ struct CloudGrains {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::int64_t count = 0;
   Sizes sizes{"size distribution"};
+  std::string flat = "none";
   void declare(Parameters& p);
 };
 /// A text file, "x y z radius" a line.
@@ -67,7 +68,7 @@ struct FileGrains {
   void declare(Parameters& p);
 };
 struct PlacedGrain {
-  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+  Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero(), orientation = Vec3::Zero();
   double radius = 0;
   void declare(Parameters& p);
 };
@@ -131,6 +132,7 @@ struct DomainDescription {
   std::optional<Vec3> low, high;
   std::array<bool, 3> periodic{false, false, false};
   Vec3 strain_rate = Vec3::Zero();
+  std::vector<std::string> open_sides;
   void declare(Parameters& p);
 };
 struct SpecimenDescription {
@@ -203,6 +205,11 @@ struct PressureCondition {
   double value = 0, within = 0.01;
   void declare(Parameters& p);
 };
+struct LeftCondition {
+  static constexpr const char* type_name = "left";
+  double share = 1;
+  void declare(Parameters& p);
+};
 struct AllCondition {
   static constexpr const char* type_name = "all";
   std::vector<std::unique_ptr<Condition>> of;
@@ -215,7 +222,7 @@ struct AnyCondition {
 };
 struct Condition {
   OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, KineticEnergyCondition,
-        VoidRatioCondition, PressureCondition, AllCondition, AnyCondition>
+        VoidRatioCondition, PressureCondition, LeftCondition, AllCondition, AnyCondition>
       is{"condition"};
   void declare(Parameters& p) { p.choose(is); }
 };

@@ -1,7 +1,9 @@
 #include "scene/make_bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "grit/error.hpp"
@@ -9,6 +11,17 @@
 #include "scene/packing_file.hpp"
 
 namespace grit {
+namespace {
+
+/// All equally likely (K. Shoemake, Graphics Gems III (1992) 124, doi:10.1016/B978-0-08-050755-2.50036-1).
+Eigen::Quaterniond any_orientation(Random& random) {
+  const double u = random.uniform(), a = 2 * std::numbers::pi * random.uniform(),
+               b = 2 * std::numbers::pi * random.uniform();
+  const double p = std::sqrt(1 - u), q = std::sqrt(u);
+  return {p * std::sin(a), p * std::cos(a), q * std::sin(b), q * std::cos(b)};
+}
+
+}  // namespace
 
 StateRequest requested_state(const SceneDescription& scene, StateRequest also) {
   for (const auto& [name, probe] : scene.probes) also = also | probe.probe->needs();
@@ -24,20 +37,35 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
   for (const auto& [name, group] : scene.bodies) {
     const auto found = scene.materials.find(group.material);
     const auto material = static_cast<std::uint8_t>(std::distance(scene.materials.begin(), found));
-    const auto add = [&](const Vec3& centre, double radius, const Vec3& velocity, const Vec3& spin) {
+    const ClumpShape* const clump = group.kind->clump();
+    const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
+                         const Vec3& spin) {
       const double inert = std::max(radius, 0.5 * group.heavier_below);
       const double mass = found->second.density * group.kind->volume(inert);
-      bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
+      if (clump == nullptr) {
+        bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
+        return;
+      }
+      const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(clump->axes);
+      const Vec3 middle = orientation * (radius * clump->middle);
+      bodies.add_clump(*clump, centre - middle, radius, mass, orientation, material, velocity, spin);
     };
     if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
-      for (const PlacedGrain& g : placed->grains) add(g.position, g.radius, g.velocity, g.spin);
+      for (const PlacedGrain& g : placed->grains) {
+        const double angle = g.orientation.norm();
+        const Vec3 axis = angle > 0 ? Vec3(g.orientation / angle) : Vec3::UnitX();
+        add(g.position, g.radius, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), g.velocity, g.spin);
+      }
       continue;
     }
     const auto* cloud = std::get_if<CloudGrains>(&group.grains.value());
     const auto* file = std::get_if<FileGrains>(&group.grains.value());
     const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, bodies.position) : read_packing(file->path);
-    bodies.reserve(grains.size());
-    for (const Row& g : grains) add(xyz(g), g.w, Vec3::Zero(), Vec3::Zero());
+    bodies.reserve(grains.size() * (clump != nullptr ? clump->spheres.size() : 1));
+    for (const Row& g : grains) {
+      const Eigen::Quaterniond turn = clump != nullptr ? any_orientation(random) : Eigen::Quaterniond::Identity();
+      add(xyz(g), g.w, turn, Vec3::Zero(), Vec3::Zero());
+    }
   }
   for (const Row& x : bodies.position)
     for (int k = 0; k < 3; ++k) {

@@ -67,6 +67,7 @@ struct HertzMindlin {
 
   static constexpr unsigned feature_bits = 3;
   static constexpr unsigned with_shear = 1, with_damping = 2, with_rolling = 4;
+  static constexpr const char* feature_names[] = {"shear", "damping", "rolling"};
   static unsigned features(const Pair<double>& pair) {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
            (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u);

@@ -59,6 +59,7 @@ struct LinearFrictional {
 
   static constexpr unsigned feature_bits = 3;
   static constexpr unsigned with_shear = 1, with_damping = 2, with_shear_damping = 4;
+  static constexpr const char* feature_names[] = {"shear", "damping", "shear damping"};
   static unsigned features(const Pair<double>& pair) {
     const bool shear = pair.friction * pair.shear_ratio > 0;
     return (shear ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |

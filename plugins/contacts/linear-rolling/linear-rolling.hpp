@@ -87,6 +87,7 @@ struct LinearRolling {
 
   static constexpr unsigned feature_bits = 2;
   static constexpr unsigned with_rolling = 1, with_twisting = 2;
+  static constexpr const char* feature_names[] = {"rolling", "twisting"};
   static unsigned features(const Pair<double>& pair) {
     return (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u) |
            (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u);

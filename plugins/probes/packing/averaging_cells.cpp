@@ -37,14 +37,24 @@ class Columns {
     box_.low[second_axis_] = second.edges().front(), box_.high[second_axis_] = second.edges().back();
   }
 
-  void add_body(const Row& body, double touching) {
+  /// `share` of its volume counts.
+  void add_body(const Row& body, double share) {
     const Vec3 reach = Vec3::Constant(body.w);
-    for_images(xyz(body), -reach, reach, [&](const Vec3& centre) { add_image(centre, body.w, touching); });
+    for_images(xyz(body), -reach, reach, [&](const Vec3& centre) { add_image(centre, body.w, share); });
   }
 
-  void add_contact(const Vec3& start, const Contact& contact) {
-    const Vec3& branch = contact.branch;
-    const Mat3 load = contact.force * branch.transpose();
+  void add_grain(const Vec3& place, double touching) {
+    const Vec3 zero = Vec3::Zero();
+    for_images(place, zero, zero, [&](const Vec3& centre) {
+      if (!holds(centre)) return;
+      Sums& sums = column(first_.strip(centre[first_axis_]), second_.strip(centre[second_axis_]));
+      ++sums.grains, sums.touching += touching;
+    });
+  }
+
+  void add_contact(const Vec3& force, const Branch& contact) {
+    const auto& [start, branch] = contact;
+    const Mat3 load = force * branch.transpose();
     const Vec3 zero = Vec3::Zero();
     for_images(start, branch.cwiseMin(zero), branch.cwiseMax(zero),
                [&](const Vec3& from) { add_branch(from, branch, load); });
@@ -79,19 +89,15 @@ class Columns {
     return (point.array() >= box_.low.array()).all() && (point.array() < box_.high.array()).all();
   }
 
-  void add_image(const Vec3& centre, double radius, double touching) {
+  void add_image(const Vec3& centre, double radius, double share) {
     const double first = centre[first_axis_], second = centre[second_axis_];
-    if (holds(centre)) {
-      Sums& sums = column(first_.strip(first), second_.strip(second));
-      ++sums.grains, sums.touching += touching;
-    }
     const std::size_t first_end = first_.strip(first + radius), second_end = second_.strip(second + radius);
     Vec3 low = box_.low, high = box_.high;
     for (std::size_t i = first_.strip(first - radius); i <= first_end; ++i) {
       low[first_axis_] = first_.edges()[i], high[first_axis_] = first_.edges()[i + 1];
       for (std::size_t j = second_.strip(second - radius); j <= second_end; ++j) {
         low[second_axis_] = second_.edges()[j], high[second_axis_] = second_.edges()[j + 1];
-        column(i, j).solid += sphere_box_volume(centre, radius, low, high);
+        column(i, j).solid += share * sphere_box_volume(centre, radius, low, high);
       }
     }
   }
@@ -169,12 +175,15 @@ std::vector<CellAverage> averaging_cells(const World& world, const Region& box, 
   Columns columns(world, box, depth, first, second);
 
   const auto positions = world.positions();
-  std::vector<double> touching(positions.size());
+  const auto shares = world.volume_shares();
+  const Grains grains = grains_of(world);
+  std::vector<double> touching(grains.centre.size());
   for (const auto& contact : world.contacts()) {
-    columns.add_contact(xyz(positions[contact.a]), contact);
-    if (!contact.with_wall) ++touching[contact.a], ++touching[contact.b];
+    columns.add_contact(contact.force, branch_of(world, contact));
+    if (!contact.with_wall) ++touching[grains.of_body[contact.a]], ++touching[grains.of_body[contact.b]];
   }
-  for (std::size_t i = 0; i < positions.size(); ++i) columns.add_body(positions[i], touching[i]);
+  for (std::size_t i = 0; i < positions.size(); ++i) columns.add_body(positions[i], shares.empty() ? 1 : shares[i]);
+  for (std::size_t g = 0; g < touching.size(); ++g) columns.add_grain(grains.centre[g], touching[g]);
 
   std::vector<CellAverage> averages;
   averages.reserve(first.cells().size() * second.cells().size());

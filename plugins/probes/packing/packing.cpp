@@ -22,10 +22,12 @@ Coordination coordination(const World& world) {
   struct Touches {
     unsigned grains = 0, walls = 0;
   };
-  std::vector<Touches> touches(world.positions().size());
+  const Grains grains_here = grains_of(world);
+  std::vector<Touches> touches(grains_here.centre.size());
+  const auto of = [&](std::uint32_t body) -> Touches& { return touches[grains_here.of_body[body]]; };
   for (const auto& contact : world.contacts()) {
-    if (contact.with_wall) ++touches[contact.a].walls;
-    else ++touches[contact.a].grains, ++touches[contact.b].grains;
+    if (contact.with_wall) ++of(contact.a).walls;
+    else ++of(contact.a).grains, ++of(contact.b).grains;
   }
   double all = 0, held = 0, of_held = 0;
   for (const auto& grain : touches) {

@@ -42,6 +42,12 @@ struct StateField {
   double swap;  ///< +1 or −1: what the number is multiplied with when a and b change places
 };
 
+/// The loop that evaluates a law's pairs.
+struct LawLoop {
+  std::size_t lanes = 1;           ///< pairs at once
+  std::vector<std::string> parts;  ///< of the law, compiled in; others were left out
+};
+
 /// All calls come from the thread that owns the simulation, but evaluate_*, which are called from several at once on
 /// disjoint chunks.
 class ContactLaw {
@@ -62,6 +68,7 @@ class ContactLaw {
   /// What a contact remembers with the present parameters; parts that a zero parameter switches off are left out.
   /// Always the first so many of the law's fields.
   virtual std::vector<StateField> state() const = 0;
+  virtual LawLoop loop() const = 0;
   virtual void evaluate_pairs(PairBatch& batch) const noexcept = 0;
   virtual void evaluate_walls(WallBatch& batch) const noexcept = 0;
   /// The same by plain scalars, for tests.

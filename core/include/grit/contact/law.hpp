@@ -12,6 +12,7 @@
 //     static std::vector<StateField> fields();                                    // one a member of State
 //     static constexpr unsigned feature_bits = 1;                                 // parts that can be switched off
 //     static unsigned features(const Pair<double>&);                              // which of them this pair needs
+//     static constexpr const char* feature_names[] = {"shear"};                   // one a bit; may be left out
 //     static constexpr std::size_t fields_used(unsigned features);                // how many leading fields they need
 //     template <unsigned Features, class L> [[gnu::always_inline]]
 //     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
@@ -520,6 +521,13 @@ class LawPlugin final : public ContactLaw {
     auto fields = Law::fields();
     fields.resize(Law::fields_used(features_));
     return fields;
+  }
+  LawLoop loop() const override {
+    LawLoop loop{.lanes = lane_width<Lane>, .parts = {}};
+    if constexpr (requires { Law::feature_names[0]; })
+      for (unsigned bit = 0; bit < Law::feature_bits; ++bit)
+        if ((features_ >> bit & 1) != 0) loop.parts.push_back(Law::feature_names[bit]);
+    return loop;
   }
   void evaluate_pairs(PairBatch& batch) const noexcept override { pairs<Lane>(batch); }
   void evaluate_pairs_reference(PairBatch& batch) const noexcept override { pairs<double>(batch); }

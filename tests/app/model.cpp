@@ -1,0 +1,71 @@
+// What a run stores and computes, as run.json says it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class ModelOfARun : public testing::Test {
+ protected:
+  ModelOfARun() { folder.write("two.json", two_grains); }
+  json of(std::vector<std::string> settings) {
+    std::vector<std::string> words{"run", "two.json", "--out", "results", "--overwrite"};
+    for (const auto& one : settings) words.insert(words.end(), {"--set", one});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(text_of(folder / "results/run.json")).at("model");
+  }
+  OwnFolder folder;
+};
+
+TEST_F(ModelOfARun, HasNoMemoryOfRollingWhereNothingResistsIt) {
+  const json with = of({"/contacts/type=linear-rolling"});
+  EXPECT_THAT(with.at("law_parts"), ElementsAre("rolling"));
+  EXPECT_EQ(with.at("contact_state").size(), 6u);
+  const json without = of({"/contacts/type=linear-rolling", "/materials/sand/rolling_limit=0"});
+  EXPECT_THAT(without.at("law_parts"), IsEmpty());
+  EXPECT_EQ(without.at("contact_state").size(), 3u);
+  EXPECT_LT(without.at("bytes"), with.at("bytes"));
+}
+
+TEST_F(ModelOfARun, HasNoHistoryWithoutFriction) {
+  const json with = of({"/contacts/type=linear-frictional"});
+  EXPECT_THAT(with.at("contact_state"), ElementsAre("shear_x", "shear_y", "shear_z"));
+  const json without = of({"/contacts/type=linear-frictional", "/materials/sand/friction_angle=0"});
+  EXPECT_THAT(without.at("contact_state"), IsEmpty());
+  EXPECT_LT(without.at("bytes"), with.at("bytes"));
+}
+
+TEST_F(ModelOfARun, TurnsAndMovesAreKeptOnlyWhereSomethingAsks) {
+  const json plain = of({"/seed=2"});
+  EXPECT_THAT(plain.at("body_state"), IsEmpty());
+  EXPECT_EQ(plain.at("gravity"), false);
+  const json asked = of({R"(/probes/ledger={"type": "energy", "every_steps": 10})"});
+  EXPECT_THAT(asked.at("body_state"), ElementsAre("energy"));
+  const json falls = of({R"(/engines/weight={"type": "gravity"})"});
+  EXPECT_EQ(falls.at("gravity"), true);
+}
+
+TEST_F(ModelOfARun, KnowsWallsClumpsAndTheLoop) {
+  const json plain = of({});
+  EXPECT_EQ(plain.at("walls"), false);
+  EXPECT_EQ(plain.at("one_material"), true);
+  EXPECT_EQ(plain.at("periodic"), false);
+  EXPECT_GE(plain.at("lanes"), 1);
+  const json walled = of({R"(/walls/floor={"type": "plane", "material": "sand", "point": [0, 0, -1]})"});
+  EXPECT_EQ(walled.at("walls"), true);
+  const json clumped = of({R"(/bodies/grains/type="clump")", R"(/bodies/grains/shape={"type": "rod"})"});
+  EXPECT_THAT(clumped.at("body_state"), ElementsAre("clump"));
+}
+
+}  // namespace
+}  // namespace grit

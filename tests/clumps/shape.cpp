@@ -1,0 +1,176 @@
+// Size, volume and inertia of unions of spheres, against closed forms.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "grit/error.hpp"
+#include "scene/clump_body.hpp"
+#include "scene/clump_shape.hpp"
+#include "scene/random.hpp"
+#include "support/verified.hpp"
+
+namespace grit::test {
+namespace {
+
+using std::numbers::pi;
+
+/// Two unit spheres, centres `apart`: volume, and moments about the axis through both and across it, for a mass of 1.
+struct Pair {
+  explicit Pair(double apart) {
+    // Each half is a sphere cut at x = −h of its own centre: integrals of the discs' areas along x.
+    const double h = apart / 2;
+    const auto power = [h](int n) { return (1 - std::pow(-h, n + 1)) / (n + 1); };  // ∫ xⁿ over −h … 1
+    volume = 2 * pi * (power(0) - power(2));
+    along = 2 * pi / 2 * (power(0) - 2 * power(2) + power(4)) / volume;
+    const double square =
+        2 * pi * (power(2) - power(4) + 2 * h * (power(1) - power(3)) + h * h * (power(0) - power(2)));
+    across = along / 2 + square / volume;
+  }
+  double volume, along, across;
+};
+
+TEST(ClumpShape, OfOneSphereIsTheSphere) {
+  const Ball one{3, -2, 1, 0.7};
+  const ClumpShape shape = make_clump_shape({&one, 1});
+  EXPECT_EQ(shape.spheres.front().w, 1);
+  EXPECT_NEAR(xyz(shape.spheres.front()).norm(), 0, 1e-12);
+  verify("volume of a sphere as a clump", shape.volume, 4 * pi / 3, 1e-5);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(shape.inertia[k], 0.4, 1e-5);
+  EXPECT_NEAR(shape.shares.front(), 1, 1e-5);
+}
+
+TEST(ClumpShape, OfTwoSpheresHasTheVolumeAndInertiaOfTheirUnion) {
+  for (const double apart : {0.5, 1.0, 1.5}) {
+    const std::vector<Ball> balls{{0, 0, 0, 1}, {apart, 0, 0, 1}};
+    const ClumpShape shape = make_clump_shape(balls);
+    const Pair known(apart);
+    const double size = 1 + apart / 2;  // of the enclosing sphere
+    const std::string of = " of two unit spheres, " + std::to_string(apart).substr(0, 3) + " apart";
+    EXPECT_NEAR(shape.spheres[0].w * size, 1, 1e-12);
+    verify("volume" + of, shape.volume * std::pow(size, 3), known.volume, 1e-5);
+    verify("moment of inertia along the axis" + of, shape.inertia[0] * size * size, known.along, 1e-5);
+    verify("moment of inertia across the axis" + of, shape.inertia[2] * size * size, known.across, 1e-5);
+    EXPECT_NEAR(shape.inertia[1], shape.inertia[2], 1e-5);
+    EXPECT_NEAR(shape.shares[0], known.volume / (8 * pi / 3), 1e-5);
+    EXPECT_NEAR(shape.middle.norm(), 0, 1e-5);
+  }
+  // Known to all: benchmarks of clumps.
+  EXPECT_NEAR(Pair(0.5).volume, 5.72686, 5e-6);
+  EXPECT_NEAR(Pair(1.0).volume, 7.06858, 5e-6);
+  EXPECT_NEAR(Pair(1.5).volume, 8.01761, 5e-6);
+}
+
+TEST(ClumpShape, IsTheSameHoweverItIsTurnedMovedAndScaled) {
+  const std::vector<Ball> balls{{0, 0, 0, 1}, {1.1, 0.2, 0, 0.8}, {-0.3, 0.9, 0.1, 0.6}};
+  const Eigen::Quaterniond turn(0.4, -0.3, 0.7, 0.2);
+  std::vector<Ball> turned;
+  for (const Ball& one : balls) {
+    const Vec3 place = turn.normalized() * (2.5 * xyz(one)) + Vec3(4, 5, -6);
+    turned.push_back({place.x(), place.y(), place.z(), 2.5 * one.w});
+  }
+  const ClumpShape a = make_clump_shape(balls), b = make_clump_shape(turned);
+  EXPECT_NEAR(a.volume, b.volume, 1e-5 * a.volume);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(a.inertia[k], b.inertia[k], 2e-5 * a.inertia[k]);
+  // Spheres lie about the centre of mass as they were given, whatever axes they are seen in.
+  for (std::size_t k = 1; k < balls.size(); ++k) {
+    const Vec3 given = xyz(balls[k]) - xyz(balls[0]), seen = a.axes * (xyz(a.spheres[k]) - xyz(a.spheres[0]));
+    EXPECT_NEAR((seen - given * a.spheres[0].w).norm(), 0, 1e-12);
+  }
+}
+
+TEST(ClumpShape, CountsNothingTwice) {
+  std::vector<Ball> balls{{0, 0, 0, 1}, {0.8, 0, 0, 1}};
+  const ClumpShape pair = make_clump_shape(balls);
+  balls.push_back({0.4, 0, 0, 0.5});  // inside of both
+  const ClumpShape filled = make_clump_shape(balls);
+  EXPECT_NEAR(filled.volume, pair.volume, 1e-12);
+  double shares = 0;
+  for (std::size_t k = 0; k < balls.size(); ++k)
+    shares += filled.shares[k] * 4 * pi / 3 * std::pow(filled.spheres[k].w, 3);
+  EXPECT_NEAR(shares, filled.volume, 1e-12);
+}
+
+TEST(ClumpShape, EnclosesItsSpheresAsTightlyAsCanBe) {
+  Random random(4);
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Ball> balls;
+    for (int k = 0; k < 6; ++k)
+      balls.push_back({random.uniform(), random.uniform(), random.uniform(), 0.4 + 0.3 * random.uniform()});
+    const Ball large = smallest_enclosing(balls);
+    double furthest = 0;
+    for (const Ball& one : balls) furthest = std::max(furthest, (xyz(one) - xyz(large)).norm() + one.w);
+    EXPECT_NEAR(furthest, large.w, 1e-11);
+    // None nearby is smaller: the largest distance is convex in the centre.
+    for (int nearby = 0; nearby < 200; ++nearby) {
+      const Vec3 centre =
+          xyz(large) + 1e-3 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+      double reach = 0;
+      for (const Ball& one : balls) reach = std::max(reach, (xyz(one) - centre).norm() + one.w);
+      EXPECT_GT(reach, large.w - 1e-12);
+    }
+  }
+}
+
+/// The reference's grain: enclosing sphere over clump 2.07, convex hull over clump 1.16, longest over shortest diameter
+/// 1.50, spheres of 0.5 to 0.6 of the diameter.
+TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
+  ClumpBody body;
+  Parameters parameters;
+  body.declare(parameters);
+  const auto& shape_of = std::get<ObjectTarget>(parameters.entries().front().target());
+  Parameters of_shape;
+  shape_of.declare(of_shape);
+  of_shape.choice()->choose("asymmetric");
+  body.prepare();
+  const ClumpShape& shape = *body.clump();
+  ASSERT_EQ(shape.spheres.size(), 4u);
+  for (const Row& one : shape.spheres) {
+    EXPECT_GE(one.w, 0.5);
+    EXPECT_LE(one.w, 0.6);
+  }
+  verify("enclosing sphere over the asymmetric clump", 4 * pi / 3 / shape.volume, 2.07, 0.015);
+
+  Random random(1);
+  std::vector<Vec3> directions;
+  while (directions.size() < 4000)
+    directions.push_back(Vec3(random.normal(), random.normal(), random.normal()).normalized());
+  const auto reach = [&](const Vec3& u) {
+    double most = 0;
+    for (const Row& one : shape.spheres) most = std::max(most, u.dot(xyz(one)) + one.w);
+    return most;
+  };
+  double longest = 0, shortest = 4;
+  std::vector<double> reaches;
+  for (const Vec3& u : directions) {
+    const double width = reach(u) + reach(-u);
+    longest = std::max(longest, width), shortest = std::min(shortest, width);
+    reaches.push_back(reach(u));
+  }
+  verify("longest over shortest diameter of the asymmetric clump", longest / shortest, 1.50, 0.015);
+  // A point is in the hull if no plane that touches the hull has it on its other side.
+  int inside = 0;
+  const int points = 40000;
+  for (int k = 0; k < points; ++k) {
+    const Vec3 x = 2.4 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    bool in = true;
+    for (std::size_t d = 0; d < directions.size() && in; ++d) in = x.dot(directions[d]) <= reaches[d];
+    inside += in;
+  }
+  verify("convex hull over the asymmetric clump", std::pow(2.4, 3) * inside / points / shape.volume, 1.16, 0.03);
+}
+
+TEST(ClumpShape, IsRefusedWhereItFallsApart) {
+  const std::vector<Ball> apart{{0, 0, 0, 1}, {2.1, 0, 0, 1}};
+  try {
+    make_clump_shape(apart);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("hang together"));
+  }
+  EXPECT_THROW(make_clump_shape({}), Error);
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,132 @@
+// Bodies that leave through an open side of the domain.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "run/conditions.hpp"
+#include "support/clump.hpp"
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+const Description stuff{{"density", 2600}, {"contact_modulus", 1e7}};
+
+/// One grain falls beside a floor on which others rest, and out of the domain.
+Description falling() {
+  Description d = description("linear-rolling", stuff,
+                              {{{8e-3, 0, 1e-3}, 1e-3},
+                               {{-1e-3, 0, 0.999e-3}, 1e-3},
+                               {{-3.001e-3, 0, 0.999e-3}, 1e-3},
+                               {{-2e-3, 0, 2.73e-3}, 1e-3}});
+  d["walls"]["floor"] = side(2, 0, Vec3(-6e-3, -3e-3, 0), Vec3(0, 3e-3, 0), true);
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
+  d["time_step"]["value"] = 5e-6;
+  return d;
+}
+
+TEST(Departures, AreKeptAndCounted) {
+  Trial trial(falling(), 1, BodyState::energy);
+  trial.world().energies();
+  const double mass = trial.mass(0);
+  while (trial.world().departures().empty() && trial.world().time() < 0.2) trial.step();
+  ASSERT_EQ(trial.world().departures().size(), 1u);
+  const Departure gone = trial.world().departures().front();
+  EXPECT_EQ(gone.id, 0u);
+  EXPECT_EQ(gone.mass, mass);
+  EXPECT_LT(gone.position.z(), -0.01);
+  EXPECT_GT(gone.position.z(), -0.0115) << "found within a skin of the side";
+  // Damping lessens what gravity adds: z = ½ (1 − λ) g t².
+  EXPECT_NEAR(gone.time, std::sqrt(2 * (1e-3 - gone.position.z()) / (0.8 * 9.81)), 1e-4);
+  EXPECT_EQ(trial.world().ids().size(), 3u);
+  EXPECT_NEAR(trial.world().share_left(), 0.25, 1e-12);
+  EXPECT_LT(std::abs(trial.world().energies().closure_error), 5e-3 * mass * 9.81 * 0.01);
+}
+
+/// Others keep their contacts, and what those remember: forces go on without a jump.
+TEST(Departures, LeaveOthersAlone) {
+  Trial trial(falling());
+  Description without = falling();
+  without["bodies"]["grains"]["grains"]["grains"].erase(0);
+  Trial others(without);
+  trial.world().departures();
+  for (int k = 0; k < 60000 && trial.world().departures().empty(); ++k) trial.step(), others.step();
+  ASSERT_EQ(trial.world().departures().size(), 1u);
+  trial.step(200), others.step(200);
+  ASSERT_EQ(trial.world().contacts().size(), others.world().contacts().size());
+  ASSERT_GT(trial.world().contacts().size(), 3u);
+  for (std::uint32_t id = 1; id < 4; ++id) EXPECT_LT((trial.position(id) - others.position(id - 1)).norm(), 1e-15);
+  for (std::size_t c = 0; c < trial.world().contacts().size(); ++c)
+    EXPECT_LT((trial.world().contacts()[c].force - others.world().contacts()[c].force).norm(), 1e-12);
+}
+
+TEST(Departures, OfAClumpAreOneOfTheWholeClump) {
+  Description d = description("linear-rolling", stuff, {{{0, 0, 0}, 1e-3, {0, 0, -1}}, {{0, 0, 6e-3}, 1e-3}});
+  make_clumps(d, boomerang());
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
+  Trial trial(d);
+  const double mass = trial.world().clumps().front().mass;
+  for (int k = 0; k < 5000 && trial.world().departures().empty(); ++k) trial.step();
+  ASSERT_EQ(trial.world().departures().size(), 1u);
+  EXPECT_NEAR(trial.world().departures().front().mass, mass, 1e-12 * mass);
+  EXPECT_EQ(trial.world().ids().size(), 3u);
+  ASSERT_EQ(trial.world().clumps().size(), 1u);
+  EXPECT_EQ(trial.world().clumps().front().id, 1u);
+  for (const std::uint32_t c : trial.world().clump_of()) EXPECT_EQ(c, 0u);
+  const Vec3 before = trial.position(3);
+  trial.step(10);
+  EXPECT_EQ((trial.position(3) - before).norm(), 0);
+}
+
+TEST(Departures, AreTheSameBitsForAnyNumberOfThreads) {
+  Description d = description("linear-rolling", stuff, jumble({14, 14, 14}, 1e-3, 0.5, 5));
+  d["domain"] = {{"low", {-1e-3, -1e-3, 2e-3}},
+                 {"high", {15e-3, 15e-3, 15e-3}},
+                 {"open_sides", {"-z", "+x", "-x", "+y", "-y", "+z"}}};
+  d["bodies"]["grains"]["grains"]["grains"] = [&] {
+    Description kept = Description::array();
+    for (const auto& grain : d["bodies"]["grains"]["grains"]["grains"])
+      if (grain["position"][2] > 2.2e-3) kept.push_back(grain);
+    return kept;
+  }();
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  Trial one(d, 1), three(d, 3);
+  for (int round = 0; round < 6; ++round) {
+    one.step(150), three.step(150);
+    ASSERT_TRUE(same_bits(one.world(), three.world()));
+    ASSERT_EQ(one.world().departures().size(), three.world().departures().size());
+  }
+  EXPECT_GT(one.world().departures().size(), 100u);
+}
+
+TEST(Departures, EndAStage) {
+  const Trial still(falling());
+  Condition condition;
+  condition.is.choose("left");
+  std::get<LeftCondition>(condition.is.value()).share = 0.2;
+  Trial trial(falling());
+  const StageStart start{};
+  EXPECT_FALSE(is_met(condition, trial.world(), start));
+  while (trial.world().departures().empty() && trial.world().time() < 0.2) trial.step();
+  EXPECT_TRUE(is_met(condition, trial.world(), start));
+}
+
+TEST(Departures, ThroughAnotherSideAreAnError) {
+  Description d = description("linear-rolling", stuff, {{{0, 0, 0}, 1e-3, {-1, 0, 0}}});
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
+  Trial trial(d);
+  try {
+    trial.step(5000);
+    FAIL() << "it went on";
+  } catch (const NumericsError& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("left the domain through its lower x side"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("/domain/open_sides"));
+  }
+}
+
+}  // namespace
+}  // namespace grit::test
