@@ -18,6 +18,7 @@
 #include "study/batch.hpp"
 #include "study/chart.hpp"
 #include "study/chart_page.hpp"
+#include "study/chart_words.hpp"
 
 namespace grit {
 namespace {
