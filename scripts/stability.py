@@ -98,7 +98,7 @@ def main():
         name = re.sub('[^a-z0-9]+', '-', title.split('|')[0].lower()).strip('-') + '.svg'
         (folder / name).write_text(picture(title, series), encoding='utf-8')
         text += f"## {title.split('|')[0].capitalize()}\n![{title.split('|')[0]}](stability/{name})\n\n"
-        text += '| | ' + title.split('|')[1] + ' | |\n| --- | --- | --- |\n'
+        text += f"| | {title.split('|')[1]} | {title.split('|')[0]} |\n| --- | --- | --- |\n"
         for one, curve in series.items():
             if not one.startswith('predicted') or len(set(curve)) == 1:
                 text += ''.join(f'| {one} | {x:g} | {y:.3g} |\n' for x, y in sorted(set(curve)))

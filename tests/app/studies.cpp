@@ -67,7 +67,7 @@ TEST_F(Studies, AreRunChartedAndNotRunAgain) {
   EXPECT_THAT(second.err, HasSubstr("0 of 8 runs to do"));
   EXPECT_EQ(second.out, first.out);
   // What is missing, and what another description made, is run again.
-  std::filesystem::remove(folder / "results/study/runs/usual/seed-1/run.json");
+  folder.write("results/study/runs/usual/seed-1/run.json", R"({"status": "done"})");
   folder.write("study.json", std::string(study).replace(std::string(study).find("0.1,"), 4, "0.2,"));
   EXPECT_THAT(
       grit({"chart", "study.json", "--dry"}).out,
@@ -101,11 +101,24 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   folder.write("typo.json", changed.dump());
   const auto typo = grit({"chart", "typo.json"});
   EXPECT_EQ(typo.status, 2);
-  EXPECT_THAT(typo.err, AllOf(HasSubstr("/time_step/safty"), HasSubstr("did you mean \"safety\"")));
+  EXPECT_THAT(typo.err, AllOf(HasSubstr("typo.json, usual: /time_step/safty"), HasSubstr("did you mean \"safety\"")));
   folder.write("key.json", R"({"scene": "two.json", "setting": {}})");
   const auto key = grit({"chart", "key.json"});
   EXPECT_EQ(key.status, 2);
   EXPECT_THAT(key.err, AllOf(HasSubstr("key.json:1: /setting"), HasSubstr("settings")));
+  changed = json::parse(study);
+  changed["figures"]["energy"]["of"] = "walls/force";
+  folder.write("probe.json", changed.dump());
+  const auto probe = grit({"chart", "probe.json"});
+  EXPECT_EQ(probe.status, 2);
+  EXPECT_THAT(probe.err, HasSubstr("probe.json: /figures/energy/of: found the probe \"walls\", which the scene lacks; "
+                                   "allowed is one of packing"));
+  changed["figures"]["energy"] = {
+      {"type", "curve"}, {"of", "packing/kinetic_energy"}, {"curve", {{"file", "none.csv"}, {"x", "x"}, {"y", "y"}}}};
+  folder.write("file.json", changed.dump());
+  const auto file = grit({"chart", "file.json"});
+  EXPECT_EQ(file.status, 5);
+  EXPECT_THAT(file.err, HasSubstr("none.csv: cannot be read"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   EXPECT_EQ(grit({"chart"}).status, 1);
   EXPECT_EQ(grit({"chart", "study.json", "--jobs", "0"}).status, 1);
@@ -115,9 +128,11 @@ TEST_F(Studies, SayWhichChannelThereIs) {
   auto changed = json::parse(study);
   changed["figures"]["energy"]["of"] = "packing/energy";
   folder.write("study.json", changed.dump());
-  const auto outcome = grit({"chart", "study.json"});
+  const auto outcome = grit({"chart", "study.json", "--jobs", "1"});
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("has no channel \"energy\""), HasSubstr("kinetic_energy")));
+  EXPECT_THAT(grit({"chart", "study.json", "--dry"}).out, Not(HasSubstr("0 of 8 runs are missing")))
+      << "the first run shows it";
 }
 
 TEST_F(Studies, AreInterruptedAndGoOn) {
@@ -152,16 +167,26 @@ TEST_F(Studies, GiveAdvice) {
   const auto fine = advise({"--set", "/time_step/safety=0.01", "--tolerance", "1%"});
   ASSERT_EQ(fine.status, 0) << fine.err;
   EXPECT_THAT(fine.out, AllOf(HasSubstr("safety: 0.01 here"), HasSubstr("→ 0.1: 10.00 times cheaper"),
-                              HasSubstr("grit run two.json --set '/time_step/safety=0.1'"), HasSubstr("too much"),
-                              HasSubstr(chart)));
+                              HasSubstr(" --set '/time_step/safety=0.1'\n"), HasSubstr("too much"), HasSubstr(chart)));
   const auto coarse = advise({"--set", "/time_step/safety=0.8", "--tolerance", "0.01"});
   EXPECT_THAT(coarse.out,
               AllOf(HasSubstr("nothing cheaper was tried"), HasSubstr("nothing that the study tried may be relaxed")));
   EXPECT_THAT(advise({"--set", "/time_step/safety=0.3"}).out,
               HasSubstr("a value that the study did not try; it tried 0.8, 0.1, 0.01"));
+  EXPECT_THAT(fine.out, HasSubstr("grit run two.json --set '/stages/0/until="))
+      << "what was set for the advice belongs to the command";
+  EXPECT_THAT(advise({"--set", "/engines/damping/coefficient=0.5"}).out,
+              HasSubstr("beyond the tolerance as it is: damping, safety;"));
   EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
+  EXPECT_EQ(advise({"--tolerance", "5"}).status, 1) << "500 %";
   EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);
-  EXPECT_EQ(grit({"advise", "two.json", "--study", "two.json"}).status, 5);
+  charted.erase("title");
+  folder.write("half.json", charted.dump());
+  for (const char* no_chart : {"two.json", "half.json", "none.json", "results"}) {
+    const auto outcome = grit({"advise", "two.json", "--study", no_chart});
+    EXPECT_EQ(outcome.status, 5) << no_chart;
+    EXPECT_THAT(outcome.err, HasSubstr("'grit chart'"));
+  }
   const auto none = grit({"advise", "two.json"});
   EXPECT_EQ(none.status, 1);
   EXPECT_THAT(none.err, AllOf(HasSubstr("no scenario"), HasSubstr("--study")));

@@ -184,5 +184,24 @@ TEST(EnergyLedger, KnowsWhatItDoesNotKnow) {
   EXPECT_TRUE(std::isnan(Kept(d).world().energies().closure_error));
 }
 
+TEST(EnergyLedger, DoesNotForgetWhatItDoesNotKnow) {
+  Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius, {1, 0, 0}}});
+  d["engines"]["hold"] = {{"type", "hold"}};
+  d["time_step"]["value"] = 1e-6;
+  d["stages"].push_back({{"name", "free"},
+                         {"change", {{"engines", {{"hold", nullptr}}}}},
+                         {"until", {{"type", "steps"}, {"value", 1}}},
+                         {"limit", 1}});
+  Trial held(d, 1, BodyState::energy), freed(d, 1, BodyState::energy);
+  held.world().energies();
+  for (Trial* trial : {&held, &freed}) {
+    trial->step(3);
+    trial->world().begin_stage("free", *trial->scene().stages.at(1).start);
+    trial->world().find_forces();
+  }
+  EXPECT_TRUE(std::isnan(held.world().energies().closure_error)) << "it began before the grain was let go";
+  EXPECT_EQ(freed.world().energies().closure_error, 0);
+}
+
 }  // namespace
 }  // namespace grit::test

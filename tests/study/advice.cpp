@@ -88,9 +88,16 @@ TEST_F(AdviceOf, FiguresThatDoNotCountDoNotForbid) {
   EXPECT_THROW(advice(0.01, "/1", "/small", {"big"}), Error);
 }
 
-TEST_F(AdviceOf, LevelsThatFailedAreLeftOut) {
+TEST_F(AdviceOf, LevelsThatFailedAreToldAndNeverTaken) {
   chart["effects"].erase(0);
-  EXPECT_EQ(advice(0.9)[0].best->level, "2");
+  const auto some = advice(0.9);
+  EXPECT_EQ(some[0].best->level, "2");
+  ASSERT_EQ(some[0].cheaper.size(), 2u);
+  EXPECT_EQ(some[0].cheaper[0]->level, "4");
+  EXPECT_FALSE(some[0].cheaper[0]->known);
+  const auto own = advice(0.9, "/4");
+  EXPECT_EQ(own[0].now, nullptr);
+  EXPECT_THAT(own[0].found, HasSubstr("4 here, with which the study's scene failed"));
 }
 
 TEST(Confidences, ComeFromErrorAndScatter) {

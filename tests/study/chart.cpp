@@ -7,6 +7,7 @@
 #include "grit/error.hpp"
 #include "made_runs.hpp"
 #include "study/chart_page.hpp"
+#include "study/chart_words.hpp"
 #include "support/program.hpp"
 
 namespace grit {
@@ -160,6 +161,34 @@ TEST_F(Charts, FailuresAreToldAndCountNowhere) {
   EXPECT_THAT(page, HasSubstr("not run to its end"));
 }
 
+TEST_F(Charts, AValueThatARunDoesNotReachIsAFailureOfThatRun) {
+  make_all();
+  make_series(folder / "runs/usual/seed-2", {0, 0.5}, {0, 1});
+  const Chart all = chart(R"({"y": {"type": "value", "of": "test/y", "against": "test/x", "at": 0.9}})");
+  EXPECT_FALSE(all.variants[0].complete());
+  EXPECT_TRUE(all.variants[1].complete());
+  EXPECT_THAT(chart_page(all), HasSubstr("test/y is of abscissae from 0 to 0.5, but wanted at 0.9"));
+}
+
+TEST_F(Charts, ARunJsonThatLacksItsKeysIsNoRun) {
+  make_all();
+  for (const char* text : {"{}", R"({"status": 3, "message": []})", R"({"status": "run)", R"({"status": "running"})"}) {
+    folder.write("runs/usual/seed-2/run.json", text);
+    EXPECT_EQ(chart().variants[0].samples[1].status, "missing") << text;
+  }
+}
+
+TEST_F(Charts, CurvesOfTheFinestHaveToShareTheirAbscissa) {
+  make_all();
+  make_series(folder / "runs/finest/seed-2", {2, 3}, {0, 1});
+  try {
+    chart(R"({"curve": {"type": "curve", "of": "test/y", "against": "test/x"}})");
+    FAIL() << "one ends at 1, the other begins at 2";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no abscissa in common"));
+  }
+}
+
 TEST_F(Charts, WithoutTheFinestThereIsNothingToCompareWith) {
   make_all();
   make_run_json(folder / "runs/finest/seed-1", 6, "failed", "it broke");
@@ -167,6 +196,15 @@ TEST_F(Charts, WithoutTheFinestThereIsNothingToCompareWith) {
   EXPECT_TRUE(all.reference.empty());
   EXPECT_THAT(verdict(all), HasSubstr("nothing to compare with"));
   EXPECT_THAT(chart_page(all), HasSubstr("it broke"));
+}
+
+TEST_F(Charts, VerdictNamesTheFiguresThatNothingIsKnownOf) {
+  make_all();
+  make_run_json(folder / "runs/finest/seed-1", 6, "failed", "it broke");
+  const auto two =
+      R"({"known": {"type": "last", "of": "test/y", "value": 1}, "end": {"type": "last", "of": "test/y"}})";
+  EXPECT_THAT(verdict(chart(two, R"(, "tolerance": 0.5)")),
+              testing::AllOf(HasSubstr("no result, so that nothing is known of end. "), HasSubstr("Cheapest")));
 }
 
 TEST_F(Charts, PageHasAllAndFetchesNothing) {

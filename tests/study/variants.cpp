@@ -75,6 +75,8 @@ TEST(Studies, SayWhatIsWrong) {
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "labels": ["a"]}})"), HasSubstr("1 labels"));
   EXPECT_THAT(problems_of("{}"), HasSubstr("/settings"));
   EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1, 1]})"), HasSubstr("/seeds/values/0"));
+  EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1.5]})"), HasSubstr("found 1.5; allowed"));
+  EXPECT_THAT(problems_of(two_settings, R"(, "seeds": {"values": [1e300]})"), HasSubstr("from 0 to 1000000000000000"));
   EXPECT_THAT(problems_of(two_settings, R"(, "colour": 1)"), HasSubstr("/colour"));
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "2%", "2 %" or 0.02.
+/// "2%", "2 %" or 0.02; at most all.
 double share_of(const std::string& text) {
   std::size_t used = 0;
   double value = 0;
@@ -25,36 +25,41 @@ double share_of(const std::string& text) {
   }
   std::string rest = used == std::string::npos ? "?" : text.substr(used);
   std::erase(rest, ' ');
-  if (!(rest.empty() || rest == "%") || !(value > 0))
-    throw UsageError("--tolerance takes a share above 0, such as 2% or 0.02, not \"" + text + '"');
-  return rest == "%" ? value / 100 : value;
+  if (rest == "%") value /= 100, rest.clear();
+  if (!rest.empty() || !(value > 0 && value <= 1))
+    throw UsageError("--tolerance takes a share above 0 and up to 1, such as 2% or 0.02, not \"" + text + '"');
+  return value;
 }
 
 /// The charts that came with grit, for scenes of one scenario. Throws UsageError if there is none.
 std::vector<ChartedStudy> shipped_studies(const std::string& scenario, const std::vector<std::string>& figures) {
   const fs::path folder = library_directory() / "studies";
-  std::vector<ChartedStudy> studies;
-  std::string known;
+  std::vector<std::string> files;
   if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.path().extension() != ".json") continue;
-      if (read_charted_study(entry.path(), {}).scenario != scenario || scenario.empty()) {
-        known += (known.empty() ? "" : ", ") + entry.path().string();
-        continue;
-      }
-      studies.push_back(read_charted_study(entry.path(), figures));
-    }
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".json") files.push_back(entry.path().string());
+  std::ranges::sort(files);
+  std::vector<ChartedStudy> studies;
+  for (const auto& file : files)
+    if (!scenario.empty() && read_charted_study(file, {}).scenario == scenario)
+      studies.push_back(read_charted_study(file, figures));
   if (studies.empty())
-    throw UsageError((scenario.empty() ? "the description has no scenario, by which a study could be found"
-                                       : "no study of scenario \"" + scenario + "\" came with this grit") +
-                     "; name a chart.json with --study" + (known.empty() ? "" : ", of your own or one of " + known));
-  std::ranges::sort(studies, {}, &ChartedStudy::file);
+    throw UsageError(fmt::format("{}; name a chart.json with --study, of your own or one of these: {}",
+                                 scenario.empty() ? "the description has no scenario, by which a study could be found"
+                                                  : "no study of scenario \"" + scenario + "\" came with this grit",
+                                 fmt::join(files, ", ")));
   return studies;
+}
+
+/// "5.4 % ± 3.0 %"; "?" for the scatter of one sample.
+std::string with_scatter(double error, double standard_error) {
+  return fmt::format("{:.1f} % ± {}", 100 * error,
+                     std::isnan(standard_error) ? "?" : fmt::format("{:.1f} %", 100 * standard_error));
 }
 
 std::string changes(const Evidence& one) {
   if (one.figure.empty()) return "is the finest that was tried";
-  return fmt::format("changes {} by {:.1f} % ± {:.1f} %", one.figure, 100 * one.error, 100 * one.standard_error);
+  return fmt::format("changes {} by {}", one.figure, with_scatter(one.error, one.standard_error));
 }
 
 std::string why(const Evidence& one, double tolerance) {
@@ -71,34 +76,44 @@ std::string why(const Evidence& one, double tolerance) {
   return "";
 }
 
-void print(const ChartedStudy& study, const std::string& file, double tolerance, const std::vector<Advice>& advices) {
+/// `given`: what --set changed in the description.
+void print(const ChartedStudy& study, const std::string& file, std::vector<std::string> given, double tolerance,
+           const std::vector<Advice>& advices) {
   std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant)\n\n", file, 100 * tolerance,
                            study.title, study.file.string(), study.samples);
-  double cost = 1, error = 0;
-  std::string sets;
+  double cost = 1, error = 0, variance = 0;
+  std::vector<std::string> beyond;
   for (const Advice& advice : advices) {
     if (advice.now == nullptr) {
       std::cout << fmt::format("  {}: {}\n", advice.setting, advice.found);
       continue;
     }
     std::cout << fmt::format("  {}: {} here; {}\n", advice.setting, advice.now->level, changes(*advice.now));
+    if (confidence(*advice.now, tolerance) == Confidence::impossible) beyond.push_back(advice.setting);
     if (advice.cheaper.empty()) std::cout << "      nothing cheaper was tried\n";
     for (const Evidence* one : advice.cheaper)
-      std::cout << fmt::format("    {} {}: {:.2f} times cheaper, {}, {}\n",
-                               one == advice.best && advice.taken ? "→" : " ", one->level, advice.now->cost / one->cost,
-                               changes(*one), why(*one, tolerance));
+      std::cout << (one->known ? fmt::format("    {} {}: {:.2f} times cheaper, {}, {}\n",
+                                             one == advice.best && advice.taken ? "→" : " ", one->level,
+                                             advice.now->cost / one->cost, changes(*one), why(*one, tolerance))
+                               : fmt::format("      {}: runs of the study failed with it\n", one->level));
     if (!advice.taken) continue;
     cost *= advice.now->cost / advice.best->cost, error += advice.best->error;
-    for (const auto& set : advice.best->sets) sets += " --set '" + set + '\'';
+    variance += advice.best->standard_error * advice.best->standard_error;
+    given.insert(given.end(), advice.best->sets.begin(), advice.best->sets.end());
   }
-  if (sets.empty()) {
-    std::cout << "\nnothing that the study tried may be relaxed\n";
+  std::cout << '\n';
+  if (!beyond.empty())
+    std::cout << fmt::format("beyond the tolerance as it is: {}; a finer value costs more\n", fmt::join(beyond, ", "));
+  if (std::ranges::none_of(advices, &Advice::taken)) {
+    std::cout << "nothing that the study tried may be relaxed\n";
     return;
   }
   std::cout << fmt::format(
-      "\ntogether about {:.1f} times cheaper; the errors add up to {:.1f} % at most, if settings do not act on each "
-      "other\n  grit run {}{}\n",
-      cost, 100 * error, file, sets);
+      "together about {:.1f} times cheaper; what they change adds up to {} at most, if settings do not act on each "
+      "other\n  grit run {}",
+      cost, with_scatter(error, std::sqrt(variance)), file);
+  for (const auto& set : given) std::cout << " --set '" << set << '\'';
+  std::cout << '\n';
 }
 
 }  // namespace
@@ -129,7 +144,7 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
   if (studies.empty()) studies = shipped_studies(scenario_type(Document::load(file)), options.list("figure"));
   for (const ChartedStudy& study : studies) {
     if (&study != &studies.front()) std::cout << '\n';
-    print(study, file, tolerance, advise(study, tolerance, same));
+    print(study, file, sets, tolerance, advise(study, tolerance, same));
   }
   return ExitStatus::done;
 }

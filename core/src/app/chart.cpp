@@ -1,13 +1,15 @@
-#include <unistd.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <boost/dll/runtime_symbol_info.hpp>
 #include <chrono>
-#include <csignal>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <ranges>
 #include <set>
+#include <utility>
 
+#include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "grit/error.hpp"
@@ -18,16 +20,10 @@
 #include "study/batch.hpp"
 #include "study/chart.hpp"
 #include "study/chart_page.hpp"
+#include "study/chart_words.hpp"
 
 namespace grit {
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-extern "C" void on_chart_interrupt(int signal) {
-  interrupted.store(true);
-  std::signal(signal, SIG_DFL);
-}
 
 /// One run of the study.
 struct Run {
@@ -45,14 +41,46 @@ std::string text_of(const std::filesystem::path& path) {
 bool is_there(const std::filesystem::path& folder, const Description& description) {
   const auto run = read_run_json(folder);
   if (!run) return false;
-  const std::string status = run->value("status", "");
-  return (status == "done" || status == "failed") && run->at("description") == description &&
-         run->at("grit").at("revision") == build_facts().revision;
+  const auto says = [&](const char* pointer) { return run->value(Description::json_pointer(pointer), Description()); };
+  return (says("/status") == "done" || says("/status") == "failed") && says("/description") == description &&
+         says("/grit/revision") == build_facts().revision;
 }
 
-/// The runs that are missing; counts all. Throws DescriptionError if a setting makes a description that is none.
-std::vector<Run> missing_runs(const StudyDescription& study, const std::filesystem::path& out, const Options& options,
-                              const Registry& registry, std::size_t& all) {
+/// What a sample of a variant runs. Throws DescriptionError, which names the study and the variant where a value of
+/// theirs is wrong.
+std::shared_ptr<const SceneDescription> scene_of(const StudyDescription& study, const std::filesystem::path& file,
+                                                 const Variant& variant, const std::vector<std::string>& sets,
+                                                 const Registry& registry) {
+  try {
+    return load_scene(study.scene, sets, registry).description;
+  } catch (const DescriptionError& error) {
+    auto problems = error.problems();
+    for (Problem& problem : problems)
+      if (problem.file == "--set") problem.file = file.string() + ", " + variant.name;
+    throw DescriptionError(std::move(problems));
+  }
+}
+
+/// Sees before hours of runs what of the figures cannot be. Throws DescriptionError, FileError.
+void check_figures(const StudyDescription& study, const std::filesystem::path& file, const SceneDescription& scene) {
+  std::vector<Problem> problems;
+  for (const auto& [name, figure] : study.figures) {
+    if (figure.curve) read_reference(*figure.curve);
+    for (const auto& [key, channel] : {std::pair("of", &figure.of), std::pair("against", &figure.against)}) {
+      const std::string probe = channel->substr(0, channel->find('/'));
+      if (probe.empty() || scene.probes.contains(probe)) continue;
+      problems.push_back({file.string(), 0, "/figures/" + name + '/' + key,
+                          fmt::format("found the probe \"{}\", which the scene lacks; allowed is one of {}", probe,
+                                      fmt::join(std::views::keys(scene.probes), ", "))});
+    }
+  }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+}
+
+/// The runs that are missing; counts all. Throws DescriptionError if one of them could not be run or has no figures.
+std::vector<Run> missing_runs(const StudyDescription& study, const std::filesystem::path& file,
+                              const std::filesystem::path& out, const Options& options, const Registry& registry,
+                              std::size_t& all) {
   std::vector<Run> runs;
   std::set<std::filesystem::path> folders;
   const unsigned threads = options.get<unsigned>("threads");
@@ -65,10 +93,10 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
         throw UsageError("two variants would both be kept in " + folder.string() +
                          "; give their levels labels that differ in "
                          "more than punctuation");
+      const auto scene = scene_of(study, file, variant, sets, registry);
+      check_figures(study, file, *scene);
       // As run.json has it, whose numbers went through text.
-      const Description description =
-          Description::parse(resolved(*load_scene(study.scene, sets, registry).description).dump());
-      if (is_there(folder, description)) continue;
+      if (is_there(folder, Description::parse(resolved(*scene).dump()))) continue;
       Run run{variant.name + ", seed " + std::to_string(static_cast<long long>(seed)), folder, {}};
       run.job.log = folder / "log.txt";
       run.job.words = {boost::dll::program_location().string(),
@@ -88,55 +116,61 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
   return runs;
 }
 
-/// One line for the whole study.
+/// How far the whole study is.
 class StudyProgress {
  public:
-  StudyProgress(std::size_t all, std::size_t missing, bool quiet)
-      : all_(all), missing_(missing), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+  StudyProgress(std::size_t all, std::size_t missing, bool quiet) : all_(all), missing_(missing), quiet_(quiet) {}
   void ended() { ++ended_; }
   void show(std::size_t at_work) {
-    const auto now = std::chrono::steady_clock::now();
-    if (quiet_ || now - shown_ < (terminal_ ? std::chrono::milliseconds(500) : std::chrono::seconds(10))) return;
-    shown_ = now;
-    const double elapsed = std::chrono::duration<double>(now - began_).count();
-    std::string text = std::to_string(all_ - missing_ + ended_) + " of " + std::to_string(all_) + " runs, " +
-                       std::to_string(at_work) + " at work";
+    if (quiet_ || !line_.is_due()) return;
+    std::string text = fmt::format("{} of {} runs, {} at work", all_ - missing_ + ended_, all_, at_work);
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     if (ended_ > 0)
       text += ", about " +
               duration_text(elapsed / static_cast<double>(ended_) * static_cast<double>(missing_ - ended_)) + " left";
-    if (terminal_) std::cerr << '\r' << text << "\033[K" << std::flush;
-    else std::cerr << text << std::endl;
-    open_ = terminal_;
+    line_.show(text);
   }
-  void end() {
-    if (open_) std::cerr << std::endl;
-    open_ = false;
-  }
+  void end() { line_.end(); }
 
  private:
   std::size_t all_, missing_, ended_ = 0;
-  bool quiet_, terminal_, open_ = false;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now(), shown_{};
+  bool quiet_;
+  ProgressLine line_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
-void run_missing(const std::vector<Run>& runs, std::size_t all, const Options& options) {
+/// Throws FileError, also if the first run that is done lacks what a figure is of.
+void run_missing(const StudyDescription& study, const std::vector<Run>& runs, std::size_t all, const Options& options,
+                 const std::atomic<bool>& interrupted) {
   std::vector<BatchJob> jobs;
   for (const Run& run : runs) jobs.push_back(run.job);
   StudyProgress progress(all, runs.size(), options.has("quiet"));
   std::string trouble;
+  bool seen = false;
+  const auto look_at = [&](const Run& run) {
+    for (const auto& [name, figure] : study.figures) try {
+        take_figure(figure, run.folder);
+      } catch (const FileError& error) {
+        trouble = error.what();
+      } catch (const NumericsError&) {
+        // It did not get far enough, which another may.
+      }
+    return trouble.empty();
+  };
+  const auto ended = [&](std::size_t i, int status) {
+    progress.ended();
+    if (status == static_cast<int>(ExitStatus::done)) return std::exchange(seen, true) || look_at(runs[i]);
+    if (status == static_cast<int>(ExitStatus::numerics) || status == static_cast<int>(ExitStatus::interrupted))
+      return true;
+    if (trouble.empty() && !interrupted.load())
+      trouble = runs[i].name +
+                (status < 0 ? fmt::format(" was killed by signal {}", -status)
+                            : fmt::format(" ended with status {}", status)) +
+                ":\n" + text_of(runs[i].job.log) + "\n" + runs[i].job.log.string() + " has this";
+    return false;
+  };
   run_batch(jobs, options.get<unsigned>("jobs"), interrupted,
-            {.ended =
-                 [&](std::size_t i, int status) {
-                   progress.ended();
-                   const bool usable = status == static_cast<int>(ExitStatus::done) ||
-                                       status == static_cast<int>(ExitStatus::numerics) ||
-                                       status == static_cast<int>(ExitStatus::interrupted);
-                   if (!usable && trouble.empty() && !interrupted.load())
-                     trouble = runs[i].name + " ended with status " + std::to_string(status) + ":\n" +
-                               text_of(runs[i].job.log) + "\n" + runs[i].job.log.string() + " has this";
-                   return usable;
-                 },
-             .waiting = [&](std::size_t at_work) { progress.show(at_work); }});
+            {.ended = ended, .waiting = [&](std::size_t at_work) { progress.show(at_work); }});
   progress.end();
   if (!trouble.empty()) throw FileError(trouble);
 }
@@ -145,10 +179,8 @@ void print(const Chart& chart) {
   for (const VariantResult& one : chart.variants) {
     std::cout << "  " << one.variant.name << ": ";
     if (one.complete()) {
-      char line[160];
-      std::snprintf(line, sizeof line, "%.1f core-seconds, largest error %.2f %% ± %.2f (%s)\n", one.core_seconds,
-                    100 * one.of_worst().error, 100 * one.of_worst().standard_error, one.worst.c_str());
-      std::cout << line;
+      std::cout << fmt::format("{:.1f} core-seconds, largest error {:.2f} % ± {:.2f} ({})\n", one.core_seconds,
+                               100 * one.of_worst().error, 100 * one.of_worst().standard_error, one.worst);
       continue;
     }
     const auto failed = std::ranges::find_if(one.samples, [](const Sample& s) { return s.status != "done"; });
@@ -180,7 +212,7 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   const std::filesystem::path out =
       options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : "results" / file.stem();
   std::size_t all = 0;
-  const auto runs = missing_runs(study, out, options, *registry, all);
+  const auto runs = missing_runs(study, file, out, options, *registry, all);
   if (options.has("dry")) {
     for (const Run& run : runs) std::cout << run.name << '\n';
     std::cout << runs.size() << " of " << all << " runs are missing in " << out.string() << '\n';
@@ -189,9 +221,8 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   if (!options.has("quiet"))
     std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
               << " runs to do, results in " << out.string() << std::endl;
-  std::signal(SIGINT, on_chart_interrupt);
-  std::signal(SIGTERM, on_chart_interrupt);
-  run_missing(runs, all, options);
+  const auto& interrupted = catch_interrupts();
+  run_missing(study, runs, all, options, interrupted);
   if (interrupted.load()) {
     std::cerr << "interrupted; the same command goes on with the runs that are missing" << std::endl;
     return ExitStatus::interrupted;

@@ -1,5 +1,7 @@
 #include "app/progress_bar.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -38,20 +40,28 @@ std::string progress_text(const Progress& now) {
   return text + format(", %.2f M particle-steps/s", 1e-6 * now.particle_steps_per_second);
 }
 
-void ProgressBar::show(const Progress& now) {
-  const auto time = std::chrono::steady_clock::now();
-  const bool new_stage = now.stage != stage_;
-  if (!terminal_ && !new_stage && time - last_ < log_interval) return;
-  if (new_stage) end();
-  stage_ = now.stage, last_ = time;
-  if (terminal_) std::cerr << '\r' << progress_text(now) << "\033[K" << std::flush;
-  else std::cerr << progress_text(now) << std::endl;
+ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
+
+bool ProgressLine::is_due() const { return terminal_ || std::chrono::steady_clock::now() - shown_ >= log_interval; }
+
+void ProgressLine::show(const std::string& text) {
+  shown_ = std::chrono::steady_clock::now();
+  if (terminal_) std::cerr << '\r' << text << "\033[K" << std::flush;
+  else std::cerr << text << std::endl;
   open_ = terminal_;
 }
 
-void ProgressBar::end() {
+void ProgressLine::end() {
   if (open_) std::cerr << std::endl;
   open_ = false;
+}
+
+void ProgressBar::show(const Progress& now) {
+  const bool new_stage = now.stage != stage_;
+  if (!new_stage && !line_.is_due()) return;
+  if (new_stage) end();
+  stage_ = now.stage;
+  line_.show(progress_text(now));
 }
 
 }  // namespace grit

@@ -8,19 +8,29 @@
 
 namespace grit {
 
-class ProgressBar {
+/// What is shown on standard error.
+class ProgressLine {
  public:
-  /// `terminal`: whether standard error is one.
-  explicit ProgressBar(bool terminal) : terminal_(terminal) {}
-  void show(const Progress& progress);
+  ProgressLine();
+  /// Whether it is time for a line; at a terminal it always is.
+  bool is_due() const;
+  void show(const std::string& text);
   /// Ends the line, so that others may print.
   void end();
 
  private:
-  bool terminal_;
-  bool open_ = false;
+  bool terminal_, open_ = false;
+  std::chrono::steady_clock::time_point shown_{};
+};
+
+class ProgressBar {
+ public:
+  void show(const Progress& progress);
+  void end() { line_.end(); }
+
+ private:
+  ProgressLine line_;
   std::string stage_;
-  std::chrono::steady_clock::time_point last_{};
 };
 
 /// "42 s", "3 min 10 s", "2 h 05 min".

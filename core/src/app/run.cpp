@@ -1,11 +1,9 @@
 #include "run/driver.hpp"
 
-#include <unistd.h>
-
-#include <csignal>
 #include <iostream>
 
 #include "app/curve_summary.hpp"
+#include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
@@ -16,14 +14,6 @@
 
 namespace grit {
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-// The second Ctrl-C gets what it wants at once.
-extern "C" void on_interrupt(int signal) {
-  interrupted.store(true);
-  std::signal(signal, SIG_DFL);
-}
 
 std::vector<WallShape> wall_shapes(const SceneDescription& scene) {
   std::vector<WallShape> shapes;
@@ -67,7 +57,8 @@ void read_all(std::vector<Job>& jobs, const Options& options, const Registry& re
   if (!problems.empty()) throw DescriptionError(std::move(problems));
 }
 
-ExitStatus run_one(const Job& job, const Options& options, const Registry& registry) {
+ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
+                   const std::atomic<bool>& interrupted) {
   const auto& [file, folder, scene] = job;
   const unsigned threads = options.threads();
   const bool quiet = options.has("quiet");
@@ -94,7 +85,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   say(std::to_string(simulation.positions().size()) + " bodies, " + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
 
-  ProgressBar bar(isatty(STDERR_FILENO) != 0);
+  ProgressBar bar;
   CurveSummary summary_curves(recorder, description.output.summary, [&](const std::string& line) {
     bar.end();
     say(line);
@@ -141,13 +132,12 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   auto jobs = jobs_of(options);
   const auto registry = options.registry();
   read_all(jobs, options, *registry);
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
+  const auto& interrupted = catch_interrupts();
   ExitStatus status = ExitStatus::done;
   for (const Job& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return run_one(job, options, *registry);
+        return run_one(job, options, *registry, interrupted);
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }

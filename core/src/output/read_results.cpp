@@ -1,5 +1,7 @@
 #include "output/read_results.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <fstream>
 
 #include "grit/error.hpp"
@@ -9,9 +11,7 @@ namespace grit {
 namespace {
 
 std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "nothing" : text;
+  return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace

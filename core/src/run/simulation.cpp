@@ -136,6 +136,7 @@ void Simulation::apply(const SceneDescription& scene) {
         std::find(material_names_.begin(), material_names_.end(), wall.material) - material_names_.begin());
   }
   energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
+  flows_.complete = flows_.complete && all_work_is_kept();
   time_step_now_ = true;
   stiffens_ = law_stiffens();
   net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;

@@ -52,6 +52,7 @@ struct EnergyBook {
 /// What has gone in and out since a component first asked [J].
 struct EnergyFlows {
   bool begun = false;
+  bool complete = true;  ///< whether all work was kept all the time
   double at_start = 0;
   Losses lost;
   double damped = 0, fallen = 0;

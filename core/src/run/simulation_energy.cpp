@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "run/simulation.hpp"
+#include "scene/kinetic_energy.hpp"
 
 namespace grit {
 
@@ -36,19 +37,7 @@ ElasticEnergy Simulation::elastic_energy() const {
   return all;
 }
 
-double Simulation::kinetic_energy() const {
-  const double half = 0.5 * clock_.last_time_step;
-  const auto force = forces(), moment = moments();
-  double energy = 0;
-  for (const ClumpView& clump : clumps()) energy += kinetic_energy_of(clump, half);
-  for (std::size_t i = 0; i < bodies_.count(); ++i) {
-    if (bodies_.clumps.clump_of(i) != no_clump) continue;
-    const Row &v = bodies_.velocity[i], &w = bodies_.spin[i];
-    energy += 0.5 / v.w * (xyz(v) + half * v.w * xyz(force[i])).squaredNorm() +
-              0.5 / w.w * (xyz(w) + half * w.w * xyz(moment[i])).squaredNorm();
-  }
-  return energy;
-}
+double Simulation::kinetic_energy() const { return grit::kinetic_energy(*this, 0.5 * clock_.last_time_step); }
 
 double Simulation::power_of_walls() const {
   double power = 0;
@@ -70,8 +59,8 @@ EnergyLedger Simulation::energies() const {
   // The half of the last step's work that the forces at its end do.
   const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
   if (!flows_.begun) {
-    flows_ = {};
-    flows_.begun = true, flows_.at_start = now.kinetic + elastic.total(), flows_.walls = -last_half;
+    flows_ = {
+        .begun = true, .complete = all_work_is_kept(), .at_start = now.kinetic + elastic.total(), .walls = -last_half};
   }
   now.gravitational = -flows_.fallen;
   now.walls = flows_.walls + last_half, now.settings = flows_.settings;
@@ -79,7 +68,7 @@ EnergyLedger Simulation::energies() const {
   now.local_damping = flows_.damped;
   now.closure_error =
       now.kinetic + now.elastic() + now.gravitational + now.dissipated() - flows_.at_start - now.walls - now.settings;
-  if (!all_work_is_kept()) now.closure_error = std::numeric_limits<double>::quiet_NaN();
+  if (!flows_.complete) now.closure_error = std::numeric_limits<double>::quiet_NaN();
   return now;
 }
 

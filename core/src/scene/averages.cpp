@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "grit/world.hpp"
+#include "scene/kinetic_energy.hpp"
 
 namespace grit {
 
@@ -58,27 +59,35 @@ double kinetic_energy_of(const ClumpView& clump, double later) {
   return 0.5 * clump.mass * velocity.squaredNorm() + 0.5 * momentum.dot(momentum.cwiseQuotient(clump.inertia));
 }
 
-Unrest unrest(const World& world) {
+double kinetic_energy(const World& world, double half_step) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
-  // Velocities are half a step old, but for the first; the acceleration that now acts brings them up to time().
-  const double half_step = world.step() > 0 ? 0.5 * world.dt() : 0;
   const auto energy = [half_step](const Row& velocity, const Row& force) {
     return velocity.w > 0 ? 0.5 / velocity.w * (xyz(velocity) + half_step * velocity.w * xyz(force)).squaredNorm()
                           : 0.0;
   };
-  double kinetic = 0, net = 0;
+  const auto clump_of = world.clump_of();
+  double sum = 0;
+  for (const ClumpView& clump : world.clumps()) sum += kinetic_energy_of(clump, half_step);
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    if (clump_of.empty() || clump_of[i] == no_clump)
+      sum += energy(velocities[i], forces[i]) + energy(spins[i], moments[i]);
+  return sum;
+}
+
+Unrest unrest(const World& world) {
+  const auto velocities = world.velocities(), forces = world.forces();
+  double net = 0;
   std::size_t movable = 0;
   const auto clump_of = world.clump_of();
-  for (const ClumpView& clump : world.clumps())
-    kinetic += kinetic_energy_of(clump, half_step), net += clump.force.norm(), ++movable;
-  for (std::size_t i = 0; i < velocities.size(); ++i) {
-    if (!clump_of.empty() && clump_of[i] != no_clump) continue;
-    kinetic += energy(velocities[i], forces[i]) + energy(spins[i], moments[i]);
-    if (velocities[i].w > 0) net += xyz(forces[i]).norm(), ++movable;
-  }
+  for (const ClumpView& clump : world.clumps()) net += clump.force.norm(), ++movable;
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    if (velocities[i].w > 0 && (clump_of.empty() || clump_of[i] == no_clump)) net += xyz(forces[i]).norm(), ++movable;
   const double normal = world.mean_contact_force();
   if (movable > 0) net /= static_cast<double>(movable);
-  return {.kinetic_energy = kinetic, .unbalanced_force = normal > 0 ? net / normal : 0, .mean_contact_force = normal};
+  // Velocities are half a step old, but for the first.
+  return {.kinetic_energy = kinetic_energy(world, world.step() > 0 ? 0.5 * world.dt() : 0),
+          .unbalanced_force = normal > 0 ? net / normal : 0,
+          .mean_contact_force = normal};
 }
 
 Grains grains_of(const World& world) {

@@ -1,8 +1,11 @@
 #include "study/advice.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <ranges>
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
@@ -22,19 +25,14 @@ void put_largest(Evidence& evidence, const Description& deviations, const std::v
   }
 }
 
-}  // namespace
-
-ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures) {
-  std::ifstream stream(file);
-  if (!stream) throw FileError(file.string() + ": cannot be read; it should be a chart.json that 'grit chart' wrote");
-  const Description json = Description::parse(stream, nullptr, false);
-  if (!json.is_object() || !json.contains("effects") || !json.contains("settings"))
-    throw FileError(file.string() + ": is no chart.json; 'grit chart' writes one");
+/// Throws Description::exception if the chart lacks something.
+ChartedStudy charted_study(const std::filesystem::path& file, const Description& json,
+                           const std::vector<std::string>& figures) {
   for (const auto& name : figures)
     if (!json.at("figures").contains(name)) {
-      std::string known;
-      for (const auto& [figure, _] : json.at("figures").items()) known += (known.empty() ? "" : ", ") + figure;
-      throw Error(file.string() + ": has no figure \"" + name + "\" but " + known);
+      std::vector<std::string> known;
+      for (const auto& [figure, _] : json.at("figures").items()) known.push_back(figure);
+      throw Error(fmt::format("{}: has no figure \"{}\" but {}", file.string(), name, fmt::join(known, ", ")));
     }
   ChartedStudy study{file,
                      json.at("title").get<std::string>(),
@@ -45,7 +43,7 @@ ChartedStudy read_charted_study(const std::filesystem::path& file, const std::ve
     auto& levels = study.settings[name];
     const auto& all = setting.at("levels");
     for (const auto& level : all) {
-      Evidence evidence;
+      Evidence& evidence = levels.emplace_back();
       evidence.level = level.at("label").get<std::string>();
       evidence.sets = level.at("sets").get<std::vector<std::string>>();
       const auto effect = std::ranges::find_if(json.at("effects"), [&](const Description& one) {
@@ -54,13 +52,25 @@ ChartedStudy read_charted_study(const std::filesystem::path& file, const std::ve
       if (effect != json.at("effects").end()) {
         evidence.cost = effect->at("cost").get<double>();
         put_largest(evidence, effect->at("figures"), figures);
-      } else if (&level != &all.back()) {
-        continue;
+      } else {
+        evidence.known = &level == &all.back();
       }
-      levels.push_back(std::move(evidence));
     }
   }
   return study;
+}
+
+}  // namespace
+
+ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures) {
+  std::ifstream stream(file);
+  if (!stream || std::filesystem::is_directory(file))
+    throw FileError(file.string() + ": cannot be read; it should be a chart.json that 'grit chart' wrote");
+  try {
+    return charted_study(file, Description::parse(stream), figures);
+  } catch (const Description::exception&) {
+    throw FileError(file.string() + ": is no chart.json; 'grit chart' writes one");
+  }
 }
 
 Confidence confidence(const Evidence& evidence, double tolerance) {
@@ -84,12 +94,18 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
       continue;
     }
     if (advice.now == nullptr) {
-      advice.found = "has a value that the study did not try; it tried";
-      for (const Evidence& level : levels) advice.found += (&level == &levels.front() ? " " : ", ") + level.level;
+      advice.found = fmt::format("has a value that the study did not try; it tried {}",
+                                 fmt::join(std::views::transform(levels, &Evidence::level), ", "));
+      continue;
+    }
+    if (!advice.now->known) {
+      advice.found = advice.now->level + " here, with which the study's scene failed";
+      advice.now = nullptr;
       continue;
     }
     for (const Evidence& level : levels) {
-      if (!(level.cost < advice.now->cost)) continue;
+      if (!level.known && &level < advice.now) advice.cheaper.push_back(&level);
+      if (!level.known || !(level.cost < advice.now->cost)) continue;
       advice.cheaper.push_back(&level);
       const Confidence sure = confidence(level, tolerance);
       if (sure != Confidence::certain && sure != Confidence::likely) continue;

@@ -16,6 +16,7 @@ struct Evidence {
   double cost = 1;                ///< over that of the finest level
   double error = 0, standard_error = 0;
   std::string figure;  ///< in which the error is the largest; empty for the finest
+  bool known = true;   ///< false if runs of it, or of the finest level, failed
 };
 
 /// A chart.json, as far as advice needs it.
@@ -23,7 +24,7 @@ struct ChartedStudy {
   std::filesystem::path file;
   std::string title, scenario;
   std::size_t samples = 0;
-  std::map<std::string, std::vector<Evidence>> settings;  ///< the finest last; levels that failed are left out
+  std::map<std::string, std::vector<Evidence>> settings;  ///< from the cheapest level to the finest
 };
 
 /// `figures`: those that count; none: all. Throws FileError, and Error if a figure is unknown.
@@ -42,7 +43,7 @@ struct Advice {
   std::string found;               ///< why there is no level; empty if there is one
   const Evidence* now = nullptr;   ///< level that the description has
   const Evidence* best = nullptr;  ///< the cheapest within the tolerance that is cheaper than that, certain or likely
-  std::vector<const Evidence*> cheaper;  ///< all that are cheaper than now
+  std::vector<const Evidence*> cheaper;  ///< all that are cheaper than now, or are coarser and failed
   bool taken = false;                    ///< part of what is advised together
 };
 

@@ -21,12 +21,19 @@ Sample read_sample(const StudyDescription& study, double seed, const std::filesy
   sample.seed = seed, sample.status = "missing";
   const auto run = read_run_json(folder);
   if (!run) return sample;
-  const auto number = [&](const char* key) { return run->at(key).is_number() ? run->at(key).get<double>() : 0.0; };
-  sample.status = run->at("status").get<std::string>(), sample.message = run->at("message").get<std::string>();
+  const auto entry = [&](const char* key) { return run->value(key, Description()); };
+  const auto text = [&](const char* key) { return entry(key).is_string() ? entry(key).get<std::string>() : ""; };
+  const auto number = [&](const char* key) { return entry(key).is_number() ? entry(key).get<double>() : 0.0; };
+  if (const auto status = text("status"); status == "done" || status == "failed") sample.status = status;
+  sample.message = text("message");
   sample.core_seconds = number("cpu_s"), sample.steps = number("steps");
   sample.particle_steps_per_second = number("particle_steps_per_s"), sample.bodies = number("bodies");
   if (sample.status != "done") return sample;
-  for (const auto& [name, figure] : study.figures) sample.figures[name] = take_figure(figure, folder);
+  try {
+    for (const auto& [name, figure] : study.figures) sample.figures[name] = take_figure(figure, folder);
+  } catch (const NumericsError& error) {
+    sample.status = "failed", sample.message = error.what();
+  }
   return sample;
 }
 
@@ -78,27 +85,28 @@ std::vector<const Figure*> figures_of(const VariantResult& result, const std::st
   return all;
 }
 
-/// Where both can be compared: what all curves have.
-std::vector<double> shared_places(const std::vector<const Figure*>& a, const std::vector<const Figure*>& b) {
+/// Where both can be compared: what all curves have; nothing for values. Throws Error if curves share nothing.
+std::vector<double> shared_places(const std::vector<const Figure*>& a, const std::vector<const Figure*>& b,
+                                  const std::string& name) {
   double low = -std::numeric_limits<double>::infinity(), high = -low;
   for (const auto* figures : {&a, &b})
     for (const Figure* figure : *figures) {
       if (figure->x.empty()) return {};
       low = std::max(low, figure->x.front()), high = std::min(high, figure->x.back());
     }
+  if (!(low <= high))
+    throw Error("/figures/" + name + ": the curve and its reference have no abscissa in common; mind the units");
   std::vector<double> x(places);
   for (std::size_t k = 0; k < places; ++k)
     x[k] = std::clamp(low + (high - low) * static_cast<double>(k) / (places - 1), low, high);
-  return low <= high ? x : std::vector<double>();
+  return x;
 }
 
 /// Sample by sample, so that what samples of one seed have in common is not taken for scatter of the difference. A
 /// reference from elsewhere is one for all samples.
 Deviation deviation(const std::vector<const Figure*>& from, const std::vector<const Figure*>& reference, double scale,
                     const std::string& name) {
-  const auto x = shared_places(from, reference);
-  if (x.empty() && !from.front()->x.empty())
-    throw Error("/figures/" + name + ": the curve and its reference have no abscissa in common; mind the units");
+  const auto x = shared_places(from, reference, name);
   const Sampled own = sampled(values_at(from, x));
   auto differences = values_at(from, x);
   const auto others = values_at(reference, x);
@@ -120,7 +128,7 @@ void find_references(Chart& chart) {
     else if (figure.curve) reference = read_reference(*figure.curve);
     else if (all_done(chart.finest())) {
       const auto finest = figures_of(chart.finest(), name);
-      const auto x = shared_places(finest, finest);
+      const auto x = shared_places(finest, finest, name);
       reference = {x, sampled(values_at(finest, x)).mean, finest.front()->unit, finest.front()->x_unit};
     } else {
       continue;

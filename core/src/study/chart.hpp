@@ -18,7 +18,7 @@ namespace grit {
 /// One run: a variant with a seed.
 struct Sample {
   double seed = 0;
-  std::string status;   ///< "done", "failed" or "missing"
+  std::string status;   ///< "done", "failed" or "missing"; "failed" too if it did not get to where a figure is taken
   std::string message;  ///< why it failed
   double core_seconds = 0, steps = 0, particle_steps_per_second = 0, bodies = 0;
   std::map<std::string, Figure> figures;

@@ -3,184 +3,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
-#include "output/scale.hpp"
 #include "output/svg.hpp"
+#include "study/chart_words.hpp"
+#include "study/error_chart.hpp"
 
 namespace grit {
 namespace {
-
-// Okabe and Ito's colours: told apart by all readers, on white and on black.
-constexpr std::array<const char*, 7> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#8a8a86"};
-
-/// "2.1 %"; "?" where it cannot be told.
-std::string percent(double share) {
-  if (!std::isfinite(share)) return "?";
-  const double value = 100 * share;
-  return fmt::format("{:.{}f} %", value, value >= 9.95 ? 0 : value >= 0.1 ? 1 : 2);
-}
-
-std::string times(double ratio) { return fmt::format("{:.{}f}", ratio, ratio >= 10 ? 0 : ratio >= 3 ? 1 : 2); }
-
-std::string cost_text(double seconds) {
-  return seconds < 600     ? fmt::format("{:.{}f} s", seconds, seconds < 10 ? 1 : 0)
-         : seconds < 36000 ? fmt::format("{:.0f} min", seconds / 60)
-                           : fmt::format("{:.1f} h", seconds / 3600);
-}
-
-/// Which setting a variant varies alone; the last colour for several or none.
-std::size_t colour_of(const Chart& chart, const VariantResult& result) {
-  std::size_t k = 0, colour = palette.size() - 1, differing = 0;
-  for (const auto& [name, setting] : chart.study.settings) {
-    if (result.variant.levels[k] != setting.usual_level()) ++differing, colour = k % (palette.size() - 1);
-    ++k;
-  }
-  return differing == 1 ? colour : palette.size() - 1;
-}
-
-/// A logarithmic axis from power to power, or to 2 and 5 where that is shorter.
-class LogAxis {
- public:
-  LogAxis(double low, double high, double from, double to) : from_(from), to_(to) {
-    low_ = std::log10(mark_below(low)), high_ = std::log10(mark_above(high));
-    if (!(high_ > low_)) high_ = low_ + 1;
-  }
-  double operator()(double value) const {
-    return from_ + (std::clamp(std::log10(value), low_, high_) - low_) / (high_ - low_) * (to_ - from_);
-  }
-  std::vector<double> marks() const {
-    std::vector<double> all;
-    const bool dense = high_ - low_ < 2.4;
-    for (double power = std::floor(low_); power <= high_ + 1e-9; ++power)
-      for (const double lead : {1.0, 2.0, 5.0}) {
-        const double place = power + std::log10(lead);
-        if ((dense || lead == 1) && place >= low_ - 1e-9 && place <= high_ + 1e-9)
-          all.push_back(lead * std::pow(10, power));
-      }
-    return all;
-  }
-
- private:
-  static double mark_below(double value) {
-    const double power = std::pow(10, std::floor(std::log10(value)));
-    return value >= 5 * power ? 5 * power : value >= 2 * power ? 2 * power : power;
-  }
-  static double mark_above(double value) {
-    const double power = std::pow(10, std::floor(std::log10(value)));
-    return value <= power ? power : value <= 2 * power ? 2 * power : value <= 5 * power ? 5 * power : 10 * power;
-  }
-  double low_, high_, from_, to_;
-};
-
-/// Error of one figure, or of the worst, against cost.
-class ErrorChart {
- public:
-  /// `figure`: empty for the worst of each variant.
-  ErrorChart(const Chart& chart, const std::string& figure) : chart_(chart), figure_(figure) {}
-
-  std::string svg() const {
-    Svg svg(width, height, title(), "");
-    double least = chart_.study.tolerance, largest = chart_.study.tolerance, cheapest = 1e300, dearest = 0;
-    for (const VariantResult& one : chart_.variants) {
-      if (one.core_seconds > 0)
-        cheapest = std::min(cheapest, one.core_seconds), dearest = std::max(dearest, one.core_seconds);
-      if (!one.complete()) continue;
-      const double error = of(one).error;
-      if (error > 0)
-        least = std::min(least, error), largest = std::max(largest, error + finite(of(one).standard_error));
-    }
-    if (dearest == 0) return "";
-    const double floor =
-        finite(reference().scatter) * std::sqrt(2.0 / static_cast<double>(chart_.study.seeds.values.size()));
-    if (floor > 0) least = std::min(least, 0.7 * floor);
-    const LogAxis x(0.9 * cheapest, 1.1 * dearest, left, right), y(std::max(least, 1e-6), largest, bottom, top);
-
-    if (floor > 0) {
-      svg.rectangle({left, y(floor)}, right - left, bottom - y(floor), "class=\"floor\"");
-      svg.text({right - 6, bottom - 8}, "differences between samples: " + percent(floor), "class=\"e small\"");
-    }
-    for (const double mark : x.marks()) {
-      svg.line({x(mark), top}, {x(mark), bottom}, "class=\"grid\"");
-      svg.text({x(mark), bottom + 18}, cost_text(mark), "class=\"m\"");
-    }
-    for (const double mark : y.marks()) {
-      svg.line({left, y(mark)}, {right, y(mark)}, "class=\"grid\"");
-      svg.text({left - 8, y(mark) + 4}, fmt::format("{:g} %", 100 * mark), "class=\"e\"");
-    }
-    svg.line({left, bottom}, {right, bottom}, "class=\"frame\"");
-    svg.line({left, top}, {left, bottom}, "class=\"frame\"");
-    svg.line({left, y(chart_.study.tolerance)}, {right, y(chart_.study.tolerance)}, "class=\"wish\"");
-    svg.text({left + 6, y(chart_.study.tolerance) - 6}, "tolerance " + percent(chart_.study.tolerance),
-             "class=\"small\"");
-    svg.text({left - 50, top - 14}, title(), "class=\"axis\"");
-    svg.text({(left + right) / 2, bottom + 40}, "core-seconds of one run", "class=\"axis m\"");
-    front(svg, x, y);
-    for (std::size_t i = 0; i < chart_.variants.size(); ++i) point(svg, x, y, i);
-    return std::move(svg).finish();
-  }
-
- private:
-  static constexpr double width = 720, height = 400, left = 62, right = 706, top = 34, bottom = 342;
-
-  static double finite(double value) { return std::isfinite(value) ? value : 0; }
-  const Deviation& of(const VariantResult& one) const {
-    return figure_.empty() ? one.of_worst() : one.deviations.at(figure_);
-  }
-  /// Of the finest: its scatter; of several figures the largest.
-  Deviation reference() const {
-    Deviation largest;
-    largest.scatter = 0;
-    if (chart_.finest().complete())
-      for (const auto& [name, one] : chart_.finest().deviations)
-        if (figure_.empty() || figure_ == name) largest.scatter = std::max(largest.scatter, finite(one.scatter));
-    return largest;
-  }
-  std::string title() const { return figure_.empty() ? "largest error of all figures" : "error of " + figure_; }
-
-  void front(Svg& svg, const LogAxis& x, const LogAxis& y) const {
-    std::vector<const VariantResult*> all;
-    for (const VariantResult& one : chart_.variants)
-      if (one.complete() && of(one).error > 0) all.push_back(&one);
-    std::ranges::sort(all, {}, &VariantResult::core_seconds);
-    std::vector<Point> points;
-    double least = 1e300;
-    for (const VariantResult* one : all) {
-      if (!(of(*one).error < least)) continue;
-      if (!points.empty()) points.push_back({x(one->core_seconds), points.back().y});
-      least = of(*one).error;
-      points.push_back({x(one->core_seconds), y(least)});
-    }
-    if (points.size() > 1) svg.polyline(points, "class=\"front\"");
-  }
-
-  void point(Svg& svg, const LogAxis& x, const LogAxis& y, std::size_t i) const {
-    const VariantResult& one = chart_.variants[i];
-    if (one.core_seconds == 0 && one.complete()) return;
-    const std::string number = std::to_string(i + 1);
-    if (!one.complete()) {
-      const auto failed = std::ranges::find(one.samples, "failed", &Sample::status);
-      if (failed == one.samples.end()) return;
-      svg.text({x(std::max(failed->core_seconds, 1e-3)), top + 12 + 13 * (i % 3)}, "✕" + number, "class=\"m failed\"");
-      return;
-    }
-    const double across = x(one.core_seconds), error = of(one).error, spread = finite(of(one).standard_error);
-    const std::string look = fmt::format("style=\"fill:{0};stroke:{0}\"", palette[colour_of(chart_, one)]);
-    svg.open_group("");
-    const bool zero = error <= 0;
-    const double down = zero ? bottom : y(error);
-    if (!zero && spread > 0)
-      svg.line({across, y(std::max(error - spread, 1e-9))}, {across, y(error + spread)}, look + " class=\"spread\"");
-    svg.circle({across, down}, 9, look);
-    svg.text({across, down + 4}, number, "class=\"m number\"");
-    svg.close_group();
-  }
-
-  const Chart& chart_;
-  const std::string& figure_;
-};
 
 std::string variants_table(const Chart& chart) {
   std::string html =
@@ -196,11 +25,15 @@ std::string variants_table(const Chart& chart) {
     const VariantResult& one = chart.variants[i];
     html += fmt::format(
         "<tr{}><td><span class=\"dot\" style=\"background:{}\">{}</span></td><td class=\"name\">{}{}</td>",
-        chart.cheapest == i ? " class=\"best\"" : "", palette[colour_of(chart, one)], i + 1, escaped(one.variant.name),
+        chart.cheapest == i ? " class=\"best\"" : "", colour_of(chart, one), i + 1, escaped(one.variant.name),
         one.on_front ? " <b title=\"none is both cheaper and nearer\">◂</b>" : "");
-    html += fmt::format("<td>{:.1f}</td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>", one.core_seconds,
-                        one.core_seconds > 0 ? times(chart.finest().core_seconds / one.core_seconds) + " times" : "?",
-                        one.steps, 1e-6 * one.particle_steps_per_second);
+    html += one.core_seconds > 0
+                ? fmt::format("<td>{:.1f}</td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>", one.core_seconds,
+                              chart.finest().core_seconds > 0
+                                  ? times(chart.finest().core_seconds / one.core_seconds) + " times"
+                                  : "?",
+                              one.steps, 1e-6 * one.particle_steps_per_second)
+                : "<td>–</td><td>–</td><td>–</td><td>–</td>";
     for (const auto& [name, figure] : chart.study.figures) {
       const auto found = one.deviations.find(name);
       if (found == one.deviations.end()) {
@@ -286,24 +119,6 @@ th{font-weight:600;vertical-align:bottom}.name{text-align:left}tr.best{backgroun
 
 }  // namespace
 
-std::string verdict(const Chart& chart) {
-  if (chart.reference.empty()) return "The finest settings have no result, so that there is nothing to compare with.";
-  if (!chart.cheapest) return "No variant keeps all figures within " + percent(chart.study.tolerance) + ".";
-  const VariantResult& best = chart.variants[*chart.cheapest];
-  if (&best == &chart.finest())
-    return "Nothing cheaper than the finest settings keeps all figures within " + percent(chart.study.tolerance) + ".";
-  const Deviation& worst = best.of_worst();
-  std::string text = "Cheapest within " + percent(chart.study.tolerance) + ": " + best.variant.name + ", " +
-                     cost_text(best.core_seconds) + " of one core";
-  if (chart.finest().core_seconds > 0)
-    text += ", " + times(chart.finest().core_seconds / best.core_seconds) + " times cheaper than the finest";
-  text += "; its largest error is " + percent(worst.error) + " ± " + percent(worst.standard_error) + " (" + best.worst +
-          ").";
-  if (!(worst.error + 2 * worst.standard_error <= chart.study.tolerance))
-    text += " Samples scatter so much that this is not certain; more seeds would tell.";
-  return text;
-}
-
 std::string chart_page(const Chart& chart) {
   const std::string title = chart.study.title.empty() ? "speed against accuracy" : chart.study.title;
   std::string html =
@@ -315,7 +130,7 @@ std::string chart_page(const Chart& chart) {
       escaped(std::filesystem::proximate(chart.study.scene).string()), chart.study.seeds.values.size());
   html += "<p class=\"verdict\">" + escaped(verdict(chart)) + "</p>\n";
   if (!chart.reference.empty()) {
-    html += "<div class=\"first\">" + ErrorChart(chart, "").svg() + "</div>\n";
+    html += "<div class=\"first\">" + error_chart(chart, "") + "</div>\n";
     html +=
         "<p><small>Down is nearer, left is cheaper; none is both that lies above the stepped line. In the shaded part "
         "differences are those between samples. The finest stands on the axis.</small></p>\n";
@@ -323,7 +138,7 @@ std::string chart_page(const Chart& chart) {
   html += "<h2>Variants</h2>\n" + variants_table(chart) + effects_part(chart) + failures_part(chart);
   if (chart.reference.size() > 1) {
     html += "<h2>Each figure</h2>\n<div class=\"charts\">\n";
-    for (const auto& [name, reference] : chart.reference) html += "<div>" + ErrorChart(chart, name).svg() + "</div>\n";
+    for (const auto& [name, reference] : chart.reference) html += "<div>" + error_chart(chart, name) + "</div>\n";
     html += "</div>\n";
   }
   return html + "</body></html>\n";

@@ -9,7 +9,4 @@ namespace grit {
 
 std::string chart_page(const Chart& chart);
 
-/// One sentence or two: the cheapest variant that is good enough, and what it saves.
-std::string verdict(const Chart& chart);
-
 }  // namespace grit

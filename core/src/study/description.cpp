@@ -1,5 +1,7 @@
 #include "study/description.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,9 @@
 
 namespace grit {
 namespace {
+
+/// Up to here each whole number is a double of its own.
+constexpr double largest_seed = 1e15;
 
 /// A value as people would write it: texts without quotes.
 std::string plain(const Description& value) {
@@ -39,7 +44,10 @@ void ReferenceCurve::declare(Parameters& p) {
 void FigureDescription::declare(Parameters& p) {
   p.choose(what);
   p.add("of", of).required().doc("channel: probe's name, slash, name of the channel");
-  p.add("against", against).doc("channel of the abscissa; left out: time, or the place in a profile");
+  p.add("against", against)
+      .doc(
+          "channel of the abscissa; left out: time, or the place in a profile. Where it goes back, a curve has what it "
+          "passes for the first time");
   p.add("scale", scale).above(0).doc("what errors are divided by; left out: the largest of the reference");
   p.add("value", value).doc("what it should be; left out: what the finest settings give");
   p.add("curve", curve).doc("what the curve should be; left out: what the finest settings give");
@@ -102,9 +110,10 @@ void SeedsDescription::declare(Parameters& p) {
   p.check(
       [this](const Complain& complain) {
         for (std::size_t i = 0; i < values.size(); ++i)
-          if (values[i] != std::floor(values[i]) || values[i] < 0 ||
+          if (values[i] != std::floor(values[i]) || values[i] < 0 || values[i] > largest_seed ||
               std::count(values.begin(), values.end(), values[i]) > 1)
-            complain("values/" + std::to_string(i), std::to_string(values[i]), "different whole numbers from 0 on");
+            complain("values/" + std::to_string(i), fmt::format("{}", values[i]),
+                     fmt::format("different whole numbers from 0 to {}", largest_seed));
       },
       {"values"});
 }
