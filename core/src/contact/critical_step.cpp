@@ -47,7 +47,7 @@ struct Dashpots {
 
 }  // namespace
 
-double CriticalStep::find(const Instant& at, Team& team) {
+Demand CriticalStep::find(const Instant& at, Team& team) {
   demand_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
   walls_walked_ = at.skins.walls_walked();
@@ -63,7 +63,7 @@ bool CriticalStep::due(const Skins& skins, double way) const {
   return false;
 }
 
-double CriticalStep::renew(const Instant& at, double way, Team& team) {
+Demand CriticalStep::renew(const Instant& at, double way, Team& team) {
   if (at.skins.walls_walked() > walls_walked_ + way) return find(at, team);
   std::vector<std::size_t> chunks;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
@@ -71,12 +71,13 @@ double CriticalStep::renew(const Instant& at, double way, Team& team) {
   return look(chunks, at, team);
 }
 
-double CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
+Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
   team.each(chunks.size(), [&](std::size_t k) { ask(chunks[k], at); });
   team.each(chunks.size(), [&](std::size_t k) { compare(chunks[k], at.pairs); });
-  double spring = 0, dashpot = 0;
-  for (const Chunk& chunk : chunk_) spring = std::max(spring, chunk.spring), dashpot = std::max(dashpot, chunk.dashpot);
-  return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring));
+  Demand all;
+  for (const Chunk& chunk : chunk_)
+    all = {std::max(all.spring, chunk.demand.spring), std::max(all.dashpot, chunk.demand.dashpot)};
+  return all;
 }
 
 /// What contacts ask of the bodies of a chunk.
@@ -117,22 +118,23 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     springs[a - first] += demand(k, bodies, a);
     damped[a - first].add(k, touch.normal, bodies.velocity[a].w);
   });
-  own.spring = own.dashpot = 0;
+  own.demand = {};
   for (std::size_t i = first; i < last; ++i) {
     const Stiffness k = at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]);
     const double alone = demand(k, bodies, i);
     demand_[i] = std::max(springs[i - first], alone);
-    own.spring = std::max({own.spring, 2 * alone, demand_[i]});
+    own.demand.spring = std::max({own.demand.spring, 2 * alone, demand_[i]});
     Dashpots pair;
     pair.add(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
-    own.dashpot = std::max(own.dashpot, damped[i - first].largest(own.dashpot));
-    own.dashpot = std::max(own.dashpot, pair.largest(own.dashpot));
+    double& dashpot = own.demand.dashpot;
+    dashpot = std::max(dashpot, damped[i - first].largest(dashpot));
+    dashpot = std::max(dashpot, pair.largest(dashpot));
   }
 }
 
 /// What they ask of the two of a pair.
 void CriticalStep::compare(std::size_t chunk, const ContactTable& pairs) {
-  double& spring = chunk_[chunk].spring;
+  double& spring = chunk_[chunk].demand.spring;
   for (const std::uint32_t c : chunk_[chunk].near) spring = std::max(spring, demand_[pairs.a(c)] + demand_[pairs.b(c)]);
 }
 

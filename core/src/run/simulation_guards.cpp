@@ -46,7 +46,7 @@ void Simulation::check_energy() {
   // There is no potential along a periodic axis.
   for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
   if (!kept) return;
-  const double energy = unrest(*this).kinetic_energy + elastic_energy().total(), stored = energy + gravitational();
+  const double energy = kinetic_energy() + elastic_energy().total(), stored = energy + gravitational();
   const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
   if (std::isnan(energy_.stored_at_start)) {
     energy_ = {.stored_at_start = stored, .work = -last_half, .largest = energy};
