@@ -15,7 +15,7 @@ import reported  # noqa: E402
 
 MAPPED = 'mapped: '
 COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#8a6d00', '#56b4e9']
-WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 760, 430, 78, 500, 30, 370
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 830, 430, 78, 500, 30, 370
 
 HEAD = '''# Where methods fail
 Written by `scripts/stability.py` from what the tests in [tests/stability](../tests/stability) find. Do not edit. Each limit is looked for from both
@@ -27,6 +27,17 @@ sides; beside it stands what is predicted, and what grit does beyond it.
 | undamped collisions at a long step | the contact lasts π/(ω dt) steps: 2 at 0.8 of the critical step, and where in a step it begins is chance, so that each rebound is off by a share of the order of the step over the contact's time | nothing: energy is right in the mean of dense packings only. Take a safety of 0.1 or less where single collisions count; the `energy` probe tells |
 | speed: tunnelling | a contact is missed when a step is longer than the sum of what lies on both sides of the middle: a diameter at a thin wall, both diameters at a grain | the travel guard stops at 0.05 radii a step, with body, time and advice |
 | ratio of sizes | none: velocities and forces of both bodies are of the same instants | nothing to do |
+| ratio of masses | Q_a + Q_b of the contact that asks most; light grains alone set it | the bound stays within 0.7 of the longest stable step |
+| ratio of stiffnesses | springs in line: the soft one counts | the bound takes it that two of the stiffest may meet: too short by the root of the ratio where they never do. A stiff wall costs nothing with linear springs, which are the grain's |
+| free wall | grain and wall swing together: between 2 √(m/k) of the wall alone and of the grain alone, and less than either | adds what springs and dashpots ask of the wall to what they ask of the grains; refuses, chooses, guards as for the time step |
+| servo | on a heavy specimen a gain of 2.07; on a stack the eigenvalues of grains, wall and delay: the lone grain is worst | takes no gain above 1; 0.8 of the critical step is stable with any gain. Above 0.82 of it a gain of 1 shakes a lone grain until the travel or overlap guard trips: take 0.8, or a gain of 0.3, which holds to 0.95 |
+| overlap at the start | speeds of δ ω / 2: at 0.8 of the critical step 0.08 radii move a grain 0.05 radii in a step; below a safety of 0.25 the guard's own 0.2 radii | the overlap guard stops before the first step, the travel guard in it; what survives flies apart with the energy of its springs |
+| friction on the edge | tan of the slope equal to the coefficient of friction, or of rolling resistance | sticks below without creep, slides above as Coulomb has it |
+| short period | four times the largest radius and skin: below, one body would meet another twice | refuses before the first step, and stops a cell that shrinks to it, with length, limit and advice |
+| fast grain among slow ones | a search when it has used up a skin of 100 steps, at least 0.03 and at most 0.4 mean diameters | seeks neighbours as often as that takes; no contact is missed |
+| energy of impacts | what the parting step makes of it, (π/n)²/4 where the contact lasts n steps | nothing is gained beyond that at any angle, friction or restitution |
+
+Guards run with every simulation. None trips in the small descriptions of `sims/` ([false_alarms.cpp](../tests/stability/false_alarms.cpp)).
 
 '''
 
@@ -98,11 +109,12 @@ def main():
         name = re.sub('[^a-z0-9]+', '-', title.split('|')[0].lower()).strip('-') + '.svg'
         (folder / name).write_text(picture(title, series), encoding='utf-8')
         text += f"## {title.split('|')[0].capitalize()}\n![{title.split('|')[0]}](stability/{name})\n\n"
-        text += f"| | {title.split('|')[1]} | {title.split('|')[0]} |\n| --- | --- | --- |\n"
+        what, along = title.split('|')[:2]
+        text += f'<details><summary>figures</summary>\n\n| | {along} | {what} |\n| --- | --- | --- |\n'
         for one, curve in series.items():
             if not one.startswith('predicted') or len(set(curve)) == 1:
                 text += ''.join(f'| {one} | {x:g} | {y:.3g} |\n' for x, y in sorted(set(curve)))
-        text += '\n'
+        text += '\n</details>\n\n'
     text += '## What is tested\n' + ''.join(f'- {name}\n' for name, _ in tests)
     (reported.ROOT / 'docs' / 'stability.md').write_text(text, encoding='utf-8')
     print(f'docs/stability.md: {len(tests)} tests, {len(maps)} maps')

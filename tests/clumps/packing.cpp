@@ -144,7 +144,7 @@ TEST(ClumpPacking, RefusesACellInWhichAClumpWouldMeetItself) {
     Trial trial(d);
     FAIL() << "it ran";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("a clump would meet itself"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("a body would meet another one twice"));
   }
 }
 

@@ -50,7 +50,7 @@ std::string complaint(std::vector<WallSetup> setups) {
 TEST(Walls, FixedWallsStay) {
   Walls walls;
   walls.apply({plate({})});
-  walls.add(0, {1, 2, 3}, {4, 5, 6}, 7, 8);
+  walls.add(0, {{1, 2, 3}, {4, 5, 6}, 7, 8});
   for (int i = 0; i < 10; ++i) step(walls, 0.1);
   EXPECT_EQ(walls.pose(0).shift, Vec3::Zero());
   EXPECT_FALSE(walls.pose(0).turned());
@@ -95,7 +95,7 @@ TEST(Walls, FreeMassOnASpringSwingsAtLeapFrogsFrequency) {
     // z(0) = z(−1) = 0, as the velocity half a step before the start is 0
     EXPECT_NEAR(walls.pose(0).shift.z(), rest * (1 - std::cos((n + 0.5) * phase) / std::cos(0.5 * phase)), 1e-12);
     walls.clear_forces();
-    walls.add(0, {0, 0, -stiffness * walls.pose(0).shift.z()}, Vec3::Zero(), stiffness, 1);
+    walls.add(0, {{0, 0, -stiffness * walls.pose(0).shift.z()}, Vec3::Zero(), stiffness, 1});
     step(walls, dt);
   }
 }
@@ -147,7 +147,7 @@ struct Spring {
   double force() const { return std::max(0.0, stiffness * (side * walls.pose(0).shift[axis] - gap)); }
   void advance() {
     walls.clear_forces();
-    if (force() > 0) walls.add(0, -side * force() * Vec3::Unit(axis), Vec3::Zero(), stiffness, 1);
+    if (force() > 0) walls.add(0, {-side * force() * Vec3::Unit(axis), Vec3::Zero(), stiffness, 1});
     step(walls, dt);
   }
   Walls walls;
@@ -222,8 +222,8 @@ TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
 TEST(Walls, SumsWhatBodiesDo) {
   Walls walls;
   walls.apply({plate({})});
-  walls.add(0, {1, 2, 30}, {1, 0, 0}, 5, 2);
-  walls.add(0, {1, 1, 10}, {0, 1, 0}, 6, 1);
+  walls.add(0, {{1, 2, 30}, {1, 0, 0}, 5, 2});
+  walls.add(0, {{1, 1, 10}, {0, 1, 0}, 6, 1});
   EXPECT_EQ(view(walls).force, Vec3(2, 3, 40));
   EXPECT_EQ(view(walls).moment, Vec3(1, 1, 0));
   EXPECT_EQ(view(walls).pressure, 20) << "a lid pushed up is in compression";
@@ -265,7 +265,7 @@ TEST(Walls, NewReferencePointMovesNothing) {
   Walls walls;
   walls.apply({plate({.velocity = {1, 0, 0}, .spin = {0, 0, 2}})});
   for (int i = 0; i < 7; ++i) step(walls, 0.1);
-  walls.add(0, {0, 0, 5}, {1, 2, 3}, 1, 1);
+  walls.add(0, {{0, 0, 5}, {1, 2, 3}, 1, 1});
   const Vec3 place = walls.pose(0).to_world(point), velocity = walls.point_velocity(0, place),
              before = walls.reference(0);
   walls.apply({plate({.about = about})});

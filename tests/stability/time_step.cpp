@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "grit/contact/restitution.hpp"
-#include "support/scene.hpp"
+#include "support/growth.hpp"
 
 namespace grit::test {
 namespace {
@@ -20,42 +20,6 @@ Description material(double restitution) {
   m["shear_to_normal_stiffness"] = shear_ratio;
   if (restitution < 1) m["restitution"] = restitution;
   return m;
-}
-
-/// The largest speed after so many steps, over the one at the start.
-double growth(Description d, double dt, int steps) {
-  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
-  d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
-  Trial t(d);
-  const auto fastest = [&] {
-    double fastest = 0;
-    for (const Row& v : t.world().velocities()) fastest = std::max(fastest, xyz(v).norm());
-    return fastest;
-  };
-  const double before = fastest();
-  double largest = 0;
-  for (int done = 0; done < steps; done += 10) {
-    t.step(10);
-    largest = std::max(largest, fastest());
-    if (largest > 1e6 * before) break;  // still far from opening a contact
-  }
-  return largest / before;
-}
-
-double critical(Description d) {
-  d["time_step"] = {{"value", 1e-9}};
-  return Trial(d).world().clock().critical_time_step;
-}
-
-/// A mode that is known to be the fastest starts to grow between 0.5 % below and 0.5 % above this step.
-void expect_limit(const Description& d, double limit) {
-  EXPECT_LT(growth(d, 0.995 * limit, 4000), 20) << "stable below";
-  EXPECT_GT(growth(d, 1.005 * limit, 4000), 1e6) << "unstable above";
-}
-
-/// The step [s] at which a mode of λ² = `spring` and damping rate `dashpot` starts to grow: 4 = 2 dt D + dt² Q.
-double limit_of(double spring, double dashpot) {
-  return (std::sqrt(dashpot * dashpot + 4 * spring) - dashpot) / spring;
 }
 
 /// A sphere between two plates that press on it and do not move; it starts towards one of them.

@@ -74,7 +74,7 @@ struct Dashpots {
 
 }  // namespace
 
-double CriticalStep::find(const Instant& at, Team& team) {
+Demand CriticalStep::find(const Instant& at, Team& team) {
   demand_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
   walls_walked_ = at.skins.walls_walked();
@@ -90,7 +90,7 @@ bool CriticalStep::due(const Skins& skins, double way) const {
   return false;
 }
 
-double CriticalStep::renew(const Instant& at, double way, Team& team) {
+Demand CriticalStep::renew(const Instant& at, double way, Team& team) {
   if (at.skins.walls_walked() > walls_walked_ + way) return find(at, team);
   std::vector<std::size_t> chunks;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk)
@@ -98,7 +98,7 @@ double CriticalStep::renew(const Instant& at, double way, Team& team) {
   return look(chunks, at, team);
 }
 
-double CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
+Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team) {
   const Clumps& clumps = at.bodies.clumps;
   if (!clumps.none())
     for (auto* array : {&clumps_.springs, &clumps_.least, &clumps_.dashpots}) array->resize(at.bodies.count());
@@ -111,12 +111,11 @@ double CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant&
     for (std::size_t c = 0; c < clumps.clump.size(); ++c) gather(c, clumps);
     team.each(chunk_.size(), [&](std::size_t chunk) { compare(chunk, at); });
   }
-  double spring = 0, dashpot = 0;
-  for (const Chunk& chunk : chunk_) {
-    spring = std::max({spring, chunk.spring, chunk.pair_spring});
-    dashpot = std::max({dashpot, chunk.dashpot, chunk.clump_dashpot});
-  }
-  return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring));
+  Demand all;
+  for (const Chunk& chunk : chunk_)
+    for (const Demand& one : {chunk.demand, chunk.together})
+      all = {std::max(all.spring, one.spring), std::max(all.dashpot, one.dashpot)};
+  return all;
 }
 
 /// What contacts ask of the bodies of a chunk.
@@ -165,7 +164,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
       clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, touch.normal), {}, bodies.velocity[a].w);
     else damped[a - first].add(k, touch.normal, bodies.velocity[a].w);
   });
-  own.spring = own.dashpot = 0;
+  own.demand = {};
   for (std::size_t i = first; i < last; ++i) {
     const Stiffness k = at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]);
     const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
@@ -174,20 +173,21 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
                                  : Vec3(Vec3::UnitX());
     const double alone = demand(k, bodies, i, across);
     demand_[i] = std::max(springs[i - first], alone);
-    own.spring = std::max({own.spring, 2 * alone, demand_[i]});
+    own.demand.spring = std::max({own.demand.spring, 2 * alone, demand_[i]});
     if (clumps)
       clumps_.springs[i] = springs[i - first], clumps_.least[i] = alone,
       clumps_.dashpots[i] = clump_dashpots[i - first];
     if (in_clump) {
       const Mobility gives = mobility(bodies, i, across);
-      own.dashpot = std::max(own.dashpot, dashpots(k, gives, gives, 2 * bodies.velocity[i].w));
+      own.demand.dashpot = std::max(own.demand.dashpot, dashpots(k, gives, gives, 2 * bodies.velocity[i].w));
       continue;
     }
     Dashpots pair;
     pair.add(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
-    own.dashpot = std::max(
-        own.dashpot, clump_dashpots[i - first] + damped[i - first].largest(own.dashpot - clump_dashpots[i - first]));
-    own.dashpot = std::max(own.dashpot, pair.largest(own.dashpot));
+    own.demand.dashpot =
+        std::max(own.demand.dashpot,
+                 clump_dashpots[i - first] + damped[i - first].largest(own.demand.dashpot - clump_dashpots[i - first]));
+    own.demand.dashpot = std::max(own.demand.dashpot, pair.largest(own.demand.dashpot));
   }
 }
 
@@ -203,16 +203,16 @@ void CriticalStep::gather(std::size_t c, const Clumps& clumps) {
 /// What they ask of the two of a pair, and of clumps as a whole.
 void CriticalStep::compare(std::size_t chunk, const Instant& at) {
   Chunk& own = chunk_[chunk];
-  own.pair_spring = own.clump_dashpot = 0;
+  own.together = {};
   for (const std::uint32_t c : own.near)
-    own.pair_spring = std::max(own.pair_spring, demand_[at.pairs.a(c)] + demand_[at.pairs.b(c)]);
+    own.together.spring = std::max(own.together.spring, demand_[at.pairs.a(c)] + demand_[at.pairs.b(c)]);
   if (at.bodies.clumps.none()) return;
   const std::size_t first = chunk * chunk_bodies, last = std::min(at.bodies.count(), first + chunk_bodies);
   for (std::size_t i = first; i < last; ++i) {
     const std::uint32_t c = at.bodies.clumps.clump_of(i);
     if (c == no_clump) continue;
-    own.pair_spring = std::max(own.pair_spring, demand_[i]);
-    own.clump_dashpot = std::max(own.clump_dashpot, clumps_.dashpot[c]);
+    own.together.spring = std::max(own.together.spring, demand_[i]);
+    own.together.dashpot = std::max(own.together.dashpot, clumps_.dashpot[c]);
   }
 }
 

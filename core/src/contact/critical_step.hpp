@@ -2,19 +2,19 @@
 #pragma once
 
 #include "contact/contact_table.hpp"
+#include "contact/demand.hpp"
 #include "contact/wall_contacts.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "scene/bodies.hpp"
 
 namespace grit {
 
-/// A lower bound of the step [s] at which the fastest mode starts to grow. Each body's mass and inertia are shared out
+/// What contacts ask of the bodies, walls held. Each body's mass and inertia are shared out
 /// among its contacts in proportion to what they ask for; then ω_max² is at most the largest over the contacts of
 /// Q_a + Q_b, with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I) (the element bound
 /// of Irons and Treharne, doi 10.1002/eqe.4290010107; Gershgorin's rows give the same without rotations). Dashpots add
-/// up in their directions: the damping rate is at most the largest over the bodies of |Σ c (1/m_a + 1/m_b) n n|. The
-/// leap-frog, whose dashpots see the velocities of half a step ago, is stable while 2 dt D + dt² Q < 4. Pairs nearer
-/// than `near` count as touching, and every body has at least one contact with its like.
+/// up in their directions: the damping rate is at most the largest over the bodies of |Σ c (1/m_a + 1/m_b) n n|. Pairs
+/// nearer than `near` count as touching, and every body has at least one contact with its like.
 ///
 /// Contacts form and part where bodies move, so that chunks are looked at anew when their bodies have gone far enough,
 /// each by itself.
@@ -35,20 +35,20 @@ class CriticalStep {
     double near;  ///< m
   };
   /// Looks at all chunks.
-  double find(const Instant& at, Team& team);
+  Demand find(const Instant& at, Team& team);
   /// Looks at those of which something has gone further than `way` [m] since they were looked at.
-  double renew(const Instant& at, double way, Team& team);
+  Demand renew(const Instant& at, double way, Team& team);
   /// Whether there are any.
   bool due(const Skins& skins, double way) const;
 
  private:
   struct Chunk {
-    double spring = 0, dashpot = 0;             ///< Q [1/s²] and D [1/s], the largest of its bodies by themselves
-    double pair_spring = 0, clump_dashpot = 0;  ///< the largest of its pairs, and of clumps that it has a body of
-    double walked = 0;                          ///< when it was looked at [m]
-    std::vector<std::uint32_t> near;            ///< candidates that count as touching
+    Demand demand;                    ///< the largest of its bodies by themselves
+    Demand together;                  ///< of its pairs, and of clumps that it has a body of
+    double walked = 0;                ///< when it was looked at [m]
+    std::vector<std::uint32_t> near;  ///< candidates that count as touching
   };
-  double look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
+  Demand look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void ask(std::size_t chunk, const Instant& at);
   /// A clump has the demands of all its bodies.
   void gather(std::size_t clump, const Clumps& clumps);

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <string>
-
-#include "grit/error.hpp"
 
 namespace grit {
 namespace {
@@ -104,16 +101,6 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
   for (int k = 0; k < 3; ++k) {
     period_[k] = cell.periodic[k] ? cell.high[k] - cell.low[k] : 0;
     per_period_[k] = cell.periodic[k] ? 1 / period_[k] : 0;
-    const double shortest = 4 * (largest + skins.largest());
-    if (cell.periodic[k] && period_[k] < shortest)
-      throw Error("the periodic cell is " + std::to_string(period_[k] * 1e3) + " mm along " + "xyz"[k] +
-                  ", shorter than twice the reach of its largest bodies, " + std::to_string(shortest * 1e3) +
-                  " mm, so that a body would meet another one twice; make the cell longer");
-    for (const Clump& clump : bodies.clumps.clump)
-      if (cell.periodic[k] && period_[k] < 2 * clump.furthest + shortest)
-        throw Error("the periodic cell is " + std::to_string(period_[k] * 1e3) + " mm along " + "xyz"[k] +
-                    ", so short that a clump would meet itself, " +
-                    std::to_string((2 * clump.furthest + shortest) * 1e3) + " mm are needed; make the cell longer");
   }
 
   // A class a factor of 2.5 in radius: with 1:3 gradings one class, beyond that as many as it takes.

@@ -34,8 +34,10 @@ std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell)
 /// size: a class spans a factor of 2.5 in radius, so that small grains do not search the cells of large ones.
 class NeighbourSearch {
  public:
-  /// Throws DescriptionError-free grit::Error if a period is shorter than twice the reach of two bodies.
+  /// Periods must be as long as shortest_period() of the largest body and skin.
   void build(const Bodies& bodies, const Cell& cell, const Skins& skins);
+  /// Twice the reach of two bodies [m]: in a shorter period one would meet another twice.
+  static double shortest_period(double radius, double skin) { return 4 * (radius + skin); }
   /// Appends the candidates whose a is `body`, by b.
   void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
 

@@ -152,7 +152,11 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                         .inverse_mass_b = 0,
                         .overlap = t.overlap,
                         .wall = true};
-    load.stiffness += law.stiffness(size, bodies.material[t.body], t.material).normal;
+    const Stiffness k = law.stiffness(size, bodies.material[t.body], t.material);
+    load.stiffness += k.normal;
+    load.spring += std::max(k.normal, k.shear);
+    load.dashpot += 2 * std::max(k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a),
+                                 k.shear_damping_ratio * std::sqrt(k.shear / (3.5 * size.inverse_mass_a)));
   }
   return batch.largest_overlap;
 }
@@ -224,6 +228,7 @@ void WallContacts::loads(std::span<WallLoad> loads) const {
     for (std::size_t w = 0; w < chunk.load.size(); ++w) {
       loads[w].force += chunk.load[w].force, loads[w].moment += chunk.load[w].moment;
       loads[w].stiffness += chunk.load[w].stiffness, loads[w].touches += chunk.load[w].touches;
+      loads[w].spring += chunk.load[w].spring, loads[w].dashpot += chunk.load[w].dashpot;
     }
 }
 

@@ -33,6 +33,8 @@ struct WallLoad {
   Vec3 moment = Vec3::Zero();  ///< N m, about the wall's reference point
   double stiffness = 0;        ///< N/m, normal, of all touches
   std::uint32_t touches = 0;
+  double spring = 0;   ///< N/m, of all touches, each in its stiffest direction
+  double dashpot = 0;  ///< N s/m, the same
 };
 
 /// Touches are filed by the chunk of their body, then by wall, body and feature: the order in which they are found, so

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "grit/error.hpp"
@@ -168,17 +167,17 @@ void Walls::clear_forces() {
   for (WallState& state : states_) {
     state.force.setZero();
     state.moment.setZero();
-    state.stiffness = 0;
+    state.stiffness = state.spring = state.dashpot = 0;
     state.touches = 0;
   }
 }
 
-void Walls::add(std::size_t wall, const Vec3& force, const Vec3& moment, double stiffness, std::uint32_t touches) {
+void Walls::add(std::size_t wall, const WallLoad& load) {
   WallState& state = states_[wall];
-  state.force += force;
-  state.moment += moment;
-  state.stiffness += stiffness;
-  state.touches += touches;
+  state.force += load.force;
+  state.moment += load.moment;
+  state.stiffness += load.stiffness, state.spring += load.spring, state.dashpot += load.dashpot;
+  state.touches += load.touches;
 }
 
 void Walls::drive(double dt) {
@@ -199,12 +198,13 @@ void Walls::drive(double dt) {
   }
 }
 
-double Walls::critical_time_step() const {
-  double least = std::numeric_limits<double>::infinity();
+Demand Walls::demand() const {
+  Demand most;
   for (std::size_t wall = 0; wall < size(); ++wall)
-    if (const auto& free = setups_[wall].motion.free; free && states_[wall].stiffness > 0)
-      least = std::min(least, 2 * std::sqrt(free->mass / states_[wall].stiffness));
-  return least;
+    if (const auto& free = setups_[wall].motion.free)
+      most = {std::max(most.spring, states_[wall].spring / free->mass),
+              std::max(most.dashpot, states_[wall].dashpot / free->mass)};
+  return most;
 }
 
 void Walls::move(double dt) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "contact/demand.hpp"
+#include "contact/wall_contacts.hpp"
 #include "grit/geometry.hpp"
 #include "grit/world.hpp"
 #include "scene/description.hpp"
@@ -32,6 +34,7 @@ struct WallState {
   Vec3 force = Vec3::Zero();                          ///< that the bodies exert on the wall [N]
   Vec3 moment = Vec3::Zero();                         ///< the same about the reference point [N m]
   double stiffness = 0;                               ///< sum over the touches, normal [N/m]
+  double spring = 0, dashpot = 0;                     ///< the same in their stiffest directions [N/m, N s/m]
   double habit = 0;                                   ///< of a servo: its velocity, averaged over recent steps [m/s]
   std::uint32_t touches = 0;
 };
@@ -60,13 +63,14 @@ class Walls {
   Vec3 point_velocity(std::size_t wall, const Vec3& point) const;
 
   void clear_forces();
-  /// Adds what bodies do to a wall: force [N], moment about reference() [N m], normal stiffness of their touches [N/m]
-  /// and their number.
-  void add(std::size_t wall, const Vec3& force, const Vec3& moment, double stiffness, std::uint32_t touches);
+  /// Adds what bodies do to a wall, moments about reference().
+  void add(std::size_t wall, const WallLoad& load);
   /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them.
   void drive(double dt);
-  /// Of free walls on the springs that now touch them, 2 √(m / k) [s]; infinite without any.
-  double critical_time_step() const;
+  /// What springs and dashpots that now touch free walls ask of them, bodies held: the largest of k/m and c/m. Added to
+  /// what they ask of the bodies, walls held, it bounds what they ask of all together: of a matrix without negative
+  /// eigenvalues the largest is at most the sum of those of two blocks on its diagonal.
+  Demand demand() const;
   /// Moves and turns the walls by one step of dt [s].
   void move(double dt);
 

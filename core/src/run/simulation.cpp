@@ -68,6 +68,7 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
   for (const Clump& clump : bodies_.clumps.clump)
     diameters += 2 * clump.radius, mass_ += 1 / clump.inverse_mass, volume += clump.volume;
   if (grains > 0) mean_diameter_ = diameters / static_cast<double>(grains), solid_density_ = mass_ / volume;
+  check_periods();
   sum_.assign(count + 1, {});
   chunk_.assign(chunks_of(count), {});
   begin_stage("", scene);
@@ -312,7 +313,22 @@ void Simulation::lay_on_skins() {
   clock_.strain_travel = 0;
 }
 
+/// Skins are no wider than periods allow, but never narrower than the least.
+void Simulation::check_periods() const {
+  double shortest = NeighbourSearch::shortest_period(largest_radius_, least_skin * mean_diameter_);
+  double furthest = 0;
+  for (const Clump& clump : bodies_.clumps.clump) furthest = std::max(furthest, clump.furthest);
+  shortest += 2 * furthest;  // a clump shall not meet itself
+  for (int k = 0; k < 3; ++k)
+    if (const double period = clock_.cell.high[k] - clock_.cell.low[k]; clock_.cell.periodic[k] && period < shortest)
+      fail("/domain is " + number(period) + " m long along " + "xyz"[k] +
+               ", where it repeats; a body would meet another one twice in less than " + number(shortest) +
+               " m, twice the reach of the largest",
+           "make the domain longer along this axis, bound it by walls, or compress it less");
+}
+
 void Simulation::search() {
+  check_periods();
   const std::vector<bool> leaves = wrap();
   const bool some_leave = std::ranges::find(leaves, true) != leaves.end();
   std::vector<std::uint32_t> order;
@@ -358,9 +374,12 @@ void Simulation::set_time_step() {
   choose_time_step(critical_.find(near_contacts(), team_));
 }
 
-void Simulation::choose_time_step(double contacts_allow) {
+void Simulation::choose_time_step(const Demand& contacts) {
   const TimeStepDescription& wish = scene_->time_step;
-  clock_.critical_time_step = std::min(contacts_allow, walls_.critical_time_step());
+  clock_.contact_demand = contacts, clock_.wall_demand = walls_.demand();
+  clock_.critical_time_step =
+      Demand{contacts.spring + clock_.wall_demand.spring, contacts.dashpot + clock_.wall_demand.dashpot}
+          .critical_time_step();
   if (wish.value) {
     clock_.time_step = *wish.value;
     if (*wish.value > clock_.critical_time_step && !wish.allow_unstable)
@@ -435,8 +454,7 @@ void Simulation::take_loads() {
   if (!surfaces_.empty()) {
     wall_contacts_.loads(loads_);
     walls_.clear_forces();
-    for (std::size_t w = 0; w < loads_.size(); ++w)
-      walls_.add(w, loads_[w].force, loads_[w].moment, loads_[w].stiffness, loads_[w].touches);
+    for (std::size_t w = 0; w < loads_.size(); ++w) walls_.add(w, loads_[w]);
   }
   clock_.overlap = 0;
   for (const Chunk& chunk : chunk_) clock_.overlap = std::max(clock_.overlap, chunk.overlap);
@@ -457,8 +475,8 @@ void Simulation::find_forces() {
     for (std::size_t i = 0; i < bodies_.count(); ++i) sum_[i].force += force[i], sum_[i].moment += moment[i];
   }
   take_loads();
-  if ((look && springs_stiffen(clock_.overlap)) || walls_.critical_time_step() < clock_.critical_time_step)
-    set_time_step();
+  if (look && springs_stiffen(clock_.overlap)) set_time_step();
+  else if (walls_.demand().more_than(clock_.wall_demand)) choose_time_step(clock_.contact_demand);
   if (clock_.step % energy_check_every == 0) check_energy();
 }
 

@@ -31,7 +31,8 @@ struct Clock {
   double time_step = 0;       ///< of the next step, s
   double last_time_step = 0;  ///< of the one before; 0 at the start
   double critical_time_step = 0;
-  std::uint64_t forces_step = ~0ull;  ///< at which contacts were last brought up to date
+  Demand contact_demand, wall_demand;  ///< that it follows from
+  std::uint64_t forces_step = ~0ull;   ///< at which contacts were last brought up to date
   Cell cell;
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;
@@ -170,11 +171,12 @@ class Simulation final : public World {
   void flatten(int axis);
   /// For what contacts ask now.
   void set_time_step();
-  void choose_time_step(double contacts_allow);
+  void choose_time_step(const Demand& contacts);
   CriticalStep::Instant near_contacts() const;
   void update_shifts();
   void update_surfaces();
   void check_overlap(double largest) const;
+  void check_periods() const;
   void check_energy();
   ElasticEnergy elastic_energy() const;
   /// At time(), by the forces that act there.

@@ -1,0 +1,18 @@
+// What limits the time step.
+#pragma once
+
+#include <cmath>
+
+namespace grit {
+
+/// Upper bounds of what springs and dashpots ask of the step: Q [1/s²] and D [1/s].
+struct Demand {
+  double spring = 0, dashpot = 0;
+
+  /// The leap-frog, whose dashpots see the velocities of half a step ago, is stable below this step [s]: 2 dt D + dt² Q
+  /// = 4. Infinite where nothing asks.
+  double critical_time_step() const { return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring)); }
+  bool more_than(const Demand& other) const { return spring > other.spring || dashpot > other.dashpot; }
+};
+
+}  // namespace grit

@@ -1,0 +1,75 @@
+// A grain that is shot through a packing, slow to as fast as the guard allows: no contact is missed, and neighbours are
+// sought as often as its speed asks for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "support/mapped.hpp"
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double spacing = 1e-3, dt = 2e-7;
+
+/// A block of grains that just touch, at rest, and one outside that flies `travel` of its radii a step through it, or
+/// past it.
+Description shot(double travel, bool past = false) {
+  auto grains = jumble({7, 7, 7}, spacing, 0, 4);
+  const double radius = 0.4 * spacing;
+  grains.push_back({spacing * Vec3(past ? -4 : 3.6, 3.4, -1), radius, {0, 0, travel * radius / dt}});
+  Description d = description("linear-frictional", {{"contact_modulus", 1e7}, {"restitution", 0.3}}, grains);
+  d["time_step"] = {{"value", dt}};
+  d["guards"] = {{"overlap", 1e9}, {"travel", 0.2}, {"energy", 10}};
+  return d;
+}
+
+using Touching = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+Touching found(const Simulation& world) {
+  Touching pairs;
+  for (std::size_t c = 0; c < world.candidate_count(); ++c)
+    if (world.pairs().touches(c)) pairs.emplace(world.pairs().a(c), world.pairs().b(c));
+  return pairs;
+}
+/// By trying all.
+Touching there(const Simulation& world) {
+  Touching pairs;
+  const auto x = world.positions();
+  for (std::uint32_t a = 0; a < x.size(); ++a)
+    for (std::uint32_t b = a + 1; b < x.size(); ++b)
+      if ((xyz(x[b]) - xyz(x[a])).squaredNorm() < (x[a].w + x[b].w) * (x[a].w + x[b].w)) pairs.emplace(a, b);
+  return pairs;
+}
+
+TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
+  const auto& map = "steps between two searches|way of the fastest grain in a step, in radii";
+  for (const double travel : {1e-3, 3e-3, 1e-2, 3e-2, 0.05, 0.1, 0.19}) {
+    Trial t(shot(travel));
+    const int steps = static_cast<int>(std::min(2000.0, 25 / travel));
+    const int look = std::max(1, steps / 100);
+    std::size_t compared = 0, missed = 0;
+    for (int i = 0; i < steps; ++i, t.step()) {
+      if (i % look != 0) continue;
+      const Touching all = there(t.world());
+      compared += all.size(), missed += all == found(t.world()) ? 0 : 1;
+    }
+    EXPECT_EQ(missed, 0u) << travel;
+    EXPECT_GT(compared, 5000u);
+    // A skin for 100 steps, but at least 0.03 and at most 0.4 mean diameters; the last twentieth is not used.
+    Trial flight(shot(travel, true));
+    const double mean = flight.world().mean_diameter(), way = travel * 0.4 * spacing;
+    const double skin = std::clamp(100 * way, 0.03 * mean, 0.4 * mean);
+    flight.step(static_cast<std::size_t>(20.5 * skin / way));
+    const double between = 20.5 * skin / way / static_cast<double>(flight.world().clock().rebuilds - 1);
+    EXPECT_GT(between, 0.9 * (skin / way - 2)) << travel;
+    EXPECT_LT(between, 1.05 * (skin / way + 1)) << travel;
+    map_point(map, "found", travel, between);
+    map_point(map, "predicted", travel, skin / way);
+  }
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,100 @@
+// A wall that is free with a mass, on a grain between it and the floor: the step at which the two together start to
+// grow, found from both sides, from walls far lighter than the grain to far heavier ones.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "grit/contact/restitution.hpp"
+#include "grit/error.hpp"
+#include "support/growth.hpp"
+#include "support/mapped.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius;
+const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+constexpr double squeeze = 1e-3;  // of the radius
+
+/// Side by side, `grains` of them; the wall's mass is over theirs.
+Description under_a_lid(double wall_mass, double restitution, int grains = 1) {
+  Description m{{"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}};
+  if (restitution < 1) m["restitution"] = restitution;
+  const double speed = 1e-9 * squeeze * radius * std::sqrt(2 * stiffness / mass);
+  std::vector<Grain> list;
+  for (int i = 0; i < grains; ++i)
+    list.push_back({Vec3(3 * radius * i, 0, (1 - squeeze) * radius), radius, {0, 0, speed}});
+  Description d = description("linear-frictional", m, list);
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["lid"] = plane({0, 0, 2 * (1 - squeeze) * radius}, -Vec3::UnitZ());
+  d["walls"]["lid"]["motion"]["free"] = {{"mass", wall_mass * grains * mass},
+                                         {"load", {0, 0, -grains * stiffness * squeeze * radius}}};
+  return d;
+}
+
+/// Spectral radius of a leap-frog step of grain and wall: positions and velocities, dashpots with the velocities of
+/// half a step ago.
+double spectral_radius(double wall_mass, double restitution, double dt) {
+  const double dashpot = 2 * damping_of_restitution(restitution) * std::sqrt(stiffness * mass), lid = wall_mass * mass;
+  Eigen::Matrix2d spring, damping, inverse;
+  spring << 2 * stiffness, -stiffness, -stiffness, stiffness;
+  damping << 2 * dashpot, -dashpot, -dashpot, dashpot;
+  inverse << 1 / mass, 0, 0, 1 / lid;
+  const Eigen::Matrix2d one = Eigen::Matrix2d::Identity();
+  Eigen::Matrix4d step;  // of (positions, dt · velocities)
+  const Eigen::Matrix2d kick = -dt * dt * inverse * spring, kept = one - dt * inverse * damping;
+  step << one + kick, kept, kick, kept;
+  return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+double predicted_limit(double wall_mass, double restitution) {
+  double low = 0, high = 4 * std::sqrt(mass / stiffness);
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (spectral_radius(wall_mass, restitution, middle) > 1 + 1e-9 ? high : low) = middle;
+  }
+  return low;
+}
+
+TEST(FreeWall, StartsToGrowAboveTheStepThatIsSaidToBeSafe) {
+  const auto& map = "limit over that of a fixed wall|mass of the wall over that of the grain";
+  const double fixed = 2 / std::sqrt(2 * stiffness / mass);
+  for (const double e : {1.0, 0.5, 0.1})
+    for (const double wall : {1e-2, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0, 100.0}) {
+      SCOPED_TRACE("restitution " + std::to_string(e) + ", mass " + std::to_string(wall));
+      const double limit = predicted_limit(wall, e), said = critical(under_a_lid(wall, e));
+      const double found = found_limit(under_a_lid(wall, e), limit);
+      EXPECT_NEAR(found / limit, 1, 5e-3);
+      EXPECT_LE(said, 1.0001 * limit);
+      EXPECT_GE(said, 0.5 * limit) << "not shorter than it need be";
+      const std::string name = "restitution " + std::to_string(e).substr(0, 3);
+      map_point(map, name, wall, found / fixed);
+      map_point(map, "predicted, " + name, wall, limit / fixed);
+      map_point(map, "critical step, " + name, wall, said / fixed);
+    }
+}
+
+TEST(FreeWall, StepAboveTheLimitIsRefusedAndTheChosenOneIsBelow) {
+  for (const int grains : {1, 9})
+    for (const double wall : {0.1, 0.5, 10.0}) {
+      const double limit = predicted_limit(wall, 1);
+      Description d = under_a_lid(wall, 1, grains);
+      d["time_step"]["value"] = 1.001 * limit;
+      EXPECT_THROW(Trial{d}, NumericsError);
+      Trial chosen(under_a_lid(wall, 1, grains));
+      EXPECT_LT(chosen.world().dt(), 0.81 * limit);
+      EXPECT_LT(growth(chosen, 4000), 20);
+    }
+}
+
+TEST(FreeWall, EnergyGuardTripsBeyondTheLimit) {
+  Description d = under_a_lid(0.5, 1);
+  d["time_step"] = {{"value", 1.02 * predicted_limit(0.5, 1)}, {"allow_unstable", true}};
+  Trial t(d);
+  EXPECT_THROW(t.step(20000), NumericsError);
+}
+
+}  // namespace
+}  // namespace grit::test

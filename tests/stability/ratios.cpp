@@ -1,0 +1,128 @@
+// Two materials of which one is far stiffer or heavier than the other: the longest stable step, found from both sides,
+// beside the one that grit reckons with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/growth.hpp"
+#include "support/mapped.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, density = 2500, modulus = 1e8, shear_ratio = 0.3;
+constexpr double squeeze = 1e-3, trembling = 1e-9;  // of the radius; of the squeeze
+const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+
+Description material(double stiffer, double heavier) {
+  return {{"density", density * heavier},
+          {"contact_modulus", modulus * stiffer},
+          {"friction_angle", "60 deg"},
+          {"shear_to_normal_stiffness", shear_ratio}};
+}
+
+/// A simple cubic lattice of two materials that take turns, each grain moving against all of its neighbours along x as
+/// the fastest mode has it.
+Description chequered(double stiffer, double heavier) {
+  constexpr int sides = 4;
+  constexpr double spacing = 2 * radius * (1 - squeeze);
+  const double speed = trembling * squeeze * radius * std::sqrt(modulus * radius / mass);
+  std::vector<Grain> grains[2];
+  for (int x = 0; x < sides; ++x)
+    for (int y = 0; y < sides; ++y)
+      for (int z = 0; z < sides; ++z) {
+        const int odd = (x + y + z) % 2;
+        grains[odd].push_back(
+            {spacing * Vec3(x + 0.5, y + 0.5, z + 0.5), radius, {odd == 0 ? speed : -speed / heavier, 0, 0}});
+      }
+  Description d = description("linear-frictional", material(1, 1), grains[0]);
+  Description others = description("linear-frictional", {}, grains[1])["bodies"]["grains"];
+  others["material"] = "other";
+  d["bodies"]["others"] = others;
+  d["materials"]["other"] = material(stiffer, heavier);
+  d["domain"] = {
+      {"low", {0, 0, 0}}, {"high", vector(Vec3::Constant(sides * spacing))}, {"periodic", {true, true, true}}};
+  return d;
+}
+
+/// Two of the six contacts press, four shear; springs in line.
+double limit_of_chequered(double stiffer, double heavier) {
+  const double stiffness = 2 * modulus * radius * stiffer / (1 + stiffer);
+  return 2 / std::sqrt((2 + 4 * shear_ratio) * stiffness / mass * (1 + 1 / heavier));
+}
+
+const std::vector<double>& ratios() {
+  static const std::vector<double> all{1, 10, 100, 1e3, 1e4, 1e5, 1e6};
+  return all;
+}
+
+/// Found at `ratio` and mapped beside what is predicted and what grit says; nothing is unstable that it allows.
+void expect_bound(const std::string& name, double ratio, const Description& d, double predicted) {
+  SCOPED_TRACE(name + " 1 : " + std::to_string(ratio));
+  const double found = found_limit(d, predicted), said = critical(d);
+  EXPECT_NEAR(found / predicted, 1, 5e-3);
+  EXPECT_LE(said, 1.002 * found);
+  EXPECT_LT(growth(d, 0.99 * said, 4000), 20);
+  const auto& map = "critical step over the longest stable one|ratio of the two materials";
+  map_point(map, name, ratio, said / found);
+}
+
+TEST(Ratios, HeavierGrainsAmongLightOnes) {
+  for (const double ratio : ratios()) {
+    const Description d = chequered(1, ratio);
+    expect_bound("heavier", ratio, d, limit_of_chequered(1, ratio));
+    EXPECT_GT(critical(d), 0.5 * limit_of_chequered(1, ratio)) << "not shorter than it need be";
+  }
+}
+
+TEST(Ratios, StifferGrainsAmongSoftOnes) {
+  // Two stiff ones may meet: the step is one that is good for them, too.
+  for (const double ratio : ratios()) {
+    const Description d = chequered(ratio, 1);
+    expect_bound("stiffer", ratio, d, limit_of_chequered(ratio, 1));
+    const double meeting = 2 / std::sqrt(2 * std::max(1.0, 3.5 * shear_ratio) * ratio * modulus * radius / mass);
+    EXPECT_GE(critical(d), 0.99 * std::min(meeting, 0.7 * limit_of_chequered(ratio, 1)));
+  }
+}
+
+TEST(Ratios, StifferAndHeavierGrainsAmongOthers) {
+  for (const double ratio : ratios())
+    expect_bound("stiffer and heavier", ratio, chequered(ratio, ratio), limit_of_chequered(ratio, ratio));
+}
+
+/// A grain between two plates of a material that is stiffer.
+Description between_plates(const std::string& law, double ratio) {
+  const bool hertz = law == "hertz-mindlin";
+  const auto solid = [&](double stiffer) {
+    Description m = material(stiffer, 1);
+    m["friction_angle"] = 0;
+    if (!hertz) return m;
+    m.erase("contact_modulus"), m.erase("shear_to_normal_stiffness");
+    m["young_modulus"] = modulus * stiffer, m["poisson_ratio"] = 0.25;
+    return m;
+  };
+  const double speed = trembling * squeeze * radius * std::sqrt(modulus * radius / mass);
+  Description d = description(law, solid(1), {{Vec3::Zero(), radius, {0, 0, speed}}});
+  d["materials"]["plate"] = solid(ratio);
+  for (const double side : {-1.0, 1.0})
+    d["walls"][side < 0 ? "low" : "high"] =
+        plane({0, 0, side * (1 - squeeze) * radius}, -side * Vec3::UnitZ(), "plate");
+  return d;
+}
+
+TEST(Ratios, SoftGrainBetweenStiffPlates) {
+  for (const std::string law : {"linear-frictional", "hertz-mindlin"})
+    for (const double ratio : ratios()) {
+      // Linear springs are the grain's, whatever the plate; Hertz's compliances add up.
+      const double reduced = modulus / (1 - 0.25 * 0.25) / (1 + 1 / ratio);
+      const double spring =
+          law == "hertz-mindlin" ? 2 * reduced * std::sqrt(radius * squeeze * radius) : modulus * radius;
+      const Description d = between_plates(law, ratio);
+      expect_bound("grain between stiffer plates, " + law, ratio, d, 2 / std::sqrt(2 * spring / mass));
+      EXPECT_GT(critical(d), 0.5 * 2 / std::sqrt(2 * spring / mass)) << "not shorter than it need be";
+    }
+}
+
+}  // namespace
+}  // namespace grit::test

@@ -1,0 +1,136 @@
+// A servo-controlled wall on a stack of grains: the gain and the step at which the two together start to grow, found
+// from both sides; and how fast it may come to press on few or stiff grains.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "engines/walls.hpp"
+#include "grit/error.hpp"
+#include "support/growth.hpp"
+#include "support/mapped.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius;
+const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+constexpr double squeeze = 1e-3;    // of the radius
+constexpr double habit_steps = 30;  // as engines/walls has it
+
+/// Grains one on the other between the floor and a lid that presses them together by `squeeze`; `gap` [m] to the lid.
+Description stack(int grains, double gain, double gap = 0, double max_velocity = 1e3) {
+  const Description m{{"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}};
+  const double speed = 1e-9 * squeeze * radius * std::sqrt(2 * stiffness / mass);
+  const double pressed = gap > 0 ? 0 : squeeze * radius;
+  std::vector<Grain> list;
+  for (int i = 0; i < grains; ++i)
+    list.push_back({Vec3(0, 0, radius - pressed + i * (2 * radius - pressed)), radius, {0, 0, i % 2 ? -speed : speed}});
+  Description d = description("linear-frictional", m, list);
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  const double top = list.back().position.z() + radius - pressed + gap;
+  d["walls"]["lid"] = {{"type", "rectangle"},
+                       {"corner", {-radius, radius, top}},
+                       {"edge_a", {2 * radius, 0, 0}},
+                       {"edge_b", {0, -2 * radius, 0}},
+                       {"material", "grain"}};
+  d["walls"]["lid"]["motion"]["servo"] = {{"axis", "z"},
+                                          {"pressure", stiffness * squeeze * radius / (4 * radius * radius)},
+                                          {"max_velocity", max_velocity},
+                                          {"gain", gain}};
+  return d;
+}
+
+/// Spectral radius of one step of grains, wall and its habit, with the same rules.
+double spectral_radius(int grains, double gain, double dt) {
+  const int n = grains, size = 2 * n + 2;
+  Eigen::MatrixXd step(size, size);
+  for (int column = 0; column < size; ++column) {
+    Eigen::VectorXd s = Eigen::VectorXd::Unit(size, column);  // places, dt · velocities, of the wall: place, dt · habit
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n + 2);
+    x.segment(1, n) = s.head(n), x[n + 1] = s[2 * n];
+    const double turn = dt * dt * stiffness / mass;
+    for (int i = 0; i < n; ++i) s[n + i] += turn * (x[i] - 2 * x[i + 1] + x[i + 2]);
+    s.head(n) += s.segment(n, n);
+    const double moved = s[size - 1] + gain * (x[n] - x[n + 1]);
+    s[size - 1] += gain / habit_steps * (moved - s[size - 1]);
+    s[2 * n] += moved;
+    step.col(column) = s;
+  }
+  return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+/// The shortest step [s] that is unstable; a little growth is round-off of an eigenvalue of 1.
+double predicted_limit(int grains, double gain) {
+  double low = 0, high = 2.5 * std::sqrt(mass / stiffness);
+  for (int halving = 0; halving < 40; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (spectral_radius(grains, gain, middle) > 1 + 1e-7 ? high : low) = middle;
+  }
+  return low;
+}
+
+TEST(Servo, OnAStackStartsToGrowWhereItsEigenvaluesSay) {
+  const auto& map = "longest stable step of a servo over the critical one|gain of the servo";
+  for (const int grains : {1, 3, 10}) {
+    const std::string name = grains == 1 ? "lone grain" : "stack of " + std::to_string(grains);
+    for (const double gain : {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0}) {
+      SCOPED_TRACE(name + ", gain " + std::to_string(gain));
+      const double limit = predicted_limit(grains, gain), said = critical(stack(grains, gain));
+      const double found = found_limit(stack(grains, gain), limit);
+      EXPECT_NEAR(found / limit, 1, 1e-2);
+      EXPECT_LT(growth(stack(grains, gain), 0.8 * said, 4000), 20) << "stable at the step that grit chooses";
+      map_point(map, name, gain, found / said);
+      map_point(map, "predicted, " + name, gain, limit / said);
+    }
+  }
+}
+
+/// The share of the force's error that is left after so many steps, on a spring without a mass.
+double left(double gain, int steps) {
+  struct Plate : Geometry {
+    void declare(Parameters&) override {}
+    Bounds bounds() const override { return {Vec3::Zero(), Vec3(1, 1, 0)}; }
+    double area() const override { return 1; }
+    Vec3 normal() const override { return -Vec3::UnitZ(); }
+    void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+    bool near(const Pose&, const Vec3&, double) const override { return false; }
+    std::vector<Vec3> triangles() const override { return {}; }
+  };
+  constexpr double spring = 1e4, pressure = 100, dt = 1e-3;
+  Walls walls;
+  MotionDescription motion;
+  motion.servo = ServoDescription{.axis = "z", .pressure = pressure, .max_velocity = 1e9, .gain = gain};
+  walls.apply({{"lid", std::make_shared<Plate>(), motion}});
+  double error = 1e-6, most = 0;
+  for (int i = 0; i < steps; ++i) {
+    walls.clear_forces();
+    walls.add(0, {Vec3(0, 0, pressure * (1 + error)), Vec3::Zero(), spring, 1});
+    const double before = walls.pose(0).shift.z();
+    walls.drive(dt), walls.move(dt);
+    error -= spring * (walls.pose(0).shift.z() - before) / pressure;
+    if (i > steps - 10) most = std::max(most, std::abs(error));
+  }
+  return most / 1e-6;
+}
+
+TEST(Servo, OnAHeavySpecimenStartsToGrowJustAboveTwiceTheErrorAStep) {
+  // e' = (1 − g) e + H, H' = H − g²/30 e: an eigenvalue of −1 where 4 − 2 g + g²/30 = 0.
+  const double limit = habit_steps * (1 - std::sqrt(1 - 4 / habit_steps));
+  EXPECT_LT(left(0.995 * limit, 4000), 1e-3);
+  EXPECT_GT(left(1.005 * limit, 4000), 1e3);
+  Description d = stack(1, 1.0001);
+  EXPECT_THROW(Trial{d}, Error) << "half of that is the most that is allowed";
+}
+
+TEST(Servo, GuardTripsWhereAnUnstableStepWasAskedFor) {
+  Description d = stack(1, 1);
+  d["time_step"] = {{"value", 0.98 * critical(d)}, {"allow_unstable", true}};
+  ASSERT_GT(d["time_step"]["value"].get<double>(), predicted_limit(1, 1));
+  Trial t(d);
+  EXPECT_THROW(t.step(100000), NumericsError);
+}
+
+}  // namespace
+}  // namespace grit::test

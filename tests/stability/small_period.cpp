@@ -1,0 +1,121 @@
+// Periodic cells down to where a grain would meet another one twice, or itself: as right as large ones above that
+// length, refused below.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "support/mapped.hpp"
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double radius = 1e-3;
+/// Twice the reach of two equal grains at rest, with the thinnest skins that there are: 0.03 of a diameter.
+constexpr double shortest = 4 * (radius + 0.03 * 2 * radius);
+
+Description repeating(const std::vector<Grain>& grains, const Vec3& period) {
+  Description d = description("linear-frictional", {{"contact_modulus", 1e7}}, grains);
+  d["domain"] = {{"low", {0, 0, 0}}, {"high", vector(period)}, {"periodic", {true, true, true}}};
+  d["guards"] = {{"overlap", 1}, {"travel", 0.5}, {"energy", 10}};
+  return d;
+}
+
+/// What touches, by trying every image, a grain's own included: the contacts of this many grains with all others.
+std::size_t touches(const Simulation& world) {
+  const auto x = world.positions();
+  const Vec3 period = world.cell().high - world.cell().low;
+  std::size_t found = 0;
+  for (std::size_t a = 0; a < x.size(); ++a)
+    for (std::size_t b = 0; b < x.size(); ++b)
+      for (int image = 0; image < 125; ++image) {
+        const Vec3 shift(image % 5 - 2, image / 5 % 5 - 2, image / 25 - 2);
+        if (a == b && shift.isZero()) continue;
+        const Vec3 branch = xyz(x[b]) + shift.cwiseProduct(period) - xyz(x[a]);
+        found += branch.norm() < x[a].w + x[b].w ? 1 : 0;
+      }
+  return found / 2;
+}
+
+/// Largest difference between the contacts found and those that there are, over so many steps of grains that fly about.
+std::size_t missed(double period, int steps) {
+  constexpr double spacing = 2.05 * radius;
+  // Two layers of four along each axis but the short one.
+  auto grains = jumble({4, 4, 2}, spacing, 1, 5);
+  for (Grain& g : grains) g.position.z() *= period / (2 * spacing), g.radius = radius;
+  Trial t(repeating(grains, {4 * spacing, 4 * spacing, period}));
+  std::size_t worst = 0, most = 0;
+  for (int i = 0; i < steps; ++i, t.step()) {
+    const auto there = static_cast<std::ptrdiff_t>(touches(t.world()));
+    const auto found = static_cast<std::ptrdiff_t>(t.world().pair_count());
+    worst = std::max(worst, static_cast<std::size_t>(std::abs(there - found)));
+    most = std::max(most, static_cast<std::size_t>(there));
+  }
+  if (steps > 1) {
+    EXPECT_GT(most, 10u);
+  }
+  return worst;
+}
+
+bool refused(double period) {
+  try {
+    missed(period, 1);
+  } catch (const NumericsError&) {
+    return true;
+  }
+  return false;
+}
+
+TEST(SmallPeriod, IsRefusedWhereAGrainWouldMeetAnotherTwiceAndRightAbove) {
+  double low = 2 * radius, high = 8 * radius;
+  while (high > 1.0005 * low) {
+    const double middle = std::sqrt(low * high);
+    (refused(middle) ? low : high) = middle;
+  }
+  EXPECT_NEAR(low / shortest, 1, 1e-3);
+  const auto& map = "1 where it runs, 0.1 where it is refused|period over the largest radius";
+  for (const double share : {0.5, 0.8, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0}) {
+    const double period = share * low;
+    map_point(map, "a periodic cell", period / radius, refused(period) ? 0.1 : 1);
+    map_point(map, "predicted limit", low / radius, 0.1), map_point(map, "predicted limit", low / radius, 1);
+    if (share > 1) {
+      EXPECT_EQ(missed(period, 200), 0u) << period / radius;
+    }
+  }
+}
+
+TEST(SmallPeriod, SaysWhereWhatIsAllowedAndWhatToDo) {
+  const std::vector<Grain> one{{Vec3::Constant(radius), radius}};
+  EXPECT_NO_THROW(Trial(repeating(one, {0.01, 0.01, 1.001 * shortest})));
+  try {
+    Trial t(repeating(one, {0.01, 0.01, 0.999 * shortest}));
+    FAIL();
+  } catch (const NumericsError& error) {
+    EXPECT_STREQ(error.what(),
+                 "step 0, time 0 s: /domain is 0.004236 m long along z, where it repeats; a body would meet another "
+                 "one twice in less than 0.00424 m, twice the reach of the largest; make the domain longer along this "
+                 "axis, bound it by walls, or compress it less");
+  }
+}
+
+TEST(SmallPeriod, CellThatShrinksStopsBeforeItIsTooShort) {
+  Description d = repeating({{Vec3::Constant(radius), radius}}, {0.01, 0.01, 5 * radius});
+  d["domain"]["strain_rate"] = {0, 0, -1000};
+  d["time_step"]["value"] = 1e-7;
+  Trial t(d);
+  try {
+    t.step(100000);
+    FAIL();
+  } catch (const NumericsError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("m long along z, where it repeats"));
+    const double period = t.world().cell().high.z() - t.world().cell().low.z();
+    EXPECT_LT(period, shortest);
+    // Looked at whenever neighbours are sought, which is before two grains have come nearer by both skins.
+    EXPECT_GT(period, 4 * radius) << "before a grain touches another twice";
+  }
+}
+
+}  // namespace
+}  // namespace grit::test
