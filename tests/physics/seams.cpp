@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "support/scene.hpp"
+#include "support/stl_file.hpp"
 
 namespace grit::test {
 namespace {
@@ -34,13 +35,35 @@ void tile_floor(Description& d) {
           rectangle(Vec3((x - 0.5) * tile, (y - 0.5) * tile, 0), tile * Vec3::UnitX(), tile * Vec3::UnitY());
 }
 
+Description mesh(const StlFile& file) {
+  return {{"type", "mesh"}, {"path", file.path()}, {"scale", 1.0}, {"open", true}, {"material", "grain"}};
+}
+
+/// Two triangles for each tile of the floor, whose diagonals go this way and that.
+std::vector<Vec3> triangle_floor() {
+  std::vector<Vec3> corners;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y) {
+      const auto at = [&](double a, double b) { return Vec3((x + a - 0.5) * tile, (y + b - 0.5) * tile, 0); };
+      if ((x + y) % 2 == 0) corners.insert(corners.end(), {at(0, 0), at(1, 0), at(1, 1), at(0, 0), at(1, 1), at(0, 1)});
+      else corners.insert(corners.end(), {at(0, 0), at(1, 0), at(0, 1), at(1, 0), at(1, 1), at(0, 1)});
+    }
+  return corners;
+}
+
 /// Paths over an edge, along an edge, over a vertex, and askew.
 struct Path {
   Vec3 from, velocity;
 };
-class Seams : public testing::TestWithParam<std::tuple<std::string, int, double>> {};
+class Seams : public testing::TestWithParam<std::tuple<std::string, int, double>> {
+ protected:
+  /// Rolls a ball over a floor that `add_floor` makes of pieces, and over a plane.
+  template <class AddFloor>
+  void expect_not_felt(AddFloor add_floor) const;
+};
 
-TEST_P(Seams, OfCoplanarWallsAreNotFelt) {
+template <class AddFloor>
+void Seams::expect_not_felt(AddFloor add_floor) const {
   const auto& [law, number, friction] = GetParam();
   const Path paths[] = {{{-0.7 * tile, 0.1e-3, 0}, {0.2, 0, 0}},
                         {{-0.7 * tile, 0.5 * tile, 0}, {0.2, 0, 0}},
@@ -49,7 +72,7 @@ TEST_P(Seams, OfCoplanarWallsAreNotFelt) {
   const Path& path = paths[number];
   Description tiles = rolling_ball(law, path.from + Vec3(0, 0, 0.9995 * radius), path.velocity, friction);
   Description whole = tiles;
-  tile_floor(tiles);
+  add_floor(tiles);
   whole["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
   Trial on_tiles(tiles), on_whole(whole);
   int touching = 0;
@@ -66,6 +89,13 @@ TEST_P(Seams, OfCoplanarWallsAreNotFelt) {
   }
   EXPECT_GT(on_whole.position(0).x(), 0.6 * tile) << "it got across";
   EXPECT_GT(touching, 10000) << "it rolled on the floor";
+}
+
+TEST_P(Seams, OfCoplanarWallsAreNotFelt) { expect_not_felt(tile_floor); }
+
+TEST_P(Seams, OfCoplanarTrianglesAreNotFelt) {
+  const StlFile file(stl_text(triangle_floor()));
+  expect_not_felt([&](Description& d) { d["walls"]["floor"] = mesh(file); });
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Seams,

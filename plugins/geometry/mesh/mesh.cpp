@@ -1,0 +1,80 @@
+// A surface of triangles out of a file. See README.md.
+#include "mesh.hpp"
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <system_error>
+#include <tuple>
+
+#include "grit/plugin.hpp"
+
+namespace grit {
+namespace {
+
+/// The surface of a file. Scenes that are alive share it: a ramp makes a scene for each of its increments.
+std::shared_ptr<const Surface> surface_of(const std::string& path, const SurfaceOptions& o) {
+  std::error_code unknown;
+  const auto changed = std::filesystem::last_write_time(path, unknown).time_since_epoch().count();
+  const auto size = std::filesystem::file_size(path, unknown);
+  const std::tuple key(path, changed, size, o.scale, o.position.x(), o.position.y(), o.position.z(), o.merge, o.crease,
+                       o.open, o.two_sided, o.inside, o.skip_degenerate, o.ignore_normals);
+  static std::mutex busy;
+  static std::map<std::remove_const_t<decltype(key)>, std::weak_ptr<const Surface>> alive;
+  const std::lock_guard lock(busy);
+  std::shared_ptr<const Surface> surface = alive[key].lock();
+  if (!surface) alive[key] = surface = std::make_shared<const Surface>(read_stl(path), o);
+  return surface;
+}
+
+}  // namespace
+
+void Mesh::declare(Parameters& p) {
+  p.add("path", path_).file().required().doc("file in STL, ASCII or binary");
+  p.add("scale", options_.scale).unit("m").required().above(0).doc("what 1 is in the file, e.g. \"1 mm\"");
+  p.add("position", options_.position).unit("m").doc("where the file's origin comes to lie");
+  p.add("merge", options_.merge).unit("m").at_least(0).doc("corners no farther apart than this are one");
+  p.add("open", options_.open).doc("whether the surface may have a rim, as a sheet or a container without a lid has");
+  p.add("two_sided", options_.two_sided)
+      .doc("whether bodies may be on either side; if not, a centre up to one radius behind the surface is pushed back");
+  p.add("inside", options_.inside).doc("whether bodies are on the side that facets face away from, as in a container");
+  p.add("crease", options_.crease)
+      .unit("rad")
+      .at_least(0)
+      .at_most(std::numbers::pi / 2)
+      .doc("facets that meet at less than this are of one curved surface, whose valleys are not felt");
+  p.add("skip_degenerate", options_.skip_degenerate).doc("whether facets without area are left out, not refused");
+  p.add("ignore_normals", options_.ignore_normals)
+      .doc("whether normals in the file may contradict the order of corners, which counts");
+  p.check([this](const Complain& complain) {
+    if (path_.empty()) return complain("path", "an empty text", "the path of a file");
+    surface_ = surface_of(path_, options_);
+    for (const Defect& defect : surface_->defects()) complain("path", defect.found, defect.allowed);
+  });
+}
+
+Vec3 Mesh::normal() const {
+  const Vec3& vector = surface_->area_vector();
+  return vector.isZero(0.0) ? vector : vector.normalized();
+}
+
+void Mesh::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
+  std::vector<std::uint32_t> facets;
+  std::vector<Surface::Nearest> found;
+  for (const Sphere& sphere : spheres) {
+    surface_->nearest(pose.to_local(sphere.centre), sphere.radius, facets, found);
+    for (const Surface::Nearest& one : found)
+      touches.push_back({-(pose.turn * one.away).normalized(), sphere.radius - one.distance, sphere.body, one.feature});
+  }
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "geometry",
+                                     .name = "mesh",
+                                     .version = "1.0.0",
+                                     .doc = "surface of triangles, from a file in STL",
+                                     .make_geometry = []() -> grit::Geometry* { return new grit::Mesh; }};
+  return &info;
+}

@@ -1,0 +1,436 @@
+#include "surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <tuple>
+
+namespace grit {
+namespace {
+
+constexpr double flat = 1e-10;      // height of a triangle over its longest side that counts as none
+constexpr double rounding = 1e-15;  // of coordinates; and of directions, of which more may add up:
+constexpr double slack_of_radius = 1e-12;
+constexpr double one_point = 1e3;  // slacks: points no farther apart are one
+
+auto coordinates(const Vec3& v) { return std::tuple(v.x(), v.y(), v.z()); }
+
+std::string text(const Vec3& v) {
+  return (std::ostringstream() << '(' << v.x() << ", " << v.y() << ", " << v.z() << ')').str();
+}
+
+/// What is joined to what; the root of a group is its lowest member.
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t root(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a), b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+}  // namespace
+
+Surface::Surface(const Stl& stl, const SurfaceOptions& options)
+    : defects_(stl.defects), like_(std::cos(options.crease)), two_sided_(options.two_sided) {
+  if (!defects_.empty()) return;
+  merge_corners(stl, options);
+  span_facets(stl, options);
+  join_edges(options);
+  if (!defects_.empty()) return;
+  if (closed_ && oriented_ && !two_sided_) check_volumes(options.inside);
+  find_regions();
+  gather_corners();
+
+  bounds_ = {vertices_.front().place, vertices_.front().place};
+  std::vector<std::pair<Bounds, std::uint32_t>> boxes;
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    if (facets_[f].left_out) continue;
+    const Vec3 &a = corner(facets_[f], 0), &b = corner(facets_[f], 1), &c = corner(facets_[f], 2);
+    const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    boxes.push_back({{low, high}, f});
+    bounds_ = {bounds_.low.cwiseMin(low), bounds_.high.cwiseMax(high)};
+    area_vector_ += 0.5 * (b - a).cross(c - a);
+  }
+  index_.emplace(boxes);
+  size_ = std::max(bounds_.low.cwiseAbs().maxCoeff(), bounds_.high.cwiseAbs().maxCoeff());
+  if (closed_ || !oriented_) area_vector_.setZero();
+}
+
+/// Numbers the corners' places; corners that are one get one number, that of the first of them.
+void Surface::merge_corners(const Stl& stl, const SurfaceOptions& options) {
+  std::map<std::tuple<double, double, double>, std::uint32_t> exact;
+  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // as wide as what is merged
+  const auto cell = [&](const Vec3& place, double x, double y, double z) {
+    return std::array{std::floor(place.x() / options.merge) + x, std::floor(place.y() / options.merge) + y,
+                      std::floor(place.z() / options.merge) + z};
+  };
+  const auto close_to = [&](const Vec3& place) -> std::optional<std::uint32_t> {
+    for (const double x : {-1, 0, 1})
+      for (const double y : {-1, 0, 1})
+        for (const double z : {-1, 0, 1})
+          if (const auto found = cells.find(cell(place, x, y, z)); found != cells.end())
+            for (const std::uint32_t other : found->second)
+              if ((vertices_[other].place - place).norm() <= options.merge) return other;
+    return {};
+  };
+  const auto number_of = [&](const Vec3& place) {
+    const auto [known, fresh] = exact.try_emplace(coordinates(place), static_cast<std::uint32_t>(vertices_.size()));
+    if (!fresh) return known->second;
+    if (options.merge > 0) {
+      if (const auto other = close_to(place)) return known->second = *other;
+      cells[cell(place, 0, 0, 0)].push_back(known->second);
+    }
+    vertices_.push_back({.place = place});
+    return known->second;
+  };
+  for (const Stl::Facet& facet : stl.facets) {
+    Facet& mine = facets_.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i)
+      mine.corners[i] = number_of(options.scale * facet.corners[i] + options.position + Vec3::Zero());
+    if (options.inside) std::swap(mine.corners[1], mine.corners[2]);
+  }
+}
+
+/// Normals; facets that have none, and those whose file says another.
+void Surface::span_facets(const Stl& stl, const SurfaceOptions& options) {
+  std::vector<std::size_t> degenerate, against;
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    Facet& facet = facets_[f];
+    std::array<Vec3, 3> side;
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      side[i] = corner(facet, (i + 1) % 3) - corner(facet, i);
+      longest = std::max(longest, side[i].norm());
+    }
+    const Vec3 twice_area = side[0].cross(side[1]);
+    facet.left_out = !(twice_area.norm() > flat * longest * longest);
+    if (facet.left_out) {
+      degenerate.push_back(f);
+      continue;
+    }
+    facet.normal = twice_area.normalized();
+    for (std::size_t i = 0; i < 3; ++i) facet.inward[i] = facet.normal.cross(side[i]).normalized();
+    if ((options.inside ? -1 : 1) * facet.normal.dot(stl.facets[f].normal) < 0) against.push_back(f);
+  }
+  if (!degenerate.empty() && !options.skip_degenerate)
+    defects_.push_back({"degenerate facets, without area: " + facet_numbers(degenerate),
+                        "facets whose corners span an area; mend the file, or say \"skip_degenerate\": true to leave "
+                        "them out"});
+  if (degenerate.size() == facets_.size() && options.skip_degenerate)
+    defects_.push_back({"degenerate facets only", "at least one facet that has an area"});
+  if (!against.empty() && !options.ignore_normals)
+    defects_.push_back(
+        {"facets whose corners go round against the normal that the file gives: " + facet_numbers(against),
+         "corners that are counter-clockwise as seen from where the normal points; mend the file, or "
+         "say \"ignore_normals\": true if the corners are right"});
+}
+
+/// Edges, and those that do not join two facets which face one way.
+void Surface::join_edges(const SurfaceOptions& options) {
+  struct Entry {
+    std::uint32_t from, to;
+    Side side;
+  };
+  std::vector<Entry> entries;
+  for (std::uint32_t f = 0; f < facets_.size(); ++f)
+    for (std::uint32_t i = 0; i < 3 && !facets_[f].left_out; ++i) {
+      const auto [low, high] = std::minmax(facets_[f].corners[i], facets_[f].corners[(i + 1) % 3]);
+      entries.push_back({low, high, {f, i}});
+    }
+  std::ranges::sort(entries, {}, [](const Entry& e) { return std::tuple(e.from, e.to, e.side.facet, e.side.edge); });
+
+  std::vector<std::size_t> single, crowded;
+  std::string first_single;
+  for (std::size_t i = 0; i < entries.size();) {
+    const auto [from, to, first] = entries[i];
+    const auto number = static_cast<std::uint32_t>(edges_.size()), begin = static_cast<std::uint32_t>(sides_.size());
+    const Vec3 along = vertices_[to].place - vertices_[from].place;
+    Edge edge{from, to, begin, begin, along.normalized()};
+    edge.length = along.norm();
+    int forwards = 0;
+    for (; i < entries.size() && entries[i].from == from && entries[i].to == to; ++i, ++edge.end_side) {
+      const Side& side = entries[i].side;
+      Facet& facet = facets_[side.facet];
+      facet.edges[side.edge] = number;
+      forwards += facet.corners[side.edge] == from;
+      edge.normal += facet.normal;
+      sides_.push_back(side);
+    }
+    const std::uint32_t sides = edge.end_side - begin;
+    edge.rim = sides == 1;
+    edges_.push_back(edge);
+    if (edge.rim) {
+      if (single.empty()) first_single = text(vertices_[from].place) + " to " + text(vertices_[to].place);
+      single.push_back(first.facet);
+    }
+    if (sides > 2) crowded.push_back(first.facet);
+    edges_.back().turns = sides == 2 && forwards != 1;
+  }
+  std::ranges::sort(single), std::ranges::sort(crowded);
+  const auto turned = inverted();
+  closed_ = single.empty(), oriented_ = crowded.empty() && turned.empty();
+
+  if (!closed_ && !options.open)
+    defects_.push_back(
+        {"an open surface: " + std::to_string(single.size()) + " edges of one facet alone, the first from " +
+             first_single + " m, of facets " + facet_numbers(single),
+         "a closed one; close it, let \"merge\" join corners that should be one, or say \"open\": true if "
+         "it is a sheet"});
+  if (!crowded.empty() && !two_sided_)
+    defects_.push_back(
+        {"edges that more than two facets share, of facets " + facet_numbers(crowded),
+         "two facets at an edge; mend the file, or say \"two_sided\": true where bodies may be on either "
+         "side of sheets that meet"});
+  if (!turned.empty() && !two_sided_)
+    defects_.push_back(
+        {"inverted facets, which face another way than most of their neighbours: " + facet_numbers(turned),
+         "facets that all face outwards; mend the file, or say \"two_sided\": true if bodies may be on "
+         "either side"});
+}
+
+/// The lowest number of each facet's group: of those joined by edges of two facets where `joins`.
+template <class Joins>
+std::vector<std::uint32_t> Surface::groups(Joins joins) const {
+  Groups groups(facets_.size());
+  for (const Edge& edge : edges_) {
+    if (edge.end_side - edge.first_side != 2) continue;
+    const std::uint32_t a = sides_[edge.first_side].facet, b = sides_[edge.first_side + 1].facet;
+    if (joins(edge, facets_[a], facets_[b])) groups.join(a, b);
+  }
+  std::vector<std::uint32_t> group(facets_.size());
+  for (std::uint32_t f = 0; f < group.size(); ++f) group[f] = groups.root(f);
+  return group;
+}
+
+/// Facets that face another way than most of those which they are joined to.
+std::vector<std::size_t> Surface::inverted() const {
+  const auto part = groups([](auto&&...) { return true; }),
+             facing = groups([](const Edge&edge, auto&&...) { return !edge.turns; });
+  std::vector<std::uint32_t> count(facets_.size()), most(facets_.size(), ~0u);  // by group
+  for (const std::uint32_t group : facing) ++count[group];
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    if (std::uint32_t& best = most[part[f]]; best == ~0u || count[facing[f]] > count[best]) best = facing[f];
+  std::vector<std::size_t> facets;
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    if (facing[f] != most[part[f]]) facets.push_back(f);
+  return facets;
+}
+
+/// Closed parts must enclose something, unless they are the surface of a hole within another part.
+void Surface::check_volumes(bool inside) {
+  struct Part {
+    Bounds bounds;
+    double volume = 0;
+    std::vector<std::size_t> facets;
+  };
+  std::map<std::uint32_t, Part> parts;
+  const auto group = groups([](auto&&...) { return true; });
+  const double outwards = inside ? -1 : 1;
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    if (facets_[f].left_out) continue;
+    const Vec3 &a = corner(facets_[f], 0), &b = corner(facets_[f], 1), &c = corner(facets_[f], 2);
+    Part& part = parts[group[f]];
+    if (part.facets.empty()) part.bounds = {a, a};
+    const Vec3 from = corner(facets_[group[f]], 0);
+    part.volume += outwards * (a - from).dot((b - from).cross(c - from)) / 6;
+    part.bounds = {part.bounds.low.cwiseMin(a).cwiseMin(b).cwiseMin(c),
+                   part.bounds.high.cwiseMax(a).cwiseMax(b).cwiseMax(c)};
+    part.facets.push_back(f);
+  }
+  for (const auto& [first, part] : parts) {
+    const auto holds = [&part = part](const auto& other) {
+      return other.second.volume > 0 && (other.second.bounds.low.array() < part.bounds.low.array()).all() &&
+             (other.second.bounds.high.array() > part.bounds.high.array()).all();
+    };
+    if (part.volume < 0 && std::ranges::none_of(parts, holds))
+      defects_.push_back({"a closed surface that faces inwards: facets " + facet_numbers(part.facets),
+                          "facets that face outwards; turn them round. Where bodies are inside of such a surface, say "
+                          "\"inside\": true beside it"});
+  }
+}
+
+/// Regions of curved surface: of facets, and of edges and corners that are within one.
+void Surface::find_regions() {
+  const auto group = groups([&](const Edge& edge, const Facet& a, const Facet& b) {
+    return (edge.turns ? -1 : 1) * a.normal.dot(b.normal) > like_;
+  });
+  region_.assign(group.begin(), group.end());
+  for (Edge& edge : edges_) {
+    edge.region = region_[sides_[edge.first_side].facet];
+    for (std::uint32_t s = edge.first_side; s < edge.end_side; ++s)
+      if (region_[sides_[s].facet] != edge.region) edge.region = -1;
+  }
+}
+
+/// What meets at each corner.
+void Surface::gather_corners() {
+  constexpr std::int32_t unknown = -2;
+  for (std::uint32_t f = 0; f < facets_.size(); ++f) {
+    const Facet& facet = facets_[f];
+    if (facet.left_out) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      Vertex& vertex = vertices_[facet.corners[i]];
+      const Vec3 a = (corner(facet, (i + 1) % 3) - vertex.place).normalized(),
+                 b = (corner(facet, (i + 2) % 3) - vertex.place).normalized();
+      vertex.normal += std::atan2(a.cross(b).norm(), a.dot(b)) * facet.normal;
+      vertex.owner = std::min(vertex.owner, f);
+      vertex.region = vertex.region == unknown || vertex.region == region_[f] ? region_[f] : -1;
+    }
+  }
+  for (const Edge& edge : edges_) ++vertices_[edge.from].end_edge, ++vertices_[edge.to].end_edge;
+  std::uint32_t next = 0;
+  for (Vertex& vertex : vertices_)
+    vertex.first_edge = std::exchange(next, next + vertex.end_edge), vertex.end_edge = vertex.first_edge;
+  vertex_edges_.resize(next);
+  for (std::uint32_t e = 0; e < edges_.size(); ++e)
+    for (Vertex* vertex : {&vertices_[edges_[e].from], &vertices_[edges_[e].to]})
+      vertex_edges_[vertex->end_edge++] = e, vertex->rim = vertex->rim || edges_[e].rim;
+}
+
+std::vector<Vec3> Surface::triangles() const {
+  std::vector<Vec3> corners;
+  for (const Facet& facet : facets_)
+    for (std::size_t i = 0; i < 3; ++i) corners.push_back(corner(facet, facet.left_out ? 0 : i));
+  return corners;
+}
+
+double Surface::inside_edge(const Side& side, const Vec3& centre) const {
+  const Facet& facet = facets_[side.facet];
+  return facet.inward[side.edge].dot(centre - corner(facet, side.edge));
+}
+
+/// Of a sphere's centre, from all its closest points on one facet that the facets around them are not closer than.
+void Surface::closest_of(std::uint32_t number, const Vec3& centre, double radius, std::vector<Nearest>& found) const {
+  const Facet& facet = facets_[number];
+  const double height = this->height(facet, centre), slack = slack_of_radius * radius + rounding * size_;
+  if (!(std::abs(height) < radius)) return;
+  std::array<double, 3> inside;
+  for (std::uint32_t i = 0; i < 3; ++i) inside[i] = inside_edge({number, i}, centre);
+  if (std::ranges::all_of(inside, [&](double distance) { return distance >= -slack; })) {
+    found.push_back({.away = height < 0 ? Vec3(-facet.normal) : facet.normal,
+                     .distance = std::abs(height),
+                     .behind = !two_sided_ && height < 0,
+                     .feature = features_a_facet * number,
+                     .region = region_[number]});
+    return;
+  }
+  const auto add = [&](const Vec3& point, const auto& of, std::uint32_t feature) {
+    const Vec3 away = centre - point;
+    const double distance = away.norm();
+    if (!(distance < radius)) return;
+    found.push_back({.away = (distance > 0 ? away : of.normal).normalized(),
+                     .distance = distance,
+                     .behind = !two_sided_ && !of.rim && away.dot(of.normal) < 0,
+                     .feature = features_a_facet * number + feature,
+                     .region = of.region});
+  };
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const Edge& edge = edges_[facet.edges[i]];
+    const Vertex& vertex = vertices_[facet.corners[i]];
+    if (sides_[edge.first_side].facet == number && touches_edge(edge, centre, slack))
+      add(vertices_[edge.from].place + edge.along.dot(centre - vertices_[edge.from].place) * edge.along, edge, 1 + i);
+    if (vertex.owner == number && touches_vertex(vertex, centre, slack)) add(vertex.place, vertex, 4 + i);
+  }
+}
+
+/// Whether, of all its facets, an edge is what is closest, and not an end of it.
+bool Surface::touches_edge(const Edge& edge, const Vec3& centre, double slack) const {
+  const double along = edge.along.dot(centre - vertices_[edge.from].place);
+  if (!(along > 0 && along < edge.length)) return false;
+  for (std::uint32_t s = edge.first_side; s < edge.end_side; ++s)
+    if (inside_edge(sides_[s], centre) > slack) return false;
+  return true;
+}
+
+/// Whether, of all its edges, a corner is what is closest.
+bool Surface::touches_vertex(const Vertex& vertex, const Vec3& centre, double slack) const {
+  const Vec3 away = centre - vertex.place;
+  for (std::uint32_t e = vertex.first_edge; e < vertex.end_edge; ++e) {
+    const Edge& edge = edges_[vertex_edges_[e]];
+    const double along = edge.along.dot(away);
+    if ((&vertices_[edge.from] == &vertex ? along : -along) > slack) return false;
+  }
+  return true;
+}
+
+void Surface::nearest(const Vec3& centre, double radius, std::vector<std::uint32_t>& facets,
+                      std::vector<Nearest>& found) const {
+  facets_near(centre, radius, facets);
+  found.clear();
+  for (const std::uint32_t facet : facets) closest_of(facet, centre, radius, found);
+  if (found.size() > 1) leave_out_doubles(centre, radius, found);
+  if (found.empty()) return;
+  const auto closest = std::ranges::min_element(found, {}, &Nearest::distance);
+  if (closest->behind) {
+    Nearest only = *closest;
+    only.away = -only.away, only.distance = -only.distance;
+    found.assign(1, only);
+    return;
+  }
+  std::erase_if(found, [](const Nearest& one) { return one.behind; });
+  if (found.size() > 1) leave_out_of_one_curve(found);
+  std::ranges::sort(found, {}, &Nearest::feature);
+}
+
+/// What slacks let count twice counts once: as a facet rather than an edge, as an edge rather than a corner.
+void Surface::leave_out_doubles(const Vec3& centre, double radius, std::vector<Nearest>& found) const {
+  const double same = one_point * (slack_of_radius * radius + rounding * size_);
+  const auto point = [&](const Nearest& one) -> Vec3 { return centre - one.distance * one.away; };
+  std::ranges::sort(found, {}, [](const Nearest& one) {
+    const std::uint32_t kind = (one.feature % features_a_facet + 2) / 3;
+    return std::tuple(kind, one.feature);
+  });
+  std::size_t kept = 0;
+  for (const Nearest& one : found) {
+    const auto end = found.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (std::none_of(found.begin(), end,
+                     [&](const Nearest& other) { return (point(other) - point(one)).norm() <= same; }))
+      found[kept++] = one;
+  }
+  found.resize(kept);
+}
+
+/// Of those on one curved surface that go on into each other the closest counts.
+void Surface::leave_out_of_one_curve(std::vector<Nearest>& found) const {
+  std::ranges::sort(found, {}, [](const Nearest& one) { return std::tuple(one.distance, one.feature); });
+  Groups curves(found.size());
+  for (std::uint32_t i = 0; i < found.size(); ++i)
+    for (std::uint32_t j = 0; j < i; ++j)
+      if (found[i].region >= 0 && found[i].region == found[j].region && found[i].away.dot(found[j].away) > like_)
+        curves.join(i, j);
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < found.size(); ++i)
+    if (curves.root(i) == i) found[kept++] = found[i];
+  found.resize(kept);
+}
+
+bool Surface::near(const Vec3& centre, double reach) const {
+  std::vector<std::uint32_t> facets;
+  facets_near(centre, reach, facets);
+  return std::ranges::any_of(facets, [&](std::uint32_t f) { return distance(f, centre) <= reach; });
+}
+
+double Surface::distance(std::uint32_t number, const Vec3& centre) const {
+  const Facet& facet = facets_[number];
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    if (inside_edge({number, i}, centre) > 0) continue;
+    const Edge& edge = edges_[facet.edges[i]];
+    const Vec3 from = centre - vertices_[edge.from].place;
+    least = std::min(least, (from - std::clamp(edge.along.dot(from), 0.0, edge.length) * edge.along).norm());
+  }
+  return std::isinf(least) ? std::abs(height(facet, centre)) : least;
+}
+
+}  // namespace grit
