@@ -41,6 +41,15 @@ void touch(benchmark::State& state, const Description& wall) {
         {"edge_b", {0, 1, 0}},
         {"depth", 0.01},
         {"spacing", 0.02}}},
+      {"sinusoidal",
+       {{"type", "sinusoidal"},
+        {"corner", {0, 0, 0}},
+        {"edge_a", {1, 0, 0}},
+        {"edge_b", {0, 1, 0}},
+        {"depth", 0.01},
+        {"wavelength", 0.1}}},
+      // Its lowest line is y = 0.5, z = 0; the layer leaves it 0.035 m to either side.
+      {"cylinder", {{"type", "cylinder"}, {"start", {0, 0.5, 0.1}}, {"end", {1, 0.5, 0.1}}, {"radius", 0.1}}},
       {"container", {{"type", "box"}, {"low", {0, 0, 0}}, {"high", {1, 1, 1}}}},
       {"block", {{"type", "box"}, {"low", {0, 0, -1}}, {"high", {1, 1, 0}}, {"inside", false}}},
   };
