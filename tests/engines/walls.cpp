@@ -187,6 +187,33 @@ TEST(Walls, ServoKeepsItsPressureOnWhatSwellsSteadily) {
   EXPECT_LT(largest, 1e-6);
 }
 
+TEST(Walls, ServoOverTheSpecimenPressesOnItsPresentCrossSection) {
+  Spring spring({.axis = "z", .pressure = 50, .max_velocity = 1e3, .area = "specimen"}, {0, 0, -1});
+  spring.gap = -1e-4;
+  EXPECT_TRUE(spring.walls.presses_on_specimen());
+  for (const Vec3& lengths : {Vec3(3, 5, 7), Vec3(2, 4, 100)}) {
+    spring.walls.set_specimen(lengths);
+    for (int n = 0; n < 2000; ++n) spring.advance();
+    EXPECT_NEAR(spring.force(), 50 * lengths.x() * lengths.y(), 1e-6) << "not 50 Pa × 2 m² of the plate";
+    EXPECT_EQ(view(spring.walls).area, lengths.x() * lengths.y());
+  }
+}
+
+TEST(Walls, ServoOverAnOpenSpecimenIsRefused) {
+  Spring spring({.axis = "z", .pressure = 50, .max_velocity = 1, .area = "specimen"}, {0, 0, -1});
+  for (const Vec3& lengths : {Vec3(1, HUGE_VAL, 1), Vec3(0, 1, 1)}) {
+    spring.walls.set_specimen(lengths);
+    try {
+      spring.advance();
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(),
+                   "wall \"lid\": a servo that presses on the specimen's cross-section, which is open or empty; name "
+                   "walls in /specimen, or bound the domain, across z");
+    }
+  }
+}
+
 TEST(Walls, ServoNeverExceedsItsVelocity) {
   const ServoDescription servo{.axis = "z", .pressure = 50, .max_velocity = 0.2, .gain = 0.3};
   Spring spring(servo, {0, 0, -1});

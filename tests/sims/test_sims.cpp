@@ -8,7 +8,9 @@
 #include "engines/builtin.hpp"
 #include "input/scene.hpp"
 #include "input/schema.hpp"
+#include "run/driver.hpp"
 #include "scene/clump_body.hpp"
+#include "scene/make_bodies.hpp"
 #include "scene/sphere_body.hpp"
 #include "schema_check.hpp"
 #include "study/variants.hpp"
@@ -79,6 +81,42 @@ std::vector<std::filesystem::path> files(bool studies) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Sims, testing::ValuesIn(files(false)),
+                         [](const auto& info) { return Sims::name_of(info.param); });
+
+/// Nobody listens.
+struct Silent final : Recorder {
+  RunSummary summary;
+  void begin(const World&, std::span<const ProbeGroup>) override {}
+  void sample(std::size_t, const World&, std::span<const std::span<const double>>) override {}
+  void frame(const World&, std::span<const FieldGroup>) override {}
+  void stage_ended(const World&, const std::string&) override {}
+  void finish(const World&, const RunSummary& how) override { summary = how; }
+};
+
+class QuickSims : public Sims {};
+
+// Every stage for a while, with all that it changes and measures; what is reached is for longer runs to tell.
+TEST_P(QuickSims, RunAWhile) {
+  Description plain = load_document(GetParam(), {}, registry()).json();
+  for (Description& stage : plain["stages"]) {
+    stage["until"] = {{"type", "steps"}, {"value", 50}};
+    stage.erase("expect");
+  }
+  const Scene scene = read_scene(Document(plain, "test"), registry());
+  Simulation world(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
+  Silent recorder;
+  run(scene, world, recorder, {});
+  EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
+  EXPECT_EQ(recorder.summary.steps, 50 * plain["stages"].size());
+}
+
+std::vector<std::filesystem::path> quick_files() {
+  auto all = files(false);
+  std::erase_if(all, [](const auto& file) { return !file.stem().string().starts_with("quick"); });
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, QuickSims, testing::ValuesIn(quick_files()),
                          [](const auto& info) { return Sims::name_of(info.param); });
 
 class Studies : public testing::TestWithParam<std::filesystem::path> {};

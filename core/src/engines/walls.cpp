@@ -51,10 +51,12 @@ Vec3 middle(const Geometry& geometry) {
   return middle;
 }
 
+bool presses_on_specimen(const MotionDescription& motion) { return motion.servo && motion.servo->area == "specimen"; }
+
 /// Component of a servo's wall's normal along its axis. Throws if the servo has nothing to press with.
 double facing(const WallSetup& setup, const Pose& pose) {
   const std::string& letter = setup.motion.servo->axis;
-  if (!(setup.geometry->area() > 0))
+  if (!presses_on_specimen(setup.motion) && !(setup.geometry->area() > 0))
     fail(setup, "a servo needs an area for its pressure, and this geometry has none; give it one, or take a rectangle");
   const double along = (pose.turn * setup.geometry->normal())[letter.front() - 'x'];
   if (std::abs(along) < aslant)
@@ -65,14 +67,14 @@ double facing(const WallSetup& setup, const Pose& pose) {
 /// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
 /// in one step if the touches are springs, and leaves no error behind when the specimen swells or shrinks steadily.
 /// Such a wall takes energy out, whatever it presses on.
-double servo_velocity(const WallSetup& setup, int axis, WallState& state, double dt) {
+double servo_velocity(const WallSetup& setup, int axis, double area, WallState& state, double dt) {
   const ServoDescription& servo = *setup.motion.servo;
   const double along = facing(setup, state.pose), side = along < 0 ? -1 : 1;
   if (state.touches == 0 || !(state.stiffness > 0)) {  // nothing to press on yet: close
     state.habit = 0;
     return servo.pressure > 0 ? side * servo.max_velocity : 0;
   }
-  const double excess = -side * state.force[axis] - servo.pressure * setup.geometry->area() * std::abs(along);
+  const double excess = -side * state.force[axis] - servo.pressure * area * std::abs(along);
   const double wished = state.habit - side * servo.gain * excess / (state.stiffness * dt);
   const double velocity = std::clamp(wished, -servo.max_velocity, servo.max_velocity);
   state.habit += servo.gain / habit_steps * (velocity - state.habit);
@@ -163,6 +165,23 @@ Vec3 Walls::point_velocity(std::size_t wall, const Vec3& point) const {
   return states_[wall].velocity + states_[wall].spin.cross(point - reference(wall));
 }
 
+bool Walls::presses_on_specimen() const {
+  return std::ranges::any_of(setups_, [](const WallSetup& setup) { return grit::presses_on_specimen(setup.motion); });
+}
+
+double Walls::area(std::size_t wall) const {
+  const WallSetup& setup = setups_[wall];
+  if (!grit::presses_on_specimen(setup.motion)) return setup.geometry->area();
+  const int axis = drives_[wall].servo_axis;
+  const double across = specimen_[(axis + 1) % 3] * specimen_[(axis + 2) % 3];
+  if (!std::isfinite(across) || !(across > 0))
+    fail(setup,
+         "a servo that presses on the specimen's cross-section, which is open or empty; name walls in /specimen, "
+         "or bound the domain, across " +
+             setup.motion.servo->axis);
+  return across / std::abs(facing(setup, states_[wall].pose));
+}
+
 void Walls::clear_forces() {
   for (WallState& state : states_) {
     state.force.setZero();
@@ -189,7 +208,7 @@ void Walls::drive(double dt) {
     const double ramp = motion.ramp_time > 0 ? std::min(1.0, (state.stage_time + 0.5 * dt) / motion.ramp_time) : 1.0;
     for (int axis = 0; axis < 3; ++axis) {
       double& velocity = state.velocity[axis];
-      if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], axis, state, dt);
+      if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], axis, area(wall), state, dt);
       else if (how.follow[axis]) velocity = states_[how.leader].velocity[axis];
       else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
       else velocity = ramp * motion.velocity[axis];
@@ -231,7 +250,7 @@ void Walls::view(std::vector<WallView>& views) const {
     view.spin = state.spin;
     view.force = state.force;
     view.moment = state.moment;
-    view.area = geometry.area();
+    view.area = area(wall);
     view.normal = state.pose.turn * geometry.normal();
     view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
     view.touches = state.touches;

@@ -65,6 +65,10 @@ class Walls {
   void clear_forces();
   /// Adds what bodies do to a wall, moments about reference().
   void add(std::size_t wall, const WallLoad& load);
+  /// Whether some servo presses on the specimen's cross-section. Then set_specimen() must keep up.
+  bool presses_on_specimen() const;
+  /// Lengths of the specimen as it is now [m].
+  void set_specimen(const Vec3& lengths) { specimen_ = lengths; }
   /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them.
   void drive(double dt);
   /// What springs and dashpots that now touch free walls ask of them, bodies held: the largest of k/m and c/m. Added to
@@ -89,6 +93,8 @@ class Walls {
     Axes follow{}, free{};
     std::size_t leader = 0;
   };
+  /// What the pressure on a wall acts on [m²].
+  double area(std::size_t wall) const;
   static Drive drive_of(const std::vector<WallSetup>& setups, const WallSetup& setup);
   static std::vector<std::size_t> leaders_first(const std::vector<WallSetup>& setups, const std::vector<Drive>& drives);
 
@@ -96,6 +102,7 @@ class Walls {
   std::vector<WallState> states_;
   std::vector<Drive> drives_;
   std::vector<std::size_t> order_;
+  Vec3 specimen_ = Vec3::Zero();
 };
 
 }  // namespace grit

@@ -136,6 +136,7 @@ void Simulation::apply(const SceneDescription& scene) {
     surfaces_[w].material = static_cast<std::uint32_t>(
         std::find(material_names_.begin(), material_names_.end(), wall.material) - material_names_.begin());
   }
+  tell_walls_of_specimen();
   energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
   flows_.complete = flows_.complete && all_work_is_kept();
   time_step_now_ = true;
@@ -637,6 +638,7 @@ void Simulation::end_step() {
     }
   }
   clock_.last_time_step = dt;
+  tell_walls_of_specimen();
 
   const double strained =
       dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * 2 * (largest_radius_ + clock_.skins.largest());

@@ -187,6 +187,7 @@ class Simulation final : public World {
   /// What walls do by the forces on them as they moved last [W].
   double power_of_walls() const;
   Region region(double margin) const;
+  void tell_walls_of_specimen();
   Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
   [[noreturn]] void fail(const std::string& what, const std::string& advice) const;
   [[noreturn]] void fail_at_body(std::size_t body, const std::string& what, const std::string& advice) const;

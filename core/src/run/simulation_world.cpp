@@ -136,4 +136,10 @@ Region Simulation::region(double margin) const {
   return region;
 }
 
+void Simulation::tell_walls_of_specimen() {
+  if (!walls_.presses_on_specimen()) return;
+  const Region specimen = region(0);
+  walls_.set_specimen(specimen.high - specimen.low);
+}
+
 }  // namespace grit

@@ -206,6 +206,9 @@ void ServoDescription::declare(Parameters& p) {
       .doc("pressure to keep, compression positive");
   p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
   p.add("gain", gain).above(0).at_most(1).doc("share of the force's error that one step takes away");
+  p.add("area", area)
+      .one_of({"geometry", "specimen"})
+      .doc("what the pressure acts on: the geometry's area, or the specimen's cross-section as it is then");
 }
 void FollowDescription::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall whose motion it shares");

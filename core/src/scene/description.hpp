@@ -93,6 +93,7 @@ struct ServoDescription {
   double pressure = 0;      ///< Pa, compression positive
   double max_velocity = 0;  ///< m/s
   double gain = 1;          ///< share of the force's error that one step takes away
+  std::string area = "geometry";
   void declare(Parameters& p);
 };
 struct FollowDescription {

@@ -1,0 +1,38 @@
+// Interface shear test: a box of sand is driven over a flat, grooved or wavy surface under a constant normal stress.
+#pragma once
+
+#include <string>
+
+#include "../preparation.hpp"
+
+namespace grit {
+
+class InterfaceShear final : public Scenario {
+ public:
+  void declare(Parameters& parameters) override;
+  Description expand() const override;
+
+  /// What preparation can reach; the figures were measured, see README.md.
+  VoidRatioRange reachable() const;
+  /// Of the box while it shears [m/s].
+  double shear_velocity() const;
+
+ private:
+  /// From tips to valleys [m]; 0 where the surface is flat.
+  double groove_depth() const;
+  /// From groove to groove [m].
+  double groove_spacing() const;
+  /// Volume below the tips, per area of the surface [m].
+  double groove_volume() const;
+  Description surface(double reach) const;
+
+  Preparation preparation_;
+  double width_ = 100e-3, height_ = 20e-3, depth_ = 5e-3;
+  std::string depth_boundary_ = "walls", surface_ = "saw-tooth";
+  double roughness_ = 1, groove_inclination_ = 45 * degree, groove_spacing_ = 0;
+  double depth_over_wavelength_ = 0.24, wavelength_ = 15e-3;
+  double surface_friction_angle_ = 18 * degree, internal_friction_angle_ = 44 * degree, local_damping_ = 0.08;
+  double gap_ = 0, normal_stress_ = 100e3, shear_displacement_ = 7e-3, inertial_number_ = 1e-3;
+};
+
+}  // namespace grit

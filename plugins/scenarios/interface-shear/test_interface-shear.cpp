@@ -1,0 +1,99 @@
+#include "interface-shear.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contracts/scenario.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+std::unique_ptr<InterfaceShear> made(const Description& keys = Description::object()) {
+  return made_scenario<InterfaceShear>(keys);
+}
+Description surface(const Description& keys) { return made(keys)->expand()["walls"]["surface"]; }
+double count(const Description& keys) { return made(keys)->expand()["bodies"]["sand"]["grains"]["count"]; }
+
+TEST(InterfaceShear, ExpandsToTheGoldenDescription) { expect_golden(made()->expand(), "interface-shear"); }
+
+TEST(InterfaceShear, CutsGroovesAsDeepAsTheRoughnessSays) {
+  const Description d = surface({{"roughness", 0.25}});
+  EXPECT_EQ(d["type"], "saw-tooth");
+  EXPECT_DOUBLE_EQ(d["depth"], 0.25 * 0.5e-3);
+  EXPECT_FALSE(d.contains("spacing"));
+  EXPECT_DOUBLE_EQ(surface({{"roughness", 0.25}, {"groove_spacing", "2 mm"}})["spacing"], 2e-3);
+}
+
+TEST(InterfaceShear, MakesWavesAsDeepAsTheirLengthSays) {
+  const Description d = surface({{"surface", "sinusoidal"}, {"depth_over_wavelength", 0.147}, {"wavelength", "15 mm"}});
+  EXPECT_EQ(d["type"], "sinusoidal");
+  EXPECT_DOUBLE_EQ(d["depth"], 0.147 * 15e-3);
+  EXPECT_DOUBLE_EQ(d["wavelength"], 15e-3);
+}
+
+TEST(InterfaceShear, TakesARectangleWhereTheSurfaceIsFlat) {
+  const Description d = surface({{"surface", "flat"}});
+  EXPECT_EQ(d["type"], "rectangle");
+  EXPECT_FALSE(d.contains("depth"));
+}
+
+TEST(InterfaceShear, StartsTheBoxAtATipAndReachesBeyondWhereItGoes) {
+  for (const char* form : {"flat", "saw-tooth", "sinusoidal"}) {
+    const Description d = made({{"surface", form}, {"wavelength", "15 mm"}})->expand();
+    const Description& s = d["walls"]["surface"];
+    const double begin = s["corner"][0], end = begin + s["edge_a"][0].get<double>();
+    const double spacing = std::string(form) == "saw-tooth" ? 2 * 0.5e-3 : 15e-3;
+    if (std::string(form) != "flat") EXPECT_NEAR(std::remainder(begin, spacing), 0, 1e-12) << form;
+    EXPECT_LT(begin, d["walls"]["left"]["low"][0].get<double>()) << form;
+    EXPECT_GT(end, d["walls"]["right"]["high"][0].get<double>() + 7e-3) << form;
+  }
+}
+
+TEST(InterfaceShear, FillsTheGroovesToo) {
+  // Half of a sheet with grooves side by side is groove, down to their depth; waves alike.
+  const double flat = count({{"surface", "flat"}}), height = 20e-3;
+  EXPECT_NEAR(count({{"roughness", 2}}) / flat, (height + 0.5 * 1e-3) / height, 1e-4);
+  EXPECT_NEAR(count({{"surface", "sinusoidal"}, {"depth_over_wavelength", 0.4}}) / flat, (height + 3e-3) / height,
+              1e-4);
+  // A groove of 45 degrees, 1 mm deep, in every 4 mm.
+  EXPECT_NEAR(count({{"roughness", 2}, {"groove_spacing", "4 mm"}}) / flat, (height + 0.25e-3) / height, 1e-4);
+}
+
+TEST(InterfaceShear, StandsOnTheTipsWhileItIsFilledAndIsLiftedByTheLargestGrain) {
+  const Description d = made()->expand();
+  for (const char* side : {"left", "right"}) EXPECT_EQ(d["walls"][side]["low"][2], 0.0);
+  const Description& lift = d["stages"][3];
+  EXPECT_EQ(lift["until"]["value"], 0.75e-3);
+  EXPECT_EQ(made({{"gap", "0.4 mm"}})->expand()["stages"][3]["until"]["value"], 0.4e-3);
+}
+
+TEST(InterfaceShear, DrivesTheBoxAsOneAtTheInertialNumber) {
+  const auto scenario = made({{"inertial_number", 1e-4}});
+  // I = (v / h) d sqrt(rho / sigma)
+  EXPECT_NEAR(scenario->shear_velocity() / 20e-3 * 0.5e-3 * std::sqrt(2600 / 100e3), 1e-4, 1e-16);
+  const Description stages = scenario->expand()["stages"];
+  const Description& walls = stages.back()["change"]["walls"];
+  ASSERT_EQ(walls.size(), 3u);
+  for (const auto& [name, wall] : walls.items())
+    EXPECT_DOUBLE_EQ(wall["motion"]["velocity"][0], scenario->shear_velocity()) << name;
+}
+
+TEST(InterfaceShear, SaysWhatIsWrong) {
+  const auto problem = [](const Description& keys) {
+    const auto result = read_scenario<InterfaceShear>(keys);
+    return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
+  };
+  EXPECT_THAT(problem({{"groove_spacing", "0.9 mm"}}), HasSubstr("/groove_spacing"));
+  EXPECT_EQ(problem({{"groove_spacing", "1.1 mm"}}), "");
+  EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
+  EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
+  EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio is 0.9"));
+  EXPECT_THAT(refusal<InterfaceShear>({{"depth", "2.9 mm"}}), HasSubstr("four of the largest grains"));
+}
+
+}  // namespace
+}  // namespace grit

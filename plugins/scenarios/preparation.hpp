@@ -1,0 +1,239 @@
+// Preparation of a specimen, as scenarios share it: a cloud of grains is compacted by servo-controlled walls, one along
+// an axis or six around it, and friction is the control of the void ratio. See README.md.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/scenario.hpp"
+#include "wall_descriptions.hpp"
+
+namespace grit {
+
+inline constexpr double degree = std::numbers::pi / 180;
+
+/// Void ratios of the interior that a grading, pressure and stiffness can be brought to.
+struct VoidRatioRange {
+  double densest, loosest;
+};
+
+/// Friction during compaction, and the void ratio of the interior that it was measured to lead to.
+struct Compacted {
+  double friction_angle, void_ratio;
+};
+
+struct Preparation {
+  /// Solid fraction of the cloud that compaction starts from.
+  static constexpr double cloud_solid_fraction = 0.3;
+  static constexpr double local_damping = 0.3;
+
+  double smallest_diameter = 0.25e-3, largest_diameter = 0.75e-3;
+  std::vector<double> sieve_diameters, sieve_passing;
+  double density = 2600, friction_angle = 18 * degree;
+  double void_ratio = 0.6, inertial_number = 3e-3;
+  std::optional<double> compaction_friction_angle;
+  std::int64_t seed = 1;
+
+  void declare_sand(Parameters& p) {
+    p.add("smallest_diameter", smallest_diameter).unit("m").symbol("d_min").above(0).doc("of the grains");
+    p.add("largest_diameter", largest_diameter)
+        .unit("m")
+        .symbol("d_max")
+        .above(0)
+        .doc("of the grains; diameters are uniform by number in between, unless there are sieves");
+    p.add("sieve_diameters", sieve_diameters)
+        .unit("m")
+        .above(0)
+        .doc("openings of sieves, rising from the smallest to the largest diameter; empty: uniform by number");
+    p.add("sieve_passing", sieve_passing)
+        .at_least(0)
+        .at_most(1)
+        .doc("share of the mass that passes each sieve, rising from 0 to 1; even by mass in between");
+    p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("of the grains");
+    p.add("friction_angle", friction_angle)
+        .unit("rad")
+        .symbol("mu")
+        .at_least(0)
+        .below(std::numbers::pi / 2)
+        .doc("between grains, during shear; other parameters of the sand are overridden by /materials/sand");
+    p.check(
+        [this](const Complain& complain) {
+          if (!(smallest_diameter <= largest_diameter))
+            complain("smallest_diameter", std::to_string(smallest_diameter) + " m", "at most largest_diameter");
+        },
+        {"smallest_diameter", "largest_diameter"});
+    p.check(
+        [this](const Complain& complain) {
+          const auto& d = sieve_diameters;
+          const auto& passing = sieve_passing;
+          if (d.size() != passing.size())
+            complain("sieve_passing", std::to_string(passing.size()) + " shares",
+                     "as many as sieve_diameters has, " + std::to_string(d.size()));
+          else if (!d.empty() && (d.size() < 2 || !std::ranges::is_sorted(d, std::less_equal<>())))
+            complain("sieve_diameters", std::to_string(d.size()) + " diameters",
+                     "two or more, each above the one before");
+          else if (!d.empty() && (d.front() != smallest_diameter || d.back() != largest_diameter))
+            complain("sieve_diameters", std::to_string(d.front()) + " m to " + std::to_string(d.back()) + " m",
+                     "from smallest_diameter to largest_diameter");
+          else if (!d.empty() && (passing.front() != 0 || passing.back() != 1 || !std::ranges::is_sorted(passing)))
+            complain("sieve_passing",
+                     "from " + std::to_string(passing.front()) + " to " + std::to_string(passing.back()),
+                     "shares that rise from 0 to 1");
+        },
+        {"smallest_diameter", "largest_diameter", "sieve_diameters", "sieve_passing"});
+  }
+  void declare_void_ratio(Parameters& p) {
+    p.add("void_ratio", void_ratio)
+        .symbol("e_0")
+        .above(0)
+        .doc("of the interior, one mean diameter or more off the walls, before shear; reached within 0.01 or failed");
+  }
+  void declare_course(Parameters& p) {
+    p.add("preparation_inertial_number", inertial_number)
+        .above(0)
+        .at_most(0.1)
+        .doc("during preparation; the faster, the less time it takes and the less uniform the specimen");
+    p.add("compaction_friction_angle", compaction_friction_angle)
+        .unit("rad")
+        .at_least(0)
+        .below(std::numbers::pi / 2)
+        .doc(
+            "between grains while the cloud is compacted; left out: as was found to lead somewhat above the void "
+            "ratio");
+    p.add("seed", seed).at_least(0).doc("of the grains' sizes and places");
+  }
+
+  /// By number [m].
+  double mean_diameter() const {
+    if (sieve_diameters.empty()) return 0.5 * (smallest_diameter + largest_diameter);
+    return over_sieves([](double a, double b) { return 1 / (a * b); }) / over_sieves(inverse_cube);
+  }
+  /// Grains that fill a volume [m³] at the wanted void ratio.
+  std::int64_t grains(double volume) const {
+    // Mean of d³ of a uniform distribution.
+    const double a = smallest_diameter, b = largest_diameter;
+    const double cube = sieve_diameters.empty() ? 0.25 * (a + b) * (a * a + b * b) : 1 / over_sieves(inverse_cube);
+    return std::llround(volume / (1 + void_ratio) / (std::numbers::pi / 6 * cube));
+  }
+  /// Volume of the cloud for a specimen of this volume, or its length where it is longer along one axis alone.
+  double in_cloud(double specimen) const { return specimen / (1 + void_ratio) / cloud_solid_fraction; }
+
+  /// A grain moves its own size under the pressure [Pa] in this time [s]: the clock of everything inertial.
+  double inertial_time(double pressure) const { return mean_diameter() * std::sqrt(density / pressure); }
+  /// In which what was disturbed comes to rest [s].
+  double settling_time(double pressure) const {
+    return 200 * inertial_time(pressure) / std::sqrt(inertial_number / 1e-2);
+  }
+  /// Of walls that close on a specimen of this length [m], together, under a pressure [Pa]: m/s.
+  double closing_speed(double length, double pressure) const {
+    return inertial_number * length / inertial_time(pressure);
+  }
+
+  /// Throws Error for a void ratio out of `range`, unless the friction of compaction is the user's own. `pressure` [Pa]
+  /// is named.
+  void refuse_out_of(const VoidRatioRange& range, double pressure) const {
+    if (compaction_friction_angle || (void_ratio >= range.densest && void_ratio <= range.loosest)) return;
+    std::ostringstream text;
+    text.precision(3);
+    text << "/scenario/void_ratio is " << void_ratio << "; this grading can be prepared between " << range.densest
+         << " (frictionless compaction) and " << range.loosest << " (high friction, then its own) under "
+         << pressure * 1e-3 << " kPa; wish for one in this range";
+    throw Error(text.str());
+  }
+  /// Throws Error if the shortest side [m] of a specimen is less than four grains.
+  void refuse_short(double shortest, const std::string& what) const {
+    if (shortest < 4 * largest_diameter)
+      throw Error("/scenario: the " + what + " is " + std::to_string(shortest * 1e3) +
+                  " mm wide, high or deep, less than four of the largest grains; make it larger or the grains smaller");
+  }
+
+  /// "200 kPa, e0 = 0.6".
+  std::string words(double pressure) const {
+    std::ostringstream text;
+    text.precision(3);
+    text << std::lround(pressure * 1e-3) << " kPa, e0 = " << void_ratio;
+    return text.str();
+  }
+  Description sand() const { return {{"density", density}, {"friction_angle", friction_angle}}; }
+  /// The grains, a cloud between two corners.
+  Description cloud(const Description& low, const Description& high, std::int64_t count) const {
+    Description sizes = {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}};
+    if (!sieve_diameters.empty())
+      sizes = {{"type", "sieve"}, {"diameters", sieve_diameters}, {"passing", sieve_passing}};
+    return {{"type", "sphere"},
+            {"material", "sand"},
+            {"grains", {{"type", "cloud"}, {"low", low}, {"high", high}, {"count", count}, {"sizes", sizes}}}};
+  }
+
+  /// Stages "compact" (friction leads somewhat above the wanted void ratio), "densify" (friction falls until it is
+  /// there) and "settle" (friction is the sand's own). `walls` are servo-controlled to `pressure` [Pa] and close in
+  /// `closing` [s]; `compacted` says what friction leads to.
+  std::vector<Description> stages(const std::vector<std::string>& walls, double pressure, double closing,
+                                  std::span<const Compacted> compacted) const {
+    const double settling = settling_time(pressure);
+    const double loose_angle = compaction_friction_angle.value_or(friction_for(void_ratio + aim_above, compacted));
+    const auto friction = [](double angle) -> Description { return {{"sand", {{"friction_angle", angle}}}}; };
+    const auto at_rest = [&](double within, double unbalanced) -> Description {
+      Description of = Description::array();
+      for (const std::string& wall : walls)
+        of.push_back({{"type", "pressure"}, {"wall", wall}, {"value", pressure}, {"within", within}});
+      of.push_back({{"type", "unbalanced-force"}, {"below", unbalanced}});
+      return {{"type", "all"}, {"of", of}};
+    };
+    Description compact, densify, settle;
+    compact["name"] = "compact";
+    compact["change"]["materials"] = friction(loose_angle);
+    compact["until"] = at_rest(0.02, 0.01);
+    compact["limit"] = 3 * closing + 5 * settling;
+    densify["name"] = "densify";
+    densify["ramps"] = Description::array({{{"pointer", "/materials/sand/friction_angle"},
+                                            {"from", loose_angle},
+                                            {"to", 0.0},
+                                            {"duration", settling},
+                                            {"increments", 100}}});
+    densify["until"] = {{"type", "void-ratio"}, {"below", void_ratio}};
+    densify["limit"] = 5 * settling;
+    settle["name"] = "settle";
+    settle["change"]["materials"] = friction(friction_angle);
+    settle["until"] = at_rest(0.005, 2e-3);
+    settle["limit"] = 15 * settling;
+    settle["expect"] = {{"void_ratio", void_ratio}, {"within", 0.01}};
+    return {compact, densify, settle};
+  }
+
+ private:
+  // Compaction aims so much above the wanted void ratio; lowering the friction does the rest.
+  static constexpr double aim_above = 0.03;
+
+  // Mean of d⁻³ between two sieves, by mass: what a mass holds of grains.
+  static double inverse_cube(double a, double b) { return (a + b) / (2 * a * a * b * b); }
+  // Sum over the sieves of what one holds, by its share of the mass.
+  template <class Of>
+  double over_sieves(Of of) const {
+    double sum = 0;
+    for (std::size_t i = 1; i < sieve_diameters.size(); ++i)
+      sum += (sieve_passing[i] - sieve_passing[i - 1]) * of(sieve_diameters[i - 1], sieve_diameters[i]);
+    return sum;
+  }
+
+  static double friction_for(double void_ratio, std::span<const Compacted> compacted) {
+    for (std::size_t i = 1; i < compacted.size(); ++i) {
+      const Compacted &a = compacted[i - 1], &b = compacted[i];
+      if (void_ratio >= b.void_ratio) continue;
+      const double share = std::max(0.0, void_ratio - a.void_ratio) / (b.void_ratio - a.void_ratio);
+      return a.friction_angle + share * (b.friction_angle - a.friction_angle);
+    }
+    return compacted.back().friction_angle;
+  }
+};
+
+}  // namespace grit

@@ -1,0 +1,117 @@
+#include "triaxial.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "contracts/scenario.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+std::unique_ptr<Triaxial> made(const Description& keys = Description::object()) {
+  return made_scenario<Triaxial>(keys);
+}
+
+/// What is wrong with these parameters, one line.
+std::string problem(const Description& keys) {
+  const auto result = read_scenario<Triaxial>(keys);
+  return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
+}
+
+TEST(Triaxial, ExpandsToTheGoldenDescription) { expect_golden(made()->expand(), "triaxial"); }
+
+TEST(Triaxial, PressesEquallyFromSixSidesOnTheSpecimenAsItIs) {
+  const Description walls = made({{"confining_stress", "50 kPa"}})->expand()["walls"];
+  ASSERT_EQ(walls.size(), 6u);
+  for (const auto& [name, wall] : walls.items()) {
+    EXPECT_EQ(wall["motion"]["servo"]["pressure"], 50e3) << name;
+    EXPECT_EQ(wall["motion"]["servo"]["area"], "specimen") << name;
+    for (int axis = 0; axis < 3; ++axis) {  // each looks at the middle
+      const double point = wall["point"][axis], normal = wall["normal"][axis];
+      EXPECT_EQ(normal, point > 0 ? -1 : point < 0 ? 1 : 0) << name;
+    }
+  }
+}
+
+TEST(Triaxial, ClosesTopAndBottomAlikeAtTheInertialNumber) {
+  const auto scenario = made({{"inertial_number", 1e-3}, {"size", {"50 mm", "60 mm", "80 mm"}}});
+  // I = (d eps_1 / dt) d50 sqrt(rho / sigma_c)
+  EXPECT_NEAR(scenario->strain_rate() * 5e-3 * std::sqrt(2600 / 200e3), 1e-3, 1e-15);
+  const Description stages = scenario->expand()["stages"];
+  const Description& walls = stages.back()["change"]["walls"];
+  EXPECT_DOUBLE_EQ(walls["top"]["motion"]["velocity"][2], -0.5 * scenario->strain_rate() * 80e-3);
+  EXPECT_DOUBLE_EQ(walls["bottom"]["motion"]["velocity"][2], 0.5 * scenario->strain_rate() * 80e-3);
+  EXPECT_EQ(walls.size(), 2u) << "the sides keep their stress";
+}
+
+TEST(Triaxial, HoldsFrontAndBackInPlaneStrain) {
+  const Description stages = made({{"front_and_back", "held"}})->expand()["stages"];
+  for (const char* wall : {"front", "back"}) EXPECT_TRUE(stages.back()["change"]["walls"][wall]["motion"].is_null());
+}
+
+TEST(Triaxial, BringsTheIntermediateStressOnBeforeCompression) {
+  const Description stages =
+      made({{"front_and_back", "intermediate-stress"}, {"intermediate_stress", "300 kPa"}})->expand()["stages"];
+  ASSERT_EQ(stages.size(), 5u);
+  const Description& load = stages[3];
+  EXPECT_EQ(load["ramps"][0]["pointer"], "/walls/back/motion/servo/pressure");
+  EXPECT_EQ(load["ramps"][0]["from"], 200e3);
+  EXPECT_EQ(load["ramps"][0]["to"], 300e3);
+  EXPECT_TRUE(load["change"]["walls"]["front"]["motion"].is_null()) << "it bears what the back presses";
+  EXPECT_LE(load["ramps"][0]["duration"].get<double>(), load["until"]["value"].get<double>());
+}
+
+TEST(Triaxial, SaysWhatIsWrong) {
+  EXPECT_THAT(problem({{"front_and_back", "intermediate-stress"}}), HasSubstr("/intermediate_stress"));
+  EXPECT_THAT(problem({{"intermediate_stress", "300 kPa"}}),
+              HasSubstr("with front_and_back \"intermediate-stress\" alone"));
+  EXPECT_THAT(problem({{"axial_strain", 1}}), HasSubstr("/axial_strain"));
+  EXPECT_THAT(problem({{"front_and_back", "free"}}), HasSubstr("confining-stress"));
+  EXPECT_THAT(refusal<Triaxial>({{"void_ratio", 0.5}}), HasSubstr("/scenario/void_ratio is 0.5; this grading"));
+  EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.5}, {"compaction_friction_angle", "0 deg"}}), "")
+      << "who says how to compact knows what comes of it";
+  EXPECT_THAT(refusal<Triaxial>({{"size", {"100 mm", "29 mm", "100 mm"}}}), HasSubstr("four of the largest grains"));
+}
+
+// Sieves, as every scenario with a preparation has them.
+
+TEST(Sieves, FillTheSpecimenByTheMeanVolumeOfTheirGrains) {
+  // 10 % of the mass between 0.25 and 0.5 mm, 90 % between 0.5 and 1 mm, even by mass in between: grains by sums.
+  double grains = 0, diameters = 0;  // per volume of solids
+  const int parts = 100000;
+  for (int i = 0; i < parts; ++i)
+    for (const auto& [low, width, share] : {std::tuple{2.5e-3, 2.5e-3, 0.1}, std::tuple{5e-3, 5e-3, 0.9}}) {
+      const double d = low + width * (i + 0.5) / parts;
+      const double number = share / parts / (std::numbers::pi / 6 * d * d * d);
+      grains += number, diameters += number * d;
+    }
+  const Description sieved = {{"smallest_diameter", "2.5 mm"},
+                              {"largest_diameter", "10 mm"},
+                              {"sieve_diameters", {"2.5 mm", "5 mm", "10 mm"}},
+                              {"sieve_passing", {0, 0.1, 1}},
+                              {"void_ratio", 0.65}};
+  const auto scenario = made(sieved);
+  const Description d = scenario->expand(), sand = d["bodies"]["sand"]["grains"];
+  EXPECT_NEAR(sand["count"].get<double>(), 1e-3 / 1.65 * grains, 1);
+  EXPECT_EQ(sand["sizes"]["type"], "sieve");
+  EXPECT_EQ(sand["sizes"]["passing"], Description({0.0, 0.1, 1.0}));
+  EXPECT_NEAR(scenario->strain_rate() * diameters / grains * std::sqrt(2600 / 200e3), 1e-4, 1e-12);
+}
+
+TEST(Sieves, AreRefusedWhereTheyAreNoCurve) {
+  const auto sieves = [](const Description& diameters, const Description& passing) {
+    return problem({{"sieve_diameters", diameters}, {"sieve_passing", passing}});
+  };
+  EXPECT_EQ(sieves({"2.5 mm", "7.5 mm"}, {0, 1}), "");
+  EXPECT_THAT(sieves({"2.5 mm", "7.5 mm"}, {0, 0.5, 1}), HasSubstr("/sieve_passing"));
+  EXPECT_THAT(sieves({"2.5 mm", "5 mm", "5 mm", "7.5 mm"}, {0, 0.1, 0.2, 1}), HasSubstr("above the one before"));
+  EXPECT_THAT(sieves({"2.5 mm", "7 mm"}, {0, 1}), HasSubstr("from smallest_diameter to largest_diameter"));
+  EXPECT_THAT(sieves({"2.5 mm", "7.5 mm"}, {0.1, 1}), HasSubstr("rise from 0 to 1"));
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,30 @@
+// Triaxial test: six smooth walls press a specimen equally from all sides, then top and bottom close on it.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "../preparation.hpp"
+
+namespace grit {
+
+class Triaxial final : public Scenario {
+ public:
+  Triaxial();
+  void declare(Parameters& parameters) override;
+  Description expand() const override;
+
+  /// What preparation can reach; the figures were measured, see README.md.
+  VoidRatioRange reachable() const;
+  /// Rate of axial strain during compression [1/s].
+  double strain_rate() const;
+
+ private:
+  Preparation preparation_;
+  Vec3 size_ = Vec3::Constant(100e-3);
+  double confining_stress_ = 200e3, axial_strain_ = 0.3, inertial_number_ = 1e-4, local_damping_ = 0.08;
+  std::string front_and_back_ = "confining-stress";
+  std::optional<double> intermediate_stress_;
+};
+
+}  // namespace grit

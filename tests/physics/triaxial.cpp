@@ -1,0 +1,61 @@
+// The triaxial test from one end to the other, in a cell of some 500 grains.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "support/curves.hpp"
+
+namespace grit::test {
+namespace {
+
+struct Compressed : Curves {
+  Mat3 stress_before = Mat3::Zero();
+  void stage_ended(const World& world, const std::string&) override {
+    if (world.stage() == "settle") stress_before = mean_stress(world, world.specimen());
+  }
+};
+
+Compressed compressed(const std::vector<std::string>& sets) {
+  std::vector<std::string> all{"/scenario/size=[40e-3,40e-3,40e-3]", "/scenario/axial_strain=0.15",
+                               "/scenario/preparation_inertial_number=6e-3", "/scenario/void_ratio=0.65"};
+  all.insert(all.end(), sets.begin(), sets.end());
+  Compressed curves;
+  run_to_the_end("sims/triaxial/quick.json", all, curves);
+  return curves;
+}
+
+TEST(Triaxial, StartsFromTheSameStressOnAllSidesAndKeepsTheLateralOne) {
+  const Compressed usual = compressed({});
+  // Love–Weber over the whole specimen, touches of walls and all: what the walls bear, found another way. Walls without
+  // friction leave off-diagonal components to how few grains happen to lie.
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double wanted = i == j ? 200e3 : 0, within = i == j ? 0.01 : 0.05;
+      EXPECT_NEAR(usual.stress_before(i, j), wanted, within * 200e3) << i << ' ' << j;
+    }
+  for (const char* lateral : {"sigma_2", "sigma_3"})
+    for (const double stress : usual.channel.at(lateral)) EXPECT_NEAR(stress, 200e3, 0.02 * 200e3);
+  // Walls keep grains apart, so a specimen is higher than its interior's void ratio says, here by 2.3 %.
+  EXPECT_NEAR(usual.channel.at("axial_strain").back(), 0.15, 0.005);
+  EXPECT_GT(usual.mean("friction_angle", 0.5, 1), 28);
+}
+
+// Peyneau & Roux (2008), Phys. Rev. E 78, 011307, doi:10.1103/PhysRevE.78.011307: 5.76° ± 0.22° in the limit of many
+// grains; so few scatter about it.
+TEST(Triaxial, FrictionlessGrainsBearNextToNoDeviator) {
+  const Compressed frictionless = compressed(
+      {"/scenario/friction_angle=0", "/scenario/compaction_friction_angle=0.07", "/scenario/void_ratio=0.62"});
+  EXPECT_NEAR(frictionless.mean("friction_angle", 0.3, 1), 5.76, 3);
+}
+
+TEST(Triaxial, PlaneStrainPressesOnTheWallsThatStand) {
+  const Compressed plane = compressed({"/scenario/front_and_back=\"held\""});
+  const double sigma_1 = plane.mean("sigma_1", 0.5, 1), sigma_2 = plane.mean("sigma_2", 0.5, 1);
+  EXPECT_GT(sigma_2, 1.1 * 200e3);
+  EXPECT_LT(sigma_2, 0.8 * sigma_1);
+}
+
+}  // namespace
+}  // namespace grit::test
