@@ -36,6 +36,10 @@ struct Preparation {
   static constexpr double cloud_solid_fraction = 0.3;
   static constexpr double local_damping = 0.3;
 
+  /// Volume of an asymmetric clump over that of the sphere that encloses it.
+  static constexpr double clump_share = 0.479;
+
+  std::string grain = "sphere";
   double smallest_diameter = 0.25e-3, largest_diameter = 0.75e-3;
   std::vector<double> sieve_diameters, sieve_passing;
   double density = 2600, friction_angle = 18 * degree;
@@ -44,6 +48,9 @@ struct Preparation {
   std::int64_t seed = 1;
 
   void declare_sand(Parameters& p) {
+    p.add("grain", grain)
+        .one_of({"sphere", "clump"})
+        .doc("spheres, or asymmetric clumps of four; diameters of clumps are those of the enclosing sphere");
     p.add("smallest_diameter", smallest_diameter).unit("m").symbol("d_min").above(0).doc("of the grains");
     p.add("largest_diameter", largest_diameter)
         .unit("m")
@@ -122,10 +129,12 @@ struct Preparation {
     // Mean of d³ of a uniform distribution.
     const double a = smallest_diameter, b = largest_diameter;
     const double cube = sieve_diameters.empty() ? 0.25 * (a + b) * (a * a + b * b) : 1 / over_sieves(inverse_cube);
-    return std::llround(volume / (1 + void_ratio) / (std::numbers::pi / 6 * cube));
+    return std::llround(volume / (1 + void_ratio) / (std::numbers::pi / 6 * cube * solid_share()));
   }
   /// Volume of the cloud for a specimen of this volume, or its length where it is longer along one axis alone.
-  double in_cloud(double specimen) const { return specimen / (1 + void_ratio) / cloud_solid_fraction; }
+  double in_cloud(double specimen) const {
+    return specimen / (1 + void_ratio) / (cloud_solid_fraction * solid_share());
+  }
 
   /// A grain moves its own size under the pressure [Pa] in this time [s]: the clock of everything inertial.
   double inertial_time(double pressure) const { return mean_diameter() * std::sqrt(density / pressure); }
@@ -138,10 +147,11 @@ struct Preparation {
     return inertial_number * length / inertial_time(pressure);
   }
 
-  /// Throws Error for a void ratio out of `range`, unless the friction of compaction is the user's own. `pressure` [Pa]
-  /// is named.
+  /// Throws Error for a void ratio out of `range`, unless the friction of compaction is the user's own, or grains are
+  /// not the spheres that it was measured of. `pressure` [Pa] is named.
   void refuse_out_of(const VoidRatioRange& range, double pressure) const {
-    if (compaction_friction_angle || (void_ratio >= range.densest && void_ratio <= range.loosest)) return;
+    if (compaction_friction_angle || grain != "sphere" || (void_ratio >= range.densest && void_ratio <= range.loosest))
+      return;
     std::ostringstream text;
     text.precision(3);
     text << "/scenario/void_ratio is " << void_ratio << "; this grading can be prepared between " << range.densest
@@ -169,9 +179,12 @@ struct Preparation {
     Description sizes = {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}};
     if (!sieve_diameters.empty())
       sizes = {{"type", "sieve"}, {"diameters", sieve_diameters}, {"passing", sieve_passing}};
-    return {{"type", "sphere"},
-            {"material", "sand"},
-            {"grains", {{"type", "cloud"}, {"low", low}, {"high", high}, {"count", count}, {"sizes", sizes}}}};
+    Description group = {
+        {"type", grain},
+        {"material", "sand"},
+        {"grains", {{"type", "cloud"}, {"low", low}, {"high", high}, {"count", count}, {"sizes", sizes}}}};
+    if (grain == "clump") group["shape"] = {{"type", "asymmetric"}};
+    return group;
   }
 
   /// Stages "compact" (friction leads somewhat above the wanted void ratio), "densify" (friction falls until it is
@@ -211,6 +224,9 @@ struct Preparation {
   }
 
  private:
+  /// Volume of a grain over that of a sphere of its diameter.
+  double solid_share() const { return grain == "clump" ? clump_share : 1; }
+
   // Compaction aims so much above the wanted void ratio; lowering the friction does the rest.
   static constexpr double aim_above = 0.03;
 
