@@ -1,0 +1,75 @@
+// What every scenario must do, and how its test reads it. The test's program runs in the plugin's folder, where
+// expansion.json is what all defaults expand to.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/scenario.hpp"
+#include "input/document.hpp"
+#include "input/reader.hpp"
+
+namespace grit {
+
+template <class S>
+struct ReadScenario {
+  std::unique_ptr<S> scenario = std::make_unique<S>();
+  std::vector<Problem> problems;
+};
+
+template <class S>
+ReadScenario<S> read_scenario(const Description& keys) {
+  ReadScenario<S> result;
+  Parameters parameters;
+  result.scenario->declare(parameters);
+  read(Document(keys, "test"), "", parameters, result.problems);
+  return result;
+}
+
+template <class S>
+std::unique_ptr<S> made_scenario(const Description& keys = Description::object()) {
+  auto result = read_scenario<S>(keys);
+  for (const Problem& problem : result.problems) ADD_FAILURE() << problem.pointer << ' ' << problem.message;
+  return std::move(result.scenario);
+}
+
+/// What expand() says against the wish, "" if nothing.
+template <class S>
+std::string refusal(const Description& keys) {
+  try {
+    made_scenario<S>(keys)->expand();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Compares the expansion of all defaults with expansion.json, so that a change of it is seen for what it is. After a
+/// wanted change, replace the file by what this has written.
+inline void expect_golden(const Description& now, const std::string& name) {
+  const auto written = std::filesystem::temp_directory_path() / (name + "-expansion.json");
+  std::ofstream(written) << now.dump(2) << '\n';
+  const std::string advice = "what the expansion is now: " + written.string();
+  std::ifstream file("expansion.json");
+  ASSERT_TRUE(file) << "there is no expansion.json; " << advice;
+  const Description flat_now = now.flatten(), flat_golden = Description::parse(file).flatten();
+  EXPECT_EQ(flat_now.size(), flat_golden.size()) << advice;
+  for (const auto& [pointer, golden] : flat_golden.items()) {
+    ASSERT_TRUE(flat_now.contains(pointer)) << pointer << "; " << advice;
+    const auto& value = flat_now[pointer];
+    if (golden.is_number_float()) {  // machines with and without fused multiplication differ in the last digits
+      EXPECT_NEAR(value.get<double>(), golden.get<double>(), 1e-12 * std::abs(golden.get<double>())) << pointer;
+    } else {
+      EXPECT_EQ(value, golden) << pointer << "; " << advice;
+    }
+  }
+}
+
+}  // namespace grit
