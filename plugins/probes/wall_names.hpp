@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,12 @@ inline std::string wall_stem(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
   const bool digit = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0;
   return digit ? "wall_" + name : name;
+}
+
+/// Whether it can be a channel's name, or begin one.
+inline bool is_snake_case(const std::string& text) {
+  static const std::regex pattern("[a-z][a-z0-9_]*");
+  return std::regex_match(text, pattern);
 }
 
 /// The name with the fewest single-letter edits (Levenshtein) between it and `name`; empty if there are no names.

@@ -21,6 +21,7 @@ struct FakeWorld : World {
   std::vector<Vec3> rotation, displacement;
   std::vector<Contact> contact;  ///< pairs first
   std::vector<WallView> wall;
+  std::vector<Departure> departure;
   Cell box{Vec3::Constant(-std::numeric_limits<double>::infinity()),
            Vec3::Constant(std::numeric_limits<double>::infinity())};
   Region whole{Vec3::Zero(), Vec3::Ones()};  ///< the specimen
@@ -70,6 +71,7 @@ struct FakeWorld : World {
   std::span<const Row> moments() const override { return moment; }
   std::span<const Contact> contacts() const override { return contact; }
   std::span<const WallView> walls() const override { return wall; }
+  std::span<const Departure> departures() const override { return departure; }
   const Cell& cell() const override { return box; }
   Region specimen() const override { return whole; }
   Region interior(double margin) const override {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <regex>
 
+#include "../grain_masses.hpp"
 #include "../specimen.hpp"
 #include "../wall_names.hpp"
 #include "grit/plugin.hpp"
@@ -53,6 +54,11 @@ std::deque<Variable> variables_of(const World& world) {
   add("step", [](const World& w) { return static_cast<double>(w.step()); });
   add("mean_diameter", [](const World& w) { return w.mean_diameter(); });
   add("void_ratio", [](const World& w) { return void_ratio(w, interior_box(w)); });
+  add("mass", mass_of);
+  add("departed_mass", departed_mass_of);
+  for (int k = 0; k < 3; ++k)
+    add(std::string("centre_") + "xyz"[k],
+        [k](const World& w) { return over_masses(w, [k](const Vec3& centre) { return centre[k]; }) / mass_of(w); });
   for (std::size_t i = 0; i < world.walls().size(); ++i) {
     const std::string stem = wall_stem(world.walls()[i].name);
     for (const auto& [suffix, member] : wall_vectors)
@@ -67,7 +73,7 @@ std::deque<Variable> variables_of(const World& world) {
 
 /// What a formula may name, without repeating the same for each wall.
 std::string known_names(const World& world, const std::map<std::string, FormulaProbe::Constant>& constants) {
-  std::string known = "time, step, mean_diameter, void_ratio";
+  std::string known = "time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z";
   for (const auto& constant : constants) known += ", " + constant.first;
   if (world.walls().empty()) return known;
   std::vector<std::string> stems;
@@ -79,11 +85,6 @@ std::string known_names(const World& world, const std::map<std::string, FormulaP
 
 bool is_name(const std::string& text) {
   static const std::regex pattern("[A-Za-z_][A-Za-z0-9_]*");
-  return std::regex_match(text, pattern);
-}
-
-bool is_snake_case(const std::string& text) {
-  static const std::regex pattern("[a-z][a-z0-9_]*");
   return std::regex_match(text, pattern);
 }
 

@@ -66,6 +66,32 @@ TEST(Formula, TakesVoidRatioOfTheInterior) {
   EXPECT_NEAR(value_of("void_ratio"), (inner - solid) / solid, 1e-12);
 }
 
+TEST(Formula, WeighsGrainsAndSaysWhereTheirCentreIs) {
+  WatchedWorld world = shear_box();
+  world.add({0.2, 0.8, 0.5}, 0.2);  // eight times as heavy
+  world.departure = {{7, 0, 0.1, 3, {0, 0, 0}}, {8, 0, 0.2, 4, {0, 0, 0}}};
+  EXPECT_NEAR(value_of("mass", world), 9 * 2600 * 4.0 / 3 * std::numbers::pi * 1e-3, 1e-9);
+  EXPECT_NEAR(value_of("centre_x", world), (0.5 + 8 * 0.2) / 9, 1e-12);
+  EXPECT_NEAR(value_of("centre_y", world), (0.5 + 8 * 0.8) / 9, 1e-12);
+  EXPECT_NEAR(value_of("centre_z", world), 0.5, 1e-12);
+  EXPECT_EQ(value_of("departed_mass", world), 7);
+}
+
+TEST(Formula, WeighsAClumpOnce) {
+  struct : FakeWorld {
+    std::vector<std::uint32_t> of{0, 0, no_clump};
+    std::vector<ClumpView> clump{1};
+    std::span<const std::uint32_t> clump_of() const override { return of; }
+    std::span<const ClumpView> clumps() const override { return clump; }
+  } world;
+  world.add({0, 0, 0}, 0.1), world.add({0.1, 0, 0}, 0.1);
+  const auto alone = world.add({3, 0, 0}, 0.1);
+  world.velocity[alone].w = 1.0 / 2;
+  world.clump[0].centre = {0, 0, 0}, world.clump[0].mass = 4;
+  EXPECT_DOUBLE_EQ(value_of("mass", world), 6);
+  EXPECT_DOUBLE_EQ(value_of("centre_x", world), 1);
+}
+
 TEST(Formula, ComputesTestCurves) {
   EXPECT_DOUBLE_EQ(value_of("-upper_left_force_x / top_force_z"), 0.6);
   EXPECT_DOUBLE_EQ(value_of("upper_left_stage_travel_x / length"), 5e-3 / 0.06);
@@ -113,7 +139,8 @@ TEST(Formula, NamesTheNearestVariable) {
   EXPECT_EQ(
       error_of("2 * top_presure"),
       "probe formula, /curves/curve/formula: \"2 * top_presure\": there is no \"top_presure\" (the nearest name is "
-      "\"top_pressure\"; names are: time, step, mean_diameter, void_ratio, length; of each wall (upper_left, top): "
+      "\"top_pressure\"; names are: time, step, mean_diameter, void_ratio, mass, departed_mass, "
+      "centre_x/_y/_z, length; of each wall (upper_left, top): "
       "<wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, <wall>_velocity_x/_y/_z, "
       "<wall>_pressure, <wall>_area) at character 5");
 }

@@ -1,0 +1,176 @@
+#include "silo-discharge.hpp"
+
+#include "grit/plugin.hpp"
+
+namespace grit {
+namespace {
+
+constexpr int curve_samples = 400, frames_while_discharged = 10;
+// Beverloo's law for a slot, and by how much its grains keep off the edges, over their mean diameter.
+constexpr double slot_coefficient = 1.03, empty_margin = 1.4;
+// An outlet of fewer largest grains is sure to be closed by an arch.
+constexpr double least_outlet = 3;
+
+}  // namespace
+
+void SiloDischarge::declare(Parameters& p) {
+  silo_.declare(p);
+  p.add("outlet_positions", outlet_positions_)
+      .unit("m")
+      .doc("of the middle of each outlet, from the left wall; empty: one in the middle of the bottom");
+  p.add("outlet_widths", outlet_widths_).unit("m").above(0).entries(1).doc("of each outlet; as deep as the silo");
+  p.add("shares", shares_)
+      .above(0)
+      .at_most(1)
+      .entries(1)
+      .doc("of the mass, rising: a stage ends, and a frame is written, when so much has left; the last ends the run");
+  p.check(
+      [this](const Complain& complain) {
+        if (!std::ranges::is_sorted(shares_, std::less_equal<>()))
+          complain("shares", "a share that is not above the one before", "shares that rise");
+      },
+      {"shares"});
+  p.check(
+      [this](const Complain& complain) {
+        const std::size_t positions = outlet_positions_.empty() ? 1 : outlet_positions_.size();
+        if (positions != outlet_widths_.size()) {
+          complain("outlet_widths", std::to_string(outlet_widths_.size()) + " widths",
+                   "as many as there are outlet_positions, " + std::to_string(positions));
+          return;
+        }
+        const auto slots = outlets();
+        const double rounding = 1e-9 * silo_.width;
+        for (std::size_t i = 0; i < slots.size(); ++i) {
+          const auto& [low, high] = slots[i];
+          const std::string from_to = "an outlet from " + std::to_string(low) + " to " + std::to_string(high) + " m";
+          if (high - low < least_outlet * silo_.largest_diameter)
+            complain("outlet_widths", std::to_string(high - low) + " m",
+                     "at least three of the largest grains, which arch over anything narrower: " +
+                         std::to_string(least_outlet * silo_.largest_diameter) + " m");
+          if (low < -rounding || high > silo_.width + rounding)
+            complain("outlet_widths", from_to, "outlets inside the bottom, 0 to " + std::to_string(silo_.width) + " m");
+          if (i > 0 && low < slots[i - 1].high + rounding)
+            complain(
+                "outlet_positions",
+                from_to + ", which overlaps or touches its neighbour, to " + std::to_string(slots[i - 1].high) + " m",
+                "outlets with a piece of bottom in between");
+        }
+      },
+      {"outlet_positions", "outlet_widths", "width", "largest_diameter"});
+}
+
+std::vector<SiloDischarge::Slot> SiloDischarge::outlets() const {
+  const std::vector<double> middle = outlet_positions_.empty() ? std::vector{0.5 * silo_.width} : outlet_positions_;
+  std::vector<Slot> slots;
+  for (std::size_t i = 0; i < middle.size(); ++i)
+    slots.push_back({middle[i] - 0.5 * outlet_widths_[i], middle[i] + 0.5 * outlet_widths_[i]});
+  std::ranges::sort(slots, {}, &Slot::low);
+  return slots;
+}
+
+double SiloDischarge::expected_rate() const {
+  double rate = 0;
+  for (const auto& [low, high] : outlets())
+    rate += slot_coefficient * silo_.bulk_density() * std::sqrt(Silo::gravity) * silo_.depth *
+            std::pow(high - low - empty_margin * silo_.mean_diameter(), 1.5);
+  return rate;
+}
+
+Description SiloDischarge::expand() const {
+  const auto slots = outlets();
+  const double mass = silo_.bulk_density() * silo_.area() * silo_.height;
+  const double duration = shares_.back() * mass / expected_rate();
+  const double beyond = silo_.overhang(), drop = 4 * silo_.largest_diameter;
+
+  Description d = silo_.description("discharge of a silo, " + silo_.wall_surface + " walls", 0);
+  d["domain"]["low"][2] = -drop;
+  d["domain"]["open_sides"] = {"-z"};
+
+  // Bottom and gates side by side; at the ends they reach into the grooves of the walls.
+  std::vector<std::string> bottoms, gates;
+  double end = -beyond;
+  const auto bottom_to = [&](double low) {
+    if (low <= end) return;
+    bottoms.push_back("bottom-" + std::to_string(bottoms.size() + 1));
+    d["walls"][bottoms.back()] = silo_.bottom(end, low);
+  };
+  for (const Slot& slot : slots) {
+    const double rounding = 1e-9 * silo_.width;
+    const double low = slot.low < rounding ? -beyond : slot.low;
+    const double high = slot.high > silo_.width - rounding ? silo_.width + beyond : slot.high;
+    bottom_to(low);
+    gates.push_back("gate-" + std::to_string(gates.size() + 1));
+    d["walls"][gates.back()] = silo_.bottom(low, high);
+    end = high;
+  }
+  bottom_to(silo_.width + beyond);
+  d["specimen"] = {{"low", {silo_.piece("left", 1), "front", bottoms.empty() ? "" : bottoms.front()}},
+                   {"high", {silo_.piece("right", 1), "back", ""}}};
+
+  // A gate opens at once: it is below the domain from one step to the next.
+  auto stages = silo_.filling();
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    Description stage;
+    stage["name"] = "discharge-" + std::to_string(std::lround(100 * shares_[i]));
+    if (i == 0) {
+      stage["change"]["engines"]["damping"]["coefficient"] = silo_.local_damping;
+      for (const std::string& gate : gates) {
+        Description corner = d["walls"][gate]["corner"];
+        corner[2] = -drop - silo_.height;
+        stage["change"]["walls"][gate]["corner"] = corner;
+      }
+    }
+    const double expected = duration * (shares_[i] - (i > 0 ? shares_[i - 1] : 0)) / shares_.back();
+    const Description left = {{"type", "left"}, {"share", shares_[i]}};
+    const Description rests = {
+        {"type", "all"},
+        {"of", {{{"type", "time"}, {"value", 0.5 * expected}}, {{"type", "unbalanced-force"}, {"below", 1e-3}}}}};
+    stage["until"] = {{"type", "any"}, {"of", {left, rests}}};
+    stage["limit"] = 10 * expected + silo_.falling_time();
+    stages.push_back(stage);
+  }
+  d["stages"] = stages;
+
+  std::vector<std::string> floor = bottoms;
+  floor.insert(floor.end(), gates.begin(), gates.end());
+  auto& test = d["probes"]["test"];
+  test = silo_.curves(floor, "0", false);
+  test["every_time"] = duration / curve_samples;
+  Description looked_at = Description::array();
+  for (const Description& stage : stages)
+    if (stage["name"] != "fill") looked_at.push_back(stage["name"]);
+  test["stages"] = looked_at;
+  test["curves"]["discharged_mass"] = {
+      {"formula", "departed_mass"}, {"unit", "kg"}, {"doc", "that has left through the outlets"}};
+  test["curves"]["discharged_share"] = {
+      {"formula", "departed_mass / (departed_mass + mass)"}, {"unit", "1"}, {"doc", "of the mass at the start"}};
+  auto& flow = d["probes"]["flow"];
+  flow = {{"type", "flow"}, {"stages", looked_at}, {"every_time", duration / curve_samples}, {"window", duration / 20}};
+  for (std::size_t i = 0; i < slots.size() && slots.size() > 1; ++i) {
+    // What falls spreads: an outlet's grains are those nearer to it than to others.
+    const double reach = silo_.width + beyond;
+    flow["outlets"]["outlet_" + std::to_string(i + 1)] = {
+        {"low", i == 0 ? -reach : 0.5 * (slots[i - 1].high + slots[i].low)},
+        {"high", i + 1 == slots.size() ? silo_.width + reach : 0.5 * (slots[i].high + slots[i + 1].low)}};
+  }
+  d["probes"]["walls"] = {{"type", "walls"}, {"stages", looked_at}, {"every_time", duration / curve_samples}};
+  d["probes"]["packing"] = {{"type", "packing"}, {"stages", looked_at}, {"every_time", duration / 100}};
+  d["output"] = {{"frames", {{"every_time", duration / frames_while_discharged}}},
+                 {"picture",
+                  {{"x", "test/discharged_share"},
+                   {"y", {"flow/rate", "test/bottom_share", "test/wall_shear_share"}},
+                   {"color", "speed"}}},
+                 {"summary", {"flow/mass", "flow/rate", "test/bottom_share", "test/wall_shear_share", "test/balance"}}};
+  return d;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "scenario",
+                                     .name = "silo-discharge",
+                                     .version = "1.0.0",
+                                     .doc = "plane silo, filled and emptied through slots in its bottom",
+                                     .make_scenario = []() -> grit::Scenario* { return new grit::SiloDischarge; }};
+  return &info;
+}

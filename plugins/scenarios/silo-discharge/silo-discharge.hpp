@@ -1,0 +1,29 @@
+// Silo emptied through slots in its bottom.
+#pragma once
+
+#include <vector>
+
+#include "../silo.hpp"
+
+namespace grit {
+
+class SiloDischarge final : public Scenario {
+ public:
+  void declare(Parameters& parameters) override;
+  Description expand() const override;
+
+  /// Through all outlets, by Beverloo's law for slots [kg/s]; see README.md.
+  double expected_rate() const;
+
+ private:
+  struct Slot {
+    double low, high;  ///< m, along x
+  };
+  /// From left to right.
+  std::vector<Slot> outlets() const;
+
+  Silo silo_;
+  std::vector<double> outlet_positions_, outlet_widths_{30e-3}, shares_{0.1, 0.25, 0.5};
+};
+
+}  // namespace grit

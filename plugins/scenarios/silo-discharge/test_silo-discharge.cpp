@@ -1,0 +1,111 @@
+#include "silo-discharge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "contracts/scenario.hpp"
+
+namespace grit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Description expanded(const Description& keys = Description::object()) {
+  return made_scenario<SiloDischarge>(keys)->expand();
+}
+
+std::string problem(const Description& keys) {
+  const auto result = read_scenario<SiloDischarge>(keys);
+  return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
+}
+
+using Reach = std::pair<long, long>;
+
+/// From where to where each wall whose name begins so reaches along x, within the silo's 200 mm; in mm.
+std::vector<Reach> reach(const Description& walls, const std::string& begin) {
+  std::vector<Reach> all;
+  for (const auto& [name, wall] : walls.items())
+    if (name.starts_with(begin)) {
+      const double low = wall["corner"][0], high = low + wall["edge_a"][0].get<double>();
+      const auto rounded = [](double x) { return std::lround(1e3 * std::clamp(x, 0.0, 0.2)); };
+      all.emplace_back(rounded(low), rounded(high));
+    }
+  return all;
+}
+
+TEST(SiloDischarge, ExpandsToTheGoldenDescription) { expect_golden(expanded(), "silo-discharge"); }
+
+TEST(SiloDischarge, ClosesEachOutletWithAGate) {
+  Description walls = expanded()["walls"];
+  EXPECT_THAT(reach(walls, "gate"), ElementsAre(Reach(85, 115)));
+  EXPECT_THAT(reach(walls, "bottom"), ElementsAre(Reach(0, 85), Reach(115, 200)));
+  walls = expanded({{"outlet_positions", {0.16, 0.04, 0.1}}, {"outlet_widths", {0.02, 0.04, 0.01}}})["walls"];
+  EXPECT_THAT(reach(walls, "gate"), ElementsAre(Reach(20, 60), Reach(95, 105), Reach(150, 170)));
+  EXPECT_THAT(reach(walls, "bottom"), ElementsAre(Reach(0, 20), Reach(60, 95), Reach(105, 150), Reach(170, 200)));
+}
+
+TEST(SiloDischarge, LetsAnOutletReachToAWall) {
+  const Description walls = expanded({{"outlet_positions", {"185 mm"}}, {"outlet_widths", {"30 mm"}}})["walls"];
+  EXPECT_THAT(reach(walls, "gate"), ElementsAre(Reach(170, 200)));
+  EXPECT_THAT(reach(walls, "bottom"), ElementsAre(Reach(0, 170)));
+  const Description open = expanded({{"outlet_widths", {"200 mm"}}})["walls"];
+  EXPECT_THAT(reach(open, "gate"), ElementsAre(Reach(0, 200)));
+  EXPECT_TRUE(reach(open, "bottom").empty());
+}
+
+TEST(SiloDischarge, OpensGatesBelowTheDomain) {
+  const Description d = expanded({{"outlet_positions", {0.05, 0.15}}, {"outlet_widths", {0.02, 0.02}}});
+  EXPECT_EQ(d["domain"]["open_sides"], Description({"-z"}));
+  const Description& opened = d["stages"][2]["change"]["walls"];
+  EXPECT_EQ(opened.size(), 2u);
+  for (const auto& [name, wall] : opened.items()) {
+    EXPECT_LT(wall["corner"][2], d["domain"]["low"][2]) << name;
+    EXPECT_EQ(wall["corner"][0], d["walls"][name]["corner"][0]) << name;
+  }
+}
+
+TEST(SiloDischarge, HasAStageForEachShare) {
+  const Description stages = expanded({{"shares", {0.2, 0.6}}})["stages"];
+  ASSERT_EQ(stages.size(), 4u);
+  EXPECT_EQ(stages[2]["name"], "discharge-20");
+  EXPECT_EQ(stages[3]["name"], "discharge-60");
+  EXPECT_EQ(stages[3]["until"]["of"][0]["share"], 0.6);
+  EXPECT_FALSE(stages[3].contains("change"));
+}
+
+TEST(SiloDischarge, ExpectsTheRateOfBeverlooThroughSlots) {
+  const double d50 = 1.5e-3, width = 30e-3, depth = 7.5e-3, bulk = 2600 / 1.6;
+  const double one = 1.03 * bulk * std::sqrt(9.81) * depth * std::pow(width - 1.4 * d50, 1.5);
+  EXPECT_NEAR(made_scenario<SiloDischarge>()->expected_rate(), one, 1e-12);
+  EXPECT_NEAR(made_scenario<SiloDischarge>({{"outlet_positions", {0.05, 0.15}}, {"outlet_widths", {0.03, 0.03}}})
+                  ->expected_rate(),
+              2 * one, 1e-12);
+}
+
+TEST(SiloDischarge, TellsTheOutletsApart) {
+  EXPECT_FALSE(expanded()["probes"]["flow"].contains("outlets"));
+  const Description flow =
+      expanded({{"outlet_positions", {0.05, 0.15}}, {"outlet_widths", {0.02, 0.04}}})["probes"]["flow"]["outlets"];
+  EXPECT_DOUBLE_EQ(flow["outlet_1"]["high"], 0.095);
+  EXPECT_EQ(flow["outlet_1"]["high"], flow["outlet_2"]["low"]);
+  EXPECT_LT(flow["outlet_1"]["low"], 0);
+  EXPECT_GT(flow["outlet_2"]["high"], 0.2);
+}
+
+TEST(SiloDischarge, SaysWhatIsWrong) {
+  EXPECT_THAT(problem({{"outlet_widths", {"210 mm"}}}), HasSubstr("outlets inside the bottom, 0 to 0.2"));
+  EXPECT_THAT(problem({{"outlet_positions", {"10 mm"}}}), HasSubstr("an outlet from -0.005"));
+  EXPECT_THAT(problem({{"outlet_widths", {"7 mm"}}}), HasSubstr("three of the largest grains"));
+  EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.07}}, {"outlet_widths", {0.03, 0.03}}}),
+              HasSubstr("overlaps or touches"));
+  EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.08}}, {"outlet_widths", {0.03, 0.03}}}),
+              HasSubstr("a piece of bottom in between"));
+  EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.1}}}), HasSubstr("as many as there are outlet_positions, 2"));
+  EXPECT_THAT(problem({{"shares", {0.5, 0.2}}}), HasSubstr("shares that rise"));
+  EXPECT_THAT(problem({{"shares", {1.2}}}), HasSubstr("/shares"));
+  EXPECT_THAT(problem({{"roughness", -1}}), HasSubstr("/roughness"));
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,107 @@
+#include "silo-quasistatic.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+
+#include "contracts/scenario.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+Description expanded(const Description& keys = Description::object()) {
+  return made_scenario<SiloQuasistatic>(keys)->expand();
+}
+
+std::string problem(const Description& keys) {
+  const auto result = read_scenario<SiloQuasistatic>(keys);
+  return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
+}
+
+TEST(SiloQuasistatic, ExpandsToTheGoldenDescription) { expect_golden(expanded(), "silo-quasistatic"); }
+
+TEST(SiloQuasistatic, CutsWallsIntoPiecesThatFollowOneAnother) {
+  const Description walls = expanded({{"wall_pieces", 3}})["walls"];
+  for (const std::string side : {"left", "right"}) {
+    double end = -(30e-3 + 2 * 2.5e-3);
+    for (const char* piece : {"-below", "-1", "-2", "-3", "-above"}) {
+      const Description& wall = walls[side + piece];
+      const double low = wall["corner"][2], spacing = wall["spacing"];
+      EXPECT_NEAR(low, end, 1e-12) << side << piece;
+      // Some groove begins where one would if the wall were in one piece from z = 0.
+      EXPECT_NEAR(std::remainder(low + wall["offset"].get<double>(), spacing), 0, 1e-12) << side << piece;
+      end = low + wall["edge_a"][2].get<double>();
+    }
+    EXPECT_GT(end, 0.5);
+  }
+}
+
+TEST(SiloQuasistatic, MakesWallsAsRoughAsSaid) {
+  const Description rough = expanded({{"roughness", 0.25}})["walls"]["left-1"];
+  EXPECT_EQ(rough["type"], "saw-tooth");
+  EXPECT_DOUBLE_EQ(rough["depth"], 0.25 * 1.5e-3);
+  EXPECT_DOUBLE_EQ(rough["spacing"], 1.5e-3) << "d50, as the reference has it at R_n = 0.25";
+  EXPECT_DOUBLE_EQ(expanded({{"groove_spacing", "20 mm"}})["walls"]["left-1"]["spacing"], 20e-3);
+  const Description flat = expanded({{"wall_surface", "flat"}})["walls"]["left-1"];
+  EXPECT_EQ(flat["type"], "rectangle");
+  EXPECT_FALSE(flat.contains("depth"));
+}
+
+TEST(SiloQuasistatic, FillsGroovesToo) {
+  const auto count = [](const Description& keys) {
+    double sum = 0;
+    const Description d = expanded(keys);
+    for (const auto& [name, layer] : d["bodies"].items()) sum += layer["grains"]["count"].get<double>();
+    return sum;
+  };
+  // Of diameters uniform by number from 0.5 to 2.5 mm the mean cube is 4.875 mm³.
+  const double flat = count({{"wall_surface", "flat"}, {"layers", 1}, {"void_ratio", 0.6}});
+  EXPECT_NEAR(flat, 200 * 500 * 7.5 / 1.6 / (std::numbers::pi / 6 * 4.875), 1);
+  // A groove of 45 degrees as deep as R_n d50, at four times its depth, takes as much as a layer of a quarter of that.
+  EXPECT_NEAR(count({{"roughness", 1}, {"layers", 7}}) / flat, (200 + 2 * 1.5 / 4) / 200, 1e-4);
+}
+
+TEST(SiloQuasistatic, TakesTurnsOfTwoMaterialsThatDifferInNameAlone) {
+  const Description d = expanded({{"layers", 3}});
+  EXPECT_EQ(d["bodies"].size(), 3u);
+  EXPECT_EQ(d["bodies"]["layer-1"]["material"], "sand");
+  EXPECT_EQ(d["bodies"]["layer-2"]["material"], "dyed");
+  EXPECT_EQ(d["bodies"]["layer-3"]["material"], "sand");
+  EXPECT_EQ(d["materials"]["sand"], d["materials"]["dyed"]);
+  EXPECT_EQ(d["interfaces"]["sand+wall"], d["interfaces"]["dyed+wall"]);
+  EXPECT_EQ(d["bodies"]["layer-2"]["grains"]["low"][2], d["bodies"]["layer-1"]["grains"]["high"][2]);
+  EXPECT_FALSE(expanded({{"layers", 1}})["materials"].contains("dyed"));
+}
+
+TEST(SiloQuasistatic, FillsWithOneFrictionAndGoesOnWithTheGrainsOwn) {
+  const Description d = expanded({{"filling_friction_angle", 0.1}, {"friction_angle", 0.4}, {"local_damping", 0.02}});
+  EXPECT_EQ(d["materials"]["sand"]["friction_angle"], 0.1);
+  EXPECT_EQ(d["stages"][1]["change"]["materials"]["dyed"]["friction_angle"], 0.4);
+  EXPECT_EQ(d["interfaces"]["sand+wall"]["friction_angle"], d["materials"]["wall"]["friction_angle"]);
+  EXPECT_EQ(d["stages"][2]["change"]["engines"]["damping"]["coefficient"], 0.02);
+}
+
+TEST(SiloQuasistatic, LowersTheBottomIntoWhereWallsGoOn) {
+  const Description d = expanded({{"settlement", "12 mm"}, {"velocity", "3 mm/s"}});
+  const Description& lower = d["stages"][2];
+  EXPECT_EQ(lower["until"]["value"], -12e-3);
+  EXPECT_EQ(lower["change"]["walls"]["bottom"]["motion"]["velocity"][2], -3e-3);
+  EXPECT_LT(d["walls"]["left-below"]["corner"][2].get<double>(), -12e-3);
+  EXPECT_LT(d["domain"]["low"][2].get<double>(), -12e-3);
+}
+
+TEST(SiloQuasistatic, SaysWhatIsWrong) {
+  EXPECT_THAT(problem({{"roughness", -0.1}}), HasSubstr("/roughness"));
+  EXPECT_THAT(problem({{"groove_spacing", "2.9 mm"}}), HasSubstr("at least the width of a groove, 0.003"));
+  EXPECT_EQ(problem({{"groove_spacing", "3.1 mm"}}), "");
+  EXPECT_EQ(problem({{"groove_spacing", "2.9 mm"}, {"wall_surface", "flat"}}), "");
+  EXPECT_THAT(problem({{"width", "9 mm"}}), HasSubstr("at least 4 of the largest grains"));
+  EXPECT_THAT(problem({{"depth", "4 mm"}}), HasSubstr("at least 2 of the largest grains"));
+  EXPECT_THAT(problem({{"smallest_diameter", "3 mm"}}), HasSubstr("at most largest_diameter"));
+  EXPECT_THAT(problem({{"velocity", 0}}), HasSubstr("/velocity"));
+}
+
+}  // namespace
+}  // namespace grit

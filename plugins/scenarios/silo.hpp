@@ -1,0 +1,289 @@
+// A plane silo between two smooth panes and how it is filled, as the silo scenarios share it. See silo.md.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/scenario.hpp"
+#include "wall_descriptions.hpp"
+
+namespace grit {
+
+struct Silo {
+  static constexpr double degree = std::numbers::pi / 180, gravity = 9.81;
+  /// Of the cloud that falls into the silo.
+  static constexpr double cloud_solid_fraction = 0.35;
+
+  double width = 200e-3, height = 500e-3, depth = 7.5e-3;
+  std::string wall_surface = "saw-tooth";
+  double roughness = 1, groove_spacing = 0, groove_inclination = 45 * degree, wall_friction_angle = 18 * degree;
+  std::int64_t wall_pieces = 10;
+  double smallest_diameter = 0.5e-3, largest_diameter = 2.5e-3, density = 2600, friction_angle = 25 * degree;
+  double contact_modulus = 10e6, shear_to_normal_stiffness = 0.3, rolling_stiffness = 0.2, rolling_limit = 0.4;
+  double local_damping = 0.01, filling_damping = 0.3;
+  double void_ratio = 0.6;
+  std::optional<double> filling_friction_angle;
+  std::int64_t layers = 6, seed = 1;
+
+  void declare(Parameters& p) {
+    const double right_angle = std::numbers::pi / 2;
+    p.add("width", width).unit("m").symbol("b").above(0).doc("between the walls, along x");
+    p.add("height", height).unit("m").symbol("h").above(0).doc("to which the silo is filled, at the void ratio");
+    p.add("depth", depth).unit("m").above(0).doc("between the panes, along y, which are smooth");
+    p.add("wall_surface", wall_surface).one_of({"flat", "saw-tooth"}).doc("of the two walls");
+    p.add("roughness", roughness)
+        .symbol("R_n")
+        .above(0)
+        .doc("of saw-tooth walls: depth of a groove over the mean diameter");
+    p.add("groove_spacing", groove_spacing)
+        .unit("m")
+        .at_least(0)
+        .doc("from groove to groove; 0: four times their depth");
+    p.add("groove_inclination", groove_inclination)
+        .unit("rad")
+        .above(0)
+        .below(right_angle)
+        .doc("of a groove's flanks against the wall");
+    p.add("wall_friction_angle", wall_friction_angle)
+        .unit("rad")
+        .at_least(0)
+        .below(right_angle)
+        .doc("between grains and the surface of walls and bottom");
+    p.add("wall_pieces", wall_pieces)
+        .at_least(1)
+        .at_most(1000)
+        .doc("of equal height into which each wall is cut, for stresses by height");
+    p.add("smallest_diameter", smallest_diameter).unit("m").symbol("d_min").above(0).doc("of the grains");
+    p.add("largest_diameter", largest_diameter)
+        .unit("m")
+        .symbol("d_max")
+        .above(0)
+        .doc("of the grains; diameters are uniform by number in between");
+    p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("of the grains");
+    p.add("friction_angle", friction_angle)
+        .unit("rad")
+        .symbol("mu")
+        .at_least(0)
+        .below(right_angle)
+        .doc("between grains, once the silo is filled");
+    p.add("contact_modulus", contact_modulus).unit("Pa").symbol("E_c").above(0).doc("of the grains");
+    p.add("shear_to_normal_stiffness", shear_to_normal_stiffness).symbol("nu_c").at_least(0).doc("of the grains");
+    p.add("rolling_stiffness", rolling_stiffness).symbol("beta").at_least(0).doc("of the grains");
+    p.add("rolling_limit", rolling_limit).symbol("eta").at_least(0).doc("of the grains");
+    p.add("local_damping", local_damping).symbol("lambda").at_least(0).below(1).doc("once the silo is filled");
+    p.add("filling_damping", filling_damping).at_least(0).below(1).doc("local damping until the filling rests");
+    p.add("void_ratio", void_ratio)
+        .symbol("e")
+        .above(0)
+        .doc("that the filling is expected to come to: with the height it says how many grains there are");
+    p.add("filling_friction_angle", filling_friction_angle)
+        .unit("rad")
+        .at_least(0)
+        .below(right_angle)
+        .doc("between grains while they fall; low: dense, high: loose; left out: their own");
+    p.add("layers", layers)
+        .at_least(1)
+        .at_most(100)
+        .doc("of equal mass, turn by turn of the materials sand and dyed, which differ in name alone");
+    p.add("seed", seed).at_least(0).doc("of the grains' sizes and places");
+    p.check(
+        [this](const Complain& complain) {
+          if (!(smallest_diameter <= largest_diameter))
+            complain("smallest_diameter", std::to_string(smallest_diameter) + " m", "at most largest_diameter");
+        },
+        {"smallest_diameter", "largest_diameter"});
+    p.check(
+        [this](const Complain& complain) {
+          const double groove = 2 * groove_depth() / std::tan(groove_inclination);
+          if (groove_spacing > 0 && groove_spacing < groove)
+            complain("groove_spacing", std::to_string(groove_spacing) + " m",
+                     "at least the width of a groove, " + std::to_string(groove) + " m; or 0");
+        },
+        {"groove_spacing", "roughness", "groove_inclination", "wall_surface"});
+    p.check(
+        [this](const Complain& complain) {
+          const auto wide_enough = [&](const char* key, double length, double grains) {
+            if (!(length >= grains * largest_diameter))
+              complain(key, std::to_string(length) + " m",
+                       "at least " + std::to_string(static_cast<int>(grains)) + " of the largest grains, " +
+                           std::to_string(grains * largest_diameter) + " m");
+          };
+          wide_enough("width", width, 4), wide_enough("height", height, 4), wide_enough("depth", depth, 2);
+        },
+        {"width", "height", "depth", "largest_diameter"});
+  }
+
+  double mean_diameter() const { return 0.5 * (smallest_diameter + largest_diameter); }
+  double groove_depth() const { return wall_surface == "flat" ? 0 : roughness * mean_diameter(); }
+  double spacing() const { return groove_spacing > 0 ? groove_spacing : 4 * groove_depth(); }
+  /// Seen from above, with the grooves of both walls [m²].
+  double area() const {
+    const double groove = groove_depth() * groove_depth() / std::tan(groove_inclination);
+    return (width + (groove > 0 ? 2 * groove / spacing() : 0)) * depth;
+  }
+  std::int64_t grains() const {
+    // Mean of d³ of a uniform distribution.
+    const double a = smallest_diameter, b = largest_diameter, cube = 0.25 * (a + b) * (a * a + b * b);
+    return std::llround(solids() / (std::numbers::pi / 6 * cube));
+  }
+  double solids() const { return area() * height / (1 + void_ratio); }  ///< m³
+  double bulk_density() const { return density / (1 + void_ratio); }    ///< kg/m³
+  double cloud_height() const { return std::max(height, solids() / (width * depth) / cloud_solid_fraction); }
+  /// In which the top of the cloud falls to where it stays [s].
+  double falling_time() const {
+    return std::sqrt(2 * std::max(cloud_height() - height, height) / gravity / (1 - filling_damping));
+  }
+  /// By which walls and bottom reach beyond each other, so that no grain comes between them [m].
+  double overhang() const { return groove_depth() + largest_diameter; }
+
+  /// "left-1" is the lowest piece.
+  std::string piece(const std::string& side, std::int64_t number) const { return side + '-' + std::to_string(number); }
+
+  /// All but the bottom, stages and probes. The walls reach `below` under z = 0 [m].
+  Description description(const std::string& title, double below) const {
+    Description d;
+    d["title"] = title;
+    d["seed"] = seed;
+    d["contacts"] = {{"type", "linear-rolling"}};
+    for (const char* name : {"sand", "dyed"}) {
+      if (name == dyed && layers == 1) break;
+      d["materials"][name] = {{"density", density},
+                              {"contact_modulus", contact_modulus},
+                              {"shear_to_normal_stiffness", shear_to_normal_stiffness},
+                              {"friction_angle", filling_friction_angle.value_or(friction_angle)},
+                              {"rolling_stiffness", rolling_stiffness},
+                              {"rolling_limit", rolling_limit}};
+      // Said for the pair, as low friction between grains while they fall would lower it.
+      d["interfaces"][std::string(name) + "+wall"] = {{"friction_angle", wall_friction_angle}};
+    }
+    d["materials"]["wall"] = {{"friction_angle", wall_friction_angle}, {"rolling_limit", rolling_limit}};
+    d["materials"]["smooth"] = {{"friction_angle", 0.0}, {"rolling_limit", 0.0}};
+
+    const double reach = overhang() + width;
+    d["domain"] = {{"low", vector(-reach, -depth, -below - height)}};
+    for (std::int64_t layer = 0; layer < layers; ++layer) {
+      const auto share = [&](double of) { return of * static_cast<double>(layer) / static_cast<double>(layers); };
+      const auto next = [&](double of) { return of * static_cast<double>(layer + 1) / static_cast<double>(layers); };
+      const auto all = static_cast<double>(grains());
+      d["bodies"]["layer-" + std::to_string(layer + 1)] = {
+          {"type", "sphere"},
+          {"material", layer % 2 == 0 ? "sand" : dyed},
+          {"grains",
+           {{"type", "cloud"},
+            {"low", vector(0, 0, share(cloud_height()))},
+            {"high", vector(width, depth, next(cloud_height()))},
+            {"count", std::llround(next(all)) - std::llround(share(all))},
+            {"sizes", {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}}}}}};
+    }
+
+    auto& walls = d["walls"];
+    for (const char* side : {"left", "right"}) {
+      if (below > 0) walls[std::string(side) + "-below"] = wall(side, -below, 0);
+      for (std::int64_t i = 0; i < wall_pieces; ++i) {
+        const double one = height / static_cast<double>(wall_pieces);
+        walls[piece(side, i + 1)] = wall(side, static_cast<double>(i) * one, static_cast<double>(i + 1) * one);
+      }
+      walls[std::string(side) + "-above"] = wall(side, height, cloud_height() + 4 * largest_diameter);
+    }
+    walls["front"] = plane(vector(0, 0, 0), vector(0, 1, 0), "smooth");
+    walls["back"] = plane(vector(0, depth, 0), vector(0, -1, 0), "smooth");
+    d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", vector(0, 0, -gravity)}};
+    d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", filling_damping}};
+    return d;
+  }
+
+  /// A piece of bottom between two places along x [m].
+  Description bottom(double low, double high) const {
+    return rectangle(vector(low, 0, 0), vector(high - low, 0, 0), vector(0, depth, 0), "wall");
+  }
+
+  /// "fill": the cloud falls and comes to rest. "settle": friction is the grains' own.
+  std::vector<Description> filling() const {
+    const auto at_rest = [](double after, double unbalanced) -> Description {
+      return {{"type", "all"},
+              {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}};
+    };
+    Description fill, settle;
+    fill["name"] = "fill";
+    fill["until"] = at_rest(falling_time(), 0.01);
+    fill["limit"] = 20 * falling_time();
+    settle["name"] = "settle";
+    for (const char* name : {"sand", "dyed"})
+      if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
+    settle["until"] = at_rest(0.1 * falling_time(), 1e-3);
+    settle["limit"] = 20 * falling_time();
+    return {fill, settle};
+  }
+
+  /// Curves of the forces in the silo, for a probe "formula"; `floor` are the walls that bear the sand from below, and
+  /// `level` is where the bottom is, as a formula.
+  Description curves(const std::vector<std::string>& floor, const std::string& level, bool below) const {
+    const auto sum = [](const std::vector<std::string>& walls, const std::string& component) {
+      std::string text;
+      for (std::string name : walls) {
+        std::ranges::replace(name, '-', '_');
+        text += (text.empty() ? "" : " + ") + name + "_force_" + component;
+      }
+      return "(" + text + ")";
+    };
+    const auto pieces = [&](const std::string& side) {
+      std::vector<std::string> names;
+      if (below) names.push_back(side + "-below");
+      for (std::int64_t i = 1; i <= wall_pieces; ++i) names.push_back(piece(side, i));
+      names.push_back(side + "-above");
+      return names;
+    };
+    const std::string p = "-" + sum(floor, "z");
+    const std::string t = "-0.5 * (" + sum(pieces("left"), "z") + " + " + sum(pieces("right"), "z") + ")";
+    const std::string n = "0.5 * (" + sum(pieces("right"), "x") + " - " + sum(pieces("left"), "x") + ")";
+    const std::string g = "(mass * g)";
+    Description test = {{"type", "formula"}};
+    const auto constant = [&](const char* name, double value, const char* doc) {
+      test["constants"][name] = {{"value", value}, {"doc", doc}};
+    };
+    const auto curve = [&](const char* name, const std::string& formula, const char* unit, const char* doc) {
+      test["curves"][name] = {{"formula", formula}, {"unit", unit}, {"doc", doc}};
+    };
+    constant("g", gravity, "acceleration of gravity [m s-2]");
+    constant("area", area(), "of the silo, seen from above, with its grooves [m2]");
+    constant("density", density, "of the grains [kg m-3]");
+    curve("weight", "mass * g", "N", "G, of the sand in the silo");
+    curve("bottom_force", p, "N", "P, on the bottom, downwards positive");
+    curve("wall_shear_force", t, "N", "T, on one wall, mean of both, downwards positive");
+    curve("wall_normal_force", n, "N", "N, on one wall, mean of both, outwards positive");
+    curve("bottom_share", p + " / " + g, "1", "P/G");
+    curve("wall_shear_share", "(" + t + ") / " + g, "1", "T/G of one wall");
+    curve("wall_normal_share", "(" + n + ") / " + g, "1", "N/G of one wall");
+    curve("wall_friction_angle", "180 / _pi * atan2(" + t + ", " + n + ")", "degree", "phi_w = atan(T/N), mobilised");
+    curve("balance", "(" + p + " + 2 * (" + t + ")) / " + g, "1", "P/G + 2 T/G: 1 at rest");
+    curve("void_ratio", "2 * (centre_z - " + level + ") * area * density / mass - 1", "1",
+          "overall, of a filling that is even and level; from the height of its centre of mass");
+    return test;
+  }
+
+ private:
+  static constexpr const char* dyed = "dyed";
+
+  /// A side's wall between two heights [m]; grooves go on from piece to piece.
+  Description wall(const std::string& side, double low, double high) const {
+    const bool left = side == "left";
+    Description d = rectangle(vector(left ? 0 : width, left ? depth : 0, low), vector(0, 0, high - low),
+                              vector(0, left ? -depth : depth, 0), "wall");
+    if (wall_surface == "flat") return d;
+    d.erase("two_sided");
+    d["type"] = wall_surface;
+    d["depth"] = groove_depth();
+    d["inclination"] = groove_inclination;
+    d["spacing"] = spacing();
+    d["offset"] = -std::fmod(low, spacing());
+    return d;
+  }
+};
+
+}  // namespace grit
