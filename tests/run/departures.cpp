@@ -82,6 +82,29 @@ TEST(Departures, OfAClumpAreOneOfTheWholeClump) {
   EXPECT_EQ((trial.position(3) - before).norm(), 0);
 }
 
+TEST(Departures, OfTheLastClumpLeaveNothingOfIt) {
+  Description d = description("linear-rolling", stuff, {{{0, 0, 0}, 1e-3, {0, 0, -1}}});
+  make_clumps(d, boomerang());
+  d["bodies"]["others"] = {
+      {"type", "sphere"},
+      {"material", "grain"},
+      {"grains",
+       {{"type", "list"}, {"grains", {{{"position", {0, 0, 6e-3}}, {"radius", 1e-3}, {"velocity", {1e-3, 0, 0}}}}}}}};
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -1e-3}}};
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
+  Trial trial(d, 1, BodyState::energy);
+  trial.world().energies();
+  ASSERT_EQ(trial.world().clumps().size(), 1u);
+  for (int k = 0; k < 5000 && trial.world().departures().empty(); ++k) trial.step();
+  EXPECT_TRUE(trial.world().clumps().empty());
+  EXPECT_TRUE(trial.world().clump_of().empty());
+  EXPECT_TRUE(trial.world().arms().empty());
+  const double kinetic = trial.world().energies().kinetic, fallen = trial.world().energies().gravitational;
+  EXPECT_NEAR(kinetic, 0.5 * trial.mass(3) * trial.velocity(3).squaredNorm(), 1e-9 * kinetic);
+  trial.step(100);
+  EXPECT_NEAR(trial.world().energies().gravitational, fallen, 1e-3 * std::abs(fallen));
+}
+
 TEST(Departures, AreTheSameBitsForAnyNumberOfThreads) {
   Description d = description("linear-rolling", stuff, jumble({14, 14, 14}, 1e-3, 0.5, 5));
   d["domain"] = {{"low", {-1e-3, -1e-3, 2e-3}},

@@ -168,9 +168,9 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   for (std::size_t i = first; i < last; ++i) {
     const Stiffness k = at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]);
     const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
-    const Vec3 across = in_clump ? Vec3(bodies.clumps.clump[bodies.clumps.clump_of(i)].axes *
-                                        bodies.clumps.of_body[i].place.unitOrthogonal())
-                                 : Vec3(Vec3::UnitX());
+    Vec3 across = Vec3::UnitX();
+    if (in_clump && !bodies.clumps.of_body[i].place.isZero())
+      across = bodies.clumps.clump[bodies.clumps.clump_of(i)].axes * bodies.clumps.of_body[i].place.unitOrthogonal();
     const double alone = demand(k, bodies, i, across);
     demand_[i] = std::max(springs[i - first], alone);
     own.demand.spring = std::max({own.demand.spring, 2 * alone, demand_[i]});

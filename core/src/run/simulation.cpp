@@ -263,14 +263,17 @@ std::vector<bool> Simulation::wrap() {
 }
 
 void Simulation::take_leave(const std::vector<bool>& leaves) {
-  const auto depart = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass) {
+  const auto depart = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass, double turning) {
     departures_.push_back({.id = bodies_.id[i],
                            .material = bodies_.material[i],
                            .time = clock_.time,
                            .mass = 1 / inverse_mass,
                            .position = x});
     mass_left_ += 1 / inverse_mass;
-    if (flows_.begun) flows_.settings -= 0.5 / inverse_mass * v.squaredNorm();
+    const double kinetic = 0.5 / inverse_mass * v.squaredNorm() + turning;
+    if (flows_.begun) flows_.settings -= kinetic;
+    // The guard goes on with what stays.
+    energy_.stored_at_start -= kinetic - settings_.gravity.dot(x) / inverse_mass;
   };
   std::vector<std::size_t> leaving;
   for (std::size_t i = 0; i < bodies_.count(); ++i)
@@ -279,14 +282,12 @@ void Simulation::take_leave(const std::vector<bool>& leaves) {
   for (const std::size_t i : leaving) {
     const std::uint32_t c = bodies_.clumps.clump_of(i);
     if (c == no_clump) {
-      depart(i, xyz(bodies_.position[i]), xyz(bodies_.velocity[i]), bodies_.velocity[i].w);
-      if (flows_.begun) flows_.settings -= 0.5 / bodies_.spin[i].w * xyz(bodies_.spin[i]).squaredNorm();
+      depart(i, xyz(bodies_.position[i]), xyz(bodies_.velocity[i]), bodies_.velocity[i].w,
+             0.5 / bodies_.spin[i].w * xyz(bodies_.spin[i]).squaredNorm());
     } else if (const Clump& clump = bodies_.clumps.clump[c]; bodies_.clumps.spheres[clump.first] == i) {
-      depart(i, clump.centre, clump.velocity, clump.inverse_mass);
-      if (flows_.begun) flows_.settings -= 0.5 * clump.momentum.dot(clump.spin);
+      depart(i, clump.centre, clump.velocity, clump.inverse_mass, 0.5 * clump.momentum.dot(clump.spin));
     }
   }
-  energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
 }
 
 /// By speeds alone, so that a run is the same on every machine.
@@ -474,6 +475,7 @@ void Simulation::find_forces() {
     std::vector<Row> force(bodies_.count()), moment(bodies_.count());
     for (const auto& engine : force_engines_) engine->forces(*this, force, moment);
     for (std::size_t i = 0; i < bodies_.count(); ++i) sum_[i].force += force[i], sum_[i].moment += moment[i];
+    net_step_ = clump_step_ = ~0ull;  // engines may have asked for forces, without their own
   }
   take_loads();
   if (look && springs_stiffen(clock_.overlap)) set_time_step();
@@ -616,9 +618,10 @@ void Simulation::end_step() {
   walls_.drive(dt);
   const double work = work_at_start + 0.5 * dt * power_of_walls();
   energy_.work += work, flows_.walls += work;
-  for (const Chunk& chunk : chunk_) {
-    flows_.damped += chunk.motion.damped + chunk.clumps.damped;
-    flows_.fallen += chunk.motion.fallen + chunk.clumps.fallen;
+  for (Chunk& chunk : chunk_) {
+    const Motion of_clumps = std::exchange(chunk.clumps, {});
+    flows_.damped += chunk.motion.damped + of_clumps.damped;
+    flows_.fallen += chunk.motion.fallen + of_clumps.fallen;
   }
   double fastest = 0;
   bool finite = true;

@@ -17,6 +17,12 @@ std::span<const Row> Simulation::forces() const {
       net_force_[i] = sum_[i].force, net_moment_[i] = sum_[i].moment;
       net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
       net_force_[i].w = net_moment_[i].w = 0;
+      if (settings_.flat) {
+        Vec3 force = xyz(net_force_[i]);
+        force[*settings_.flat] = 0;
+        const Vec3 moment = xyz(net_moment_[i]).cwiseProduct(Vec3::Unit(*settings_.flat));
+        net_force_[i] = {force.x(), force.y(), force.z(), 0}, net_moment_[i] = {moment.x(), moment.y(), moment.z(), 0};
+      }
     }
     net_step_ = clock_.step;
   }
@@ -39,8 +45,10 @@ std::span<const Vec3> Simulation::arms() const {
 }
 
 std::span<const ClumpView> Simulation::clumps() const {
-  if (bodies_.clumps.none() || clump_step_ == clock_.step) return clump_views_;
-  clump_views_.clear();
+  if (clump_step_ == clock_.step) return clump_views_;
+  clump_views_.clear(), clump_of_.clear(), arms_of_bodies_.clear();
+  clump_step_ = clock_.step;
+  if (bodies_.clumps.none()) return clump_views_;
   clump_of_.resize(bodies_.count()), arms_of_bodies_.assign(bodies_.count(), Vec3::Zero());
   for (std::size_t i = 0; i < bodies_.count(); ++i) {
     const ClumpSphere& own = bodies_.clumps.of_body[i];
@@ -61,7 +69,6 @@ std::span<const ClumpView> Simulation::clumps() const {
                             .axes = clump.axes,
                             .inertia = clump.inertia});
   }
-  clump_step_ = clock_.step;
   return clump_views_;
 }
 

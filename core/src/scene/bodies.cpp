@@ -31,7 +31,7 @@ void Bodies::add(const Vec3& centre, double radius, double mass, double inertia,
   id.push_back(static_cast<std::uint32_t>(id.size()));
 }
 
-void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass,
+void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass, const Vec3& inertia,
                        const Eigen::Quaterniond& orientation, std::uint8_t body_material, const Vec3& v,
                        const Vec3& w) {
   Clump clump;
@@ -39,7 +39,7 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
   clump.first = static_cast<std::uint32_t>(clumps.spheres.size());
   clump.centre = centre, clump.velocity = v, clump.spin = w;
   clump.orientation = orientation, clump.axes = orientation.toRotationMatrix();
-  clump.inertia = mass * radius * radius * shape.inertia;
+  clump.inertia = inertia;
   clump.momentum = clump.axes * clump.inertia.cwiseProduct(clump.axes.transpose() * w);
   clump.inverse_mass = 1 / mass, clump.radius = radius, clump.volume = shape.volume * radius * radius * radius;
   clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
@@ -91,6 +91,7 @@ void Bodies::reorder(std::span<const std::uint32_t> order) {
     kept.push_back(clump);
   }
   clumps.clump.swap(kept), clumps.spheres.swap(spheres);
+  if (clumps.none()) clumps = {};
 }
 
 }  // namespace grit

@@ -33,7 +33,7 @@ struct Bodies {
            const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero());
   /// Adds the bodies of a clump (before finish()), whose centre of mass is `centre`, of that size, mass and
   /// orientation.
-  void add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass,
+  void add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass, const Vec3& inertia,
                  const Eigen::Quaterniond& orientation, std::uint8_t material, const Vec3& velocity = Vec3::Zero(),
                  const Vec3& spin = Vec3::Zero());
   /// After the last add(): pads, and allocates the state that was asked for.

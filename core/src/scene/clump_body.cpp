@@ -60,7 +60,15 @@ void ClumpBody::declare(Parameters& p) {
   p.add("shape", spheres_).required().doc("spheres that it is made of, in proportion");
 }
 
-void ClumpBody::prepare() { shape_ = make_clump_shape(std::visit(Balls{}, spheres_.value())); }
+void ClumpBody::prepare() {
+  balls_ = std::visit(Balls{}, spheres_.value());
+  check_clump(balls_);
+}
+
+const ClumpShape* ClumpBody::clump() const {
+  if (!shape_) shape_ = make_clump_shape(balls_);
+  return &*shape_;
+}
 
 const PluginInfo& clump_body() {
   static const PluginInfo info = [] {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "grit/body_kind.hpp"
 #include "grit/plugin.hpp"
@@ -41,14 +43,15 @@ class ClumpBody : public BodyKind {
  public:
   void declare(Parameters& p) override;
   void prepare() override;
-  const ClumpShape* clump() const override { return &shape_; }
-  double volume(double radius) const override { return shape_.volume * radius * radius * radius; }
+  const ClumpShape* clump() const override;
+  double volume(double radius) const override { return clump()->volume * radius * radius * radius; }
   /// The least principal moment.
-  double inertia(double radius, double mass) const override { return shape_.inertia[0] * mass * radius * radius; }
+  double inertia(double radius, double mass) const override { return clump()->inertia[0] * mass * radius * radius; }
 
  private:
   OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
-  ClumpShape shape_;
+  std::vector<Row> balls_;
+  mutable std::optional<ClumpShape> shape_;  // integrated when asked for: not by every stage
 };
 
 /// For Registry::add().

@@ -134,14 +134,20 @@ Ball smallest_enclosing(std::span<const Ball> balls) {
     }
   };
   choose(choose, 0);
+  if (!std::isfinite(best.w))
+    throw Error("no sphere was found that encloses a clump; give its spheres in another unit");
   return best;
 }
 
-ClumpShape make_clump_shape(std::span<const Ball> spheres) {
+void check_clump(std::span<const Ball> spheres) {
   if (spheres.empty()) throw Error("a clump needs a sphere at least");
   if (spheres.size() > 64)
     throw Error("a clump of " + std::to_string(spheres.size()) + " spheres: 64 at most are allowed");
   if (!hang_together(spheres)) throw Error("spheres of a clump must overlap so that they hang together");
+}
+
+ClumpShape make_clump_shape(std::span<const Ball> spheres) {
+  check_clump(spheres);
   const Ball enclosing = smallest_enclosing(spheres);
   std::vector<Ball> balls;
   for (const Ball& one : spheres) {

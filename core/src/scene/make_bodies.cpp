@@ -48,7 +48,8 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
       }
       const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(clump->axes);
       const Vec3 middle = orientation * (radius * clump->middle);
-      bodies.add_clump(*clump, centre - middle, radius, mass, orientation, material, velocity, spin);
+      bodies.add_clump(*clump, centre - middle, radius, mass, mass * inert * inert * clump->inertia, orientation,
+                       material, velocity, spin);
     };
     if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
       for (const PlacedGrain& g : placed->grains) {
@@ -67,13 +68,17 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
       add(xyz(g), g.w, turn, Vec3::Zero(), Vec3::Zero());
     }
   }
-  for (const Row& x : bodies.position)
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const Row& x = bodies.position[i];
+    const std::uint32_t c = bodies.clumps.clump_of(i);
+    const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
     for (int k = 0; k < 3; ++k) {
-      const double over = cell.periodic[k] ? x.w : 0;  // just past a periodic side a body is inside at the other
+      const double over = cell.periodic[k] ? reach : 0;  // just past a periodic side a body is inside at the other
       if (!(xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over))
         throw Error("a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
                     ") m lies outside the domain; enlarge /domain or move the body");
     }
+  }
   bodies.finish(state);
   return bodies;
 }
