@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/validation.md: every figure with a known answer, as the physics tests of a build find it.
+"""Writes docs/validation.md: every figure with a known answer, as the tests of physics and of clumps of a build find it.
 
   validate.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, and nothing is written
 """
@@ -10,9 +10,9 @@ import reported  # noqa: E402
 
 PREFIX = 'verified: '
 HEAD = '''# Validation
-Written by `scripts/validate.py` from what the tests in [tests/physics](../tests/physics) find. Do not edit. Each row is a figure with a closed
+Written by `scripts/validate.py` from what the tests in [tests/physics](../tests/physics) and [tests/clumps](../tests/clumps) find. Do not edit. Each row is a figure with a closed
 form; the error is relative to it unless the row says otherwise. Errors are those of the time step that the test takes, and
-fall as it says; `build/tests/test_physics --gtest_filter=NAME` repeats one.
+fall as it says; `build/tests/test_physics --gtest_filter=NAME` repeats one, or `test_clumps`.
 
 | test | figure | closed form | found | error | allowed |
 | --- | --- | --- | --- | --- | --- |
@@ -28,6 +28,7 @@ def rows(tests):
                 name = ''
 
 
-table = ''.join(rows(reported.tests('test_physics', 'docs/validation.md')))
+PROGRAMS = ('test_physics', 'test_clumps')
+table = ''.join(row for program in PROGRAMS for row in rows(reported.tests(program, 'docs/validation.md')))
 (reported.ROOT / 'docs' / 'validation.md').write_text(HEAD + table, encoding='utf-8')
 print(f'docs/validation.md: {table.count(chr(10))} figures')
