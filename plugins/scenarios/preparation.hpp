@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -30,6 +31,17 @@ struct VoidRatioRange {
 struct Compacted {
   double friction_angle, void_ratio;
 };
+
+/// Of sand whose diameters are uniform by number from 0.25 to 0.75 mm, in the box of direct-shear under 200 kPa; its
+/// README.md says how it was measured.
+inline constexpr std::array<Compacted, 7> compacted_in_a_box{{{0, 0.558},
+                                                              {2 * degree, 0.597},
+                                                              {5 * degree, 0.635},
+                                                              {10 * degree, 0.698},
+                                                              {18 * degree, 0.770},
+                                                              {30 * degree, 0.853},
+                                                              {60 * degree, 0.919}}};
+inline constexpr VoidRatioRange reachable_in_a_box{0.57, 0.79};
 
 struct Preparation {
   /// Solid fraction of the cloud that compaction starts from.

@@ -1,21 +1,11 @@
 #include "direct-shear.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "grit/plugin.hpp"
 
 namespace grit {
 namespace {
-
-// Measured under 200 kPa, see README.md.
-constexpr std::array<Compacted, 7> compacted{{{0, 0.558},
-                                              {2 * degree, 0.597},
-                                              {5 * degree, 0.635},
-                                              {10 * degree, 0.698},
-                                              {18 * degree, 0.770},
-                                              {30 * degree, 0.853},
-                                              {60 * degree, 0.919}}};
 
 // Shear starts from rest over this share of its duration.
 constexpr double start_share = 0.02;
@@ -49,7 +39,7 @@ void DirectShear::declare(Parameters& p) {
   preparation_.declare_course(p);
 }
 
-VoidRatioRange DirectShear::reachable() const { return {0.57, 0.79}; }
+VoidRatioRange DirectShear::reachable() const { return reachable_in_a_box; }
 
 double DirectShear::shear_velocity() const {
   if (velocity_ > 0) return velocity_;
@@ -116,7 +106,7 @@ Description DirectShear::expand() const {
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
   // Aprons keep the gap between the frames closed, so that no sand is lost.
-  auto stages = preparation_.stages({"platen"}, normal_stress_, closing, compacted);
+  auto stages = preparation_.stages({"platen"}, normal_stress_, closing, compacted_in_a_box);
   Description shear;
   shear["name"] = "shear";
   shear["change"]["engines"]["damping"]["coefficient"] = local_damping_;

@@ -1,21 +1,11 @@
 #include "interface-shear.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "grit/plugin.hpp"
 
 namespace grit {
 namespace {
-
-// Measured under 200 kPa in the box of direct-shear, see its README.md.
-constexpr std::array<Compacted, 7> compacted{{{0, 0.558},
-                                              {2 * degree, 0.597},
-                                              {5 * degree, 0.635},
-                                              {10 * degree, 0.698},
-                                              {18 * degree, 0.770},
-                                              {30 * degree, 0.853},
-                                              {60 * degree, 0.919}}};
 
 // Shear starts from rest over this share of its duration.
 constexpr double start_share = 0.02;
@@ -87,7 +77,7 @@ void InterfaceShear::declare(Parameters& p) {
       {"groove_spacing", "roughness", "groove_inclination", "surface"});
 }
 
-VoidRatioRange InterfaceShear::reachable() const { return {0.57, 0.79}; }
+VoidRatioRange InterfaceShear::reachable() const { return reachable_in_a_box; }
 
 double InterfaceShear::shear_velocity() const {
   return inertial_number_ * height_ / preparation_.inertial_time(normal_stress_);
@@ -170,7 +160,7 @@ Description InterfaceShear::expand() const {
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
   // The box stands on the tips while the sand is prepared, so that none is lost, and is lifted before shear.
-  auto stages = preparation_.stages({"lid"}, normal_stress_, closing, compacted);
+  auto stages = preparation_.stages({"lid"}, normal_stress_, closing, compacted_in_a_box);
   Description lift, shear;
   lift["name"] = "lift";
   for (const char* wall : {"left", "right"})
