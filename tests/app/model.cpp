@@ -61,6 +61,8 @@ TEST_F(ModelOfARun, KnowsWallsClumpsAndTheLoop) {
   EXPECT_EQ(plain.at("one_material"), true);
   EXPECT_EQ(plain.at("periodic"), false);
   EXPECT_GE(plain.at("lanes"), 1);
+  EXPECT_EQ(plain.at("precision"), "double");
+  EXPECT_EQ(of({"/contacts/precision=single"}).at("precision"), "single");
   const json walled = of({R"(/walls/floor={"type": "plane", "material": "sand", "point": [0, 0, -1]})"});
   EXPECT_EQ(walled.at("walls"), true);
   const json clumped = of({R"(/bodies/grains/type="clump")", R"(/bodies/grains/shape={"type": "rod"})"});

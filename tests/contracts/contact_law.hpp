@@ -87,6 +87,15 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     const double force = vec(pairs.row(c).force).norm(), radius = pairs.position(pairs.a(c)).w;
     return unit == "N" ? force : unit == "N m" ? force * radius : radius;
   }
+  double spring_force(Pairs& pairs, std::size_t c) {
+    const std::uint32_t a = pairs.a(c), b = pairs.b(c);
+    const PairSize size{.radius_a = pairs.position(a).w,
+                        .radius_b = pairs.position(b).w,
+                        .inverse_mass_a = pairs.velocity(a).w,
+                        .inverse_mass_b = pairs.velocity(b).w,
+                        .overlap = pairs.overlap(c)};
+    return law_->stiffness(size, pairs.material(a), pairs.material(b)).normal * size.overlap;
+  }
   /// The moment that the law itself gives to b, without the arm of the shear force.
   Vec3 law_moment(Pairs& pairs, std::size_t c) {
     const Vec3 n = branch(pairs, c).normalized(), force = vec(pairs.row(c).force);
@@ -136,6 +145,34 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     set(pairs.velocity(1), (to - vec(pairs.position(1))) / pairs.dt);
     pairs.step();
   }
+  static void sleeps_until_one_can(const ContactLaw& law) {
+    Pairs pairs(law, dt_);
+    const double nearest = 0.25;
+    for (std::size_t c = 0; c < block_size; ++c) {
+      const double gap = nearest + static_cast<double>((c + 3) % block_size);
+      const auto a = pairs.add({.position = {100.0 * static_cast<double>(c), 0, 0}, .radius = 1});
+      pairs.pair(a, pairs.add({.position = vec(pairs.position(a)) + Vec3(2 + gap, 0, 0), .radius = 1}));
+    }
+    const std::size_t first = block_size - 3;
+    pairs.asleep_until = {0}, pairs.closing = 3;
+    pairs.evaluate();
+    const float until = pairs.asleep_until[0];
+    EXPECT_LE(until, 3 + nearest);
+    EXPECT_GT(until, 3 + nearest - 1e-5);
+    pairs.position(pairs.b(first)).x -= nearest + 0.01;
+    pairs.closing = std::nextafter(until, 0.0f);
+    pairs.evaluate();
+    EXPECT_FALSE(pairs.touching(first));
+    pairs.closing = until;
+    pairs.evaluate();
+    EXPECT_TRUE(pairs.touching(first));
+    // It is awake as long as one touches, and sleeps again after.
+    pairs.closing = 0;
+    pairs.position(pairs.b(first)).x += 0.51;
+    pairs.evaluate();
+    EXPECT_FALSE(pairs.touching(first));
+    EXPECT_NEAR(pairs.asleep_until[0], 0.5, 1e-5);
+  }
   bool stiffness_follows_overlap() {
     Pairs pairs = two(0.01);
     return law_->stiffness(size(pairs, 0.01), 0, 0).normal != law_->stiffness(size(pairs, 0.02), 0, 0).normal;
@@ -182,33 +219,56 @@ TEST_P(ContactLawContract, LanesAgreeWithScalarTwin) {
   }
 }
 
+/// The law in single precision.
+inline std::unique_ptr<ContactLaw> single_law(LawValues values) {
+  values.settings["precision"] = "single";
+  return make_law(values);
+}
+
+TEST_P(ContactLawContract, SinglePrecisionIsThatOfItsScalarTwinAndNearDouble) {
+  const auto fields = law_->state();
+  auto single = single_law(GetParam().values);
+  ASSERT_EQ(single->state().size(), fields.size());
+  EXPECT_EQ(law_->loop().precision, "double");
+  EXPECT_EQ(single->loop().precision, "single");
+  // Some tens of roundings, each of a 2^24th; forces add up from 31 steps.
+  constexpr double eps = 5e-6;
+  for (const bool periodic : {false, true})
+    for (const bool materials : {false, true})
+      for (const bool lonely : {false, true}) {
+        random_.seed(11);
+        Pairs exact = scene(periodic, materials, lonely);
+        std::swap(law_, single);
+        random_.seed(11);
+        Pairs lanes = scene(periodic, materials, lonely), twin = lanes;
+        std::swap(law_, single);
+        exact.evaluate(), lanes.evaluate(), twin.evaluate_reference();
+        double furthest = 0;
+        for (std::size_t c = 0; c < exact.places(); ++c) {
+          ASSERT_EQ(lanes.touching(c), exact.touching(c));
+          ASSERT_EQ(twin.touching(c), exact.touching(c));
+          if (!exact.touching(c)) continue;
+          // Where spring and dashpot nearly cancel, what is left has the rounding of either.
+          const double force = std::max(scale(exact, c, "N"), spring_force(exact, c));
+          const auto scale_of = [&](const std::string& unit) {
+            return unit == "N" ? force : unit == "N m" ? force * exact.position(exact.a(c)).w : scale(exact, c, unit);
+          };
+          const double moment = scale_of("N m");
+          for (Pairs* other : {&exact, &twin}) {
+            EXPECT_LE((vec(lanes.row(c).force) - vec(other->row(c).force)).norm(), eps * force) << c;
+            EXPECT_LE((vec(lanes.row(c).moment) - vec(other->row(c).moment)).norm(), eps * moment) << c;
+            EXPECT_NEAR(lanes.overlap(c), other->overlap(c), 1e-6 * exact.overlap(c)) << c;
+            for (std::size_t f = 0; f < fields.size(); ++f)
+              EXPECT_NEAR(lanes.state(c, f), other->state(c, f), eps * scale_of(fields[f].unit)) << c << fields[f].name;
+          }
+          furthest = std::max(furthest, (vec(lanes.row(c).force) - vec(exact.row(c).force)).norm() / force);
+        }
+        EXPECT_GT(furthest, 1e-9) << "the arithmetic was double";
+      }
+}
+
 TEST_P(ContactLawContract, BlockWhereNoneTouchesSleepsUntilOneCan) {
-  Pairs pairs(*law_, dt_);
-  const double nearest = 0.25;
-  for (std::size_t c = 0; c < block_size; ++c) {
-    const double gap = nearest + static_cast<double>((c + 3) % block_size);
-    const auto a = pairs.add({.position = {100.0 * static_cast<double>(c), 0, 0}, .radius = 1});
-    pairs.pair(a, pairs.add({.position = vec(pairs.position(a)) + Vec3(2 + gap, 0, 0), .radius = 1}));
-  }
-  const std::size_t first = block_size - 3;
-  pairs.asleep_until = {0}, pairs.closing = 3;
-  pairs.evaluate();
-  const float until = pairs.asleep_until[0];
-  EXPECT_LE(until, 3 + nearest);
-  EXPECT_GT(until, 3 + nearest - 1e-5);
-  pairs.position(pairs.b(first)).x -= nearest + 0.01;
-  pairs.closing = std::nextafter(until, 0.0f);
-  pairs.evaluate();
-  EXPECT_FALSE(pairs.touching(first));
-  pairs.closing = until;
-  pairs.evaluate();
-  EXPECT_TRUE(pairs.touching(first));
-  // It is awake as long as one touches, and sleeps again after.
-  pairs.closing = 0;
-  pairs.position(pairs.b(first)).x += 0.51;
-  pairs.evaluate();
-  EXPECT_FALSE(pairs.touching(first));
-  EXPECT_NEAR(pairs.asleep_until[0], 0.5, 1e-5);
+  for (const bool single : {false, true}) sleeps_until_one_can(single ? *single_law(GetParam().values) : *law_);
 }
 
 TEST_P(ContactLawContract, LanesThatDoNotTouchAreZero) {

@@ -104,7 +104,7 @@ class Pairs {
  private:
   void open() { position_.pop_back(), velocity_.pop_back(), spin_.pop_back(), material_.pop_back(); }
   void close() {
-    position_.push_back({1e150, 1e150, 1e150, 0}), velocity_.push_back({}), spin_.push_back({}), material_.push_back(0);
+    position_.push_back({1e18, 1e18, 1e18, 0}), velocity_.push_back({}), spin_.push_back({}), material_.push_back(0);
     const auto last = static_cast<std::uint32_t>(count());
     std::replace(b_.begin(), b_.end(), pad_, last);
     pad_ = last;

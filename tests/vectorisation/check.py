@@ -1,4 +1,4 @@
-"""Reads the disassembly of a contact plugin and proves that its loop over pairs works on packed doubles.
+"""Reads the disassembly of a contact plugin and proves that its loop over pairs works on packed numbers.
 
 usage: check.py OBJDUMP PLUGIN.so lanes|scalar|xmm|ymm|zmm
 
@@ -12,9 +12,9 @@ import subprocess
 import sys
 
 RATIO = 10  # measured with g++ 12 and AVX2: 19 and more in the lanes, 0.4 and less in the twins
-ARITHMETIC = re.compile(r"v?(?:add|sub|mul|div|sqrt|min|max|fn?m(?:add|sub)\d{3})(pd|sd)$")
+ARITHMETIC = re.compile(r"v?(?:add|sub|mul|div|sqrt|min|max|fn?m(?:add|sub)\d{3})([ps])[sd]$")
 REGISTER = re.compile(r"%([xyz]mm)\d")
-TWIN = re.compile(r"pair_loop<[^<>]*, \d+u, double,")
+TWIN = re.compile(r"pair_loop<[^<>]*, \d+u, (?:double|float),")
 
 
 def loops(objdump, plugin):
@@ -24,7 +24,7 @@ def loops(objdump, plugin):
     for line in listing.stdout.splitlines():
         if line.endswith(">:"):
             name = line.split("<", 1)[1]
-            start = {"pd": 0, "sd": 0, "calls": [], "widest": ""}
+            start = {"p": 0, "s": 0, "calls": [], "widest": ""}
             current = found.setdefault(name, start) if "detail::pair_loop<" in name else None
         elif current is not None and (code := line.split("\t")[1:]):
             word = code[0].split()[0]
@@ -37,8 +37,8 @@ def loops(objdump, plugin):
 
 
 def faults(name, counts):
-    if counts["pd"] < RATIO * counts["sd"]:
-        yield f"{name[:100]}: {counts['pd']} packed against {counts['sd']} scalar, {RATIO} to 1 is asked for"
+    if counts["p"] < RATIO * counts["s"]:
+        yield f"{name[:100]}: {counts['p']} packed against {counts['s']} scalar, {RATIO} to 1 is asked for"
     for call in counts["calls"]:
         yield f"{name[:100]}: {call}"
 

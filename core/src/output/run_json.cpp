@@ -145,6 +145,7 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
   json_["rebuilds"] = summary.rebuilds;
   const Model& model = summary.model;
   json_["model"] = {{"lanes", model.lanes},
+                    {"precision", model.precision},
                     {"law_parts", model.law_parts},
                     {"contact_state", model.contact_state},
                     {"body_state", model.body_state},

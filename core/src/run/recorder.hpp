@@ -32,6 +32,7 @@ struct PhaseTime {
 /// What was stored and computed; the rest was left out, because nothing asked for it.
 struct Model {
   std::size_t lanes = 1;                   ///< pairs that the contact law's loop takes at once
+  std::string precision;                   ///< of its arithmetic
   std::vector<std::string> law_parts;      ///< of the contact law, compiled into that loop
   std::vector<std::string> contact_state;  ///< what each contact remembers
   std::vector<std::string> body_state;     ///< of bodies, beyond position, velocity and spin

@@ -702,7 +702,7 @@ std::vector<PhaseTime> Simulation::phases() const {
 Model Simulation::model() const {
   Model model;
   const LawLoop loop = law_->loop();
-  model.lanes = loop.lanes, model.law_parts = loop.parts;
+  model.lanes = loop.lanes, model.precision = loop.precision, model.law_parts = loop.parts;
   for (const StateField& field : fields_) model.contact_state.push_back(field.name);
   const auto add = [&](bool there, const char* name) {
     if (there) model.body_state.push_back(name);

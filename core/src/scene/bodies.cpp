@@ -57,7 +57,7 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
 }
 
 void Bodies::finish(StateRequest state) {
-  constexpr double far_away = 1e150;  // its square is still finite
+  constexpr double far_away = 1e18;  // its square is finite in single precision too
   position.push_back({far_away, far_away, far_away, 0});
   velocity.push_back({});
   spin.push_back({});

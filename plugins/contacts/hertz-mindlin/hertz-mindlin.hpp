@@ -99,7 +99,7 @@ struct HertzMindlin {
   /// R* [m]; a wall's radius_b does not count.
   template <class L>
   [[gnu::always_inline]] static L reduced_radius(const L& a, const L& b, const L& curved) {
-    return a * b / max(curved * a + b, L(1e-300));
+    return a * b / max(curved * a + b, L(tiny<L>));
   }
 
   template <unsigned Features, class L>
@@ -115,7 +115,7 @@ struct HertzMindlin {
     }
 
     // Springs that soften as the contact is unloaded give their energy away with their force.
-    const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(1e-300)));
+    const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(tiny<L>)));
     state.contact_radius = contact_radius;
     if constexpr ((Features & with_shear) != 0) {
       const Vec<L> stored{state.shear_x, state.shear_y, state.shear_z};
@@ -139,13 +139,13 @@ struct HertzMindlin {
                                                const State<L>& after, const Response<L>& response) {
     const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
     const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
-    const L kept = min(L(1.0), contact_radius / max(before.contact_radius, L(1e-300)));
+    const L kept = min(L(1.0), contact_radius / max(before.contact_radius, L(tiny<L>)));
     const auto lost = [&](const Vec<L>& stored, const Vec<L>& now, const L& stiffness_per_ks, const Vec<L>& rate) {
       const L stiffness = stiffness_per_ks * ks;
       const L stiffness_before = stiffness_per_ks * L(8.0) * pair.shear_modulus * before.contact_radius;
       const Vec<L> left = kept * stored;
-      const L given = L(0.5) * (dot(stored, stored) / max(stiffness_before, L(1e-300)) -
-                                dot(left, left) / max(stiffness, L(1e-300)));
+      const L given = L(0.5) * (dot(stored, stored) / max(stiffness_before, L(tiny<L>)) -
+                                dot(left, left) / max(stiffness, L(tiny<L>)));
       return select(before.contact_radius > L(0.0), given, L(0.0)) +
              slip_work(at.turn(left), stretched(at, left, stiffness, rate), now, stiffness);
     };

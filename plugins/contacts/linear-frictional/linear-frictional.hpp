@@ -102,7 +102,7 @@ struct LinearFrictional {
         const L dash = dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass);
         // Clearly below the limit, so that a contact that has just slid is not taken for one that sticks when asked
         // again.
-        const L sticking = select(dot(trial, trial) < L(1 - 1e-12) * limit * limit, dash, L(0.0));
+        const L sticking = select(dot(trial, trial) < L(1 - beyond_rounding<L>) * limit * limit, dash, L(0.0));
         response.shear = shortened(spring - sticking * at.tangential(at.velocity), limit);
       }
     }

@@ -161,7 +161,7 @@ struct LinearRolling {
       const L stiffness = pair.twisting * angular;
       const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);
       loss.rolling = loss.rolling +
-                     L(0.5) * (before.twisting + after.twisting) * (trial - after.twisting) / max(stiffness, L(1e-300));
+                     L(0.5) * (before.twisting + after.twisting) * (trial - after.twisting) / max(stiffness, L(tiny<L>));
     }
     return loss;
   }

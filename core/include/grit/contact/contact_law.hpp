@@ -45,6 +45,7 @@ struct StateField {
 /// The loop that evaluates a law's pairs.
 struct LawLoop {
   std::size_t lanes = 1;           ///< pairs at once
+  std::string precision;           ///< of the arithmetic: double or single
   std::vector<std::string> parts;  ///< of the law, compiled in; others were left out
 };
 

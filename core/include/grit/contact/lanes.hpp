@@ -1,4 +1,5 @@
-// Lanes: what a contact law computes with. `double` in the reference twin, a register full of doubles in the loop.
+// Lanes: what a contact law computes with. A plain number in the reference twin, a register full of them in the loop;
+// doubles, or floats where single precision is asked for.
 // Lanes have to stay in registers, so that all functions on them are inlined by force: compilers were seen to leave
 // calls in a loop as large as a law, which pass lanes through memory and cost a factor of three.
 #pragma once
@@ -7,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -23,12 +26,13 @@ struct Register {
 };
 }  // namespace detail
 
-/// N doubles that are worked on together, a power of two. The compiler's own vector type inside: wrapped any deeper, as
+/// N numbers that are worked on together, a power of two. The compiler's own vector type inside: wrapped any deeper, as
 /// std::experimental::simd has it, it was seen to be copied through memory.
-template <std::size_t N>
+template <std::size_t N, class Real = double>
 struct Pack {
-  using Numbers = typename detail::Register<double, N * sizeof(double)>::type;
-  using Bits = typename detail::Register<long long, N * sizeof(double)>::type;
+  using Numbers = typename detail::Register<Real, N * sizeof(Real)>::type;
+  using Bit = std::conditional_t<sizeof(Real) == sizeof(int), int, long long>;
+  using Bits = typename detail::Register<Bit, N * sizeof(Real)>::type;
 
   /// All bits of a lane set, or none.
   struct Mask {
@@ -41,17 +45,18 @@ struct Pack {
   Numbers numbers;
 
   Pack() = default;
-  [[gnu::always_inline]] Pack(double all) : numbers(all - Numbers{}) {}  // x - 0 is x, and folds away
+  [[gnu::always_inline]] Pack(double all)
+      : numbers(static_cast<Real>(all) - Numbers{}) {}  // x - 0 is x, and folds away
   [[gnu::always_inline]] explicit Pack(Numbers all) : numbers(all) {}
   /// Lane k is number(k).
   template <class Number>
   requires requires(Number number) { number(std::size_t{}); }
   [[gnu::always_inline]] explicit Pack(Number number) {
-    for (std::size_t k = 0; k < N; ++k) numbers[k] = number(k);
+    for (std::size_t k = 0; k < N; ++k) numbers[k] = static_cast<Real>(number(k));
   }
 
   static constexpr std::size_t size() { return N; }
-  [[gnu::always_inline]] double operator[](std::size_t k) const { return numbers[k]; }
+  [[gnu::always_inline]] Real operator[](std::size_t k) const { return numbers[k]; }
 
   [[gnu::always_inline]] friend Pack operator-(const Pack& a) { return Pack(-a.numbers); }
   [[gnu::always_inline]] friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.numbers + b.numbers); }
@@ -73,28 +78,54 @@ using Lane = Pack<4>;
 #else
 using Lane = Pack<2>;
 #endif
+/// The same in single precision, but no more than a block has.
+#if defined(__AVX__)
+using SingleLane = Pack<8, float>;
+#else
+using SingleLane = Pack<4, float>;
+#endif
 
 template <class L>
-struct LaneTraits {
-  static constexpr std::size_t width = L::size();
-  using Mask = typename L::Mask;
+struct LaneTraits;
+template <std::size_t N, class Real>
+struct LaneTraits<Pack<N, Real>> {
+  static constexpr std::size_t width = N;
+  using Number = Real;
+  using Mask = typename Pack<N, Real>::Mask;
+  using Wide = Pack<N, double>;
 };
-template <>
-struct LaneTraits<double> {
+template <class Real>
+requires std::is_floating_point_v<Real>
+struct LaneTraits<Real> {
   static constexpr std::size_t width = 1;
+  using Number = Real;
   using Mask = bool;
+  using Wide = double;
 };
 template <class L>
 inline constexpr std::size_t lane_width = LaneTraits<L>::width;
+/// As many lanes in double precision.
+template <class L>
+using Wide = typename LaneTraits<L>::Wide;
+template <class L>
+inline constexpr bool is_single = std::is_same_v<typename LaneTraits<L>::Number, float>;
 
-static_assert(block_size % lane_width<Lane> == 0);
+/// What to divide by instead of zero: smaller than any force, length, stiffness or inverse mass of a scene.
+template <class L>
+inline constexpr double tiny = is_single<L> ? 1e-30 : 1e-300;
+/// A share well above the rounding of some tens of operations.
+template <class L>
+inline constexpr double beyond_rounding = is_single<L> ? 1e-5 : 1e-12;
+
+static_assert(block_size % lane_width<Lane> == 0 && block_size % lane_width<SingleLane> == 0);
 
 // The branch of a law. Both sides are evaluated.
 [[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
-template <std::size_t N>
-[[gnu::always_inline]] inline Pack<N> select(const typename LaneTraits<Pack<N>>::Mask& condition, const Pack<N>& yes,
-                                             const Pack<N>& no) {
-  return Pack<N>(condition.bits ? yes.numbers : no.numbers);
+[[gnu::always_inline]] inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
+template <std::size_t N, class Real>
+[[gnu::always_inline]] inline Pack<N, Real> select(const typename LaneTraits<Pack<N, Real>>::Mask& condition,
+                                                   const Pack<N, Real>& yes, const Pack<N, Real>& no) {
+  return Pack<N, Real>(condition.bits ? yes.numbers : no.numbers);
 }
 template <class L>
 [[gnu::always_inline]] inline Vec<L> select(const typename LaneTraits<L>::Mask& condition, const Vec<L>& yes,
@@ -106,50 +137,87 @@ template <class L>
 [[gnu::always_inline]] inline double abs(double a) { return std::abs(a); }
 [[gnu::always_inline]] inline double min(double a, double b) { return b < a ? b : a; }
 [[gnu::always_inline]] inline double max(double a, double b) { return a < b ? b : a; }
+[[gnu::always_inline]] inline float sqrt(float a) { return std::sqrt(a); }
+[[gnu::always_inline]] inline float abs(float a) { return std::abs(a); }
+[[gnu::always_inline]] inline float min(float a, float b) { return b < a ? b : a; }
+[[gnu::always_inline]] inline float max(float a, float b) { return a < b ? b : a; }
 
-template <std::size_t N>
-[[gnu::always_inline]] inline Pack<N> sqrt(const Pack<N>& a) {
+template <std::size_t N, class Real>
+[[gnu::always_inline]] inline Pack<N, Real> sqrt(const Pack<N, Real>& a) {
+  using P = Pack<N, Real>;
 #if defined(__AVX512F__)
-  if constexpr (N == 8) return Pack<N>(_mm512_sqrt_pd(a.numbers));
+  if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_sqrt_pd(a.numbers));
 #endif
 #if defined(__AVX__)
-  if constexpr (N == 4) return Pack<N>(_mm256_sqrt_pd(a.numbers));
+  if constexpr (std::is_same_v<P, Pack<4>>) return P(_mm256_sqrt_pd(a.numbers));
+  if constexpr (std::is_same_v<P, Pack<8, float>>) return P(_mm256_sqrt_ps(a.numbers));
 #endif
 #if defined(__SSE2__)
-  if constexpr (N == 2) return Pack<N>(_mm_sqrt_pd(a.numbers));
+  if constexpr (std::is_same_v<P, Pack<2>>) return P(_mm_sqrt_pd(a.numbers));
+  if constexpr (std::is_same_v<P, Pack<4, float>>) return P(_mm_sqrt_ps(a.numbers));
 #endif
-  return Pack<N>([&](std::size_t k) { return std::sqrt(a.numbers[k]); });
+  return P([&](std::size_t k) { return std::sqrt(a.numbers[k]); });
 }
-template <std::size_t N>
-[[gnu::always_inline]] inline Pack<N> abs(const Pack<N>& a) {
-  using Bits = typename Pack<N>::Bits;
-  return Pack<N>((typename Pack<N>::Numbers)((Bits)a.numbers & (0x7fffffffffffffff - Bits{})));
+template <std::size_t N, class Real>
+[[gnu::always_inline]] inline Pack<N, Real> abs(const Pack<N, Real>& a) {
+  using Bits = typename Pack<N, Real>::Bits;
+  constexpr auto all_but_sign = std::numeric_limits<typename Pack<N, Real>::Bit>::max();
+  return Pack<N, Real>((typename Pack<N, Real>::Numbers)((Bits)a.numbers & (all_but_sign - Bits{})));
 }
-template <std::size_t N>
-[[gnu::always_inline]] inline Pack<N> min(const Pack<N>& a, const Pack<N>& b) {
+template <std::size_t N, class Real>
+[[gnu::always_inline]] inline Pack<N, Real> min(const Pack<N, Real>& a, const Pack<N, Real>& b) {
+  using P = Pack<N, Real>;
 #if defined(__AVX512F__)
-  if constexpr (N == 8) return Pack<N>(_mm512_min_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_min_pd(b.numbers, a.numbers));
 #endif
 #if defined(__AVX__)
-  if constexpr (N == 4) return Pack<N>(_mm256_min_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<4>>) return P(_mm256_min_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<8, float>>) return P(_mm256_min_ps(b.numbers, a.numbers));
 #endif
 #if defined(__SSE2__)
-  if constexpr (N == 2) return Pack<N>(_mm_min_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<2>>) return P(_mm_min_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<4, float>>) return P(_mm_min_ps(b.numbers, a.numbers));
 #endif
-  return Pack<N>(b.numbers < a.numbers ? b.numbers : a.numbers);
+  return P(b.numbers < a.numbers ? b.numbers : a.numbers);
 }
-template <std::size_t N>
-[[gnu::always_inline]] inline Pack<N> max(const Pack<N>& a, const Pack<N>& b) {
+template <std::size_t N, class Real>
+[[gnu::always_inline]] inline Pack<N, Real> max(const Pack<N, Real>& a, const Pack<N, Real>& b) {
+  using P = Pack<N, Real>;
 #if defined(__AVX512F__)
-  if constexpr (N == 8) return Pack<N>(_mm512_max_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_max_pd(b.numbers, a.numbers));
 #endif
 #if defined(__AVX__)
-  if constexpr (N == 4) return Pack<N>(_mm256_max_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<4>>) return P(_mm256_max_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<8, float>>) return P(_mm256_max_ps(b.numbers, a.numbers));
 #endif
 #if defined(__SSE2__)
-  if constexpr (N == 2) return Pack<N>(_mm_max_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<2>>) return P(_mm_max_pd(b.numbers, a.numbers));
+  if constexpr (std::is_same_v<P, Pack<4, float>>) return P(_mm_max_ps(b.numbers, a.numbers));
 #endif
-  return Pack<N>(a.numbers < b.numbers ? b.numbers : a.numbers);
+  return P(a.numbers < b.numbers ? b.numbers : a.numbers);
+}
+
+/// The same lanes in the precision of L, rounded to nearest if that is less.
+template <class L>
+[[gnu::always_inline]] inline L in_precision(const Wide<L>& lanes) {
+  if constexpr (std::is_same_v<L, Wide<L>>) return lanes;
+  else if constexpr (lane_width<L> == 1) return static_cast<L>(lanes);
+  else return L(__builtin_convertvector(lanes.numbers, typename L::Numbers));
+}
+template <class L>
+[[gnu::always_inline]] inline Vec<L> in_precision(const Vec<Wide<L>>& v) {
+  return {in_precision<L>(v.x), in_precision<L>(v.y), in_precision<L>(v.z)};
+}
+template <class L>
+[[gnu::always_inline]] inline auto mask_in_precision(const typename LaneTraits<Wide<L>>::Mask& mask) {
+  if constexpr (std::is_same_v<L, Wide<L>> || lane_width<L> == 1) return mask;
+  else return typename L::Mask{__builtin_convertvector(mask.bits, typename L::Bits)};
+}
+/// The same lanes in double precision, exactly.
+template <class L>
+[[gnu::always_inline]] inline Wide<L> widened(const L& lanes) {
+  if constexpr (std::is_same_v<L, Wide<L>> || lane_width<L> == 1) return lanes;
+  else return Wide<L>(__builtin_convertvector(lanes.numbers, typename Wide<L>::Numbers));
 }
 
 namespace detail {
@@ -157,15 +225,18 @@ namespace detail {
 [[gnu::always_inline]] inline std::uint32_t bits(bool mask) { return mask; }
 template <class Mask>
 [[gnu::always_inline]] inline std::uint32_t bits(const Mask& mask) {
-  constexpr std::size_t width = sizeof mask.bits / sizeof(long long);
+  constexpr std::size_t lane_bytes = sizeof mask.bits[0], width = sizeof mask.bits / lane_bytes;
 #if defined(__AVX512DQ__)
-  if constexpr (width == 8) return _mm512_movepi64_mask((__m512i)mask.bits);
+  if constexpr (lane_bytes == 8 && width == 8) return _mm512_movepi64_mask((__m512i)mask.bits);
 #endif
 #if defined(__AVX__)
-  if constexpr (width == 4) return static_cast<std::uint32_t>(_mm256_movemask_pd((__m256d)mask.bits));
+  if constexpr (lane_bytes == 8 && width == 4)
+    return static_cast<std::uint32_t>(_mm256_movemask_pd((__m256d)mask.bits));
+  if constexpr (lane_bytes == 4 && width == 8) return static_cast<std::uint32_t>(_mm256_movemask_ps((__m256)mask.bits));
 #endif
 #if defined(__SSE2__)
-  if constexpr (width == 2) return static_cast<std::uint32_t>(_mm_movemask_pd((__m128d)mask.bits));
+  if constexpr (lane_bytes == 8 && width == 2) return static_cast<std::uint32_t>(_mm_movemask_pd((__m128d)mask.bits));
+  if constexpr (lane_bytes == 4 && width == 4) return static_cast<std::uint32_t>(_mm_movemask_ps((__m128)mask.bits));
 #endif
   std::uint32_t set = 0;
   for (std::size_t k = 0; k < width; ++k) set |= (mask.bits[k] != 0 ? 1u : 0u) << k;
@@ -179,44 +250,46 @@ template <class Mask>
   c = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7), d = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
+/// Lanes in the precision of L from doubles in memory, and back.
 template <class L>
 [[gnu::always_inline]] inline L load_lanes(const double* from) {
-  if constexpr (lane_width<L> == 1) return *from;
+  if constexpr (lane_width<L> == 1) return static_cast<L>(*from);
   else {
-    typename L::Numbers numbers;
+    typename Wide<L>::Numbers numbers;
     std::memcpy(&numbers, from, sizeof numbers);
-    return L(numbers);
+    return in_precision<L>(Wide<L>(numbers));
   }
 }
 template <class L>
 [[gnu::always_inline]] inline void store_lanes(const L& value, double* to) {
-  std::memcpy(to, &value, sizeof value);
+  const Wide<L> wide = widened(value);
+  std::memcpy(to, &wide, sizeof wide);
 }
 
 /// Lane k is number(k).
 template <class L, class Number>
 [[gnu::always_inline]] inline L gather_lanes(Number number) {
-  if constexpr (lane_width<L> == 1) return number(0);
+  if constexpr (lane_width<L> == 1) return static_cast<L>(number(0));
   else return L([&](std::size_t k) { return number(k); });
 }
-[[gnu::always_inline]] inline double lane(double number, std::size_t) { return number; }
-template <std::size_t N>
-[[gnu::always_inline]] inline double lane(const Pack<N>& pack, std::size_t k) {
-  return pack[k];
+template <class L>
+[[gnu::always_inline]] inline double lane(const L& lanes, std::size_t k) {
+  if constexpr (lane_width<L> == 1) return lanes;
+  else return lanes[k];
 }
-[[gnu::always_inline]] inline double largest(double lane) { return lane; }
-template <std::size_t N>
-[[gnu::always_inline]] inline double largest(const Pack<N>& lanes) {
-  Pack<N> most = lanes;
-  for (std::size_t step = N / 2; step > 0; step /= 2)
-    most = max(most, Pack<N>([&](std::size_t k) { return most[(k + step) % N]; }));
-  return most[0];
+template <class L>
+[[gnu::always_inline]] inline double largest(const L& lanes) {
+  if constexpr (lane_width<L> == 1) return lanes;
+  else {
+    L most = lanes;
+    for (std::size_t step = lane_width<L> / 2; step > 0; step /= 2)
+      most = max(most, L([&](std::size_t k) { return most[(k + step) % lane_width<L>]; }));
+    return most[0];
+  }
 }
-
-[[gnu::always_inline]] inline double smallest(double lane) { return lane; }
-template <std::size_t N>
-[[gnu::always_inline]] inline double smallest(const Pack<N>& lanes) {
-  return -largest(-lanes);
+template <class L>
+[[gnu::always_inline]] inline double smallest(const L& lanes) {
+  return -largest(L(-lanes));
 }
 
 }  // namespace detail

@@ -24,7 +24,8 @@
 //   };
 //
 // evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
-// called for lanes that do not touch; their results are discarded, so that they only must not trap.
+// called for lanes that do not touch; their results are discarded, so that they only must not trap. L may be lanes of
+// floats: what a divisor is kept above is L(tiny<L>), and how near is the same, beyond_rounding<L>.
 // It is asked again at an instant that it has seen, with the memory that it left, dt = 0 and a turn that turns nothing,
 // and answers the same.
 #pragma once
@@ -242,11 +243,12 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
+  using W = Wide<L>;
   const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
   const double remembered_dt = batch.again ? 0 : batch.dt;
   const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
-  Loss<L> lost{L(0.0), L(0.0), L(0.0)};
+  Loss<W> lost{W(0.0), W(0.0), W(0.0)};
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
@@ -262,7 +264,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
     const std::uint32_t before = batch.touching[block];
     if (before == 0 && batch.asleep_until != nullptr && batch.closing < batch.asleep_until[block]) continue;
     std::uint32_t touching_now = 0;
-    L gap(std::numeric_limits<double>::max());
+    L gap(std::numeric_limits<float>::max());
     for (std::size_t sub = 0; sub < block_size; sub += width) {
       const std::size_t first = block * block_size + sub;
       const std::uint32_t* ia = batch.a + first;
@@ -272,17 +274,20 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const auto image = [&](std::size_t k) { return batch.image[first + k]; };
       const auto shift = [&](std::size_t k) { return image(k) * (sizeof(ImageShift) / sizeof(Row)); };
 
-      const RowLanes<L> pa = load_rows<L>(batch.position, index_a), pb = load_rows<L>(batch.position, index_b);
-      Vec<L> branch = pb.xyz() - pa.xyz();
+      // Whether two touch, and the small difference that the overlap is, is found in double precision.
+      const RowLanes<W> pa = load_rows<W>(batch.position, index_a), pb = load_rows<W>(batch.position, index_b);
+      Vec<W> between = pb.xyz() - pa.xyz();
       bool shifted = false;
       if constexpr (Periodic) {
         if (batch.image != nullptr)
           for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
-        if (shifted) branch = branch + load_rows<L>(&batch.shifts->position, shift).xyz();
+        if (shifted) between = between + load_rows<W>(&batch.shifts->position, shift).xyz();
       }
-      const L square = dot(branch, branch), reach = pa.w + pb.w;
-      const auto touches = square < reach * reach;
+      const W square = dot(between, between), radii = pa.w + pb.w;
+      const auto touches = mask_in_precision<L>(square < radii * radii);
       const std::uint32_t now = bits(touches);
+      const L reach = in_precision<L>(radii);
+      const auto length = [&] { return sqrt(in_precision<L>(square)); };
       double* const state_at = batch.state + block * fields * block_size + sub;
       touching_now |= now << sub;
       if (now == 0 || (waiting != nullptr && std::popcount(now) < few)) {
@@ -294,35 +299,50 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         }
         for (std::uint32_t here = now; here != 0; here &= here - 1)
           waiting->add(first + static_cast<std::size_t>(std::countr_zero(here)));
-        gap = min(gap, sqrt(square) - reach);
+        if constexpr (is_single<L>) gap = min(gap, in_precision<L>(square - radii * radii) / (length() + reach));
+        else gap = min(gap, length() - reach);
         continue;
       }
 
-      const RowLanes<L> va = load_rows<L>(batch.velocity, index_a), wa = load_rows<L>(batch.spin, index_a);
-      const RowLanes<L> vb = load_rows<L>(batch.velocity, index_b), wb = load_rows<L>(batch.spin, index_b);
-      Vec<L> velocity = vb.xyz() - va.xyz();
+      const RowLanes<W> va = load_rows<W>(batch.velocity, index_a), wa = load_rows<W>(batch.spin, index_a);
+      const RowLanes<W> vb = load_rows<W>(batch.velocity, index_b), wb = load_rows<W>(batch.spin, index_b);
+      Vec<W> apart = vb.xyz() - va.xyz();
       if constexpr (Periodic) {
-        if (shifted) velocity = velocity + load_rows<L>(&batch.shifts->velocity, shift).xyz();
+        if (shifted) apart = apart + load_rows<W>(&batch.shifts->velocity, shift).xyz();
       }
-      const L distance = max(sqrt(square), L(1e-300));
+      const Vec<L> branch = in_precision<L>(between), velocity = in_precision<L>(apart);
+      const L distance = max(length(), L(tiny<L>));
       const Vec<L> normal = (L(1.0) / distance) * branch;
-      const Vec<L> branch_before = branch - dt * velocity;
-      const L distance_before = max(sqrt(dot(branch_before, branch_before)), L(1e-300));
-      const Vec<L> normal_before = (L(1.0) / distance_before) * branch_before;
+      const Vec<L> way = dt * velocity, branch_before = branch - way;
+      const L distance_before = max(sqrt(dot(branch_before, branch_before)), L(tiny<L>));
+      L overlap, overlap_before;
+      Vec<L> normal_before, change_of_normal;
+      if constexpr (is_single<L>) {
+        // Small differences from what they are differences of, before it is rounded: by the difference of the squares.
+        const L longer = dot(way, branch + branch_before) / (distance + distance_before);
+        overlap = in_precision<L>(radii * radii - square) / (reach + distance), overlap_before = overlap + longer;
+        change_of_normal = (L(1.0) / distance_before) * (way - longer * normal);
+        normal_before = normal - change_of_normal;
+      } else {
+        overlap = reach - distance, overlap_before = reach - distance_before;
+        normal_before = (L(1.0) / distance_before) * branch_before;
+        change_of_normal = normal - normal_before;
+      }
 
       ContactPoint<L> at;
       at.normal = normal;
-      at.overlap = max(reach - distance, L(0.0));
-      at.radius_a = pa.w, at.radius_b = pb.w;
-      at.inverse_mass_a = va.w, at.inverse_mass_b = vb.w;
-      at.turn = make_turn(normal, normal_before, wa.xyz(), wb.xyz(), remembered_dt, turns);
+      at.overlap = max(overlap, L(0.0));
+      at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
+      at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
+      at.turn =
+          make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), remembered_dt, turns);
       // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips. The
       // spins act on the normal of the middle of the step, as the velocities do.
-      at.velocity = velocity - cross(pa.w * wa.xyz() + pb.w * wb.xyz(), L(0.5) * at.turn.bisector) +
-                    ((reach - distance_before) * per_dt) * (normal - normal_before);
-      at.spin = wb.xyz() - wa.xyz();
+      at.velocity = velocity - cross(in_precision<L>(pa.w * wa.xyz() + pb.w * wb.xyz()), L(0.5) * at.turn.bisector) +
+                    (overlap_before * per_dt) * change_of_normal;
+      at.spin = in_precision<L>(wb.xyz() - wa.xyz());
       at.dt = L(remembered_dt);
-      largest = max(largest, at.overlap / max(min(pa.w, pb.w), L(1e-300)));
+      largest = max(largest, at.overlap / max(min(at.radius_a, at.radius_b), L(tiny<L>)));
 
       State state{};
       for (std::size_t f = 0; f < fields; ++f) member<L>(state, f) = load_lanes<L>(state_at + f * block_size);
@@ -340,9 +360,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const L zero(0.0);
       if constexpr (Ledger) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
-        lost.friction = lost.friction + select(touches, own.friction, zero);
-        lost.rolling = lost.rolling + select(touches, own.rolling, zero);
-        lost.viscosity = lost.viscosity + select(touches, own.viscosity, zero);
+        lost.friction = lost.friction + widened(select(touches, own.friction, zero));
+        lost.rolling = lost.rolling + widened(select(touches, own.rolling, zero));
+        lost.viscosity = lost.viscosity + widened(select(touches, own.viscosity, zero));
       }
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
@@ -354,32 +374,33 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
       const Vec<L> lever = cross(normal, select(touches, response.shear, none));
       const Vec<L> moment = select(touches, response.moment, none);
-      const Vec<L> moment_a = -moment - (pa.w - half) * lever;
-      const Vec<L> moment_b = moment - (pb.w - half) * lever;
+      const Vec<L> moment_a = -moment - (at.radius_a - half) * lever;
+      const Vec<L> moment_b = moment - (at.radius_b - half) * lever;
       const L normal_force = select(touches, response.normal_force, zero);
-      const L overlap = select(touches, at.overlap, zero);
+      const L shown_overlap = select(touches, at.overlap, zero);
 
       BodySum* const sum = batch.sum;
       if (batch.row == nullptr) {
         // Padding, which belongs to no chunk, adds its zero to the last body.
         const auto own_b = [=](std::size_t k) { return std::min(ib[k], last_body); };
-        store_rows(force.x, force.y, force.z, zero, [=](std::size_t k, const Quad& force) {
+        store_rows(widened(force.x), widened(force.y), widened(force.z), W(0.0), [=](std::size_t k, const Quad& force) {
           sum[ia[k]].force -= force;
           sum[own_b(k)].force += force;
         });
-        store_rows(moment_b.x, moment_b.y, moment_b.z, zero,
+        store_rows(widened(moment_b.x), widened(moment_b.y), widened(moment_b.z), W(0.0),
                    [=](std::size_t k, const Quad& moment) { sum[own_b(k)].moment += moment; });
       } else {
         ContactRow* const row = batch.row + (first - first_row);
-        store_rows(force.x, force.y, force.z, normal_force, [=](std::size_t k, const Quad& force) {
-          store(force, row[k].force);
-          if (sum != nullptr) sum[ia[k]].force -= force;
-        });
-        store_rows(moment_b.x, moment_b.y, moment_b.z, overlap,
+        store_rows(widened(force.x), widened(force.y), widened(force.z), widened(normal_force),
+                   [=](std::size_t k, const Quad& force) {
+                     store(force, row[k].force);
+                     if (sum != nullptr) sum[ia[k]].force -= force;
+                   });
+        store_rows(widened(moment_b.x), widened(moment_b.y), widened(moment_b.z), widened(shown_overlap),
                    [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
       }
       if (sum != nullptr)
-        store_rows(moment_a.x, moment_a.y, moment_a.z, zero,
+        store_rows(widened(moment_a.x), widened(moment_a.y), widened(moment_a.z), W(0.0),
                    [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
@@ -496,7 +517,12 @@ class LawPlugin final : public ContactLaw {
   using State = typename Law::template State<double>;
 
  public:
-  void declare(Parameters& parameters) override { settings_.declare(parameters); }
+  void declare(Parameters& parameters) override {
+    settings_.declare(parameters);
+    parameters.add("precision", precision_)
+        .one_of({"double", "single"})
+        .doc("of the arithmetic of a contact between bodies; places, overlaps, walls, sums and memory stay double");
+  }
   void clear_materials() override { materials_.clear(), interfaces_.clear(); }
   void declare_material(const std::string& name, Parameters& parameters) override {
     materials_[name].declare(parameters);
@@ -523,14 +549,20 @@ class LawPlugin final : public ContactLaw {
     return fields;
   }
   LawLoop loop() const override {
-    LawLoop loop{.lanes = lane_width<Lane>, .parts = {}};
+    LawLoop loop{.lanes = single() ? lane_width<SingleLane> : lane_width<Lane>, .precision = precision_, .parts = {}};
     if constexpr (requires { Law::feature_names[0]; })
       for (unsigned bit = 0; bit < Law::feature_bits; ++bit)
         if ((features_ >> bit & 1) != 0) loop.parts.push_back(Law::feature_names[bit]);
     return loop;
   }
-  void evaluate_pairs(PairBatch& batch) const noexcept override { pairs<Lane>(batch); }
-  void evaluate_pairs_reference(PairBatch& batch) const noexcept override { pairs<double>(batch); }
+  void evaluate_pairs(PairBatch& batch) const noexcept override {
+    if (single()) pairs<SingleLane>(batch);
+    else pairs<Lane>(batch);
+  }
+  void evaluate_pairs_reference(PairBatch& batch) const noexcept override {
+    if (single()) pairs<float>(batch);
+    else pairs<double>(batch);
+  }
   void evaluate_walls(WallBatch& batch) const noexcept override {
     with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, wall_table_.data(), count_); });
   }
@@ -556,18 +588,23 @@ class LawPlugin final : public ContactLaw {
   template <class L>
   void pairs(PairBatch& batch) const {
     with_features([&]<unsigned F>() {
-      // The twin and mixtures take the general loop; the other two are worth their compilation.
+      // The twin and mixtures take the general loop; others are worth their compilation.
       const bool general = lane_width<L> == 1 || batch.material != nullptr;
       if (batch.losses != nullptr) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
       else if (general) detail::evaluate_pairs<Law, F, L, true, false, false>(batch, table_.data(), count_);
       else if constexpr (lane_width<L> > 1) {
-        if (batch.image == nullptr) detail::evaluate_pairs<Law, F, L, false, true, false>(batch, table_.data(), count_);
-        else detail::evaluate_pairs<Law, F, L, true, true, false>(batch, table_.data(), count_);
+        if (is_single<L> || batch.image != nullptr)
+          detail::evaluate_pairs<Law, F, L, true, true, false>(batch, table_.data(), count_);
+        else if constexpr (!is_single<L>)
+          detail::evaluate_pairs<Law, F, L, false, true, false>(batch, table_.data(), count_);
       }
     });
   }
 
+  bool single() const { return precision_ == "single"; }
+
   typename Law::Settings settings_;
+  std::string precision_ = "double";
   std::map<std::string, typename Law::Material> materials_;
   std::map<std::pair<std::string, std::string>, typename Law::Interface> interfaces_;
   std::vector<Pair> table_, wall_table_;  // of two bodies; of a body and a wall

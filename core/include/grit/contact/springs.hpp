@@ -8,7 +8,7 @@ namespace grit {
 /// `v`, shortened to the length `limit` (≥ 0) where it is longer.
 template <class L>
 [[gnu::always_inline]] inline Vec<L> shortened(const Vec<L>& v, const L& limit) {
-  return min(L(1.0), limit / max(sqrt(dot(v, v)), L(1e-300))) * v;
+  return min(L(1.0), limit / max(sqrt(dot(v, v)), L(tiny<L>))) * v;
 }
 
 /// A spring in the contact plane, of a force driven by at.velocity or of a moment driven by at.spin: what was `stored`
@@ -39,7 +39,7 @@ template <class L>
 /// cannot be moved.
 template <class L>
 [[gnu::always_inline]] inline L dashpot(const L& ratio, const L& stiffness, const L& inverse_mass) {
-  const L product = select(inverse_mass > L(0.0), stiffness / max(inverse_mass, L(1e-300)), L(0.0));
+  const L product = select(inverse_mass > L(0.0), stiffness / max(inverse_mass, L(tiny<L>)), L(0.0));
   return L(2.0) * ratio * sqrt(product);
 }
 
@@ -48,7 +48,7 @@ template <class L>
 template <class L>
 [[gnu::always_inline]] inline L slip_work(const Vec<L>& before, const Vec<L>& trial, const Vec<L>& now,
                                           const L& stiffness) {
-  return L(0.5) * dot(before + now, trial - now) / max(stiffness, L(1e-300));
+  return L(0.5) * dot(before + now, trial - now) / max(stiffness, L(tiny<L>));
 }
 
 /// What a dashpot beside the normal spring `elastic` [N] has dissipated [J]: its force over the mean velocity before
