@@ -220,6 +220,21 @@ TEST_P(GeometryContract, NearNeverMissesATouch) {
   EXPECT_GT(touching, samples / 100) << "too few samples touch";
 }
 
+TEST_P(GeometryContract, NearIsTrueOfALargerSphereAroundOneThatIsNear) {
+  int near = 0;
+  for (int i = 0; i < samples; ++i) {
+    const Sphere sphere = draw_sphere();
+    const Pose pose = i % 2 == 0 ? Pose{} : draw_pose();
+    const Vec3 centre = pose.to_world(sphere.centre);
+    if (!shape().near(pose, centre, sphere.radius)) continue;
+    ++near;
+    const Vec3 away = draw(Vec3::Constant(-1), Vec3::Constant(1)) * size();
+    EXPECT_TRUE(shape().near(pose, centre + away, (1 + 1e-12) * (away.norm() + sphere.radius)))
+        << centre.transpose() << ", away " << away.transpose();
+  }
+  EXPECT_GT(near, samples / 100) << "too few samples are near";
+}
+
 TEST_P(GeometryContract, NearIsWorthAsking) {
   int far = 0;
   const double reach = 1e-3 * size();

@@ -60,7 +60,9 @@ struct Dashpots {
   }
   /// An upper bound of the largest eigenvalue of the whole; nothing new if it can't be more than `so_far`.
   double largest(double so_far) const {
-    if (velocity.trace() + spin.trace() <= so_far) return so_far;
+    // The root of the sum of all squares, which costs far less than eigenvalues, is no less than the bound.
+    if (velocity.squaredNorm() + spin.squaredNorm() + 2 * both.squaredNorm() <= so_far * so_far && so_far >= 0)
+      return so_far;
     const double a = eigenvalue(velocity), b = eigenvalue(spin);
     return 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + both.squaredNorm());
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -64,8 +65,18 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
     chunk.candidate_start.assign(1, 0);
     const std::size_t first = c * chunk_bodies, last = std::min(count, first + chunk_bodies);
     const double skin = skins.of_chunk(c) + skins.of_walls();
+    // A sphere around all spheres of the chunk: most walls are far from most chunks.
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+    for (std::size_t i = first; i < last; ++i)
+      low = low.cwiseMin(xyz(bodies.position[i])), high = high.cwiseMax(xyz(bodies.position[i]));
+    const Vec3 middle = 0.5 * (low + high);
+    double around = 0;
+    for (std::size_t i = first; i < last; ++i)
+      around = std::max(around, (xyz(bodies.position[i]) - middle).norm() + bodies.position[i].w + skin);
+    around *= 1 + 1e-12;
     for (const WallSurface& wall : walls) {
-      for (std::size_t i = first; i < last; ++i)
+      const bool close = wall.geometry->near(wall.pose, middle, around);
+      for (std::size_t i = first; close && i < last; ++i)
         if (wall.geometry->near(wall.pose, xyz(bodies.position[i]), bodies.position[i].w + skin))
           chunk.candidate.push_back(static_cast<std::uint32_t>(i));
       chunk.candidate_start.push_back(static_cast<std::uint32_t>(chunk.candidate.size()));
