@@ -209,9 +209,8 @@ def wide(program, grains):
     return made(program, 'wide', grains, WIDE, 0.4)
 
 
-def filled_silo(program):
-    """The grains of bench/scenes/silo.json, at rest on its closed floor."""
-    fill = PACK.with_name('silo-fill.json')
-    digest = hashlib.sha256((fill.read_text() + fill.with_name('silo.json').read_text()).encode()).hexdigest()[:8]
-    folder = STORE / f'silo-{digest}'
-    return _run_once(program, fill, folder, {})
+def filled(program, scene):
+    """The grains of bench/scenes/SCENE.json, as SCENE-fill.json leaves them."""
+    own, fill = PACK.with_name(f'{scene}.json'), PACK.with_name(f'{scene}-fill.json')
+    digest = hashlib.sha256((fill.read_text() + own.read_text()).encode()).hexdigest()[:8]
+    return _run_once(program, fill, STORE / f'{scene}-{digest}', {})

@@ -101,11 +101,11 @@ class Bench(unittest.TestCase):
         scenes = sorted((BENCH / 'scenes').glob('*.json'))
         self.assertGreater(len(scenes), 5)
         boxes = ['/bodies/sand/grains/path', '/domain/high']
-        settings = {'dense-box': boxes, 'press': boxes, 'silo': boxes[:1]}
+        settings = {'dense-box': boxes, 'press': boxes, 'silo': boxes[:1], 'drum': boxes[:1]}
         for scene in scenes:
             words = []
             for name, pointers in settings.items():
-                if scene.stem.startswith(name) and scene.stem != 'silo-fill':
+                if scene.stem.startswith(name) and not scene.stem.endswith('-fill'):
                     values = {'/bodies/sand/grains/path': str(self.packing), '/domain/high': [4e-3] * 3}
                     for pointer in pointers:
                         words += ['--set', f'{pointer}={json.dumps(values[pointer])}']
