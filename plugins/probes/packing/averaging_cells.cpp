@@ -169,7 +169,8 @@ std::size_t CellAxis::strip(double x) const {
 }
 
 std::vector<CellAverage> averaging_cells(const World& world, const Region& box, int depth, double size, double step) {
-  if (!(box.volume() > 0)) return {};
+  // Without bodies there is no mean diameter, and so no size.
+  if (!(box.volume() > 0 && size > 0 && step > 0)) return {};
   const int a = depth == 0 ? 1 : 0, b = depth == 2 ? 1 : 2;
   const CellAxis first(box.low[a], box.high[a], size, step), second(box.low[b], box.high[b], size, step);
   Columns columns(world, box, depth, first, second);
