@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/packing.hpp"
+#include "support/verified.hpp"
 
 namespace grit::test {
 namespace {
@@ -52,6 +53,22 @@ TEST(PackingStress, OfContactsIsThatOfWalls) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(inside(axis, axis), 1e3) << "pressed";
   EXPECT_NEAR(inside(0, 1), inside(1, 0), 1e-9 * inside.norm()) << "moments balance";
   EXPECT_EQ(outside(0, 1), 0) << "smooth walls";
+}
+
+TEST(PackingStress, IsTheSameInSinglePrecision) {
+  const auto at_rest = [](const char* precision) {
+    Description d = boxed();
+    d["contacts"]["precision"] = precision;
+    Trial t(d);
+    t.step(10000);
+    EXPECT_LT(unrest(t.world()).unbalanced_force, 1e-4) << precision;
+    return mean_stress(t.world(), t.world().specimen());
+  };
+  const Mat3 exact = at_rest("double"), rounded = at_rest("single");
+  verify("mean stress after 10 000 steps in single precision against double, Pa", rounded.trace() / 3,
+         exact.trace() / 3, 1e-3);
+  EXPECT_LT((rounded - exact).norm(), 1e-3 * exact.norm());
+  EXPECT_GT((rounded - exact).norm(), 0) << "the arithmetic was double";
 }
 
 }  // namespace
