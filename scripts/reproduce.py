@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+"""Writes docs/reproduction.md: what tests of the reference work come to in grit, beside what they came to there.
+
+  reproduce.py [--run GLOB]… [--threads N] [--results FOLDER] [--grit FILE]
+
+docs/reproduction.json has the figures. Each description of sims/ whose finished run lies in FOLDER/TEST/NAME (results/reproduce
+unless given) gets its rows; the others are listed with the time they would take. --run runs those that GLOB fits and
+that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100.
+"""
+import argparse
+import fnmatch
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy
+
+ROOT = Path(__file__).resolve().parents[1]
+HEAD = '''# Reproduction
+Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's, of the same tests at full size
+(A. Grabowski, doctoral dissertation, Gdańsk 2024). `quick` descriptions are boxes a fifth to a tenth as large, with 2 000 to
+12 000 grains instead of 40 000 to 650 000, sheared faster: they are to show order and shape. Either is one sample of one packing.
+
+'''
+
+
+def samples(series, channel):
+    return numpy.asarray(series[channel])
+
+
+def found(series, row):
+    """The figure that a row asks for."""
+    of, how = samples(series, row['of']), row['how']
+    if how == 'maximum':
+        figure = of.max()
+    elif how == 'last':
+        figure = of[-1]
+    elif how == 'mean of the last quarter':
+        figure = of[-max(1, len(of) // 4):].mean()
+    elif how == 'at the start':  # the last sample before the test moves
+        figure = of[numpy.nonzero(samples(series, row['before']) <= 0)[0][-1]]
+    elif how == 'where largest':
+        figure = samples(series, row['against'])[of.argmax()]
+    else:
+        sys.exit(f'docs/reproduction.json: found "how": "{how}"; allowed are maximum, last, mean of the last quarter, at the start, '
+                 'where largest')
+    return row.get('scale', 1) * float(figure)
+
+
+def state(folder):
+    """What run.json says of a run, or None."""
+    try:
+        return json.loads((folder / 'run.json').read_text(encoding='utf-8'))
+    except (FileNotFoundError, json.JSONDecodeError):
+        return None
+
+
+def table(name, folder, run, rows):
+    yield f'## {name}\n'
+    yield (f"{run['bodies']:,} bodies, {run['steps']:,} steps, {run['wall_s'] / 60:.0f} min on {run['threads']} "
+           f"thread{'s' if run['threads'] > 1 else ''}, {run['particle_steps_per_s'] / 1e6:.1f} M particle-steps/s.\n")
+    if run['status'] != 'done':
+        yield f"It stopped before its end: {run['message']}\n"
+    yield '| figure | reference | grit | deviation | |'
+    yield '| --- | --- | --- | --- | --- |'
+    with h5py.File(folder / 'series.h5') as series:
+        for row in rows:
+            figure, reference, allowed = found(series, row), row['reference'], row['allowed']
+            verdict = 'within' if abs(figure - reference) <= allowed else 'outside'
+            yield f"| {row['figure']} | {reference:g} ± {allowed:g} | {figure:.3g} | {figure - reference:+.2g} | {verdict} |"
+    if notes := NOTES.get(name):
+        yield '\n' + notes
+    yield ''
+
+
+def estimate(program, description):
+    words = subprocess.run([program, 'check', description], capture_output=True, text=True, check=False).stdout
+    match = re.search(r'^estimated time.*$', words, re.M)
+    return match.group(0) if match else 'grit check refuses it'
+
+
+NOTES = {}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--run', action='append', default=[], metavar='GLOB')
+    parser.add_argument('--threads', default='2')
+    parser.add_argument('--results', default=ROOT / 'results' / 'reproduce', type=Path)
+    parser.add_argument('--grit', default=ROOT / 'build' / 'bin' / 'grit')
+    given = parser.parse_args()
+    reference = json.loads((ROOT / 'docs' / 'reproduction.json').read_text(encoding='utf-8'))
+    NOTES.update(reference['notes'])
+    names = list(dict.fromkeys(row['description'] for row in reference['figures']))
+
+    for name in names:
+        folder = given.results / name
+        if (state(folder) or {}).get('status') != 'done' and any(fnmatch.fnmatch(name, glob) for glob in given.run):
+            subprocess.run([given.grit, 'run', ROOT / 'sims' / f'{name}.json', '--out', folder, '--overwrite',
+                            '--threads', given.threads], check=False)
+
+    lines, missing = [], []
+    for name in names:
+        folder = given.results / name
+        run = state(folder)
+        if run is None or run['status'] == 'running' or not (folder / 'series.h5').is_file():
+            missing.append(f"| {name} | {estimate(given.grit, ROOT / 'sims' / f'{name}.json')} |")
+        else:
+            lines += table(name, folder, run, [row for row in reference['figures'] if row['description'] == name])
+    if missing:
+        lines += ['## Not run to their ends', '| description | by `grit check` |', '| --- | --- |', *missing]
+    (ROOT / 'docs' / 'reproduction.md').write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
+    print(f'docs/reproduction.md: {len(names) - len(missing)} of {len(names)} descriptions')
+
+
+main()
