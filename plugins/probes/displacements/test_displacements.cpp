@@ -1,0 +1,75 @@
+#include "displacements.hpp"
+
+#include <gmock/gmock.h>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+/// Bodies of diameter 0.01 from z = 0 to 1, a thousandth apart, that have gone by moved(z).
+template <class Moved>
+FakeWorld column(Moved moved) {
+  FakeWorld world;
+  for (int k = 0; k < 1000; ++k) {
+    const double z = (k + 0.5) / 1000;
+    world.add({0.5, 0.5, z}, 0.005);
+    world.displacement.push_back(moved(z));
+  }
+  world.whole = {Vec3::Zero(), Vec3::Ones()};
+  return world;
+}
+double figure(Displacements& probe, const FakeWorld& world, const std::string& channel) {
+  return channel_values(probe, world, channel).at(0);
+}
+
+TEST(Displacements, ALinearFieldHasOneGradientAndNoFluctuation) {
+  const FakeWorld world = column([](double z) { return Vec3(0.3 * z, -z, 7); });
+  Displacements probe;
+  probe.profile.spacing = 10;
+  probe.prepare(world);
+  const auto gradient = channel_values(probe, world, "gradient"), left = channel_values(probe, world, "fluctuation");
+  // Next to the ends the mean is one-sided.
+  for (std::size_t k = 2; k < 9; ++k) EXPECT_NEAR(gradient[k], 0.3, 1e-12) << k;
+  for (std::size_t k = 3; k < 8; ++k) EXPECT_NEAR(left[k], 0, 1e-12) << k;
+}
+
+TEST(Displacements, FluctuationsAreWhatTheMeanLeaves) {
+  int count = 0;
+  const FakeWorld world = column([&](double z) { return Vec3(0.3 * z, ++count % 2 == 0 ? 0.1 : -0.1, 0); });
+  Displacements probe;
+  probe.profile.spacing = 10, probe.profile.reach = 10;
+  probe.prepare(world);
+  const auto left = channel_values(probe, world, "fluctuation");
+  for (std::size_t k = 3; k < 8; ++k) EXPECT_NEAR(left[k], 0.1, 1e-4) << k;
+  const auto fields = probe.fields(world);
+  EXPECT_NEAR(std::abs(fields.at(2).values.at(3 * 500 + 1)), 0.1, 1e-4);
+  EXPECT_NEAR(fields.at(2).values.at(3 * 500), 0, 1e-12);
+  EXPECT_EQ(fields.at(1).values.at(3 * 500), world.displacement[500].x());
+}
+
+// u = tanh((z − c) / w) shears by sech² ((z − c) / w), whose inflections are where tanh² = 1/3.
+TEST(Displacements, ZoneLiesBetweenTheInflectionsOfTheShear) {
+  const double centre = 0.55, width = 0.1;
+  const FakeWorld world = column([=](double z) { return Vec3(-std::tanh((z - centre) / width), 0, 0); });
+  Displacements probe;
+  probe.profile.reach = 1, probe.profile.spacing = 0.5;
+  probe.prepare(world);
+  const double half = width * std::atanh(std::sqrt(1.0 / 3));
+  EXPECT_NEAR(figure(probe, world, "zone_low"), centre - half, 2e-2 * half);
+  EXPECT_NEAR(figure(probe, world, "zone_high"), centre + half, 2e-2 * half);
+  EXPECT_NEAR(figure(probe, world, "zone_thickness"), 2 * half, 2e-2 * half);
+}
+
+INSTANTIATE_TEST_SUITE_P(Displacements, ProbeContract,
+                         testing::Values(ProbeCase{"lattice", [] { return std::make_shared<Displacements>(); },
+                                                   [] {
+                                                     FakeWorld world = lattice_world(6, 4, 8);
+                                                     for (const Row& x : world.position)
+                                                       world.displacement.push_back({x.z * x.z, 0.1 * x.x, 0});
+                                                     return world;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,29 @@
+// How far bodies have turned, and the shear zone that shows. See README.md.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../profile.hpp"
+#include "grit/probe.hpp"
+
+namespace grit {
+
+class Rotations final : public Probe {
+ public:
+  std::string about = "y";
+  Profile profile;
+
+  void declare(Parameters& parameters) override;
+  StateRequest needs() const override { return BodyState::rotation; }
+  void prepare(const World& world) override { profile.prepare(world); }
+  std::vector<Channel> channels() const override;
+  void sample(const World& world, std::span<const std::span<double>> values) override;
+  std::vector<Field> fields(const World& world) override;
+
+ private:
+  double turned(const World& world, std::size_t body) const { return world.rotations()[body][about[0] - 'x']; }
+};
+
+}  // namespace grit

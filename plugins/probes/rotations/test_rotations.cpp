@@ -1,0 +1,94 @@
+#include "rotations.hpp"
+
+#include <gmock/gmock.h>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::Pointwise;
+
+/// Columns of bodies of diameter 0.01 from z = 0 to 1, a thousandth apart, whose rotation about y is turn(z).
+template <class Turn>
+FakeWorld column(Turn turn) {
+  FakeWorld world;
+  for (int k = 0; k < 1000; ++k) {
+    const double z = (k + 0.5) / 1000;
+    world.add({0.5, 0.5, z}, 0.005);
+    world.rotation.push_back({100, turn(z), -100});
+  }
+  world.whole = {Vec3::Zero(), Vec3::Ones()};
+  return world;
+}
+double figure(Rotations& probe, const FakeWorld& world, const std::string& channel) {
+  return channel_values(probe, world, channel).at(0);
+}
+
+TEST(Rotations, ProfileOfALinearOneIsItself) {
+  const FakeWorld world = column([](double z) { return 3 * z - 1; });
+  Rotations probe;
+  probe.profile.spacing = 10;
+  probe.prepare(world);
+  ASSERT_EQ(probe.profile.places(), 11u);
+  const auto place = channel_values(probe, world, "place"), profile = channel_values(probe, world, "profile");
+  for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(place[k], 0.1 * static_cast<double>(k), 1e-15);
+  // Bodies lie on both sides of all places but the ends.
+  for (std::size_t k = 1; k < 10; ++k) EXPECT_NEAR(profile[k], 3 * place[k] - 1, 1e-12) << k;
+  EXPECT_NEAR(figure(probe, world, "mean"), 0.5, 1e-12);
+  EXPECT_NEAR(figure(probe, world, "mean_size"), (1.0 / 3 * 0.5 + 2.0 / 3 * 1), 1e-3);
+}
+
+// A bell exp(−(z − c)² / 2σ²) has its inflections at c ± σ; the probe's own triangle of reach h, whose variance is
+// h²/6, widens it to √(σ² + h²/6).
+TEST(Rotations, ZoneLiesBetweenTheInflectionsOfABell) {
+  for (const double sign : {1.0, -1.0}) {
+    const double centre = 0.43, sigma = 0.1, reach = 0.04;
+    const FakeWorld world =
+        column([=](double z) { return sign * std::exp(-0.5 * (z - centre) * (z - centre) / (sigma * sigma)); });
+    Rotations probe;
+    probe.profile.reach = 4;
+    probe.prepare(world);
+    const double widened = std::sqrt(sigma * sigma + reach * reach / 6);
+    EXPECT_NEAR(figure(probe, world, "zone_low"), centre - widened, 3e-3 * widened);
+    EXPECT_NEAR(figure(probe, world, "zone_high"), centre + widened, 3e-3 * widened);
+    EXPECT_NEAR(figure(probe, world, "zone_thickness"), 2 * widened, 3e-3 * 2 * widened);
+    EXPECT_NEAR(figure(probe, world, "zone_diameters"), 2 * widened / world.mean_diameter(), 0.1 * widened / 0.01);
+  }
+}
+
+TEST(Rotations, ZoneAtASideEndsThere) {
+  const double sigma = 0.1;
+  const FakeWorld world = column([=](double z) { return std::exp(-0.5 * z * z / (sigma * sigma)); });
+  Rotations probe;
+  probe.prepare(world);
+  EXPECT_EQ(figure(probe, world, "zone_low"), 0);
+  EXPECT_NEAR(figure(probe, world, "zone_high"), sigma, 1e-2 * sigma);
+}
+
+TEST(Rotations, AboutTheAxisThatIsAskedForAndBodyByBody) {
+  FakeWorld world;
+  world.add({0, 0, 0.2}, 0.1), world.add({0, 0, 0.8}, 0.1);
+  world.rotation = {{1, 2, 3}, {-4, 5, 6}};
+  Rotations probe;
+  probe.about = "x";
+  probe.prepare(world);
+  EXPECT_THAT(channel_values(probe, world, "mean"), ElementsAre(-1.5));
+  EXPECT_THAT(channel_values(probe, world, "mean_size"), ElementsAre(2.5));
+  EXPECT_THAT(probe.fields(world).at(1).values, ElementsAre(1, -4));
+}
+
+INSTANTIATE_TEST_SUITE_P(Rotations, ProbeContract,
+                         testing::Values(ProbeCase{"lattice", [] { return std::make_shared<Rotations>(); },
+                                                   [] {
+                                                     FakeWorld world = lattice_world(6, 4, 8);
+                                                     for (const Row& x : world.position)
+                                                       world.rotation.push_back({0.1, 100 * x.z, 0});
+                                                     return world;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit
