@@ -136,6 +136,10 @@ TEST(Departures, EndAStage) {
   EXPECT_FALSE(is_met(condition, trial.world(), start));
   while (trial.world().departures().empty() && trial.world().time() < 0.2) trial.step();
   EXPECT_TRUE(is_met(condition, trial.world(), start));
+  // A later stage's way is from what had left before.
+  std::get<LeftCondition>(condition.is.value()).share = 0.5;
+  EXPECT_NEAR(progress(condition, trial.world(), start).value(), 0.25 / 0.5, 1e-12);
+  EXPECT_NEAR(progress(condition, trial.world(), {.share_left = 0.2}).value(), 0.05 / 0.3, 1e-12);
 }
 
 TEST(Departures, ThroughAnotherSideAreAnError) {

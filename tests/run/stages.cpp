@@ -165,6 +165,21 @@ TEST(Stage, TellsHowFarItIs) {
   EXPECT_NEAR(*progress(scene.description->stages[0].until, world, {}), 0.2, 1e-12);
 }
 
+TEST(Stage, DoesNotTellHowFarItIsOnceItWaitsForRestAlone) {
+  const Description rest = {{"type", "unbalanced-force"}, {"below", 1e-3}};
+  const auto far = [&](const Description& until, int steps_gone) {
+    const Scene scene = scene_of(lone(until));
+    Simulation world(*scene.description, make_bodies(*scene.description, {}), 1);
+    world.find_forces();
+    for (int i = 0; i < steps_gone; ++i) world.advance(), world.find_forces();
+    return progress(scene.description->stages[0].until, world, {});
+  };
+  const Description settled = {{"type", "all"}, {"of", {steps(20), rest}}};
+  EXPECT_NEAR(far(settled, 10).value(), 0.5, 1e-12);
+  EXPECT_FALSE(far(settled, 20).has_value());
+  EXPECT_NEAR(far({{"type", "any"}, {"of", {settled, steps(40)}}}, 30).value(), 0.75, 1e-12);
+}
+
 TEST(Stage, ThatNeverEndsFailsLoudly) {
   Description d = lone(steps(1000000), 0.9995e-3);
   d["stages"].push_back(stage("never begun", steps(1)));

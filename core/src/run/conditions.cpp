@@ -77,12 +77,16 @@ struct Progress {
   std::optional<double> operator()(const DisplacementCondition& c) const {
     return stage_travel(c, simulation) / c.value;
   }
-  std::optional<double> operator()(const LeftCondition& c) const { return simulation.share_left() / c.share; }
+  std::optional<double> operator()(const LeftCondition& c) const {
+    return (simulation.share_left() - start.share_left) / std::max(c.share - start.share_left, 1e-300);
+  }
   std::optional<double> operator()(const AllCondition& c) const {
     std::optional<double> least;
+    bool all_tell = true;
     for (const auto& one : c.of)
       if (const auto p = progress(*one, simulation, start)) least = least ? std::min(*least, *p) : p;
-    return least;
+      else all_tell = false;
+    return all_tell || (least && *least < 1) ? least : std::nullopt;
   }
   std::optional<double> operator()(const AnyCondition& c) const {
     std::optional<double> most;

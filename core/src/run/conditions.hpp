@@ -13,6 +13,7 @@ namespace grit {
 struct StageStart {
   double time = 0;
   std::uint64_t step = 0;
+  double share_left = 0;
 };
 
 /// Conditions that need a pass over all bodies or contacts are looked at every so many steps.
@@ -24,7 +25,8 @@ bool is_met(const Condition& condition, const Simulation& simulation, const Stag
 /// The same without looking at forces: false where the condition surely does not hold.
 bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
 
-/// How far on the way the stage is, 0 … 1, where the condition tells.
+/// How far on the way the stage is, 0 … 1, where the condition tells: not where all that can be told has come true and
+/// it waits for something else.
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start);
 
 }  // namespace grit

@@ -120,7 +120,7 @@ class Run {
   void stage(std::size_t index) {
     const StagePlan& plan = scene_.stages[index];
     const StageDescription& stage = scene_.description->stages[index];
-    start_ = {simulation_.time(), simulation_.step()};
+    start_ = {simulation_.time(), simulation_.step(), simulation_.share_left()};
     simulation_.begin_stage(stage.name, *plan.start);
     for (Observer& observer : observers_) observer.schedule().restart(simulation_);
     frames_.restart(simulation_);
