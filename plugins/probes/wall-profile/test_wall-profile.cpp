@@ -1,0 +1,121 @@
+#include "wall-profile.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+using testing::DoubleEq;
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pointwise;
+
+/// Walls at x = 0 and x = 1, and a floor; a specimen from z = 0 to 2.
+FakeWorld silo() {
+  FakeWorld world;
+  world.wall = {still_wall("left"), still_wall("right"), still_wall("floor")};
+  world.wall[0].normal = Vec3::UnitX(), world.wall[1].normal = -Vec3::UnitX(), world.wall[2].normal = Vec3::UnitZ();
+  world.whole = {Vec3::Zero(), {1, 0.5, 2}};
+  return world;
+}
+/// A grain at a height touches left (0) or right (1), presses into it and hangs on to it.
+void touch(FakeWorld& world, std::uint32_t side, double z, double presses, double hangs) {
+  const double out = side == 0 ? -1 : 1;
+  const auto body = world.add({side == 0 ? 0.1 : 0.9, 0.25, z}, 0.1);
+  world.touch_wall(body, side, {0.1 * out, 0, 0}, {presses * out, 0, -hangs});
+}
+
+WallProfile made(std::int64_t strips) {
+  WallProfile probe;
+  probe.walls = {"left", "right"}, probe.width = 1, probe.strips = strips;
+  return probe;
+}
+
+TEST(WallProfile, IsForceOverAreaStripByStrip) {
+  FakeWorld world = silo();
+  touch(world, 0, 0.1, 3, 1), touch(world, 1, 1.9, 7, -1);
+  // On the flank of a groove, below its centre.
+  world.touch_wall(world.add({0.9, 0.25, 0.55}, 0.1), 1, {0.06, 0, -0.08}, {5, 0, -2});
+  world.touch_wall(world.add({0.5, 0.25, 0.1}, 0.1), 2, {0, 0, -0.1}, {0, 0, -100});
+  WallProfile probe = made(4);
+  probe.width = 2;
+  probe.prepare(world);
+  EXPECT_THAT(channel_values(probe, world, "place"), ElementsAre(0.25, 0.75, 1.25, 1.75));
+  EXPECT_THAT(channel_values(probe, world, "normal_stress"), ElementsAre(8, 0, 0, 7));
+  EXPECT_THAT(channel_values(probe, world, "shear_stress"), ElementsAre(3, 0, 0, -1));
+  EXPECT_THAT(channel_values(probe, world, "normal_force"), ElementsAre(15));
+  EXPECT_THAT(channel_values(probe, world, "shear_force"), ElementsAre(2));
+  EXPECT_THAT(channel_values(probe, world, "friction_angle"),
+              ElementsAre(DoubleEq(std::atan(2.0 / 15) * 180 / std::numbers::pi)));
+}
+
+TEST(WallProfile, OfSandThatPressesWithItsDepthIsALine) {
+  FakeWorld world = silo();
+  constexpr int grains = 2000;
+  const auto stress = [](double z) { return 1e3 * (2 - z); };
+  for (int k = 0; k < grains; ++k) {
+    const double z = (k + 0.5) * 2 / grains;
+    touch(world, static_cast<std::uint32_t>(k % 2), z, stress(z) * 2 / grains, 0.3 * stress(z) * 2 / grains);
+  }
+  WallProfile probe = made(20);
+  probe.prepare(world);
+  const auto normal = channel_values(probe, world, "normal_stress"),
+             shear = channel_values(probe, world, "shear_stress");
+  for (std::size_t s = 0; s < 20; ++s) {
+    const double z = 0.1 * (static_cast<double>(s) + 0.5);
+    EXPECT_NEAR(normal[s], stress(z), 1e-9) << s;
+    EXPECT_NEAR(shear[s], 0.3 * stress(z), 1e-9) << s;
+  }
+  EXPECT_THAT(channel_values(probe, world, "friction_angle"),
+              ElementsAre(DoubleNear(std::atan(0.3) * 180 / std::numbers::pi, 1e-12)));
+}
+
+TEST(WallProfile, CountsTouchesBeyondItsEndsInTheResultantsAlone) {
+  FakeWorld world = silo();
+  touch(world, 0, 0.3, 3, 1), touch(world, 0, 1.5, 5, 1);
+  WallProfile probe = made(1);
+  probe.low = 1, probe.high = 2;
+  probe.prepare(world);
+  EXPECT_THAT(channel_values(probe, world, "normal_stress"), ElementsAre(5));
+  EXPECT_THAT(channel_values(probe, world, "normal_force"), ElementsAre(8));
+}
+
+std::string refusal(WallProfile probe, const FakeWorld& world) {
+  try {
+    probe.prepare(world);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(WallProfile, RefusesWallsThatDoNotStand) {
+  WallProfile probe = made(4);
+  probe.walls = {"left", "flor"};
+  EXPECT_THAT(refusal(probe, silo()), HasSubstr("probe wall-profile, /walls: there is no wall \"flor\"; the nearest"));
+  probe.walls = {"floor"};
+  EXPECT_EQ(refusal(probe, silo()),
+            "probe wall-profile, /walls: wall \"floor\" does not stand along z; name another, or another axis");
+  FakeWorld round = silo();
+  round.wall[0].normal = Vec3::Zero();
+  EXPECT_THAT(refusal(made(4), round), HasSubstr("wall \"left\" has no normal of its own"));
+}
+
+INSTANTIATE_TEST_SUITE_P(WallProfile, ProbeContract,
+                         testing::Values(ProbeCase{"silo", [] { return std::make_shared<WallProfile>(made(7)); },
+                                                   [] {
+                                                     FakeWorld world = silo();
+                                                     for (int k = 0; k < 30; ++k)
+                                                       touch(world, static_cast<std::uint32_t>(k % 2), 0.06 * k + 0.1,
+                                                             1 + 0.1 * k, 0.5);
+                                                     return world;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,86 @@
+#include "wall-profile.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "../specimen.hpp"
+#include "../wall_names.hpp"
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+void WallProfile::declare(Parameters& p) {
+  p.add("walls", walls).required().entries(1).doc("names of walls that stand upright; their forces are added up");
+  p.add("along", along).one_of({"x", "y", "z"}).doc("axis of the height");
+  p.add("width", width).unit("m").required().above(0).doc("of all walls together, across their height");
+  p.add("low", low).unit("m").doc("where the profile begins; left out: at the specimen's lower side");
+  p.add("high", high).unit("m").doc("where it ends; left out: at the specimen's upper side");
+  p.add("strips", strips).at_least(1).at_most(10000).doc("of equal height, of the profile");
+  p.check(
+      [this](const Complain& complain) {
+        if (low && high && !(*low < *high))
+          complain("high", std::to_string(*high) + " m", "above low, " + std::to_string(*low) + " m");
+      },
+      {"low", "high"});
+}
+
+void WallProfile::prepare(const World& world) {
+  const std::string who = "probe wall-profile, /walls";
+  chosen_.assign(world.walls().size(), false);
+  for (const auto& name : walls) {
+    const std::size_t index = wall_index(world, name, who);
+    const Vec3& normal = world.walls()[index].normal;
+    if (!(normal.norm() > 0.5))
+      throw Error(who + ": wall \"" + name + "\" has no normal of its own; name flat or grooved walls");
+    if (!(std::abs(normal[axis()]) < 1e-6))
+      throw Error(who + ": wall \"" + name + "\" does not stand along " + along + "; name another, or another axis");
+    chosen_[index] = true;
+  }
+}
+
+std::vector<Channel> WallProfile::channels() const {
+  const std::vector<std::size_t> each{static_cast<std::size_t>(strips)};
+  return {
+      {"place", "m", "middle of each strip, along " + along, each},
+      {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each},
+      {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on", each},
+      {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
+      {"shear_force", "N", "against " + along + ", of all touches", {}},
+      {"friction_angle", "degree", "mobilised: atan of the latter over the former; 0 without touches", {}}};
+}
+
+WallProfile::Ends WallProfile::ends(const World& world) const {
+  const Region box = specimen_box(world);
+  return {low.value_or(box.low[axis()]), high.value_or(box.high[axis()])};
+}
+
+void WallProfile::sample(const World& world, std::span<const std::span<double>> values) {
+  const Ends end = ends(world);
+  const double height = (end.high - end.low) / static_cast<double>(strips);
+  for (std::size_t s = 0; s < static_cast<std::size_t>(strips); ++s)
+    values[0][s] = end.low + (static_cast<double>(s) + 0.5) * height, values[1][s] = values[2][s] = 0;
+  double normal = 0, shear = 0;
+  for (const Contact& contact : world.contacts()) {
+    if (!contact.with_wall || !chosen_[contact.b]) continue;
+    const double pressing = -contact.force.dot(world.walls()[contact.b].normal), hanging = -contact.force[axis()];
+    normal += pressing, shear += hanging;
+    const double place = xyz(world.positions()[contact.a])[axis()] + contact.branch[axis()];
+    if (!(place >= end.low && place < end.high)) continue;
+    const auto strip =
+        static_cast<std::size_t>(std::min(std::floor((place - end.low) / height), static_cast<double>(strips - 1)));
+    values[1][strip] += pressing / (width * height), values[2][strip] += hanging / (width * height);
+  }
+  values[3][0] = normal, values[4][0] = shear;
+  values[5][0] = normal == 0 && shear == 0 ? 0 : std::atan2(shear, normal) * 180 / std::numbers::pi;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "probe",
+                                     .name = "wall-profile",
+                                     .version = "1.0.0",
+                                     .doc = "normal and shear stress on walls by height",
+                                     .make_probe = []() -> grit::Probe* { return new grit::WallProfile; }};
+  return &info;
+}
