@@ -20,20 +20,16 @@ import numpy
 
 ROOT = Path(__file__).resolve().parents[1]
 HEAD = '''# Reproduction
-Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's, of the same tests at full size
-(A. Grabowski, doctoral dissertation, Gdańsk 2024). `quick` descriptions are boxes a fifth to a tenth as large, with 2 000 to
-12 000 grains instead of 40 000 to 650 000, sheared faster: they are to show order and shape. Either is one sample of one packing.
+Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's (A. Grabowski, doctoral dissertation,
+Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, sheared faster, to show order and
+shape, and differ as the notes below them say. Either is one sample of one packing.
 
 '''
 
 
-def samples(series, channel):
-    return numpy.asarray(series[channel])
-
-
 def found(series, row):
     """The figure that a row asks for."""
-    of, how = samples(series, row['of']), row['how']
+    of, how = series[row['of']][:], row['how']
     if how == 'maximum':
         figure = of.max()
     elif how == 'last':
@@ -41,9 +37,9 @@ def found(series, row):
     elif how == 'mean of the last quarter':
         figure = of[-max(1, len(of) // 4):].mean()
     elif how == 'at the start':  # the last sample before the test moves
-        figure = of[numpy.nonzero(samples(series, row['before']) <= 0)[0][-1]]
+        figure = of[numpy.nonzero(series[row['before']][:] <= 0)[0][-1]]
     elif how == 'where largest':
-        figure = samples(series, row['against'])[of.argmax()]
+        figure = series[row['against']][of.argmax()]
     else:
         sys.exit(f'docs/reproduction.json: found "how": "{how}"; allowed are maximum, last, mean of the last quarter, at the start, '
                  'where largest')
@@ -58,12 +54,10 @@ def state(folder):
         return None
 
 
-def table(name, folder, run, rows):
+def table(name, folder, run, rows, note):
     yield f'## {name}\n'
-    yield (f"{run['bodies']:,} bodies, {run['steps']:,} steps, {run['wall_s'] / 60:.0f} min on {run['threads']} "
+    yield (f"{run['bodies']:,} bodies, {run['steps']:,} steps, {run['wall_s']:.0f} s on {run['threads']} "
            f"thread{'s' if run['threads'] > 1 else ''}, {run['particle_steps_per_s'] / 1e6:.1f} M particle-steps/s.\n")
-    if run['status'] != 'done':
-        yield f"It stopped before its end: {run['message']}\n"
     yield '| figure | reference | grit | deviation | |'
     yield '| --- | --- | --- | --- | --- |'
     with h5py.File(folder / 'series.h5') as series:
@@ -71,8 +65,8 @@ def table(name, folder, run, rows):
             figure, reference, allowed = found(series, row), row['reference'], row['allowed']
             verdict = 'within' if abs(figure - reference) <= allowed else 'outside'
             yield f"| {row['figure']} | {reference:g} ± {allowed:g} | {figure:.3g} | {figure - reference:+.2g} | {verdict} |"
-    if notes := NOTES.get(name):
-        yield '\n' + notes
+    if note:
+        yield '\n' + note
     yield ''
 
 
@@ -80,9 +74,6 @@ def estimate(program, description):
     words = subprocess.run([program, 'check', description], capture_output=True, text=True, check=False).stdout
     match = re.search(r'^estimated time.*$', words, re.M)
     return match.group(0) if match else 'grit check refuses it'
-
-
-NOTES = {}
 
 
 def main():
@@ -93,7 +84,6 @@ def main():
     parser.add_argument('--grit', default=ROOT / 'build' / 'bin' / 'grit')
     given = parser.parse_args()
     reference = json.loads((ROOT / 'docs' / 'reproduction.json').read_text(encoding='utf-8'))
-    NOTES.update(reference['notes'])
     names = list(dict.fromkeys(row['description'] for row in reference['figures']))
 
     for name in names:
@@ -106,12 +96,14 @@ def main():
     for name in names:
         folder = given.results / name
         run = state(folder)
-        if run is None or run['status'] == 'running' or not (folder / 'series.h5').is_file():
-            missing.append(f"| {name} | {estimate(given.grit, ROOT / 'sims' / f'{name}.json')} |")
+        if run is None or run['status'] != 'done':
+            stopped = run['message'] if run and run['status'] == 'failed' else ''
+            missing.append(f"| {name} | {estimate(given.grit, ROOT / 'sims' / f'{name}.json')} | {stopped} |")
         else:
-            lines += table(name, folder, run, [row for row in reference['figures'] if row['description'] == name])
+            lines += table(name, folder, run, [row for row in reference['figures'] if row['description'] == name],
+                           reference['notes'].get(name))
     if missing:
-        lines += ['## Not run to their ends', '| description | by `grit check` |', '| --- | --- |', *missing]
+        lines += ['## Not run to their ends', '| description | by `grit check` | |', '| --- | --- | --- |', *missing]
     (ROOT / 'docs' / 'reproduction.md').write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
     print(f'docs/reproduction.md: {len(names) - len(missing)} of {len(names)} descriptions')
 

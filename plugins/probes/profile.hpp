@@ -4,110 +4,144 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "grit/error.hpp"
 #include "grit/probe.hpp"
 #include "specimen.hpp"
 
 namespace grit {
 
-/// Means of what bodies have at places from one side of the specimen to the other.
+/// What bodies have, at places from one side of the specimen to the other.
 class Profile {
  public:
   std::string across = "z";
-  double spacing = 1;  ///< of the places, mean diameters
-  double reach = 2;    ///< over which bodies count, less and less, mean diameters
+  std::int64_t places = 40;
+  double reach = 2;  ///< over which bodies count, less and less, mean diameters
 
   void declare(Parameters& p) {
     p.add("across", across)
         .one_of({"x", "y", "z"})
-        .doc("axis of the profile, from one side of the specimen to the other");
-    p.add("spacing", spacing).at_least(0.1).doc("of the places of the profile, over the mean diameter");
+        .doc("axis of the profile, from one side of the specimen to the other; not a periodic one");
+    p.add("places", places).at_least(3).at_most(100000).doc("of the profile, evenly spaced, the sides included");
     p.add("reach", reach)
         .at_least(0.1)
         .doc("over which a body counts, less and less with its distance from a place, over the mean diameter");
   }
-  /// Chooses how many places there are; the same from then on, as the specimen is compressed or dilates.
-  void prepare(const World& world) {
-    const auto [low, high] = ends(world);
-    const double step = spacing * world.mean_diameter();
-    const double steps = step > 0 && std::isfinite((high - low) / step) ? std::floor((high - low) / step) : 0;
-    places_ = 2 + static_cast<std::size_t>(std::clamp(steps, 1.0, 1e6)) - 1;
+  /// Throws Error, beginning with `who`, where there are no sides.
+  void prepare(const World& world, const std::string& who) const {
+    if (world.cell().periodic[static_cast<std::size_t>(axis())])
+      throw Error(who + ", /across: the domain is periodic along " + across +
+                  ", which has no sides; name another axis");
   }
-  std::size_t places() const { return places_; }
 
   struct Nodes {
     double first, step;  ///< m
     double at(std::size_t k) const { return first + static_cast<double>(k) * step; }
   };
   Nodes nodes(const World& world) const {
-    const auto [low, high] = ends(world);
-    return {low, (high - low) / static_cast<double>(places_ - 1)};
+    const Region box = specimen_box(world);
+    return {box.low[axis()], (box.high[axis()] - box.low[axis()]) / static_cast<double>(places - 1)};
   }
-  /// Of each place, the mean of value(body), weighted by 1 − distance / reach; 0 where no body counts.
+  /// Of each place: the line value + slope · (x − place) that fits value(body) best, bodies weighted by 1 − distance /
+  /// reach. NaN where no body counts, or too few to tell a slope.
+  struct Lines {
+    std::vector<double> value, slope;
+  };
   template <class Value>
-  std::vector<double> mean(const World& world, Value value) const {
-    std::vector<double> sum(places_, 0.0), weight(places_, 0.0);
+  Lines fit(const World& world, Value value) const {
+    struct Sums {
+      double weight = 0, x = 0, xx = 0, f = 0, xf = 0;
+    };
+    std::vector<Sums> sums(static_cast<std::size_t>(places));
     const Nodes node = nodes(world);
-    const double width = reach * world.mean_diameter();
-    const int axis = across[0] - 'x';
+    const double width = reach * world.mean_diameter(), last_place = static_cast<double>(places - 1);
     for (std::size_t i = 0; i < world.positions().size() && node.step > 0 && width > 0; ++i) {
-      const double x = xyz(world.positions()[i])[axis];
-      const auto index = [&](double place) {
-        return static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(places_ - 1)));
-      };
-      const std::size_t last = index((x + width - node.first) / node.step);
-      for (std::size_t k = index(std::ceil((x - width - node.first) / node.step)); k <= last; ++k) {
-        const double share = std::max(0.0, 1 - std::abs(node.at(k) - x) / width);
-        sum[k] += share * value(i), weight[k] += share;
+      const double x = xyz(world.positions()[i])[axis()], f = value(i);
+      if (!std::isfinite(x) || !std::isfinite(f)) continue;  // a run that has failed
+      const double from = std::ceil((x - width - node.first) / node.step),
+                   to = std::floor((x + width - node.first) / node.step);
+      if (to < 0 || from > last_place) continue;
+      const auto last = static_cast<std::size_t>(std::min(to, last_place));
+      for (auto k = static_cast<std::size_t>(std::max(from, 0.0)); k <= last; ++k) {
+        const double off = x - node.at(k), weight = std::max(0.0, 1 - std::abs(off) / width);
+        Sums& s = sums[k];
+        s.weight += weight, s.x += weight * off, s.xx += weight * off * off;
+        s.f += weight * f, s.xf += weight * off * f;
       }
     }
-    for (std::size_t k = 0; k < places_; ++k) sum[k] = weight[k] > 0 ? sum[k] / weight[k] : 0;
-    return sum;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    Lines lines;
+    for (const Sums& s : sums) {
+      const double spread = s.weight * s.xx - s.x * s.x;
+      const bool tells = spread > 1e-6 * s.weight * s.weight * width * width;
+      lines.value.push_back(tells ? (s.xx * s.f - s.x * s.xf) / spread : s.weight > 0 ? s.f / s.weight : unknown);
+      lines.slope.push_back(tells ? (s.weight * s.xf - s.x * s.f) / spread : unknown);
+    }
+    return lines;
   }
 
  private:
-  struct Ends {
-    double low, high;
-  };
-  Ends ends(const World& world) const {
-    const Region box = specimen_box(world);
-    const int axis = across[0] - 'x';
-    return {box.low[axis], box.high[axis]};
-  }
-  std::size_t places_ = 2;
+  int axis() const { return across[0] - 'x'; }
 };
 
-/// Where a profile that is largest in a shear zone falls off the fastest on either side: its inflection points [m]. A
-/// zone that is largest at a side of the specimen ends there.
+/// Where a profile that is largest in a shear zone falls off the fastest on either side: its inflection points [m], not
+/// further out than where it has fallen to a quarter. A zone that is largest at a side of the specimen ends there.
 struct ShearZone {
   double low, high;
   double thickness() const { return high - low; }
 };
 
+/// Of the places that tell; NaN where fewer than three do.
 inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double>& profile) {
-  const std::size_t count = profile.size();
-  std::size_t peak = 0;
-  for (std::size_t k = 0; k < count; ++k)
-    if (std::abs(profile[k]) > std::abs(profile[peak])) peak = k;
-  const double sign = profile[peak] < 0 ? -1 : 1;
-  // Between places k and k + 1, towards the peak.
-  const auto slope = [&](std::size_t k) { return sign * (profile[k + 1] - profile[k]) * (k < peak ? 1 : -1); };
-  const auto steepest = [&](std::size_t from, std::size_t to) {
-    std::size_t best = from;
-    for (std::size_t k = from; k < to; ++k)
-      if (slope(k) > slope(best)) best = k;
-    double part = 0;  // of a parabola through it and its neighbours
-    if (best > from && best + 1 < to) {
-      const double before = slope(best - 1), here = slope(best), after = slope(best + 1);
-      const double bend = before - 2 * here + after;
-      if (bend < 0) part = std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
+  std::vector<double> place, size;
+  for (std::size_t k = 0; k < profile.size(); ++k)
+    if (std::isfinite(profile[k])) place.push_back(node.at(k)), size.push_back(profile[k]);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (size.size() < 3) return {unknown, unknown};
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto peak = static_cast<std::ptrdiff_t>(std::ranges::max_element(size, larger) - size.begin());
+  if (size[static_cast<std::size_t>(peak)] < 0)
+    for (double& one : size) one = -one;
+  const auto at = [&](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
+  // From the peak outwards: the steepest fall between two places, refined by a parabola through it and its neighbours.
+  const auto end = [&](std::ptrdiff_t way) {
+    const auto last = way < 0 ? std::ptrdiff_t{0} : static_cast<std::ptrdiff_t>(size.size()) - 1;
+    if (peak == last) return place[at(last)];
+    const auto fall = [&](std::ptrdiff_t k) {
+      return (size[at(k)] - size[at(k + way)]) / (place[at(k + way)] - place[at(k)]) * static_cast<double>(way);
+    };
+    std::ptrdiff_t best = peak;
+    for (std::ptrdiff_t k = peak; k != last; k += way) {
+      if (fall(k) > fall(best)) best = k;
+      if (size[at(k + way)] < 0.25 * size[at(peak)]) break;
     }
-    return node.at(best) + (0.5 + part) * node.step;
+    double part = 0.5;
+    if (best != peak && best + way != last) {
+      const double before = fall(best - way), here = fall(best), after = fall(best + way),
+                   bend = before - 2 * here + after;
+      if (bend < 0) part += std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
+    }
+    return place[at(best)] + part * (place[at(best + way)] - place[at(best)]);
   };
-  return {.low = peak == 0 ? node.at(0) : steepest(0, peak),
-          .high = peak + 1 == count ? node.at(count - 1) : steepest(peak, count - 1)};
+  return {.low = end(-1), .high = end(1)};
+}
+
+/// The four channels that tell of a shear zone in `what`.
+inline std::vector<Channel> zone_channels(const std::string& what) {
+  const std::string unknown = "; NaN where fewer than three places have bodies";
+  return {{"zone_low", "m", "where the " + what + " rises to its peak the fastest" + unknown, {}},
+          {"zone_high", "m", "where it falls off the fastest" + unknown, {}},
+          {"zone_thickness", "m", "distance between the two, the thickness of the shear zone" + unknown, {}},
+          {"zone_diameters", "1", "the same over the mean diameter" + unknown, {}}};
+}
+inline void fill_zone(const ShearZone& zone, const World& world, std::span<const std::span<double>> values) {
+  values[0][0] = zone.low, values[1][0] = zone.high, values[2][0] = zone.thickness();
+  values[3][0] = zone.thickness() / world.mean_diameter();
 }
 
 }  // namespace grit

@@ -283,6 +283,20 @@ TEST_P(ProbeContract, FillsEveryValueWithoutBodies) {
   probe_->fields(empty);
 }
 
+TEST_P(ProbeContract, LivesThroughTheWorldOfARunThatHasFailed) {
+  FakeWorld failed = world_;
+  const double unknown = std::nan("");
+  for (auto* rows : {&failed.position, &failed.velocity, &failed.spin})
+    if (!rows->empty()) rows->back().x = rows->back().y = rows->back().z = unknown;
+  for (auto* vectors : {&failed.rotation, &failed.displacement})
+    if (!vectors->empty()) vectors->back().setConstant(unknown);
+  const auto room = sampled(*probe_, failed);
+  for (std::size_t i = 0; i < room.rooms().size(); ++i)
+    EXPECT_TRUE(SampleRoom::same_bits(room.rooms()[i].back(), SampleRoom::unwritten()))
+        << i << ": written past its end";
+  probe_->fields(failed);
+}
+
 TEST_P(ProbeContract, GivesTheSameBitsAgain) {
   const auto first = sampled(*probe_, world_);
   EXPECT_TRUE(sampled(*probe_, world_) == first);

@@ -30,14 +30,14 @@ TEST(Triaxial, StartsFromTheSameStressOnAllSidesAndKeepsTheLateralOne) {
   const Compressed usual = compressed({});
   // Love–Weber over the whole specimen, touches of walls and all: what the walls bear, found another way.
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(usual.stress_before(i, i), 200e3, 0.01 * 200e3) << i;
-  // Walls without friction leave off-diagonal components to how few grains happen to lie: some 4 % in one specimen.
+  // Walls without friction leave off-diagonal components to how few grains happen to lie: up to 5 % in one specimen.
   Mat3 mean = usual.stress_before;
   constexpr int specimens = 4;
   for (int seed = 2; seed <= specimens; ++seed)
     mean += compressed({"/scenario/axial_strain=0.001", "/scenario/seed=" + std::to_string(seed)}).stress_before;
   mean /= specimens;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < i; ++j) EXPECT_NEAR(mean(i, j), 0, 0.05 * 200e3) << i << ' ' << j;
+    for (int j = 0; j < i; ++j) EXPECT_NEAR(mean(i, j), 0, 0.025 * 200e3) << i << ' ' << j;
   for (const char* lateral : {"sigma_2", "sigma_3"})
     for (const double stress : usual.channel.at(lateral)) EXPECT_NEAR(stress, 200e3, 0.02 * 200e3);
   // Walls keep grains apart, so a specimen is higher than its interior's void ratio says, here by 2.3 %.

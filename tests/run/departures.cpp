@@ -140,6 +140,7 @@ TEST(Departures, EndAStage) {
   std::get<LeftCondition>(condition.is.value()).share = 0.5;
   EXPECT_NEAR(progress(condition, trial.world(), start).value(), 0.25 / 0.5, 1e-12);
   EXPECT_NEAR(progress(condition, trial.world(), {.share_left = 0.2}).value(), 0.05 / 0.3, 1e-12);
+  EXPECT_EQ(progress(condition, trial.world(), {.share_left = 0.5}), 1) << "there before it began";
 }
 
 TEST(Departures, ThroughAnotherSideAreAnError) {

@@ -78,7 +78,8 @@ struct Progress {
     return stage_travel(c, simulation) / c.value;
   }
   std::optional<double> operator()(const LeftCondition& c) const {
-    return (simulation.share_left() - start.share_left) / std::max(c.share - start.share_left, 1e-300);
+    if (c.share <= start.share_left) return 1;
+    return (simulation.share_left() - start.share_left) / (c.share - start.share_left);
   }
   std::optional<double> operator()(const AllCondition& c) const {
     std::optional<double> least;

@@ -65,6 +65,7 @@ struct HertzMindlin {
         {"rolling_z", "N m", "rolling moment on b", -1}};
   }
 
+  static constexpr bool single_precision = true;
   static constexpr unsigned feature_bits = 3;
   static constexpr unsigned with_shear = 1, with_damping = 2, with_rolling = 4;
   static constexpr const char* feature_names[] = {"shear", "damping", "rolling"};

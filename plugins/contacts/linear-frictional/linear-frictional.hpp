@@ -57,6 +57,7 @@ struct LinearFrictional {
             {"shear_z", "N", "force of the shear spring on b", -1}};
   }
 
+  static constexpr bool single_precision = true;
   static constexpr unsigned feature_bits = 3;
   static constexpr unsigned with_shear = 1, with_damping = 2, with_shear_damping = 4;
   static constexpr const char* feature_names[] = {"shear", "damping", "shear damping"};

@@ -85,6 +85,7 @@ struct LinearRolling {
             {"twisting", "N m", "twisting moment on b, along the normal from a to b", 1}};
   }
 
+  static constexpr bool single_precision = true;
   static constexpr unsigned feature_bits = 2;
   static constexpr unsigned with_rolling = 1, with_twisting = 2;
   static constexpr const char* feature_names[] = {"rolling", "twisting"};
@@ -160,8 +161,8 @@ struct LinearRolling {
     if constexpr ((Features & with_twisting) != 0) {
       const L stiffness = pair.twisting * angular;
       const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);
-      loss.rolling = loss.rolling +
-                     L(0.5) * (before.twisting + after.twisting) * (trial - after.twisting) / max(stiffness, L(tiny<L>));
+      loss.rolling = loss.rolling + L(0.5) * (before.twisting + after.twisting) * (trial - after.twisting) /
+                                        max(stiffness, L(tiny<L>));
     }
     return loss;
   }

@@ -1,8 +1,9 @@
 #include "displacements.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
 #include "grit/plugin.hpp"
 
@@ -14,36 +15,39 @@ void Displacements::declare(Parameters& p) {
 }
 
 std::vector<Channel> Displacements::channels() const {
-  const std::vector<std::size_t> each{profile.places()};
-  return {
+  const std::vector<std::size_t> each{static_cast<std::size_t>(profile.places)};
+  std::vector<Channel> channels{
       {"place", "m", "of each value of the profiles, along " + profile.across, each},
-      {"profile", "m", "mean displacement along " + along + " of the bodies around each place, since the stage began",
+      {"profile", "m",
+       "displacement along " + along +
+           " at each place, by the line that fits the bodies around it, since the stage began; " + "NaN without any",
        each},
-      {"gradient", "1", "change of that along " + profile.across, each},
+      {"gradient", "1", "slope of that line, along " + profile.across + "; NaN where bodies are too few", each},
       {"fluctuation", "m",
-       "root of the mean square of the bodies' displacements less the mean ones around them, around each place", each},
-      {"zone_low", "m", "where the gradient rises to its peak the fastest", {}},
-      {"zone_high", "m", "where it falls off the fastest", {}},
-      {"zone_thickness", "m", "distance between the two, the thickness of the shear zone", {}},
-      {"zone_diameters", "1", "the same over the mean diameter; 0 without bodies", {}}};
+       "root of the mean square of the bodies' displacements less the profiles of all three components, around each "
+       "place; " +
+           std::string("NaN without any"),
+       each}};
+  std::ranges::copy(zone_channels("gradient"), std::back_inserter(channels));
+  return channels;
 }
 
 std::vector<Vec3> Displacements::fluctuations(const World& world) const {
-  std::array<std::vector<double>, 3> mean;
-  for (int axis = 0; axis < 3; ++axis)
-    mean[static_cast<std::size_t>(axis)] =
-        profile.mean(world, [&](std::size_t i) { return world.displacements()[i][axis]; });
   const auto nodes = profile.nodes(world);
-  const double last = static_cast<double>(profile.places() - 1);
+  const double last = static_cast<double>(profile.places - 1), unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<Vec3> left(world.displacements().begin(), world.displacements().end());
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    const double x = xyz(world.positions()[i])[profile.across[0] - 'x'];
-    const double place = nodes.step > 0 ? std::clamp((x - nodes.first) / nodes.step, 0.0, last) : 0;
-    const auto k = static_cast<std::size_t>(std::min(std::floor(place), last - 1));
-    const double part = place - static_cast<double>(k);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto& m = mean[static_cast<std::size_t>(axis)];
-      left[i][axis] -= (1 - part) * m[k] + part * m[k + 1];
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto mean = profile.fit(world, [&](std::size_t i) { return world.displacements()[i][axis]; }).value;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const double x = xyz(world.positions()[i])[profile.across[0] - 'x'];
+      const double place = std::min(std::max((x - nodes.first) / nodes.step, 0.0), last);
+      if (!std::isfinite(x) || !std::isfinite(place)) {
+        left[i][axis] = unknown;
+        continue;
+      }
+      const auto k = static_cast<std::size_t>(std::min(std::floor(place), last - 1));
+      const double part = place - static_cast<double>(k);
+      left[i][axis] -= part == 0 ? mean[k] : (1 - part) * mean[k] + part * mean[k + 1];
     }
   }
   return left;
@@ -52,32 +56,24 @@ std::vector<Vec3> Displacements::fluctuations(const World& world) const {
 void Displacements::sample(const World& world, std::span<const std::span<double>> values) {
   const auto nodes = profile.nodes(world);
   const int axis = along[0] - 'x';
-  const auto means = profile.mean(world, [&](std::size_t i) { return world.displacements()[i][axis]; });
+  const auto lines = profile.fit(world, [&](std::size_t i) { return world.displacements()[i][axis]; });
   const auto left = fluctuations(world);
-  const auto squares = profile.mean(world, [&](std::size_t i) { return left[i].squaredNorm(); });
-  std::vector<double> gradient(means.size(), 0.0);
-  for (std::size_t k = 0; k < means.size() && nodes.step > 0; ++k) {
-    const std::size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, means.size() - 1);
-    gradient[k] = (means[after] - means[before]) / (static_cast<double>(after - before) * nodes.step);
+  const auto squares = profile.fit(world, [&](std::size_t i) { return left[i].squaredNorm(); }).value;
+  for (std::size_t k = 0; k < lines.value.size(); ++k) {
+    values[0][k] = nodes.at(k), values[1][k] = lines.value[k], values[2][k] = lines.slope[k];
+    values[3][k] = std::sqrt(squares[k] < 0 ? 0 : squares[k]);
   }
-  for (std::size_t k = 0; k < means.size(); ++k)
-    values[0][k] = nodes.at(k), values[1][k] = means[k], values[2][k] = gradient[k],
-    values[3][k] = std::sqrt(squares[k]);
-  const ShearZone zone = shear_zone(nodes, gradient);
-  values[4][0] = zone.low, values[5][0] = zone.high, values[6][0] = zone.thickness();
-  values[7][0] = world.mean_diameter() > 0 ? zone.thickness() / world.mean_diameter() : 0;
+  fill_zone(shear_zone(nodes, lines.slope), world, values.subspan(4));
 }
 
 std::vector<Field> Displacements::fields(const World& world) {
-  std::vector<Field> fields{{"id", "1", "of each body", 1, {}},
-                            {"displacement", "m", "since the stage began", 3, {}},
-                            {"fluctuation", "m", "the same less the mean around the body", 3, {}}};
+  std::vector<Field> fields{
+      {"id", "1", "of each body", 1, {}},
+      {"fluctuation", "m", "its displacement less the profile; NaN where that is unknown", 3, {}}};
   const auto left = fluctuations(world);
   for (std::size_t i = 0; i < left.size(); ++i) {
-    const Vec3& moved = world.displacements()[i];
     fields[0].values.push_back(world.ids()[i]);
-    fields[1].values.insert(fields[1].values.end(), moved.begin(), moved.end());
-    fields[2].values.insert(fields[2].values.end(), left[i].begin(), left[i].end());
+    fields[1].values.insert(fields[1].values.end(), left[i].begin(), left[i].end());
   }
   return fields;
 }

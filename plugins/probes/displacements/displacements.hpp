@@ -17,13 +17,13 @@ class Displacements final : public Probe {
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::displacement; }
-  void prepare(const World& world) override { profile.prepare(world); }
+  void prepare(const World& world) override { profile.prepare(world, "probe displacements"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
   std::vector<Field> fields(const World& world) override;
 
  private:
-  /// Of each body, less the mean around it, between whose places it is linear.
+  /// Of each body, less the profile, which is linear between places; NaN where that is unknown.
   std::vector<Vec3> fluctuations(const World& world) const;
 };
 

@@ -17,13 +17,9 @@ class Rotations final : public Probe {
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::rotation; }
-  void prepare(const World& world) override { profile.prepare(world); }
+  void prepare(const World& world) override { profile.prepare(world, "probe rotations"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
-  std::vector<Field> fields(const World& world) override;
-
- private:
-  double turned(const World& world, std::size_t body) const { return world.rotations()[body][about[0] - 'x']; }
 };
 
 }  // namespace grit

@@ -30,15 +30,13 @@ double figure(Rotations& probe, const FakeWorld& world, const std::string& chann
 TEST(Rotations, ProfileOfALinearOneIsItself) {
   const FakeWorld world = column([](double z) { return 3 * z - 1; });
   Rotations probe;
-  probe.profile.spacing = 10;
+  probe.profile.places = 11;
   probe.prepare(world);
-  ASSERT_EQ(probe.profile.places(), 11u);
   const auto place = channel_values(probe, world, "place"), profile = channel_values(probe, world, "profile");
   for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(place[k], 0.1 * static_cast<double>(k), 1e-15);
-  // Bodies lie on both sides of all places but the ends.
-  for (std::size_t k = 1; k < 10; ++k) EXPECT_NEAR(profile[k], 3 * place[k] - 1, 1e-12) << k;
+  for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(profile[k], 3 * place[k] - 1, 1e-12) << k;
   EXPECT_NEAR(figure(probe, world, "mean"), 0.5, 1e-12);
-  EXPECT_NEAR(figure(probe, world, "mean_size"), (1.0 / 3 * 0.5 + 2.0 / 3 * 1), 1e-3);
+  EXPECT_NEAR(figure(probe, world, "mean_magnitude"), (1.0 / 3 * 0.5 + 2.0 / 3 * 1), 1e-3);
 }
 
 // A bell exp(−(z − c)² / 2σ²) has its inflections at c ± σ; the probe's own triangle of reach h, whose variance is
@@ -49,13 +47,13 @@ TEST(Rotations, ZoneLiesBetweenTheInflectionsOfABell) {
     const FakeWorld world =
         column([=](double z) { return sign * std::exp(-0.5 * (z - centre) * (z - centre) / (sigma * sigma)); });
     Rotations probe;
-    probe.profile.reach = 4;
+    probe.profile.reach = 4, probe.profile.places = 101;
     probe.prepare(world);
     const double widened = std::sqrt(sigma * sigma + reach * reach / 6);
     EXPECT_NEAR(figure(probe, world, "zone_low"), centre - widened, 3e-3 * widened);
     EXPECT_NEAR(figure(probe, world, "zone_high"), centre + widened, 3e-3 * widened);
     EXPECT_NEAR(figure(probe, world, "zone_thickness"), 2 * widened, 3e-3 * 2 * widened);
-    EXPECT_NEAR(figure(probe, world, "zone_diameters"), 2 * widened / world.mean_diameter(), 0.1 * widened / 0.01);
+    EXPECT_NEAR(figure(probe, world, "zone_diameters"), 2 * widened / 0.01, 3e-3 * 2 * widened / 0.01);
   }
 }
 
@@ -63,6 +61,7 @@ TEST(Rotations, ZoneAtASideEndsThere) {
   const double sigma = 0.1;
   const FakeWorld world = column([=](double z) { return std::exp(-0.5 * z * z / (sigma * sigma)); });
   Rotations probe;
+  probe.profile.places = 101;
   probe.prepare(world);
   EXPECT_EQ(figure(probe, world, "zone_low"), 0);
   EXPECT_NEAR(figure(probe, world, "zone_high"), sigma, 1e-2 * sigma);
@@ -76,8 +75,43 @@ TEST(Rotations, AboutTheAxisThatIsAskedForAndBodyByBody) {
   probe.about = "x";
   probe.prepare(world);
   EXPECT_THAT(channel_values(probe, world, "mean"), ElementsAre(-1.5));
-  EXPECT_THAT(channel_values(probe, world, "mean_size"), ElementsAre(2.5));
-  EXPECT_THAT(probe.fields(world).at(1).values, ElementsAre(1, -4));
+  EXPECT_THAT(channel_values(probe, world, "mean_magnitude"), ElementsAre(2.5));
+}
+
+TEST(Rotations, KnowsNothingWhereThereAreNoBodies) {
+  FakeWorld world = column([](double z) { return std::exp(-0.5 * (z - 0.3) * (z - 0.3) / 0.01); });
+  world.whole.high.z() = 2;  // half empty
+  Rotations probe;
+  probe.profile.places = 101;
+  probe.prepare(world);
+  const auto profile = channel_values(probe, world, "profile");
+  EXPECT_TRUE(std::isfinite(profile[49]));
+  EXPECT_TRUE(std::isnan(profile[60]));
+  EXPECT_NEAR(figure(probe, world, "zone_high"), 0.4, 0.01);
+  world.whole = {{0, 0, 3}, {1, 1, 4}};
+  EXPECT_TRUE(std::isnan(figure(probe, world, "zone_thickness")));
+}
+
+TEST(Rotations, OfAZoneIsNotDrawnAwayByOneFarPlace) {
+  const FakeWorld world = column(
+      [](double z) { return std::exp(-0.5 * (z - 0.3) * (z - 0.3) / 0.01) + (z > 0.9 && z < 0.92 ? -0.9 : 0.0); });
+  Rotations probe;
+  probe.profile.places = 101, probe.profile.reach = 1;
+  probe.prepare(world);
+  EXPECT_NEAR(figure(probe, world, "zone_high"), 0.4, 0.01);
+}
+
+TEST(Rotations, RefusesAnAxisWithoutSides) {
+  FakeWorld world = column([](double) { return 0.0; });
+  world.make_periodic(Vec3::Zero(), Vec3::Ones());
+  Rotations probe;
+  try {
+    probe.prepare(world);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "probe rotations, /across: the domain is periodic along z, which has no sides; name another axis");
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rotations, ProbeContract,

@@ -12,6 +12,7 @@
 //     static std::vector<StateField> fields();                                    // one a member of State
 //     static constexpr unsigned feature_bits = 1;                                 // parts that can be switched off
 //     static unsigned features(const Pair<double>&);                              // which of them this pair needs
+//     static constexpr bool single_precision = true;                              // may be left out: double alone
 //     static constexpr const char* feature_names[] = {"shear"};                   // one a bit; may be left out
 //     static constexpr std::size_t fields_used(unsigned features);                // how many leading fields they need
 //     template <unsigned Features, class L> [[gnu::always_inline]]
@@ -24,8 +25,9 @@
 //   };
 //
 // evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
-// called for lanes that do not touch; their results are discarded, so that they only must not trap. L may be lanes of
-// floats: what a divisor is kept above is L(tiny<L>), and how near is the same, beyond_rounding<L>.
+// called for lanes that do not touch; their results are discarded, so that they only must not trap.
+// A law that says single_precision is offered in lanes of floats too: what a divisor is kept above is L(tiny<L>) there,
+// how near is as good as equal beyond_rounding<L>, and of State a number is rounded to 24 bits at every step.
 // It is asked again at an instant that it has seen, with the memory that it left, dt = 0 and a turn that turns nothing,
 // and answers the same.
 #pragma once
@@ -232,10 +234,11 @@ class Waiting {
   ContactRow row_[most];
 };
 
-/// The loop over candidate pairs. L is Lane, or double for the reference twin. Flattened: a call left in it would pass
-/// lanes through memory, which was seen to cost a factor of two. Not inlined, so that tests/vectorisation finds it.
-/// Begins with block `from` and goes on until `waiting` is full, if it is given; returns the block that comes next. All
-/// pairs take the one way through the arithmetic, so that one has the same bits wherever it stands.
+/// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the reference twin. Flattened: a call
+/// left in it would pass lanes through memory, which was seen to cost a factor of two. Not inlined, so that
+/// tests/vectorisation finds it. Begins with block `from` and goes on until `waiting` is full, if it is given; returns
+/// the block that comes next. All pairs take the one way through the arithmetic, so that one has the same bits wherever
+/// it stands.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
@@ -519,9 +522,10 @@ class LawPlugin final : public ContactLaw {
  public:
   void declare(Parameters& parameters) override {
     settings_.declare(parameters);
-    parameters.add("precision", precision_)
-        .one_of({"double", "single"})
-        .doc("of the arithmetic of a contact between bodies; places, overlaps, walls, sums and memory stay double");
+    if constexpr (has_single)
+      parameters.add("precision", precision_)
+          .one_of({"double", "single"})
+          .doc("of the arithmetic of a contact between bodies; places, overlaps, walls and sums stay double");
   }
   void clear_materials() override { materials_.clear(), interfaces_.clear(); }
   void declare_material(const std::string& name, Parameters& parameters) override {
@@ -556,12 +560,14 @@ class LawPlugin final : public ContactLaw {
     return loop;
   }
   void evaluate_pairs(PairBatch& batch) const noexcept override {
-    if (single()) pairs<SingleLane>(batch);
-    else pairs<Lane>(batch);
+    if constexpr (has_single)
+      if (single()) return pairs<SingleLane>(batch);
+    pairs<Lane>(batch);
   }
   void evaluate_pairs_reference(PairBatch& batch) const noexcept override {
-    if (single()) pairs<float>(batch);
-    else pairs<double>(batch);
+    if constexpr (has_single)
+      if (single()) return pairs<float>(batch);
+    pairs<double>(batch);
   }
   void evaluate_walls(WallBatch& batch) const noexcept override {
     with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, wall_table_.data(), count_); });
@@ -588,7 +594,8 @@ class LawPlugin final : public ContactLaw {
   template <class L>
   void pairs(PairBatch& batch) const {
     with_features([&]<unsigned F>() {
-      // The twin and mixtures take the general loop; others are worth their compilation.
+      // The twin and mixtures take the general loop; others are worth their compilation, in single precision one for
+      // periodic scenes and those that are not.
       const bool general = lane_width<L> == 1 || batch.material != nullptr;
       if (batch.losses != nullptr) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
       else if (general) detail::evaluate_pairs<Law, F, L, true, false, false>(batch, table_.data(), count_);
@@ -601,6 +608,7 @@ class LawPlugin final : public ContactLaw {
     });
   }
 
+  static constexpr bool has_single = requires { requires Law::single_precision; };
   bool single() const { return precision_ == "single"; }
 
   typename Law::Settings settings_;

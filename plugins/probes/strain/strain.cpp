@@ -1,0 +1,162 @@
+#include "strain.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "grit/plugin.hpp"
+
+namespace grit {
+namespace {
+
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+/// The best linear displacement field of some bodies, u = ū + H (X − X̄), by least squares.
+class Fit {
+ public:
+  void add(const Vec2& place, const Vec2& moved) { places_.push_back(place), moves_.push_back(moved); }
+  int bodies() const { return static_cast<int>(places_.size()); }
+  /// Green and Lagrange's strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN where bodies are too few, or on one line.
+  std::array<double, 3> green() const {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    if (places_.size() < 4) return {unknown, unknown, unknown};
+    Vec2 place = Vec2::Zero(), moved = Vec2::Zero();
+    for (std::size_t i = 0; i < places_.size(); ++i) place += places_[i], moved += moves_[i];
+    place /= static_cast<double>(places_.size()), moved /= static_cast<double>(places_.size());
+    Mat2 spread = Mat2::Zero(), together = Mat2::Zero();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const Vec2 x = places_[i] - place;
+      spread += x * x.transpose(), together += (moves_[i] - moved) * x.transpose();
+    }
+    if (!(spread.determinant() > 1e-12 * spread.trace() * spread.trace())) return {unknown, unknown, unknown};
+    const Mat2 gradient = together * spread.inverse();
+    const Mat2 green = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
+    return {green(0, 0), green(1, 1), green(0, 1)};
+  }
+
+ private:
+  std::vector<Vec2> places_, moves_;
+};
+
+}  // namespace
+
+void Strain::declare(Parameters& p) {
+  p.add("depth_axis", depth_axis).one_of({"x", "y", "z"}).doc("perpendicular to the plane of the strain");
+  p.add("subset", subset)
+      .at_least(0.5)
+      .doc("side of a subset of bodies, over the mean diameter; as deep as the specimen");
+  p.add("step", step).at_least(0.1).doc("distance between neighbouring subsets, over the mean diameter");
+}
+
+std::array<int, 2> Strain::plane() const {
+  const int depth = depth_axis[0] - 'x';
+  return {depth == 0 ? 1 : 0, depth == 2 ? 1 : 2};
+}
+
+std::vector<Channel> Strain::channels() const {
+  const auto [first, second] = plane();
+  const std::string a{"xyz"[first]}, b{"xyz"[second]};
+  const std::string which = "E_" + a + a + ", E_" + b + b + ", E_" + a + b;
+  return {
+      {"strain",
+       "1",
+       which + " of all bodies, Green-Lagrange since the stage began, positive in extension; NaN with fewer than four",
+       {3}},
+      {"largest_shear", "1", "largest magnitude of E_" + a + b + " of a subset; 0 without any", {}}};
+}
+
+std::vector<Strain::Body> Strain::bodies(const World& world) const {
+  std::vector<Body> all;
+  const auto axes = plane();
+  for (std::size_t i = 0; i < world.displacements().size(); ++i) {
+    if (!xyz(world.positions()[i]).allFinite()) continue;  // a run that has failed
+    Body body;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const int axis = axes[k];
+      const auto side = static_cast<Eigen::Index>(k);
+      body.moved[side] = world.displacements()[i][axis];
+      body.place[side] = xyz(world.positions()[i])[axis] - body.moved[side];
+      const Cell& cell = world.cell();
+      if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
+      const double period = cell.high[axis] - cell.low[axis];
+      body.place[side] -= period * std::floor((body.place[side] - cell.low[axis]) / period);
+    }
+    all.push_back(body);
+  }
+  return all;
+}
+
+std::vector<Strain::Subset> Strain::subsets(const World& world) const {
+  const double diameter = world.mean_diameter(), side = subset * diameter, apart = step * diameter;
+  std::vector<Subset> found;
+  auto all = bodies(world);
+  if (all.empty() || !(apart > 0)) return found;
+  Vec2 low = all.front().place, high = low;
+  for (const Body& body : all) low = low.cwiseMin(body.place), high = high.cwiseMax(body.place);
+  // Columns of bodies along the first axis, so that a subset looks at few.
+  std::ranges::sort(all, [](const Body& a, const Body& b) { return a.place.x() < b.place.x(); });
+  const auto along = [&](double length) {
+    return static_cast<std::int64_t>(std::floor(std::max(0.0, length - side) / apart + 1e-9)) + 1;
+  };
+  const std::int64_t columns = along(high.x() - low.x()), rows = along(high.y() - low.y());
+  const Vec2 margin(0.5 * (high.x() - low.x() - static_cast<double>(columns - 1) * apart),
+                    0.5 * (high.y() - low.y() - static_cast<double>(rows - 1) * apart));
+  for (std::int64_t i = 0; i < columns; ++i) {
+    const double x = low.x() + margin.x() + static_cast<double>(i) * apart;
+    const auto begin = std::ranges::lower_bound(all, x - 0.5 * side, {}, [](const Body& b) { return b.place.x(); });
+    const auto end = std::ranges::upper_bound(all, x + 0.5 * side, {}, [](const Body& b) { return b.place.x(); });
+    for (std::int64_t j = 0; j < rows; ++j) {
+      const double y = low.y() + margin.y() + static_cast<double>(j) * apart;
+      Fit fit;
+      for (auto body = begin; body != end; ++body)
+        if (std::abs(body->place.y() - y) <= 0.5 * side) fit.add(body->place, body->moved);
+      found.push_back({.centre = {x, y}, .bodies = fit.bodies(), .green = fit.green()});
+    }
+  }
+  return found;
+}
+
+void Strain::sample(const World& world, std::span<const std::span<double>> values) {
+  Fit whole;
+  for (const Body& body : bodies(world)) whole.add(body.place, body.moved);
+  std::ranges::copy(whole.green(), values[0].begin());
+  double largest = 0;
+  for (const Subset& one : subsets(world))
+    if (const double shear = std::abs(one.green[2]); shear > largest) largest = shear;
+  values[1][0] = largest;
+}
+
+std::vector<Field> Strain::fields(const World& world) {
+  const auto [first, second] = plane();
+  const std::string a{"xyz"[first]}, b{"xyz"[second]};
+  std::vector<Field> fields{
+      {"centre", "m", "of each subset along " + a + " and " + b + ", when the stage began", 2, {}},
+      {"bodies", "1", "whose centres lay in it", 1, {}},
+      {"strain",
+       "1",
+       "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
+           ", Green-Lagrange, positive in extension; NaN with fewer than four",
+       3,
+       {}}};
+  for (const Subset& one : subsets(world)) {
+    fields[0].values.insert(fields[0].values.end(), one.centre.begin(), one.centre.end());
+    fields[1].values.push_back(one.bodies);
+    fields[2].values.insert(fields[2].values.end(), one.green.begin(), one.green.end());
+  }
+  return fields;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{
+      .kind = "probe",
+      .name = "strain",
+      .version = "1.0.0",
+      .doc = "strain in a plane from displacements of bodies, as image correlation has it",
+      .make_probe = []() -> grit::Probe* { return new grit::Strain; }};
+  return &info;
+}

@@ -1,0 +1,109 @@
+#include "strain.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+/// Bodies strewn over a block, moved by a deformation x = F X + shift.
+FakeWorld deformed(const Mat3& gradient, const Vec3& shift = Vec3::Zero()) {
+  FakeWorld world;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> draw(0, 1);
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 place(0.06 * draw(random), 0.005 * draw(random), 0.02 * draw(random));
+    const Vec3 moved = gradient * place + shift - place;
+    world.add(place + moved, 0.5e-3);
+    world.displacement.push_back(moved);
+  }
+  world.whole = {Vec3::Zero(), {0.06, 0.005, 0.02}};
+  return world;
+}
+
+void expect_everywhere(const Mat3& gradient, const Vec3& shift, double exx, double ezz, double exz) {
+  const FakeWorld world = deformed(gradient, shift);
+  Strain probe;
+  probe.prepare(world);
+  const auto whole = channel_values(probe, world, "strain");
+  EXPECT_NEAR(whole[0], exx, 1e-10);
+  EXPECT_NEAR(whole[1], ezz, 1e-10);
+  EXPECT_NEAR(whole[2], exz, 1e-10);
+  EXPECT_NEAR(channel_values(probe, world, "largest_shear").at(0), std::abs(exz), 1e-10);
+  const auto fields = probe.fields(world);
+  const std::size_t subsets = fields[1].values.size();
+  ASSERT_GT(subsets, 500u);
+  for (std::size_t s = 0; s < subsets; ++s) {
+    ASSERT_GT(fields[1].values[s], 20);
+    EXPECT_NEAR(fields[2].values[3 * s], exx, 1e-10) << s;
+    EXPECT_NEAR(fields[2].values[3 * s + 1], ezz, 1e-10) << s;
+    EXPECT_NEAR(fields[2].values[3 * s + 2], exz, 1e-10) << s;
+  }
+}
+
+TEST(Strain, OfAUniformOneIsThatEverywhere) {
+  Mat3 gradient = Mat3::Identity();
+  gradient(0, 0) = 1.02, gradient(2, 2) = 0.97, gradient(0, 2) = 0.1;
+  // FᵀF − 1 over two.
+  expect_everywhere(gradient, {1e-3, 0, -2e-3}, 0.5 * (1.02 * 1.02 - 1), 0.5 * (0.97 * 0.97 + 0.01 - 1),
+                    0.5 * 1.02 * 0.1);
+}
+
+TEST(Strain, OfARigidTurnIsNone) {
+  expect_everywhere(Eigen::AngleAxisd(0.4, Vec3::UnitY()).toRotationMatrix(), {0.01, 0, 0}, 0, 0, 0);
+}
+
+TEST(Strain, IsLocal) {
+  // Sheared above the middle alone.
+  FakeWorld world = deformed(Mat3::Identity());
+  for (std::size_t i = 0; i < world.position.size(); ++i) {
+    const double shear = 0.2 * std::max(0.0, world.position[i].z - 0.01);
+    world.position[i].x += shear, world.displacement[i].x() += shear;
+  }
+  Strain probe;
+  probe.subset = 4;
+  probe.prepare(world);
+  const auto fields = probe.fields(world);
+  int below = 0, above = 0;
+  for (std::size_t s = 0; s < fields[1].values.size(); ++s) {
+    const double z = fields[0].values[2 * s + 1];
+    const double shear = fields[2].values[3 * s + 2];
+    if (z < 0.0079) {
+      ++below;
+      EXPECT_NEAR(shear, 0, 1e-12);
+    } else if (z > 0.0121) {
+      ++above;
+      EXPECT_NEAR(shear, 0.1, 1e-10);
+    }
+  }
+  EXPECT_GT(below, 100);
+  EXPECT_GT(above, 100);
+}
+
+TEST(Strain, IsUnknownWhereBodiesAreTooFew) {
+  FakeWorld world;
+  for (const double x : {0.0, 1e-3, 2e-3}) world.add({x, 0, x * x}, 0.5e-3), world.displacement.push_back({x, 0, 0});
+  Strain probe;
+  EXPECT_TRUE(std::isnan(channel_values(probe, world, "strain").at(0)));
+  EXPECT_EQ(channel_values(probe, world, "largest_shear").at(0), 0);
+  // In one line.
+  for (const double x : {3e-3, 4e-3}) world.add({x, 0, 0}, 0.5e-3), world.displacement.push_back({x, 0, 0});
+  for (Row& row : world.position) row.z = 0;
+  EXPECT_TRUE(std::isnan(channel_values(probe, world, "strain").at(0)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Strain, ProbeContract,
+                         testing::Values(ProbeCase{"lattice", [] { return std::make_shared<Strain>(); },
+                                                   [] {
+                                                     FakeWorld world = lattice_world(9, 4, 8);
+                                                     for (const Row& x : world.position)
+                                                       world.displacement.push_back({0.1 * x.z, 0, x.x * x.z});
+                                                     return world;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit
