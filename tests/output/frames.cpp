@@ -9,6 +9,8 @@
 #include "folder.hpp"
 #include "grit/error.hpp"
 #include "output/hdf5.hpp"
+#include "support/scene.hpp"
+#include "support/stl_file.hpp"
 
 namespace grit {
 namespace {
@@ -27,8 +29,8 @@ NumberedWorld three_grains() {
   world.add_wall("lid", {0, 0, -0.5});
   world.wall[1].pressure = 2e5;
   const Vec3 along(-1, 0, 0), force(1, 2, 3);
-  const Contact pair{0, 2, false, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
-  const Contact touch{1, 1, true, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
+  const Contact pair{0, 2, false, 0, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
+  const Contact touch{1, 1, true, 23, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
   world.contact = {pair, touch};
   return world;
 }
@@ -66,6 +68,7 @@ TEST(Frames, PlaceContactsWallsAndFields) {
   const auto contacts = file.group("contacts");
   EXPECT_THAT(contacts.dataset("body_a").read<std::int64_t>(), ElementsAre(7, 2));
   EXPECT_THAT(contacts.dataset("body_b").read<std::int64_t>(), ElementsAre(5, -2));
+  EXPECT_THAT(contacts.dataset("feature").read<std::int64_t>(), ElementsAre(-1, 23));
   EXPECT_THAT(contacts.dataset("force").read<double>(), ElementsAre(1, 2, 3, 1, 2, 3));
   EXPECT_THAT(contacts.dataset("normal_force").read<double>(), ElementsAre(4, 4));
   EXPECT_THAT(contacts.dataset("branch").shape(), ElementsAre(2, 3));
@@ -85,6 +88,42 @@ TEST(Frames, PlaceContactsWallsAndFields) {
   EXPECT_THAT(error_of<PluginError>([&] { Frames(folder.path(), lid).write(three_grains(), ragged); }),
               HasSubstr("probe 'chains': its field 'strength' has 4 numbers, which are not whole rows of 3"));
   EXPECT_FALSE(std::filesystem::exists(folder / "frames/000000.h5")) << "a frame that failed is no frame";
+}
+
+// A square of four triangles with their tips in its middle; a ball rests on the second and one on the last.
+TEST(Frames, TellTheForceOnEachFacetOfAMesh) {
+  const std::vector<Vec3> corner{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  std::vector<Vec3> facets;
+  for (std::size_t i = 0; i < 4; ++i) facets.insert(facets.end(), {Vec3::Zero(), corner[i], corner[(i + 1) % 4]});
+  const test::StlFile file(test::stl_text(facets));
+  Description d = test::description("linear-frictional", {{"contact_modulus", 1e6}, {"density", 2600}},
+                                    {{{-0.3, 0.3, 0.0999}, 0.1}, {{0.3, -0.3, 0.1999}, 0.2}});
+  d["walls"]["other"] = test::plane({0, 0, -5}, Vec3::UnitZ());
+  d["walls"]["sheet"] = {
+      {"type", "mesh"}, {"path", file.path()}, {"scale", 1.0}, {"open", true}, {"material", "grain"}};
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
+  test::Trial trial(d);
+  for (int i = 0; i < 20000; ++i) trial.step();
+  const Folder folder;
+  Frames(folder.path(), {{"sheet", facets}}).write(trial.world(), {});
+
+  const hdf5::File frame(folder / "frames/000000.h5", hdf5::Mode::read);
+  const auto contacts = frame.group("contacts"), walls = frame.group("walls");
+  const auto index = walls.dataset("sheet").number<std::int64_t>("index");
+  const auto body_b = contacts.dataset("body_b").read<std::int64_t>(),
+             feature = contacts.dataset("feature").read<std::int64_t>();
+  const auto force = contacts.dataset("force").read<double>();
+  std::vector<Vec3> on_facet(walls.dataset("sheet").rows(), Vec3::Zero());
+  for (std::size_t i = 0; i < body_b.size(); ++i)
+    if (body_b[i] == -1 - index)
+      on_facet.at(static_cast<std::size_t>(feature[i]) / 7) += Vec3(force[3 * i], force[3 * i + 1], force[3 * i + 2]);
+  ASSERT_EQ(on_facet.size(), 4u);
+  const double g = 9.81;
+  EXPECT_EQ(on_facet[0], Vec3::Zero());
+  EXPECT_LE((on_facet[1] + Vec3(0, 0, g * trial.mass(0))).norm(), 1e-9 * g * trial.mass(0));
+  EXPECT_EQ(on_facet[2], Vec3::Zero());
+  EXPECT_LE((on_facet[3] + Vec3(0, 0, g * trial.mass(1))).norm(), 1e-9 * g * trial.mass(1));
 }
 
 /// Whether the data item names a dataset of the stated dimensions.

@@ -50,12 +50,13 @@ struct Region {
 struct Contact {
   std::uint32_t a = 0, b = 0;  ///< index of body a; of body b, or of the wall
   bool with_wall = false;
-  Vec3 branch;              ///< from a's centre to b's centre, or to the touching point of the wall [m]
-  Vec3 normal;              ///< unit, from a to b
-  Vec3 force;               ///< on b [N]; −force acts on a
-  Vec3 moment;              ///< on b about its centre; on a wall about the touching point [N m]
-  double normal_force = 0;  ///< N, > 0 in compression
-  double overlap = 0;       ///< m
+  std::uint32_t feature = 0;  ///< of the wall's geometry, what is touched; it stays while the body slides along it
+  Vec3 branch;                ///< from a's centre to b's centre, or to the touching point of the wall [m]
+  Vec3 normal;                ///< unit, from a to b
+  Vec3 force;                 ///< on b [N]; −force acts on a
+  Vec3 moment;                ///< on b about its centre; on a wall about the touching point [N m]
+  double normal_force = 0;    ///< N, > 0 in compression
+  double overlap = 0;         ///< m
 };
 
 /// A wall at one instant.

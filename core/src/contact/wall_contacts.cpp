@@ -25,6 +25,16 @@ bool hidden(const WallTouch& lesser, const WallTouch& deeper, double radius) {
   return std::abs(along - (radius - deeper.overlap)) <= on_plane * radius;
 }
 
+/// A law takes the change of the normal for a turn of what is touched, with which a sphere turns that pivots about an
+/// edge or is carried along: (overlap / dt) (normal − normal_before) of surface velocity. A touch that goes on in one
+/// whose normal leans towards where the body goes is over a valley, where two normals meet neither of which turns but
+/// with the wall. What the law adds for their difference is taken off beforehand: it would be felt as a jerk.
+void stand_still_in_valley(WallTouch& touch, const Vec3& body_velocity, double dt) {
+  const Vec3 turned = touch.normal - touch.normal_before;
+  if (dt > 0 && turned.dot(body_velocity - touch.velocity) > 0)
+    touch.velocity -= touch.overlap * (turned / dt - touch.spin.cross(touch.normal));
+}
+
 }  // namespace
 
 void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> walls, const Skins& skins,
@@ -131,7 +141,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
   }
 
   leave_out_hidden(chunk, bodies);
-  hand_on_memories(chunk);
+  hand_on_memories(chunk, bodies, dt);
   chunk.row.resize(chunk.touch.size());
   WallBatch batch{.position = bodies.position.data(),
                   .velocity = bodies.velocity.data(),
@@ -199,7 +209,7 @@ void WallContacts::leave_out_hidden(Chunk& chunk, const Bodies& bodies) {
   chunk.touch.resize(kept);
 }
 
-void WallContacts::hand_on_memories(Chunk& chunk) const {
+void WallContacts::hand_on_memories(Chunk& chunk, const Bodies& bodies, double dt) const {
   const std::size_t fields = fields_.size();
   chunk.state.assign(chunk.touch.size() * fields, 0.0);
   const auto hand_on = [&](std::size_t from, std::size_t to) {
@@ -229,6 +239,7 @@ void WallContacts::hand_on_memories(Chunk& chunk) const {
     }
     if (best == gone.end()) continue;
     hand_on(*best, i);
+    stand_still_in_valley(chunk.touch[i], xyz(bodies.velocity[t.body]), dt);
     gone.erase(best);
   }
 }

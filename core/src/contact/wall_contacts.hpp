@@ -101,7 +101,7 @@ class WallContacts {
   /// that faces share, count once, whatever walls they belong to.
   static void leave_out_hidden(Chunk& chunk, const Bodies& bodies);
   /// From the touches of the last step to those of this one.
-  void hand_on_memories(Chunk& chunk) const;
+  void hand_on_memories(Chunk& chunk, const Bodies& bodies, double dt) const;
 
   std::vector<Chunk> chunks_;
   std::vector<StateField> fields_;

@@ -101,11 +101,12 @@ void write_clumps(hdf5::Group group, const World& world) {
 void write_contacts(hdf5::Group group, const World& world) {
   const auto ids = world.ids();
   const auto contacts = world.contacts();
-  std::vector<std::int64_t> a, b;
+  std::vector<std::int64_t> a, b, feature;
   std::vector<double> force, normal_force, branch;
   for (const auto& contact : contacts) {
     a.push_back(ids[contact.a]);
     b.push_back(contact.with_wall ? -1 - std::int64_t{contact.b} : std::int64_t{ids[contact.b]});
+    feature.push_back(contact.with_wall ? std::int64_t{contact.feature} : -1);
     force.insert(force.end(), contact.force.data(), contact.force.data() + 3);
     normal_force.push_back(contact.normal_force);
     branch.insert(branch.end(), contact.branch.data(), contact.branch.data() + 3);
@@ -113,6 +114,8 @@ void write_contacts(hdf5::Group group, const World& world) {
   const auto m = contacts.size();
   put(group, {"body_a", "1", "id of the first body", {}}, {m}, a);
   put(group, {"body_b", "1", "id of the second body; -1 - index of the wall for a wall", {}}, {m}, b);
+  put(group, {"feature", "1", "of the wall, as its geometry numbers what is touched; -1 between bodies", {}}, {m},
+      feature);
   put(group, {"force", "N", "force on the second body or wall; its opposite acts on the first", {}}, {m, 3}, force);
   put(group, {"normal_force", "N", "normal force, positive in compression", {}}, {m}, normal_force);
   put(group, {"branch", "m", "from the first body's centre to the second's, or to the touching point on the wall", {}},

@@ -1,0 +1,134 @@
+// A ball that rolls over a bend of its floor keeps its friction; about an edge it pivots without slip.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ostream>
+
+#include "support/scene.hpp"
+#include "support/stl_file.hpp"
+
+namespace grit::test {
+namespace {
+
+// So heavy that the ball presses its way 7e-4 of its radius into the floor; gravity leans, so that friction is asked
+// for: 2/7 of what pulls along.
+constexpr double radius = 1e-3, gravity = 2e4, lean = 0.2, speed = 0.02, sunk = 7e-4 * radius, ahead = 1e-4;
+
+struct Law {
+  std::string name;
+  bool shear_dashpot;
+  friend void PrintTo(const Law& law, std::ostream* stream) {
+    *stream << law.name << (law.shear_dashpot ? ", damped" : "");
+  }
+};
+
+/// A ball that comes rolling to x = 0, and `aside` of its way along y.
+Description rolling_ball(const Law& law, double aside) {
+  const Vec3 way = Vec3(1, aside, 0).normalized();
+  const Grain ball{Vec3(0, 0, radius - sunk) - ahead / way.x() * way, radius, speed * way,
+                   speed / radius * Vec3::UnitZ().cross(way)};
+  Description d = description(law.name, {{"friction_angle", "40 deg"}}, {ball});
+  Description& material = d["materials"]["grain"];
+  if (law.name == "hertz-mindlin") material["young_modulus"] = 1e9;
+  if (law.name == "linear-frictional") d["contacts"]["shear_damping"] = law.shear_dashpot;
+  if (law.name == "linear-rolling") material["rolling_limit"] = 1e-3;
+  else material["restitution"] = 0.3;
+  if (!law.shear_dashpot) d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.3}};
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {gravity * lean, 0, -gravity}}};
+  d["time_step"]["value"] = 1e-7;
+  return d;
+}
+
+/// Two pieces of floor that meet at x = 0, where it rises by `bend`.
+std::vector<Vec3> bent_floor(double bend) {
+  const Vec3 first(-5 * radius, 0, 0), second(5 * radius * std::cos(bend), 0, 5 * radius * std::sin(bend)),
+      side(0, 5 * radius, 0);
+  return {first - side, -side,         side,          first - side, side,          first + side,
+          -side,        second - side, second + side, -side,        second + side, side};
+}
+
+/// What the floor does to the ball along itself, in one contact.
+struct Hold {
+  Vec3 normal, friction;
+};
+Hold hold(const Trial& trial) {
+  const auto contacts = trial.world().contacts();
+  EXPECT_EQ(contacts.size(), 1u) << trial.position(0).transpose();
+  const Contact& one = contacts.front();
+  return {one.normal, one.normal_force * one.normal - one.force};
+}
+
+class Bends : public testing::TestWithParam<std::tuple<Law, double>> {};
+
+// Over a valley the normal jumps, and nothing else may; over a ridge it turns, and friction changes as pivoting asks.
+TEST_P(Bends, AreNoJerkToABallThatRolls) {
+  const auto& [law, bend] = GetParam();
+  for (const double aside : {0.0, 0.3}) {
+    const StlFile file(stl_text(bent_floor(bend)));
+    Description d = rolling_ball(law, aside);
+    d["walls"]["floor"] = {
+        {"type", "mesh"}, {"path", file.path()}, {"scale", 1.0}, {"open", true}, {"material", "grain"}};
+    Trial trial(d);
+    const double near = 1.1 * std::abs(bend) * radius;
+    Hold last = hold(trial);
+    double ordinary = 0, turned = 0;  // change of friction in one step away from the bend
+    for (int step = 0; trial.position(0).x() < 0.3 * ahead + near; ++step) {
+      ASSERT_LT(step, 20000) << "it got across";
+      trial.step();
+      const Hold now = hold(trial);
+      const double change = (now.friction - last.friction).norm(), turn = (now.normal - last.normal).norm();
+      if (std::abs(trial.position(0).x()) > near && turn == 0) ordinary = std::max(ordinary, change);
+      else
+        EXPECT_LE(change, (std::abs(bend) + turn) * last.friction.norm() + 1.5 * ordinary)
+            << "at " << trial.position(0).transpose() << ", " << last.friction.norm();
+      turned += turn;
+      last = now;
+    }
+    EXPECT_NEAR(turned, std::abs(bend), 1e-3 * std::abs(bend));
+  }
+}
+
+// Off an edge a ball tips as one rigid body that turns about it: its centre goes (R − δ) ω, not R ω. Shear springs are
+// stiff, so that how much they give as more and more friction is asked for is less than that.
+TEST(Edge, IsPivotedAboutWithoutSlip) {
+  constexpr double ball = 0.01, depth = 0.01 * ball, g = 9.81, density = 2600, pi = std::numbers::pi;
+  const double modulus = density * 4 / 3 * pi * ball * ball * g / depth;  // pressed in as deep by its weight
+  Description d = description("linear-frictional",
+                              {{"contact_modulus", modulus},
+                               {"density", density},
+                               {"friction_angle", "80 deg"},
+                               {"restitution", 0.1},
+                               {"shear_to_normal_stiffness", 10}},
+                              {{Vec3(-2e-4, 0, ball - depth), ball, {0.02, 0, 0}, {0, 0.02 / ball, 0}}});
+  d["contacts"]["shear_damping"] = true;
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["time_step"]["value"] = 1e-5;
+  d["walls"]["shelf"] = {{"type", "rectangle"},
+                         {"corner", {-0.1, -0.1, 0}},
+                         {"edge_a", {0.1, 0, 0}},
+                         {"edge_b", {0, 0.2, 0}},
+                         {"material", "grain"}};
+  Trial trial(d);
+  const auto angle = [&] { return std::atan2(trial.position(0).x(), trial.position(0).z()); };
+  int steps = 0;
+  for (; angle() < 0.5; ++steps) {
+    ASSERT_LT(steps, 100000);
+    trial.step();
+    if (angle() < 0.2) continue;
+    const Vec3 arm = trial.position(0), along = Vec3::UnitY().cross(arm).normalized();
+    ASSERT_EQ(trial.world().contacts().size(), 1u);
+    EXPECT_NEAR(trial.velocity(0).dot(along) / (arm.norm() * trial.spin(0).y()), 1, 1e-3) << angle();
+  }
+}
+
+const Law laws[] = {
+    {"linear-frictional", true}, {"linear-frictional", false}, {"linear-rolling", false}, {"hertz-mindlin", true}};
+
+INSTANTIATE_TEST_SUITE_P(All, Bends,
+                         testing::Combine(testing::ValuesIn(laws),
+                                          testing::Values(0.001, 0.01, 0.05, -0.001, -0.01, -0.05)));
+
+}  // namespace
+}  // namespace grit::test

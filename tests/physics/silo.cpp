@@ -1,0 +1,103 @@
+// A round silo whose wall carries all that friction allows, against Janssen (1895), Z. Ver. Dtsch. Ing. 39, 1045:
+// σ(y) = ρ g D / (4 K μ) (1 − exp(−4 K μ y / D)), y from the surface.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support/curves.hpp"
+#include "support/verified.hpp"
+
+namespace grit::test {
+namespace {
+
+constexpr double wide = 10e-3, across = std::numbers::pi * wide * wide / 4, g = 9.81, slice = 2.5e-3;
+
+/// Means over the second half of the raising, slice by slice from the bottom up.
+struct Raised : Curves {
+  static constexpr std::size_t most = 24;
+  std::array<double, most> vertical{}, lateral{}, shear{};  ///< Pa: in the sand; on the wall
+  double bottom = 0, wall = 0, weight = 0, centre = 0;      ///< N; m
+  int samples = 0;
+
+  void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override {
+    Curves::sample(probe, world, values);
+    if (world.stage() != "raise" || probe_names_[probe] != "walls") return;
+    if (start_ < 0) start_ = world.time();
+    if (world.time() - start_ < 0.05) return;
+    ++samples;
+    for (std::size_t i = 0; i < most; ++i) {
+      const double low = static_cast<double>(i) * slice;
+      const Region box{{-0.5 * wide, -0.5 * wide, low}, {0.5 * wide, 0.5 * wide, low + slice}};
+      vertical[i] += mean_stress(world, box)(2, 2) * wide * wide / across;
+    }
+    for (const Contact& contact : world.contacts()) {
+      if (!contact.with_wall || world.walls()[contact.b].name != "wall") continue;
+      const auto i = static_cast<std::size_t>(std::max(world.positions()[contact.a].z, 0.0) / slice);
+      const double ring = std::numbers::pi * wide * slice;
+      if (i < most) lateral[i] += contact.normal_force / ring, shear[i] -= contact.force.z() / ring;
+    }
+    for (const WallView& one : world.walls()) (one.name == "wall" ? wall : bottom) -= one.force.z();
+    double mass = 0, moment = 0;
+    for (std::size_t i = 0; i < world.positions().size(); ++i)
+      mass += 1 / world.velocities()[i].w, moment += world.positions()[i].z / world.velocities()[i].w;
+    weight += g * mass, centre += moment / mass;
+  }
+  void begin(const World& world, std::span<const ProbeGroup> probes) override {
+    Curves::begin(world, probes);
+    for (const ProbeGroup& probe : probes) probe_names_.push_back(probe.name);
+  }
+  void finish(const World& world, const RunSummary& how) override {
+    Curves::finish(world, how);
+    for (auto* profile : {&vertical, &lateral, &shear})
+      for (double& stress : *profile) stress /= samples;
+    for (double* sum : {&bottom, &wall, &weight, &centre}) *sum /= samples;
+  }
+
+ private:
+  std::vector<std::string> probe_names_;
+  double start_ = -1;
+};
+
+/// A silo filled to about so many times its width.
+Raised raised(int times) {
+  const double more = times / 3.0;
+  Raised silo;
+  run_to_the_end("sims/round-silo/quick.json",
+                 {"/bodies/sand/grains/count=" + std::to_string(std::lround(2500 * more)),
+                  "/bodies/sand/grains/high/2=" + std::to_string(95e-3 * more),
+                  "/walls/wall/end/2=" + std::to_string(0.15 * more)},
+                 silo);
+  return silo;
+}
+
+TEST(Silo, CarriesItsFillingAsJanssenSays) {
+  const Raised tall = raised(5), low = raised(3);
+  // K and μ are means of what is measured, over the slices that are full.
+  const double surface = 2 * tall.centre, density = tall.weight / (g * across * surface);
+  const auto full = static_cast<std::size_t>(surface / slice);
+  double vertical = 0, lateral = 0, shear = 0;
+  for (std::size_t i = 0; i < full; ++i)
+    vertical += tall.vertical[i], lateral += tall.lateral[i], shear += tall.shear[i];
+  const double per_depth = 4 * shear / vertical / wide, limit = density * g / per_depth;
+  const auto janssen = [&](double depth) { return limit * (1 - std::exp(-per_depth * depth)); };
+  double square = 0;
+  for (std::size_t i = 0; i < full; ++i)
+    square += std::pow(tall.vertical[i] / limit - janssen(surface - (static_cast<double>(i) + 0.5) * slice) / limit, 2);
+  verify("root mean square of stress by depth less Janssen's, over his limit",
+         std::sqrt(square / static_cast<double>(full)), 0, 0.06, 1);
+  verify("stress on the bottom, filled to 5 D, over Janssen's", tall.bottom / across / janssen(surface), 1, 0.06);
+  verify("stress on the bottom, filled to 3 D, over that at 5 D", low.bottom / tall.bottom, 1, 0.1);
+  verify("weight that bottom and wall carry, filled to 5 D", (tall.bottom + tall.wall) / tall.weight, 1, 0.03);
+  verify("weight that bottom and wall carry, filled to 3 D", (low.bottom + low.wall) / low.weight, 1, 0.03);
+  RecordProperty("K", std::to_string(lateral / vertical));
+  RecordProperty("friction of the wall", std::to_string(shear / lateral));
+  EXPECT_LT(tall.bottom, 0.3 * tall.weight) << "or nothing was carried by the wall";
+}
+
+}  // namespace
+}  // namespace grit::test
