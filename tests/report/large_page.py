@@ -54,13 +54,15 @@ def measure(grit, grains, frames):
             browser.open(page)
             browser.wait(f"{GRAINS}?.painted")
             print(f"open, grains drawn: {time.monotonic() - began:.1f} s")
-            per_frame = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, began = performance.now();
-                for (let i = 0; i < {frames}; ++i) await view.go(i);
-                return (performance.now() - began) / {frames}; }})()""")
-            turn = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, began = performance.now();
-                for (let i = 0; i < 10; ++i) {{ view.state.pan[0] += 1e-4; view.arrange(); view.paint(); view.painter?.gl.finish(); }}
-                return (performance.now() - began) / 10; }})()""")
-            print(f"a frame: {per_frame:.0f} ms to unpack and hand over, {turn:.0f} ms to draw; heap "
+            unpack, show, paint = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, mean = async (count, act) => {{
+                    const began = performance.now();
+                    for (let i = 0; i < count; ++i) await act(i);
+                    return (performance.now() - began) / count; }};
+                const unpack = await mean(5, (i) => view.frames.read(i));
+                const show = await mean(5, () => view.show(view.now));
+                const paint = await mean(5, (i) => {{ view.state.pan[0] += 1e-4; view.arrange(); view.paint(); const {{gl}} = view.painter; gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); }});
+                return [unpack, show, paint]; }})()""")
+            print(f"a frame: {unpack:.0f} ms to unpack, {show:.0f} ms to show, of which {paint:.0f} ms to draw (without a graphics processor); heap "
                   f"{browser.evaluate('performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
             print("console:", browser.complaints() or "silent")
 

@@ -183,16 +183,9 @@ TEST(ReportPage, ShowsWhatCanBeReadOfAHalfWrittenFolder) {
 TEST(ReportPage, RefusesAFolderThatHoldsNoRun) {
   const Folder folder;
   std::filesystem::create_directory(folder / "empty");
-  const auto error_of = [](const std::filesystem::path& path) {
-    try {
-      page_of(path);
-    } catch (const FileError& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing was thrown");
-  };
-  EXPECT_THAT(error_of(folder / "empty"), AllOf(HasSubstr("empty: holds no run"), HasSubstr("grit run")));
-  EXPECT_THAT(error_of(folder / "nothing"), HasSubstr("nothing: there is no such folder"));
+  EXPECT_THAT(error_of<FileError>([&] { page_of(folder / "empty"); }),
+              AllOf(HasSubstr("empty: holds no run"), HasSubstr("grit run")));
+  EXPECT_THAT(error_of<FileError>([&] { page_of(folder / "nothing"); }), HasSubstr("nothing: there is no such folder"));
 }
 
 TEST(ReportPage, FetchesNothingAndIsNotBrokenByNames) {

@@ -1,7 +1,10 @@
-// Draws discs and segments: by WebGL2, one quad each, or by a pen on a canvas or into SVG where there is none.
+// Draws discs and segments: by WebGL2, one point or quad each, or by a pen on a canvas or into SVG where there is none.
 "use strict";
 
-const discVertex = `#version 300 es
+// Points are drawn many times faster than quads by software, but vanish with their centres at the edge, and have a largest size.
+const largestPoint = 64; // px
+
+const discVertex = (points) => `#version 300 es
 precision highp float;
 layout(location=0) in float x; layout(location=1) in float y; layout(location=2) in float z;
 layout(location=3) in float radius; layout(location=4) in float place;
@@ -9,19 +12,20 @@ uniform vec3 low, span; uniform mat3 axes; uniform vec4 window; uniform vec3 dep
 out vec2 corner; flat out float value; flat out float pixels;
 void main() {
   vec3 p = axes * (low + span * vec3(x, y, z));
-  corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
   float size = max(radius, least);
   value = place; pixels = size / least;
+  corner = ${points ? "vec2(0)" : "vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0"};
+  gl_PointSize = pixels;
   vec2 at = (p.xy + size * corner - window.xy) * window.zw;
   gl_Position = p.z < depth.x ? vec4(2, 2, 2, 1) : vec4(at, (p.z - depth.y) / depth.z * 1.9 - 0.95, 1);
 }`;
-const discFragment = `#version 300 es
+const discFragment = (points) => `#version 300 es
 precision highp float;
 in vec2 corner; flat in float value; flat in float pixels;
 uniform sampler2D colours; uniform vec3 grey, paper; uniform float fade;
 out vec4 colour;
 void main() {
-  float r = length(corner), soft = 1.0 / max(pixels, 1.0);
+  float r = length(${points ? "gl_PointCoord * 2.0 - 1.0" : "corner"}), soft = 1.0 / max(pixels, 1.0);
   if (r > 1.0) discard;
   vec3 fill = value < 0.0 ? grey : texture(colours, vec2((value * 255.0 + 0.5) / 256.0, 0.5)).rgb;
   float rim = pixels < 3.0 ? 0.0 : smoothstep(1.0 - 2.6 * soft, 1.0 - 1.2 * soft, r);
@@ -50,7 +54,8 @@ class GlPainter {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
     if (!gl) throw Error("no WebGL2");
     this.gl = gl;
-    this.discs = this.program(discVertex, discFragment);
+    this.quads = this.program(discVertex(false), discFragment(false));
+    this.points = this.program(discVertex(true), discFragment(true));
     this.segments = this.program(segmentVertex, segmentFragment);
     this.buffers = new Map();
     this.discArray = gl.createVertexArray();
@@ -83,6 +88,7 @@ class GlPainter {
     [x, y, z].forEach((list, i) => this.attribute(this.discArray, `p${i}`, i, list, 1, gl.UNSIGNED_SHORT, true));
     this.attribute(this.discArray, "radius", 3, radius, 1, gl.FLOAT, false);
     this.count = count;
+    this.largest = radius.reduce((a, b) => Math.max(a, b), 0);
   }
   setPlaces(places) {
     this.attribute(this.discArray, "place", 4, places, 1, this.gl.FLOAT, false);
@@ -110,7 +116,8 @@ class GlPainter {
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     if (this.count > 0) {
-      const { program, uniform } = this.discs;
+      const points = this.largest / metresPerPixel < largestPoint;
+      const { program, uniform } = points ? this.points : this.quads;
       gl.useProgram(program);
       gl.enable(gl.DEPTH_TEST), gl.disable(gl.BLEND), gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
       gl.uniform3fv(uniform("low"), low), gl.uniform3fv(uniform("span"), span);
@@ -119,7 +126,9 @@ class GlPainter {
       gl.uniform1f(uniform("least"), metresPerPixel), gl.uniform1f(uniform("fade"), fade);
       gl.uniform3fv(uniform("grey"), colour("#b4b4b0")), gl.uniform3fv(uniform("paper"), colour(look.paper));
       gl.bindVertexArray(this.discArray);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count);
+      for (let location = 0; location < 5; ++location) gl.vertexAttribDivisor(location, points ? 0 : 1);
+      if (points) gl.drawArrays(gl.POINTS, 0, this.count);
+      else gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.count);
     }
     if (this.segmentCount > 0) {
       const { program, uniform } = this.segments;
