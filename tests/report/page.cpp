@@ -141,8 +141,9 @@ TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.write();
-  for (const char* name : {"000002.h5", "000003.h5", "000004.h5"})
-    std::filesystem::copy_file(folder / "run/frames/000001.h5", folder / ("run/frames/" + std::string(name)));
+  for (const char* name : {"000002.h5", "000003.h5"})
+    std::filesystem::copy_file(folder / "run/frames/000000.h5", folder / ("run/frames/" + std::string(name)));
+  std::filesystem::copy_file(folder / "run/frames/000001.h5", folder / "run/frames/000004.h5");
   const auto frames = [&](std::size_t bytes) {
     return json_of(page_of(folder / "run", {.bytes = bytes}).html).at("runs").at(0).at("grains");
   };
@@ -150,7 +151,8 @@ TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
   const json three = frames(3 * 3 * 20);
   EXPECT_EQ(three.at("left_out"), 2);
   ASSERT_THAT(three.at("frames"), SizeIs(3));
-  EXPECT_EQ(three.at("frames").at(0).at("time"), 1);
+  const double times[] = {1, 1, 2};  // of the first, the third and the last
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(three.at("frames").at(i).at("time"), times[i]);
   EXPECT_THAT(frames(0).at("frames"), SizeIs(2)) << "the first and the last are always there";
 }
 
