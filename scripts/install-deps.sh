@@ -13,8 +13,10 @@ packages=(
   libudunits2-dev
   libvalijson-dev
   nlohmann-json3-dev
+  zlib1g-dev
+  libjs-vega                         # draws the curves of a report; goes into the library
   libgtest-dev libgmock-dev libbenchmark-dev
-  librsvg2-bin                       # pictures of the documentation as PNG
+  librsvg2-bin                       # pictures as PNG
   python3 python3-h5py               # tests of the loops' instructions and of the README
 )
 

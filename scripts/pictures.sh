@@ -3,8 +3,26 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-mkdir -p docs/pictures
+# drawn RUN PICTURE: a run's picture as PNG.
+drawn() { rsvg-convert --width 1000 "results/pictures/$1" --output "docs/$2.png"; }
+
+mkdir -p docs/pictures docs/gallery
 for run in quick quick-loose; do
   build/bin/grit run "sims/direct-shear/$run.json" --out "results/pictures/$run" --overwrite
-  rsvg-convert --width 1000 "results/pictures/$run/picture.svg" --output "docs/pictures/direct-shear-$run.png"
+  drawn "$run/picture.svg" "pictures/direct-shear-$run"
 done
+
+# gallery NAME FILE [OPTION…]: curves and grains of a test, as docs/gallery/README.md has them.
+gallery() {
+  local name=$1 file=$2
+  shift 2
+  build/bin/grit run "$file" --out "results/pictures/$name" --overwrite --threads 1 "$@"
+  build/bin/grit report --png "results/pictures/$name"
+  drawn "$name/curves.svg" "gallery/$name-curves"
+  drawn "$name/grains.svg" "gallery/$name-grains"
+}
+gallery direct-shear sims/direct-shear/quick.json
+gallery triaxial sims/triaxial/quick.json
+gallery interface-rn-100 sims/interface-shear/quick-rn-100.json
+gallery interface-dl-0240 sims/interface-shear/quick-dl-0240.json --set /scenario/void_ratio=0.6
+gallery silo-discharge sims/silo-discharge/quick.json

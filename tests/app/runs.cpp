@@ -35,7 +35,7 @@ TEST_F(Runs, LeaveResults) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("two.json: two grains\n2 bodies, 1 thread, results in results/two\n"),
                                  HasSubstr("stage \"part\" ended")));
   EXPECT_THAT(outcome.out, AllOf(StartsWith("packing/kinetic_energy: peak "), HasSubstr("200 steps of 2 bodies in "),
-                                 HasSubstr("particle-steps/s"), EndsWith("results: results/two\n")));
+                                 HasSubstr("particle-steps/s"), EndsWith("results: results/two\nreport: results/two/report.html\n")));
   const auto run = run_json("results/two");
   EXPECT_EQ(run.at("status"), "done");
   EXPECT_EQ(run.at("steps"), 200);

@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(plugins scene input contact engines run output study app)
+rooms=(plugins scene input contact engines run output study report app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {
@@ -39,8 +39,8 @@ check() {
 
   sources core plugins tests bench | grep -vE '^(core/src|tests)/output/' | find_in '#include [<"]([a-z0-9/]*/)?(hdf5|H5[A-Za-z]+)(_hl)?\.h' |
     report "HDF5 outside output/"
-  sources core plugins bench | grep -vE '^core/(include/grit/(description|parameters)\.hpp|src/(input|output|study|app)/)' |
-    grep -vE '^plugins/(scenarios/|.*/test_[^/]*$)' | find_in 'nlohmann' | report "JSON outside input/, output/, study/, scenarios"
+  sources core plugins bench | grep -vE '^core/(include/grit/(description|parameters)\.hpp|src/(input|output|study|report|app)/)' |
+    grep -vE '^plugins/(scenarios/|.*/test_[^/]*$)' | find_in 'nlohmann' | report "JSON outside input/, output/, study/, report/, scenarios"
 
   find . -path './build*' -prune -o -type f \( -name CMakeLists.txt -o -name '*.cmake' -o -name 'CMake*Presets.json' \) \
     -exec grep -nHE '' {} + | sed -E 's@^([^:]*:[0-9]+:[^#]*)#.*@\1@' |
@@ -93,10 +93,10 @@ self_test() {
   planted "HDF5 outside output/" core/src/run/planted.cpp '#include <hdf5.h>'
   planted "HDF5 outside output/" plugins/probes/planted/planted.cpp '#include <H5Cpp.h>'
   allowed core/src/output/planted.cpp '#include <hdf5.h>'
-  planted "JSON outside input/, output/, study/, scenarios" core/src/run/planted.cpp '#include <nlohmann/json.hpp>'
-  planted "JSON outside input/, output/, study/, scenarios" core/include/grit/planted.hpp '#include <nlohmann/json_fwd.hpp>'
-  planted "JSON outside input/, output/, study/, scenarios" plugins/probes/planted/planted.cpp '#include <nlohmann/json.hpp>'
-  for place in core/src/{input,output,app}/planted.cpp plugins/scenarios/planted/planted.cpp tests/planted.cpp; do
+  planted "JSON outside input/, output/, study/, report/, scenarios" core/src/run/planted.cpp '#include <nlohmann/json.hpp>'
+  planted "JSON outside input/, output/, study/, report/, scenarios" core/include/grit/planted.hpp '#include <nlohmann/json_fwd.hpp>'
+  planted "JSON outside input/, output/, study/, report/, scenarios" plugins/probes/planted/planted.cpp '#include <nlohmann/json.hpp>'
+  for place in core/src/{input,output,report,app}/planted.cpp plugins/scenarios/planted/planted.cpp tests/planted.cpp; do
     allowed "$place" '#include <nlohmann/json.hpp>'
   done
   planted "not the same bits" bench/CMakeLists.txt 'add_compile_options(-ffast-math)'

@@ -51,6 +51,9 @@ TEST_F(SceneTest, ReadsIntoTypes) {
   EXPECT_EQ(s.probes.at("curve").cadence.every_time, 1e-3);
   EXPECT_EQ(s.stages.size(), 2u);
   EXPECT_EQ(s.output.picture->view, "xy");
+  EXPECT_EQ(s.output.references.at("laboratory").curve->file,
+            std::string(GRIT_SOURCE_DIR) + "/tests/input/good/laboratory.csv");
+  EXPECT_EQ(s.output.references.at("slope").value, 0.6);
 }
 
 TEST_F(SceneTest, ChangesAndRampsStay) {

@@ -106,6 +106,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                        folder.string(),
                        "--overwrite",
                        "--quiet",
+                       "--no-report",
                        "--threads",
                        std::to_string(threads)};
       for (const auto& set : sets) run.job.words.insert(run.job.words.end(), {"--set", set});

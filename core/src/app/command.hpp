@@ -35,6 +35,7 @@ ExitStatus plugins_command(const std::vector<std::string>& words);
 ExitStatus describe_command(const std::vector<std::string>& words);
 ExitStatus chart_command(const std::vector<std::string>& words);
 ExitStatus advise_command(const std::vector<std::string>& words);
+ExitStatus report_command(const std::vector<std::string>& words);
 
 std::span<const Command> commands();
 

@@ -13,7 +13,7 @@
 namespace grit {
 
 std::span<const Command> commands() {
-  static constexpr std::array<Command, 8> all{{
+  static constexpr std::array<Command, 9> all{{
       {"run", "FILE…", "Runs descriptions, one after the other. Ctrl-C saves what there is and stops.", run_command},
       {"check", "FILE…", "Says what would run: components, state, time step and its limit, memory, time.",
        check_command},
@@ -22,10 +22,10 @@ std::span<const Command> commands() {
       {"plugins", "[NAME]", "Lists what is installed; one in full.", plugins_command},
       {"describe", "[NAME]", "Prints the parameters of a section of a description, or of a component.",
        describe_command},
-      {"chart", "STUDY", "Speed against accuracy: runs a study, draws error against cost.",
-       chart_command},
-      {"advise", "FILE", "Says what may be relaxed within a tolerance, by the evidence of a study.",
-       advise_command},
+      {"chart", "STUDY", "Speed against accuracy: runs a study, draws error against cost.", chart_command},
+      {"advise", "FILE", "Says what may be relaxed within a tolerance, by the evidence of a study.", advise_command},
+      {"report", "DIR…", "Makes one page of a run, or of several side by side: curves, grains, what it cost.",
+       report_command},
   }};
   return all;
 }

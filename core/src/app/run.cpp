@@ -9,8 +9,11 @@
 #include "app/run_setup.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
+#include "output/atomic_file.hpp"
 #include "output/results_folder.hpp"
+#include "report/report_page.hpp"
 #include "scene/make_bodies.hpp"
+#include "study/figures.hpp"
 
 namespace grit {
 namespace {
@@ -57,6 +60,18 @@ void read_all(std::vector<Job>& jobs, const Options& options, const Registry& re
   if (!problems.empty()) throw DescriptionError(std::move(problems));
 }
 
+/// The page beside the results. The run is whole without it: what keeps it from being made is only said.
+void make_report(const std::filesystem::path& folder) {
+  const auto out = folder / "report.html";
+  try {
+    const ReportPage page = report_page(std::span(&folder, 1));
+    write_atomically(out, page.html);
+    std::cout << "report: " << out.string() << '\n';
+  } catch (const std::exception& error) {
+    std::cerr << "grit: no report: " << error.what() << std::endl;
+  }
+}
+
 ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
                    const std::atomic<bool>& interrupted) {
   const auto& [file, folder, scene] = job;
@@ -75,6 +90,11 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
                          .picture = {}};
   if (const auto& picture = description.output.picture)
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};
+  for (const auto& [name, reference] : description.output.references) {
+    results.references.push_back(reference.of);
+    if (!reference.against.empty()) results.references.push_back(reference.against);
+    if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
+  }
   ResultsFolder recorder(std::move(results));
 
   const auto say = [&](const std::string& line) {
@@ -108,6 +128,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' ' << share(summary.phases[i].seconds);
   std::cout << ")\nresults: " << folder.string() << '\n';
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
+  if (!options.has("no-report")) make_report(folder);
   if (summary.status == "failed") throw NumericsError(summary.message);
   if (summary.status == "interrupted") {
     std::cerr << "interrupted; what was reached is saved in " << folder.string() << std::endl;
@@ -123,7 +144,8 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   Options options(command("run"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(
-      "overwrite", "replace results that are there")("quiet,q", "no progress, only what came of it");
+      "overwrite", "replace results that are there")("no-report", "do not make the page report.html")(
+      "quiet,q", "no progress, only what came of it");
   options.add_threads("threads; results are the same bits for any number");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;

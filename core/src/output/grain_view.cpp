@@ -27,25 +27,25 @@ Sight sight(const std::string& view) {
 using Value = std::function<double(std::uint32_t)>;
 
 /// Sets what colours mean in `shown`, and says how to get it for a body.
-Value colouring(const World& world, const Sight& look, const std::string& color, GrainView& shown) {
+Value colouring(const SeenBodies& seen, const Sight& look, const std::string& color, GrainView& shown) {
   const Value grey = [](std::uint32_t) { return std::numeric_limits<double>::quiet_NaN(); };
   if (color == "rotation") {
     shown.value = {"rotation", "rad"};
     shown.note = "clockwise +";
-    if (world.rotations().empty()) return grey;
+    if (seen.rotations.empty()) return grey;
     // A right-handed turn about the line of sight is clockwise for who looks along it.
-    return [rotations = world.rotations(), look](std::uint32_t i) { return look.away * rotations[i][look.depth]; };
+    return [rotations = seen.rotations, look](std::uint32_t i) { return look.away * rotations[i][look.depth]; };
   }
   if (color == "displacement") {
     shown.value = {"displacement", "m"};
     shown.note = shown.horizontal + " +";
-    if (world.displacements().empty()) return grey;
-    return [displacements = world.displacements(), look](std::uint32_t i) { return displacements[i][look.right]; };
+    if (seen.displacements.empty()) return grey;
+    return [displacements = seen.displacements, look](std::uint32_t i) { return displacements[i][look.right]; };
   }
   if (color == "speed") {
     shown.value = {"speed", "m/s"};
     shown.symmetric = false;
-    return [velocities = world.velocities()](std::uint32_t i) { return xyz(velocities[i]).norm(); };
+    return [velocities = seen.velocities](std::uint32_t i) { return xyz(velocities[i]).norm(); };
   }
   throw Error("picture: there is no color '" + color + "'; there are 'rotation', 'displacement' and 'speed'");
 }
@@ -66,21 +66,21 @@ void cut(std::span<const Vec3> triangles, const Sight& look, double depth, std::
 
 }  // namespace
 
-GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
+GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> walls, const std::string& view,
                      const std::string& color) {
   const auto look = sight(view);
   GrainView shown;
   shown.horizontal = "xyz"[look.right];
   shown.vertical = "xyz"[look.up];
-  const auto value = colouring(world, look, color, shown);
+  const auto value = colouring(seen, look, color, shown);
 
-  const auto rows = world.positions();
+  const auto rows = seen.positions;
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const auto& row : rows) {
     low = std::min(low, xyz(row)[look.depth]);
     high = std::max(high, xyz(row)[look.depth]);
   }
-  const double third = high - low < 3 * world.mean_diameter() ? 0 : (high - low) / 3;
+  const double third = high - low < 3 * seen.mean_diameter ? 0 : (high - low) / 3;
   std::vector<std::uint32_t> bodies;
   for (std::uint32_t i = 0; i < rows.size(); ++i)
     if (const double depth = xyz(rows[i])[look.depth]; depth >= low + third && depth <= high - third)
@@ -94,11 +94,19 @@ GrainView grain_view(const World& world, std::span<const WallShape> walls, const
 
   double middle = 0.5 * (low + high);
   if (rows.empty()) {
-    const auto box = world.specimen();
-    middle = 0.5 * (box.low[look.depth] + box.high[look.depth]);
+    middle = 0.5 * (seen.specimen.low[look.depth] + seen.specimen.high[look.depth]);
   }
-  for (const auto& wall : walls) cut(placed(wall, world), look, middle, shown.walls);
+  for (const auto& wall : walls) cut(wall, look, middle, shown.walls);
   return shown;
+}
+
+GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
+                     const std::string& color) {
+  std::vector<std::vector<Vec3>> where;
+  for (const auto& wall : walls) where.push_back(placed(wall, world));
+  return grain_view(SeenBodies{world.positions(), world.velocities(), world.rotations(), world.displacements(),
+                               world.mean_diameter(), world.specimen()},
+                    where, view, color);
 }
 
 }  // namespace grit

@@ -3,11 +3,20 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "output/frames.hpp"
 #include "output/picture.hpp"
 
 namespace grit {
+
+/// What is seen of bodies. Rotations and displacements are empty where they are not kept.
+struct SeenBodies {
+  std::span<const Row> positions, velocities;
+  std::span<const Vec3> rotations, displacements;
+  double mean_diameter = 0;                     ///< m
+  Region specimen{Vec3::Zero(), Vec3::Zero()};  ///< where walls are cut through if there is no body
+};
 
 /// Which way to look, and what the colours say.
 ///
@@ -16,7 +25,12 @@ namespace grit {
 /// first axis; "speed". Where the world does not keep the state, grains are grey.
 ///
 /// Grains whose centres lie in the middle third of the depth are shown, back to front; all of them where the depth is
-/// less than three mean diameters. Walls are cut at mid-depth. Throws Error for another view or colour.
+/// less than three mean diameters. Walls, as triangles of three corners each [m], are cut at mid-depth. Throws Error
+/// for another view or colour.
+GrainView grain_view(const SeenBodies& bodies, std::span<const std::vector<Vec3>> walls, const std::string& view,
+                     const std::string& color);
+
+/// The same of a world, whose walls are where they have moved to.
 GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
                      const std::string& color);
 

@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "output/colours.hpp"
 #include "output/scale.hpp"
 #include "output/svg.hpp"
 
@@ -21,11 +22,6 @@ constexpr double percentile = 0.98;
 
 // Okabe and Ito's colours that stand out on white, told apart by all readers.
 constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#a8518a", "#7a6a00", "#555555"};
-
-using Rgb = std::array<double, 3>;
-// ColorBrewer's RdBu: safe for colour-blind readers; red is positive.
-constexpr std::array<Rgb, 7> diverging{
-    {{20, 78, 140}, {67, 147, 195}, {164, 207, 228}, {246, 246, 244}, {246, 178, 147}, {214, 96, 77}, {160, 18, 40}}};
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -41,12 +37,12 @@ struct Range {
 
 /// A colour of the map at 0…1.
 std::string colour(double place) {
-  const double along = std::clamp(place, 0.0, 1.0) * (diverging.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(along), diverging.size() - 2);
+  const double along = std::clamp(place, 0.0, 1.0) * (diverging_colours.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(along), diverging_colours.size() - 2);
   const double part = along - static_cast<double>(i);
   std::array<int, 3> mixed{};
   for (std::size_t k = 0; k < 3; ++k)
-    mixed[k] = static_cast<int>(std::lround(diverging[i][k] * (1 - part) + diverging[i + 1][k] * part));
+    mixed[k] = static_cast<int>(std::lround(diverging_colours[i][k] * (1 - part) + diverging_colours[i + 1][k] * part));
   return fmt::format("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]);
 }
 

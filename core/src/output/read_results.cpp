@@ -14,12 +14,17 @@ std::string listed(const std::vector<std::string>& names) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
 
+hdf5::File series_of(const std::filesystem::path& folder) {
+  const auto path = folder / "series.h5";
+  if (!std::filesystem::exists(path)) throw FileError(path.string() + ": there is no such file");
+  return {path, hdf5::Mode::read};
+}
+
 }  // namespace
 
 SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name) {
   const auto path = folder / "series.h5";
-  if (!std::filesystem::exists(path)) throw FileError(path.string() + ": there is no such file");
-  const hdf5::File file(path, hdf5::Mode::read);
+  const hdf5::File file = series_of(folder);
   const auto slash = name.find('/');
   const std::string probe = name.substr(0, slash), channel = slash == std::string::npos ? "" : name.substr(slash + 1);
   if (!file.has(probe))
@@ -31,6 +36,14 @@ SampledChannel read_channel(const std::filesystem::path& folder, const std::stri
   const auto dataset = group.dataset(channel);
   return {dataset.has_attribute("units") ? dataset.text("units") : "1",
           dataset.has_attribute("long_name") ? dataset.text("long_name") : "", dataset.rows(), dataset.read<double>()};
+}
+
+std::vector<std::string> channel_names(const std::filesystem::path& folder) {
+  const hdf5::File file = series_of(folder);
+  std::vector<std::string> names;
+  for (const auto& probe : file.names())
+    for (const auto& channel : file.group(probe).names()) names.push_back(probe + '/' + channel);
+  return names;
 }
 
 std::optional<Description> read_run_json(const std::filesystem::path& folder) {

@@ -20,6 +20,9 @@ struct SampledChannel {
 /// `name` is "probe/channel"; "probe/time" is there for each probe. Throws FileError, which lists what there is.
 SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name);
 
+/// All of series.h5 as "probe/channel", sorted; of each probe "probe/time" and "probe/step" too. Throws FileError.
+std::vector<std::string> channel_names(const std::filesystem::path& folder);
+
 /// run.json; nothing if there is none, or none that can be read.
 std::optional<Description> read_run_json(const std::filesystem::path& folder);
 

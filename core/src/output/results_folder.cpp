@@ -10,6 +10,7 @@
 #include "output/atomic_file.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
+#include "output/scale.hpp"
 #include "scene/packing_file.hpp"
 
 namespace grit {
@@ -53,24 +54,11 @@ std::filesystem::path prepared(const ResultsOptions& options) {
       throw FileError(folder.string() + ": holds a run already (" + mark +
                       " is there): choose another folder, resume that run, or allow it to be overwritten");
   for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "frames", "frames.xdmf",
-                           "packing.txt", "picture.svg"}) {
+                           "packing.txt", "picture.svg", "report.html"}) {
     std::filesystem::remove_all(folder / mine, error);
     if (error) throw FileError((folder / mine).string() + ": cannot remove it: " + error.message());
   }
   return folder;
-}
-
-std::string spelled(std::string name) {
-  std::ranges::replace(name, '_', ' ');
-  return name;
-}
-
-/// 1234567 as "1 234 567", with thin spaces that do not break.
-std::string grouped(std::uint64_t number) {
-  auto digits = std::to_string(number);
-  for (auto place = static_cast<std::ptrdiff_t>(digits.size()) - 3; place > 0; place -= 3)
-    digits.insert(static_cast<std::size_t>(place), "\u202f");
-  return digits;
 }
 
 }  // namespace
@@ -83,10 +71,11 @@ ResultsFolder::ResultsFolder(ResultsOptions options)
 
 void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes) {
   if (options_.picture) {
-    kept_.push_back(find(options_.picture->x, probes));
-    for (const auto& name : options_.picture->y) kept_.push_back(find(name, probes));
+    kept_.push_back(find("picture", options_.picture->x, probes));
+    for (const auto& name : options_.picture->y) kept_.push_back(find("picture", name, probes));
     grain_view(world, {}, options_.picture->view, options_.picture->color);
   }
+  for (const auto& name : options_.references) find("reference", name, probes);
   const auto path = options_.folder / "series.h5";
   const bool resumed = options_.existing == Existing::resume && std::filesystem::exists(path);
   if (resumed) {
@@ -131,7 +120,8 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   run_json_.finish(world, summary);
 }
 
-ResultsFolder::Kept ResultsFolder::find(const std::string& name, std::span<const ProbeGroup> probes) const {
+ResultsFolder::Kept ResultsFolder::find(const char* asking, const std::string& name,
+                                        std::span<const ProbeGroup> probes) const {
   std::string there;
   for (std::size_t probe = 0; probe < probes.size(); ++probe) {
     if (probes[probe].name + "/time" == name) return {probe, std::nullopt, "time", "s", {}, {}};
@@ -143,7 +133,7 @@ ResultsFolder::Kept ResultsFolder::find(const std::string& name, std::span<const
       there += (there.empty() ? "" : ", ") + full;
     }
   }
-  throw Error("picture: no probe has a channel '" + name +
+  throw Error(std::string(asking) + ": no probe has a channel '" + name +
               "' of one number; there are: " + (there.empty() ? "none" : there));
 }
 

@@ -35,6 +35,7 @@ struct ResultsOptions {
   RunFacts facts;
   std::vector<WallShape> walls;
   std::optional<PictureRequest> picture;
+  std::vector<std::string> references;  ///< channels of one number that the description has something to say of
   Flushing flushing = {};
 };
 
@@ -46,7 +47,7 @@ class ResultsFolder final : public Recorder {
   /// Makes the folder. Throws FileError where it cannot, or where it holds a run and `existing` says refuse.
   explicit ResultsFolder(ResultsOptions options);
 
-  /// Throws Error for a channel of the picture that no probe has, or that is not one number.
+  /// Throws Error for a channel of the picture or of a reference that no probe has, or that is not one number.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override;
@@ -63,7 +64,7 @@ class ResultsFolder final : public Recorder {
     std::vector<double> steps, values;
   };
 
-  Kept find(const std::string& name, std::span<const ProbeGroup> probes) const;
+  Kept find(const char* asking, const std::string& name, std::span<const ProbeGroup> probes) const;
   void draw_picture(const World& world, const RunSummary& summary) const;
 
   ResultsOptions options_;

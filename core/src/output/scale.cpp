@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -62,6 +63,18 @@ ReadableUnit readable(const std::string& unit, double largest) {
 
 std::string axis_title(const std::string& label, const std::string& unit) {
   return unit.empty() || unit == "1" ? label : label + " [" + unit + "]";
+}
+
+std::string spelled(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  return name;
+}
+
+std::string grouped(std::uint64_t number) {
+  auto digits = std::to_string(number);
+  for (auto place = static_cast<std::ptrdiff_t>(digits.size()) - 3; place > 0; place -= 3)
+    digits.insert(static_cast<std::size_t>(place), "\u202f");
+  return digits;
 }
 
 }  // namespace grit

@@ -1,6 +1,7 @@
 // Scales that people like to read.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,5 +29,11 @@ ReadableUnit readable(const std::string& unit, double largest);
 
 /// "label [unit]", or the label alone for a unit of "1" or "".
 std::string axis_title(const std::string& label, const std::string& unit);
+
+/// A channel's name as people write it: `shear_stress` is "shear stress".
+std::string spelled(std::string name);
+
+/// 1234567 as "1 234 567", with thin spaces that do not break.
+std::string grouped(std::uint64_t number);
 
 }  // namespace grit

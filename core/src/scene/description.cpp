@@ -432,9 +432,35 @@ void PictureDescription::declare(Parameters& p) {
       .one_of({"rotation", "displacement", "speed"})
       .doc("what colours the grains: rotation about the line of sight, displacement along the first axis, speed");
 }
+void check_channel(const std::string& name, const char* key, const Complain& complain) {
+  const auto slash = name.find('/');
+  if (!name.empty() && (slash == 0 || slash == std::string::npos || slash + 1 == name.size()))
+    complain(key, '"' + name + '"', "a probe's name, a slash and its channel, e.g. \"test/stress_ratio\"");
+}
+
+void ReferenceCurve::declare(Parameters& p) {
+  p.add("file", file).file().required().doc("CSV with a line of names");
+  p.add("x", x).required().doc("column of the abscissa, in the channel's own unit");
+  p.add("y", y).required().doc("column of the curve, in the channel's own unit");
+}
+void ReferenceDescription::declare(Parameters& p) {
+  p.add("of", of).required().doc("series that it is about: probe/channel, e.g. test/stress_ratio");
+  p.add("against", against).doc("series of the curve's abscissa, of the same probe; left out: time");
+  p.add("value", value).doc("one value, in the series' own unit");
+  p.add("curve", curve).doc("a curve");
+  p.check([this](const Complain& complain) {
+    check_channel(of, "of", complain), check_channel(against, "against", complain);
+    if (!against.empty() && against.substr(0, against.find('/')) != of.substr(0, of.find('/')))
+      complain("against", '"' + against + '"', "a series of the same probe as " + of);
+    if (value.has_value() == curve.has_value())
+      complain("curve", value ? "a value and a curve" : "neither a value nor a curve", "one of both");
+  });
+}
 void OutputDescription::declare(Parameters& p) {
   p.add("frames", frames).doc("when frames are written, besides the end of the run; neither given: never");
   p.add("picture", picture).doc("curves and view of the grains, drawn at the end");
+  p.add("references", references)
+      .doc("what the report draws curves against, by name: measured, published, by a formula");
   p.add("summary", summary).doc("series whose largest and last values are printed at the end: probe/channel");
 }
 
@@ -509,7 +535,7 @@ void SceneDescription::declare(Parameters& p) {
   p.add("probes", probes, [this](const std::string&) {
      return ProbeDescription(*registry_);
    }).doc("what is measured, by name");
-  p.add("output", output).doc("frames, picture, summary");
+  p.add("output", output).doc("frames, picture, references, summary");
 
   p.check_names([this](const Complain& complain) {
     for (const auto& [name, _] : materials)

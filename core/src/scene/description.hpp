@@ -260,9 +260,26 @@ struct PictureDescription {
   std::string color = "rotation";
   void declare(Parameters& p);
 };
+/// Complains of a name that is not "probe/channel"; "" passes.
+void check_channel(const std::string& name, const char* key, const Complain& complain);
+
+/// A curve from elsewhere: two columns of a CSV file, SI.
+struct ReferenceCurve {
+  std::string file, x, y;
+  void declare(Parameters& p);
+};
+
+/// What a curve of the run is to be seen against: a value or a curve.
+struct ReferenceDescription {
+  std::string of, against;
+  std::optional<double> value;
+  std::optional<ReferenceCurve> curve;
+  void declare(Parameters& p);
+};
 struct OutputDescription {
   Cadence frames;
   std::optional<PictureDescription> picture;
+  std::map<std::string, ReferenceDescription> references;
   std::vector<std::string> summary;
   void declare(Parameters& p);
 };

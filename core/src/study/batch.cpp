@@ -30,7 +30,7 @@ pid_t start(const BatchJob& job) {
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
   pid_t pid = 0;
-  const int error = ::posix_spawn(&pid, words.front(), &files, nullptr, words.data(), environ);
+  const int error = ::posix_spawnp(&pid, words.front(), &files, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   if (error != 0)
     throw FileError(job.words.front() + " cannot be started, or " + job.log.string() +

@@ -11,7 +11,7 @@
 namespace grit {
 
 struct BatchJob {
-  std::vector<std::string> words;  ///< the program's path first
+  std::vector<std::string> words;  ///< first the program's path, or its name, which PATH is searched for
   std::filesystem::path log;       ///< takes what it says, on both outputs
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "output/page.hpp"
 #include "output/svg.hpp"
 #include "study/chart_words.hpp"
 #include "study/error_chart.hpp"
@@ -96,23 +97,15 @@ std::string failures_part(const Chart& chart) {
 }
 
 constexpr const char* sheet = R"(
-:root{--ink:#1b1b1a;--soft:#666;--paper:#fff;--line:#e4e4e0;--frame:#8a8a86;--band:#f1f0ea;--bar:#cfe3f1;--over:#b3261e}
-@media(prefers-color-scheme:dark){:root{--ink:#ececea;--soft:#a5a5a0;--paper:#17181a;--line:#33353a;--frame:#77787c;--band:#232428;--bar:#1f4460;--over:#ff8a80}}
-*{box-sizing:border-box}
-body{margin:0 auto;padding:24px 20px 60px;max-width:1180px;background:var(--paper);color:var(--ink);
-font:15px/1.5 "Helvetica Neue",Helvetica,Arial,"Liberation Sans","DejaVu Sans",sans-serif}
-h1{font-size:24px;margin:0 0 4px}h2{font-size:18px;margin:36px 0 8px}p{margin:6px 0}small{color:var(--soft)}
 .verdict{font-size:17px;border-left:4px solid #0072b2;padding:2px 14px;margin:18px 0}
 .charts{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,480px),1fr));gap:18px}
-svg{width:100%;height:auto;display:block}.first svg{max-width:900px}
+svg{width:100%;height:auto}.first svg{max-width:900px}
 text{font-family:inherit;font-size:12px;fill:var(--ink)}
 .axis{font-size:13px;font-weight:600}.small{font-size:11px;fill:var(--soft)}.m{text-anchor:middle}.e{text-anchor:end}
 .grid{stroke:var(--line)}.frame{stroke:var(--frame)}.floor{fill:var(--band)}
 .wish{stroke:var(--over);stroke-dasharray:5 4}.front{fill:none;stroke:var(--frame);stroke-width:2}
 .number{font-size:11px;font-weight:600;fill:#fff}.spread{stroke-width:1.5}.failed{fill:var(--over);font-weight:600}
-.wide{overflow-x:auto}table{border-collapse:collapse;font-size:13.5px;width:100%}
-th,td{padding:5px 9px;text-align:right;border-bottom:1px solid var(--line);vertical-align:top}
-th{font-weight:600;vertical-align:bottom}.name{text-align:left}tr.best{background:var(--band)}.over{color:var(--over)}
+tr.best{background:var(--band)}.over{color:var(--over)}
 .dot{display:inline-block;min-width:22px;padding:0 4px;border-radius:11px;color:#fff;text-align:center;font-weight:600}
 .bar{background:linear-gradient(to left,var(--bar) var(--share),transparent 0)}
 )";
@@ -121,10 +114,7 @@ th{font-weight:600;vertical-align:bottom}.name{text-align:left}tr.best{backgroun
 
 std::string chart_page(const Chart& chart) {
   const std::string title = chart.study.title.empty() ? "speed against accuracy" : chart.study.title;
-  std::string html =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-      escaped(title) + "</title>\n<style>" + sheet + "</style></head>\n<body>\n<h1>" + escaped(title) + "</h1>\n";
+  std::string html = page_begin(title, sheet) + "<h1>" + escaped(title) + "</h1>\n";
   html += fmt::format(
       "<p>{}, {} samples of each variant; errors ± their standard error, from the scatter between samples.</p>\n",
       escaped(std::filesystem::proximate(chart.study.scene).string()), chart.study.seeds.values.size());
@@ -141,7 +131,8 @@ std::string chart_page(const Chart& chart) {
     for (const auto& [name, reference] : chart.reference) html += "<div>" + error_chart(chart, name) + "</div>\n";
     html += "</div>\n";
   }
-  return html + "</body></html>\n";
+  html += page_end;
+  return html;
 }
 
 }  // namespace grit

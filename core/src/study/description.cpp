@@ -22,12 +22,6 @@ std::string plain(const Description& value) {
   return text;
 }
 
-void check_channel(const std::string& name, const char* key, const Complain& complain) {
-  const auto slash = name.find('/');
-  if (!name.empty() && (slash == 0 || slash == std::string::npos || slash + 1 == name.size()))
-    complain(key, '"' + name + '"', "a probe's name, a slash and its channel, e.g. \"test/stress_ratio\"");
-}
-
 }  // namespace
 
 void MeanFigure::declare(Parameters& p) {
@@ -35,11 +29,6 @@ void MeanFigure::declare(Parameters& p) {
 }
 void ValueFigure::declare(Parameters& p) {
   p.add("at", at).required().doc("abscissa at which the curve is read, in the channel's own unit");
-}
-void ReferenceCurve::declare(Parameters& p) {
-  p.add("file", file).file().required().doc("CSV with a line of names");
-  p.add("x", x).required().doc("column of the abscissa, in the channel's own unit");
-  p.add("y", y).required().doc("column of the curve, in the channel's own unit");
 }
 void FigureDescription::declare(Parameters& p) {
   p.choose(what);

@@ -10,6 +10,7 @@
 
 #include "grit/description.hpp"
 #include "grit/parameters.hpp"
+#include "scene/description.hpp"
 
 namespace grit {
 
@@ -47,12 +48,6 @@ struct CurveFigure {
 struct ProfileFigure {
   static constexpr const char* type_name = "profile";
   void declare(Parameters&) {}
-};
-
-/// A curve from elsewhere: two columns of a CSV file, SI.
-struct ReferenceCurve {
-  std::string file, x, y;
-  void declare(Parameters& p);
 };
 
 struct FigureDescription {

@@ -3,19 +3,14 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "output/colours.hpp"
 #include "output/svg.hpp"
 #include "study/chart_words.hpp"
 
 namespace grit {
 namespace {
-
-// Okabe and Ito's colours: told apart by all readers, on white and on black. The last is for variants that vary
-// several settings or none.
-constexpr std::array<const char*, 7> palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#8a8a86"};
 
 /// A logarithmic axis from power to power, or to 2 and 5 where that is shorter.
 class LogAxis {
@@ -166,10 +161,11 @@ std::string error_chart(const Chart& chart, const std::string& figure) { return 
 const char* colour_of(const Chart& chart, const VariantResult& result) {
   std::size_t k = 0, colour = 0, differing = 0;
   for (const auto& [name, setting] : chart.study.settings) {
-    if (result.variant.levels[k] != setting.usual_level()) ++differing, colour = k % (palette.size() - 1);
+    if (result.variant.levels[k] != setting.usual_level()) ++differing, colour = k % (series_colours.size() - 1);
     ++k;
   }
-  return palette[differing == 1 ? colour : palette.size() - 1];
+  // Variants that vary several settings, or none, have the last.
+  return series_colours[differing == 1 ? colour : series_colours.size() - 1];
 }
 
 }  // namespace grit

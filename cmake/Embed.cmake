@@ -1,0 +1,27 @@
+# Writes files into a C++ source as one string, so that a program carries what its pages are made of.
+#   cmake -DOUT=FILE.cpp -DNAME=SYMBOL -DFILES="a;b" -P Embed.cmake
+# A file named MODULE=PATH is a CommonJS module: it becomes `define("MODULE", function (exports, module, require) {…});`.
+file(WRITE ${OUT} "#include <string_view>\n\nnamespace grit {\nextern const std::string_view ${NAME};\nconst std::string_view ${NAME} = ")
+foreach(file ${FILES})
+  set(module "")
+  if(file MATCHES "^([^/=]+)=(.*)$")
+    set(module ${CMAKE_MATCH_1})
+    set(file ${CMAKE_MATCH_2})
+  endif()
+  file(READ ${file} text)
+  string(FIND "${text}" ")grit-page\"" inside)
+  if(NOT inside EQUAL -1)
+    message(FATAL_ERROR "${file} holds what ends the string that it is to become: )grit-page\"")
+  endif()
+  if(module)
+    string(REGEX REPLACE "\n?//# sourceMappingURL=[^\n]*" "" text "${text}")  # a request, where developers look
+    file(APPEND ${OUT} "R\"grit-page(define(\"${module}\", function (exports, module, require) {)grit-page\"\n")
+  endif()
+  file(APPEND ${OUT} "R\"grit-page(")
+  file(APPEND ${OUT} "${text}")
+  file(APPEND ${OUT} ")grit-page\"\n")
+  if(module)
+    file(APPEND ${OUT} "\"\\n});\\n\"\n")
+  endif()
+endforeach()
+file(APPEND ${OUT} ";\n}  // namespace grit\n")

@@ -1,0 +1,69 @@
+#include <iostream>
+
+#include "app/interrupt.hpp"
+#include "app/options.hpp"
+#include "grit/error.hpp"
+#include "output/atomic_file.hpp"
+#include "report/pictures.hpp"
+#include "report/report_page.hpp"
+#include "study/batch.hpp"
+
+namespace grit {
+namespace {
+
+/// Throws FileError with what the converter says.
+void convert(const std::filesystem::path& svg, const std::filesystem::path& png) {
+  const auto log = png.string() + ".log";
+  const BatchJob job{{"rsvg-convert", "--zoom", "2", "--output", png.string(), svg.string()}, log};
+  int status = 0;
+  try {
+    run_batch(std::span(&job, 1), 1, catch_interrupts(),
+              {.ended = [&](std::size_t, int ended) { return (status = ended) == 0; }, .waiting = [](std::size_t) {}});
+  } catch (const FileError& error) {
+    throw FileError(std::string(error.what()) + "; it comes with Debian's librsvg2-bin");
+  }
+  if (status != 0) throw FileError(png.string() + " was not made; " + log + " says why");
+  std::filesystem::remove(log);
+}
+
+void make_pictures(const std::filesystem::path& folder) {
+  RunResults run = read_results(folder);
+  for (const auto& [name, picture] :
+       {std::pair("curves", curves_picture(run)), std::pair("grains", grains_picture(run))}) {
+    if (!picture) continue;
+    const auto svg = folder / (std::string(name) + ".svg"), png = folder / (std::string(name) + ".png");
+    write_atomically(svg, *picture);
+    convert(svg, png);
+    std::cout << "picture: " << png.string() << '\n';
+  }
+  for (const std::string& problem : run.problems) std::cerr << "grit: left out: " << problem << '\n';
+}
+
+void make_page(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+  const ReportPage page = report_page(folders);
+  write_atomically(out, page.html);
+  for (const std::string& problem : page.problems) std::cerr << "grit: left out: " << problem << '\n';
+  std::cout << "report: " << out.string() << '\n';
+}
+
+}  // namespace
+
+ExitStatus report_command(const std::vector<std::string>& words) {
+  namespace po = boost::program_options;
+  Options options(command("report"));
+  options.add()("out", po::value<std::string>()->value_name("FILE"),
+                "the page; default: report.html in the first folder")(
+      "png", "instead of a page, pictures in each folder, as curves.png and grains.png, and the same as SVG");
+  if (!options.read(words)) return ExitStatus::done;
+  if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
+  if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");
+  const std::vector<std::filesystem::path> folders(options.words().begin(), options.words().end());
+  if (options.has("png"))
+    for (const auto& folder : folders) make_pictures(folder);
+  else
+    make_page(folders, options.has("out") ? std::filesystem::path(options.get<std::string>("out"))
+                                          : folders.front() / "report.html");
+  return ExitStatus::done;
+}
+
+}  // namespace grit

@@ -1,0 +1,76 @@
+#include "output/read_frames.hpp"
+
+#include <algorithm>
+
+#include "grit/error.hpp"
+#include "output/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+/// A dataset that has `rows` rows of `width` numbers.
+template <class T>
+std::vector<T> column(const hdf5::Group& group, const std::string& name, std::size_t rows, std::size_t width = 1) {
+  const auto dataset = group.dataset(name);
+  if (hdf5::product(dataset.shape()) != rows * width)
+    throw FileError(dataset.where() + ": has " + std::to_string(hdf5::product(dataset.shape())) + " numbers, not " +
+                    std::to_string(rows * width));
+  return dataset.read<T>();
+}
+
+void read_bodies(const hdf5::Group& group, Frame& frame) {
+  frame.id = group.dataset("id").read<std::int64_t>();
+  const auto n = frame.id.size();
+  frame.position = column<double>(group, "position", n, 3);
+  frame.radius = column<double>(group, "radius", n);
+  frame.velocity = column<double>(group, "velocity", n, 3);
+  if (group.has("rotation")) frame.rotation = column<double>(group, "rotation", n, 3);
+  if (group.has("displacement")) frame.displacement = column<double>(group, "displacement", n, 3);
+  if (group.has("clump")) frame.clump = column<std::int64_t>(group, "clump", n);
+}
+
+void read_contacts(const hdf5::Group& group, Frame& frame) {
+  frame.body_a = group.dataset("body_a").read<std::int64_t>();
+  const auto m = frame.body_a.size();
+  frame.normal_force = column<double>(group, "normal_force", m);
+  frame.branch = column<double>(group, "branch", m, 3);
+}
+
+void read_walls(const hdf5::Group& group, Frame& frame) {
+  for (const auto& name : group.names()) {
+    const auto wall = group.dataset(name);
+    frame.walls.push_back({name,
+                           wall.read<double>(),
+                           {wall.number<double>("displacement_x"), wall.number<double>("displacement_y"),
+                            wall.number<double>("displacement_z")}});
+  }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> frame_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "frames", none))
+    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+  std::ranges::sort(files);
+  return files;
+}
+
+Frame read_frame(const std::filesystem::path& path) {
+  const hdf5::File file(path, hdf5::Mode::read);
+  Frame frame;
+  frame.time = file.number<double>("time");
+  frame.step = file.number<std::uint64_t>("step");
+  frame.stage = file.text("stage");
+  read_bodies(file.group("bodies"), frame);
+  read_contacts(file.group("contacts"), frame);
+  read_walls(file.group("walls"), frame);
+  return frame;
+}
+
+std::size_t bodies_in_frame(const std::filesystem::path& path) {
+  return hdf5::File(path, hdf5::Mode::read).group("bodies").dataset("id").rows();
+}
+
+}  // namespace grit

@@ -1,0 +1,107 @@
+#include "report/facts.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "output/scale.hpp"
+#include "study/chart_words.hpp"
+
+namespace grit {
+namespace {
+
+std::optional<double> number(const RunResults& run, const std::string& pointer) {
+  const Description& found = run.at(pointer);
+  return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
+}
+
+/// "1.2 ms", "3.40 µs".
+std::string time_text(double seconds) {
+  for (const auto& [size, unit] : {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "µs")})
+    if (std::abs(seconds) >= size) return fmt::format("{:.3g} {}", seconds / size, unit);
+  return seconds == 0 ? "0 s" : fmt::format("{:.3g} ns", seconds * 1e9);
+}
+
+/// The value of a channel that is farthest from zero, of all probes that have it.
+std::optional<double> largest(const RunResults& run, const std::string& channel) {
+  std::optional<double> found;
+  for (const ProbeSeries& probe : run.probes)
+    if (const auto* series = probe.channel(channel))
+      for (const double value : series->sampled.values)
+        if (std::isfinite(value) && (!found || std::abs(value) > std::abs(*found))) found = value;
+  return found;
+}
+
+bool has_engine(const RunResults& run, const std::string& type) {
+  return std::ranges::any_of(run.at("/description/engines"), [&](const Description& engine) {
+    return engine.is_object() && engine.value("type", "") == type;
+  });
+}
+
+/// Of the materials that have one.
+std::optional<double> least_modulus(const RunResults& run) {
+  std::optional<double> least;
+  for (const Description& material : run.at("/description/materials"))
+    if (material.is_object() && material.contains("contact_modulus") && material["contact_modulus"].is_number())
+      least = std::min(least.value_or(INFINITY), material["contact_modulus"].get<double>());
+  return least;
+}
+
+}  // namespace
+
+std::string status_of(const RunResults& run) {
+  const Description& status = run.at("/status");
+  return status.is_string() ? status.get<std::string>() : "unknown";
+}
+
+std::vector<Fact> cost_facts(const RunResults& run) {
+  std::vector<Fact> facts;
+  if (const auto bodies = number(run, "/bodies")) {
+    const auto contacts = number(run, "/contacts_per_body");
+    facts.push_back({"bodies", grouped(static_cast<std::uint64_t>(*bodies)),
+                     contacts ? fmt::format("{:.2f} contacts each", *contacts) : "", false});
+  }
+  if (const auto time = number(run, "/time")) {
+    const auto steps = number(run, "/steps");
+    facts.push_back(
+        {"simulated", time_text(*time), steps ? grouped(static_cast<std::uint64_t>(*steps)) + " steps" : "", false});
+  }
+  if (const auto wall = number(run, "/wall_s")) {
+    const auto threads = number(run, "/threads");
+    facts.push_back({"took", cost_text(*wall),
+                     threads ? fmt::format("{:g} thread{}", *threads, *threads == 1 ? "" : "s") : "", false});
+  }
+  if (const auto speed = number(run, "/particle_steps_per_s"))
+    facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps a second", false});
+  return facts;
+}
+
+std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
+  std::vector<Fact> facts;
+  if (const auto dt = number(run, "/time_step_s")) {
+    const auto critical = number(run, "/critical_time_step_s");
+    const double share = critical && *critical > 0 ? *dt / *critical : 0;
+    facts.push_back(
+        {"time step", time_text(*dt), share > 0 ? fmt::format("{:.2g} of the critical one", share) : "", share > 1});
+  }
+  if (const auto closure = largest(run, "closure_share"))
+    facts.push_back({"energy closure", fmt::format("{:.2g} %", 100 * std::abs(*closure)),
+                     "largest error over all energy turned over", std::abs(*closure) > 0.01});
+  const bool flows = has_engine(run, "gravity");
+  if (const auto inertial = largest(run, "inertial_number"); inertial && *inertial > 0)
+    facts.push_back({"inertial number", fmt::format("{:.2g}", *inertial), "largest; quasi-static below 0.001",
+                     *inertial > 1e-3 * 1.005 && !flows});
+  const auto modulus = least_modulus(run);
+  const auto stress = largest(run, "mean_stress");
+  if (modulus && stress && *stress > 0)
+    facts.push_back(
+        {"stiffness level", short_number(*modulus / *stress), "contact modulus over the largest mean stress", false});
+  if (const auto overlap = largest(run, "largest_overlap"); overlap && mean_diameter > 0)
+    facts.push_back({"largest overlap", fmt::format("{:.2g} %", 100 * *overlap / mean_diameter), "of the mean diameter",
+                     *overlap > 0.05 * mean_diameter});
+  return facts;
+}
+
+}  // namespace grit

@@ -1,0 +1,31 @@
+// What a reader of a report wants to know first: what ran, what it cost, how far to trust it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/run_results.hpp"
+
+namespace grit {
+
+struct Fact {
+  std::string name, value;
+  std::string note;       ///< small, below the value
+  bool doubtful = false;  ///< beyond what is usually asked for
+};
+
+/// What ran and what it cost. Only what the results say.
+std::vector<Fact> cost_facts(const RunResults& run);
+
+/// Estimates of error, of the channels that series.h5 has:
+///   time step         over the critical one; doubtful above 1
+///   energy closure    closure_share, largest in size; doubtful above 1 %
+///   inertial number   inertial_number, largest; doubtful above 1e-3 without gravity, under which grains are to flow
+///   stiffness level   least contact modulus of a material over the largest mean_stress
+///   largest overlap   largest_overlap over the mean diameter [m], if that is above 0; doubtful above 5 %
+std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter);
+
+/// The status as a word: "done", "failed", …; "unknown" without run.json.
+std::string status_of(const RunResults& run);
+
+}  // namespace grit

@@ -1,0 +1,297 @@
+#include "report/grain_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+
+#include "grit/error.hpp"
+#include "output/read_frames.hpp"
+
+namespace grit {
+namespace {
+
+constexpr double share_shown = 0.98;  // of bodies whose value a colour tells; as the picture of a run has it
+
+/// Files of which all fit into the page, the first and the last among them.
+std::vector<std::filesystem::path> chosen(std::span<const std::filesystem::path> files, const GrainLimits& limits,
+                                          std::vector<std::string>& problems, std::size_t& left_out) {
+  std::vector<std::filesystem::path> whole;
+  std::size_t largest = 1;
+  for (const auto& file : files) try {
+      largest = std::max(largest, bodies_in_frame(file));
+      whole.push_back(file);
+    } catch (const FileError& error) {
+      problems.emplace_back(error.what());
+    }
+  constexpr std::size_t bytes_a_body = 20;
+  const std::size_t most = std::max<std::size_t>(2, limits.bytes / (bytes_a_body * largest));
+  left_out = whole.size() - std::min(whole.size(), most);
+  if (left_out == 0) return whole;
+  std::vector<std::filesystem::path> taken;
+  for (std::size_t i = 0; i < most; ++i) taken.push_back(whole[i * (whole.size() - 1) / (most - 1)]);
+  return taken;
+}
+
+/// The value that a share of all stay below, in size.
+double percentile(std::vector<double> sizes) {
+  if (sizes.empty()) return 0;
+  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(share_shown * static_cast<double>(sizes.size() - 1));
+  std::ranges::nth_element(sizes, nth);
+  return *nth;
+}
+
+double length(const std::vector<double>& vectors, std::size_t i) {
+  return std::hypot(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]);
+}
+
+std::vector<double> speeds(const Frame& frame) {
+  std::vector<double> all(frame.bodies());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = length(frame.velocity, i);
+  return all;
+}
+
+/// Largest component, and of each axis what most bodies stay below.
+struct VectorRange {
+  double largest = 0;
+  std::array<double, 3> limits{};
+  bool everywhere = true;
+
+  void add(const std::vector<double>& vectors) {
+    if (vectors.empty()) everywhere = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<double> sizes;
+      for (std::size_t i = axis; i < vectors.size(); i += 3)
+        if (std::isfinite(vectors[i])) sizes.push_back(std::abs(vectors[i]));
+      for (const double size : sizes) largest = std::max(largest, size);
+      limits[axis] = std::max(limits[axis], percentile(std::move(sizes)));
+    }
+  }
+};
+
+/// The box of centres.
+struct Box {
+  std::array<double, 3> low, high;
+
+  Box() {
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(const std::vector<double>& positions) {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      if (const double x = positions[i]; std::isfinite(x))
+        low[i % 3] = std::min(low[i % 3], x), high[i % 3] = std::max(high[i % 3], x);
+  }
+};
+
+/// What all frames together reach.
+struct Extent : Box {
+  double speed = 0, speed_limit = 0, reach = 0, diameters = 0;
+  std::size_t bodies = 0;
+  VectorRange rotation, displacement;
+
+  void add(const Frame& frame) {
+    Box::add(frame.position);
+    std::vector<double> finite = speeds(frame);
+    std::erase_if(finite, [](double v) { return !std::isfinite(v); });
+    for (const double v : finite) speed = std::max(speed, v);
+    speed_limit = std::max(speed_limit, percentile(std::move(finite)));
+    for (const double part : frame.branch)
+      if (std::isfinite(part)) reach = std::max(reach, std::abs(part));
+    for (const double radius : frame.radius) diameters += 2 * radius;
+    bodies += frame.bodies();
+    rotation.add(frame.rotation), displacement.add(frame.displacement);
+  }
+};
+
+using Numbers = std::vector<std::uint16_t>;
+
+void append(Numbers& numbers, const std::vector<double>& values, double low, double high) {
+  for (const double value : values) numbers.push_back(quantised(value, low, high));
+}
+
+std::vector<double> component(const std::vector<double>& vectors, std::size_t axis) {
+  std::vector<double> all;
+  all.reserve(vectors.size() / 3);
+  for (std::size_t i = axis; i < vectors.size(); i += 3) all.push_back(vectors[i]);
+  return all;
+}
+
+/// Strongest contacts first among those above the mean; by their places in the frame.
+std::vector<std::uint32_t> chain_contacts(const Frame& frame, std::size_t most, double& mean) {
+  const auto& force = frame.normal_force;
+  mean = force.empty() ? 0 : std::accumulate(force.begin(), force.end(), 0.0) / static_cast<double>(force.size());
+  std::vector<std::uint32_t> strong;
+  for (std::uint32_t i = 0; i < force.size(); ++i)
+    if (force[i] > mean) strong.push_back(i);
+  if (strong.size() > most) {
+    std::ranges::nth_element(strong, strong.begin() + static_cast<std::ptrdiff_t>(most), std::greater(),
+                             [&](std::uint32_t i) { return force[i]; });
+    strong.resize(most);
+  }
+  return strong;
+}
+
+class Writer {
+ public:
+  Writer(const Extent& extent, const GrainLimits& limits, DataElements& data)
+      : extent_(extent), limits_(limits), data_(data) {}
+
+  void add(const Frame& frame) {
+    const std::size_t set = set_of(frame);
+    Description json = {{"time", frame.time}, {"step", frame.step}, {"stage", frame.stage}, {"set", set}};
+    Box box;
+    box.add(frame.position);
+    if (frame.bodies() > 0) json["low"] = box.low, json["high"] = box.high;
+    add_bodies(frame, set, json);
+    add_contacts(frame, json);
+    add_walls(frame, json);
+    frames_.push_back(std::move(json));
+  }
+
+  Description result() const {
+    Description bodies = Description::array(), walls = Description::array();
+    for (const Set& set : sets_) bodies.push_back(Description{{"count", set.id.size()}, {"data", set.data}});
+    for (const Wall& wall : walls_)
+      walls.push_back(Description{{"name", wall.name}, {"data", wall.data ? Description(*wall.data) : Description()}});
+    Description json = {
+        {"low", extent_.low},
+        {"high", extent_.high},
+        {"mean_diameter", extent_.diameters / static_cast<double>(std::max<std::size_t>(1, extent_.bodies))},
+        {"reach", extent_.reach},
+        {"clumps", clumps_},
+        {"bodies", bodies},
+        {"walls", walls},
+        {"ranges", {{"speed", extent_.speed}}},
+        {"limits", {{"speed", extent_.speed_limit}}},
+        {"frames", frames_}};
+    for (const auto& [name, range] :
+         {std::pair("rotation", extent_.rotation), std::pair("displacement", extent_.displacement)})
+      if (range.everywhere) json["ranges"][name] = range.largest, json["limits"][name] = range.limits;
+    return json;
+  }
+
+ private:
+  /// Bodies that several frames have.
+  struct Set {
+    std::vector<std::int64_t> id;
+    std::size_t data, first_frame;
+    Numbers positions;
+  };
+  struct Wall {
+    std::string name;
+    std::optional<std::size_t> data;
+    Vec3 displacement;  ///< where its corners are of
+  };
+
+  std::size_t set_of(const Frame& frame) {
+    const auto found = std::ranges::find(sets_, frame.id, &Set::id);
+    if (found != sets_.end()) return static_cast<std::size_t>(found - sets_.begin());
+    std::vector<std::byte> bytes;
+    const auto put = [&]<class T>(const std::vector<T>& numbers) {
+      const auto all = std::as_bytes(std::span(numbers));
+      bytes.insert(bytes.end(), all.begin(), all.end());
+    };
+    put(std::vector<float>(frame.radius.begin(), frame.radius.end()));
+    put(std::vector<std::int32_t>(frame.id.begin(), frame.id.end()));
+    if (!frame.clump.empty()) put(std::vector<std::int32_t>(frame.clump.begin(), frame.clump.end())), clumps_ = true;
+    sets_.push_back({frame.id, data_.add(bytes), frames_.size(), {}});
+    return sets_.size() - 1;
+  }
+
+  void add_bodies(const Frame& frame, std::size_t number, Description& json) {
+    Set& set = sets_[number];
+    Numbers numbers;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      append(numbers, component(frame.position, axis), extent_.low[axis], extent_.high[axis]);
+    if (set.positions.empty()) {
+      set.positions = numbers;
+    } else {  // what moves little is small then, and deflates well
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = static_cast<std::uint16_t>(numbers[i] - set.positions[i]);
+    }
+    append(numbers, speeds(frame), 0, extent_.speed);
+    const auto add_vectors = [&](const VectorRange& range, const std::vector<double>& vectors) {
+      for (std::size_t axis = 0; axis < 3 && range.everywhere; ++axis)
+        append(numbers, component(vectors, axis), -range.largest, range.largest);
+    };
+    add_vectors(extent_.rotation, frame.rotation);
+    add_vectors(extent_.displacement, frame.displacement);
+    json["base"] = set.first_frame;
+    json["data"] = data_.add(byte_planes(numbers));
+  }
+
+  void add_contacts(const Frame& frame, Description& json) {
+    double mean = 0, strongest = 0;
+    const auto strong = chain_contacts(frame, limits_.contacts, mean);
+    for (const auto i : strong) strongest = std::max(strongest, frame.normal_force[i]);
+    Numbers low, high, branch[3], force;
+    for (const auto i : strong) {
+      const auto found = std::ranges::lower_bound(frame.id, frame.body_a[i]);
+      if (found == frame.id.end() || *found != frame.body_a[i]) continue;
+      const auto place = static_cast<std::uint32_t>(found - frame.id.begin());
+      low.push_back(static_cast<std::uint16_t>(place & 0xffff)),
+          high.push_back(static_cast<std::uint16_t>(place >> 16));
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        branch[axis].push_back(quantised(frame.branch[3 * i + axis], -extent_.reach, extent_.reach));
+      force.push_back(quantised(frame.normal_force[i], 0, strongest));
+    }
+    Numbers all;
+    for (const Numbers* part : {&low, &high, &branch[0], &branch[1], &branch[2], &force})
+      all.insert(all.end(), part->begin(), part->end());
+    json["contacts"] = low.size(), json["strongest"] = strongest, json["mean_force"] = mean;
+    json["chains"] = data_.add(byte_planes(all));
+  }
+
+  void add_walls(const Frame& frame, Description& json) {
+    json["walls"] = Description::array();
+    for (const Frame::Wall& wall : frame.walls) {
+      auto known = std::ranges::find(walls_, wall.name, &Wall::name);
+      if (known == walls_.end()) {
+        const bool shown = !wall.corners.empty() && wall.corners.size() <= 3 * limits_.wall_corners;
+        std::optional<std::size_t> element;
+        if (shown) element = data_.add_numbers<float>(std::vector<float>(wall.corners.begin(), wall.corners.end()));
+        known = walls_.insert(walls_.end(), {wall.name, element, wall.displacement});
+      }
+      if (!known->data) continue;
+      const Vec3 moved = wall.displacement - known->displacement;
+      json["walls"].push_back(Description{known - walls_.begin(), moved.x(), moved.y(), moved.z()});
+    }
+  }
+
+  const Extent& extent_;
+  const GrainLimits& limits_;
+  DataElements& data_;
+  std::vector<Set> sets_;
+  std::vector<Wall> walls_;
+  bool clumps_ = false;
+  Description frames_ = Description::array();
+};
+
+}  // namespace
+
+Description grain_frames(std::span<const std::filesystem::path> files, const GrainLimits& limits, DataElements& data,
+                         std::vector<std::string>& problems) {
+  std::size_t left_out = 0;
+  const auto taken = chosen(files, limits, problems, left_out);
+  // Twice through the files: their ranges come first, and all of them need not fit into memory.
+  Extent extent;
+  std::vector<std::filesystem::path> whole;
+  for (const auto& file : taken) try {
+      extent.add(read_frame(file));
+      whole.push_back(file);
+    } catch (const FileError& error) {
+      problems.emplace_back(error.what());
+    }
+  if (whole.empty()) return nullptr;
+  if (extent.low[0] > extent.high[0]) extent.low.fill(0), extent.high.fill(0);  // no body anywhere
+  Writer writer(extent, limits, data);
+  for (const auto& file : whole) writer.add(read_frame(file));
+  Description json = writer.result();
+  json["left_out"] = left_out;
+  return json;
+}
+
+}  // namespace grit

@@ -1,0 +1,48 @@
+#include "report/packed.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+#include <cmath>
+#include <stdexcept>
+
+namespace grit {
+
+std::string packed(std::span<const std::byte> bytes) {
+  // Level 1: others take three times as long for a few hundredths of what frames need.
+  uLongf size = compressBound(bytes.size());
+  std::vector<unsigned char> deflated(size);
+  if (compress2(deflated.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 1) != Z_OK)
+    throw std::runtime_error("data of the page cannot be compressed");
+  deflated.resize((size + 2) / 3 * 3);  // base64 takes three bytes at a time
+  using namespace boost::archive::iterators;
+  using Text = base64_from_binary<transform_width<const unsigned char*, 6, 8>>;
+  std::string text(Text(deflated.data()), Text(deflated.data() + deflated.size()));
+  std::fill_n(text.rbegin(), deflated.size() - size, '=');
+  return text;
+}
+
+std::vector<std::byte> byte_planes(std::span<const std::uint16_t> numbers) {
+  std::vector<std::byte> bytes(2 * numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    bytes[i] = static_cast<std::byte>(numbers[i] & 0xff);
+    bytes[numbers.size() + i] = static_cast<std::byte>(numbers[i] >> 8);
+  }
+  return bytes;
+}
+
+std::uint16_t quantised(double value, double low, double high) {
+  if (!(high > low) || std::isnan(value)) return 0;
+  return static_cast<std::uint16_t>(std::lround(65535 * std::clamp((value - low) / (high - low), 0.0, 1.0)));
+}
+
+std::size_t DataElements::add(std::span<const std::byte> bytes) {
+  html_ += "<script type=\"application/octet-stream\" id=\"data-" + std::to_string(count_) + "\">";
+  html_ += packed(bytes);
+  html_ += "</script>\n";
+  return count_++;
+}
+
+}  // namespace grit

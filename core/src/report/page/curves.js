@@ -1,0 +1,328 @@
+// Curves: a chart for each channel of each probe, runs over each other, values under the pointer.
+"use strict";
+
+const componentNames = (width) =>
+  width === 3 ? ["x", "y", "z"] : width === 9 ? ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] : Array.from({ length: width }, (_, i) => String(i + 1));
+
+// Pixels about the lines, the same for all charts, so that their axes stand below each other.
+const around = { left: 58, right: 14, top: 34, bottom: 44 }, plotHeight = 180;
+const widestForLines = 9; // numbers a sample; more are a profile, of which the last is drawn
+
+/** Smallest and largest finite number. */
+function rangeOf(lists) {
+  let low = Infinity, high = -Infinity;
+  for (const list of lists)
+    for (const value of list)
+      if (Number.isFinite(value)) {
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+/** Zero is shown where it is near, and nothing has no height. */
+function settled([low, high]) {
+  if (low > 0 && low < 0.5 * high) low = 0;
+  if (high < 0 && high > 0.5 * low) high = 0;
+  if (high - low <= 1e-12 * Math.max(Math.abs(low), Math.abs(high))) {
+    const room = low === 0 ? 1 : 0.5 * Math.abs(low);
+    return [low - room, high + room];
+  }
+  const room = 0.03 * (high - low);
+  return [low === 0 ? 0 : low - room, high === 0 ? 0 : high + room];
+}
+
+/** Places of the points that a line of `pixels` needs: of each piece its lowest and highest. */
+function pointsToDraw(y, pixels) {
+  const pieces = 2 * pixels;
+  if (y.length <= 2 * pieces) return y.keys();
+  const places = [0];
+  for (let piece = 0; piece < pieces; ++piece) {
+    const first = Math.floor((piece * y.length) / pieces), end = Math.floor(((piece + 1) * y.length) / pieces);
+    let low = first, high = first;
+    for (let i = first; i < end; ++i) {
+      if (!(y[i] >= y[low])) low = i;
+      if (!(y[i] <= y[high])) high = i;
+    }
+    places.push(Math.min(low, high));
+    if (low !== high) places.push(Math.max(low, high));
+  }
+  places.push(y.length - 1);
+  return places;
+}
+
+/** One channel of one probe over an abscissa, of all runs that have it. */
+class Chart {
+  constructor(group, name) {
+    this.group = group;
+    this.name = name;
+    this.channel = group.channelsNamed(name)[0].channel;
+    this.plot = make("div", { className: "plot" });
+    this.values = make("output", { className: "values" });
+    const tool = (text, title, act) => make("button", { type: "button", title, onclick: () => act.call(this) }, text);
+    this.figure = make("figure", { className: "chart", tabIndex: 0 }, this.plot,
+      make("figcaption", {}, this.values, make("span", { className: "about" }, this.about()),
+        make("span", { className: "tools" }, tool("SVG", "Save as SVG", this.saveSvg), tool("PNG", "Save as PNG", this.savePng),
+          tool("CSV", "Save the numbers, in SI", this.saveCsv))));
+    this.figure.chart = this;
+    this.figure.setAttribute("aria-label", `${this.channel.label}; arrow keys show values`);
+    this.plot.addEventListener("pointermove", (event) => this.point(event));
+    this.plot.addEventListener("pointerdown", (event) => this.point(event));
+    this.plot.addEventListener("pointerleave", () => this.show(null));
+    this.figure.addEventListener("keydown", (event) => this.key(event));
+    new ResizeObserver(() => this.fit()).observe(this.plot);
+    dark.addEventListener("change", () => this.view && this.draw());
+    new IntersectionObserver((entries, observer) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      observer.disconnect();
+      this.draw();
+    }, { rootMargin: "400px" }).observe(this.figure);
+  }
+
+  get isProfile() {
+    return this.channel.width > widestForLines;
+  }
+  about() {
+    return this.isProfile ? `${this.channel.about}; last sample` : this.channel.about;
+  }
+  get abscissa() {
+    return this.isProfile ? { label: "place", shown_unit: "1", unit: "1", factor: 1, name: "place" } : this.group.abscissa();
+  }
+
+  /** [{run, label, x, y, colour, dashed}], x and y as in series.h5. */
+  async load() {
+    const series = [];
+    for (const { run, place, channel, probe } of this.group.channelsNamed(this.name)) {
+      const all = await numbersOf(channel.data);
+      const parts = componentNames(channel.width);
+      const many = report.runs.length > 1;
+      if (this.isProfile) {
+        const last = all.slice(all.length - channel.width);
+        series.push({ run, label: many ? run.name : this.channel.label, x: Float64Array.from(last.keys()), y: last, colour: place });
+        continue;
+      }
+      const against = probe.channels.find((one) => one.name === this.abscissa.name);
+      const x = against ? await numbersOf(against.data) : Float64Array.from({ length: all.length / channel.width }, (_, i) => i);
+      parts.forEach((part, k) => {
+        const y = channel.width === 1 ? all : Float64Array.from({ length: all.length / channel.width }, (_, i) => all[i * channel.width + k]);
+        const label = [many ? run.name : "", channel.width > 1 ? part : ""].filter(Boolean).join(" ") || this.channel.label;
+        series.push({ run, label, x, y, colour: many && channel.width === 1 ? place : series.length });
+      });
+    }
+    return [...series, ...(await this.references(series))];
+  }
+  /** What the descriptions have this channel compared with: curves over this abscissa, and values all along it. */
+  async references(series) {
+    const full = `${this.group.name}/${this.name}`, found = new Map();
+    for (const run of report.runs) for (const one of run.references) {
+      const against = one.against || `${this.group.name}/time`;
+      if (one.of !== full || this.isProfile || (one.value === undefined && against !== `${this.group.name}/${this.abscissa.name}`)) continue;
+      const [x, y] = one.value === undefined ? [await numbersOf(one.x), await numbersOf(one.y)]
+        : [Float64Array.from(rangeOf(series.map(({ x }) => x))), Float64Array.of(one.value, one.value)];
+      found.set(one.name, { label: one.name, x, y, colour: series.length + found.size, reference: true });
+    }
+    return [...found.values()];
+  }
+
+  async draw() {
+    const drawing = (this.drawing = {}), series = await this.load();
+    if (this.drawing !== drawing) return; // overtaken
+    this.series = series;
+    const { abscissa, channel } = this;
+    const shown = (list, factor) => Float64Array.from(list, (value) => value * factor);
+    for (const one of this.series) {
+      one.shownX = shown(one.x, abscissa.factor);
+      one.shownY = shown(one.y, channel.factor);
+    }
+    this.xDomain = rangeOf(this.series.map((one) => one.shownX));
+    if (this.xDomain[0] === this.xDomain[1]) this.xDomain = [this.xDomain[0] - 0.5, this.xDomain[1] + 0.5];
+    this.yDomain = settled(rangeOf(this.series.map((one) => one.shownY)));
+    this.view?.finalize();
+    this.view = new vega.View(vega.parse(this.spec()), { renderer: "svg", container: this.plot, hover: false });
+    this.view.run();
+    this.figure.dataset.drawn = "yes";
+  }
+
+  spec() {
+    const look = theme();
+    const values = [];
+    for (const { label, shownX, shownY } of this.series)
+      for (const i of pointsToDraw(shownY, 800)) values.push({ x: shownX[i], y: shownY[i], s: label });
+    const font = getComputedStyle(document.body).fontFamily;
+    const axis = { domain: false, ticks: false, gridColor: look.line, labelColor: look.soft, titleColor: look.ink, labelFont: font,
+      titleFont: font, labelFontSize: 11.5, titleFontSize: 12.5, titleFontWeight: 400, grid: true, labelPadding: 6, titlePadding: 8, zindex: 0 };
+    const at = (field) => ({ scale: field, field });
+    const visible = "isValid(datum.x) && isValid(datum.y)";
+    const legends = this.series.length < 2 ? [] : [{ stroke: "colour", strokeDash: "dash", orient: "bottom", direction: "horizontal", symbolType: "stroke", symbolStrokeWidth: 3,
+      columns: this.legendColumns, offset: 6, labelColor: look.ink, labelFont: font, labelFontSize: 11.5, labelLimit: 220, rowPadding: 3 }];
+    return {
+      width: this.width, height: plotHeight, padding: { ...around, bottom: around.bottom + this.legendHeight }, autosize: "none",
+      background: look.paper,
+      title: { text: withUnit(this.channel.label, this.channel.shown_unit), anchor: "start", frame: "group", dx: 8 - around.left, color: look.ink, font, fontSize: 13.5, fontWeight: 600, offset: 8 },
+      data: [{ name: "curves", values }, { name: "near", values: [] }],
+      scales: [
+        { name: "x", type: "linear", range: "width", domain: this.xDomain, nice: false, zero: false },
+        { name: "y", type: "linear", range: "height", domain: this.yDomain, nice: 5, zero: false },
+        { name: "colour", type: "ordinal", domain: this.series.map((one) => one.label), range: this.series.map((one) => this.colour(one)) },
+        { name: "dash", type: "ordinal", domain: this.series.map((one) => one.label), range: this.series.map((one) => this.dash(one)) },
+      ],
+      axes: [
+        { ...axis, scale: "x", orient: "bottom", title: withUnit(this.abscissa.label, this.abscissa.shown_unit), tickCount: { signal: "max(2, floor(width / 80))" } },
+        { ...axis, scale: "y", orient: "left", tickCount: 5 },
+      ],
+      legends,
+      marks: [
+        { type: "rule", encode: { update: { x: { value: 0 }, x2: { field: { group: "width" } }, y: { scale: "y", value: 0 }, stroke: { value: look.frame },
+          opacity: { signal: "inrange(0, domain('y')) ? 1 : 0" } } } },
+        { type: "group", from: { facet: { name: "one", data: "curves", groupby: "s" } },
+          marks: [{ type: "line", interactive: false, from: { data: "one" }, encode: { update: { x: at("x"), y: at("y"), defined: { signal: visible },
+            stroke: { scale: "colour", field: "s" }, strokeDash: { scale: "dash", field: "s" }, strokeWidth: { value: 2 }, strokeJoin: { value: "round" }, strokeCap: { value: "round" } } } }] },
+        { type: "rule", interactive: false, from: { data: "near" }, encode: { update: { x: at("x"), y: { value: 0 }, y2: { field: { group: "height" } },
+          stroke: { value: look.frame }, strokeDash: { value: [3, 3] }, opacity: { signal: "datum.k === 0 ? 1 : 0" } } } },
+        { type: "symbol", interactive: false, from: { data: "near" }, encode: { update: { x: at("x"), y: at("y"), size: { value: 60 },
+          fill: { scale: "colour", field: "s" }, stroke: { value: look.paper }, strokeWidth: { value: 1.5 } } } },
+      ],
+    };
+  }
+
+  /** Where colours come again, and for what is measured, lines are broken. */
+  dash({ colour, reference }) {
+    return reference ? [[2, 4], [8, 3, 2, 3]][colour % 2] : colour < report.colours.series.length ? [1, 0] : [7, 4];
+  }
+  colour({ colour, reference }) {
+    return reference ? theme().soft : seriesColour(colour);
+  }
+  get width() {
+    return Math.max(160, this.plot.clientWidth - around.left - around.right);
+  }
+  get legendColumns() {
+    const longest = Math.max(...this.series.map((one) => one.label.length));
+    return Math.max(1, Math.floor(this.width / (38 + 7 * Math.min(longest, 30))));
+  }
+  get legendHeight() {
+    return this.series.length < 2 ? 0 : 10 + 17 * Math.ceil(this.series.length / this.legendColumns);
+  }
+  /** A legend may need more rows then: the chart is drawn anew. */
+  fit() {
+    if (this.view && Math.abs(this.view.width() - this.width) >= 2) this.draw();
+  }
+
+  /** The screen's rectangle between the axes. */
+  area() {
+    return this.plot.querySelector(".role-frame.root .background").getBoundingClientRect();
+  }
+
+  point(event) {
+    if (!this.view) return;
+    const area = this.area();
+    const x = (event.clientX - area.left) / area.width, y = (area.bottom - event.clientY) / area.height;
+    if (x < -0.02 || x > 1.02 || y < -0.1 || y > 1.1) return this.show(null);
+    const [y0, y1] = this.view.scale("y").domain();
+    this.show(this.series.map((one) => this.nearest(one, x, y, area, y0, y1)));
+  }
+
+  /** The point nearest to a place in the area; across counts ten times as much as up and down. */
+  nearest({ shownX, shownY }, x, y, area, y0, y1) {
+    const [x0, x1] = this.xDomain;
+    let best = -1, least = Infinity;
+    for (let i = 0; i < shownX.length; ++i) {
+      const dx = ((shownX[i] - x0) / (x1 - x0) - x) * area.width, dy = 0.1 * ((shownY[i] - y0) / (y1 - y0) - y) * area.height;
+      const distance = dx * dx + dy * dy;
+      if (distance < least) (least = distance), (best = i);
+    }
+    return best;
+  }
+
+  /** Marks a point of each series, and writes its values; null: none. */
+  show(places) {
+    this.places = places;
+    const points = (places ?? []).flatMap((i, k) => (i < 0 ? [] : [{ x: this.series[k].shownX[i], y: this.series[k].shownY[i], s: this.series[k].label, k }]));
+    this.view?.data("near", points).runAsync();
+    const unit = (of) => (of.shown_unit === "1" ? "" : ` ${of.shown_unit}`);
+    this.values.replaceChildren(...(points.length === 0 ? [] : [`${this.abscissa.label} ${readable(points[0].x)}${unit(this.abscissa)}`]),
+      ...points.map(({ y, s, k }) => make("span", {}, make("span", { className: "key", style: `background:${this.colour(this.series[k])}` }),
+        `${s} ${readable(y)}${unit(this.channel)}`)));
+  }
+
+  key(event) {
+    const steps = { ArrowLeft: -1, ArrowRight: 1, Home: -Infinity, End: Infinity };
+    if (event.target !== this.figure || !this.series) return;
+    if (event.key === "Escape") return this.show(null);
+    if (!(event.key in steps)) return;
+    event.preventDefault();
+    const far = event.shiftKey ? 20 : 1;
+    this.show(this.series.map(({ x }, k) => Math.min(x.length - 1, Math.max(0, (this.places?.[k] ?? -1) + far * steps[event.key]))));
+  }
+
+  get fileName() {
+    return `${report.runs.map((run) => run.name).join("-")}-${this.group.name}-${this.name}`;
+  }
+  async saveSvg() {
+    save(`${this.fileName}.svg`, await this.view.toSVG(), "image/svg+xml");
+  }
+  async savePng() {
+    const canvas = await this.view.toCanvas(2);
+    canvas.toBlob((blob) => save(`${this.fileName}.png`, blob));
+  }
+  saveCsv() {
+    const quoted = (text) => `"${text.replaceAll('"', '""')}"`;
+    const names = this.series.flatMap(({ label }) => [withUnit(this.abscissa.name, this.abscissa.unit), withUnit(label === this.channel.label ? this.name : `${this.name} ${label}`, this.channel.unit)]);
+    const lines = [names.map(quoted).join(",")];
+    const rows = Math.max(...this.series.map(({ x }) => x.length));
+    for (let i = 0; i < rows; ++i) lines.push(this.series.map(({ x, y }) => (i < x.length ? `${x[i]},${y[i]}` : ",")).join(","));
+    save(`${this.fileName}.csv`, lines.join("\n") + "\n", "text/csv");
+  }
+}
+
+/** All channels of a probe, of all runs that have it, over one abscissa. */
+class ProbeCharts {
+  constructor(name) {
+    this.name = name;
+    this.probes = report.runs.map((run, place) => ({ run, place, probe: run.probes.find((one) => one.name === name) })).filter(({ probe }) => probe);
+    this.names = [...new Set(this.probes.flatMap(({ probe }) => probe.channels.map((channel) => channel.name)))];
+    const { x, y } = report.runs[0].picture ?? {};
+    const shown = (y ?? []).filter((one) => one.startsWith(`${name}/`)).map((one) => one.slice(name.length + 1));
+    this.against = x?.startsWith(`${name}/`) && this.scalars().includes(x.slice(name.length + 1)) ? x.slice(name.length + 1) : "time";
+    const rank = (one) => (shown.includes(one) ? shown.indexOf(one) : shown.length);
+    const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.samples > 0);
+    this.ordered = this.names.filter((one) => one !== "time" && sampled(one)).sort((a, b) => rank(a) - rank(b));
+  }
+  channelsNamed(name) {
+    return this.probes.map((one) => ({ ...one, channel: one.probe.channels.find((channel) => channel.name === name) })).filter(({ channel }) => channel);
+  }
+  scalars() {
+    return this.names.filter((name) => this.channelsNamed(name).every(({ channel }) => channel.width === 1));
+  }
+  abscissa() {
+    return this.channelsNamed(this.against)[0]?.channel ?? { name: "sample", label: "sample", unit: "1", shown_unit: "1", factor: 1 };
+  }
+  fill(parent) {
+    const choice = make("select", { onchange: () => this.turn(choice.value) },
+      ...this.scalars().map((name) => make("option", { value: name, selected: name === this.against }, this.channelsNamed(name)[0].channel.label)));
+    this.grid = make("div", { className: "charts" });
+    parent.append(make("label", { className: "against" }, "against ", choice), this.grid);
+    this.turn(this.against);
+  }
+  turn(against) {
+    this.against = against;
+    this.grid.replaceChildren(...this.ordered.filter((name) => name !== against).map((name) => new Chart(this, name).figure));
+  }
+}
+
+function showCurves(section) {
+  const names = [...new Set(report.runs.flatMap((run) => run.probes.map((probe) => probe.name)))];
+  if (names.length === 0) return;
+  section.append(make("h2", {}, "Curves"));
+  for (const name of names) {
+    const charts = new ProbeCharts(name);
+    if (charts.ordered.length === 0) {
+      section.append(make("p", { className: "probe" }, make("b", {}, name), make("small", {}, " no sample")));
+      continue;
+    }
+    const count = charts.ordered.length;
+    const part = make("details", { className: "probe" }, make("summary", {}, name, make("small", {}, ` ${count} channel${count === 1 ? "" : "s"}`)));
+    part.addEventListener("toggle", () => part.open && !charts.grid && charts.fill(part));
+    part.open = !section.querySelector("details");
+    section.append(part);
+  }
+}

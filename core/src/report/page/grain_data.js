@@ -1,0 +1,91 @@
+// The frames of a run, taken apart when they are looked at.
+"use strict";
+
+const kept = 6; // frames in memory: those around the one that is shown
+
+class GrainFrames {
+  constructor(json) {
+    this.json = json;
+    this.sets = new Map();
+    this.absolute = new Map();
+    this.frames = new Map();
+    this.wallCorners = new Map();
+  }
+  get count() {
+    return this.json.frames.length;
+  }
+  has(range) {
+    return this.json.ranges[range] !== undefined;
+  }
+
+  /** Radius [m], id and clump of the bodies of a set. */
+  set(number) {
+    if (!this.sets.has(number)) {
+      const { count, data } = this.json.bodies[number];
+      this.sets.set(number, inflated(data).then((buffer) => ({
+        radius: new Float32Array(buffer, 0, count),
+        id: new Int32Array(buffer, 4 * count, count),
+        clump: buffer.byteLength > 8 * count ? new Int32Array(buffer, 8 * count, count) : null,
+      })));
+    }
+    return this.sets.get(number);
+  }
+
+  /** Positions of a frame that others are less of; x of all bodies, y, z. */
+  base(number) {
+    if (!this.absolute.has(number)) {
+      const { set, data } = this.json.frames[number];
+      this.absolute.set(number, planesOf(data).then((all) => all.slice(0, 3 * this.json.bodies[set].count)));
+    }
+    return this.absolute.get(number);
+  }
+
+  /** {time, step, stage, count, radius, id, clump, x, y, z, speed, rotation, displacement}; 16-bit lists but the first ones. */
+  frame(number) {
+    if (!this.frames.has(number)) {
+      this.frames.set(number, this.read(number));
+      if (this.frames.size > kept) this.frames.delete(this.frames.keys().next().value);
+    }
+    return this.frames.get(number);
+  }
+  async read(number) {
+    const { set, base, data, time, step, stage } = this.json.frames[number];
+    const bodies = await this.set(set), all = await planesOf(data), count = bodies.radius.length;
+    if (base !== number) {
+      const from = await this.base(base);
+      for (let i = 0; i < from.length; ++i) all[i] += from[i];
+    }
+    let next = 0;
+    const list = () => all.subarray(count * next, count * ++next);
+    const vector = (name) => (this.has(name) ? [list(), list(), list()] : null);
+    return { number, time, step, stage, count, ...bodies, x: list(), y: list(), z: list(), speed: list(), rotation: vector("rotation"), displacement: vector("displacement") };
+  }
+
+  /** The contacts shown of a frame: {count, body, branch [m] of all x, y, z, force [N]}. */
+  async chains(number) {
+    const { contacts, chains, strongest } = this.json.frames[number];
+    const all = await planesOf(chains);
+    const part = (i) => all.subarray(contacts * i, contacts * (i + 1));
+    const [low, high, bx, by, bz, force] = [0, 1, 2, 3, 4, 5].map(part);
+    const metres = (list) => Float32Array.from(list, (q) => (q / 65535 * 2 - 1) * this.json.reach);
+    return { count: contacts, body: Uint32Array.from(low, (l, i) => l + 65536 * high[i]), branch: [metres(bx), metres(by), metres(bz)],
+      force: Float32Array.from(force, (q) => (q / 65535) * strongest) };
+  }
+
+  /** Triangles of the walls of a frame, where they are then: corners of three numbers [m]. */
+  async walls(number) {
+    const placed = [];
+    for (const [wall, ...moved] of this.json.frames[number].walls) {
+      const { name, data } = this.json.walls[wall];
+      if (!this.wallCorners.has(wall)) this.wallCorners.set(wall, inflated(data).then((buffer) => new Float32Array(buffer)));
+      placed.push({ name, corners: Float32Array.from(await this.wallCorners.get(wall), (c, i) => c + moved[i % 3]) });
+    }
+    return placed;
+  }
+
+  /** Metres of a 16-bit position along an axis. */
+  metres(axis, number) {
+    const { low, high } = this.json;
+    return low[axis] + (number / 65535) * (high[axis] - low[axis]);
+  }
+}

@@ -1,0 +1,3 @@
+"use strict";
+showCurves(document.getElementById("curves"));
+showGrains(document.getElementById("grains"));

@@ -1,0 +1,130 @@
+#include "report/pictures.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "grit/error.hpp"
+#include "output/grain_view.hpp"
+#include "output/picture.hpp"
+#include "output/read_frames.hpp"
+#include "output/scale.hpp"
+#include "report/facts.hpp"
+
+namespace grit {
+namespace {
+
+/// A channel with its probe.
+struct Named {
+  const ProbeSeries* probe = nullptr;
+  const ProbeSeries::Channel* channel = nullptr;
+};
+
+Named find(const RunResults& run, const std::string& name) {
+  const auto slash = name.find('/');
+  if (slash == std::string::npos) return {};
+  const auto probe = std::ranges::find(run.probes, name.substr(0, slash), &ProbeSeries::name);
+  if (probe == run.probes.end()) return {};
+  return {&*probe, probe->channel(name.substr(slash + 1))};
+}
+
+std::string text_or(const Description& found, const std::string& other) {
+  return found.is_string() ? found.get<std::string>() : other;
+}
+
+std::vector<std::string> curves_wanted(const RunResults& run) {
+  std::vector<std::string> names;
+  for (const Description& name : run.at("/description/output/picture/y"))
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  if (!names.empty() || run.probes.empty()) return names;
+  const ProbeSeries& probe = run.probes.front();  // "test" where there is one
+  for (const auto& channel : probe.channels)
+    if (channel.width() == 1 && channel.name != "time") names.push_back(probe.name + '/' + channel.name);
+  return names;
+}
+
+/// A point where both were sampled.
+Curve curve_of(const Named& x, const Named& y) {
+  const auto *x_time = x.probe->channel("time"), *y_time = y.probe->channel("time");
+  Curve curve;
+  if (!x_time || !y_time) return curve;
+  const auto &s = x_time->sampled.values, &t = y_time->sampled.values;
+  for (std::size_t i = 0, j = 0; i < std::min(s.size(), x.channel->sampled.values.size()) &&
+                                 j < std::min(t.size(), y.channel->sampled.values.size());) {
+    if (s[i] == t[j]) {
+      curve.x.push_back(x.channel->sampled.values[i++]);
+      curve.y.push_back(y.channel->sampled.values[j++]);
+    } else {
+      s[i] < t[j] ? ++i : ++j;
+    }
+  }
+  return curve;
+}
+
+std::string facts_line(const RunResults& run) {
+  std::vector<std::string> parts{status_of(run)};
+  for (const Fact& fact : cost_facts(run)) parts.push_back(fact.name + ' ' + fact.value);
+  return fmt::format("{}", fmt::join(parts, "  ·  "));
+}
+
+std::vector<Vec3> vectors(const std::vector<double>& numbers) {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) all.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  return all;
+}
+
+std::optional<Frame> last_frame(RunResults& run) {
+  while (!run.frames.empty()) try {
+      return read_frame(run.frames.back());
+    } catch (const FileError& error) {
+      run.problems.emplace_back(error.what());
+      run.frames.pop_back();
+    }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> curves_picture(const RunResults& run) {
+  Picture picture{run.title(), facts_line(run), {}, {}};
+  const Named wanted_x = find(run, text_or(run.at("/description/output/picture/x"), ""));
+  for (const std::string& name : curves_wanted(run)) {
+    const Named y = find(run, name);
+    if (!y.channel || y.channel->width() != 1) continue;
+    const Named x =
+        wanted_x.channel && wanted_x.channel->width() == 1 ? wanted_x : Named{y.probe, y.probe->channel("time")};
+    if (!x.channel) continue;
+    picture.panels.push_back({{spelled(x.channel->name), x.channel->sampled.unit},
+                              {spelled(y.channel->name), y.channel->sampled.unit},
+                              {curve_of(x, y)}});
+  }
+  if (picture.panels.empty()) return std::nullopt;
+  return draw(picture);
+}
+
+std::optional<std::string> grains_picture(RunResults& run) {
+  const auto frame = last_frame(run);
+  if (!frame) return std::nullopt;
+  std::vector<Row> positions, velocities;
+  for (std::size_t i = 0; i < frame->bodies(); ++i) {
+    const double *x = &frame->position[3 * i], *v = &frame->velocity[3 * i];
+    positions.push_back({x[0], x[1], x[2], frame->radius[i]});
+    velocities.push_back({v[0], v[1], v[2], 0});
+  }
+  const auto rotations = vectors(frame->rotation), displacements = vectors(frame->displacement);
+  std::vector<std::vector<Vec3>> walls;
+  for (const auto& wall : frame->walls) walls.push_back(vectors(wall.corners));
+  const double diameters = 2 * std::accumulate(frame->radius.begin(), frame->radius.end(), 0.0);
+  const SeenBodies seen{positions, velocities, rotations, displacements,
+                        positions.empty() ? 0 : diameters / static_cast<double>(positions.size())};
+  const std::string view = text_or(run.at("/description/output/picture/view"), "xz");
+  std::string color = text_or(run.at("/description/output/picture/color"), "rotation");
+  if ((color == "rotation" && rotations.empty()) || (color == "displacement" && displacements.empty())) color = "speed";
+  return draw({run.title(),
+               fmt::format("{} grains  ·  stage {}  ·  {:.4g} s", grouped(frame->bodies()), frame->stage, frame->time),
+               {},
+               grain_view(seen, walls, view, color)});
+}
+
+}  // namespace grit

@@ -1,0 +1,19 @@
+// Pictures of a run without a browser, as SVG.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "report/run_results.hpp"
+
+namespace grit {
+
+/// Curves that the description's picture names, or else those of one number of "test", or else of the first probe; over
+/// the picture's abscissa, or else time. Nothing where there is no curve.
+std::optional<std::string> curves_picture(const RunResults& run);
+
+/// The grains of the last frame that can be read, as the description's picture has them; by speed where nothing else is
+/// kept. Nothing where there is no frame.
+std::optional<std::string> grains_picture(RunResults& run);
+
+}  // namespace grit

@@ -1,0 +1,289 @@
+#include "report/report_page.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "output/colours.hpp"
+#include "output/page.hpp"
+#include "output/scale.hpp"
+#include "output/svg.hpp"
+#include "report/facts.hpp"
+#include "report/run_results.hpp"
+#include "study/chart_words.hpp"
+#include "study/figures.hpp"
+
+namespace grit {
+
+// What CMake makes of page/ and of Vega.
+extern const std::string_view report_style, report_script, vega_script, vega_licence;
+
+namespace {
+
+// A page that may fetch nothing cannot tell anybody that it was opened. Vega makes functions of its expressions.
+constexpr const char* policy =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+    "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:\">\n";
+
+std::string text_at(const RunResults& run, const std::string& pointer) {
+  const Description& found = run.at(pointer);
+  return found.is_string() ? found.get<std::string>() : found.is_null() ? "" : found.dump();
+}
+
+std::string badge(const RunResults& run) {
+  const std::string status = status_of(run);
+  return "<span class=\"status " + escaped(status) + "\">" + escaped(status) + "</span>";
+}
+
+/// One line: program, machine, when.
+std::string provenance(const RunResults& run) {
+  std::vector<std::string> parts;
+  if (const auto version = text_at(run, "/grit/version"); !version.empty()) {
+    const auto revision = text_at(run, "/grit/revision");
+    parts.push_back("grit " + version + (revision.empty() ? "" : " (" + revision + ")"));
+  }
+  for (const char* pointer : {"/host/cpu", "/started"})
+    if (const auto text = text_at(run, pointer); !text.empty()) parts.push_back(text);
+  if (const auto seed = text_at(run, "/seed"); !seed.empty()) parts.push_back("seed " + seed);
+  return fmt::format("{}", fmt::join(parts, "  ·  "));
+}
+
+std::string cards(const std::vector<Fact>& facts) {
+  if (facts.empty()) return "";
+  std::string html = "<dl class=\"facts\">\n";
+  for (const Fact& fact : facts)
+    html += fmt::format("<div{}><dt>{}</dt><dd>{}<small>{}</small></dd></div>\n",
+                        fact.doubtful ? " class=\"doubtful\"" : "", escaped(fact.name), escaped(fact.value),
+                        escaped(fact.note));
+  return html + "</dl>\n";
+}
+
+/// Facts of several runs: one column a run.
+std::string facts_table(const std::vector<RunResults>& runs, const std::vector<std::vector<Fact>>& facts) {
+  std::vector<std::string> names;
+  for (const auto& of_run : facts)
+    for (const Fact& fact : of_run)
+      if (std::ranges::find(names, fact.name) == names.end()) names.push_back(fact.name);
+  std::string html = "<div class=\"wide\"><table><thead><tr><th></th>";
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    html += fmt::format("<th><span class=\"key\" style=\"background:{}\"></span>{}</th>",
+                        series_colours[i % series_colours.size()], escaped(runs[i].name));
+  html += "</tr></thead><tbody>\n<tr><td class=\"name\">title</td>";
+  for (const RunResults& run : runs) html += "<td>" + escaped(run.title()) + "</td>";
+  html += "</tr>\n<tr><td class=\"name\">status</td>";
+  for (const RunResults& run : runs) html += "<td>" + badge(run) + "</td>";
+  html += "</tr>\n";
+  for (const std::string& name : names) {
+    html += "<tr><td class=\"name\">" + escaped(name) + "</td>";
+    for (const auto& of_run : facts) {
+      const auto fact = std::ranges::find(of_run, name, &Fact::name);
+      html += fact == of_run.end()
+                  ? "<td>–</td>"
+                  : fmt::format("<td{}>{} <small>{}</small></td>", fact->doubtful ? " class=\"doubtful\"" : "",
+                                escaped(fact->value), escaped(fact->note));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+/// Where the time went, as one bar.
+std::string phases_bar(const RunResults& run) {
+  const Description& phases = run.at("/phases_s");
+  double all = 0;
+  for (const Description& seconds : phases)
+    if (seconds.is_number()) all += seconds.get<double>();
+  if (!(all > 0)) return "";
+  std::string bar, legend;
+  std::size_t place = 0;
+  for (const auto& [name, seconds] : phases.items()) {
+    if (!seconds.is_number()) continue;
+    const double share = 100 * seconds.get<double>() / all;
+    const char* colour = series_colours[place++ % series_colours.size()];
+    bar +=
+        fmt::format("<span style=\"width:{:.2f}%;background:{}\" title=\"{}\"></span>", share, colour, escaped(name));
+    legend += fmt::format("<li><span class=\"key\" style=\"background:{}\"></span>{} {}</li>", colour, escaped(name),
+                          percent(share / 100));
+  }
+  return "<div class=\"phases\">" + bar + "</div>\n<ul class=\"legend\">" + legend + "</ul>\n";
+}
+
+std::string stages_table(const RunResults& run) {
+  const Description& stages = run.at("/stages");
+  if (!stages.is_array() || stages.empty()) return "";
+  std::string html =
+      "<div class=\"wide\"><table><thead><tr><th class=\"name\">stage</th><th class=\"name\">reached</th>"
+      "<th>time [s]</th><th>step</th><th>wall time</th></tr></thead><tbody>\n";
+  for (const Description& stage : stages) {
+    if (!stage.is_object()) continue;
+    html += fmt::format(
+        "<tr><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{:.4g}</td><td>{}</td><td>{}</td>"
+        "</tr>\n",
+        escaped(stage.value("name", "")), escaped(stage.value("reached", "")), stage.value("time", 0.0),
+        grouped(stage.value("step", std::uint64_t{0})), cost_text(stage.value("wall_s", 0.0)));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string details(const RunResults& run) {
+  std::string html = phases_bar(run) + stages_table(run);
+  if (const Description& description = run.at("/description"); description.is_object())
+    html += "<details><summary>description, all defaults included</summary><pre>" + escaped(description.dump(2)) +
+            "</pre></details>\n";
+  return html;
+}
+
+std::string message_of(const RunResults& run) {
+  const std::string message = text_at(run, "/message");
+  return message.empty() ? "" : "<p class=\"message\">" + escaped(message) + "</p>\n";
+}
+
+std::string head_of(const std::vector<RunResults>& runs, const std::vector<double>& diameters) {
+  std::string html = "<header>\n<h1>" + escaped(runs.size() == 1 ? runs[0].title() : "Runs side by side") + "</h1>\n";
+  if (runs.size() == 1) {
+    const RunResults& run = runs[0];
+    html += "<p class=\"provenance\">" + badge(run) + ' ' + escaped(provenance(run)) + "</p>\n" + message_of(run);
+    html += cards(cost_facts(run));
+    if (const auto trust = cards(trust_facts(run, diameters[0])); !trust.empty())
+      html += "<h2>How far to trust it</h2>\n" + trust;
+    return html + details(run) + "</header>\n";
+  }
+  std::vector<std::vector<Fact>> facts;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    facts.push_back(cost_facts(runs[i]));
+    std::ranges::move(trust_facts(runs[i], diameters[i]), std::back_inserter(facts.back()));
+  }
+  html += facts_table(runs, facts);
+  for (const RunResults& run : runs) {
+    html += message_of(run);
+    html += "<details><summary>" + escaped(run.name) + "</summary><p class=\"provenance\">" + escaped(provenance(run)) +
+            "</p>\n" + details(run) + "</details>\n";
+  }
+  return html + "</header>\n";
+}
+
+std::string problems_part(const std::vector<std::string>& problems) {
+  if (problems.empty()) return "";
+  std::string html = "<section class=\"problems\"><h2>What could not be read</h2>\n<ul>\n";
+  for (const std::string& problem : problems) html += "<li>" + escaped(problem) + "</li>\n";
+  return html + "</ul></section>\n";
+}
+
+Description channel_json(const ProbeSeries::Channel& channel, DataElements& data) {
+  double largest = 0;
+  for (const double value : channel.sampled.values)
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  return {{"name", channel.name},
+          {"label", spelled(channel.name)},
+          {"unit", channel.sampled.unit},
+          {"about", channel.sampled.doc},
+          {"largest", largest},
+          {"width", channel.width()},
+          {"samples", channel.sampled.samples},
+          {"data", data.add_numbers<double>(channel.sampled.values)}};
+}
+
+/// Units in which all runs' values are easy to read, by unit and channel: {unit, factor}.
+void add_readable_units(Description& runs) {
+  std::map<std::string, double> largest;
+  const auto each = [&](auto act) {
+    for (Description& run : runs)
+      for (Description& probe : run["probes"])
+        for (Description& channel : probe["channels"])
+          act(probe["name"].get<std::string>() + '/' + channel["name"].get<std::string>(), channel);
+  };
+  each([&](const std::string& name, const Description& channel) {
+    largest[name] = std::max(largest[name], channel["largest"].get<double>());
+  });
+  each([&](const std::string& name, Description& channel) {
+    const ReadableUnit shown = readable(channel["unit"], largest[name]);
+    channel["shown_unit"] = shown.unit, channel["factor"] = shown.factor;
+    channel.erase("largest");
+  });
+}
+
+/// What the description has curves compared with: [{name, of, against, x, y}], x and y being data, or value.
+Description references_json(RunResults& run, DataElements& data) {
+  Description all = Description::array();
+  for (const auto& [name, reference] : run.at("/description/output/references").items()) try {
+      Description json = {{"name", name}, {"of", reference.at("of")}, {"against", reference.value("against", "")}};
+      if (reference.contains("value") && reference.at("value").is_number()) {
+        json["value"] = reference.at("value");
+      } else {
+        const Description& curve = reference.at("curve");
+        const Figure read = read_reference({curve.at("file"), curve.at("x"), curve.at("y")});
+        json["x"] = data.add_numbers<double>(read.x), json["y"] = data.add_numbers<double>(read.y);
+      }
+      all.push_back(std::move(json));
+    } catch (const std::exception& error) {
+      run.problems.push_back("reference " + name + ": " + error.what());
+    }
+  return all;
+}
+
+Description run_json(RunResults& run, DataElements& data) {
+  Description json = {{"name", run.name}, {"title", run.title()}, {"picture", run.at("/description/output/picture")}};
+  json["references"] = references_json(run, data);
+  json["probes"] = Description::array();
+  for (const ProbeSeries& probe : run.probes) {
+    Description channels = Description::array();
+    for (const auto& channel : probe.channels) channels.push_back(channel_json(channel, data));
+    json["probes"].push_back(Description{{"name", probe.name}, {"channels", std::move(channels)}});
+  }
+  return json;
+}
+
+/// JSON that may stand in a script element.
+std::string json_element(const char* id, const Description& json) {
+  std::string text = json.dump(-1, ' ', false, Description::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return std::string("<script type=\"application/json\" id=\"") + id + "\">" + text + "</script>\n";
+}
+
+std::string script_element(std::string_view script) {
+  std::string html = "<script>\n";
+  html += script;
+  return html + "</script>\n";
+}
+
+}  // namespace
+
+ReportPage report_page(std::span<const std::filesystem::path> folders, const GrainLimits& limits) {
+  std::vector<RunResults> runs;
+  for (const auto& folder : folders) runs.push_back(read_results(folder));
+  GrainLimits share = limits;
+  share.bytes /= std::max<std::size_t>(1, runs.size());
+  ReportPage page;
+  DataElements data;
+  Description json = {{"colours", {{"series", series_colours}, {"diverging", diverging_colours}}},
+                      {"runs", Description::array()}};
+  std::vector<double> diameters;
+  for (RunResults& run : runs) {
+    Description one = run_json(run, data);
+    one["grains"] = grain_frames(run.frames, share, data, run.problems);
+    diameters.push_back(one["grains"].is_null() ? 0 : one["grains"]["mean_diameter"].get<double>());
+    page.problems.insert(page.problems.end(), run.problems.begin(), run.problems.end());
+    json["runs"].push_back(std::move(one));
+  }
+  add_readable_units(json["runs"]);
+
+  page.html = page_begin(runs.size() == 1 ? runs[0].title() : "Runs side by side", report_style, policy);
+  page.html += head_of(runs, diameters) + problems_part(page.problems);
+  page.html +=
+      "<main>\n<section id=\"curves\"></section>\n<section id=\"grains\"></section>\n"
+      "<noscript><p class=\"message\">Curves and grains are drawn by JavaScript, which is switched "
+      "off.</p></noscript>\n"
+      "</main>\n";
+  page.html += json_element("report", json);
+  page.html += data.html();
+  page.html += "<script type=\"text/plain\" id=\"vega-licence\">";
+  page.html += vega_licence;
+  page.html += "</script>\n";
+  page.html += script_element(vega_script) + script_element(report_script);
+  page.html += page_end;
+  return page;
+}
+
+}  // namespace grit

@@ -1,0 +1,75 @@
+#include "report/run_results.hpp"
+
+#include <algorithm>
+
+#include "grit/error.hpp"
+#include "output/read_frames.hpp"
+
+namespace grit {
+namespace {
+
+std::vector<ProbeSeries> read_probes(const std::filesystem::path& folder, std::vector<std::string>& problems) {
+  std::vector<ProbeSeries> probes;
+  std::vector<std::string> names;
+  try {
+    names = channel_names(folder);
+  } catch (const FileError& error) {
+    problems.emplace_back(error.what());
+  }
+  for (const std::string& full : names) {
+    const auto slash = full.find('/');
+    const std::string probe = full.substr(0, slash), channel = full.substr(slash + 1);
+    if (channel == "step") continue;
+    if (probes.empty() || probes.back().name != probe) probes.push_back({probe, {}});
+    try {
+      probes.back().channels.push_back({channel, read_channel(folder, full)});
+    } catch (const FileError& error) {
+      problems.emplace_back(error.what());
+    }
+  }
+  for (ProbeSeries& probe : probes)
+    std::ranges::stable_partition(probe.channels, [](const auto& channel) { return channel.name == "time"; });
+  std::ranges::stable_partition(probes, [](const ProbeSeries& probe) { return probe.name == "test"; });
+  return probes;
+}
+
+}  // namespace
+
+const ProbeSeries::Channel* ProbeSeries::channel(const std::string& wanted) const {
+  const auto found = std::ranges::find(channels, wanted, &Channel::name);
+  return found == channels.end() ? nullptr : &*found;
+}
+
+const Description& RunResults::at(const std::string& pointer) const {
+  static const Description nothing;
+  const Description::json_pointer place(pointer);
+  return json.contains(place) ? json.at(place) : nothing;
+}
+
+std::string RunResults::title() const {
+  const Description& title = at("/description/title");
+  return title.is_string() && !title.get_ref<const std::string&>().empty() ? title.get<std::string>() : name;
+}
+
+RunResults read_results(const std::filesystem::path& folder) {
+  RunResults results;
+  results.folder = folder;
+  std::error_code none;
+  const auto whole = std::filesystem::canonical(folder, none);
+  results.name = (none ? folder : whole).filename().string();
+  if (!std::filesystem::is_directory(folder, none)) throw FileError(folder.string() + ": there is no such folder");
+  results.frames = frame_files(folder);
+  const bool has_json = std::filesystem::exists(folder / "run.json", none);
+  if (!has_json && !std::filesystem::exists(folder / "series.h5", none) && results.frames.empty())
+    throw FileError(folder.string() +
+                    ": holds no run: there is neither run.json nor series.h5 nor a frame; give a folder that 'grit "
+                    "run' has written");
+  if (auto json = read_run_json(folder)) results.json = std::move(*json);
+  else
+    results.problems.push_back((folder / "run.json").string() +
+                               (has_json ? ": is not the JSON of a run" : ": there is no such file"));
+  results.probes = read_probes(folder, results.problems);
+  return results;
+}
+
+}  // namespace grit

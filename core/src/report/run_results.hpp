@@ -1,0 +1,42 @@
+// All that a folder of results says, as far as it can be read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "grit/description.hpp"
+#include "output/read_results.hpp"
+
+namespace grit {
+
+/// A probe's group of series.h5.
+struct ProbeSeries {
+  struct Channel {
+    std::string name;
+    SampledChannel sampled;
+    /// Numbers a sample; 1 where there is no sample.
+    std::size_t width() const { return sampled.samples == 0 ? 1 : sampled.values.size() / sampled.samples; }
+  };
+  std::string name;
+  std::vector<Channel> channels;  ///< "time" first
+  const Channel* channel(const std::string& name) const;
+};
+
+struct RunResults {
+  std::filesystem::path folder;
+  std::string name;                           ///< of the folder
+  Description json = Description::object();   ///< run.json; empty where it cannot be read
+  std::vector<ProbeSeries> probes;            ///< "test" first
+  std::vector<std::filesystem::path> frames;  ///< not opened yet
+  std::vector<std::string> problems;          ///< what could not be read, and why; one sentence each
+
+  /// What is at a JSON pointer of run.json; null where there is nothing.
+  const Description& at(const std::string& pointer) const;
+  std::string title() const;  ///< of the description, or the folder's name
+};
+
+/// What cannot be read is among the problems. Throws FileError where nothing in the folder is of a run.
+RunResults read_results(const std::filesystem::path& folder);
+
+}  // namespace grit

@@ -1,0 +1,117 @@
+// Pages and pictures of runs, as the command line makes them.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scenes.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+class Reports : public testing::Test {
+ protected:
+  Reports() { folder.write("two.json", two_grains); }
+  Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder / name); }
+  std::string text(const std::string& name) const { return text_of(folder / name); }
+
+  OwnFolder folder;
+};
+
+TEST_F(Reports, AreMadeAtTheEndOfARunUnlessSwitchedOff) {
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  EXPECT_THAT(text("results/two/report.html"),
+              AllOf(StartsWith("<!doctype html>"), HasSubstr("<h1>two grains</h1>"), HasSubstr(">done</span>")));
+  const auto outcome = grit({"run", "two.json", "--overwrite", "--no-report"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, Not(HasSubstr("report")));
+  EXPECT_FALSE(exists("results/two/report.html")) << "that of the run that was replaced";
+}
+
+TEST_F(Reports, SayWhyARunFailed) {
+  EXPECT_EQ(grit({"run", "two.json", "--set", "/guards/travel=1e-6"}).status, 4);
+  EXPECT_THAT(text("results/two/report.html"), AllOf(HasSubstr(">failed</span>"), HasSubstr("/guards/travel")));
+}
+
+TEST_F(Reports, AreMadeAnewOfOneOrSeveralFolders) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  auto outcome = grit({"report", "results/two"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out, "report: results/two/report.html\n");
+  EXPECT_THAT(outcome.err, IsEmpty());
+  outcome = grit({"report", "results/two", "results/two", "--out", "both.html"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(text("both.html"), HasSubstr("<h1>Runs side by side</h1>"));
+}
+
+TEST_F(Reports, SayWhatIsLeftOut) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  folder.write("results/two/run.json", "{");
+  const auto outcome = grit({"report", "results/two"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "grit: left out: results/two/run.json: is not the JSON of a run\n");
+}
+
+TEST_F(Reports, NeedFoldersOfRuns) {
+  EXPECT_EQ(grit({"report"}).status, 1);
+  EXPECT_THAT(grit({"report"}).err, HasSubstr("no folder of results was given"));
+  const auto nothing = grit({"report", "nothing"});
+  EXPECT_EQ(nothing.status, 5);
+  EXPECT_THAT(nothing.err, HasSubstr("nothing: there is no such folder"));
+  const auto other = grit({"report", "."});
+  EXPECT_EQ(other.status, 5);
+  EXPECT_THAT(other.err, HasSubstr("holds no run"));
+  EXPECT_THAT(grit({"report", ".", "--png", "--out", "x.html"}).err, HasSubstr("--png writes into the folders"));
+}
+
+TEST_F(Reports, DrawPicturesWithoutABrowser) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  const auto outcome = grit({"report", "--png", "results/two"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "picture: results/two/curves.png\npicture: results/two/grains.png\n");
+  for (const char* name : {"curves", "grains"}) {
+    EXPECT_THAT(text(std::string("results/two/") + name + ".png"), StartsWith("\x89PNG\r\n\x1a\n"));
+    EXPECT_FALSE(exists(std::string("results/two/") + name + ".png.log"));
+  }
+  EXPECT_THAT(text("results/two/curves.svg"), HasSubstr("coordination number"));
+  EXPECT_FALSE(exists("results/two/report.html"));
+}
+
+TEST_F(Reports, SayThatTheConverterIsMissing) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  const auto outcome = shell(folder.path(), "PATH=/nowhere \"" GRIT_BINARY "\" report --png results/two");
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("rsvg-convert"), HasSubstr("librsvg2-bin")));
+}
+
+TEST_F(Reports, HaveWhatCurvesAreComparedWith) {
+  folder.write("measured.csv", "u,ratio\n0,0\n0.1,0.5\n");
+  const std::string curve =
+      R"({"of": "packing/mean_stress", "curve": {"file": "measured.csv", "x": "u", "y": "ratio"}})";
+  ASSERT_EQ(grit({"run", "two.json", "--set", "/output/references/measured=" + curve}).status, 0);
+  EXPECT_THAT(text("results/two/report.html"),
+              HasSubstr(R"("references":[{"name":"measured","of":"packing/mean_stress")"));
+
+  const auto refused = [&](const std::string& reference) {
+    return grit({"run", "two.json", "--out", "refused", "--set", "/output/references/it=" + reference});
+  };
+  auto outcome = refused(R"({"of": "packing/nothing", "value": 1})");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("reference: no probe has a channel 'packing/nothing'"));
+  outcome = refused(R"({"of": "packing/mean_stress", "curve": {"file": "nothing.csv", "x": "u", "y": "ratio"}})");
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, HasSubstr("nothing.csv: cannot be read"));
+  outcome = refused(R"({"of": "packing/mean_stress", "curve": {"file": "measured.csv", "x": "w", "y": "ratio"}})");
+  EXPECT_THAT(outcome.err, HasSubstr("measured.csv:1: there is no column \"w\""));
+}
+
+}  // namespace
+}  // namespace grit

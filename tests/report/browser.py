@@ -1,0 +1,136 @@
+"""Headless Chromium by its debugging pipe: JSON messages with a zero byte between them, nothing but Python's own library."""
+
+import base64
+import json
+import os
+import select
+import shutil
+import subprocess
+import tempfile
+import time
+
+
+class PageError(Exception):
+    pass
+
+
+def find_chromium():
+    return next((path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None)
+
+
+class Browser:
+    """A browser with one page. `width` × `height` in CSS pixels; `scheme`: light or dark."""
+
+    def __init__(self, program, width=1400, height=1000, scheme="light", timeout=60):
+        self.timeout = timeout
+        self.profile = tempfile.mkdtemp(prefix="grit-browser-")
+        to_browser, self.write_end = os.pipe()
+        self.read_end, from_browser = os.pipe()
+        words = [program, "--headless=new", "--remote-debugging-pipe", f"--user-data-dir={self.profile}", "--no-first-run",
+                 "--disable-background-networking", "--disable-component-update", "--disable-extensions",
+                 "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--disable-dev-shm-usage"]
+        if os.geteuid() == 0:
+            words.append("--no-sandbox")
+
+        def connect():  # the pipe's ends are numbers 3 and 4
+            ends = os.dup(to_browser), os.dup(from_browser)
+            os.dup2(ends[0], 3)
+            os.dup2(ends[1], 4)
+
+        self.process = subprocess.Popen(words + ["about:blank"], preexec_fn=connect, pass_fds=(3, 4), stdin=subprocess.DEVNULL,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.waiting, self.number, self.session, self.events = b"", 0, None, []
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(f"{domain}.enable")
+        self.resize(width, height)
+        self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.terminate()
+        self.process.wait()
+        for end in (self.write_end, self.read_end):
+            os.close(end)
+        shutil.rmtree(self.profile, ignore_errors=True)
+
+    def receive(self, deadline):
+        while b"\0" not in self.waiting:
+            left = deadline - time.monotonic()
+            if left <= 0 or not select.select([self.read_end], [], [], left)[0]:
+                raise PageError(f"the browser has not answered for {self.timeout} s")
+            part = os.read(self.read_end, 1 << 20)
+            if not part:
+                raise PageError("the browser has ended")
+            self.waiting += part
+        message, self.waiting = self.waiting.split(b"\0", 1)
+        return json.loads(message)
+
+    def call(self, method, **parameters):
+        self.number += 1
+        message = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            message["sessionId"] = self.session
+        os.write(self.write_end, json.dumps(message).encode() + b"\0")
+        deadline = time.monotonic() + self.timeout
+        while True:
+            answer = self.receive(deadline)
+            if answer.get("id") == self.number:
+                if "error" in answer:
+                    raise PageError(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+            if "method" in answer:
+                self.events.append(answer)
+
+    def open(self, path):
+        """Opens a file; returns the seconds until its scripts have run."""
+        began, self.events = time.monotonic(), []
+        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        deadline = began + self.timeout
+        while not any(event["method"] == "Page.loadEventFired" for event in self.events):
+            self.events.append(self.receive(deadline))
+        return time.monotonic() - began
+
+    def evaluate(self, expression):
+        """The value of a JavaScript expression, or what its promise comes to."""
+        answer = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            details = answer["exceptionDetails"]
+            raise PageError(details.get("exception", {}).get("description", details["text"]))
+        return answer["result"].get("value")
+
+    def wait(self, condition):
+        """Until a JavaScript expression is true."""
+        promise = f"new Promise((done) => {{ const look = () => ({condition}) ? done(true) : setTimeout(look, 20); look(); }})"
+        return self.evaluate(promise)
+
+    def complaints(self):
+        """What went to the console as an error or a warning, and what was thrown."""
+        said = []
+        for event in self.events:
+            of = event["params"]
+            if event["method"] == "Runtime.exceptionThrown":
+                said.append(of["exceptionDetails"].get("exception", {}).get("description", of["exceptionDetails"]["text"]))
+            elif event["method"] == "Runtime.consoleAPICalled" and of["type"] in ("error", "warning", "assert"):
+                said.append(" ".join(str(argument.get("value", argument.get("description"))) for argument in of["args"]))
+            elif event["method"] == "Log.entryAdded" and of["entry"]["level"] in ("error", "warning"):
+                said.append(of["entry"]["text"])
+        return said
+
+    def requests(self):
+        """Addresses that the page asked for, its own file and data within it apart."""
+        asked = [event["params"]["request"]["url"] for event in self.events if event["method"] == "Network.requestWillBeSent"]
+        return [url for url in asked[1:] if not url.startswith(("data:", "blob:"))]
+
+    def resize(self, width, height):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+
+    def screenshot(self, path, whole=False):
+        picture = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+        with open(path, "wb") as file:
+            file.write(base64.b64decode(picture["data"]))

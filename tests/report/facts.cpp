@@ -1,0 +1,79 @@
+#include "report/facts.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace grit {
+namespace {
+
+Fact fact(const std::vector<Fact>& facts, const std::string& name) {
+  const auto found = std::ranges::find(facts, name, &Fact::name);
+  return found == facts.end() ? Fact{name, "not told", "", false} : *found;
+}
+
+RunResults run_with(const Description& json, const std::vector<std::pair<std::string, std::vector<double>>>& channels) {
+  RunResults run;
+  run.json = json;
+  run.probes.push_back({"probe", {}});
+  for (const auto& [name, values] : channels)
+    run.probes.back().channels.push_back({name, {"1", "", values.size(), values}});
+  return run;
+}
+
+TEST(Facts, SayWhatARunCost) {
+  const auto facts = cost_facts(run_with({{"bodies", 12345},
+                                          {"contacts_per_body", 4.5},
+                                          {"time", 0.0425},
+                                          {"steps", 2000000},
+                                          {"wall_s", 75.0},
+                                          {"threads", 1},
+                                          {"particle_steps_per_s", 1.25e7}},
+                                         {}));
+  EXPECT_EQ(fact(facts, "bodies").value, "12\u202f345");
+  EXPECT_EQ(fact(facts, "bodies").note, "4.50 contacts each");
+  EXPECT_EQ(fact(facts, "simulated").value, "42.5 ms");
+  EXPECT_EQ(fact(facts, "simulated").note, "2\u202f000\u202f000 steps");
+  EXPECT_EQ(fact(facts, "took").value, "75 s");
+  EXPECT_EQ(fact(facts, "took").note, "1 thread");
+  EXPECT_EQ(fact(facts, "speed").value, "12.5 M");
+}
+
+TEST(Facts, SayHowFarToTrustARun) {
+  const Description json = {
+      {"time_step_s", 8e-7},
+      {"critical_time_step_s", 1e-6},
+      {"description", {{"materials", {{"a", {{"contact_modulus", 3e8}}}, {"b", {{"contact_modulus", 6e8}}}}}}}};
+  const auto facts =
+      trust_facts(run_with(json, {{"closure_share", {0, -0.02, 0.005}},
+                                  {"inertial_number", {std::numeric_limits<double>::quiet_NaN(), 9e-4, 1e-5}},
+                                  {"mean_stress", {1e5, 2e5}},
+                                  {"largest_overlap", {1e-6, 2e-5}}}),
+                  1e-3);
+  EXPECT_EQ(fact(facts, "time step").value, "800 ns");
+  EXPECT_EQ(fact(facts, "time step").note, "0.8 of the critical one");
+  EXPECT_EQ(fact(facts, "energy closure").value, "2 %");
+  EXPECT_TRUE(fact(facts, "energy closure").doubtful);
+  EXPECT_EQ(fact(facts, "inertial number").value, "0.0009");
+  EXPECT_FALSE(fact(facts, "inertial number").doubtful);
+  EXPECT_EQ(fact(facts, "stiffness level").value, "1500");
+  EXPECT_EQ(fact(facts, "largest overlap").value, "2 %");
+  EXPECT_FALSE(fact(facts, "largest overlap").doubtful);
+}
+
+TEST(Facts, DoubtFastShearUnlessGrainsAreToFlow) {
+  const std::vector<std::pair<std::string, std::vector<double>>> fast{{"inertial_number", {4e-3}}};
+  EXPECT_TRUE(fact(trust_facts(run_with(Description::object(), fast), 0), "inertial number").doubtful);
+  const Description falling = {{"description", {{"engines", {{"weight", {{"type", "gravity"}}}}}}}};
+  EXPECT_FALSE(fact(trust_facts(run_with(falling, fast), 0), "inertial number").doubtful);
+}
+
+TEST(Facts, SayNothingOfWhatIsNotKnown) {
+  EXPECT_THAT(cost_facts(run_with(Description::object(), {})), testing::IsEmpty());
+  EXPECT_THAT(trust_facts(run_with({{"time_step_s", nullptr}}, {{"largest_overlap", {1e-6}}}), 0), testing::IsEmpty());
+  EXPECT_EQ(status_of(run_with(Description::object(), {})), "unknown");
+}
+
+}  // namespace
+}  // namespace grit

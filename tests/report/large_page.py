@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Measures the page of many grains: how long it takes to make, how large it is, how fast it opens and moves in Chromium.
+
+usage: large_page.py GRIT [GRAINS [FRAMES]]     200 000 grains and 20 frames unless given; not among the tests
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy
+
+from browser import Browser, find_chromium
+
+GRAINS = "document.querySelector('figure.grains').grains"
+
+
+def write_frames(folder, grains, frames):
+    """A sheared box, at random, with three contacts a grain."""
+    (folder / "frames").mkdir(parents=True)
+    random = numpy.random.default_rng(1)
+    low = random.random((grains, 3)) * [0.06, 0.02, 0.04]
+    radius = random.uniform(1e-4, 3e-4, grains)
+    a = numpy.sort(random.integers(0, grains, 3 * grains))
+    for number in range(frames):
+        share = number / max(1, frames - 1)
+        moved = numpy.zeros((grains, 3))
+        moved[:, 0] = 0.006 * share / (1 + numpy.exp(-(low[:, 2] - 0.02) / 1e-3))
+        moved += random.normal(0, 2e-5, (grains, 3))
+        with h5py.File(folder / f"frames/{number:06}.h5", "w") as file:
+            file.attrs["time"], file.attrs["step"], file.attrs["stage"] = 1e-3 * number, 1000 * number, "shear"
+            for name, values in {"id": numpy.arange(grains), "position": low + moved, "radius": radius, "velocity": random.normal(0, 0.01, (grains, 3)),
+                                 "rotation": random.normal(0, 0.3 * share + 1e-9, (grains, 3)), "displacement": moved}.items():
+                file[f"bodies/{name}"] = values
+            file["contacts/body_a"] = a
+            file["contacts/normal_force"] = random.exponential(1, len(a))
+            file["contacts/branch"] = random.normal(0, 2e-4, (len(a), 3))
+            file.create_group("walls")
+
+
+def measure(grit, grains, frames):
+    with tempfile.TemporaryDirectory(prefix="grit-large-") as place:
+        folder = pathlib.Path(place) / "large"
+        write_frames(folder, grains, frames)
+        began = time.monotonic()
+        subprocess.run([grit, "report", str(folder)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        page = folder / "report.html"
+        print(f"made in {time.monotonic() - began:.1f} s, {page.stat().st_size / 1e6:.1f} MB")
+        with Browser(find_chromium(), timeout=120) as browser:
+            began = time.monotonic()
+            browser.open(page)
+            browser.wait(f"{GRAINS}?.painted")
+            print(f"open, grains drawn: {time.monotonic() - began:.1f} s")
+            unpack, show, paint = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, mean = async (count, act) => {{
+                    const began = performance.now();
+                    for (let i = 0; i < count; ++i) await act(i);
+                    return (performance.now() - began) / count; }};
+                const unpack = await mean(5, (i) => view.frames.read(i));
+                const show = await mean(5, () => view.show(view.now));
+                const paint = await mean(5, (i) => {{ view.state.pan[0] += 1e-4; view.arrange(); view.paint(); const {{gl}} = view.painter; gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); }});
+                return [unpack, show, paint]; }})()""")
+            print(f"a frame: {unpack:.0f} ms to unpack, {show:.0f} ms to show, of which {paint:.0f} ms to draw (without a graphics processor); heap "
+                  f"{browser.evaluate('performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
+            print("console:", browser.complaints() or "silent")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    measure(sys.argv[1], *(int(word) for word in (sys.argv[2:] + ["200000", "20"][len(sys.argv) - 2:])))

@@ -1,0 +1,224 @@
+// What a page holds: the numbers of the results, and clear words for what could not be read.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "report/report_page.hpp"
+#include "results.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+ReportPage page_of(const std::filesystem::path& folder, const GrainLimits& limits = {}) {
+  return report_page(std::span(&folder, 1), limits);
+}
+
+json channel_of(const json& run, const std::string& probe, const std::string& name) {
+  for (const auto& one : run.at("probes"))
+    if (one.at("name") == probe)
+      for (const auto& channel : one.at("channels"))
+        if (channel.at("name") == name) return channel;
+  throw std::runtime_error("the page has no " + probe + "/" + name);
+}
+
+bool same_bits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+TEST(ReportPage, HasTheCurvesToTheLastBit) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  const auto page = page_of(folder / "run");
+  EXPECT_THAT(page.problems, IsEmpty());
+  const json shown = json_of(page.html).at("runs").at(0);
+  EXPECT_EQ(shown.at("probes").at(0).at("name"), "test") << "curves of the test come first";
+  EXPECT_EQ(shown.at("probes").at(0).at("channels").at(0).at("name"), "time");
+
+  const json ratio = channel_of(shown, "test", "stress_ratio");
+  EXPECT_EQ(ratio.at("label"), "stress ratio");
+  EXPECT_EQ(ratio.at("unit"), "1");
+  EXPECT_EQ(ratio.at("about"), "shear over normal");
+  EXPECT_EQ(ratio.at("width"), 1);
+  EXPECT_EQ(ratio.at("samples"), 5);
+  const auto values = numbers_of<double>(page.html, ratio.at("data"));
+  ASSERT_EQ(values.size(), run.ratio.size());
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_TRUE(same_bits(values[i], run.ratio[i])) << i;
+  EXPECT_THAT(numbers_of<double>(page.html, channel_of(shown, "test", "time").at("data")),
+              ElementsAre(0, 0.25, 0.5, 0.75, 1));
+
+  const json stress = channel_of(shown, "test", "stress");
+  EXPECT_EQ(stress.at("width"), 3);
+  EXPECT_EQ(stress.at("shown_unit"), "kPa");
+  EXPECT_EQ(stress.at("factor"), 1e-3);
+  EXPECT_EQ(numbers_of<double>(page.html, stress.at("data")).at(14), 2e5);
+}
+
+TEST(ReportPage, HasTheGrainsToATenThousandth) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  const auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains");
+  EXPECT_EQ(grains.at("low"), json({0, 0, 1}));
+  EXPECT_EQ(grains.at("high"), json({2, 1, 3}));
+  EXPECT_DOUBLE_EQ(grains.at("mean_diameter").get<double>(), 2 * 0.875 / 3);
+  ASSERT_THAT(grains.at("frames"), SizeIs(2));
+  ASSERT_THAT(grains.at("bodies"), SizeIs(1)) << "both frames have the same bodies";
+  EXPECT_EQ(grains.at("left_out"), 0);
+
+  const auto radius = numbers_of<float>(page.html, grains.at("bodies").at(0).at("data"));
+  const auto id = numbers_of<std::int32_t>(page.html, grains.at("bodies").at(0).at("data"));
+  ASSERT_EQ(radius.size(), 6u);
+  EXPECT_THAT(std::vector(radius.begin(), radius.begin() + 3), ElementsAre(0.25f, 0.125f, 0.5f));
+  EXPECT_THAT(std::vector(id.begin() + 3, id.end()), ElementsAre(2, 5, 7));
+
+  const json &first = grains.at("frames").at(0), &second = grains.at("frames").at(1);
+  EXPECT_EQ(first.at("time"), 1);
+  EXPECT_EQ(second.at("time"), 2);
+  EXPECT_EQ(second.at("stage"), "shear");
+  EXPECT_EQ(first.at("low"), json({0, 0, 1}));
+  EXPECT_EQ(second.at("low"), json({0.5, 0, 1}));
+  EXPECT_EQ(second.at("base"), 0);
+  const auto before = planes_of(page.html, first.at("data")), after = planes_of(page.html, second.at("data"));
+  ASSERT_EQ(before.size(), 3u * (3 + 1 + 3)) << "position, speed, rotation; no displacement was kept";
+  EXPECT_THAT(std::vector(before.begin(), before.begin() + 3), ElementsAre(32768, 65535, 0)) << "x by id";
+  const auto x_of_7 = static_cast<std::uint16_t>(before[2] + after[2]);
+  EXPECT_NEAR(2 * x_of_7 / 65535.0, 0.5, 2e-5);
+  EXPECT_EQ(after[0], 0) << "what has not moved";
+  EXPECT_EQ(grains.at("ranges").at("speed"), 5);
+  EXPECT_THAT(std::vector(after.begin() + 9, after.begin() + 12), ElementsAre(0, 0, 65535)) << "speed";
+  EXPECT_EQ(grains.at("ranges").at("rotation"), 1);
+  EXPECT_THAT(std::vector(after.begin() + 15, after.begin() + 18), ElementsAre(0, 32768, 49151)) << "rotation about y";
+}
+
+TEST(ReportPage, HasTheContactsAboveTheMean) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  auto page = page_of(folder / "run");
+  json grains = json_of(page.html).at("runs").at(0).at("grains");
+  const json frame = grains.at("frames").at(0);
+  // √32, 0.3/√3 and 20: the mean is 8.6.
+  EXPECT_NEAR(frame.at("mean_force").get<double>(), (std::sqrt(32.0) + 0.3 / std::sqrt(3.0) + 20) / 3, 1e-12);
+  ASSERT_EQ(frame.at("contacts"), 1);
+  EXPECT_EQ(frame.at("strongest"), 20);
+  EXPECT_EQ(grains.at("reach"), 1);
+  EXPECT_THAT(planes_of(page.html, frame.at("chains")), ElementsAre(2, 0, 32768, 32768, 16384, 65535))
+      << "the third body by id, (0, 0, −0.5) of ±1, the strongest";
+
+  run.world.contact.pop_back();
+  run.options.existing = Existing::overwrite;
+  run.write();
+  page = page_of(folder / "run", {.contacts = 0});
+  grains = json_of(page.html).at("runs").at(0).at("grains");
+  EXPECT_EQ(grains.at("frames").at(0).at("contacts"), 0) << "within the limit";
+}
+
+TEST(ReportPage, HasWallsAndWhereTheyGo) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains");
+  EXPECT_EQ(grains.at("walls").at(0).at("name"), "floor");
+  EXPECT_THAT(numbers_of<float>(page.html, grains.at("walls").at(0).at("data")),
+              ElementsAre(0, 0, 0, 1, 0, 0, 0, 1, 0));
+  EXPECT_EQ(grains.at("frames").at(1).at("walls"), json({{0, 0, 0, -0.25}}));
+  page = page_of(folder / "run", {.wall_corners = 2});
+  EXPECT_THAT(json_of(page.html).at("runs").at(0).at("grains").at("frames").at(1).at("walls"), IsEmpty());
+}
+
+TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  for (const char* name : {"000002.h5", "000003.h5"})
+    std::filesystem::copy_file(folder / "run/frames/000000.h5", folder / ("run/frames/" + std::string(name)));
+  std::filesystem::copy_file(folder / "run/frames/000001.h5", folder / "run/frames/000004.h5");
+  const auto frames = [&](std::size_t bytes) {
+    return json_of(page_of(folder / "run", {.bytes = bytes}).html).at("runs").at(0).at("grains");
+  };
+  EXPECT_EQ(frames(1000).at("left_out"), 0);
+  const json three = frames(3 * 3 * 20);
+  EXPECT_EQ(three.at("left_out"), 2);
+  ASSERT_THAT(three.at("frames"), SizeIs(3));
+  const double times[] = {1, 1, 2};  // of the first, the third and the last
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(three.at("frames").at(i).at("time"), times[i]);
+  EXPECT_THAT(frames(0).at("frames"), SizeIs(2)) << "the first and the last are always there";
+}
+
+TEST(ReportPage, ShowsWhatCanBeReadOfAHalfWrittenFolder) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  std::ofstream(folder / "run/run.json") << "{\"status\": ";
+  std::filesystem::resize_file(folder / "run/frames/000001.h5", 1000);
+  auto page = page_of(folder / "run");
+  EXPECT_THAT(page.problems, ElementsAre(HasSubstr("run.json: is not the JSON of a run"),
+                                         AllOf(HasSubstr("frames/000001.h5"), HasSubstr("cannot read"))));
+  EXPECT_THAT(page.html, AllOf(HasSubstr("What could not be read"), HasSubstr("run.json: is not the JSON of a run"),
+                               HasSubstr(">unknown</span>")));
+  EXPECT_THAT(json_of(page.html).at("runs").at(0).at("grains").at("frames"), SizeIs(1));
+  EXPECT_EQ(channel_of(json_of(page.html).at("runs").at(0), "test", "stress_ratio").at("width"), 1);
+
+  std::filesystem::resize_file(folder / "run/series.h5", 100);
+  std::filesystem::remove(folder / "run/run.json");
+  page = page_of(folder / "run");
+  EXPECT_THAT(page.problems, SizeIs(3));
+  EXPECT_THAT(page.problems, testing::Contains(HasSubstr("run.json: there is no such file")));
+  EXPECT_THAT(page.problems, testing::Contains(AllOf(HasSubstr("series.h5"), HasSubstr("cannot read"))));
+  EXPECT_THAT(json_of(page.html).at("runs").at(0).at("probes"), IsEmpty());
+
+  std::filesystem::remove(folder / "run/frames/000000.h5");
+  EXPECT_TRUE(json_of(page_of(folder / "run").html).at("runs").at(0).at("grains").is_null());
+}
+
+TEST(ReportPage, RefusesAFolderThatHoldsNoRun) {
+  const Folder folder;
+  std::filesystem::create_directory(folder / "empty");
+  EXPECT_THAT(error_of<FileError>([&] { page_of(folder / "empty"); }),
+              AllOf(HasSubstr("empty: holds no run"), HasSubstr("grit run")));
+  EXPECT_THAT(error_of<FileError>([&] { page_of(folder / "nothing"); }), HasSubstr("nothing: there is no such folder"));
+}
+
+TEST(ReportPage, FetchesNothingAndIsNotBrokenByNames) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.options.facts.description = {{"title", "</script><script>alert(1)</script> & <!-- <b>"}};
+  run.write();
+  const std::string html = page_of(folder / "run").html;
+  EXPECT_EQ(json_of(html).at("runs").at(0).at("title"), "</script><script>alert(1)</script> & <!-- <b>");
+  EXPECT_THAT(html, HasSubstr("<h1>&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt; &amp; &lt;!-- &lt;b&gt;</h1>"));
+  EXPECT_THAT(html, Not(HasSubstr("<script>alert(1)")));
+  EXPECT_THAT(html, AllOf(HasSubstr("default-src 'none'"), Not(HasSubstr("<link")), Not(HasSubstr(" src=")),
+                          Not(HasSubstr("sourceMappingURL"))));
+}
+
+TEST(ReportPage, PutsRunsSideBySide) {
+  const Folder folder;
+  SmallRun one(folder / "one"), other(folder / "other");
+  one.write();
+  for (double& value : other.ratio) value *= 2;
+  other.write();
+  const std::vector<std::filesystem::path> folders{folder / "one", folder / "other"};
+  const auto page = report_page(folders);
+  const json runs = json_of(page.html).at("runs");
+  ASSERT_THAT(runs, SizeIs(2));
+  EXPECT_EQ(runs.at(0).at("name"), "one");
+  EXPECT_EQ(runs.at(1).at("name"), "other");
+  EXPECT_EQ(numbers_of<double>(page.html, channel_of(runs.at(1), "test", "stress_ratio").at("data")).at(4), 2.0 / 3);
+  EXPECT_THAT(page.html,
+              AllOf(HasSubstr("<h1>Runs side by side</h1>"), HasSubstr("one</th>"), HasSubstr("other</th>")));
+}
+
+}  // namespace
+}  // namespace grit
