@@ -60,7 +60,8 @@ class Profile {
     std::vector<Sums> sums(static_cast<std::size_t>(places));
     const Nodes node = nodes(world);
     const double width = reach * world.mean_diameter(), last_place = static_cast<double>(places - 1);
-    for (std::size_t i = 0; i < world.positions().size() && node.step > 0 && width > 0; ++i) {
+    const bool has_places = std::isfinite(node.first) && std::isfinite(node.step) && node.step > 0 && width > 0;
+    for (std::size_t i = 0; i < world.positions().size() && has_places; ++i) {
       const double x = xyz(world.positions()[i])[axis()], f = value(i);
       if (!std::isfinite(x) || !std::isfinite(f)) continue;  // a run that has failed
       const double from = std::ceil((x - width - node.first) / node.step),

@@ -49,7 +49,9 @@ TEST_F(Reports, AreMadeAnewOfOneOrSeveralFolders) {
   EXPECT_THAT(outcome.err, IsEmpty());
   outcome = grit({"report", "results/two", "results/two", "--out", "both.html"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(text("both.html"), HasSubstr("<h1>Runs side by side</h1>"));
+  EXPECT_THAT(text("both.html"), AllOf(HasSubstr("<h1>Runs side by side</h1>"), HasSubstr("\"results/two (1)\""),
+                                       HasSubstr("\"results/two (2)\"")))
+      << "or their curves would be one";
 }
 
 TEST_F(Reports, SayWhatIsLeftOut) {

@@ -80,6 +80,7 @@ TEST(Silo, CarriesItsFillingAsJanssenSays) {
   // K and μ are means of what is measured, over the slices that are full.
   const double surface = 2 * tall.centre, density = tall.weight / (g * across * surface);
   const auto full = static_cast<std::size_t>(surface / slice);
+  ASSERT_LE(full, tall.vertical.size());
   double vertical = 0, lateral = 0, shear = 0;
   for (std::size_t i = 0; i < full; ++i)
     vertical += tall.vertical[i], lateral += tall.lateral[i], shear += tall.shear[i];
@@ -91,7 +92,8 @@ TEST(Silo, CarriesItsFillingAsJanssenSays) {
   verify("root mean square of stress by depth less Janssen's, over his limit",
          std::sqrt(square / static_cast<double>(full)), 0, 0.06, 1);
   verify("stress on the bottom, filled to 5 D, over Janssen's", tall.bottom / across / janssen(surface), 1, 0.06);
-  verify("stress on the bottom, filled to 3 D, over that at 5 D", low.bottom / tall.bottom, 1, 0.1);
+  verify("stress on the bottom, filled to 3 D, over that at 5 D", low.bottom / tall.bottom,
+         janssen(2 * low.centre) / janssen(surface), 0.1);
   verify("weight that bottom and wall carry, filled to 5 D", (tall.bottom + tall.wall) / tall.weight, 1, 0.03);
   verify("weight that bottom and wall carry, filled to 3 D", (low.bottom + low.wall) / low.weight, 1, 0.03);
   RecordProperty("K", std::to_string(lateral / vertical));

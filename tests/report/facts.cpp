@@ -62,6 +62,18 @@ TEST(Facts, SayHowFarToTrustARun) {
   EXPECT_FALSE(fact(facts, "largest overlap").doubtful);
 }
 
+TEST(Facts, TrustIsOfTheLastStageAndNotOfItsPreparation) {
+  const std::vector<std::pair<std::string, std::vector<double>>> series{{"time", {0.1, 0.2, 0.3, 0.4}},
+                                                                        {"inertial_number", {0.4, 0.3, 1e-4, 2e-4}}};
+  Description json = {{"status", "done"}, {"stages", {{{"time", 0.25}}, {{"time", 0.4}}}}};
+  EXPECT_EQ(fact(trust_facts(run_with(json, series), 0), "inertial number").value, "0.0002");
+  // Stopped within its second stage, or its first.
+  json = {{"status", "failed"}, {"stages", {{{"time", 0.25}}}}};
+  EXPECT_EQ(fact(trust_facts(run_with(json, series), 0), "inertial number").value, "0.0002");
+  json = {{"status", "failed"}, {"stages", Description::array()}};
+  EXPECT_EQ(fact(trust_facts(run_with(json, series), 0), "inertial number").value, "0.4");
+}
+
 TEST(Facts, DoubtFastShearUnlessGrainsAreToFlow) {
   const std::vector<std::pair<std::string, std::vector<double>>> fast{{"inertial_number", {4e-3}}};
   EXPECT_TRUE(fact(trust_facts(run_with(Description::object(), fast), 0), "inertial number").doubtful);

@@ -66,6 +66,7 @@ void make_report(const std::filesystem::path& folder) {
   try {
     const ReportPage page = report_page(std::span(&folder, 1));
     write_atomically(out, page.html);
+    for (const std::string& problem : page.problems) std::cerr << "grit: report: " << problem << '\n';
     std::cout << "report: " << out.string() << '\n';
   } catch (const std::exception& error) {
     std::cerr << "grit: no report: " << error.what() << std::endl;
@@ -128,12 +129,14 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' ' << share(summary.phases[i].seconds);
   std::cout << ")\nresults: " << folder.string() << '\n';
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
-  if (!options.has("no-report")) make_report(folder);
-  if (summary.status == "failed") throw NumericsError(summary.message);
+  // Who interrupts wants to be gone: a page takes time with many grains.
   if (summary.status == "interrupted") {
-    std::cerr << "interrupted; what was reached is saved in " << folder.string() << std::endl;
+    std::cerr << "interrupted; what was reached is saved in " << folder.string() << "; 'grit report " << folder.string()
+              << "' makes a page of it" << std::endl;
     return ExitStatus::interrupted;
   }
+  if (!options.has("no-report")) make_report(folder);
+  if (summary.status == "failed") throw NumericsError(summary.message);
   return ExitStatus::done;
 }
 

@@ -29,10 +29,11 @@ bool hidden(const WallTouch& lesser, const WallTouch& deeper, double radius) {
 /// edge or is carried along: (overlap / dt) (normal − normal_before) of surface velocity. A touch that goes on in one
 /// whose normal leans towards where the body goes is over a valley, where two normals meet neither of which turns but
 /// with the wall. What the law adds for their difference is taken off beforehand: it would be felt as a jerk.
-void stand_still_in_valley(WallTouch& touch, const Vec3& body_velocity, double dt) {
-  const Vec3 turned = touch.normal - touch.normal_before;
-  if (dt > 0 && turned.dot(body_velocity - touch.velocity) > 0)
-    touch.velocity -= touch.overlap * (turned / dt - touch.spin.cross(touch.normal));
+void stand_still_in_valley(WallTouch& touch, const Row& body, const Row& body_velocity, double dt) {
+  // Both as somebody sees them who rides on the wall at the body's centre.
+  const Vec3 turned = touch.normal - touch.normal_before - dt * touch.spin.cross(touch.normal);
+  const Vec3 passes = xyz(body_velocity) - touch.velocity + touch.spin.cross((body.w - touch.overlap) * touch.normal);
+  if (dt > 0 && turned.dot(passes) > 0) touch.velocity -= touch.overlap / dt * turned;
 }
 
 }  // namespace
@@ -85,7 +86,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
       around = std::max(around, (xyz(bodies.position[i]) - middle).norm() + bodies.position[i].w + skin);
     around *= 1 + 1e-12;
     for (const WallSurface& wall : walls) {
-      const bool close = wall.geometry->near(wall.pose, middle, around);
+      const bool close = !middle.allFinite() || wall.geometry->near(wall.pose, middle, around);
       for (std::size_t i = first; close && i < last; ++i)
         if (wall.geometry->near(wall.pose, xyz(bodies.position[i]), bodies.position[i].w + skin))
           chunk.candidate.push_back(static_cast<std::uint32_t>(i));
@@ -239,7 +240,7 @@ void WallContacts::hand_on_memories(Chunk& chunk, const Bodies& bodies, double d
     }
     if (best == gone.end()) continue;
     hand_on(*best, i);
-    stand_still_in_valley(chunk.touch[i], xyz(bodies.velocity[t.body]), dt);
+    stand_still_in_valley(chunk.touch[i], bodies.position[t.body], bodies.velocity[t.body], dt);
     gone.erase(best);
   }
 }

@@ -31,8 +31,14 @@ void publish(const std::filesystem::path& path) {
 void write_atomically(const std::filesystem::path& path, std::string_view text) {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(beside(path).c_str(), "wb"), std::fclose);
   if (!file) fail(path, errno);
-  if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) fail(path, errno);
-  if (std::fclose(file.release()) != 0) fail(path, errno);
+  // What a full disk has taken of it is of no use.
+  const auto give_up = [&](int error) {
+    std::error_code ignored;
+    std::filesystem::remove(beside(path), ignored);
+    fail(path, error);
+  };
+  if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) give_up(errno);
+  if (std::fclose(file.release()) != 0) give_up(errno);
   publish(path);
 }
 

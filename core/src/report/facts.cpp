@@ -24,19 +24,35 @@ std::string time_text(double seconds) {
   return seconds == 0 ? "0 s" : fmt::format("{:.3g} ns", seconds * 1e9);
 }
 
-/// The value of a channel that is farthest from zero, of all probes that have it.
+/// When the last stage began [s]: what came before it was preparation.
+double last_stage_began(const RunResults& run) {
+  const Description& stages = run.at("/stages");
+  if (!stages.is_array()) return 0;
+  // A run that stopped within a stage has not noted it.
+  const std::size_t ended = stages.size(), before = status_of(run) == "done" ? 2 : 1;
+  const Description& stage = ended >= before ? stages[ended - before] : Description();
+  return stage.is_object() && stage.contains("time") && stage["time"].is_number() ? stage["time"].get<double>() : 0;
+}
+
+/// The value of a channel that is farthest from zero in the last stage, of all probes that have it.
 std::optional<double> largest(const RunResults& run, const std::string& channel) {
+  const double from = last_stage_began(run);
   std::optional<double> found;
-  for (const ProbeSeries& probe : run.probes)
-    if (const auto* series = probe.channel(channel))
-      for (const double value : series->sampled.values)
-        if (std::isfinite(value) && (!found || std::abs(value) > std::abs(*found))) found = value;
+  for (const ProbeSeries& probe : run.probes) {
+    const auto *series = probe.channel(channel), *time = probe.channel("time");
+    if (series == nullptr || series->width() != 1) continue;
+    for (std::size_t i = 0; i < series->sampled.values.size(); ++i) {
+      const double value = series->sampled.values[i];
+      if (time != nullptr && i < time->sampled.values.size() && time->sampled.values[i] < from) continue;
+      if (std::isfinite(value) && (!found || std::abs(value) > std::abs(*found))) found = value;
+    }
+  }
   return found;
 }
 
 bool has_engine(const RunResults& run, const std::string& type) {
   return std::ranges::any_of(run.at("/description/engines"), [&](const Description& engine) {
-    return engine.is_object() && engine.value("type", "") == type;
+    return engine.is_object() && engine.contains("type") && engine["type"] == type;
   });
 }
 
@@ -88,19 +104,19 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
   }
   if (const auto closure = largest(run, "closure_share"))
     facts.push_back({"energy closure", fmt::format("{:.2g} %", 100 * std::abs(*closure)),
-                     "largest error over all energy turned over", std::abs(*closure) > 0.01});
+                     "of all energy turned over, in the last stage", std::abs(*closure) > 0.01});
   const bool flows = has_engine(run, "gravity");
   if (const auto inertial = largest(run, "inertial_number"); inertial && *inertial > 0)
-    facts.push_back({"inertial number", fmt::format("{:.2g}", *inertial), "largest; quasi-static below 0.001",
-                     *inertial > 1e-3 * 1.005 && !flows});
+    facts.push_back({"inertial number", fmt::format("{:.2g}", *inertial),
+                     "largest of the last stage; quasi-static below 0.001", *inertial > 1e-3 * 1.005 && !flows});
   const auto modulus = least_modulus(run);
   const auto stress = largest(run, "mean_stress");
   if (modulus && stress && *stress > 0)
-    facts.push_back(
-        {"stiffness level", short_number(*modulus / *stress), "contact modulus over the largest mean stress", false});
+    facts.push_back({"stiffness level", short_number(*modulus / *stress),
+                     "contact modulus over the largest mean stress of the last stage", false});
   if (const auto overlap = largest(run, "largest_overlap"); overlap && mean_diameter > 0)
-    facts.push_back({"largest overlap", fmt::format("{:.2g} %", 100 * *overlap / mean_diameter), "of the mean diameter",
-                     *overlap > 0.05 * mean_diameter});
+    facts.push_back({"largest overlap", fmt::format("{:.2g} %", 100 * *overlap / mean_diameter),
+                     "of the mean diameter, in the last stage", *overlap > 0.05 * mean_diameter});
   return facts;
 }
 

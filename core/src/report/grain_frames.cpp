@@ -59,8 +59,8 @@ struct VectorRange {
   std::array<double, 3> limits{};
   bool everywhere = true;
 
-  void add(const std::vector<double>& vectors) {
-    if (vectors.empty()) everywhere = false;
+  void add(const std::vector<double>& vectors, std::size_t bodies) {
+    if (vectors.empty() && bodies > 0) everywhere = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       std::vector<double> sizes;
       for (std::size_t i = axis; i < vectors.size(); i += 3)
@@ -102,7 +102,7 @@ struct Extent : Box {
       if (std::isfinite(part)) reach = std::max(reach, std::abs(part));
     for (const double radius : frame.radius) diameters += 2 * radius;
     bodies += frame.bodies();
-    rotation.add(frame.rotation), displacement.add(frame.displacement);
+    rotation.add(frame.rotation, frame.bodies()), displacement.add(frame.displacement, frame.bodies());
   }
 };
 

@@ -25,7 +25,7 @@ namespace {
 // A page that may fetch nothing cannot tell anybody that it was opened. Vega makes functions of its expressions.
 constexpr const char* policy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
-    "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:\">\n";
+    "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n";
 
 std::string text_at(const RunResults& run, const std::string& pointer) {
   const Description& found = run.at(pointer);
@@ -116,14 +116,15 @@ std::string stages_table(const RunResults& run) {
   std::string html =
       "<div class=\"wide\"><table><thead><tr><th class=\"name\">stage</th><th class=\"name\">reached</th>"
       "<th>time [s]</th><th>step</th><th>wall time</th></tr></thead><tbody>\n";
-  for (const Description& stage : stages) {
-    if (!stage.is_object()) continue;
-    html += fmt::format(
-        "<tr><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{:.4g}</td><td>{}</td><td>{}</td>"
-        "</tr>\n",
-        escaped(stage.value("name", "")), escaped(stage.value("reached", "")), stage.value("time", 0.0),
-        grouped(stage.value("step", std::uint64_t{0})), cost_text(stage.value("wall_s", 0.0)));
-  }
+  for (const Description& stage : stages) try {
+      html += fmt::format(
+          "<tr><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{:.4g}</td><td>{}</td><td>{}</td>"
+          "</tr>\n",
+          escaped(stage.value("name", "")), escaped(stage.value("reached", "")), stage.value("time", 0.0),
+          grouped(stage.value("step", std::uint64_t{0})), cost_text(stage.value("wall_s", 0.0)));
+    } catch (const Description::exception&) {
+      html += "<tr><td class=\"name\">unreadable</td></tr>\n";
+    }
   return html + "</tbody></table></div>\n";
 }
 
@@ -248,11 +249,23 @@ std::string script_element(std::string_view script) {
   return html + "</script>\n";
 }
 
+/// Folders of one name are called by their ways, and the same folder given twice by its place.
+void tell_apart(std::vector<RunResults>& runs) {
+  const auto same = [&](const std::string& name) { return std::ranges::count(runs, name, &RunResults::name); };
+  std::vector<RunResults*> alike;
+  for (RunResults& run : runs)
+    if (same(run.name) > 1) alike.push_back(&run);
+  for (RunResults* run : alike) run->name = run->folder.lexically_normal().string();
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (same(runs[i].name) > 1) runs[i].name += " (" + std::to_string(i + 1) + ")";
+}
+
 }  // namespace
 
 ReportPage report_page(std::span<const std::filesystem::path> folders, const GrainLimits& limits) {
   std::vector<RunResults> runs;
   for (const auto& folder : folders) runs.push_back(read_results(folder));
+  tell_apart(runs);
   GrainLimits share = limits;
   share.bytes /= std::max<std::size_t>(1, runs.size());
   ReportPage page;

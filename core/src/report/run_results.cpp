@@ -23,7 +23,7 @@ std::vector<ProbeSeries> read_probes(const std::filesystem::path& folder, std::v
     if (probes.empty() || probes.back().name != probe) probes.push_back({probe, {}});
     try {
       probes.back().channels.push_back({channel, read_channel(folder, full)});
-    } catch (const FileError& error) {
+    } catch (const std::exception& error) {
       problems.emplace_back(error.what());
     }
   }

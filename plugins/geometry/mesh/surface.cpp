@@ -54,6 +54,7 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
 
   bounds_ = {vertices_.front().place, vertices_.front().place};
   std::vector<std::pair<Bounds, std::uint32_t>> boxes;
+  double total_area = 0;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
     if (facets_[f].left_out) continue;
     const Vec3 &a = corner(facets_[f], 0), &b = corner(facets_[f], 1), &c = corner(facets_[f], 2);
@@ -61,10 +62,12 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
     boxes.push_back({{low, high}, f});
     bounds_ = {bounds_.low.cwiseMin(low), bounds_.high.cwiseMax(high)};
     area_vector_ += 0.5 * (b - a).cross(c - a);
+    total_area += 0.5 * (b - a).cross(c - a).norm();
   }
   index_.emplace(boxes);
   size_ = std::max(bounds_.low.cwiseAbs().maxCoeff(), bounds_.high.cwiseAbs().maxCoeff());
-  if (closed_ || !oriented_) area_vector_.setZero();
+  // That of a tube is zero but for its corners' rounding, in STL to floats.
+  if (closed_ || !oriented_ || area_vector_.norm() <= 1e-6 * total_area) area_vector_.setZero();
 }
 
 /// Numbers the corners' places; corners that are one get one number, that of the first of them.

@@ -310,6 +310,9 @@ TEST(Mesh, GivesAreaNormalAndBounds) {
   EXPECT_NEAR(cup->area(), 2, 1e-14) << "that of its floor: the walls' pressures balance";
   EXPECT_LE((cup->normal() - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_TRUE(cup->hollow());
+  const auto tube = mesh(pipe(64), {{"open", true}, {"inside", true}});
+  EXPECT_EQ(tube->area(), 0) << "there is rounding to it";
+  EXPECT_EQ(tube->normal(), Vec3::Zero());
   EXPECT_NEAR(mesh(hills(), {{"open", true}})->area(), 2, 1e-14) << "as of a flat sheet";
 }
 

@@ -19,10 +19,11 @@ class Fit {
  public:
   void add(const Vec2& place, const Vec2& moved) { places_.push_back(place), moves_.push_back(moved); }
   int bodies() const { return static_cast<int>(places_.size()); }
-  /// Green and Lagrange's strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN where bodies are too few, or on one line.
-  std::array<double, 3> green() const {
+  /// Green and Lagrange's strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` bodies, or where
+  /// they lie so nearly on one line that their spread along and across it has a ratio of less than `flat`.
+  std::array<double, 3> green(std::size_t least, double flat) const {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    if (places_.size() < 4) return {unknown, unknown, unknown};
+    if (places_.size() < least) return {unknown, unknown, unknown};
     Vec2 place = Vec2::Zero(), moved = Vec2::Zero();
     for (std::size_t i = 0; i < places_.size(); ++i) place += places_[i], moved += moves_[i];
     place /= static_cast<double>(places_.size()), moved /= static_cast<double>(places_.size());
@@ -31,7 +32,7 @@ class Fit {
       const Vec2 x = places_[i] - place;
       spread += x * x.transpose(), together += (moves_[i] - moved) * x.transpose();
     }
-    if (!(spread.determinant() > 1e-12 * spread.trace() * spread.trace())) return {unknown, unknown, unknown};
+    if (!(spread.determinant() > flat * spread.trace() * spread.trace())) return {unknown, unknown, unknown};
     const Mat2 gradient = together * spread.inverse();
     const Mat2 green = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
     return {green(0, 0), green(1, 1), green(0, 1)};
@@ -71,6 +72,9 @@ std::vector<Channel> Strain::channels() const {
 std::vector<Strain::Body> Strain::bodies(const World& world) const {
   std::vector<Body> all;
   const auto axes = plane();
+  // Where bodies began cannot be told in a cell whose sides have moved since.
+  for (const int axis : axes)
+    if (world.cell().periodic[static_cast<std::size_t>(axis)] && world.cell().strain_rate[axis] != 0) return all;
   for (std::size_t i = 0; i < world.displacements().size(); ++i) {
     if (!xyz(world.positions()[i]).allFinite()) continue;  // a run that has failed
     Body body;
@@ -113,7 +117,7 @@ std::vector<Strain::Subset> Strain::subsets(const World& world) const {
       Fit fit;
       for (auto body = begin; body != end; ++body)
         if (std::abs(body->place.y() - y) <= 0.5 * side) fit.add(body->place, body->moved);
-      found.push_back({.centre = {x, y}, .bodies = fit.bodies(), .green = fit.green()});
+      found.push_back({.centre = {x, y}, .bodies = fit.bodies(), .green = fit.green(6, 0.01)});
     }
   }
   return found;
@@ -122,7 +126,7 @@ std::vector<Strain::Subset> Strain::subsets(const World& world) const {
 void Strain::sample(const World& world, std::span<const std::span<double>> values) {
   Fit whole;
   for (const Body& body : bodies(world)) whole.add(body.place, body.moved);
-  std::ranges::copy(whole.green(), values[0].begin());
+  std::ranges::copy(whole.green(4, 1e-12), values[0].begin());
   double largest = 0;
   for (const Subset& one : subsets(world))
     if (const double shear = std::abs(one.green[2]); shear > largest) largest = shear;
@@ -138,7 +142,7 @@ std::vector<Field> Strain::fields(const World& world) {
       {"strain",
        "1",
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
-           ", Green-Lagrange, positive in extension; NaN with fewer than four",
+           ", Green-Lagrange, positive in extension; NaN with fewer than six, or nearly on one line",
        3,
        {}}};
   for (const Subset& one : subsets(world)) {

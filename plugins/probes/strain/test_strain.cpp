@@ -95,6 +95,26 @@ TEST(Strain, IsUnknownWhereBodiesAreTooFew) {
   EXPECT_TRUE(std::isnan(channel_values(probe, world, "strain").at(0)));
 }
 
+TEST(Strain, IsUnknownInACellThatDeforms) {
+  FakeWorld world = deformed(Mat3::Identity());
+  world.box = {Vec3::Zero(), {0.06, 0.005, 0.02}, {true, false, false}};
+  Strain probe;
+  EXPECT_EQ(channel_values(probe, world, "strain").at(0), 0);
+  world.box.strain_rate.x() = -1;
+  EXPECT_TRUE(std::isnan(channel_values(probe, world, "strain").at(0)));
+  EXPECT_THAT(probe.fields(world).at(1).values, testing::IsEmpty());
+}
+
+TEST(Strain, CountsBodiesThatCrossedAPeriodicSideWhereTheyBegan) {
+  FakeWorld world = deformed(Mat3::Identity(), {0.01, 0, 0});
+  world.box = {Vec3::Zero(), {0.06, 0.005, 0.02}, {true, false, false}};
+  for (Row& row : world.position)
+    if (row.x > 0.06) row.x -= 0.06;
+  Strain probe;
+  for (const double strain : channel_values(probe, world, "strain")) EXPECT_NEAR(strain, 0, 1e-12);
+  for (const double place : probe.fields(world).at(0).values) EXPECT_LT(place, 0.06);
+}
+
 INSTANTIATE_TEST_SUITE_P(Strain, ProbeContract,
                          testing::Values(ProbeCase{"lattice", [] { return std::make_shared<Strain>(); },
                                                    [] {

@@ -102,6 +102,7 @@ class Chart {
         continue;
       }
       const against = probe.channels.find((one) => one.name === this.abscissa.name);
+      if (!against && this.group.channelsNamed(this.abscissa.name).length > 0) continue; // this run has not got it
       const x = against ? await numbersOf(against.data) : Float64Array.from({ length: all.length / channel.width }, (_, i) => i);
       parts.forEach((part, k) => {
         const y = channel.width === 1 ? all : Float64Array.from({ length: all.length / channel.width }, (_, i) => all[i * channel.width + k]);
@@ -248,7 +249,7 @@ class Chart {
     const steps = { ArrowLeft: -1, ArrowRight: 1, Home: -Infinity, End: Infinity };
     if (event.target !== this.figure || !this.series) return;
     if (event.key === "Escape") return this.show(null);
-    if (!(event.key in steps)) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in steps)) return; // those are the browser's
     event.preventDefault();
     const far = event.shiftKey ? 20 : 1;
     this.show(this.series.map(({ x }, k) => Math.min(x.length - 1, Math.max(0, (this.places?.[k] ?? -1) + far * steps[event.key]))));

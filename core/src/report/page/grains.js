@@ -104,7 +104,7 @@ class GrainView {
     stage.addEventListener("keydown", (event) => {
       const acts = { " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.go(0), End: () => this.go(this.frames.count - 1),
         "+": () => this.scale(1.4), "-": () => this.scale(1 / 1.4), 0: () => this.change({ zoom: 1, pan: [0, 0] }) };
-      if (!(event.key in acts)) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in acts)) return; // those are the browser's
       event.preventDefault();
       acts[event.key]();
     });
