@@ -24,8 +24,7 @@ std::span<const Command> commands() {
        describe_command},
       {"chart", "STUDY", "Speed against accuracy: runs a study, draws error against cost.", chart_command},
       {"advise", "FILE", "Says what may be relaxed within a tolerance, by the evidence of a study.", advise_command},
-      {"report", "DIR…", "Makes one page of a run, or of several side by side: curves, grains, what it cost.",
-       report_command},
+      {"report", "DIR…", "Makes one page of a run, or of several side by side: curves and grains.", report_command},
   }};
   return all;
 }

@@ -251,13 +251,14 @@ std::string script_element(std::string_view script) {
 
 /// Folders of one name are called by their ways, and the same folder given twice by its place.
 void tell_apart(std::vector<RunResults>& runs) {
-  const auto same = [&](const std::string& name) { return std::ranges::count(runs, name, &RunResults::name); };
-  std::vector<RunResults*> alike;
-  for (RunResults& run : runs)
-    if (same(run.name) > 1) alike.push_back(&run);
-  for (RunResults* run : alike) run->name = run->folder.lexically_normal().string();
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    if (same(runs[i].name) > 1) runs[i].name += " (" + std::to_string(i + 1) + ")";
+  const auto rename_alike = [&](auto name_of) {
+    std::vector<std::size_t> alike;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (std::ranges::count(runs, runs[i].name, &RunResults::name) > 1) alike.push_back(i);
+    for (const std::size_t i : alike) runs[i].name = name_of(i);
+  };
+  rename_alike([&](std::size_t i) { return runs[i].folder.lexically_normal().string(); });
+  rename_alike([&](std::size_t i) { return runs[i].name + " (" + std::to_string(i + 1) + ")"; });
 }
 
 }  // namespace

@@ -288,6 +288,17 @@ template <class L>
   }
 }
 template <class L>
+[[gnu::always_inline]] inline double total(const L& lanes) {
+  if constexpr (lane_width<L> == 1) return lanes;
+  else {
+    L sum = lanes;
+    for (std::size_t step = lane_width<L> / 2; step > 0; step /= 2)
+      sum = sum + L([&](std::size_t k) { return sum[(k + step) % lane_width<L>]; });
+    return sum[0];
+  }
+}
+
+template <class L>
 [[gnu::always_inline]] inline double smallest(const L& lanes) {
   return -largest(L(-lanes));
 }

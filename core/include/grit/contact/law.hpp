@@ -120,10 +120,8 @@ template <class L>
 
 template <class L>
 inline void add_lanes(const Loss<L>& lanes, Losses& losses) {
-  for (std::size_t k = 0; k < lane_width<L>; ++k) {
-    losses.friction += lane(lanes.friction, k), losses.rolling += lane(lanes.rolling, k);
-    losses.viscosity += lane(lanes.viscosity, k);
-  }
+  losses.friction += total(lanes.friction), losses.rolling += total(lanes.rolling);
+  losses.viscosity += total(lanes.viscosity);
 }
 
 /// The members of a struct that has nothing but lanes, one after the other. (Not std::bit_cast: that was seen to copy
