@@ -75,8 +75,8 @@ void expect_second_order(const std::string& name, const Description& analytic, c
     const Difference off = difference(forces(mesh, grains), known);
     sizes.push_back(1.0 / n), strengths.push_back(off.strength), directions.push_back(off.direction);
   }
-  verify("order at which forces' strength errs with the size of facets, " + name, order(sizes, strengths), 2, 0.05);
-  verify("order at which their direction does, " + name, order(sizes, directions), 1, 0.05);
+  verify("order at which forces' strength errs with the size of facets, " + name, order(sizes, strengths), 2, 0.01);
+  verify("order at which their direction does, " + name, order(sizes, directions), 1, 0.01);
 }
 
 // Grains on a helix, none of which touches another.
