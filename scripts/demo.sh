@@ -13,4 +13,5 @@ build/bin/grit run sims/direct-shear/quick.json --out "$results"
 
 echo
 echo "Results: $PWD/$results"
-find "$results" -type f \( -name '*.png' -o -name '*.svg' -o -name '*.html' \) -printf 'Picture: %p\n' | sort | sed "s@: @: $PWD/@"
+echo "Page:    $PWD/$results/report.html"
+find "$results" -type f \( -name '*.png' -o -name '*.svg' \) -printf 'Picture: %p\n' | sort | sed "s@: @: $PWD/@"
