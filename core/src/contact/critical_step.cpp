@@ -44,34 +44,79 @@ double dashpots(const Stiffness& k, const Mobility& a, const Mobility& b, double
   return along * (a.along + b.along) + across * (a.across + b.across);
 }
 
-/// What dashpots ask of a body, 1/s, by direction: of its velocity, of its spin times √(I/m), and of both together.
-struct Dashpots {
-  Mat3 velocity = Mat3::Zero(), spin = Mat3::Zero();
-  Vec3 both = Vec3::Zero();
+constexpr double slide = 3.5;  // 1 + m r²/I of a solid sphere
 
-  /// One contact, whose normal points out of the body; of two bodies, each bears what both together are worth.
-  void add(const Stiffness& k, const Vec3& normal, double inverse_mass) {
-    const double along = 2 * k.damping_ratio * std::sqrt(k.normal * inverse_mass);
-    const double across = 2 * k.shear_damping_ratio * std::sqrt(k.shear * inverse_mass / slide);
-    const Mat3 line = normal * normal.transpose(), plane = across * (Mat3::Identity() - line);
-    velocity += along * line + plane;
-    spin += (slide - 1) * plane;
-    both += std::sqrt(slide - 1) * across * normal;
+/// The rates of a contact's dashpots [1/s].
+struct Rates {
+  double along, across;
+};
+Rates rates(const Stiffness& k, double inverse_mass) {
+  return {2 * k.damping_ratio * std::sqrt(k.normal * inverse_mass),
+          2 * k.shear_damping_ratio * std::sqrt(k.shear * inverse_mass / slide)};
+}
+
+/// What two blocks, of a body's velocity and of its spin times √(I/m), have as their largest eigenvalue at most where
+/// `both` [squared] is what joins them.
+double joined(double velocity, double spin, double both) {
+  return 0.5 * (velocity + spin) + std::sqrt(0.25 * (velocity - spin) * (velocity - spin) + both);
+}
+/// The same of one contact alone.
+double largest(const Rates& rates) {
+  return joined(std::max(rates.along, rates.across), (slide - 1) * rates.across,
+                (slide - 1) * rates.across * rates.across);
+}
+
+/// What dashpots ask of a body, 1/s: along·n n + across·(1 − n n) of its velocity, (slide − 1) across·(1 − n n) of its
+/// spin times √(I/m), √(slide − 1) across·n of both together, summed over its contacts. Of two bodies, each bears what
+/// both together are worth.
+class Dashpots {
+ public:
+  /// A symmetric matrix: its diagonal, then xy, xz, yz.
+  using Six = Eigen::Matrix<double, 6, 1>;
+  static Six square(const Vec3& n) {
+    return (Six() << n.x() * n.x(), n.y() * n.y(), n.z() * n.z(), n.x() * n.y(), n.x() * n.z(), n.y() * n.z())
+        .finished();
   }
-  /// An upper bound of the largest eigenvalue of the whole; nothing new if it can't be more than `so_far`.
-  double largest(double so_far) const {
-    // The root of the sum of all squares, which costs far less than eigenvalues, is no less than the bound.
-    if (velocity.squaredNorm() + spin.squaredNorm() + 2 * both.squaredNorm() <= so_far * so_far && so_far >= 0)
-      return so_far;
-    const double a = eigenvalue(velocity), b = eigenvalue(spin);
-    return 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + both.squaredNorm());
+  /// One contact, whose normal points out of the body.
+  void add(const Rates& rates, const Vec3& normal, const Six& square) {
+    line_ += (rates.along - rates.across) * square;
+    plane_ += rates.across * square;
+    across_ += rates.across;
+    both_ += rates.across * normal;
   }
+  /// No less than largest(), and far cheaper: a root of x³ − 3 p² x = 2 q, which the eigenvalues are about their mean,
+  /// is at most 2 p.
+  double at_most() const {
+    const auto bound = [](const Six& m) {
+      const double mean = m.head<3>().mean();
+      const double spread = (m.head<3>().array() - mean).square().sum() + 2 * m.tail<3>().squaredNorm();
+      return mean + 2 * std::sqrt(spread / 6);
+    };
+    return (1 + 1e-12) * joined(bound(velocity()), bound(spin()), both());  // rounded
+  }
+  /// An upper bound of the largest eigenvalue of the whole.
+  double largest() const { return joined(eigenvalue(velocity()), eigenvalue(spin()), both()); }
 
  private:
-  static constexpr double slide = 3.5;  // 1 + m r²/I of a solid sphere
-  static double eigenvalue(const Mat3& symmetric) {
-    return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  Six velocity() const {
+    Six m = line_;
+    m.head<3>().array() += across_;
+    return m;
   }
+  Six spin() const {
+    Six m = -(slide - 1) * plane_;
+    m.head<3>().array() += (slide - 1) * across_;
+    return m;
+  }
+  double both() const { return (slide - 1) * both_.squaredNorm(); }
+  static double eigenvalue(const Six& m) {
+    const Mat3 full{{m[0], m[3], m[4]}, {m[3], m[1], m[5]}, {m[4], m[5], m[2]}};
+    return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(full, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  }
+
+  Six line_ = Six::Zero(), plane_ = Six::Zero();
+  double across_ = 0;
+  Vec3 both_ = Vec3::Zero();
 };
 
 }  // namespace
@@ -147,11 +192,13 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     const bool of_clump = bodies.clumps.clump_of(a) != no_clump || bodies.clumps.clump_of(b) != no_clump;
     const double at_arms =
         damps && of_clump ? dashpots(k, mobility(bodies, a, normal), mobility(bodies, b, normal), inverse_mass) : 0;
+    const Rates dashpot = damps ? rates(k, inverse_mass) : Rates{};
+    const Dashpots::Six square = Dashpots::square(normal);
     const auto ask = [&](std::uint32_t i, const Vec3& out) {
       if (i < first || i >= last) return;
       springs[i - first] += demand(k, bodies, i, normal);
       if (of_clump) clump_dashpots[i - first] += at_arms;
-      else if (damps) damped[i - first].add(k, out, inverse_mass);
+      else if (damps) damped[i - first].add(dashpot, out, square);
     };
     ask(a, normal), ask(b, -normal);
     own.near.push_back(static_cast<std::uint32_t>(c));
@@ -164,7 +211,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     springs[a - first] += demand(k, bodies, a, touch.normal);
     if (bodies.clumps.clump_of(a) != no_clump)
       clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, touch.normal), {}, bodies.velocity[a].w);
-    else damped[a - first].add(k, touch.normal, bodies.velocity[a].w);
+    else damped[a - first].add(rates(k, bodies.velocity[a].w), touch.normal, Dashpots::square(touch.normal));
   });
   own.demand = {};
   for (std::size_t i = first; i < last; ++i) {
@@ -184,13 +231,18 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
       own.demand.dashpot = std::max(own.demand.dashpot, dashpots(k, gives, gives, 2 * bodies.velocity[i].w));
       continue;
     }
-    Dashpots pair;
-    pair.add(k, Vec3::UnitX(), 2 * bodies.velocity[i].w);
-    own.demand.dashpot =
-        std::max(own.demand.dashpot,
-                 clump_dashpots[i - first] + damped[i - first].largest(own.demand.dashpot - clump_dashpots[i - first]));
-    own.demand.dashpot = std::max(own.demand.dashpot, pair.largest(own.demand.dashpot));
+    own.demand.dashpot = std::max(own.demand.dashpot, largest(rates(k, 2 * bodies.velocity[i].w)));
   }
+  // Begins with the body that may ask for most: beside it few others need a closer look.
+  std::array<double, chunk_bodies> most{};
+  for (std::size_t i = first; i < last; ++i)
+    most[i - first] = clump_dashpots[i - first] + damped[i - first].at_most();
+  const auto look = [&](std::size_t i) {
+    if (most[i] > own.demand.dashpot)
+      own.demand.dashpot = std::max(own.demand.dashpot, clump_dashpots[i] + damped[i].largest());
+  };
+  look(static_cast<std::size_t>(std::ranges::max_element(most) - most.begin()));
+  for (std::size_t i = 0; i < last - first; ++i) look(i);
 }
 
 void CriticalStep::gather(std::size_t c, const Clumps& clumps) {
