@@ -171,7 +171,9 @@ TEST(ClumpMotion, IsTheSameAcrossThePeriodicSides) {
     return away.norm();
   };
   const double a = apart();
-  const Vec3 centre = trial.world().clumps().front().centre;
+  // A search may change the order of clumps.
+  const auto first_centre = [&] { return std::ranges::find(trial.world().clumps(), 0u, &ClumpView::id)->centre; };
+  const Vec3 centre = first_centre();
   for (int round = 0; round < 20; ++round) {
     trial.world().search_next();
     trial.step(500);
@@ -195,7 +197,7 @@ TEST(ClumpMotion, IsTheSameAcrossThePeriodicSides) {
     const Vec3 velocity = xyz(trial.world().velocities()[index_of(trial.world(), id)]);
     EXPECT_LT((trial.position(id) - before[id] - 1e-6 * velocity).norm(), 1e-15) << id;
   }
-  EXPECT_GT((trial.world().clumps().front().centre - centre).norm(), 1e-3);
+  EXPECT_GT((first_centre() - centre).norm(), 1e-3);
 }
 
 }  // namespace

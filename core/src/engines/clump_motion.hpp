@@ -20,7 +20,7 @@ ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum);
 /// doi:10.1063/1.474310.
 Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
-/// Puts a clump's body where the clump has moved it; its velocity is its way in the step over the step. Returns its
+/// Puts a clump's body where the clump has moved it; its velocity is its way in the step over the step. Returns the square of its
 /// speed against the mean flow.
 double carry(std::size_t body, Bodies& bodies, const MotionStep& step);
 

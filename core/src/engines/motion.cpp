@@ -71,8 +71,8 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
   if (!bodies.displacement.empty())
     for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
   const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
-  return {std::max(fastest_free, fastest_carried), poison[0] == 0 && poison[1] == 0 && poison[2] == 0, damped_energy,
-          fallen};
+  return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
+          damped_energy, fallen};
 }
 
 }  // namespace

@@ -82,7 +82,9 @@ void write_bodies(hdf5::Group group, const World& world) {
 void write_clumps(hdf5::Group group, const World& world) {
   std::vector<std::int64_t> id;
   std::vector<double> centre, orientation, spin, radius;
-  for (const ClumpView& clump : world.clumps()) {
+  std::vector<ClumpView> clumps(world.clumps().begin(), world.clumps().end());
+  std::ranges::sort(clumps, {}, &ClumpView::id);
+  for (const ClumpView& clump : clumps) {
     const Eigen::Quaterniond turn(clump.axes);
     id.push_back(clump.id), radius.push_back(clump.radius);
     centre.insert(centre.end(), clump.centre.begin(), clump.centre.end());

@@ -80,8 +80,11 @@ void Bodies::reorder(std::span<const std::uint32_t> order) {
   for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
   std::vector<Clump> kept;
   std::vector<std::uint32_t> spheres;
+  // Clumps lie as their first spheres do, so that those of neighbouring bodies are near in memory too.
+  const auto place = [&](const Clump& clump) { return now[clumps.spheres[clump.first]]; };
+  std::ranges::sort(clumps.clump, {}, place);
   for (Clump clump : clumps.clump) {
-    if (now[clumps.spheres[clump.first]] == gone) continue;
+    if (place(clump) == gone) break;
     const auto first = static_cast<std::uint32_t>(spheres.size());
     for (std::uint32_t k = clump.first; k < clump.last; ++k) {
       spheres.push_back(now[clumps.spheres[k]]);

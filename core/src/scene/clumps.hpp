@@ -19,13 +19,15 @@ struct Clump {
   Vec3 velocity = Vec3::Zero();       ///< m/s, half a step before the centre
   Vec3 momentum = Vec3::Zero();       ///< angular [kg m²/s], half a step before the orientation
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-  Mat3 axes = Mat3::Identity();  ///< the same as a matrix
-  Vec3 spin = Vec3::Zero();      ///< rad/s, mean of the last step
-  Vec3 inertia = Vec3::Ones();   ///< principal [kg m²]
-  double inverse_mass = 1;       ///< 1/kg
-  double radius = 0;             ///< of the enclosing sphere [m]
-  double furthest = 0;           ///< sphere's surface from the centre [m]
-  double volume = 0;             ///< m³
+  Mat3 axes = Mat3::Identity();   ///< the same as a matrix
+  Vec3 spin = Vec3::Zero();       ///< rad/s, mean of the last step
+  Vec3 half_turn = Vec3::Zero();  ///< of the last step: its axis, as long as the tangent of half its angle
+  double chord_rate = 0;          ///< 2 / (time step · (1 + half_turn²)) [1/s]
+  Vec3 inertia = Vec3::Ones();    ///< principal [kg m²]
+  double inverse_mass = 1;        ///< 1/kg
+  double radius = 0;              ///< of the enclosing sphere [m]
+  double furthest = 0;            ///< sphere's surface from the centre [m]
+  double volume = 0;              ///< m³
 
   Vec3 spin_of(const Vec3& of_momentum) const { return axes * (axes.transpose() * of_momentum).cwiseQuotient(inertia); }
 };
