@@ -246,7 +246,7 @@ TEST(Stage, RampsGoInIncrementsOneAfterTheOther) {
 TEST(Stage, BoundaryChangesNothing) {
   Description whole = description("linear-rolling", {{"contact_modulus", 1e6}}, jumble({4, 4, 4}, 1e-3, 0.1, 8));
   whole["time_step"]["value"] = 2e-6;
-  whole["stages"] = {stage("all", steps(60))};
+  whole["stages"] = Description::array({stage("all", steps(60))});
   Description halves = whole;
   halves["stages"] = Description::array();
   for (int i = 0; i < 6; ++i) halves["stages"].push_back(stage(std::to_string(i).c_str(), steps(10)));

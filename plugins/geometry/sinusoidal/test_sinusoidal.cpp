@@ -43,7 +43,7 @@ struct Waves {
   double distance(double x, double z) const {
     const auto to = [&](double u) { return std::hypot(u - x, static_cast<double>(height(u)) - z); };
     const double step = std::min(wavelength, length_a) / 100;
-    double best = 0;
+    double best = length_a;
     for (double u = 0; u < length_a; u += step)
       if (to(u) < to(best)) best = u;
     double low = std::max(best - step, 0.0), high = std::min(best + step, length_a);
