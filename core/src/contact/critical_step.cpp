@@ -235,8 +235,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   }
   // Begins with the body that may ask for most: beside it few others need a closer look.
   std::array<double, chunk_bodies> most{};
-  for (std::size_t i = first; i < last; ++i)
-    most[i - first] = clump_dashpots[i - first] + damped[i - first].at_most();
+  for (std::size_t i = first; i < last; ++i) most[i - first] = clump_dashpots[i - first] + damped[i - first].at_most();
   const auto look = [&](std::size_t i) {
     if (most[i] > own.demand.dashpot)
       own.demand.dashpot = std::max(own.demand.dashpot, clump_dashpots[i] + damped[i].largest());
