@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -24,7 +25,11 @@ struct FakeWorld : World {
   std::vector<Departure> departure;
   Cell box{Vec3::Constant(-std::numeric_limits<double>::infinity()),
            Vec3::Constant(std::numeric_limits<double>::infinity())};
-  Region whole{Vec3::Zero(), Vec3::Ones()};  ///< the specimen
+  Region whole{Vec3::Zero(), Vec3::Ones()};                                   ///< the specimen
+  std::optional<Region> with_grooves;                                         ///< its envelope, if that is another box
+  std::vector<std::function<std::optional<Clearance>(const Vec3&)>> surface;  ///< of walls; those without have none
+  std::vector<double> share;                                                  ///< of bodies' volumes
+  std::vector<Vec3> arm;                                                      ///< of bodies of clumps
 
   /// A sphere of `density`; its index.
   std::uint32_t add(const Vec3& centre, double radius, const Vec3& speed = Vec3::Zero(),
@@ -71,9 +76,16 @@ struct FakeWorld : World {
   std::span<const Row> moments() const override { return moment; }
   std::span<const Contact> contacts() const override { return contact; }
   std::span<const WallView> walls() const override { return wall; }
+  std::optional<Clearance> clearance(std::size_t w, const Vec3& point, double reach) const override {
+    const auto found = w < surface.size() ? surface[w](point) : std::nullopt;
+    return found && found->distance < reach ? found : std::nullopt;
+  }
+  std::span<const Vec3> arms() const override { return arm; }
+  std::span<const double> volume_shares() const override { return share; }
   std::span<const Departure> departures() const override { return departure; }
   const Cell& cell() const override { return box; }
   Region specimen() const override { return whole; }
+  Region envelope() const override { return with_grooves.value_or(whole); }
   Region interior(double margin) const override {
     Region inner = whole;
     for (int k = 0; k < 3; ++k)

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -71,6 +72,12 @@ struct WallView {
   double pressure = 0;  ///< normal force over area, > 0 in compression [Pa]
   Vec3 normal;          ///< mean unit normal, towards the bodies; zero where the geometry has none
   std::uint32_t touches = 0;
+};
+
+/// How far a point is from the surface of a wall.
+struct Clearance {
+  double distance;  ///< m; below 0 where the point is behind a face that is solid behind
+  Vec3 normal;      ///< unit, into the wall: the surface is at the point + distance · normal
 };
 
 /// Of World::clump_of(): a sphere by itself.
@@ -152,10 +159,15 @@ class World {
   /// Mean normal force of all contacts [N], 0 without any; found without a list of them.
   virtual double mean_contact_force() const;
   virtual std::span<const WallView> walls() const = 0;
+  /// Of a point from one of walls(); none where the surface is `reach` [m] or more away. Behind a face that has edges
+  /// the distance may be too small, never too large. Periodic images of the point do not count.
+  virtual std::optional<Clearance> clearance(std::size_t, const Vec3&, double) const { return {}; }
   virtual const Cell& cell() const = 0;
 
   /// The box that the specimen fills, from its walls or the periodic cell; as the description's "specimen" says.
   virtual Region specimen() const = 0;
+  /// The same out to the far sides of its walls' surfaces: with the grooves of walls, which lie behind the specimen.
+  virtual Region envelope() const { return specimen(); }
   /// The part of the specimen that lies `margin` or more off its walls; periodic sides have no margin.
   virtual Region interior(double margin) const = 0;
   virtual double mean_diameter() const = 0;  ///< by number, of a clump that of the enclosing sphere [m]

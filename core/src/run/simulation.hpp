@@ -123,8 +123,10 @@ class Simulation final : public World {
   std::span<const Contact> contacts() const override;
   double mean_contact_force() const override;
   std::span<const WallView> walls() const override;
+  std::optional<Clearance> clearance(std::size_t wall, const Vec3& point, double reach) const override;
   const Cell& cell() const override { return clock_.cell; }
   Region specimen() const override { return region(0); }
+  Region envelope() const override { return region(0, Side::far); }
   Region interior(double margin) const override { return region(margin); }
   double mean_diameter() const override { return mean_diameter_; }
   double solid_density() const override { return solid_density_; }
@@ -186,7 +188,9 @@ class Simulation final : public World {
   double gravitational() const;
   /// What walls do by the forces on them as they moved last [W].
   double power_of_walls() const;
-  Region region(double margin) const;
+  /// Which side of the surfaces of walls that bodies are not inside of the specimen ends at.
+  enum class Side { near, far };
+  Region region(double margin, Side side_of_walls = Side::near) const;
   void tell_walls_of_specimen();
   Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
   [[noreturn]] void fail(const std::string& what, const std::string& advice) const;

@@ -1,4 +1,5 @@
 // The world as probes see it.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -120,13 +121,24 @@ std::span<const WallView> Simulation::walls() const {
   return wall_views_;
 }
 
-Region Simulation::region(double margin) const {
+std::optional<Clearance> Simulation::clearance(std::size_t wall, const Vec3& point, double reach) const {
+  const Sphere sphere{point, reach, 0};
+  std::vector<Touch> touches;
+  walls_.geometry(wall).touch(walls_.pose(wall), {&sphere, 1}, touches);
+  // The sphere is pressed in by its radius less the distance of its centre, by more where that is behind.
+  const auto deepest = std::ranges::max_element(touches, {}, &Touch::overlap);
+  if (deepest == touches.end()) return {};
+  return Clearance{.distance = reach - deepest->overlap, .normal = deepest->normal};
+}
+
+Region Simulation::region(double margin, Side side_of_walls) const {
   Region region{clock_.cell.low, clock_.cell.high};
   const auto wall = [&](const std::string& name) -> std::size_t {
     for (std::size_t w = 0; w < walls_.size(); ++w)
       if (walls_.name(w) == name) return w;
     throw Error("the specimen is bounded by wall \"" + name + "\", which does not exist");
   };
+  const auto outer = [&](std::size_t w) { return side_of_walls == Side::far || walls_.geometry(w).hollow(); };
   for (int k = 0; k < 3; ++k) {
     const auto side = [&](const std::vector<std::string>& names) {
       return names.size() == 3 ? names[static_cast<std::size_t>(k)] : std::string();
@@ -134,12 +146,12 @@ Region Simulation::region(double margin) const {
     if (const std::string name = side(scene_->specimen.low); !name.empty()) {
       const std::size_t w = wall(name);
       const Bounds bounds = walls_.geometry(w).bounds();
-      region.low[k] = (walls_.geometry(w).hollow() ? bounds.low : bounds.high)[k] + walls_.pose(w).shift[k] + margin;
+      region.low[k] = (outer(w) ? bounds.low : bounds.high)[k] + walls_.pose(w).shift[k] + margin;
     }
     if (const std::string name = side(scene_->specimen.high); !name.empty()) {
       const std::size_t w = wall(name);
       const Bounds bounds = walls_.geometry(w).bounds();
-      region.high[k] = (walls_.geometry(w).hollow() ? bounds.high : bounds.low)[k] + walls_.pose(w).shift[k] - margin;
+      region.high[k] = (outer(w) ? bounds.high : bounds.low)[k] + walls_.pose(w).shift[k] - margin;
     }
   }
   return region;
