@@ -6,7 +6,7 @@
 
 #include "../specimen.hpp"
 #include "../wall_names.hpp"
-#include "averaging_cells.hpp"
+#include "cell_averages.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -168,7 +168,7 @@ void PackingProbe::sample(const World& world, std::span<const std::span<double>>
 
 std::vector<Field> PackingProbe::fields(const World& world) {
   const double d50 = world.mean_diameter();
-  const auto cells = averaging_cells(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
+  const auto cells = cell_averages(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
   std::vector<Field> fields{
       {"centre", "m", "centre of an averaging cell", 3, {}},
       {"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}},

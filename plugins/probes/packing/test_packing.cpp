@@ -5,7 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "averaging_cells.hpp"
+#include "../averaging_cells.hpp"
+#include "cell_averages.hpp"
 #include "contracts/probe.hpp"
 
 namespace grit {
@@ -208,7 +209,7 @@ TEST(AveragingCells, KnowTheirStripsForAnySizeAndStep) {
 
 TEST(AveragingCells, AreOneWhereTheSpecimenIsSmall) {
   const FakeWorld world = cubic(3, 1, {1, 2, 3});
-  const auto cells = averaging_cells(world, world.whole, 1, 5, 1);
+  const auto cells = cell_averages(world, world.whole, 1, 5, 1);
   ASSERT_EQ(cells.size(), 1u);
   EXPECT_NEAR(cells[0].void_ratio, 1 / sixth - 1, 1e-10);
   EXPECT_NEAR((cells[0].stress - Mat3(Vec3(1, 2, 3).asDiagonal())).norm(), 0, 1e-10);
@@ -217,7 +218,7 @@ TEST(AveragingCells, AreOneWhereTheSpecimenIsSmall) {
 
 TEST(AveragingCells, KnowTheCubicLattice) {
   const FakeWorld world = cubic(8, 1, {1, 2, 3});
-  const auto cells = averaging_cells(world, world.whole, 1, 5, 1);
+  const auto cells = cell_averages(world, world.whole, 1, 5, 1);
   ASSERT_EQ(cells.size(), 16u);
   for (const auto& cell : cells) {  // whole periods, wherever they begin
     EXPECT_NEAR(cell.void_ratio, 1 / sixth - 1, 1e-10);
@@ -234,7 +235,7 @@ TEST_P(AveragingCellsOf, RandomGrainsAgreeWithAveragesOfEachBox) {
   std::vector<double> touching(world.position.size());
   for (const auto& contact : world.contact)
     if (!contact.with_wall) ++touching[contact.a], ++touching[contact.b];
-  const auto cells = averaging_cells(world, world.whole, depth, size, step);
+  const auto cells = cell_averages(world, world.whole, depth, size, step);
   ASSERT_GT(cells.size(), 3u);
   for (const auto& cell : cells) {
     EXPECT_NEAR(cell.void_ratio, void_ratio(world, cell.region), 1e-9);

@@ -1,0 +1,305 @@
+// Averages over cells that overlap. The edges of all cells cut a region into parts; each body and each contact is
+// shared out among the few parts that it meets, once, and a cell sums up its parts.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/probe.hpp"
+#include "specimen.hpp"
+
+namespace grit {
+
+/// Overlapping cells along one axis, and the strips between any two neighbouring edges of cells.
+class CellAxis {
+ public:
+  /// Cells of `size`, each moved by `step` from the one before, as many as fit between `low` and `high`, in the middle;
+  /// one cell from `low` to `high` where they lie nearer than `size`. All in m.
+  CellAxis(double low, double high, double size, double step) {
+    constexpr double slack = 1e-9;  // of a step: what counts as the same edge
+    const double length = high - low;
+    size = std::min(size, length), step = std::min(step, length);
+    const auto more = static_cast<std::size_t>(std::floor((length - size) / step + slack));
+    const double start = low + 0.5 * (length - size - static_cast<double>(more) * step);
+    for (std::size_t i = 0; i <= more; ++i) {
+      const double from = start + static_cast<double>(i) * step;
+      cells_.push_back({from, from + size, 0, 0});
+      edges_.push_back(from), edges_.push_back(from + size);
+    }
+    std::sort(edges_.begin(), edges_.end());
+    const auto same = [&](double a, double b) { return b - a < slack * step; };
+    edges_.erase(std::unique(edges_.begin(), edges_.end(), same), edges_.end());
+    const auto edge = [&](double x) {
+      return static_cast<std::size_t>(std::lower_bound(edges_.begin(), edges_.end(), x - slack * step) -
+                                      edges_.begin());
+    };
+    for (auto& cell : cells_) cell.begin = edge(cell.low), cell.end = edge(cell.high);
+    own_ = more == 0 ? size : std::min(size, step);
+  }
+
+  struct Cell {
+    double low, high;        ///< m
+    std::size_t begin, end;  ///< its strips
+  };
+  const std::vector<Cell>& cells() const { return cells_; }
+  std::size_t strips() const { return edges_.size() - 1; }
+  /// Edges of the strips [m], ascending; strip i lies between edge i and edge i + 1.
+  const std::vector<double>& edges() const { return edges_; }
+  /// What a cell does not share with the next one, all of it where there is no other [m].
+  double own() const { return own_; }
+  /// The strip that holds x, low edge included; the nearest one for x outside.
+  std::size_t strip(double x) const {
+    const auto above = std::upper_bound(edges_.begin(), edges_.end(), x) - edges_.begin();
+    return static_cast<std::size_t>(
+        std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(strips()) - 1));
+  }
+
+ private:
+  std::vector<Cell> cells_;
+  std::vector<double> edges_;
+  double own_ = 0;
+};
+
+/// Cells of a region along all three axes, numbered with z running fastest, and the parts that their edges cut the
+/// region into, numbered alike.
+class AveragingCells {
+ public:
+  static constexpr double most_parts = 8e6;
+
+  /// Cells of `size` moved by `step` [m, along x, y, z], as long as the region where they are infinite. None where the
+  /// region has no volume or a size is not above 0 (the mean diameter of no bodies), or where there would be more than
+  /// `most_parts`. Periodic images count as `domain` has them.
+  AveragingCells(const Cell& domain, const Region& region, const Vec3& size, const Vec3& step) : domain_(domain) {
+    if (!(region.volume() > 0) || !std::isfinite(region.volume())) return;
+    if (!(size.minCoeff() > 0 && step.minCoeff() > 0)) return;
+    double parts = 1;  // at most: each cell has two edges
+    for (int k = 0; k < 3; ++k) {
+      const double length = region.high[k] - region.low[k];
+      parts *= 1 + 2 * std::max(0.0, (length - std::min(size[k], length)) / step[k]);
+    }
+    if (!(parts <= most_parts)) return;
+    axes_.reserve(3);
+    for (int k = 0; k < 3; ++k) {
+      axes_.emplace_back(region.low[k], region.high[k], size[k], step[k]);
+      inner_.low[k] = axes_[axis(k)].edges().front(), inner_.high[k] = axes_[axis(k)].edges().back();
+    }
+  }
+
+  std::size_t parts() const { return axes_.empty() ? 0 : strips(0) * strips(1) * strips(2); }
+  std::size_t cells() const {
+    return axes_.empty() ? 0 : axes_[0].cells().size() * axes_[1].cells().size() * axes_[2].cells().size();
+  }
+  const CellAxis& along(int k) const { return axes_[axis(k)]; }
+  std::size_t part(std::size_t i, std::size_t j, std::size_t k) const { return (i * strips(1) + j) * strips(2) + k; }
+  /// Where cell n is.
+  Region cell(std::size_t n) const {
+    Region box;
+    for (int k = 2; k >= 0; --k) {
+      const auto& cells = axes_[axis(k)].cells();
+      box.low[k] = cells[n % cells.size()].low, box.high[k] = cells[n % cells.size()].high;
+      n /= cells.size();
+    }
+    return box;
+  }
+  /// What a cell does not share with the next ones [m]: what to fill on a map.
+  Vec3 own() const { return {axes_[0].own(), axes_[1].own(), axes_[2].own()}; }
+
+  /// Calls visit(part, volume) for each part that a sphere may reach into, with the volume [m³] that lies there.
+  template <class Visit>
+  void share_out_sphere(const Vec3& centre, double radius, const Visit& visit) const {
+    const Vec3 reach = Vec3::Constant(radius);
+    each_image(centre, -reach, reach, [&](const Vec3& place) {
+      std::array<std::size_t, 3> first, last;
+      for (int k = 0; k < 3; ++k)
+        first[axis(k)] = along(k).strip(place[k] - radius), last[axis(k)] = along(k).strip(place[k] + radius);
+      for (std::size_t i = first[0]; i <= last[0]; ++i)
+        for (std::size_t j = first[1]; j <= last[1]; ++j)
+          for (std::size_t k = first[2]; k <= last[2]; ++k)
+            visit(part(i, j, k), sphere_box_volume(place, radius, corner(i, j, k), corner(i + 1, j + 1, k + 1)));
+    });
+  }
+
+  /// Calls visit(part, from, to) for each piece of a branch that lies in one part, from 0 at its start to 1 at its end.
+  template <class Visit>
+  void share_out_branch(const Branch& branch, const Visit& visit) const {
+    const Vec3 zero = Vec3::Zero();
+    std::vector<double> cuts;
+    each_image(branch.start, branch.way.cwiseMin(zero), branch.way.cwiseMax(zero), [&](const Vec3& start) {
+      double from = 0, to = 1;
+      for (int k = 0; k < 3; ++k) {
+        if (branch.way[k] == 0) {
+          if (!(start[k] >= inner_.low[k] && start[k] < inner_.high[k])) return;
+          continue;
+        }
+        const double low = (inner_.low[k] - start[k]) / branch.way[k],
+                     high = (inner_.high[k] - start[k]) / branch.way[k];
+        from = std::max(from, std::min(low, high)), to = std::min(to, std::max(low, high));
+      }
+      if (!(to > from)) return;
+      cuts = {from, to};
+      for (int k = 0; k < 3; ++k) cut(along(k), start[k], branch.way[k], from, to, cuts);
+      std::sort(cuts.begin(), cuts.end());
+      for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+        visit(part_at(start + 0.5 * (cuts[i] + cuts[i + 1]) * branch.way), cuts[i], cuts[i + 1]);
+    });
+  }
+
+  /// Calls visit(part) for the part that a point lies in, if it lies in any.
+  template <class Visit>
+  void place(const Vec3& point, const Visit& visit) const {
+    const Vec3 zero = Vec3::Zero();
+    each_image(point, zero, zero, [&](const Vec3& image) {
+      if ((image.array() >= inner_.low.array()).all() && (image.array() < inner_.high.array()).all())
+        visit(part_at(image));
+    });
+  }
+
+  /// The sum of each cell's parts. Sums are zero when they are made, and can be added up by +=.
+  template <class Sums>
+  std::vector<Sums> sum_up(const std::vector<Sums>& of_parts) const {
+    // One axis after the other costs a cell the sum of its strips along them, not their product.
+    std::vector<Sums> sums = of_parts;
+    std::size_t slower = 1, faster = of_parts.size();
+    for (const CellAxis& axis : axes_) {
+      faster /= axis.strips();
+      std::vector<Sums> next(slower * axis.cells().size() * faster);
+      for (std::size_t s = 0; s < slower; ++s)
+        for (std::size_t c = 0; c < axis.cells().size(); ++c)
+          for (std::size_t i = axis.cells()[c].begin; i < axis.cells()[c].end; ++i)
+            for (std::size_t f = 0; f < faster; ++f)
+              next[(s * axis.cells().size() + c) * faster + f] += sums[(s * axis.strips() + i) * faster + f];
+      sums = std::move(next);
+      slower *= axis.cells().size();
+    }
+    return sums;
+  }
+
+ private:
+  static std::size_t axis(int k) { return static_cast<std::size_t>(k); }
+  std::size_t strips(int k) const { return along(k).strips(); }
+  Vec3 corner(std::size_t i, std::size_t j, std::size_t k) const {
+    return {axes_[0].edges()[i], axes_[1].edges()[j], axes_[2].edges()[k]};
+  }
+  std::size_t part_at(const Vec3& point) const {
+    return part(along(0).strip(point[0]), along(1).strip(point[1]), along(2).strip(point[2]));
+  }
+
+  /// Calls visit(place) for each periodic image of `place` for which place + low … place + high may reach into the
+  /// cells. What is not finite, in a run that has failed, is nowhere.
+  template <class Visit>
+  void each_image(const Vec3& place, const Vec3& low, const Vec3& high, const Visit& visit) const {
+    if (axes_.empty() || !(place + low).allFinite() || !(place + high).allFinite()) return;
+    std::array<int, 3> least, most;
+    Vec3 period = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const double before = inner_.low[k] - place[k] - high[k], after = inner_.high[k] - place[k] - low[k];
+      if (domain_.periodic[axis(k)]) {
+        period[k] = domain_.high[k] - domain_.low[k];
+        least[axis(k)] = static_cast<int>(std::ceil(before / period[k])),
+        most[axis(k)] = static_cast<int>(std::floor(after / period[k]));
+      } else {
+        least[axis(k)] = 0, most[axis(k)] = before <= 0 && after >= 0 ? 0 : -1;
+      }
+    }
+    for (int i = least[0]; i <= most[0]; ++i)
+      for (int j = least[1]; j <= most[1]; ++j)
+        for (int k = least[2]; k <= most[2]; ++k) visit(place + Vec3(i * period[0], j * period[1], k * period[2]));
+  }
+
+  /// Notes where between `from` and `to` a branch crosses edges of strips.
+  static void cut(const CellAxis& axis, double start, double way, double from, double to, std::vector<double>& cuts) {
+    if (way == 0) return;
+    const double one = start + from * way, other = start + to * way, high = std::max(one, other);
+    for (std::size_t edge = axis.strip(std::min(one, other)) + 1; edge < axis.strips() && axis.edges()[edge] < high;
+         ++edge)
+      cuts.push_back(std::clamp((axis.edges()[edge] - start) / way, from, to));
+  }
+
+  Cell domain_;
+  Region inner_{Vec3::Zero(), Vec3::Zero()};  // all cells; they may leave a rim of the region free
+  std::vector<CellAxis> axes_;                // three, or none
+};
+
+/// Which cells a probe averages over, and the slices of its profile.
+class Averaging {
+ public:
+  std::optional<Vec3> region_low, region_high;  ///< m
+  double cell_size = 5, cell_step = 1;          ///< mean diameters
+  std::string depth_axis;
+  std::string along = "z";
+  std::int64_t slices = 20;
+
+  /// `sides` says where the region ends that is not given.
+  void declare(Parameters& p, const std::string& sides) {
+    p.add("region_low", region_low).unit("m").doc("lower corner of the region that is looked at; left out: " + sides);
+    p.add("region_high", region_high).unit("m").doc("its upper corner; left out: " + sides);
+    p.add("cell_size", cell_size).at_least(0.1).doc("side of an averaging cell over the mean diameter");
+    p.add("cell_step", cell_step).at_least(0.1).doc("distance between neighbouring cells over the mean diameter");
+    p.add("depth_axis", depth_axis)
+        .one_of({"", "x", "y", "z"})
+        .doc("axis along which a cell is as deep as the region; empty: cells are cubes");
+    p.add("along", along).one_of({"x", "y", "z"}).doc("axis of the profile");
+    p.add("slices", slices).at_least(1).at_most(10000).doc("of the profile, of equal thickness, across the region");
+    p.check(
+        [this](const Complain& complain) {
+          if (!region_low || !region_high) return;
+          for (int k = 0; k < 3; ++k)
+            if (!((*region_low)[k] < (*region_high)[k]))
+              complain("region_high", std::string() + "xyz"[k] + " = " + std::to_string((*region_high)[k]) + " m",
+                       "above that of region_low, " + std::to_string((*region_low)[k]) + " m");
+        },
+        {"region_low", "region_high"});
+  }
+
+  /// `box` where the description gives no corner.
+  Region region(Region box) const {
+    box.low = region_low.value_or(box.low), box.high = region_high.value_or(box.high);
+    return box;
+  }
+  AveragingCells cells(const World& world, const Region& box) const {
+    const double diameter = world.mean_diameter();
+    Vec3 size = Vec3::Constant(cell_size * diameter);
+    // Without bodies there is no size: not along the depth either.
+    if (!depth_axis.empty() && diameter > 0) size[depth_axis[0] - 'x'] = std::numeric_limits<double>::infinity();
+    return {world.cell(), box, size, Vec3::Constant(cell_step * diameter)};
+  }
+  AveragingCells profile(const World& world, const Region& box) const {
+    Vec3 size = Vec3::Constant(std::numeric_limits<double>::infinity());
+    size[profile_axis()] = (box.high - box.low)[profile_axis()] / static_cast<double>(slices);
+    return {world.cell(), box, size, size};
+  }
+  /// The middles of slices [m].
+  void fill_places(const Region& box, std::span<double> places) const {
+    const double low = box.low[profile_axis()], height = box.high[profile_axis()] - low;
+    for (std::size_t s = 0; s < places.size(); ++s)
+      places[s] = low + (static_cast<double>(s) + 0.5) / static_cast<double>(slices) * height;
+  }
+  Channel place_channel() const {
+    return {"place", "m", "middle of each slice of the profile, along " + along, {static_cast<std::size_t>(slices)}};
+  }
+
+ private:
+  int profile_axis() const { return along[0] - 'x'; }
+};
+
+/// Where cells are, as a map is drawn of them: the first two fields of a probe's frames.
+inline std::vector<Field> map_of(const AveragingCells& cells) {
+  std::vector<Field> fields{
+      {"centre", "m", "of each averaging cell", 3, {}},
+      {"size", "m", "what a cell does not share with the next one: what to fill on a map", 3, {}}};
+  for (std::size_t n = 0; n < cells.cells(); ++n) {
+    const Region box = cells.cell(n);
+    const Vec3 centre = 0.5 * (box.low + box.high), own = cells.own();
+    fields[0].values.insert(fields[0].values.end(), centre.begin(), centre.end());
+    fields[1].values.insert(fields[1].values.end(), own.begin(), own.end());
+  }
+  return fields;
+}
+
+}  // namespace grit
