@@ -1,0 +1,147 @@
+#include "stress.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "grit/plugin.hpp"
+
+namespace grit {
+namespace {
+
+const std::string angle_doc =
+    "mobilised: asin((s1 - s3) / (s1 + s3)) of the largest and least principal stress; NaN where one is below 0 or "
+    "both "
+    "are 0";
+
+/// What contacts transmit in a part of the region, or a cell.
+struct Transmitted {
+  Mat3 load = Mat3::Zero();    ///< sum of force and branch [N m]
+  Mat3 couple = Mat3::Zero();  ///< sum of moment and branch [N m²]
+
+  Transmitted& operator+=(const Transmitted& other) {
+    load += other.load, couple += other.couple;
+    return *this;
+  }
+};
+
+/// Of each cell, in one pass over the contacts.
+std::vector<Transmitted> transmitted(const World& world, const AveragingCells& cells) {
+  std::vector<Transmitted> parts(cells.parts());
+  const auto arms = world.arms();
+  for (const Contact& contact : world.contacts()) {
+    const Branch branch = branch_of(world, contact);
+    Vec3 moment_at_end = contact.moment;
+    if (!arms.empty() && !contact.with_wall) moment_at_end += arms[contact.b].cross(contact.force);
+    const Vec3 lever = branch.way.cross(contact.force);
+    cells.share_out_branch(branch, [&](std::size_t part, double from, double to) {
+      // The moment is linear along the branch: its mean over a piece is that of the piece's middle.
+      const Vec3 moment = moment_at_end + (1 - 0.5 * (from + to)) * lever;
+      parts[part].load += (to - from) * contact.force * branch.way.transpose();
+      parts[part].couple += (to - from) * moment * branch.way.transpose();
+    });
+  }
+  return cells.sum_up(parts);
+}
+
+/// Of the symmetric part of a stress.
+struct Invariants {
+  double mean, deviatoric, friction_angle;
+};
+Invariants invariants(const Mat3& stress) {
+  const Mat3 symmetric = 0.5 * (stress + stress.transpose());
+  const double mean = symmetric.trace() / 3;
+  const Mat3 deviator = symmetric - mean * Mat3::Identity();
+  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  const double least = principal[0], most = principal[2];
+  // Where a stress vanishes rounding may leave it a little below 0.
+  const bool pressed = most > 0 && least >= -1e-12 * most;
+  return {.mean = mean,
+          .deviatoric = std::sqrt(1.5) * deviator.norm(),
+          .friction_angle = pressed ? std::asin(std::min(1.0, (most - least) / (most + least))) * 180 / std::numbers::pi
+                                    : std::numeric_limits<double>::quiet_NaN()};
+}
+
+void copy(const Mat3& tensor, double* to) {
+  for (int i = 0; i < 9; ++i) to[i] = tensor(i / 3, i % 3);
+}
+
+}  // namespace
+
+void Stress::declare(Parameters& p) { averaging.declare(p, "the specimen's"); }
+
+std::vector<Channel> Stress::channels() const {
+  const auto n = static_cast<std::size_t>(averaging.slices);
+  const std::string unknown = "; NaN where the region has no volume";
+  const std::string tensor = "Love-Weber, row by row (force, branch), positive in compression" + unknown,
+                    couple = "row by row (moment, branch), of what the side before exerts on the side behind" + unknown;
+  return {{"stress", "Pa", "of the region: " + tensor, {3, 3}},
+          {"couple_stress", "N/m", "of the region: " + couple, {3, 3}},
+          {"mean_stress", "Pa", "of the region, a third of the trace, positive in compression" + unknown, {}},
+          {"deviatoric_stress", "Pa", "of the region, q = sqrt(3/2 s:s), never negative" + unknown, {}},
+          {"friction_angle", "degree", "of the region, " + angle_doc, {}},
+          averaging.place_channel(),
+          {"stress_profile", "Pa", "of each slice: " + tensor, {n, 3, 3}},
+          {"couple_stress_profile", "N/m", "of each slice: " + couple, {n, 3, 3}},
+          {"mean_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}},
+          {"deviatoric_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}},
+          {"friction_angle_profile", "degree", "of each slice, " + angle_doc, {n}}};
+}
+
+void Stress::sample(const World& world, std::span<const std::span<double>> values) {
+  for (const auto& channel : values) std::ranges::fill(channel, std::numeric_limits<double>::quiet_NaN());
+  const Region box = closed_box(averaging.region(world.specimen()), world);
+  averaging.fill_places(box, values[5]);
+  const AveragingCells slices = averaging.profile(world, box);
+  if (slices.cells() == 0) return;
+  Transmitted whole;
+  const auto each = transmitted(world, slices);
+  const double volume = box.volume(), slice_volume = volume / static_cast<double>(each.size());
+  for (std::size_t s = 0; s < each.size(); ++s) {
+    const Mat3 stress = each[s].load / slice_volume;
+    const Invariants of = invariants(stress);
+    copy(stress, &values[6][9 * s]), copy(each[s].couple / slice_volume, &values[7][9 * s]);
+    values[8][s] = of.mean, values[9][s] = of.deviatoric, values[10][s] = of.friction_angle;
+    whole += each[s];
+  }
+  const Invariants of = invariants(whole.load / volume);
+  copy(whole.load / volume, values[0].data()), copy(whole.couple / volume, values[1].data());
+  values[2][0] = of.mean, values[3][0] = of.deviatoric, values[4][0] = of.friction_angle;
+}
+
+std::vector<Field> Stress::fields(const World& world) {
+  const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.specimen()), world));
+  std::vector<Field> fields = map_of(cells);
+  Field stress{"stress", "Pa", "Love-Weber, row by row (force, branch), positive in compression", 9, {}};
+  Field couple{
+      "couple_stress", "N/m", "row by row (moment, branch), of what the side before exerts on the side behind", 9, {}};
+  Field mean{"mean_stress", "Pa", "a third of the trace, positive in compression", 1, {}};
+  Field deviatoric{"deviatoric_stress", "Pa", "q = sqrt(3/2 s:s), never negative", 1, {}};
+  Field angle{"friction_angle", "degree", angle_doc, 1, {}};
+  const auto each = transmitted(world, cells);
+  for (std::size_t n = 0; n < each.size(); ++n) {
+    const double volume = cells.cell(n).volume();
+    const Mat3 of_cell = each[n].load / volume;
+    const Invariants of = invariants(of_cell);
+    stress.values.resize(9 * n + 9), copy(of_cell, &stress.values[9 * n]);
+    couple.values.resize(9 * n + 9), copy(each[n].couple / volume, &couple.values[9 * n]);
+    mean.values.push_back(of.mean), deviatoric.values.push_back(of.deviatoric);
+    angle.values.push_back(of.friction_angle);
+  }
+  for (Field* field : {&stress, &couple, &mean, &deviatoric, &angle}) fields.push_back(std::move(*field));
+  return fields;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "probe",
+                                     .name = "stress",
+                                     .version = "1.0.0",
+                                     .doc = "stress and couple stress of averaging cells, and their profile",
+                                     .make_probe = []() -> grit::Probe* { return new grit::Stress; }};
+  return &info;
+}
