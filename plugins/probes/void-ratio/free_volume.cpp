@@ -1,0 +1,216 @@
+// Boxes are halved, along edges of cells first, until each is no longer cut by a wall or the wall's tangent plane cuts
+// it as the planes of its halves do.
+#include "free_volume.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grit {
+
+namespace {
+
+/// A wall that may cut a box.
+struct Near {
+  std::size_t wall;
+  double reach;  ///< a sphere of this radius about the box's middle touches the wall [m]
+  Clearance clearance;
+};
+
+class Carver {
+ public:
+  Carver(const World& world, const AveragingCells& cells, double error)
+      : world_(world), cells_(cells), error_(error), free_(cells.parts()) {}
+
+  std::vector<double> carve() {
+    if (free_.empty()) return {};
+    Parts all{{0, 0, 0}, {}};
+    for (int k = 0; k < 3; ++k) all.end[index(k)] = cells_.along(k).strips();
+    const Box box = box_of(all);
+    std::vector<Near> walls;
+    for (std::size_t w = 0; w < world_.walls().size(); ++w) {
+      // Whatever has its surface outside of this is no wall of the region.
+      const double reach = 2 * box.half_diagonal();
+      if (const auto found = world_.clearance(w, box.middle, reach)) walls.push_back({w, reach, *found});
+    }
+    split(all, cut_by(box, walls));
+    return std::move(free_);
+  }
+
+ private:
+  struct Box {
+    Vec3 middle, size;
+    double half_diagonal() const { return 0.5 * size.norm(); }
+    double volume() const { return size.prod(); }
+    /// Halves of all sides that are more than half as long as the longest, two to eight boxes.
+    std::vector<Box> halves() const {
+      std::vector<Box> found{*this};
+      for (int k = 0; k < 3; ++k) {
+        if (size[k] <= 0.5 * size.maxCoeff()) continue;
+        const std::size_t before = found.size();
+        for (std::size_t i = 0; i < before; ++i) {
+          Box lower = found[i];
+          lower.size[k] *= 0.5;
+          found.push_back(lower);
+          found[i].size[k] *= 0.5;
+          found[i].middle[k] += 0.25 * size[k], found.back().middle[k] -= 0.25 * size[k];
+        }
+      }
+      return found;
+    }
+  };
+  struct Parts {
+    std::array<std::size_t, 3> begin, end;
+  };
+  /// The walls that may cut a box, unless one has all of it behind.
+  struct Cut {
+    bool solid = false;
+    std::vector<Near> walls;
+  };
+  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
+
+  Box box_of(const Parts& parts) const {
+    Vec3 low, high;
+    for (int k = 0; k < 3; ++k) {
+      low[k] = cells_.along(k).edges()[parts.begin[index(k)]];
+      high[k] = cells_.along(k).edges()[parts.end[index(k)]];
+    }
+    return {0.5 * (low + high), high - low};
+  }
+
+  /// Of walls that are known from the middle of a box, those that may cut it.
+  static Cut cut_by(const Box& box, const std::vector<Near>& walls) {
+    Cut cut;
+    const double reach = box.half_diagonal();
+    for (const Near& near : walls) {
+      if (near.clearance.distance >= reach) continue;
+      if (near.clearance.distance <= -reach) return {true, {}};
+      cut.walls.push_back(near);
+    }
+    return cut;
+  }
+
+  /// The walls of a box as seen from the middle of one inside of it.
+  Cut cut_by(const Box& inner, const Box& box, const std::vector<Near>& walls) const {
+    constexpr double rounding = 1e-9;
+    const double moved = (inner.middle - box.middle).norm();
+    std::vector<Near> seen;
+    for (const Near& near : walls) {
+      // The shorter the reach the cheaper the answer; behind a face its distance may be longer than it seems.
+      const double far = (1 + rounding) * (near.reach + moved),
+                   close = (1 + rounding) * (std::abs(near.clearance.distance) + moved);
+      double reach = std::min(close, far);
+      auto found = world_.clearance(near.wall, inner.middle, reach);
+      if (!found) found = world_.clearance(near.wall, inner.middle, reach = far);
+      if (found) seen.push_back({near.wall, reach, *found});
+    }
+    return cut_by(inner, seen);
+  }
+
+  void split(const Parts& parts, const Cut& cut) {
+    if (cut.solid) return;
+    const Box box = box_of(parts);
+    int longest = -1;
+    for (int k = 0; k < 3; ++k)
+      if (parts.end[index(k)] - parts.begin[index(k)] > 1 && (longest < 0 || box.size[k] > box.size[longest]))
+        longest = k;
+    if (cut.walls.empty()) {
+      for_each(parts, [&](std::size_t part, const Box& own) { free_[part] = own.volume(); });
+    } else if (longest < 0) {
+      for_each(parts, [&](std::size_t part, const Box&) { free_[part] = box.volume() * (1 - solid_share(box, cut)); });
+    } else {
+      Parts lower = parts, upper = parts;
+      lower.end[index(longest)] = upper.begin[index(longest)] =
+          parts.begin[index(longest)] + (parts.end[index(longest)] - parts.begin[index(longest)]) / 2;
+      split(lower, cut_by(box_of(lower), box, cut.walls));
+      split(upper, cut_by(box_of(upper), box, cut.walls));
+    }
+  }
+
+  template <class Visit>
+  void for_each(const Parts& parts, const Visit& visit) const {
+    for (std::size_t i = parts.begin[0]; i < parts.end[0]; ++i)
+      for (std::size_t j = parts.begin[1]; j < parts.end[1]; ++j)
+        for (std::size_t k = parts.begin[2]; k < parts.end[2]; ++k)
+          visit(cells_.part(i, j, k), box_of({{i, j, k}, {i + 1, j + 1, k + 1}}));
+  }
+
+  /// The share of a box that lies behind walls.
+  double solid_share(const Box& box, const Cut& cut) const {
+    if (cut.solid) return 1;
+    if (cut.walls.empty()) return 0;
+    const std::vector<Box> halves = box.halves();
+    std::vector<Cut> cuts;
+    double by_halves = 0;
+    for (const Box& half : halves) {
+      cuts.push_back(cut_by(half, box, cut.walls));
+      by_halves += by_planes(half, cuts.back());
+    }
+    const auto count = static_cast<double>(halves.size());
+    by_halves /= count;
+    const double side = box.size.maxCoeff();
+    const bool agree = std::abs(by_halves - by_planes(box, cut)) * side <= error_;
+    if ((agree && side <= coarsest * error_) || side <= finest * error_) return by_halves;
+    double sum = 0;
+    for (std::size_t i = 0; i < halves.size(); ++i) sum += solid_share(halves[i], cuts[i]);
+    return sum / count;
+  }
+
+  /// The same as the planes have it that touch the walls where these are closest to the middle. Of several walls each
+  /// is taken to leave alike of what others leave, which is so where they meet at right angles along the box.
+  double by_planes(const Box& box, const Cut& cut) const {
+    if (cut.solid) return 1;
+    double open = 1;
+    for (const Near& near : cut.walls) {
+      const auto& [distance, normal] = near.clearance;
+      if (distance >= 0 && !solid_beyond(box, near)) continue;
+      open *= share_below(box.size, normal, distance);
+    }
+    return 1 - open;
+  }
+
+  /// Whether there is solid on the far side of a surface, which there is not of a sheet that has two sides, or beyond
+  /// its rim.
+  bool solid_beyond(const Box& box, const Near& near) const {
+    const auto& [distance, normal] = near.clearance;
+    const double depth = 0.02 * box.half_diagonal();
+    const auto beyond = world_.clearance(near.wall, box.middle + (distance + depth) * normal, 2 * depth);
+    return beyond && beyond->distance < 0;
+  }
+
+  static constexpr double coarsest = 250, finest = 32;  // sides of boxes, over the error
+
+  const World& world_;
+  const AveragingCells& cells_;
+  double error_;
+  std::vector<double> free_;
+};
+
+}  // namespace
+
+// Scardovelli & Zaleski (2000), J. Comput. Phys. 164, 228, doi:10.1006/jcph.2000.6567.
+double share_below(const Vec3& size, const Vec3& normal, double distance) {
+  constexpr double flat = 1e-5;  // below it the closed form would cancel; leaving it out costs its square
+  Vec3 m = normal.cwiseAbs().cwiseProduct(size);
+  m = (m.array() < flat * m.sum()).select(0, m);
+  const double from_corner = 0.5 + distance / m.sum();
+  m /= m.sum();
+  std::sort(m.begin(), m.end());
+  if (from_corner <= 0) return 0;
+  if (from_corner >= 1) return 1;
+  const double a = std::min(from_corner, 1 - from_corner), low = m[0], middle = m[1], high = m[2], two = low + middle;
+  const auto past = [a](double edge) { return edge * edge * (edge - 3 * a); };
+  double share;
+  if (a < low) share = a * a * a / (6 * low * middle * high);
+  else if (a < middle) share = a * (a - low) / (2 * middle * high) + low * low / (6 * middle * high);
+  else if (a >= two && two <= high) share = (a - 0.5 * two) / high;
+  else if (a < high) share = (a * a * (3 * two - a) + past(low) + past(middle)) / (6 * low * middle * high);
+  else share = (a * a * (3 - 2 * a) + past(low) + past(middle) + past(high)) / (6 * low * middle * high);
+  return from_corner < 0.5 ? share : 1 - share;
+}
+
+std::vector<double> free_volumes(const World& world, const AveragingCells& cells, double error) {
+  return Carver(world, cells, error).carve();
+}
+
+}  // namespace grit

@@ -1,0 +1,291 @@
+#include "void-ratio.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+#include <random>
+
+#include "contracts/probe.hpp"
+#include "free_volume.hpp"
+
+namespace grit {
+namespace {
+
+constexpr double sixth = std::numbers::pi / 6;
+
+std::vector<double> field_values(VoidRatio& probe, const World& world, const std::string& name) {
+  for (const Field& field : probe.fields(world))
+    if (field.name == name) return field.values;
+  throw Error("there is no field " + name);
+}
+
+/// n³ grains of diameter 1 that just touch, in a box of n³.
+FakeWorld cubic(int n) {
+  FakeWorld world;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k) world.add(Vec3(i, j, k).array() + 0.5, 0.5);
+  world.whole = {Vec3::Zero(), Vec3::Constant(n)};
+  return world;
+}
+
+void add_wall(FakeWorld& world, std::function<std::optional<Clearance>(const Vec3&)> surface) {
+  world.wall.push_back(still_wall("wall_" + std::to_string(world.wall.size())));
+  world.surface.push_back(std::move(surface));
+}
+/// Solid behind a plane, whose normal looks at the bodies.
+void add_plane(FakeWorld& world, const Vec3& point, const Vec3& normal) {
+  const Vec3 unit = normal.normalized();
+  add_wall(world, [=](const Vec3& x) { return Clearance{unit.dot(x - point), -unit}; });
+}
+
+/// What a segment a … b in the xz plane is away.
+struct Segment {
+  double distance;
+  Vec3 way;  // to the closest point
+};
+Segment to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
+  const Vec3 from(x.x(), 0, x.z()), along = b - a;
+  const Vec3 way = a + std::clamp((from - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along - from;
+  return {way.norm(), way};
+}
+/// Teeth of this spacing whose tips lie at z = 0 and whose valleys lie at z = −depth, tips at whole multiples of it.
+void add_teeth(FakeWorld& world, double spacing, double depth) {
+  add_wall(world, [=](const Vec3& x) {
+    const double tip = spacing * std::round(x.x() / spacing);
+    Segment best{1e300, Vec3::Zero()};
+    for (const double way : {-2.0, -1.0, 0.0, 1.0, 2.0}) {
+      const Vec3 top(tip + way * spacing, 0, 0), left(top.x() - spacing / 2, 0, -depth),
+          right(top.x() + spacing / 2, 0, -depth);
+      for (const Segment& one : {to_segment(x, left, top), to_segment(x, top, right)})
+        if (one.distance < best.distance) best = one;
+    }
+    const double surface = -2 * depth / spacing * std::abs(x.x() - tip);
+    const bool behind = x.z() < surface;
+    const Vec3 into = best.distance > 0 ? Vec3(best.way / best.distance) : Vec3(0, 0, -1);
+    return Clearance{behind ? -best.distance : best.distance, behind ? Vec3(-into) : into};
+  });
+}
+/// Solid outside of an upright cylinder about (x, y).
+void add_pipe(FakeWorld& world, double x, double y, double radius) {
+  add_wall(world, [=](const Vec3& point) {
+    const Vec3 out(point.x() - x, point.y() - y, 0);
+    const double off_axis = out.norm();
+    return Clearance{radius - off_axis, off_axis > 0 ? Vec3(out / off_axis) : Vec3(1, 0, 0)};
+  });
+}
+
+/// Summed up over cells, so many along each axis.
+double free_volume(const FakeWorld& world, const Region& box, const Vec3& cells, double error) {
+  double sum = 0;
+  const Vec3 size = (box.high - box.low).cwiseQuotient(cells);
+  for (const double part : free_volumes(world, AveragingCells(world.box, box, size, size), error)) sum += part;
+  return sum;
+}
+
+TEST(ShareBelow, IsInclusionAndExclusionOfCorners) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> sign(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 normal = Vec3(sign(random), sign(random), sign(random)),
+               size = Vec3(sign(random), sign(random), sign(random)).cwiseAbs() + Vec3::Constant(0.1);
+    const Vec3 m = normal.cwiseAbs().cwiseProduct(size);
+    if (m.minCoeff() < 0.02) continue;
+    const double distance = 0.6 * m.sum() * sign(random), from_corner = 0.5 * m.sum() + distance;
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 one(corner & 1 ? 1 : 0, corner & 2 ? 1 : 0, corner & 4 ? 1 : 0);
+      const double over = std::max(0.0, from_corner - m.dot(one));
+      sum += (static_cast<int>(one.sum()) % 2 == 0 ? 1 : -1) * over * over * over;
+    }
+    EXPECT_NEAR(share_below(size, normal, distance), sum / (6 * m.prod()), 1e-9);
+  }
+}
+
+TEST(ShareBelow, IsExactAlongTheAxes) {
+  EXPECT_DOUBLE_EQ(share_below({2, 3, 4}, {0, 0, 1}, 1), 0.75);
+  EXPECT_DOUBLE_EQ(share_below({2, 3, 4}, {0, 0, -2}, 1), 0.625);
+  EXPECT_DOUBLE_EQ(share_below({2, 2, 4}, {1, 1, 0}, 0), 0.5);
+  EXPECT_DOUBLE_EQ(share_below({2, 2, 4}, {1, 1, 0}, -1), 0.125);
+  EXPECT_EQ(share_below({1, 1, 1}, {1, 2, 3}, 3), 1);
+  EXPECT_EQ(share_below({1, 1, 1}, {1, 2, 3}, -3), 0);
+  EXPECT_NEAR(share_below({1, 1, 1}, {1e-7, 3e-6, 1}, 0.2), 0.7, 1e-9);
+}
+
+TEST(FreeVolume, IsAllWithoutWalls) {
+  const FakeWorld world = cubic(2);
+  EXPECT_DOUBLE_EQ(free_volume(world, world.whole, {1, 3, 4}, 1e-3), 8);
+}
+
+TEST(FreeVolume, IsExactBeforeFlatWalls) {
+  FakeWorld world = cubic(4);
+  add_plane(world, {0, 0, 0.3}, {0, 0, 1});
+  add_plane(world, {0, 0, 4}, {0, 0, -1});     // along a side of the box
+  add_plane(world, {3.15, 0, 0}, {-1, 0, 0});  // which meets the first at a right angle
+  EXPECT_NEAR(free_volume(world, world.whole, {4, 4, 4}, 1e-3), 3.15 * 4 * 3.7, 1e-11);
+  EXPECT_NEAR(free_volume(world, {{0, 0, -5}, {4, 4, -1}}, {4, 4, 4}, 1e-3), 0, 1e-11) << "all of it behind";
+  FakeWorld tilted = cubic(4);
+  add_plane(tilted, {2, 2, 2}, {1, 2, 3});
+  EXPECT_NEAR(free_volume(tilted, tilted.whole, {4, 4, 4}, 1e-3), 32, 1e-9);
+}
+
+TEST(FreeVolume, TakesNothingForASheetWithTwoSides) {
+  FakeWorld world = cubic(4);
+  add_wall(world, [](const Vec3& x) { return Clearance{std::abs(x.z() - 1.3), Vec3(0, 0, x.z() < 1.3 ? 1 : -1)}; });
+  EXPECT_DOUBLE_EQ(free_volume(world, world.whole, {4, 4, 4}, 1e-3), 64);
+}
+
+TEST(FreeVolume, FollowsGroovesAsCloselyAsItSays) {
+  for (const auto& [spacing, depth] : std::vector<std::pair<double, double>>{{1, 0.5}, {2.3, 0.4}, {0.37, 0.6}}) {
+    FakeWorld world = cubic(4);
+    add_teeth(world, spacing, depth);
+    // Volume of the grooves by the primitive of their depth along x.
+    const auto grooves = [&, s = spacing, d = depth](double x) {
+      const double tip = s * std::round(x / s), past = x - tip;
+      return d * tip / 2 + d / s * past * std::abs(past);
+    };
+    for (const double error : {4e-3, 1e-3}) {
+      const double found = free_volume(world, {{0, 0, -depth}, {4, 3, 1}}, {4, 3, 2}, error);
+      EXPECT_NEAR(found, 3 * (4 + grooves(4) - grooves(0)), error * 4 * 3) << spacing << ", " << depth;
+    }
+  }
+}
+
+TEST(FreeVolume, FollowsARoundWallAsCloselyAsItSays) {
+  FakeWorld world = cubic(4);
+  add_pipe(world, 2, 2, 2);
+  for (const double error : {4e-3, 1e-3}) {
+    const double found = free_volume(world, world.whole, {4, 4, 4}, error);
+    EXPECT_NEAR(found, std::numbers::pi * 4 * 4, error * 2 * std::numbers::pi * 2 * 4);
+  }
+}
+
+TEST(VoidRatio, KnowsTheCubicLattice) {
+  FakeWorld world = cubic(8);
+  world.make_periodic(Vec3::Zero(), Vec3::Constant(8));
+  VoidRatio probe;
+  probe.averaging.slices = 5;
+  const auto near = testing::DoubleNear(1 / sixth - 1, 1e-11);
+  EXPECT_THAT(channel_value(probe, world, "void_ratio"), near);
+  EXPECT_THAT(channel_value(probe, world, "smallest"), near);
+  EXPECT_THAT(channel_value(probe, world, "largest"), near);
+  EXPECT_THAT(channel_value(probe, world, "mean"), near);
+  EXPECT_NEAR(channel_value(probe, world, "scatter"), 0, 1e-12);
+  const auto cells = field_values(probe, world, "void_ratio");
+  EXPECT_EQ(cells.size(), 64u);  // cubes of 5, moved by 1, in 8
+  EXPECT_THAT(cells, testing::Each(near));
+  EXPECT_THAT(field_values(probe, world, "free_share"), testing::Each(testing::DoubleNear(1, 1e-12)));
+}
+
+TEST(VoidRatio, OfCellsAndSlicesAgreesWithThatOfEachBox) {
+  FakeWorld world = cubic(6);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> part(-0.5, 0.5);
+  for (Row& row : world.position) row.x += part(random), row.y += part(random), row.z += part(random);
+  world.box = {{-1e300, 0, -1e300}, {1e300, 6, 1e300}, {false, true, false}};
+  VoidRatio probe;
+  probe.averaging.cell_size = 2.3, probe.averaging.cell_step = 0.9, probe.averaging.slices = 4;
+  probe.averaging.region_low = Vec3(0.4, 0.1, 0.5), probe.averaging.region_high = Vec3(5.2, 5.7, 5.5);
+  const Region region{*probe.averaging.region_low, *probe.averaging.region_high};
+  const AveragingCells cells = probe.averaging.cells(world, region);
+  const auto ratios = field_values(probe, world, "void_ratio");
+  ASSERT_EQ(ratios.size(), 3 * 4 * 4u);
+  double sum = 0, squares = 0;
+  for (std::size_t n = 0; n < ratios.size(); ++n) {
+    EXPECT_NEAR(ratios[n], void_ratio(world, cells.cell(n)), 1e-10);
+    sum += ratios[n], squares += ratios[n] * ratios[n];
+  }
+  const double mean = sum / 48;
+  EXPECT_NEAR(channel_value(probe, world, "mean"), mean, 1e-12);
+  EXPECT_NEAR(channel_value(probe, world, "scatter"), std::sqrt(squares / 48 - mean * mean), 1e-9);
+  EXPECT_EQ(channel_value(probe, world, "smallest"), *std::ranges::min_element(ratios));
+  EXPECT_EQ(channel_value(probe, world, "largest"), *std::ranges::max_element(ratios));
+  EXPECT_NEAR(channel_value(probe, world, "void_ratio"), void_ratio(world, region), 1e-10);
+  const auto profile = channel_values(probe, world, "void_ratio_profile"),
+             places = channel_values(probe, world, "place");
+  for (std::size_t s = 0; s < 4; ++s) {
+    Region slice = region;
+    slice.low.z() = 0.5 + 1.25 * static_cast<double>(s), slice.high.z() = slice.low.z() + 1.25;
+    EXPECT_NEAR(profile[s], void_ratio(world, slice), 1e-10);
+    EXPECT_NEAR(places[s], 0.5 * (slice.low.z() + slice.high.z()), 1e-12);
+  }
+}
+
+TEST(VoidRatio, CountsGroovesOfWalls) {
+  FakeWorld world = cubic(6);
+  add_teeth(world, 1, 0.8);
+  world.with_grooves = Region{{0, 0, -0.8}, {6, 6, 6}};
+  VoidRatio probe;
+  probe.averaging.slices = 17;  // of 0.4
+  EXPECT_NEAR(channel_value(probe, world, "void_ratio"), (216 + 36 * 0.4) / (216 * sixth) - 1,
+              2 * 1e-3 * 36 / (216 * sixth));
+  // No grain reaches into the grooves.
+  const auto profile = channel_values(probe, world, "void_ratio_profile");
+  for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(profile[s], std::numeric_limits<double>::infinity());
+  probe.averaging.cell_size = 3, probe.averaging.cell_step = 1;
+  const auto centre = field_values(probe, world, "centre"), share = field_values(probe, world, "free_share"),
+             ratio = field_values(probe, world, "void_ratio");
+  int grooved = 0;
+  for (std::size_t n = 0; n < share.size(); ++n) {
+    // A cell over whole grooves that begins `below` their tips lacks the tips.
+    const double below = std::max(0.0, 1.5 - centre[3 * n + 2]), under = 0.5 * below * below / 0.8;
+    EXPECT_NEAR(share[n], 1 - under / 3, 1e-3 / 3) << n;
+    grooved += below > 0;
+    if (below == 0) {
+      EXPECT_NEAR(ratio[n], void_ratio(world, probe.averaging.cells(world, *world.with_grooves).cell(n)), 1e-9);
+    }
+  }
+  EXPECT_EQ(grooved, 16);
+}
+
+TEST(VoidRatio, LeavesCellsOutThatAreMostlyBehindWalls) {
+  FakeWorld world = cubic(6);
+  add_plane(world, {0, 0, 3.2}, {0, 0, 1});
+  for (Row& row : world.position)
+    if (row.z < 3.2) row.z += 100;
+  VoidRatio probe;
+  probe.averaging.cell_size = 1;
+  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_share");
+  ASSERT_EQ(ratios.size(), 216u);
+  EXPECT_EQ(std::ranges::count_if(shares, [](double share) { return std::abs(share) < 1e-12; }), 3 * 36);
+  EXPECT_EQ(std::ranges::count_if(shares, [](double share) { return std::abs(share - 0.8) < 1e-12; }), 36);
+  EXPECT_NEAR(channel_value(probe, world, "largest"), 1 / sixth - 1, 1e-10);
+  world.surface.clear(), world.wall.clear();
+  add_plane(world, {0, 0, 6}, {0, 0, 1});  // nothing is left before it
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "largest")));
+}
+
+TEST(VoidRatio, CountsTheUnionOfClumpsOnce) {
+  FakeWorld world;
+  world.add({1, 1, 1}, 0.5), world.add({1, 1, 1}, 0.5);
+  world.share = {0.5, 0.5};
+  world.whole = {Vec3::Zero(), Vec3::Constant(2)};
+  VoidRatio probe;
+  EXPECT_NEAR(channel_value(probe, world, "void_ratio"), 8 / sixth - 1, 1e-11);
+  EXPECT_NEAR(field_values(probe, world, "void_ratio").at(0), 8 / sixth - 1, 1e-11);
+}
+
+TEST(VoidRatio, RefusesARegionThatIsInsideOut) {
+  VoidRatio probe;
+  probe.averaging.region_low = Vec3(3, 0, 0), probe.averaging.region_high = Vec3(1, 1, 2);
+  EXPECT_EQ(complaints(probe), "region_high: found x = 1.000000 m, allowed: above that of region_low, 3.000000 m\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(VoidRatio, ProbeContract,
+                         testing::Values(ProbeCase{"cubes", [] { return std::make_shared<VoidRatio>(); }},
+                                         ProbeCase{"grooves",
+                                                   [] {
+                                                     auto probe = std::make_shared<VoidRatio>();
+                                                     probe->averaging.depth_axis = "y", probe->averaging.cell_size = 2;
+                                                     return probe;
+                                                   },
+                                                   [] {
+                                                     FakeWorld world = lattice_world(6, 4, 8);
+                                                     world.wall.clear(), world.contact.clear();
+                                                     add_teeth(world, 4e-4, 1e-4);
+                                                     return world;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit

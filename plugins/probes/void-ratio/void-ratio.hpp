@@ -1,0 +1,22 @@
+// Void ratio of averaging cells and slices, up to the very surface of walls. See README.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "../averaging_cells.hpp"
+#include "grit/probe.hpp"
+
+namespace grit {
+
+class VoidRatio final : public Probe {
+ public:
+  Averaging averaging;
+
+  void declare(Parameters& parameters) override;
+  std::vector<Channel> channels() const override;
+  void sample(const World& world, std::span<const std::span<double>> values) override;
+  std::vector<Field> fields(const World& world) override;
+};
+
+}  // namespace grit
