@@ -1,6 +1,8 @@
 // Where the part of the world ends that averages are taken over.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/scene.hpp"
 
 namespace grit::test {
@@ -30,6 +32,83 @@ TEST(Specimen, EndsAtTheNearFaceOfABlock) {
   EXPECT_EQ(below.high, Vec3(1, 2, 2));
   const Region above = specimen_between({"container", "container", "block"}, {"container", "container", "container"});
   EXPECT_EQ(above.low, Vec3(0, 0, 2.5));
+}
+
+/// A floor with grooves from z = 0 to −0.1, tips 0.4 apart and flat between; above it waves from z = 1 to 0.8, a sheet
+/// with two sides, a cone of 45° that bodies are in, and a solid block.
+class Clearances : public testing::Test {
+ protected:
+  Clearances() {
+    Description d = description("linear-frictional", {{"density", 2600}}, {{{2, 2, 4}, 0.1}});
+    const auto sheet = [](const char* type, double z) {
+      return Description{
+          {"type", type}, {"corner", {0, 0, z}}, {"edge_a", {4, 0, 0}}, {"edge_b", {0, 4, 0}}, {"material", "grain"}};
+    };
+    d["walls"]["floor"] = sheet("saw-tooth", 0);
+    d["walls"]["floor"].update({{"depth", 0.1}, {"spacing", 0.4}, {"floor", 0.2}});
+    d["walls"]["wave"] = sheet("sinusoidal", 1);
+    d["walls"]["wave"].update({{"depth", 0.2}, {"wavelength", 1}});
+    d["walls"]["sheet"] = sheet("rectangle", 2);
+    d["walls"]["cone"] = {{"type", "cone"},    {"start", {2, 2, 3}}, {"end", {2, 2, 5}},
+                          {"start_radius", 0}, {"end_radius", 2},    {"material", "grain"}};
+    d["walls"]["block"] = {
+        {"type", "box"}, {"low", {0, 0, 6}}, {"high", {4, 4, 7}}, {"inside", false}, {"material", "grain"}};
+    d["specimen"] = {{"low", {"", "", "floor"}}, {"high", {"", "", "block"}}};
+    scene_ = scene_of(d);
+    world_.emplace(*scene_.description, make_bodies(*scene_.description, {}), 1);
+  }
+  /// From wall `name`, which is to be nearer than 3.
+  Clearance from(const std::string& name, const Vec3& point) const {
+    const auto found = world_->clearance(index(name), point, 3);
+    if (!found) throw Error("too far from " + name);
+    EXPECT_NEAR(found->normal.norm(), 1, 1e-15);
+    return *found;
+  }
+  std::size_t index(const std::string& name) const {
+    for (std::size_t w = 0; w < world_->walls().size(); ++w)
+      if (world_->walls()[w].name == name) return w;
+    throw Error("no wall " + name);
+  }
+  void expect(const std::string& name, const Vec3& point, double distance, const Vec3& normal) const {
+    const Clearance found = from(name, point);
+    EXPECT_NEAR(found.distance, distance, 1e-12) << name << ", " << point.transpose();
+    EXPECT_NEAR((found.normal - normal.normalized()).norm(), 0, 1e-12) << name << ", " << point.transpose();
+  }
+  Scene scene_;
+  std::optional<Simulation> world_;
+};
+
+TEST_F(Clearances, AreDistancesInFrontOfWalls) {
+  const double slanted = std::sqrt(0.5);
+  expect("floor", {2.2, 2, 0}, 0.1, {0, 0, -1});
+  expect("floor", {2.0, 2, 0.3}, 0.3, {0, 0, -1});
+  expect("wave", {2, 2, 1.5}, 0.5, {0, 0, -1});
+  expect("wave", {2.5, 2, 1}, 0.2, {0, 0, -1});
+  expect("sheet", {2, 2, 2.5}, 0.5, {0, 0, -1});
+  expect("sheet", {2, 2, 1.5}, 0.5, {0, 0, 1});
+  expect("cone", {2.1, 2, 4}, 0.9 * slanted, {1, 0, -1});
+  expect("block", {2, 2, 5.5}, 0.5, {0, 0, 1});
+}
+
+TEST_F(Clearances, AreNegativeBehindWalls) {
+  const double slanted = std::sqrt(0.5);
+  expect("floor", {2.01, 2, -0.05}, -0.04 * slanted, {-1, 0, -1});
+  expect("floor", {2.2, 2, -1}, -0.9, {0, 0, -1});
+  expect("wave", {2.5, 2, 0.5}, -0.3, {0, 0, -1});
+  expect("cone", {3.5, 2, 4}, -0.5 * slanted, {1, 0, -1});
+  expect("block", {2, 2, 6.2}, -0.2, {0, 0, 1});
+}
+
+TEST_F(Clearances, AreNoneOutOfReach) {
+  EXPECT_TRUE(world_->clearance(index("block"), {2, 2, 3.001}, 3));
+  EXPECT_FALSE(world_->clearance(index("block"), {2, 2, 3}, 3));
+}
+
+TEST_F(Clearances, EnvelopeReachesToTheFarSidesOfWalls) {
+  EXPECT_EQ(world_->specimen().low.z(), 0);
+  EXPECT_EQ(world_->specimen().high.z(), 6);
+  EXPECT_EQ(world_->envelope().low.z(), -0.1);
+  EXPECT_EQ(world_->envelope().high.z(), 7);
 }
 
 }  // namespace
