@@ -1,10 +1,13 @@
 // Statistics of contact forces and directions. See README.md.
 #include "force-chains.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "grit/plugin.hpp"
 
@@ -25,6 +28,29 @@ std::size_t bin_of(double first, double second) {
   return static_cast<std::size_t>(std::floor(angle / width) + ForceChainsProbe::bins) % ForceChainsProbe::bins;
 }
 
+/// The least-squares fit of a value to N functions of direction, contact by contact. NaN where the directions do not
+/// tell.
+template <int N>
+class Fit {
+ public:
+  using Values = Eigen::Matrix<double, N, 1>;
+  void add(const Values& functions, double value) {
+    products_ += functions * functions.transpose(), sums_ += value * functions;
+  }
+  Values factors() const {
+    Eigen::Matrix<double, N, N> inverse;
+    bool tells = false;
+    const double size = products_.trace();
+    (products_ / size).computeInverseWithCheck(inverse, tells, 1e-9);
+    if (!tells) return Values::Constant(std::numeric_limits<double>::quiet_NaN());
+    return inverse * sums_ / size;
+  }
+
+ private:
+  Eigen::Matrix<double, N, N> products_ = Eigen::Matrix<double, N, N>::Zero();
+  Values sums_ = Values::Zero();
+};
+
 }  // namespace
 
 void ForceChainsProbe::declare(Parameters& parameters) {
@@ -32,27 +58,52 @@ void ForceChainsProbe::declare(Parameters& parameters) {
       .one_of({"xy", "yx", "xz", "zx", "yz", "zy"})
       .doc("plane of the directions; angles count from its first axis towards its second");
   parameters.add("with_walls", with_walls).doc("whether touches of walls count beside contacts between grains");
+  parameters.add("angle", angle)
+      .unit("rad")
+      .symbol("alpha")
+      .above(0)
+      .at_most(std::numbers::pi / 2)
+      .doc("of a chain: largest one between the line of two centres and the major stress of either grain");
 }
 
 std::vector<Channel> ForceChainsProbe::channels() const {
-  return {{"mean_normal_force", "N", "mean normal force of a contact, positive in compression; 0 without contacts", {}},
-          {"share_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
-          {"force_by_direction",
-           "N",
-           "mean normal force of the contacts in each 10 degrees of direction in the plane, the first from 0 to 10 "
-           "degrees, positive in compression; 0 where there are none",
-           {bins}},
-          {"contacts_by_direction",
-           "1",
-           "number of contacts in each 10 degrees of direction in the plane; a contact counts in both of its "
-           "directions",
-           {bins}},
-          {"anisotropy", "1", "amplitude a of E = (1 + a cos 2(theta - theta_a)) / 2 pi, fitted to the directions", {}},
-          {"anisotropy_direction",
-           "rad",
-           "direction theta_a that most contacts prefer, from the first axis of the plane towards the second, "
-           "-pi/2 to pi/2",
-           {}}};
+  return {
+      {"mean_normal_force", "N", "mean normal force of a contact, positive in compression; 0 without contacts", {}},
+      {"share_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
+      {"force_by_direction",
+       "N",
+       "mean normal force of the contacts in each 10 degrees of direction in the plane, the first from 0 to 10 "
+       "degrees, positive in compression; 0 where there are none",
+       {bins}},
+      {"contacts_by_direction",
+       "1",
+       "number of contacts in each 10 degrees of direction in the plane; a contact counts in both of its "
+       "directions",
+       {bins}},
+      {"anisotropy", "1", "amplitude a of E = (1 + a cos 2(theta - theta_a)) / 2 pi, fitted to the directions", {}},
+      {"anisotropy_direction",
+       "rad",
+       "direction theta_a that most contacts prefer, from the first axis of the plane towards the second, "
+       "-pi/2 to pi/2",
+       {}},
+      {"normal_force_anisotropy",
+       "1",
+       "a_n of f_n = f_0 (1 + a_n cos 2(theta - theta_n)), fitted to normal forces; NaN where directions or forces "
+       "do not tell",
+       {}},
+      {"normal_force_direction", "rad", "theta_n, as anisotropy_direction; NaN as above", {}},
+      {"tangential_force_anisotropy",
+       "1",
+       "a_t of f_t = -f_0 a_t sin 2(theta - theta_t), fitted to forces along the contacts in the plane; NaN as above",
+       {}},
+      {"tangential_force_direction", "rad", "theta_t, as anisotropy_direction; NaN as above", {}},
+      {"mean_major_stress", "Pa", "mean over the grains of their major stress, positive in compression", {}},
+      {"chains", "1", "number of linear force chains, of three grains or more", {}},
+      {"chain_grains", "1", "number of grains in chains", {}},
+      {"mean_chain_length", "1", "grains of a chain, mean; 0 without chains", {}},
+      {"longest_chain", "1", "grains of the longest chain", {}},
+      {"chains_born", "1", "chains in which none of the sample before lives on; NaN at the first", {}},
+      {"chains_died", "1", "chains of the sample before that live on in none; NaN at the first", {}}};
 }
 
 std::vector<const Contact*> ForceChainsProbe::counted(const World& world) const {
@@ -70,6 +121,8 @@ void ForceChainsProbe::sample(const World& world, std::span<const std::span<doub
 
   std::array<double, bins> force{}, count{};
   double above = 0, directed = 0, cosines = 0, sines = 0;
+  Fit<3> normal;
+  Fit<2> tangential;
   for (const auto* contact : contacts) {
     if (contact->normal_force > mean) ++above;
     const double x = contact->normal[first], y = contact->normal[second], square = x * x + y * y;
@@ -77,8 +130,10 @@ void ForceChainsProbe::sample(const World& world, std::span<const std::span<doub
     const std::size_t bin = bin_of(x, y), opposite = (bin + bins / 2) % bins;
     for (const std::size_t i : {bin, opposite}) force[i] += contact->normal_force, ++count[i];
     ++directed;
-    cosines += (x * x - y * y) / square;
-    sines += 2 * x * y / square;
+    const double cosine = (x * x - y * y) / square, sine = 2 * x * y / square;
+    cosines += cosine, sines += sine;
+    normal.add({1, cosine, sine}, contact->normal_force);
+    tangential.add({cosine, sine}, (x * contact->force[second] - y * contact->force[first]) / std::sqrt(square));
   }
   for (std::size_t i = 0; i < bins; ++i)
     if (count[i] > 0) force[i] /= count[i];
@@ -89,6 +144,28 @@ void ForceChainsProbe::sample(const World& world, std::span<const std::span<doub
   std::copy(count.begin(), count.end(), values[3].begin());
   values[4][0] = directed > 0 ? 2 * std::hypot(cosines, sines) / directed : 0;
   values[5][0] = 0.5 * std::atan2(sines, cosines);
+
+  const Eigen::Vector3d f_n = normal.factors();
+  const Eigen::Vector2d f_t = tangential.factors();
+  const double f_0 = f_n[0] > 0 ? f_n[0] : std::numeric_limits<double>::quiet_NaN();
+  values[6][0] = std::hypot(f_n[1], f_n[2]) / f_0, values[7][0] = 0.5 * std::atan2(f_n[2], f_n[1]);
+  values[8][0] = f_t.norm() / f_0, values[9][0] = 0.5 * std::atan2(f_t[0], -f_t[1]);
+  sample_chains(world, values.subspan(10));
+}
+
+void ForceChainsProbe::sample_chains(const World& world, std::span<const std::span<double>> values) {
+  if (now_ && world.step() != step_) before_ = std::move(now_);
+  now_ = linear_chains(world, angle), step_ = world.step();
+  std::size_t grains = 0, longest = 0;
+  for (const auto& chain : now_->grains) grains += chain.size(), longest = std::max(longest, chain.size());
+  const auto count = static_cast<double>(now_->grains.size());
+  values[0][0] = now_->mean_major_stress;
+  values[1][0] = count, values[2][0] = static_cast<double>(grains);
+  values[3][0] = count > 0 ? static_cast<double>(grains) / count : 0, values[4][0] = static_cast<double>(longest);
+  values[5][0] = values[6][0] = std::numeric_limits<double>::quiet_NaN();
+  if (!before_) return;
+  const Turnover change = turnover(*before_, *now_);
+  values[5][0] = static_cast<double>(change.born), values[6][0] = static_cast<double>(change.died);
 }
 
 std::vector<Field> ForceChainsProbe::fields(const World& world) {
@@ -102,7 +179,9 @@ std::vector<Field> ForceChainsProbe::fields(const World& world) {
        3,
        {}},
       {"normal_force", "N", "normal force, positive in compression", 1, {}},
-      {"above_mean", "1", "1 where the normal force is above the mean, 0 elsewhere", 1, {}}};
+      {"above_mean", "1", "1 where the normal force is above the mean, 0 elsewhere", 1, {}},
+      {"chain", "1", "number of the linear force chain that it is a link of, from 1; 0 of none", 1, {}}};
+  const auto chain_of = linear_chains(world, angle).of_contact;
   for (auto& field : fields) field.values.reserve(field.width * contacts.size());
   for (const auto* contact : contacts) {
     const Vec3 start = xyz(world.positions()[contact->a]), end = start + contact->branch;
@@ -110,6 +189,7 @@ std::vector<Field> ForceChainsProbe::fields(const World& world) {
     fields[1].values.insert(fields[1].values.end(), end.begin(), end.end());
     fields[2].values.push_back(contact->normal_force);
     fields[3].values.push_back(contact->normal_force > mean ? 1 : 0);
+    fields[4].values.push_back(chain_of[static_cast<std::size_t>(contact - world.contacts().data())]);
   }
   return fields;
 }
@@ -120,7 +200,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "probe",
                                      .name = "force-chains",
                                      .version = "1.0.0",
-                                     .doc = "strong contacts, forces and contacts by direction, fabric anisotropy",
+                                     .doc = "strong contacts, linear chains, forces by direction, anisotropies",
                                      .make_probe = []() -> grit::Probe* { return new grit::ForceChainsProbe; }};
   return &info;
 }
