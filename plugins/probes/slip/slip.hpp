@@ -2,29 +2,22 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
+#include "../wall_layer.hpp"
 #include "grit/probe.hpp"
 
 namespace grit {
 
 class Slip final : public Probe {
  public:
-  std::string wall, driven_by, axis = "x";
-  double thickness = 0.5;  ///< of the layer at the wall, mean diameters
+  WallLayer layer;
 
-  void declare(Parameters& parameters) override;
+  void declare(Parameters& parameters) override { layer.declare(parameters); }
   StateRequest needs() const override { return BodyState::displacement; }
-  /// Throws Error for a wall that does not exist, that is not perpendicular to an axis, or along whose normal the slip
-  /// would be.
-  void prepare(const World& world) override;
+  void prepare(const World& world) override { layer.prepare(world, "probe slip"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
-
- private:
-  std::size_t wall_ = 0, driver_ = 0;
-  int axis_ = 0, across_ = 2;
 };
 
 }  // namespace grit

@@ -24,7 +24,7 @@ void add(FakeWorld& world, const Vec3& at_start, const Vec3& displacement) {
 
 Slip made(const std::string& wall = "surface", const std::string& driven_by = "lid") {
   Slip probe;
-  probe.wall = wall, probe.driven_by = driven_by;
+  probe.layer.wall = wall, probe.layer.driven_by = driven_by;
   return probe;
 }
 
@@ -39,7 +39,7 @@ TEST(Slip, IsTheMeanOfTheLayerThatLayAtTheWallWhenTheStageBegan) {
   EXPECT_THAT(channel_values(probe, world, "displacement"), ElementsAre(testing::DoubleEq(0.05)));
   EXPECT_THAT(channel_values(probe, world, "share"), ElementsAre(testing::DoubleEq(0.125)));
   EXPECT_THAT(channel_values(probe, world, "bodies"), ElementsAre(2));
-  probe.thickness = 0.6;
+  probe.layer.thickness = 0.6;
   EXPECT_THAT(channel_values(probe, world, "bodies"), ElementsAre(3));
 }
 
@@ -85,7 +85,7 @@ TEST(Slip, RefusesWallsThatThereAreNotOrThatFaceTheWrongWay) {
   EXPECT_THAT(refusal(made("surfaces")), HasSubstr("probe slip, /wall: there is no wall \"surfaces\"; the nearest"));
   EXPECT_THAT(refusal(made("surface", "led")), HasSubstr("/driven_by: there is no wall \"led\""));
   Slip across = made();
-  across.axis = "z";
+  across.layer.axis = "z";
   EXPECT_EQ(refusal(across),
             "probe slip, /axis: wall \"surface\" is perpendicular to z; slip is along a wall, so name another axis");
   FakeWorld aslant = world_between();
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Slip, ProbeContract,
                          testing::Values(ProbeCase{"lattice",
                                                    [] {
                                                      auto probe = std::make_shared<Slip>();
-                                                     probe->wall = "bottom", probe->driven_by = "top-wall";
+                                                     probe->layer.wall = "bottom", probe->layer.driven_by = "top-wall";
                                                      return probe;
                                                    },
                                                    [] {

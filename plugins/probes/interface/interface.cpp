@@ -1,0 +1,77 @@
+#include "interface.hpp"
+
+#include <limits>
+
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+namespace {
+
+double ratio(double above, double below) {
+  return below == 0 ? std::numeric_limits<double>::quiet_NaN() : above / below;
+}
+
+}  // namespace
+
+std::vector<Channel> Interface::channels() const {
+  const std::string forward = ", positive as of a wheel that rolls along the wall towards +" + layer.axis;
+  return {
+      {"slip",
+       "m",
+       "u: mean displacement along " + layer.axis + " of the layer, relative to the wall, in the stage",
+       {}},
+      {"rotation", "rad", "omega: mean rotation of the layer in the stage" + forward, {}},
+      {"bodies", "1", "number of bodies in the layer", {}},
+      {"shear_traction", "Pa", "t: force on the wall along " + layer.axis + " over its area; 0 where it has none", {}},
+      {"couple_traction", "N m-1", "m: couple on the wall about the specimen's face, over its area" + forward, {}},
+      {"rotation_ratio", "1", "A = omega d50 / u; NaN before the layer slips", {}},
+      {"slip_ratio", "1", "B = u over the displacement of " + layer.driven_by + "; NaN before that moves", {}},
+      {"traction_ratio", "1", "C = t d50 / m; NaN without a couple", {}}};
+}
+
+/// Mean of the layer since the first sample of the stage [rad].
+double Interface::rotation(const World& world, const Vec3& about) {
+  if (world.stage() != stage_) stage_ = world.stage(), turned_before_.clear();
+  double sum = 0, bodies = 0;
+  layer.for_bodies(world, [&](std::size_t i) {
+    const double turned = world.rotations()[i].dot(about);
+    sum += turned - turned_before_.try_emplace(world.ids()[i], turned).first->second, ++bodies;
+  });
+  return bodies > 0 ? sum / bodies : 0;
+}
+
+void Interface::sample(const World& world, std::span<const std::span<double>> values) {
+  const WallView& wall = layer.surface(world);
+  const Vec3 normal = wall.normal, about = normal.cross(Vec3::Unit(layer.along()));
+  const WallLayer::Slip slip = layer.slip(world);
+  const double turned = rotation(world, about), d50 = world.mean_diameter();
+
+  // n × f about `about` is f along the slip, so that a force `height` above the face has the couple height · f.
+  const int along = layer.along(), across = layer.across();
+  const double face = layer.face(world);
+  double force = 0, couple = 0;
+  for (const Contact& contact : world.contacts()) {
+    if (!contact.with_wall || contact.b != layer.index()) continue;
+    const double point = xyz(world.positions()[contact.a])[across] + contact.branch[across];
+    force += contact.force[along];
+    couple += contact.moment.dot(about) + (point - face) * normal[across] * contact.force[along];
+  }
+
+  values[0][0] = slip.mean, values[1][0] = turned, values[2][0] = slip.bodies;
+  values[3][0] = wall.area > 0 ? force / wall.area : 0, values[4][0] = wall.area > 0 ? couple / wall.area : 0;
+  values[5][0] = ratio(turned * d50, slip.mean);
+  values[6][0] = ratio(slip.mean, layer.driven(world));
+  values[7][0] = ratio(force * d50, couple);
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "probe",
+                                     .name = "interface",
+                                     .version = "1.0.0",
+                                     .doc = "slip, rotation and tractions at a wall, and their ratios",
+                                     .make_probe = []() -> grit::Probe* { return new grit::Interface; }};
+  return &info;
+}

@@ -1,0 +1,32 @@
+// What a wall does to the bodies next to it, as boundary conditions of a micropolar continuum. See README.md.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "../wall_layer.hpp"
+#include "grit/probe.hpp"
+
+namespace grit {
+
+class Interface final : public Probe {
+ public:
+  WallLayer layer;
+
+  void declare(Parameters& parameters) override { layer.declare(parameters); }
+  StateRequest needs() const override { return BodyState::displacement | BodyState::rotation; }
+  void prepare(const World& world) override { layer.prepare(world, "probe interface"); }
+  std::vector<Channel> channels() const override;
+  void sample(const World& world, std::span<const std::span<double>> values) override;
+
+ private:
+  double rotation(const World& world, const Vec3& about);
+
+  std::string stage_;
+  std::unordered_map<std::uint32_t, double> turned_before_;  ///< rad, by id, at the first sample of the stage
+};
+
+}  // namespace grit

@@ -1,0 +1,146 @@
+#include "interface.hpp"
+
+#include <gmock/gmock.h>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+Interface made(const std::string& wall = "surface", const std::string& driven_by = "lid") {
+  Interface probe;
+  probe.layer.wall = wall, probe.layer.driven_by = driven_by;
+  return probe;
+}
+
+/// Three spheres of radius 0.1 on a surface of 2 m² at z = 0 that have gone `way` along x, rolling; one far above them.
+FakeWorld rolling(double way) {
+  FakeWorld world;
+  world.wall = {still_wall("surface"), still_wall("lid")};
+  world.wall[0].normal = Vec3::UnitZ(), world.wall[1].normal = -Vec3::UnitZ();
+  world.wall[0].area = world.wall[1].area = 2;
+  world.wall[1].stage_position = {4 * way, 0, 0};
+  for (const Vec3& start : {Vec3(0.2, 0, 0.1), Vec3(0.4, 0, 0.1), Vec3(0.6, 0, 0.1), Vec3(0.4, 0, 0.9)}) {
+    world.add(start + Vec3(way, 0, 0), 0.1);
+    world.displacement.push_back({way, 5, 0});
+    world.rotation.push_back({7, way / 0.1, 7});
+  }
+  return world;
+}
+
+TEST(Interface, HasARotationRatioOfTwoWhereGrainsRollWithoutSlipping) {
+  Interface probe = made();
+  FakeWorld world = rolling(0);
+  probe.prepare(world);
+  for (const auto* name : {"rotation_ratio", "slip_ratio", "traction_ratio"})
+    EXPECT_TRUE(std::isnan(channel_value(probe, world, name))) << name;
+  for (const double way : {0.3, -0.3}) {
+    world = rolling(way);
+    EXPECT_NEAR(channel_value(probe, world, "slip"), way, 1e-15);
+    EXPECT_NEAR(channel_value(probe, world, "rotation"), way / 0.1, 1e-14);
+    EXPECT_NEAR(channel_value(probe, world, "rotation_ratio"), 2, 1e-14);
+    EXPECT_NEAR(channel_value(probe, world, "slip_ratio"), 0.25, 1e-15);
+    EXPECT_EQ(channel_value(probe, world, "bodies"), 3);
+  }
+}
+
+TEST(Interface, CountsRotationsFromTheBeginningOfEachStage) {
+  Interface probe = made();
+  probe.prepare(rolling(0.1));
+  EXPECT_EQ(channel_value(probe, rolling(0.1), "rotation"), 0);
+  FakeWorld later = rolling(0.4);
+  EXPECT_NEAR(channel_value(probe, later, "rotation"), 3, 1e-14);
+  std::swap(later.id[0], later.id[3]), std::swap(later.rotation[0], later.rotation[3]);  // bodies in another order
+  later.rotation[0].setZero();
+  EXPECT_NEAR(channel_value(probe, later, "rotation"), 2, 1e-14)
+      << "body 3 is new to the layer, and has not turned in it";
+  later.stage_name = "another";
+  EXPECT_EQ(channel_value(probe, later, "rotation"), 0);
+}
+
+TEST(Interface, AddsUpWhatContactsExertOnTheWall) {
+  FakeWorld world = rolling(0.3);
+  // Forces of 3 and 5 N along x, the second in a groove 0.02 deep; rolling resistance turns the wall as the grains
+  // turn.
+  world.touch_wall(0, 0, Vec3(0, 0, -0.1), Vec3(3, 0, -9));
+  world.touch_wall(1, 0, Vec3(0, 0, -0.12), Vec3(5, 1, -9));
+  world.touch_wall(3, 1, Vec3(0, 0, 0.1), Vec3(100, 0, 9));
+  world.contact[0].moment = {9, 0.4, 9}, world.contact[1].moment = {9, 0.6, 9}, world.contact[2].moment = {9, 9, 9};
+  Interface probe = made();
+  probe.prepare(world);
+  const double couple = 0.4 + 0.6 - 0.02 * 5;
+  EXPECT_NEAR(channel_value(probe, world, "shear_traction"), 8.0 / 2, 1e-14);
+  EXPECT_NEAR(channel_value(probe, world, "couple_traction"), couple / 2, 1e-14);
+  EXPECT_NEAR(channel_value(probe, world, "traction_ratio"), 8 * 0.2 / couple, 1e-13);
+  // arm.
+  world.wall[0].area = 0;
+  EXPECT_EQ(channel_value(probe, world, "shear_traction"), 0);
+  EXPECT_NEAR(channel_value(probe, world, "traction_ratio"), 8 * 0.2 / couple, 1e-13);
+}
+
+// Turned by half a turn about x and about z the same happens at a wall above, and along −x.
+TEST(Interface, IsTheSameAtAWallAboveAndTheOtherWayAround) {
+  FakeWorld world = rolling(0.3);
+  world.touch_wall(0, 0, Vec3(0, 0, -0.12), Vec3(3, 0, -9));
+  world.contact[0].moment = {0, 0.4, 0};
+  Interface straight = made();
+  straight.prepare(world);
+  FakeWorld turned = rolling(0);
+  straight.prepare(turned), channel_value(straight, turned, "rotation");
+
+  for (const Vec3& half : {Vec3(1, -1, -1), Vec3(-1, -1, 1)}) {
+    const auto turn = [&](FakeWorld w) {
+      const auto vector = [&](Vec3& v) { v = v.cwiseProduct(half); };
+      for (Row& row : w.position) {
+        const Vec3 at = (xyz(row) - Vec3::Constant(0.5)).cwiseProduct(half) + Vec3::Constant(0.5);
+        row = {at.x(), at.y(), at.z(), row.w};
+      }
+      for (Vec3& v : w.displacement) vector(v);
+      for (Vec3& v : w.rotation) vector(v);
+      for (WallView& wall : w.wall) vector(wall.normal), vector(wall.stage_position);
+      for (Contact& c : w.contact) vector(c.branch), vector(c.normal), vector(c.force), vector(c.moment);
+      return w;
+    };
+    Interface probe = made();
+    const FakeWorld start = turn(rolling(0)), now = turn(world);
+    probe.prepare(start), channel_value(probe, start, "rotation");
+    const double sign = half.x();
+    for (const auto* name : {"slip", "rotation", "shear_traction", "couple_traction"})
+      EXPECT_NEAR(channel_value(probe, now, name), sign * channel_value(straight, world, name), 1e-14) << name;
+    for (const auto* name : {"bodies", "rotation_ratio", "slip_ratio", "traction_ratio"})
+      EXPECT_NEAR(channel_value(probe, now, name), channel_value(straight, world, name), 1e-13) << name;
+  }
+}
+
+TEST(Interface, RefusesAWallThatThereIsNot) {
+  try {
+    made("surfaces").prepare(rolling(0));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("probe interface, /wall: there is no wall \"surfaces\"; the nearest"));
+  }
+  Interface across = made();
+  across.layer.axis = "z";
+  EXPECT_THROW(across.prepare(rolling(0)), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(Interface, ProbeContract,
+                         testing::Values(ProbeCase{"lattice",
+                                                   [] {
+                                                     auto probe = std::make_shared<Interface>();
+                                                     probe->layer.wall = "bottom", probe->layer.driven_by = "top-wall";
+                                                     return probe;
+                                                   },
+                                                   [] {
+                                                     FakeWorld world = lattice_world(6, 4, 8);
+                                                     world.displacement.assign(world.position.size(), {1e-3, 0, 0});
+                                                     world.rotation.assign(world.position.size(), {0, 0.1, 0});
+                                                     world.wall[1].stage_position = {2e-3, 0, 0};
+                                                     return world;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit
