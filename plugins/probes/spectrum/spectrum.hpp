@@ -1,0 +1,49 @@
+// Acceleration and pressure of a wall, or of the grains in a box, by frequency. See README.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grit/probe.hpp"
+#include "welch.hpp"
+
+namespace grit {
+
+class Spectrum final : public Probe {
+ public:
+  std::string wall;
+  std::optional<Vec3> low, high;  ///< m
+  double interval = 1e-4;         ///< s
+  std::int64_t points = 256, windows = 8;
+
+  void declare(Parameters& parameters) override;
+  /// Throws Error for a wall that does not exist.
+  void prepare(const World& world) override;
+  std::vector<Channel> channels() const override;
+  void sample(const World& world, std::span<const std::span<double>> values) override;
+
+ private:
+  using Signals = std::array<double, 4>;  ///< acceleration along x, y, z [m/s²], pressure [Pa]
+  struct Instant {
+    double time;    ///< s
+    Vec3 velocity;  ///< of the wall [m/s]
+    Signals signals;
+  };
+  Signals look(const World& world) const;
+  void take(const World& world);
+  void begin_again() {
+    welch_.assign(4, Welch(static_cast<std::size_t>(points), interval, static_cast<std::size_t>(windows)));
+  }
+
+  std::size_t wall_ = 0;
+  std::optional<Instant> last_;
+  double first_time_ = 0;    ///< of the evenly spaced points [s]
+  std::uint64_t count_ = 0;  ///< of them
+  std::vector<Welch> welch_;
+};
+
+}  // namespace grit

@@ -1,0 +1,253 @@
+#include "spectrum.hpp"
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double turn = 2 * std::numbers::pi;
+
+/// A tone of this many periods a window of n points.
+std::vector<double> tone(std::size_t n, double periods, double amplitude, double mean = 0) {
+  std::vector<double> values(n);
+  for (std::size_t i = 0; i < n; ++i)
+    values[i] = mean + amplitude * std::sin(turn * periods * static_cast<double>(i) / static_cast<double>(n) + 0.7);
+  return values;
+}
+
+/// What a spectrum says of a tone: the mean frequency and the amplitude of what lies within two bins of the peak.
+struct Tone {
+  double frequency, amplitude;
+};
+Tone loudest(const std::vector<double>& density, double step) {
+  const auto peak = std::ranges::max_element(density) - density.begin();
+  double power = 0, moment = 0;
+  for (auto k = std::max<std::ptrdiff_t>(peak - 2, 0); k <= peak + 2; ++k)
+    power += density.at(static_cast<std::size_t>(k)), moment += density[static_cast<std::size_t>(k)] * double(k);
+  return {step * moment / power, std::sqrt(2 * power * step)};
+}
+
+// Parseval: the densities add up to the mean square of the weighted values over that of the weights.
+TEST(Welch, KeepsThePowerOfAWindow) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (const std::size_t n : {8u, 10u, 256u, 1000u}) {
+    std::vector<double> values(n);
+    for (double& value : values) value = 5 + normal(random);
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(n);
+    double power = 0, weights = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double weight = std::pow(std::sin(turn / 2 * double(i) / double(n)), 2);
+      power += std::pow(weight * (values[i] - mean), 2), weights += weight * weight;
+    }
+    const auto density = power_density(values, 1e-3);
+    ASSERT_EQ(density.size(), n / 2 + 1);
+    const double step = 1 / (double(n) * 1e-3);
+    EXPECT_NEAR(std::accumulate(density.begin(), density.end(), 0.0) * step, power / weights, 1e-13 * power / weights);
+  }
+}
+
+TEST(Welch, GivesAToneOnABinItsWholePowerInThree) {
+  const auto density = power_density(tone(256, 20, 3, 100), 0.01);
+  const double step = 1 / 2.56, power = 0.5 * 3 * 3;
+  EXPECT_NEAR(density[20] * step, power * 2 / 3, 1e-12);
+  EXPECT_NEAR(density[19] * step, power / 6, 1e-12);
+  EXPECT_NEAR(density[21] * step, power / 6, 1e-12);
+  for (std::size_t k = 0; k < density.size(); ++k)
+    if (k < 19 || k > 21) {
+      EXPECT_NEAR(density[k], 0, 1e-12) << k;
+    }
+}
+
+TEST(Welch, FindsAToneBetweenBins) {
+  for (const double periods : {20.1, 20.3, 20.5, 60.75}) {
+    const Tone found = loudest(power_density(tone(256, periods, 3), 0.01), 1 / 2.56);
+    EXPECT_NEAR(found.frequency * 2.56, periods, 0.05) << periods;
+    EXPECT_NEAR(found.amplitude, 3, 0.01 * 3) << periods;
+  }
+}
+
+// Of white noise the density is 2 σ² interval at all frequencies; the mean over N windows that overlap by half scatters
+// by about sqrt(11 / 9 N) (Welch 1967).
+TEST(Welch, GivesWhiteNoiseAFlatSpectrum) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 2);
+  Welch welch(64, 0.5, 4000);
+  EXPECT_TRUE(std::isnan(welch.mean()[3]));
+  for (int i = 0; i < 64 + 3999 * 32; ++i) welch.add(normal(random));
+  EXPECT_EQ(welch.windows(), 4000u);
+  const auto density = welch.mean();
+  for (std::size_t k = 2; k < 31; ++k) EXPECT_NEAR(density[k] / (2 * 4 * 0.5), 1, 4 * std::sqrt(11.0 / 9 / 4000)) << k;
+}
+
+TEST(Welch, ForgetsAllButTheLastWindows) {
+  Welch welch(16, 1, 3);
+  for (int i = 0; i < 16; ++i) welch.add(i % 2 == 0 ? 1 : -1);
+  EXPECT_GT(welch.mean()[8], 1);
+  for (int i = 0; i < 16; ++i) welch.add(0);
+  EXPECT_EQ(welch.windows(), 3u);
+  EXPECT_GT(welch.mean()[8], 0.1) << "the first is one of the three";
+  for (int i = 0; i < 8; ++i) welch.add(0);
+  EXPECT_GT(welch.mean()[8], 0) << "the second had half of it";
+  for (int i = 0; i < 8; ++i) welch.add(0);
+  EXPECT_EQ(welch.mean()[8], 0);
+}
+
+/// A world at an instant.
+using At = std::function<FakeWorld(double time)>;
+
+/// Samples at these times; what the last one has.
+SampleRoom listened(Spectrum& probe, const At& world, const std::vector<double>& times) {
+  probe.prepare(world(times.front()));
+  SampleRoom last(probe.channels());
+  for (const double time : times) {
+    FakeWorld now = world(time);
+    now.now = time;
+    last = sampled(probe, now);
+  }
+  return last;
+}
+std::vector<double> evenly(double step, int count) {
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i) times.push_back(step * i);
+  return times;
+}
+
+constexpr double pitch = 440, loudness = 30;  // Hz, Pa
+
+/// A wall that swings along z and is pressed, at the same pitch.
+FakeWorld swinging(double time) {
+  FakeWorld world;
+  world.wall = {still_wall("still"), still_wall("wall")};
+  world.wall[1].velocity.z() = 0.1 * std::cos(turn * pitch * time);
+  world.wall[1].pressure = 1000 + loudness * std::sin(turn * pitch * time);
+  return world;
+}
+Spectrum at_wall() {
+  Spectrum probe;
+  probe.wall = "wall";
+  return probe;
+}
+std::vector<double> along(const SampleRoom& room, std::size_t axis) {
+  std::vector<double> density;
+  for (std::size_t k = axis; k < room[1].size(); k += 3) density.push_back(room[1][k]);
+  return density;
+}
+
+TEST(Spectrum, FindsThePitchOfAWall) {
+  Spectrum probe = at_wall();
+  const auto room = listened(probe, swinging, evenly(1e-4, 2000));
+  const double step = room[0][1];
+  EXPECT_NEAR(step, 1 / 0.0256, 1e-12);
+  EXPECT_NEAR(room[0].back(), 5000, 1e-9);
+  const Tone pressure = loudest({room[2].begin(), room[2].end()}, step);
+  EXPECT_NEAR(pressure.frequency, pitch, 0.05 * step);
+  EXPECT_NEAR(pressure.amplitude, loudness, 0.01 * loudness);
+  // A difference over h has sin(πfh) / πfh of the derivative.
+  const Tone acceleration = loudest(along(room, 2), step);
+  const double less = std::sin(turn / 2 * pitch * 1e-4) / (turn / 2 * pitch * 1e-4);
+  EXPECT_NEAR(acceleration.frequency, pitch, 0.05 * step);
+  EXPECT_NEAR(acceleration.amplitude, 0.1 * turn * pitch * less, 0.01 * 0.1 * turn * pitch);
+  for (const double density : along(room, 0)) EXPECT_EQ(density, 0);
+  EXPECT_EQ(room[3][0], 8);
+}
+
+TEST(Spectrum, BringsSamplesToEqualTimes) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> step(0.1e-4, 0.4e-4);
+  std::vector<double> times{0};
+  while (times.back() < 0.2) times.push_back(times.back() + step(random));
+  Spectrum probe = at_wall();
+  const auto room = listened(probe, swinging, times);
+  const Tone pressure = loudest({room[2].begin(), room[2].end()}, room[0][1]);
+  EXPECT_NEAR(pressure.frequency, pitch, 0.05 * room[0][1]);
+  EXPECT_NEAR(pressure.amplitude, loudness, 0.01 * loudness);
+}
+
+TEST(Spectrum, ListensToTheGrainsInABox) {
+  const At shaken = [](double time) {
+    FakeWorld world;
+    const double acceleration = 7 * std::sin(turn * pitch * time);
+    for (const double x : {0.2, 0.4, 3.0}) {
+      const auto body = world.add({x, 0.5, 0.5}, x == 0.2 ? 0.1 : 0.05);
+      world.force[body] = {acceleration / world.velocity[body].w * (x < 1 ? 1 : 50), 0, 0, 0};
+    }
+    world.touch(0, 1, Vec3(0.2, 0, 0), Vec3(10 + 3 * std::sin(turn * pitch * time), 0, 0));
+    return world;
+  };
+  Spectrum probe;
+  probe.low = Vec3(0, 0, 0), probe.high = Vec3(1, 1, 0.8);
+  const auto room = listened(probe, shaken, evenly(1e-4, 2000));
+  EXPECT_NEAR(loudest(along(room, 0), room[0][1]).amplitude, 7, 0.01 * 7);
+  EXPECT_NEAR(loudest({room[2].begin(), room[2].end()}, room[0][1]).amplitude, 3 * 0.2 / 0.8 / 3, 0.01 * 0.25);
+  for (const double density : along(room, 1)) EXPECT_EQ(density, 0);
+}
+
+TEST(Spectrum, KnowsNothingBeforeTheFirstWindowIsFullAndAfterAGap) {
+  Spectrum probe = at_wall();
+  probe.points = 16;
+  auto times = evenly(1e-4, 16);  // the first has no acceleration yet
+  auto room = listened(probe, swinging, times);
+  EXPECT_EQ(room[3][0], 0);
+  EXPECT_TRUE(std::isnan(room[2][3]));
+  times.push_back(16e-4);
+  room = listened(probe, swinging, times);
+  EXPECT_EQ(room[3][0], 1);
+  EXPECT_TRUE(std::isfinite(room[2][3]));
+  for (int i = 0; i < 16; ++i) times.push_back(16e-4 + 1.5e-4 + 1e-4 * i);
+  EXPECT_EQ(listened(probe, swinging, times)[3][0], 3) << "bridged by a line";
+  for (int i = 17; i < 33; ++i) times[static_cast<std::size_t>(i)] += 1e-4;
+  EXPECT_EQ(listened(probe, swinging, times)[3][0], 0) << "begun again";
+}
+
+TEST(Spectrum, RefusesWhatIsNeitherAWallNorABox) {
+  Spectrum probe;
+  EXPECT_THAT(complaints(probe), HasSubstr("wall: found neither a wall nor a box, allowed: one of them"));
+  probe.low = Vec3::Zero();
+  EXPECT_THAT(complaints(probe), HasSubstr("high: found one corner of a box, allowed: both low and high, or neither"));
+  probe.high = Vec3(1, 0, 1);
+  EXPECT_THAT(complaints(probe), HasSubstr("high: found a corner that is not above low"));
+  probe.high = Vec3(1, 1, 1);
+  EXPECT_EQ(complaints(probe), "");
+  probe.wall = "wall";
+  EXPECT_THAT(complaints(probe), HasSubstr("wall: found a wall and a box, allowed: one of them"));
+  Spectrum odd = at_wall();
+  odd.points = 25;
+  EXPECT_EQ(complaints(odd), "points: found 25, allowed: an even number\n");
+  Spectrum nowhere = at_wall();
+  nowhere.wall = "well";
+  try {
+    nowhere.prepare(swinging(0));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("probe spectrum, /wall: there is no wall \"well\"; the nearest name is \"wall\""));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Spectrum, ProbeContract,
+                         testing::Values(ProbeCase{"wall",
+                                                   [] {
+                                                     auto probe = std::make_shared<Spectrum>();
+                                                     probe->wall = "top-wall";
+                                                     return probe;
+                                                   }},
+                                         ProbeCase{"box",
+                                                   [] {
+                                                     auto probe = std::make_shared<Spectrum>();
+                                                     probe->low = Vec3::Zero(), probe->high = Vec3::Constant(2e-3);
+                                                     return probe;
+                                                   }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit
