@@ -21,7 +21,7 @@ struct Grain {
   double volume = 0;                                                ///< m³
   Mat3 load = Mat3::Zero();                                         ///< Σ f ⊗ arm, compression positive [N m]
   double major = 0;                                                 ///< Pa
-  Vec3 direction;                                                   ///< of the major stress, unit
+  Vec3 direction = Vec3::Zero();                                    ///< of the major stress, unit
   std::array<std::uint32_t, 2> next{none, none}, link{none, none};  ///< by side: grain and contact
 
   bool has_both() const { return next[0] != none && next[1] != none; }
