@@ -1,0 +1,126 @@
+#include "coarse-graining.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "../specimen.hpp"
+#include "grit/error.hpp"
+#include "grit/plugin.hpp"
+
+namespace grit {
+
+namespace {
+
+constexpr double most_points = 5e6;  // 1 GB of sums, 1.4 GB of fields
+
+}  // namespace
+
+void CoarseGraining::declare(Parameters& parameters) {
+  parameters.add("cutoff", cutoff)
+      .symbol("c")
+      .at_least(0.1)
+      .doc("of the kernel, where it has fallen to nothing, over the mean diameter");
+  parameters.add("spacing", spacing)
+      .at_least(0.05)
+      .doc("of the points, over the mean diameter; as many as fit are spread evenly");
+  parameters.add("slice", slice)
+      .one_of({"none", "x", "y", "z"})
+      .doc("axis along which there is one point alone, in the middle");
+  parameters.add("low", low).unit("m").doc("lowest corner of the box of points; left out: of the specimen");
+  parameters.add("high", high).unit("m").doc("its highest corner; left out: of the specimen");
+  parameters.check(
+      [this](const Complain& complain) {
+        if (low && high && !(low->array() < high->array()).all())
+          complain("high", "a corner that is not above low", "more than low along x, y and z");
+      },
+      {"low", "high"});
+}
+
+std::vector<Channel> CoarseGraining::channels() const {
+  return {{"density", "kg m-3", "mass over space, mean of the points; 0 without any", {}},
+          {"mean_stress", "Pa", "a third of the trace of the stress, positive in compression, mean of the points", {}},
+          {"kinetic_stress", "Pa", "the part of it that fluctuations of velocities have", {}},
+          {"points", "1", "number of points", {}}};
+}
+
+PointGrid CoarseGraining::grid(const World& world) const {
+  Region box = specimen_box(world);
+  if (low) box.low = *low;
+  if (high) box.high = *high;
+  const double step = spacing * world.mean_diameter();
+  PointGrid points{box.low, Vec3::Zero(), {0, 0, 0}};
+  if (!(step > 0) || !(box.volume() > 0) || !std::isfinite(box.volume())) return points;
+  std::array<double, 3> count{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = box.high[axis] - box.low[axis];
+    double& n = count[static_cast<std::size_t>(axis)];
+    n = slice[0] - 'x' == axis ? 1 : std::max(1.0, std::floor(length / step + 1e-9));
+    points.step[axis] = length / n;
+  }
+  points.first += 0.5 * points.step;
+  const double all = count[0] * count[1] * count[2];
+  if (!(all <= most_points))
+    throw Error("probe coarse-graining, /spacing: makes " +
+                std::to_string(static_cast<std::uint64_t>(std::min(all, 1e18))) +
+                " points, 5000000 are allowed; space them wider, say a slice, or a smaller box by low and high");
+  for (std::size_t axis = 0; axis < 3; ++axis) points.count[axis] = static_cast<std::size_t>(count[axis]);
+  return points;
+}
+
+void CoarseGraining::sample(const World& world, std::span<const std::span<double>> values) {
+  const auto all = smoothed(world, grid(world));
+  double density = 0, stress = 0, kinetic = 0;
+  for (const CoarseFields& field : all) {
+    density += field.density, kinetic += field.kinetic.trace() / 3;
+    stress += (field.contact + field.kinetic).trace() / 3;
+  }
+  const double count = std::max<double>(1, static_cast<double>(all.size()));
+  values[0][0] = density / count, values[1][0] = stress / count, values[2][0] = kinetic / count;
+  values[3][0] = static_cast<double>(all.size());
+}
+
+std::vector<Field> CoarseGraining::fields(const World& world) {
+  std::vector<Field> fields{
+      {"centre", "m", "the point", 3, {}},
+      {"size", "m", "of the cell around it; cells fill the box", 3, {}},
+      {"density", "kg m-3", "mass over space", 1, {}},
+      {"momentum", "kg m-2 s-1", "momentum over space, half a step before", 3, {}},
+      {"velocity", "m s-1", "momentum over density; 0 without any", 3, {}},
+      {"stress",
+       "Pa",
+       "of contacts and fluctuations, row by row, the first index the force's; compression positive",
+       9,
+       {}},
+      {"kinetic_stress", "Pa", "the part that fluctuations of velocities have", 9, {}},
+      {"wall_force", "N m-3", "force that walls exert on the grains, over space", 3, {}}};
+  const PointGrid points = grid(world);
+  const auto all = smoothed(world, points);
+  for (auto& field : fields) field.values.reserve(field.width * all.size());
+  const auto put = [&](std::size_t field, const auto& matrix) {
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j) fields[field].values.push_back(matrix(i, j));
+  };
+  std::size_t index = 0;
+  for (std::size_t i = 0; i < points.count[0]; ++i)
+    for (std::size_t j = 0; j < points.count[1]; ++j)
+      for (std::size_t k = 0; k < points.count[2]; ++k) {
+        const CoarseFields& here = all[index++];
+        put(0, points.at(i, j, k)), put(1, points.step);
+        fields[2].values.push_back(here.density);
+        put(3, here.momentum), put(4, here.velocity());
+        put(5, Mat3(here.contact + here.kinetic)), put(6, here.kinetic), put(7, here.wall_force);
+      }
+  return fields;
+}
+
+}  // namespace grit
+
+const grit::PluginInfo* grit_plugin() {
+  static const grit::PluginInfo info{.kind = "probe",
+                                     .name = "coarse-graining",
+                                     .version = "1.0.0",
+                                     .doc = "density, momentum and stress fields by a smooth kernel",
+                                     .make_probe = []() -> grit::Probe* { return new grit::CoarseGraining; }};
+  return &info;
+}

@@ -1,0 +1,35 @@
+// Density, momentum, velocity and stress of the continuum that grains make. See README.md.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "coarse_fields.hpp"
+#include "grit/probe.hpp"
+
+namespace grit {
+
+class CoarseGraining final : public Probe {
+ public:
+  double cutoff = 2, spacing = 1;  ///< mean diameters
+  std::string slice = "none";
+  std::optional<Vec3> low, high;  ///< m
+
+  void declare(Parameters& parameters) override;
+  /// Throws Error where the grid has too many points.
+  void prepare(const World& world) override { grid(world); }
+  std::vector<Channel> channels() const override;
+  void sample(const World& world, std::span<const std::span<double>> values) override;
+  std::vector<Field> fields(const World& world) override;
+
+ private:
+  /// No points where there is no mean diameter.
+  PointGrid grid(const World& world) const;
+  std::vector<CoarseFields> smoothed(const World& world, const PointGrid& points) const {
+    return coarse_fields(world, points, cutoff * world.mean_diameter());
+  }
+};
+
+}  // namespace grit
