@@ -1,48 +1,13 @@
 #include "strain.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "../displacement_fit.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
-namespace {
-
-using Vec2 = Eigen::Vector2d;
-using Mat2 = Eigen::Matrix2d;
-
-/// The best linear displacement field of some bodies, u = ū + H (X − X̄), by least squares.
-class Fit {
- public:
-  void add(const Vec2& place, const Vec2& moved) { places_.push_back(place), moves_.push_back(moved); }
-  int bodies() const { return static_cast<int>(places_.size()); }
-  /// Green and Lagrange's strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` bodies, or where
-  /// they lie so nearly on one line that their spread along and across it has a ratio of less than `flat`.
-  std::array<double, 3> green(std::size_t least, double flat) const {
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    if (places_.size() < least) return {unknown, unknown, unknown};
-    Vec2 place = Vec2::Zero(), moved = Vec2::Zero();
-    for (std::size_t i = 0; i < places_.size(); ++i) place += places_[i], moved += moves_[i];
-    place /= static_cast<double>(places_.size()), moved /= static_cast<double>(places_.size());
-    Mat2 spread = Mat2::Zero(), together = Mat2::Zero();
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const Vec2 x = places_[i] - place;
-      spread += x * x.transpose(), together += (moves_[i] - moved) * x.transpose();
-    }
-    if (!(spread.determinant() > flat * spread.trace() * spread.trace())) return {unknown, unknown, unknown};
-    const Mat2 gradient = together * spread.inverse();
-    const Mat2 green = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
-    return {green(0, 0), green(1, 1), green(0, 1)};
-  }
-
- private:
-  std::vector<Vec2> places_, moves_;
-};
-
-}  // namespace
 
 void Strain::declare(Parameters& p) {
   p.add("depth_axis", depth_axis).one_of({"x", "y", "z"}).doc("perpendicular to the plane of the strain");
@@ -114,17 +79,17 @@ std::vector<Strain::Subset> Strain::subsets(const World& world) const {
     const auto end = std::ranges::upper_bound(all, x + 0.5 * side, {}, [](const Body& b) { return b.place.x(); });
     for (std::int64_t j = 0; j < rows; ++j) {
       const double y = low.y() + margin.y() + static_cast<double>(j) * apart;
-      Fit fit;
+      DisplacementFit fit;
       for (auto body = begin; body != end; ++body)
         if (std::abs(body->place.y() - y) <= 0.5 * side) fit.add(body->place, body->moved);
-      found.push_back({.centre = {x, y}, .bodies = fit.bodies(), .green = fit.green(6, 0.01)});
+      found.push_back({.centre = {x, y}, .bodies = fit.points(), .green = fit.green(6, 0.01)});
     }
   }
   return found;
 }
 
 void Strain::sample(const World& world, std::span<const std::span<double>> values) {
-  Fit whole;
+  DisplacementFit whole;
   for (const Body& body : bodies(world)) whole.add(body.place, body.moved);
   std::ranges::copy(whole.green(4, 1e-12), values[0].begin());
   double largest = 0;

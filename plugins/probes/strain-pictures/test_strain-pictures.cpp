@@ -1,0 +1,438 @@
+#include "strain-pictures.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+#include <random>
+
+#include "contracts/probe.hpp"
+
+namespace grit {
+namespace {
+
+using testing::HasSubstr;
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+/// Waves of all directions, six pixels long and more: a pattern that is known everywhere.
+class Waves {
+ public:
+  Waves() {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> draw(0, 1);
+    for (int k = 0; k < 60; ++k) {
+      const double angle = 2 * std::numbers::pi * draw(random), number = 2 * std::numbers::pi / (6 + 14 * draw(random));
+      waves_.push_back({number * Vec2(std::cos(angle), std::sin(angle)), 2 * std::numbers::pi * draw(random)});
+    }
+  }
+  double operator()(const Vec2& place) const {
+    double sum = 0.5;
+    for (const auto& [number, phase] : waves_) sum += 0.03 * std::cos(number.dot(place) + phase);
+    return sum;
+  }
+
+ private:
+  std::vector<std::pair<Vec2, double>> waves_;
+};
+
+constexpr int picture_size = 160;
+
+/// The pattern moved by x = X + shift + gradient (X − middle), brighter by `light` and of another contrast.
+Image moved_waves(const Mat2& gradient, const Vec2& shift, double light = 0) {
+  const Waves waves;
+  const Vec2 middle = Vec2::Constant(0.5 * picture_size);
+  const Mat2 back = (Mat2::Identity() + gradient).inverse();
+  Image image(picture_size, picture_size);
+  for (int j = 0; j < picture_size; ++j)
+    for (int i = 0; i < picture_size; ++i)
+      image.row(j)[i] = static_cast<float>(light + (1 + light) * waves(middle + back * (Vec2(i, j) - middle - shift)));
+  return image;
+}
+
+/// The largest error of any square's displacement [pixels]; all must be found.
+double worst_error(const Mat2& gradient, const Vec2& shift, double light = 0) {
+  const Correlation pictures(moved_waves(Mat2::Zero(), Vec2::Zero()), moved_waves(gradient, shift, light), 15);
+  const SquareGrid grid{.columns = 6, .rows = 6, .left = 35, .bottom = 35, .apart = 18};
+  const MatchGrid found = matches(pictures, grid, 6, 20, 0.9);
+  double worst = 0;
+  for (std::size_t n = 0; n < found.match.size(); ++n) {
+    EXPECT_TRUE(found.match[n].has_value()) << n;
+    if (!found.match[n]) return 1;
+    const Vec2 place(35 + 18 * static_cast<int>(n % 6), 35 + 18 * static_cast<int>(n / 6));
+    const Vec2 moved = shift + gradient * (place - Vec2::Constant(0.5 * picture_size));
+    worst = std::max(worst, (found.match[n]->moved - moved).lpNorm<Eigen::Infinity>());
+    EXPECT_LT((found.match[n]->gradient - gradient).lpNorm<Eigen::Infinity>(), 2e-3) << n;
+  }
+  return worst;
+}
+
+TEST(Correlation, FindsShiftsOfAPartOfAPixel) {
+  for (int tenths = 1; tenths < 10; ++tenths) {
+    EXPECT_LT(worst_error(Mat2::Zero(), {0.1 * tenths, -0.1 * tenths}), 0.005) << tenths;
+  }
+}
+
+TEST(Correlation, FindsUniformStrain) {
+  Mat2 gradient;
+  gradient << 0.03, 0.06, 0.01, -0.04;
+  EXPECT_LT(worst_error(gradient, {3.3, -7.8}), 0.005);
+}
+
+TEST(Correlation, FindsTurnsInAnyLight) {
+  const Mat2 turn = Eigen::Rotation2Dd(0.1).toRotationMatrix() - Mat2::Identity();
+  EXPECT_LT(worst_error(turn, {0.25, 0.4}, 0.3), 0.005);
+}
+
+TEST(Correlation, FindsNothingWhereThereIsNothingToSee) {
+  const Image grey(picture_size, picture_size), waves = moved_waves(Mat2::Zero(), Vec2::Zero());
+  EXPECT_FALSE(Correlation(grey, waves, 15).search(80, 80, 20).has_value());
+  EXPECT_FALSE(Correlation(grey, waves, 15).refined(80, 80, {}).has_value());
+  EXPECT_FALSE(Correlation(waves, grey, 15).search(80, 80, 20).has_value());
+  EXPECT_FALSE(Correlation(waves, grey, 15).refined(80, 80, {}).has_value());
+}
+
+TEST(Correlation, LosesWhatLeavesThePicture) {
+  const Image waves = moved_waves(Mat2::Zero(), Vec2::Zero());
+  const Correlation pictures(waves, waves, 15);
+  EXPECT_TRUE(pictures.has(16, 16) && !pictures.has(15, 16) && !pictures.has(16, 144) && pictures.has(143, 143));
+  EXPECT_TRUE(pictures.refined(20, 20, {}).has_value());
+  EXPECT_FALSE(pictures.refined(20, 20, {.moved = {-4, 0}}).has_value());
+}
+
+/// Light's sum, and where its middle is.
+struct Light {
+  double sum = 0;
+  Vec2 middle = Vec2::Zero();
+};
+Light light_of(const Image& image) {
+  Light light;
+  for (int j = 0; j < image.height; ++j)
+    for (int i = 0; i < image.width; ++i) light.sum += image.row(j)[i], light.middle += image.row(j)[i] * Vec2(i, j);
+  light.middle /= light.sum;
+  return light;
+}
+
+Disc disc(double x, double y, double depth = 12, double radius = 12, double angle = 0, std::uint32_t id = 7) {
+  return {.x = x, .y = y, .depth = depth, .radius = radius, .angle = angle, .id = id};
+}
+Image seen(const std::vector<Disc>& discs) { return Camera(1, 25).picture(discs, 60, 50); }
+
+TEST(Camera, MovesGreyValuesWithPartsOfAPixel) {
+  const Light still = light_of(seen({disc(30, 25)}));
+  for (int tenths = 1; tenths < 10; ++tenths) {
+    const Light moved = light_of(seen({disc(30 + 0.1 * tenths, 25 - 0.1 * tenths)}));
+    EXPECT_NEAR((moved.middle - still.middle).x(), 0.1 * tenths, 0.01);
+    EXPECT_NEAR((moved.middle - still.middle).y(), -0.1 * tenths, 0.01);
+    EXPECT_NEAR(moved.sum / still.sum, 1, 2e-3);
+  }
+}
+
+TEST(Camera, TurnsSpecklesAnticlockwise) {
+  // By a right angle, pixel (x, y) goes to (−y, x) about the middle of the disc.
+  const Image still = seen({disc(30, 25)}), turned = seen({disc(30, 25, 12, 12, 0.5 * std::numbers::pi)});
+  double difference = 0, contrast = 0;
+  for (int j = -8; j <= 8; ++j)
+    for (int i = -8; i <= 8; ++i) {
+      difference = std::max(difference, double(std::abs(turned.row(25 + i)[30 - j] - still.row(25 + j)[30 + i])));
+      contrast = std::max(contrast, double(std::abs(turned.row(25 + j)[30 + i] - still.row(25 + j)[30 + i])));
+    }
+  EXPECT_LT(difference, 1e-4);
+  EXPECT_GT(contrast, 0.1);
+}
+
+TEST(Camera, ShowsTheNearerOfTwo) {
+  const Disc near = disc(30, 25, 12, 12, 0, 1), far = disc(32, 24, 40, 12, 0, 2);
+  const Image both = seen({far, near}), again = seen({near, far}), alone = seen({near}), behind = seen({far});
+  EXPECT_EQ(both.grey, again.grey);
+  EXPECT_EQ(both.row(25)[30], alone.row(25)[30]);
+  EXPECT_EQ(both.row(21)[43], behind.row(21)[43]);
+  EXPECT_GT(behind.row(21)[43], 0.05f);
+  EXPECT_EQ(alone.row(21)[43], 0);
+  // Spheres that reach into each other: each is seen where it is in front.
+  const Disc left = disc(25, 25, 12, 12, 0, 1), right = disc(37, 25, 12, 12, 0, 2);
+  const Image pair = seen({left, right});
+  EXPECT_EQ(pair.row(25)[29], seen({left}).row(25)[29]);
+  EXPECT_EQ(pair.row(25)[33], seen({right}).row(25)[33]);
+}
+
+TEST(Camera, SeesWhatIsCutByThePicturesSides) {
+  const Image corner = seen({disc(-5, -5), disc(62, 52, 12, 12, 0, 8), disc(-200, 0), disc(20, 900)});
+  EXPECT_GT(corner.row(0)[0], 0.05f);
+  EXPECT_GT(corner.row(49)[59], 0.05f);
+  EXPECT_EQ(corner.row(25)[30], 0);
+}
+
+/// Spheres near the places of a lattice, three deep, at rest.
+FakeWorld packing(int columns = 16, int rows = 12, int depth_axis = 1) {
+  FakeWorld world;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> draw(-1, 1);
+  const int right = depth_axis == 0 ? 1 : 0, up = depth_axis == 2 ? 1 : 2;
+  for (int i = 0; i < columns; ++i)
+    for (int k = 0; k < rows; ++k)
+      for (int j = 0; j < 3; ++j) {
+        Vec3 place;
+        place[right] = (i + 0.5 + 0.15 * draw(random)) * 1e-3, place[up] = (k + 0.5 + 0.15 * draw(random)) * 1e-3;
+        place[depth_axis] = (0.5 + 0.9 * j + 0.1 * draw(random)) * 1e-3;
+        world.add(place, 0.5e-3 * (1.05 + 0.25 * draw(random)));
+      }
+  world.rotation.assign(world.position.size(), Vec3::Zero());
+  world.displacement.assign(world.position.size(), Vec3::Zero());
+  world.whole.low.setZero(), world.whole.high.setConstant(3e-3);
+  world.whole.high[right] = columns * 1e-3, world.whole.high[up] = rows * 1e-3;
+  return world;
+}
+
+/// Some steps later: centres at F X + shift, all turned by `turn`.
+FakeWorld moved(FakeWorld world, const Mat3& gradient, const Vec3& shift, const Vec3& turn = Vec3::Zero()) {
+  for (std::size_t i = 0; i < world.position.size(); ++i) {
+    Row& row = world.position[i];
+    const Vec3 to = gradient * xyz(row) + shift;
+    world.displacement[i] += to - xyz(row);
+    row = {to.x(), to.y(), to.z(), row.w};
+    world.rotation[i] += turn;
+  }
+  world.steps += 100;
+  return world;
+}
+
+struct Errors {
+  double bias = 0, deviation = 0, worst = 0, found = 0;  ///< pixels; share
+};
+
+/// Of the displacements that the probe finds between two worlds, against those of the places where its subsets were.
+Errors errors(StrainPictures& probe, const FakeWorld& before, const FakeWorld& after, const Mat3& gradient,
+              const Vec3& shift) {
+  probe.prepare(before);
+  const auto start = probe.fields(before);
+  const auto now = probe.fields(after);
+  const int depth = probe.depth_axis[0] - 'x', right = depth == 0 ? 1 : 0, up = depth == 2 ? 1 : 2;
+  const double pixel = before.mean_diameter() / probe.pixels_per_diameter;
+  Errors errors;
+  double count = 0;
+  Vec2 bias = Vec2::Zero();
+  const std::size_t subsets = now[4].values.size();
+  for (std::size_t s = 0; s < subsets; ++s) {
+    if (std::isnan(now[4].values[s])) continue;
+    Vec3 place(start[0].values[3 * s], start[0].values[3 * s + 1], start[0].values[3 * s + 2]);
+    const Vec3 whole = gradient * place + shift - place;
+    const Vec2 error = (Vec2(now[2].values[2 * s], now[2].values[2 * s + 1]) - Vec2(whole[right], whole[up])) / pixel;
+    bias += error, errors.deviation += 0.5 * error.squaredNorm(), ++count;
+    errors.worst = std::max(errors.worst, error.lpNorm<Eigen::Infinity>());
+  }
+  errors.bias = bias.lpNorm<Eigen::Infinity>() / count;
+  errors.deviation = std::sqrt(errors.deviation / count);
+  errors.found = count / static_cast<double>(subsets);
+  return errors;
+}
+
+TEST(StrainPictures, FindsShiftsOfAPartOfAPixel) {
+  const FakeWorld before = packing();
+  StrainPictures probe;
+  const double pixel = before.mean_diameter() / probe.pixels_per_diameter;
+  for (int tenths = 1; tenths < 10; ++tenths) {
+    const Vec3 shift(0.1 * tenths * pixel, 0, -0.1 * tenths * pixel);
+    const Errors found = errors(probe, before, moved(before, Mat3::Identity(), shift), Mat3::Identity(), shift);
+    EXPECT_EQ(found.found, 1) << tenths;
+    EXPECT_LT(found.worst, 0.02) << tenths;
+  }
+}
+
+TEST(StrainPictures, FindsTurnsAlongEachAxis) {
+  for (const int axis : {0, 1, 2}) {
+    const Vec3 about = Vec3::Unit(axis);
+    const Mat3 turn = Eigen::AngleAxisd(0.1, about).toRotationMatrix();
+    const FakeWorld before = packing(16, 12, axis);
+    Vec3 centre(8e-3, 8e-3, 6e-3);
+    centre[axis] = 0;
+    const Vec3 shift = centre - turn * centre;
+    StrainPictures probe;
+    probe.depth_axis = std::string(1, "xyz"[axis]);
+    const Errors found = errors(probe, before, moved(before, turn, shift, 0.1 * about), turn, shift);
+    EXPECT_EQ(found.found, 1) << axis;
+    EXPECT_LT(found.worst, 0.02) << axis;
+  }
+}
+
+TEST(StrainPictures, AgreesWithGrainsOnUniformStrain) {
+  Mat3 gradient = Mat3::Identity();
+  gradient(0, 0) = 1.01, gradient(2, 2) = 0.99, gradient(0, 2) = 0.04;
+  const FakeWorld before = packing(24, 16), after = moved(before, gradient, Vec3::Zero());
+  StrainPictures pictures;
+  const Errors found = errors(pictures, before, after, gradient, Vec3::Zero());
+  const auto seen = channel_values(pictures, after, "strain");
+  const Mat3 green = 0.5 * (gradient.transpose() * gradient - Mat3::Identity());
+  const std::array<double, 3> known{green(0, 0), green(2, 2), green(0, 2)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(seen[k], known[k], 5e-4) << k;
+  }
+  EXPECT_LT(found.bias, 0.02);
+}
+
+TEST(StrainPictures, LooksAsFarAsItIsTold) {
+  const FakeWorld before = packing();
+  const double diameter = before.mean_diameter();
+  const Vec3 shift(2.6 * diameter, 0, -1.3 * diameter);
+  const FakeWorld after = moved(before, Mat3::Identity(), shift);
+  StrainPictures far;
+  const Errors found = errors(far, before, after, Mat3::Identity(), shift);
+  EXPECT_EQ(found.found, 1);
+  EXPECT_LT(found.worst, 0.02);
+  StrainPictures near;
+  near.search = 2;
+  EXPECT_EQ(errors(near, before, after, Mat3::Identity(), shift).found, 0);
+  EXPECT_TRUE(std::isnan(channel_values(near, after, "strain").at(0)));
+  EXPECT_TRUE(std::isnan(channel_value(near, after, "correlation")));
+  EXPECT_EQ(channel_value(near, after, "found"), 0);
+  EXPECT_EQ(channel_value(near, after, "largest_shear"), 0);
+}
+
+TEST(StrainPictures, LosesGrainsThatTurnApart) {
+  const FakeWorld before = packing();
+  FakeWorld after = moved(before, Mat3::Identity(), Vec3::Zero());
+  for (std::size_t i = 0; i < after.position.size(); ++i)
+    if (before.position[i].x > 8e-3) after.rotation[i].y() = i % 2 == 0 ? 1.5 : -1.5;
+  StrainPictures probe;
+  probe.prepare(before);
+  const auto start = probe.fields(before).at(0).values;
+  const auto correlation = probe.fields(after).at(4).values;
+  int still = 0, turned = 0, found = 0;
+  for (std::size_t s = 0; s < correlation.size(); ++s) {
+    const double x = start[3 * s];
+    if (x < 6.5e-3) {
+      ++still;
+      EXPECT_GT(correlation[s], 0.999) << s;
+    }
+    if (x > 9.5e-3) {
+      ++turned;
+      if (!std::isnan(correlation[s])) ++found;
+    }
+  }
+  EXPECT_GT(still, 100);
+  EXPECT_GT(turned, 100);
+  // Some, by their outlines and greys.
+  EXPECT_LT(found, 0.2 * turned);
+}
+
+TEST(StrainPictures, IsLocal) {
+  // Two blocks, the upper one slid along the lower one.
+  const FakeWorld before = packing(16, 16);
+  FakeWorld after = before;
+  ++after.steps;
+  for (Row& row : after.position)
+    if (row.z > 8e-3) row.x += 0.4e-3;
+  StrainPictures probe;
+  probe.prepare(before);
+  const auto start = probe.fields(before).at(0).values;
+  const auto strain = probe.fields(after).at(3).values;
+  int off = 0, across = 0;
+  for (std::size_t s = 0; s < start.size() / 3; ++s) {
+    const double z = start[3 * s + 2] - 8e-3;
+    // Off by half a window, half a subset and half a grain.
+    if (std::abs(z) > 3e-3) {
+      ++off;
+      EXPECT_NEAR(strain[3 * s + 2], 0, 1e-3) << s;
+    }
+    if (std::abs(z) < 0.4e-3) {
+      ++across;
+      EXPECT_GT(strain[3 * s + 2], 0.05) << s;
+    }
+  }
+  EXPECT_GT(off, 100);
+  EXPECT_GT(across, 10);
+  EXPECT_GT(channel_value(probe, after, "largest_shear"), 0.05);
+}
+
+TEST(StrainPictures, BeginsAnewWithEachStage) {
+  const FakeWorld before = packing();
+  FakeWorld after = moved(before, Mat3::Identity(), {1e-4, 0, 0});
+  StrainPictures probe;
+  probe.prepare(before);
+  probe.fields(before);
+  EXPECT_GT(probe.fields(after).at(2).values.at(0), 0.9e-4);
+  after.stage_name = "next";
+  for (const double moved : probe.fields(after).at(2).values) EXPECT_NEAR(moved, 0, 1e-10);
+}
+
+TEST(StrainPictures, SeesTheSpecimenGoOnBeyondAPeriodicSide) {
+  FakeWorld before = packing();
+  before.box = {Vec3::Zero(), {16e-3, 3e-3, 12e-3}, {true, false, false}};
+  const Vec3 shift(2e-3, 0, 0);
+  FakeWorld after = moved(before, Mat3::Identity(), shift);
+  for (Row& row : after.position)
+    if (row.x > 16e-3) row.x -= 16e-3;
+  StrainPictures probe;
+  const Errors found = errors(probe, before, after, Mat3::Identity(), shift);
+  EXPECT_EQ(found.found, 1);
+  EXPECT_LT(found.worst, 0.02);
+}
+
+TEST(StrainPictures, IsTheSameStrainWithOtherSpecklesAndMorePixels) {
+  Mat3 gradient = Mat3::Identity();
+  gradient(0, 2) = 0.02;
+  const FakeWorld before = packing(), after = moved(before, gradient, Vec3::Zero());
+  std::vector<std::vector<float>> greys;
+  for (const auto& [seed, pixels] : {std::pair(1, 25.0), std::pair(2, 25.0), std::pair(1, 36.0)}) {
+    StrainPictures probe;
+    probe.search = 1;
+    probe.seed = seed, probe.pixels_per_diameter = pixels;
+    probe.prepare(before);
+    greys.push_back(probe.picture(before).grey);
+    EXPECT_NEAR(channel_values(probe, after, "strain").at(2), 0.01, 3e-4) << seed << ' ' << pixels;
+  }
+  EXPECT_NE(greys[0], greys[1]);
+  EXPECT_GT(greys[2].size(), 2 * greys[0].size());
+}
+
+TEST(StrainPictures, ToleratesASpecimenSmallerThanASubset) {
+  FakeWorld world = packing(1, 1);
+  StrainPictures probe;
+  probe.subset = 3;
+  probe.prepare(world);
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "found")));
+  EXPECT_TRUE(probe.fields(world).at(0).values.empty());
+}
+
+std::string refusal(StrainPictures& probe, const FakeWorld& world) {
+  try {
+    probe.prepare(world);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(StrainPictures, RefusesWhatHasNoFaceOrIsTooLarge) {
+  FakeWorld world = packing();
+  StrainPictures probe;
+  world.box = {Vec3::Zero(), {16e-3, 3e-3, 12e-3}, {false, true, false}};
+  EXPECT_EQ(refusal(probe, world),
+            "probe strain-pictures, /depth_axis: the domain is periodic along y, so that there is no face to look at; "
+            "name another axis");
+  world.box.periodic = {true, false, true};
+  EXPECT_EQ(refusal(probe, world), "");
+  world.whole.high = {16, 3e-3, 12};
+  EXPECT_THAT(refusal(probe, world), HasSubstr("probe strain-pictures, /pixels_per_diameter: a picture of the specimen "
+                                               "would have "));
+  EXPECT_THAT(refusal(probe, world), HasSubstr("at most 67.108864 million; use fewer, or a smaller search"));
+}
+
+TEST(StrainPictures, RefusesWindowsWithoutNeighboursAndSubsetsOfFewPixels) {
+  StrainPictures probe;
+  probe.step = 1, probe.window = 1.9;
+  EXPECT_EQ(complaints(probe),
+            "window: found 1.900000, allowed: at least two steps, 2.000000, so that subsets on both sides count\n");
+  probe.window = 2;
+  EXPECT_EQ(complaints(probe), "");
+  probe.pixels_per_diameter = 8;
+  EXPECT_EQ(complaints(probe),
+            "subset: found 9.600000 pixels, allowed: at least 10 pixels: larger, or with more pixels_per_diameter\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(StrainPictures, ProbeContract,
+                         testing::Values(ProbeCase{"packing", [] { return std::make_shared<StrainPictures>(); },
+                                                   [] { return packing(6, 5); }}),
+                         probe_case_name);
+
+}  // namespace
+}  // namespace grit
