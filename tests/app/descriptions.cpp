@@ -144,6 +144,17 @@ TEST(Check, SaysWhatWouldRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST(Check, SaysWhatComesLater) {
+  const OwnFolder folder;
+  json scene = json::parse(two_grains);
+  scene["bodies"]["late"] = scene["bodies"]["grains"];
+  scene["bodies"]["late"]["stage"] = "part";
+  folder.write("later.json", scene.dump());
+  const auto outcome = grit_in(folder.path(), {"check", "later.json"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("bodies: 2, touching pairs at the start: 1\n  2 more in the stage part\n"));
+}
+
 /// What `expand` makes of a file, from this folder.
 std::string expanded(const std::filesystem::path& folder, const std::string& file) {
   const auto outcome = grit_in(folder, {"expand", file});

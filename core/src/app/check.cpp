@@ -1,6 +1,7 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <thread>
 
 #include "app/options.hpp"
@@ -60,23 +61,32 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   for (const auto& [name, engine] : description.engines)
     if (engine.engine->phase() == Phase::settings) std::cout << " with " << name;
   std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << simulation.pair_count() << '\n';
+  std::map<std::string, std::size_t> coming;  // by stage
+  std::size_t all_bodies = bodies;
+  for (const auto& [name, group] : description.bodies)
+    if (!group.stage.empty()) all_bodies += body_count(group), coming[group.stage] += body_count(group);
+  for (const StageDescription& stage : description.stages)
+    if (coming.contains(stage.name))
+      std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';
   std::cout << "time step: " << simulation.dt() << " s, critical " << simulation.clock().critical_time_step
             << " s at the start; followed as contacts change\n";
   std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(simulation.memory())) + 1 << " MB now, about "
-            << std::lround(1e-6 * 700.0 * static_cast<double>(bodies)) + 1 << " MB when dense\n\nstages\n";
+            << std::lround(1e-6 * 700.0 * static_cast<double>(all_bodies)) + 1 << " MB when dense\n\nstages\n";
 
   const bool cloud = simulation.pair_count() * 2 < bodies;
   const double dt = simulation.dt() * (cloud && !description.time_step.value ? dense_step_share : 1);
-  double known = 0, most = 0;
+  double known = 0, most = 0;  // s times bodies
+  std::size_t there = bodies;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     const StageDescription& stage = description.stages[i];
     const StageTime time = stage_time(stage, *scene.stages[i].start);
-    (time.known ? known : most) += time.expected;
+    there += coming[stage.name];
+    (time.known ? known : most) += time.expected * static_cast<double>(there);
     std::cout << "  " << std::setw(16) << stage.name << (time.known ? "" : "at most ") << time.expected << " s, "
               << std::llround(time.expected / dt) << " steps" << (time.known ? "" : " (ends by its condition)") << '\n';
   }
   const double per_second = planning_speed * std::min(threads, std::max(1u, std::thread::hardware_concurrency()));
-  const auto cost = [&](double seconds) { return static_cast<double>(bodies) * seconds / dt / per_second; };
+  const auto cost = [&](double body_seconds) { return body_seconds / dt / per_second; };
   std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
             << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(known) / 3600
             << " h (" << duration_text(cost(known)) << ')';

@@ -50,7 +50,8 @@ std::vector<std::string> without_effect(const SceneDescription& scene, const Sim
   const auto radii = world.positions();
   const auto smallest = std::ranges::min_element(radii, {}, &Row::w);
   for (const auto& [name, group] : scene.bodies)
-    if (group.heavier_below > 0 && smallest != radii.end() && group.heavier_below <= 2 * smallest->w)
+    if (group.stage.empty() && group.heavier_below > 0 && smallest != radii.end() &&
+        group.heavier_below <= 2 * smallest->w)
       say("/bodies/" + name + "/heavier_below", "no grain is smaller");
 
   if (scene.time_step.value && scene.time_step.safety != TimeStepDescription().safety)

@@ -122,6 +122,7 @@ void RunJson::stage_ended(const World& world, const std::string& what) {
   progress(world);
   json_["stages"].push_back({{"name", world.stage()},
                              {"reached", what},
+                             {"bodies", world.ids().size()},
                              {"time", world.time()},
                              {"step", world.step()},
                              {"wall_s", json_["wall_s"]}});

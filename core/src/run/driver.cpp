@@ -252,6 +252,9 @@ class Run {
     const double overall = void_ratio(simulation_, simulation_.specimen());
     if (std::isfinite(e) && std::isfinite(overall))
       text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
+    const auto comes_later = [](const auto& group) { return !group.second.stage.empty(); };
+    if (std::ranges::any_of(scene_.description->bodies, comes_later))
+      text = std::to_string(simulation_.positions().size()) + " bodies, " + text;
     return text + ", time " + number(simulation_.time() - start_.time) + " s";
   }
 

@@ -53,25 +53,31 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
   periodic_ = scene.domain.periodic[0] || scene.domain.periodic[1] || scene.domain.periodic[2];
   clock_.period_before = clock_.cell.high - clock_.cell.low;
 
-  const std::size_t count = bodies_.count();
-  double diameters = 0, volume = 0;
-  std::size_t grains = bodies_.clumps.clump.size();
-  smallest_radius_ = count > 0 ? std::numeric_limits<double>::max() : 0;
-  for (std::size_t i = 0; i < count; ++i) {
+  take_stock(0, 0);
+  check_periods();
+  walls_.apply(scene);
+  apply(scene);
+}
+
+void Simulation::take_stock(std::size_t first, std::size_t first_clump) {
+  for (std::size_t i = first; i < bodies_.count(); ++i) {
     const double r = bodies_.position[i].w;
-    largest_radius_ = std::max(largest_radius_, r), smallest_radius_ = std::min(smallest_radius_, r);
+    largest_radius_ = std::max(largest_radius_, r);
+    smallest_radius_ = smallest_radius_ == 0 ? r : std::min(smallest_radius_, r);
     one_material_ = one_material_ && bodies_.material[i] == 0;
     if (bodies_.clumps.clump_of(i) != no_clump) continue;
-    ++grains;
-    diameters += 2 * r, mass_ += 1 / bodies_.velocity[i].w, volume += 4.0 / 3.0 * std::numbers::pi * r * r * r;
+    ++grains_;
+    diameters_ += 2 * r, mass_ += 1 / bodies_.velocity[i].w, solids_ += 4.0 / 3.0 * std::numbers::pi * r * r * r;
   }
-  for (const Clump& clump : bodies_.clumps.clump)
-    diameters += 2 * clump.radius, mass_ += 1 / clump.inverse_mass, volume += clump.volume;
-  if (grains > 0) mean_diameter_ = diameters / static_cast<double>(grains), solid_density_ = mass_ / volume;
-  check_periods();
-  sum_.assign(count + 1, {});
-  chunk_.assign(chunks_of(count), {});
-  begin_stage("", scene);
+  for (std::size_t c = first_clump; c < bodies_.clumps.clump.size(); ++c) {
+    const Clump& clump = bodies_.clumps.clump[c];
+    ++grains_;
+    diameters_ += 2 * clump.radius, mass_ += 1 / clump.inverse_mass, solids_ += clump.volume;
+  }
+  if (grains_ > 0) mean_diameter_ = diameters_ / static_cast<double>(grains_), solid_density_ = mass_ / solids_;
+  sum_.resize(bodies_.count() + 1);
+  std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.end(), BodySum{});
+  chunk_.resize(chunks_of(bodies_.count()));
 }
 
 void Simulation::begin_stage(const std::string& name, const SceneDescription& scene) {
@@ -79,6 +85,7 @@ void Simulation::begin_stage(const std::string& name, const SceneDescription& sc
   std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), Vec3::Zero());
   walls_.apply(scene);
   apply(scene);
+  admit();
 }
 
 void Simulation::change(const SceneDescription& scene) {
@@ -144,8 +151,47 @@ void Simulation::apply(const SceneDescription& scene) {
   net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
 }
 
+void Simulation::admit() {
+  Newcomers newcomers;
+  try {
+    newcomers = make_newcomers(*scene_, stage_, clock_.cell, positions(), bodies_.state);
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    fail(error.what(), "what is there by then takes room as well");
+  }
+  Bodies& bodies = newcomers.bodies;
+  if (bodies.count() == 0) return;
+  // They take part in the mean flow of a deforming cell, and velocities are those of half a step ago.
+  const Vec3 fall = 0.5 * clock_.last_time_step * next_motion().free_translation().cwiseProduct(settings_.gravity);
+  const auto change = [&](const Vec3& place) -> Vec3 {
+    return clock_.cell.strain_rate.isZero(0.0) ? Vec3(-fall)
+                                               : Vec3(clock_.cell.strain_rate.cwiseProduct(place - centre()) - fall);
+  };
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const std::uint32_t c = bodies.clumps.clump_of(i);
+    const Vec3 v = change(c == no_clump ? xyz(bodies.position[i]) : bodies.clumps.clump[c].centre);
+    bodies.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
+  }
+  for (Clump& clump : bodies.clumps.clump) clump.velocity += change(clump.centre);
+
+  const auto stored = [this] { return flows_.begun ? kinetic_energy() + elastic_energy().total() : 0; };
+  const double put_in = flows_.settings - stored();  // but for what is stored; bodies may also leave in a search
+  const std::size_t first = bodies_.count(), first_clump = bodies_.clumps.clump.size();
+  newcomers_ = std::move(newcomers.groups);
+  for (auto& group : newcomers_) group.first_id += bodies_.ids;
+  bodies_.append(bodies);
+  take_stock(first, first_clump);
+  if (settings_.flat) flatten(*settings_.flat);
+  stiffens_ = law_stiffens();
+  search_now_ = true;
+  find_forces();
+  flows_.settings = put_in + stored();
+}
+
 void Simulation::flatten(int axis) {
-  if (!bodies_.clumps.none())
+  // Those that come later as well.
+  if (std::ranges::any_of(scene_->bodies, [](const auto& group) { return group.second.kind->clump() != nullptr; }))
     throw Error("clumps turn about all axes, so that they cannot move in a plane; leave out the engine \"planar\"");
   for (std::size_t i = 0; i < bodies_.count(); ++i) {
     Vec3 v = xyz(bodies_.velocity[i]), w = xyz(bodies_.spin[i]);
@@ -332,9 +378,10 @@ void Simulation::check_periods() const {
 void Simulation::search() {
   check_periods();
   const std::vector<bool> leaves = wrap();
+  if (!newcomers_.empty()) check_newcomers();
   const bool some_leave = std::ranges::find(leaves, true) != leaves.end();
   std::vector<std::uint32_t> order;
-  if (clock_.rebuilds % reorder_every == 0 || some_leave) {
+  if (clock_.rebuilds % reorder_every == 0 || some_leave || !newcomers_.empty()) {
     order = spatial_order(bodies_, clock_.cell);
     if (some_leave) {
       take_leave(leaves);
@@ -356,6 +403,7 @@ void Simulation::search() {
   }
   ++clock_.rebuilds;
   search_now_ = false;
+  newcomers_.clear();
   set_time_step();
 }
 
@@ -431,7 +479,7 @@ void Simulation::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& lap
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
   std::fill(sum + first, sum + last, BodySum{});
   own.losses = {};
-  Losses* const losses = bodies_.energies ? &own.losses : nullptr;
+  Losses* const losses = bodies_.energies() ? &own.losses : nullptr;
   own.overlap = pairs_.evaluate(chunk, instant(again), sum, losses);
   laps(own.seconds[pair_contacts]);
   if (surfaces_.empty()) return;
@@ -460,7 +508,7 @@ void Simulation::take_loads() {
   }
   clock_.overlap = 0;
   for (const Chunk& chunk : chunk_) clock_.overlap = std::max(clock_.overlap, chunk.overlap);
-  if (bodies_.energies)
+  if (bodies_.energies())
     for (const Chunk& chunk : chunk_) {
       flows_.lost.friction += chunk.losses.friction, flows_.lost.rolling += chunk.losses.rolling;
       flows_.lost.viscosity += chunk.losses.viscosity;
@@ -497,7 +545,7 @@ MotionStep Simulation::next_motion() const {
           .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre(),
           .period = period + dt * growth,
           .period_growth = growth,
-          .energies = bodies_.energies};
+          .energies = bodies_.energies()};
 }
 
 template <class Work>
@@ -708,7 +756,7 @@ Model Simulation::model() const {
     if (there) model.body_state.push_back(name);
   };
   add(!bodies_.rotation.empty(), "rotation"), add(!bodies_.displacement.empty(), "displacement");
-  add(bodies_.energies, "energy"), add(!bodies_.clumps.none(), "clump");
+  add(bodies_.energies(), "energy"), add(!bodies_.clumps.none(), "clump");
   model.one_material = one_material_, model.periodic = periodic_, model.walls = walls_.size() > 0;
   model.gravity = !settings_.gravity.isZero(0.0), model.local_damping = settings_.local_damping > 0;
   model.bytes = memory();

@@ -21,6 +21,7 @@
 #include "run/stopwatch.hpp"
 #include "scene/bodies.hpp"
 #include "scene/description.hpp"
+#include "scene/make_bodies.hpp"
 
 namespace grit {
 
@@ -66,7 +67,9 @@ class Simulation final : public World {
   /// Bodies as made for this scene; `state` is what its components ask for.
   Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads);
 
-  /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first.
+  /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first, and lets
+  /// the bodies in that appear in it. Throws NumericsError where they cannot: no room, or deeper in others than they
+  /// may.
   void begin_stage(const std::string& name, const SceneDescription& scene);
   /// Changes settings within a stage.
   void change(const SceneDescription& scene);
@@ -88,7 +91,7 @@ class Simulation final : public World {
   const Clock& clock() const { return clock_; }
   unsigned threads() const { return team_.threads(); }
   std::size_t pair_count() const { return pairs_.touching_count(); }
-  /// Share of the mass at the start that has left.
+  /// Share of all mass that has come that has left.
   double share_left() const { return mass_ > 0 ? mass_left_ / mass_ : 0; }
   std::size_t candidate_count() const { return pairs_.candidates(); }
   std::vector<PhaseTime> phases() const;
@@ -136,6 +139,12 @@ class Simulation final : public World {
   enum Part { searching, pair_contacts, wall_touches, motion, part_count };
 
   void apply(const SceneDescription& scene);
+  /// Lets bodies in that appear in this stage.
+  void admit();
+  /// Reckons with bodies that have come, from this one on, and from this clump on.
+  void take_stock(std::size_t first, std::size_t first_clump);
+  /// Throws for newcomers that overlap others by more than they may.
+  void check_newcomers() const;
   ContactTable::Instant instant(bool again) const {
     return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, clock_.skins, again};
   }
@@ -236,7 +245,10 @@ class Simulation final : public World {
   std::vector<std::size_t> late_;  // chunks that could not move at once
   std::vector<PhaseTime> phases_;
   std::vector<Departure> departures_;
-  double mass_ = 0, mass_left_ = 0;  // kg, at the start and of departures
+  std::vector<Newcomers::Group> newcomers_;  // since the last search, with their first ids
+  double mass_ = 0, mass_left_ = 0;          // kg, of all that have come and of departures
+  double diameters_ = 0, solids_ = 0;        // m and m³, of all that have come
+  std::size_t grains_ = 0;                   // the same, spheres by themselves and clumps
   double body_steps_ = 0;
   double passes_ = 0;  // s, in which the threads shared chunks
   double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;

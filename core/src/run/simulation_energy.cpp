@@ -52,7 +52,7 @@ bool Simulation::all_work_is_kept() const {
 
 EnergyLedger Simulation::energies() const {
   EnergyLedger now;
-  if (!bodies_.energies) return now;
+  if (!bodies_.energies()) return now;
   const ElasticEnergy elastic = elastic_energy();
   now.kinetic = kinetic_energy();
   now.elastic_normal = elastic.normal, now.elastic_shear = elastic.shear, now.elastic_rolling = elastic.rolling;

@@ -28,14 +28,15 @@ void Bodies::add(const Vec3& centre, double radius, double mass, double inertia,
   velocity.push_back({v.x(), v.y(), v.z(), 1 / mass});
   spin.push_back({w.x(), w.y(), w.z(), 1 / inertia});
   material.push_back(body_material);
-  id.push_back(static_cast<std::uint32_t>(id.size()));
+  id.push_back(ids++);
 }
 
 void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass, const Vec3& inertia,
                        const Eigen::Quaterniond& orientation, std::uint8_t body_material, const Vec3& v,
                        const Vec3& w) {
+  const auto index = static_cast<std::uint32_t>(clumps.clump.size());
   Clump clump;
-  clump.id = static_cast<std::uint32_t>(clumps.clump.size());
+  clump.id = clump_ids++;
   clump.first = static_cast<std::uint32_t>(clumps.spheres.size());
   clump.centre = centre, clump.velocity = v, clump.spin = w;
   clump.orientation = orientation, clump.axes = orientation.toRotationMatrix();
@@ -49,23 +50,48 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
     clump.furthest = std::max(clump.furthest, place.norm() + sphere_radius);
     clumps.spheres.push_back(static_cast<std::uint32_t>(count()));
     add(centre + arm, sphere_radius, mass, clump.inertia.minCoeff(), body_material, v + w.cross(arm), w);
-    clumps.of_body.push_back({.clump = clump.id, .periods = {}, .place = place});
+    clumps.of_body.push_back({.clump = index, .periods = {}, .place = place});
     clumps.volume_share.push_back(shape.shares[k]);
   }
   clump.last = static_cast<std::uint32_t>(clumps.spheres.size());
   clumps.clump.push_back(clump);
 }
 
-void Bodies::finish(StateRequest state) {
+void Bodies::finish(StateRequest asked_for) {
   constexpr double far_away = 1e18;  // its square is finite in single precision too
   position.push_back({far_away, far_away, far_away, 0});
   velocity.push_back({});
   spin.push_back({});
   material.push_back(0);
-  energies = state.has(BodyState::energy);
+  state = asked_for;
   if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
   if (state.has(BodyState::rotation)) rotation.assign(count(), Vec3::Zero());
   if (state.has(BodyState::displacement)) displacement.assign(count(), Vec3::Zero());
+}
+
+void Bodies::append(const Bodies& others) {
+  const auto before = static_cast<std::uint32_t>(count()),
+             clumps_before = static_cast<std::uint32_t>(clumps.clump.size()),
+             spheres_before = static_cast<std::uint32_t>(clumps.spheres.size());
+  const auto go_on = [](auto& array, const auto& more) { array.insert(array.end(), more.begin(), more.end()); };
+  // In place of the padding come the others, with theirs.
+  position.pop_back(), velocity.pop_back(), spin.pop_back(), material.pop_back();
+  go_on(position, others.position), go_on(velocity, others.velocity), go_on(spin, others.spin);
+  go_on(material, others.material), go_on(rotation, others.rotation), go_on(displacement, others.displacement);
+  for (const std::uint32_t other : others.id) id.push_back(ids + other);
+  if (!clumps.none() || !others.clumps.none()) {
+    clumps.of_body.resize(before), clumps.volume_share.resize(before, 1.0);
+    go_on(clumps.of_body, others.clumps.of_body), go_on(clumps.volume_share, others.clumps.volume_share);
+    clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+    for (std::size_t i = before; i < count(); ++i)
+      if (std::uint32_t& clump = clumps.of_body[i].clump; clump != no_clump) clump += clumps_before;
+    for (const std::uint32_t sphere : others.clumps.spheres) clumps.spheres.push_back(before + sphere);
+    for (Clump clump : others.clumps.clump) {
+      clump.id += clump_ids, clump.first += spheres_before, clump.last += spheres_before;
+      clumps.clump.push_back(clump);
+    }
+  }
+  ids += others.ids, clump_ids += others.clump_ids;
 }
 
 void Bodies::reorder(std::span<const std::uint32_t> order) {

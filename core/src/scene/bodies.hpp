@@ -23,12 +23,15 @@ struct Bodies {
   std::vector<Vec3> rotation;      ///< cumulative [rad]; empty unless asked for
   std::vector<Vec3> displacement;  ///< since the start of the stage [m]; empty unless asked for
   Clumps clumps;
-  bool energies = false;  ///< whether a component asked for their ledger
+  StateRequest state;                    ///< that components asked for
+  std::uint32_t ids = 0, clump_ids = 0;  ///< ever given away
 
   std::size_t count() const { return id.size(); }
+  /// Whether a component asked for the ledger of energies.
+  bool energies() const { return state.has(BodyState::energy); }
   /// Makes room for so many more, and the padding.
   void reserve(std::size_t more);
-  /// Adds a body (before finish()). Its id is its place.
+  /// Adds a body (before finish()). Ids count on.
   void add(const Vec3& centre, double radius, double mass, double inertia, std::uint8_t material,
            const Vec3& velocity = Vec3::Zero(), const Vec3& spin = Vec3::Zero());
   /// Adds the bodies of a clump (before finish()), whose centre of mass is `centre`, of that size, mass and
@@ -37,7 +40,10 @@ struct Bodies {
                  const Eigen::Quaterniond& orientation, std::uint8_t material, const Vec3& velocity = Vec3::Zero(),
                  const Vec3& spin = Vec3::Zero());
   /// After the last add(): pads, and allocates the state that was asked for.
-  void finish(StateRequest state);
+  void finish(StateRequest asked_for);
+  /// Adds other bodies after these; both are finished, with the same state. The others get the ids that come after all
+  /// that were ever given away here.
+  void append(const Bodies& others);
   /// Puts body order[i] at place i. Bodies that are not in `order` are gone.
   void reorder(std::span<const std::uint32_t> order);
 };

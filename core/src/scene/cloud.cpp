@@ -157,6 +157,31 @@ std::array<bool, 3> wrapped_axes(const Region& box, const Cell& cell) {
   return wrapped;
 }
 
+/// Those of `others`, and of their images, that may be in the way of a grain in the box, whose radius is at most this.
+/// Along wrapped axes there are no images: room is sought there across the sides anyway.
+std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<bool, 3>& wrapped,
+                          std::span<const Row> others, double radius) {
+  Vec3 period = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (cell.periodic[k] && !wrapped[k]) period[k] = cell.high[k] - cell.low[k];
+  std::vector<Row> near;
+  for (const Row& other : others) {
+    const Vec3 reach = Vec3::Constant(other.w + radius);
+    for (std::uint8_t image = 0; image < 27; ++image) {
+      const std::array<int, 3> turns{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
+      Vec3 centre = xyz(other);
+      bool counts = true;
+      for (int k = 0; k < 3; ++k) {
+        counts = counts && (turns[k] == 0 || period[k] > 0);
+        centre[k] += turns[k] * period[k];
+        counts = counts && (wrapped[k] || (centre[k] > box.low[k] - reach[k] && centre[k] < box.high[k] + reach[k]));
+      }
+      if (counts) near.push_back({centre.x(), centre.y(), centre.z(), other.w});
+    }
+  }
+  return near;
+}
+
 }  // namespace
 
 std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vector<double> diameters, Random& random,
@@ -174,9 +199,10 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
 
   std::vector<double> radii;
   for (const double diameter : diameters) radii.push_back(0.5 * diameter);
-  for (const auto& other : others) radii.push_back(other.w);
+  const auto in_the_way = near_box(box, cell, wrapped, others, radii.front());
+  for (const auto& other : in_the_way) radii.push_back(other.w);
   Room room(box, wrapped, radii);
-  for (const auto& other : others) room.add(other);
+  for (const auto& other : in_the_way) room.add(other);
 
   std::vector<Row> placed;
   placed.reserve(diameters.size());

@@ -185,6 +185,11 @@ BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) 
 void BodiesDescription::declare(Parameters& p) {
   p.choose(kind);
   p.add("material", material).required().doc("name of their material");
+  p.add("stage", stage).doc("name of the stage at whose begin they appear; left out: at the start of the run");
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("with which they appear, on top of what a list says of each");
+  p.add("overlap", overlap)
+      .at_least(0)
+      .doc("largest overlap with bodies that are there when they appear in a stage, over the smaller radius");
   p.add("heavier_below", heavier_below)
       .unit("m")
       .at_least(0)
@@ -362,7 +367,7 @@ void PressureCondition::declare(Parameters& p) {
   p.add("within", within).above(0).at_most(1).doc("relative difference that counts as reached");
 }
 void LeftCondition::declare(Parameters& p) {
-  p.add("share", share).above(0).at_most(1).doc("share of the mass at the start that has left the domain");
+  p.add("share", share).above(0).at_most(1).doc("share of all mass that has come that has left the domain");
 }
 void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at once"); }
 void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which one must hold"); }
@@ -601,6 +606,8 @@ void SceneDescription::declare(Parameters& p) {
     std::vector<std::string> names;
     for (const auto& stage : stages) names.push_back(stage.name);
     const References known("stage", names, complain);
+    for (const auto& [name, group] : bodies)
+      if (!group.stage.empty()) known.check("bodies/" + name + "/stage", group.stage);
     for (const auto& [name, probe] : probes)
       for (std::size_t i = 0; i < probe.stages.size(); ++i)
         known.check("probes/" + name + "/stages/" + std::to_string(i), probe.stages[i]);

@@ -80,6 +80,9 @@ struct PlacedGrains {
 struct BodiesDescription {
   Component<BodyKind> kind;
   std::string material;
+  std::string stage;  ///< at whose begin they appear; empty: the start of the run
+  Vec3 velocity = Vec3::Zero();
+  double overlap = 0.01;     ///< of the smaller radius
   double heavier_below = 0;  ///< m
   OneOf<CloudGrains, FileGrains, PlacedGrains> grains{"source of grains"};
   explicit BodiesDescription(const Registry& registry);

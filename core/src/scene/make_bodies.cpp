@@ -21,6 +21,71 @@ Eigen::Quaterniond any_orientation(Random& random) {
   return {p * std::sin(a), p * std::cos(a), q * std::sin(b), q * std::cos(b)};
 }
 
+/// Adds a group. Clouds keep clear of `there` and of what `bodies` has.
+void add_group(const SceneDescription& scene, const BodiesDescription& group, const Cell& cell,
+               std::span<const Row> there, Random& random, Bodies& bodies) {
+  const auto found = scene.materials.find(group.material);
+  const auto material = static_cast<std::uint8_t>(std::distance(scene.materials.begin(), found));
+  const ClumpShape* const clump = group.kind->clump();
+  const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
+                       const Vec3& spin) {
+    const double inert = std::max(radius, 0.5 * group.heavier_below);
+    const double mass = found->second.density * group.kind->volume(inert);
+    if (clump == nullptr) {
+      bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
+      return;
+    }
+    const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(clump->axes);
+    const Vec3 middle = orientation * (radius * clump->middle);
+    bodies.add_clump(*clump, centre - middle, radius, mass, mass * inert * inert * clump->inertia, orientation,
+                     material, velocity, spin);
+  };
+  if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
+    for (const PlacedGrain& g : placed->grains) {
+      const double angle = g.orientation.norm();
+      const Vec3 axis = angle > 0 ? Vec3(g.orientation / angle) : Vec3::UnitX();
+      add(g.position, g.radius, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), group.velocity + g.velocity,
+          g.spin);
+    }
+    return;
+  }
+  const auto* cloud = std::get_if<CloudGrains>(&group.grains.value());
+  const auto* file = std::get_if<FileGrains>(&group.grains.value());
+  std::vector<Row> others(there.begin(), there.end());
+  others.insert(others.end(), bodies.position.begin(), bodies.position.end());
+  const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, others) : read_packing(file->path);
+  bodies.reserve(grains.size() * (clump != nullptr ? clump->spheres.size() : 1));
+  for (const Row& g : grains) {
+    const Eigen::Quaterniond turn = clump != nullptr ? any_orientation(random) : Eigen::Quaterniond::Identity();
+    add(xyz(g), g.w, turn, group.velocity, Vec3::Zero());
+  }
+}
+
+/// Throws for a body outside the cell.
+void check_inside(const Cell& cell, const Bodies& bodies) {
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const Row& x = bodies.position[i];
+    const std::uint32_t c = bodies.clumps.clump_of(i);
+    const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
+    for (int k = 0; k < 3; ++k) {
+      const double over = cell.periodic[k] ? reach : 0;  // just past a periodic side a body is inside at the other
+      if (!(xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over))
+        throw Error("a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
+                    ") m lies outside the domain; enlarge /domain or move the body");
+    }
+  }
+}
+
+/// A stream of its own for each stage, so that what comes in one does not depend on what comes in others.
+Random random_of(const SceneDescription& scene, const std::string& stage) {
+  Random seeds(static_cast<std::uint64_t>(scene.seed));
+  for (const StageDescription& one : scene.stages) {
+    const std::uint64_t seed = seeds.bits();
+    if (one.name == stage) return Random(seed);
+  }
+  return seeds;
+}
+
 }  // namespace
 
 StateRequest requested_state(const SceneDescription& scene, StateRequest also) {
@@ -34,53 +99,40 @@ Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
   const Cell cell{scene.domain.low.value_or(-open), scene.domain.high.value_or(open), scene.domain.periodic};
   Random random(static_cast<std::uint64_t>(scene.seed));
   Bodies bodies;
-  for (const auto& [name, group] : scene.bodies) {
-    const auto found = scene.materials.find(group.material);
-    const auto material = static_cast<std::uint8_t>(std::distance(scene.materials.begin(), found));
-    const ClumpShape* const clump = group.kind->clump();
-    const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
-                         const Vec3& spin) {
-      const double inert = std::max(radius, 0.5 * group.heavier_below);
-      const double mass = found->second.density * group.kind->volume(inert);
-      if (clump == nullptr) {
-        bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
-        return;
-      }
-      const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(clump->axes);
-      const Vec3 middle = orientation * (radius * clump->middle);
-      bodies.add_clump(*clump, centre - middle, radius, mass, mass * inert * inert * clump->inertia, orientation,
-                       material, velocity, spin);
-    };
-    if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
-      for (const PlacedGrain& g : placed->grains) {
-        const double angle = g.orientation.norm();
-        const Vec3 axis = angle > 0 ? Vec3(g.orientation / angle) : Vec3::UnitX();
-        add(g.position, g.radius, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), g.velocity, g.spin);
-      }
-      continue;
-    }
-    const auto* cloud = std::get_if<CloudGrains>(&group.grains.value());
-    const auto* file = std::get_if<FileGrains>(&group.grains.value());
-    const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, bodies.position) : read_packing(file->path);
-    bodies.reserve(grains.size() * (clump != nullptr ? clump->spheres.size() : 1));
-    for (const Row& g : grains) {
-      const Eigen::Quaterniond turn = clump != nullptr ? any_orientation(random) : Eigen::Quaterniond::Identity();
-      add(xyz(g), g.w, turn, Vec3::Zero(), Vec3::Zero());
-    }
-  }
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    const Row& x = bodies.position[i];
-    const std::uint32_t c = bodies.clumps.clump_of(i);
-    const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
-    for (int k = 0; k < 3; ++k) {
-      const double over = cell.periodic[k] ? reach : 0;  // just past a periodic side a body is inside at the other
-      if (!(xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over))
-        throw Error("a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
-                    ") m lies outside the domain; enlarge /domain or move the body");
-    }
-  }
+  for (const auto& [name, group] : scene.bodies)
+    if (group.stage.empty()) add_group(scene, group, cell, {}, random, bodies);
+    else body_count(group);  // a slip in a file shows now, not when its stage begins
+  check_inside(cell, bodies);
   bodies.finish(state);
   return bodies;
+}
+
+Newcomers make_newcomers(const SceneDescription& scene, const std::string& stage, const Cell& cell,
+                         std::span<const Row> there, StateRequest state) {
+  Newcomers newcomers;
+  Random random = random_of(scene, stage);
+  for (const auto& [name, group] : scene.bodies) {
+    if (group.stage.empty() || group.stage != stage) continue;
+    newcomers.groups.push_back({name, newcomers.bodies.ids});
+    try {
+      add_group(scene, group, cell, there, random, newcomers.bodies);
+      check_inside(cell, newcomers.bodies);
+    } catch (const FileError&) {
+      throw;
+    } catch (const Error& error) {
+      throw Error("/bodies/" + name + ": " + error.what());
+    }
+  }
+  newcomers.bodies.finish(state);
+  return newcomers;
+}
+
+std::size_t body_count(const BodiesDescription& group) {
+  const auto spheres = group.kind->clump() != nullptr ? group.kind->clump()->spheres.size() : 1;
+  if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) return spheres * placed->grains.size();
+  if (const auto* cloud = std::get_if<CloudGrains>(&group.grains.value()))
+    return spheres * static_cast<std::size_t>(cloud->count);
+  return spheres * read_packing(std::get<FileGrains>(group.grains.value()).path).size();
 }
 
 }  // namespace grit

@@ -1,6 +1,11 @@
 // From a description's groups of grains to bodies.
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "grit/world.hpp"
 #include "scene/bodies.hpp"
 #include "scene/description.hpp"
@@ -10,7 +15,26 @@ namespace grit {
 /// All state of bodies that a component of the scene, or `also`, asks for.
 StateRequest requested_state(const SceneDescription& scene, StateRequest also = {});
 
-/// The bodies of all groups, in the order of their names; ids count through. Throws as the sources of grains do.
+/// The bodies of all groups that are there at the start, in the order of their names; ids count through. Throws as the
+/// sources of grains do, those of later groups included where they are files.
 Bodies make_bodies(const SceneDescription& scene, StateRequest state);
+
+/// Bodies that appear at the begin of a stage, group after group; ids count from 0.
+struct Newcomers {
+  struct Group {
+    std::string name;
+    std::uint32_t first_id;
+  };
+  Bodies bodies;
+  std::vector<Group> groups;  ///< in the order of their names
+};
+/// Clouds keep clear of `there` (centre, w: radius), the spheres that the cell holds now. What is random depends on the
+/// seed and on the stage's place among all stages. Throws grit::Error, with the group, where a cloud finds no room or a
+/// body lies outside the cell.
+Newcomers make_newcomers(const SceneDescription& scene, const std::string& stage, const Cell& cell,
+                         std::span<const Row> there, StateRequest state);
+
+/// How many bodies a group has; each sphere of a clump is one. Throws where its file cannot be read.
+std::size_t body_count(const BodiesDescription& group);
 
 }  // namespace grit

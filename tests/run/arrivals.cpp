@@ -1,0 +1,356 @@
+// Bodies that appear in a later stage.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "grit/error.hpp"
+#include "support/clump.hpp"
+#include "support/memories.hpp"
+#include "support/notes.hpp"
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr double radius = 1e-3, modulus = 1e7, density = 2600;
+constexpr double mass = density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+const Description stuff{{"density", density}, {"contact_modulus", modulus}};
+
+/// Grains, and others that come in a second stage.
+Description first_and_late(const std::vector<Grain>& first, const std::vector<Grain>& late) {
+  Description d = description("linear-rolling", stuff, first);
+  d["bodies"]["late"] = description("", {}, late)["bodies"]["grains"];
+  d["bodies"]["late"]["stage"] = "second";
+  d["stages"].push_back({{"name", "second"}, {"until", {{"type", "steps"}, {"value", 1}}}, {"limit", 1}});
+  d["time_step"]["value"] = 2e-6;
+  return d;
+}
+Description cloud(const Vec3& low, const Vec3& high, int count, double smallest, double largest) {
+  return {{"type", "cloud"},
+          {"low", vector(low)},
+          {"high", vector(high)},
+          {"count", count},
+          {"sizes", {{"type", "uniform"}, {"smallest", smallest}, {"largest", largest}}}};
+}
+void begin_second(Trial& trial) { trial.world().begin_stage("second", *trial.scene().stages.at(1).start); }
+std::vector<std::uint32_t> sorted_ids(const World& world) {
+  std::vector<std::uint32_t> ids(world.ids().begin(), world.ids().end());
+  std::ranges::sort(ids);
+  return ids;
+}
+
+TEST(Arrivals, FallFromTheirPlaceWithTheirVelocity) {
+  const Vec3 place(0, 0, 9e-3), gravity(0, 0, -9.81), velocity(0.02, 0, 0.05), extra(0, 0.01, 0);
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {{place, radius, velocity, {0, 3, 0}}});
+  d["bodies"]["late"]["velocity"] = vector(extra);
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  Trial trial(d);
+  trial.step(137);
+  begin_second(trial);
+  const Vec3 start = velocity + extra;
+  EXPECT_EQ(trial.position(1), place);
+  EXPECT_LT((trial.velocity(1) - start).norm(), 1e-15);
+  const double began = trial.world().time();
+  trial.world().find_forces();
+  trial.step(500);
+  const double t = trial.world().time() - began;
+  EXPECT_LT((trial.position(1) - (place + start * t + 0.5 * gravity * t * t)).norm(), 1e-15);
+  EXPECT_LT((trial.velocity(1) - (start + gravity * t)).norm(), 1e-13);
+  EXPECT_EQ(trial.spin(1), Vec3(0, 3, 0));
+  const double all = trial.world().time();
+  EXPECT_LT((trial.position(0) - 0.5 * gravity * all * all).norm(), 1e-15) << "who was there goes on as before";
+}
+
+TEST(Arrivals, GetIdsThatNobodyHad) {
+  Description d = first_and_late({{Vec3::Zero(), radius}, {{-7e-3, 0, 0}, radius, {-1, 0, 0}}},
+                                 {{{0, 3e-3, 0}, radius}, {{0, 6e-3, 0}, radius}});
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-x"}}};
+  Trial trial(d);
+  for (int k = 0; k < 5000 && trial.world().departures().empty(); ++k) trial.step();
+  ASSERT_EQ(trial.world().departures().size(), 1u);
+  EXPECT_DOUBLE_EQ(trial.world().share_left(), 0.5);
+  begin_second(trial);
+  EXPECT_THAT(sorted_ids(trial.world()), ElementsAre(0, 2, 3));
+  EXPECT_DOUBLE_EQ(trial.world().share_left(), 0.25) << "of all that has come";
+  EXPECT_EQ(trial.position(3), Vec3(0, 6e-3, 0));
+}
+
+/// A box full of grains that are pushed about, and as many that come to another place.
+Description crowded() {
+  const Vec3 low(0, 0, 20e-3);
+  Description d = first_and_late(jumble({7, 7, 7}, 1e-3, 0.1, 4), jumble({7, 7, 7}, 1e-3, 0.1, 5, low));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false})
+      d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]] =
+          side(axis, up ? 0 : 7e-3, Vec3::Zero(), Vec3::Constant(7e-3), up);
+  d["materials"]["grain"]["contact_modulus"] = 1e6;
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  return d;
+}
+
+TEST(Arrivals, LeaveMemoriesToTheLastBit) {
+  Description without = crowded();
+  without["bodies"].erase("late");
+  Trial trial(crowded()), alone(without);
+  for (Trial* t : {&trial, &alone}) t->step(100);
+  const std::vector<std::uint32_t> order(trial.world().ids().begin(), trial.world().ids().end());
+  begin_second(trial), begin_second(alone);
+  alone.world().find_forces();  // which newcomers have found at once
+  const Memories after = memories(trial), expected = memories(alone);
+  ASSERT_GT(expected.size(), 400u);
+  EXPECT_GT(after.size(), expected.size());
+  for (const auto& [pair, state] : expected) {
+    ASSERT_TRUE(after.contains(pair));
+    ASSERT_EQ(after.at(pair), state) << pair.first << ' ' << pair.second;
+  }
+  EXPECT_FALSE(std::equal(order.begin(), order.end(), trial.world().ids().begin())) << "in a new order of bodies";
+}
+
+TEST(Arrivals, ElsewhereChangeNothing) {
+  Description without = crowded();
+  without["bodies"].erase("late");
+  Trial trial(crowded()), alone(without);
+  for (Trial* t : {&trial, &alone}) t->step(100), begin_second(*t), t->world().find_forces(), t->step(50);
+  double apart = 0;
+  for (std::uint32_t id = 0; id < 343; ++id)
+    apart = std::max(apart, (trial.position(id) - alone.position(id)).norm() / radius);
+  EXPECT_LT(apart, 1e-11) << "sums go in another order";
+  EXPECT_EQ(trial.world().ids().size(), 686u);
+}
+
+TEST(Arrivals, AreTheSameBitsForAnyNumberOfThreads) {
+  Description d = crowded();
+  d["bodies"]["late"]["grains"] = cloud({-3e-3, -3e-3, 7.7e-3}, {9e-3, 9e-3, 20e-3}, 500, 0.8e-3, 1.2e-3);
+  Trial one(d, 1), three(d, 3);
+  for (Trial* t : {&one, &three}) t->step(60), begin_second(*t);
+  ASSERT_TRUE(same_bits(one.world(), three.world()));
+  EXPECT_EQ(one.world().dt(), three.world().dt());
+  for (Trial* t : {&one, &three}) t->world().find_forces(), t->step_on(120);
+  EXPECT_TRUE(same_bits(one.world(), three.world()));
+  EXPECT_EQ(one.world().ids().size(), 843u);
+}
+
+/// Touching pairs of one that was there and one that has come.
+std::size_t meetings(const World& world, std::uint32_t first_late) {
+  return static_cast<std::size_t>(std::ranges::count_if(world.contacts(), [&](const Contact& c) {
+    return !c.with_wall && (world.ids()[c.a] < first_late) != (world.ids()[c.b] < first_late);
+  }));
+}
+
+TEST(Arrivals, OfACloudKeepClearOfOthersAndTheirImages) {
+  // Some stick out across the side x = 6 mm, and in again at x = 0.
+  std::vector<Grain> first;
+  for (int y = 0; y < 3; ++y)
+    for (int z = 0; z < 4; ++z) first.push_back({{5.9e-3, (2 * y + 1) * 1e-3, (2 * z + 1) * 1e-3}, 0.5e-3});
+  Description d = first_and_late(first, {});
+  d["domain"] = {{"low", {0, 0, -1}}, {"high", {6e-3, 6e-3, 1}}, {"periodic", {true, true, false}}};
+  for (const double width : {1.1e-3, 6e-3}) {
+    d["bodies"]["late"]["grains"] = cloud({0, 0, 0}, {width, 6e-3, 8e-3}, 8, 0.9e-3, 1e-3);
+    Trial trial(d);
+    begin_second(trial);
+    EXPECT_EQ(trial.world().ids().size(), 20u);
+    EXPECT_EQ(meetings(trial.world(), 12), 0u) << width;
+  }
+}
+
+TEST(Arrivals, OfACloudDependOnTheSeedAndNotOnOtherStages) {
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {});
+  d["bodies"]["late"]["grains"] = cloud({5e-3, 5e-3, 5e-3}, {15e-3, 15e-3, 15e-3}, 5, 0.9e-3, 1e-3);
+  const auto place = [](const Description& with) {
+    Trial trial(with);
+    begin_second(trial);
+    return trial.position(sorted_ids(trial.world()).back());
+  };
+  const Vec3 plain = place(d);
+  Description other = d;
+  other["bodies"]["more"] = d["bodies"]["late"];
+  other["bodies"]["more"].erase("stage");
+  other["bodies"]["more"]["grains"] = cloud({-15e-3, -15e-3, -15e-3}, {-5e-3, -5e-3, -5e-3}, 5, 0.9e-3, 1e-3);
+  EXPECT_EQ(place(other), plain);
+  other["seed"] = 2;
+  EXPECT_NE(place(other), plain);
+  EXPECT_NE(place(d), [&] {
+    Description at_start = d;
+    at_start["bodies"]["late"].erase("stage");
+    return Trial(at_start).position(5);
+  }()) << "a stage has its own numbers";
+}
+
+std::string refusal(const Description& d) {
+  const Done done = run(d);
+  EXPECT_EQ(done.summary().status, "failed");
+  EXPECT_EQ(done.notes.finished, 1) << "what there was is recorded";
+  return done.summary().message;
+}
+
+TEST(Arrivals, InsideOthersAreRefused) {
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 4e-3}, radius}, {{0, 0, 1.4e-3}, 0.5 * radius}});
+  d["domain"] = {{"low", {-5e-3, -5e-3, -5e-3}}, {"high", {5e-3, 5e-3, 5e-3}}};
+  d["guards"]["overlap"] = 0.1;
+  const std::string found = refusal(d);
+  EXPECT_THAT(found, HasSubstr("stage \"second\""));
+  EXPECT_THAT(found,
+              HasSubstr("body 2 at (0, 0, 0.0014) m of the group \"late\" appears inside body 0: they overlap by "
+                        "0.2 of the smaller radius, more than /bodies/late/overlap 0.01; place it"));
+  d["bodies"]["late"]["overlap"] = 0.21;
+  d["guards"]["overlap"] = 0.3;
+  EXPECT_EQ(run(d).summary().status, "done") << run(d).summary().message;
+  // Across a periodic side, and more than one.
+  d["bodies"]["late"]["overlap"] = 0.01;
+  d["domain"]["periodic"] = {false, false, true};
+  d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {0, 0, -4.9e-3};
+  d["bodies"]["late"]["grains"]["grains"][0]["position"] = {0, 0, 4e-3};
+  d["bodies"]["late"]["grains"]["grains"][1]["position"] = {0, 1.2e-3, -4.9e-3};
+  EXPECT_THAT(refusal(d),
+              HasSubstr("body 1 at (0, 0, 0.004) m of the group \"late\" appears inside body 0: they overlap "
+                        "by 0.9 of the smaller radius, more than /bodies/late/overlap 0.01, the deepest of "
+                        "2 such pairs"));
+}
+
+TEST(Arrivals, WithoutRoomOrOutsideAreRefused) {
+  Description d = first_and_late({{Vec3::Zero(), 2 * radius}}, {});
+  d["bodies"]["late"]["grains"] = cloud({-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}, 1, 0.9e-3, 1e-3);
+  EXPECT_THAT(refusal(d), testing::AllOf(HasSubstr("stage \"second\": /bodies/late: cloud: only 0 of 1 grains"),
+                                         HasSubstr("what is there by then takes room as well")));
+  d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 6e-3}, radius}});
+  d["domain"] = {{"low", {-5e-3, -5e-3, -5e-3}}, {"high", {5e-3, 5e-3, 5e-3}}};
+  EXPECT_THAT(refusal(d),
+              HasSubstr("/bodies/late: a body at (0.000000, 0.000000, 0.006000) m lies outside the domain"));
+}
+
+TEST(Arrivals, OfAFileThatIsNotThereAreRefusedAtTheStart) {
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {});
+  d["bodies"]["late"]["grains"] = {{"type", "file"}, {"path", "/nowhere/grains.txt"}};
+  EXPECT_THROW(run(d), FileError);
+}
+
+TEST(Arrivals, OfAnotherMaterialPushByBoth) {
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 1.995 * radius}, radius}});
+  d["materials"]["hard"] = {{"density", 2 * density}, {"contact_modulus", 4 * modulus}};
+  d["bodies"]["late"]["material"] = "hard";
+  Trial trial(d);
+  begin_second(trial);
+  ASSERT_EQ(trial.world().contacts().size(), 1u);
+  // 2 E_A R E_B R / (E_A R + E_B R)
+  const double stiffness = 1.6 * modulus * radius;
+  EXPECT_NEAR(trial.world().contacts()[0].normal_force, stiffness * 5e-3 * radius, 1e-9 * stiffness * radius);
+  EXPECT_NEAR(trial.mass(1), 2 * mass, 1e-12 * mass);
+  EXPECT_NEAR(trial.world().solid_density(), 1.5 * density, 1e-9 * density);
+}
+
+TEST(Arrivals, CountInWhatIsKnownOfAll) {
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 5e-3}, 0.4 * radius}, {{0, 0, 9e-3}, radius}});
+  d["time_step"] = {{"safety", 0.5}};
+  Trial trial(d, 1, BodyState::rotation | BodyState::displacement);
+  trial.step(3);
+  const double before = trial.world().dt();
+  const std::size_t memory = trial.world().memory();
+  begin_second(trial);
+  EXPECT_NEAR(trial.world().mean_diameter(), 2 * radius * 2.4 / 3, 1e-15);
+  // √(m/k) goes with the radius.
+  EXPECT_NEAR(trial.world().dt(), 0.4 * before, 1e-9 * before);
+  EXPECT_GT(trial.world().memory(), memory);
+  ASSERT_EQ(trial.world().rotations().size(), 3u);
+  ASSERT_EQ(trial.world().displacements().size(), 3u);
+  EXPECT_EQ(trial.world().forces().size(), 3u);
+}
+
+TEST(Arrivals, BringTheirEnergy) {
+  Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 5e-3}, radius, {0.1, 0, 0}, {0, 20, 0}}});
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  Trial trial(d, 1, BodyState::energy);
+  trial.world().energies();
+  trial.step(50);
+  begin_second(trial);
+  const double brought = 0.5 * mass * 0.01 + 0.2 * mass * radius * radius * 400;
+  EXPECT_NEAR(trial.world().energies().settings, brought, 1e-12 * brought);
+  EXPECT_LT(std::abs(trial.world().energies().closure_error), 1e-12 * brought);
+  // One that presses on another brings what the contact stores as well.
+  d["bodies"]["late"]["grains"]["grains"][0]["position"][2] = 1.995 * radius;
+  d["engines"].erase("gravity");
+  d["time_step"]["value"] = 5e-7;
+  Trial pressed(d, 1, BodyState::energy);
+  pressed.world().energies();
+  begin_second(pressed);
+  EXPECT_NEAR(pressed.world().energies().settings, brought + 0.5 * modulus * radius * 25e-12, 1e-9 * brought);
+  pressed.step(2000);
+  EXPECT_TRUE(pressed.world().contacts().empty()) << "they have parted";
+  EXPECT_LT(std::abs(pressed.world().energies().closure_error), 2e-3 * brought);
+}
+
+TEST(Arrivals, MayBeClumps) {
+  const std::vector<Grain> late{{{0, 0, 9e-3}, radius, {0.1, 0, 0}, {3, 20, 9}}, {{0, 0, 18e-3}, radius}};
+  Description d = first_and_late({{Vec3::Zero(), radius}}, late);
+  d["bodies"]["late"]["type"] = "clump", d["bodies"]["late"]["shape"] = boomerang();
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  Description at_once = d;
+  at_once["bodies"]["late"].erase("stage");
+  Trial trial(d), always(at_once);
+  trial.step(20);
+  EXPECT_TRUE(trial.world().clumps().empty());
+  begin_second(trial);
+  ASSERT_EQ(trial.world().ids().size(), 7u);
+  ASSERT_EQ(trial.world().clumps().size(), 2u);
+  EXPECT_EQ(trial.world().clumps()[1].id, 1u);
+  EXPECT_EQ(trial.world().volume_shares().size(), 7u);
+  EXPECT_EQ(trial.world().mean_diameter(), always.world().mean_diameter());
+  EXPECT_EQ(trial.world().clump_of()[index_of(trial.world(), 0)], no_clump);
+  trial.world().find_forces();
+  trial.step(400), always.step(400);
+  for (std::uint32_t id = 1; id < 7; ++id)
+    EXPECT_LT((trial.position(id) - always.position(id)).norm(), 1e-9 * radius) << id;
+}
+
+TEST(Arrivals, OfClumpsFollowClumps) {
+  Description d = first_and_late({{Vec3::Zero(), radius}, {{0, 0, 9e-3}, radius}}, {{{0, 9e-3, 0}, radius}});
+  for (const char* group : {"grains", "late"})
+    d["bodies"][group]["type"] = "clump", d["bodies"][group]["shape"] = boomerang();
+  Trial trial(d);
+  begin_second(trial);
+  ASSERT_EQ(trial.world().clumps().size(), 3u);
+  for (std::uint32_t id = 0; id < 9; ++id) {
+    const ClumpView& clump = trial.world().clumps()[trial.world().clump_of()[index_of(trial.world(), id)]];
+    EXPECT_EQ(clump.id, id / 3);
+    EXPECT_LT((clump.centre - trial.position(id)).norm(), radius) << id;
+  }
+}
+
+/// A layer falls onto the floor and comes to rest, then another on top of it.
+Description two_layers() {
+  Description d = first_and_late({}, {});
+  d["bodies"]["grains"]["grains"] = cloud({0, 0, 0}, {6e-3, 6e-3, 4.5e-3}, 80, 0.8e-3, 1.2e-3);
+  d["bodies"]["late"]["grains"] = cloud({0, 0, 4.5e-3}, {6e-3, 6e-3, 9e-3}, 80, 0.8e-3, 1.2e-3);
+  d["domain"] = {{"low", {0, 0, -1e-3}}, {"high", {6e-3, 6e-3, 20e-3}}, {"periodic", {true, true, false}}};
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.4}};
+  d["time_step"] = {{"safety", 0.8}};
+  for (Description& stage : d["stages"])
+    stage["until"] = {{"type", "all"},
+                      {"of", {{{"type", "time"}, {"value", 0.04}}, {{"type", "unbalanced-force"}, {"below", 3e-4}}}}};
+  return d;
+}
+
+TEST(Arrivals, OfASecondLayerWeighOnTheFloorWithTheFirst) {
+  Description d = two_layers();
+  d["probes"]["weight"] = {{"type", "watch"}};
+  watched() = [](const World& world) {
+    double weight = 0;
+    for (const Row& v : world.velocities()) weight += 9.81 / v.w;
+    return -world.walls()[0].force.z() / weight;
+  };
+  const Done done = run(d);
+  watched() = {};
+  ASSERT_EQ(done.summary().status, "done") << done.summary().message;
+  EXPECT_EQ(done.summary().bodies, 160u);
+  EXPECT_THAT(done.notes.values_of("weight"), ElementsAre(testing::DoubleNear(1, 1e-3), testing::DoubleNear(1, 1e-3)));
+  EXPECT_THAT(done.notes.ended, ElementsAre(HasSubstr("80 bodies, "), HasSubstr("160 bodies, ")));
+  EXPECT_GT(meetings(*done.world, 80), 10u) << "the second lies on the first";
+}
+
+}  // namespace
+}  // namespace grit::test

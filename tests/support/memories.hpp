@@ -1,0 +1,31 @@
+// What contacts remember, whatever the order of the bodies.
+#pragma once
+
+#include <map>
+
+#include "support/scene.hpp"
+
+namespace grit::test {
+
+/// Memories by the ids of the two, as seen from the lower id; walls count from 1000.
+using Memories = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<double>>;
+inline Memories memories(const Trial& t, std::size_t* swapped = nullptr) {
+  const Simulation& world = t.world();
+  const auto fields = t.scene().stages[0].start->contacts->state();
+  const auto ids = world.ids();
+  Memories all;
+  for (std::size_t c = 0; c < world.candidate_count(); ++c) {
+    if (!world.pairs().touches(c)) continue;
+    const std::uint32_t a = ids[world.pairs().a(c)], b = ids[world.pairs().b(c)];
+    auto state = world.pairs().state(c);
+    for (std::size_t f = 0; f < fields.size() && a > b; ++f) state[f] *= fields[f].swap;
+    if (swapped != nullptr) *swapped += a > b;
+    all[std::minmax(a, b)] = std::move(state);
+  }
+  world.wall_contacts().each([&](const WallContacts::Touching& touch) {
+    all[{ids[touch.touch->body], 1000 + touch.touch->wall}].assign(touch.state.begin(), touch.state.end());
+  });
+  return all;
+}
+
+}  // namespace grit::test
