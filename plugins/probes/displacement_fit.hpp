@@ -16,14 +16,21 @@ class DisplacementFit {
     places_.push_back(place), moves_.push_back(moved);
   }
   int points() const { return static_cast<int>(places_.size()); }
+  /// How far they have gone, in the mean; 0 without any.
+  Eigen::Vector2d moved() const {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& one : moves_) sum += one;
+    return moves_.empty() ? sum : Eigen::Vector2d(sum / static_cast<double>(moves_.size()));
+  }
   /// Green and Lagrange's strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` places, or where
   /// they lie so nearly on one line that their spread along and across it has a ratio of less than `flat`.
   std::array<double, 3> green(std::size_t least, double flat) const {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     if (places_.size() < least) return {unknown, unknown, unknown};
-    Eigen::Vector2d place = Eigen::Vector2d::Zero(), moved = Eigen::Vector2d::Zero();
-    for (std::size_t i = 0; i < places_.size(); ++i) place += places_[i], moved += moves_[i];
-    place /= static_cast<double>(places_.size()), moved /= static_cast<double>(places_.size());
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& one : places_) place += one;
+    place /= static_cast<double>(places_.size());
+    const Eigen::Vector2d moved = this->moved();
     Eigen::Matrix2d spread = Eigen::Matrix2d::Zero(), together = Eigen::Matrix2d::Zero();
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Eigen::Vector2d x = places_[i] - place;

@@ -18,7 +18,7 @@ RunResults run_with(const Description& json, const std::vector<std::pair<std::st
   run.json = json;
   run.probes.push_back({"probe", {}});
   for (const auto& [name, values] : channels)
-    run.probes.back().channels.push_back({name, {"1", "", values.size(), values}});
+    run.probes.back().channels.push_back({name, {.unit = "1", .doc = "", .samples = values.size(), .values = values}});
   return run;
 }
 

@@ -16,14 +16,22 @@ struct Channel {
   std::string unit;                ///< UDUNITS spelling, "1" if dimensionless
   std::string doc;                 ///< one line, with the sign convention
   std::vector<std::size_t> shape;  ///< of one sample: {} a number, {n} a list, …
+  /// Of a list: the channel of the same probe and shape that says where each number is, e.g. "place" [m]; an angle
+  /// ("rad" or "degree") where the list goes by direction. Empty: numbers of something else.
+  std::string coordinate = {};
+  std::vector<std::string> components = {};  ///< what each number of a sample is, e.g. "xx"; as Field has them
 };
 
-/// One table of an instant, of any length: contacts, cells, chains.
+/// One table of an instant, of any length: contacts, cells, chains. A probe that has fields "centre" [m, width 3: where
+/// a cell is now] and "size" [m, width 3: what it fills on a map] says by them that its fields of as many rows are
+/// maps.
 struct Field {
   std::string name;  ///< snake_case
   std::string unit, doc;
   std::size_t width = 1;       ///< numbers a row
   std::vector<double> values;  ///< row by row
+  /// Of each number of a row, without spaces: e.g. "xx". Empty: x, y, z of three, xx, xy … zz of nine.
+  std::vector<std::string> components = {};
 };
 
 /// Called from one thread, between steps.

@@ -152,8 +152,10 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
         throw PluginError(fmt::format("probe '{}': its field '{}' has {} numbers, which are not whole rows of {}",
                                       probe.name, field.name, field.values.size(), field.width));
       const auto rows = field.values.size() / field.width;
-      put(tables, {field.name, field.unit, field.doc, {}},
-          field.width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, field.width}, field.values);
+      auto table = put(tables, {field.name, field.unit, field.doc, {}},
+                       field.width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, field.width}, field.values);
+      if (!field.components.empty())
+        table.set_attribute("components", fmt::format("{}", fmt::join(field.components, " ")));
     }
   }
 }

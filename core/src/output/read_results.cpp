@@ -3,6 +3,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "grit/error.hpp"
 #include "output/hdf5.hpp"
@@ -34,8 +36,13 @@ SampledChannel read_channel(const std::filesystem::path& folder, const std::stri
     throw FileError(path.string() + ": probe \"" + probe + "\" has no channel \"" + channel + "\" but " +
                     listed(group.names()));
   const auto dataset = group.dataset(channel);
-  return {dataset.has_attribute("units") ? dataset.text("units") : "1",
-          dataset.has_attribute("long_name") ? dataset.text("long_name") : "", dataset.rows(), dataset.read<double>()};
+  const auto text = [&](const char* attribute, const char* otherwise) {
+    return dataset.has_attribute(attribute) ? dataset.text(attribute) : otherwise;
+  };
+  std::istringstream components(text("components", ""));
+  return {text("units", "1"),      text("long_name", ""),
+          text("coordinates", ""), {std::istream_iterator<std::string>(components), {}},
+          dataset.rows(),          dataset.read<double>()};
 }
 
 std::vector<std::string> channel_names(const std::filesystem::path& folder) {

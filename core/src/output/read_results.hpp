@@ -13,6 +13,8 @@ namespace grit {
 /// A channel over all samples of its probe.
 struct SampledChannel {
   std::string unit, doc;
+  std::string coordinate = {};  ///< the channel of the same probe that says where each number is; may be empty
+  std::vector<std::string> components = {};  ///< what each number of a sample is; may be empty
   std::size_t samples = 0;
   std::vector<double> values;  ///< sample after sample; one number each, or as many as the channel's shape has
 };

@@ -1,5 +1,7 @@
 #include "output/series.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 
 #include "grit/error.hpp"
@@ -17,6 +19,9 @@ hdf5::Dataset column(hdf5::Group& group, const Channel& channel) {
       group.create_growing<T>(channel.name, channel.shape, std::max<std::size_t>(numbers_per_chunk / row, 1));
   dataset.set_attribute("units", channel.unit);
   dataset.set_attribute("long_name", channel.doc);
+  if (!channel.coordinate.empty()) dataset.set_attribute("coordinates", channel.coordinate);
+  if (!channel.components.empty())
+    dataset.set_attribute("components", fmt::format("{}", fmt::join(channel.components, " ")));
   return dataset;
 }
 

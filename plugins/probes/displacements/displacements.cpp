@@ -21,13 +21,14 @@ std::vector<Channel> Displacements::channels() const {
       {"profile", "m",
        "displacement along " + along +
            " at each place, by the line that fits the bodies around it, since the stage began; " + "NaN without any",
-       each},
-      {"gradient", "1", "slope of that line, along " + profile.across + "; NaN where bodies are too few", each},
+       each, "place"},
+      {"gradient", "1", "slope of that line, along " + profile.across + "; NaN where bodies are too few", each,
+       "place"},
       {"fluctuation", "m",
        "root of the mean square of the bodies' displacements less the profiles of all three components, around each "
        "place; " +
            std::string("NaN without any"),
-       each}};
+       each, "place"}};
   std::ranges::copy(zone_channels("gradient"), std::back_inserter(channels));
   return channels;
 }

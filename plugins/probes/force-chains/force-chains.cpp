@@ -70,16 +70,19 @@ std::vector<Channel> ForceChainsProbe::channels() const {
   return {
       {"mean_normal_force", "N", "mean normal force of a contact, positive in compression; 0 without contacts", {}},
       {"share_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
+      {"direction", "degree", "middle of each 10 degrees, from the plane's first axis towards its second", {bins}},
       {"force_by_direction",
        "N",
        "mean normal force of the contacts in each 10 degrees of direction in the plane, the first from 0 to 10 "
        "degrees, positive in compression; 0 where there are none",
-       {bins}},
+       {bins},
+       "direction"},
       {"contacts_by_direction",
        "1",
        "number of contacts in each 10 degrees of direction in the plane; a contact counts in both of its "
        "directions",
-       {bins}},
+       {bins},
+       "direction"},
       {"anisotropy", "1", "amplitude a of E = (1 + a cos 2(theta - theta_a)) / 2 pi, fitted to the directions", {}},
       {"anisotropy_direction",
        "rad",
@@ -140,17 +143,18 @@ void ForceChainsProbe::sample(const World& world, std::span<const std::span<doub
 
   values[0][0] = mean;
   values[1][0] = contacts.empty() ? 0 : above / static_cast<double>(contacts.size());
-  std::copy(force.begin(), force.end(), values[2].begin());
-  std::copy(count.begin(), count.end(), values[3].begin());
-  values[4][0] = directed > 0 ? 2 * std::hypot(cosines, sines) / directed : 0;
-  values[5][0] = 0.5 * std::atan2(sines, cosines);
+  for (std::size_t i = 0; i < bins; ++i) values[2][i] = (static_cast<double>(i) + 0.5) * 360 / bins;
+  std::copy(force.begin(), force.end(), values[3].begin());
+  std::copy(count.begin(), count.end(), values[4].begin());
+  values[5][0] = directed > 0 ? 2 * std::hypot(cosines, sines) / directed : 0;
+  values[6][0] = 0.5 * std::atan2(sines, cosines);
 
   const Eigen::Vector3d f_n = normal.factors();
   const Eigen::Vector2d f_t = tangential.factors();
   const double f_0 = f_n[0] > 0 ? f_n[0] : std::numeric_limits<double>::quiet_NaN();
-  values[6][0] = std::hypot(f_n[1], f_n[2]) / f_0, values[7][0] = 0.5 * std::atan2(f_n[2], f_n[1]);
-  values[8][0] = f_t.norm() / f_0, values[9][0] = 0.5 * std::atan2(f_t[0], -f_t[1]);
-  sample_chains(world, values.subspan(10));
+  values[7][0] = std::hypot(f_n[1], f_n[2]) / f_0, values[8][0] = 0.5 * std::atan2(f_n[2], f_n[1]);
+  values[9][0] = f_t.norm() / f_0, values[10][0] = 0.5 * std::atan2(f_t[0], -f_t[1]);
+  sample_chains(world, values.subspan(11));
 }
 
 void ForceChainsProbe::sample_chains(const World& world, std::span<const std::span<double>> values) {

@@ -171,6 +171,7 @@ std::vector<Field> PackingProbe::fields(const World& world) {
   const auto cells = cell_averages(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
   std::vector<Field> fields{
       {"centre", "m", "centre of an averaging cell", 3, {}},
+      {"size", "m", "from one cell to the next, as they overlap; of the cell where there is no other", 3, {}},
       {"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}},
       {"coordination_number",
        "1",
@@ -179,12 +180,18 @@ std::vector<Field> PackingProbe::fields(const World& world) {
        {}},
       {"stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}}};
   for (auto& field : fields) field.values.reserve(field.width * cells.size());
+  Vec3 size = Vec3::Zero();
+  for (int axis = 0; axis < 3 && !cells.empty(); ++axis) {
+    const Region &first = cells.front().region, &last = cells.back().region;
+    size[axis] = last.low[axis] > first.low[axis] ? cell_step * d50 : first.high[axis] - first.low[axis];
+  }
   for (const auto& cell : cells) {
     const Vec3 centre = 0.5 * (cell.region.low + cell.region.high);
     fields[0].values.insert(fields[0].values.end(), centre.begin(), centre.end());
-    fields[1].values.push_back(cell.void_ratio);
-    fields[2].values.push_back(cell.coordination_number);
-    for (int i = 0; i < 9; ++i) fields[3].values.push_back(cell.stress(i / 3, i % 3));
+    fields[1].values.insert(fields[1].values.end(), size.begin(), size.end());
+    fields[2].values.push_back(cell.void_ratio);
+    fields[3].values.push_back(cell.coordination_number);
+    for (int i = 0; i < 9; ++i) fields[4].values.push_back(cell.stress(i / 3, i % 3));
   }
   return fields;
 }

@@ -260,12 +260,12 @@ TEST(Packing, GivesItsCellsAsFields) {
   PackingProbe probe;
   const FakeWorld world = cubic(7, 0.5, {1, 2, 3});
   const auto fields = probe.fields(world);
-  ASSERT_EQ(fields.size(), 4u);
+  ASSERT_EQ(fields.size(), 5u);
   EXPECT_EQ(fields[0].name, "centre");
   ASSERT_EQ(fields[0].values.size(), 9 * 3u);
   EXPECT_THAT(std::vector(fields[0].values.begin(), fields[0].values.begin() + 6),
               ElementsAre(1.25, 1.75, 1.25, 1.25, 1.75, 1.75));
-  EXPECT_NEAR(fields[3].values[8], 12, 1e-9);
+  EXPECT_NEAR(fields[4].values[8], 12, 1e-9);
 }
 
 std::shared_ptr<Probe> driven() {

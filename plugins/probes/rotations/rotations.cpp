@@ -23,7 +23,7 @@ std::vector<Channel> Rotations::channels() const {
       {"place", "m", "of each value of the profile, along " + profile.across, each},
       {"profile", "rad",
        "cumulative rotation at each place, by the line that fits the bodies around it" + sign + "; NaN without any",
-       each},
+       each, "place"},
       {"mean", "rad", "mean cumulative rotation of all bodies" + sign + "; 0 without any", {}},
       {"mean_magnitude",
        "rad",

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "../displacement_fit.hpp"
+#include "../specimen.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -30,7 +31,9 @@ std::vector<Channel> Strain::channels() const {
       {"strain",
        "1",
        which + " of all bodies, Green-Lagrange since the stage began, positive in extension; NaN with fewer than four",
-       {3}},
+       {3},
+       {},
+       {a + a, b + b, a + b}},
       {"largest_shear", "1", "largest magnitude of E_" + a + b + " of a subset; 0 without any", {}}};
 }
 
@@ -82,7 +85,7 @@ std::vector<Strain::Subset> Strain::subsets(const World& world) const {
       DisplacementFit fit;
       for (auto body = begin; body != end; ++body)
         if (std::abs(body->place.y() - y) <= 0.5 * side) fit.add(body->place, body->moved);
-      found.push_back({.centre = {x, y}, .bodies = fit.points(), .green = fit.green(6, 0.01)});
+      found.push_back({.began = {x, y}, .moved = fit.moved(), .bodies = fit.points(), .green = fit.green(6, 0.01)});
     }
   }
   return found;
@@ -102,18 +105,34 @@ std::vector<Field> Strain::fields(const World& world) {
   const auto [first, second] = plane();
   const std::string a{"xyz"[first]}, b{"xyz"[second]};
   std::vector<Field> fields{
-      {"centre", "m", "of each subset along " + a + " and " + b + ", when the stage began", 2, {}},
+      {"centre", "m", "of each subset: it goes as its bodies do; across the plane, of the specimen", 3, {}},
+      {"size", "m", "from one subset to the next, and the specimen's depth", 3, {}},
+      {"began_at", "m", "centre along " + a + " and " + b + " when the stage began", 2, {}, {a, b}},
       {"bodies", "1", "whose centres lay in it", 1, {}},
       {"strain",
        "1",
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
            ", Green-Lagrange, positive in extension; NaN with fewer than six, or nearly on one line",
        3,
-       {}}};
+       {},
+       {a + a, b + b, a + b}}};
+  const auto append = [&fields](std::size_t field, const auto& row) {
+    fields[field].values.insert(fields[field].values.end(), row.begin(), row.end());
+  };
+  const Region specimen = specimen_box(world);
+  const Cell& cell = world.cell();
+  Vec3 size = specimen.high - specimen.low;
+  size[first] = size[second] = step * world.mean_diameter();
   for (const Subset& one : subsets(world)) {
-    fields[0].values.insert(fields[0].values.end(), one.centre.begin(), one.centre.end());
-    fields[1].values.push_back(one.bodies);
-    fields[2].values.insert(fields[2].values.end(), one.green.begin(), one.green.end());
+    Vec3 centre = 0.5 * (specimen.low + specimen.high);
+    centre[first] = one.began[0] + one.moved[0], centre[second] = one.began[1] + one.moved[1];
+    for (const int axis : {first, second}) {
+      if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
+      const double period = cell.high[axis] - cell.low[axis];
+      centre[axis] -= period * std::floor((centre[axis] - cell.low[axis]) / period);
+    }
+    append(0, centre), append(1, size), append(2, one.began), append(4, one.green);
+    fields[3].values.push_back(one.bodies);
   }
   return fields;
 }

@@ -28,7 +28,7 @@ class Strain final : public Probe {
     Vec2 place, moved;  ///< at the start of the stage, and since [m]
   };
   struct Subset {
-    Vec2 centre;                  ///< m
+    Vec2 began, moved;            ///< its centre at the start of the stage, and since [m]
     int bodies;                   ///< that lay in it
     std::array<double, 3> green;  ///< E_11, E_22, E_12
   };

@@ -3,11 +3,18 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <stdexcept>
 
 #include "contracts/probe.hpp"
 
 namespace grit {
 namespace {
+
+const std::vector<double>& values_of(const std::vector<Field>& fields, const std::string& name) {
+  for (const Field& field : fields)
+    if (field.name == name) return field.values;
+  throw std::runtime_error("no field " + name);
+}
 
 /// Bodies strewn over a block, moved by a deformation x = F X + shift.
 FakeWorld deformed(const Mat3& gradient, const Vec3& shift = Vec3::Zero()) {
@@ -34,13 +41,14 @@ void expect_everywhere(const Mat3& gradient, const Vec3& shift, double exx, doub
   EXPECT_NEAR(whole[2], exz, 1e-10);
   EXPECT_NEAR(channel_values(probe, world, "largest_shear").at(0), std::abs(exz), 1e-10);
   const auto fields = probe.fields(world);
-  const std::size_t subsets = fields[1].values.size();
+  const auto &bodies = values_of(fields, "bodies"), &strain = values_of(fields, "strain");
+  const std::size_t subsets = bodies.size();
   ASSERT_GT(subsets, 500u);
   for (std::size_t s = 0; s < subsets; ++s) {
-    ASSERT_GT(fields[1].values[s], 20);
-    EXPECT_NEAR(fields[2].values[3 * s], exx, 1e-10) << s;
-    EXPECT_NEAR(fields[2].values[3 * s + 1], ezz, 1e-10) << s;
-    EXPECT_NEAR(fields[2].values[3 * s + 2], exz, 1e-10) << s;
+    ASSERT_GT(bodies[s], 20);
+    EXPECT_NEAR(strain[3 * s], exx, 1e-10) << s;
+    EXPECT_NEAR(strain[3 * s + 1], ezz, 1e-10) << s;
+    EXPECT_NEAR(strain[3 * s + 2], exz, 1e-10) << s;
   }
 }
 
@@ -68,9 +76,10 @@ TEST(Strain, IsLocal) {
   probe.prepare(world);
   const auto fields = probe.fields(world);
   int below = 0, above = 0;
-  for (std::size_t s = 0; s < fields[1].values.size(); ++s) {
-    const double z = fields[0].values[2 * s + 1];
-    const double shear = fields[2].values[3 * s + 2];
+  const auto &began = values_of(fields, "began_at"), &strain = values_of(fields, "strain");
+  for (std::size_t s = 0; s < strain.size() / 3; ++s) {
+    const double z = began[2 * s + 1];
+    const double shear = strain[3 * s + 2];
     if (z < 0.0079) {
       ++below;
       EXPECT_NEAR(shear, 0, 1e-12);
@@ -102,7 +111,7 @@ TEST(Strain, IsUnknownInACellThatDeforms) {
   EXPECT_EQ(channel_values(probe, world, "strain").at(0), 0);
   world.box.strain_rate.x() = -1;
   EXPECT_TRUE(std::isnan(channel_values(probe, world, "strain").at(0)));
-  EXPECT_THAT(probe.fields(world).at(1).values, testing::IsEmpty());
+  EXPECT_THAT(values_of(probe.fields(world), "bodies"), testing::IsEmpty());
 }
 
 TEST(Strain, CountsBodiesThatCrossedAPeriodicSideWhereTheyBegan) {
@@ -112,7 +121,33 @@ TEST(Strain, CountsBodiesThatCrossedAPeriodicSideWhereTheyBegan) {
     if (row.x > 0.06) row.x -= 0.06;
   Strain probe;
   for (const double strain : channel_values(probe, world, "strain")) EXPECT_NEAR(strain, 0, 1e-12);
-  for (const double place : probe.fields(world).at(0).values) EXPECT_LT(place, 0.06);
+  const auto fields = probe.fields(world);
+  for (const double place : values_of(fields, "began_at")) EXPECT_LT(place, 0.06);
+  const auto& centre = values_of(fields, "centre");
+  double least = 1;
+  for (std::size_t i = 0; i < centre.size(); i += 3) {
+    EXPECT_LT(centre[i], 0.06);
+    least = std::min(least, centre[i]);
+  }
+  EXPECT_LT(least, 0.01) << "the last have come round";
+}
+
+TEST(Strain, HasItsSubsetsGoAsTheirBodiesDo) {
+  const FakeWorld world = deformed(Mat3::Identity(), {0.01, 0, -2e-3});
+  Strain probe;
+  const auto fields = probe.fields(world);
+  const auto &centre = values_of(fields, "centre"), &size = values_of(fields, "size"),
+             &began = values_of(fields, "began_at");
+  ASSERT_EQ(centre.size() / 3, began.size() / 2);
+  ASSERT_EQ(size.size(), centre.size());
+  for (std::size_t s = 0; s < centre.size() / 3; ++s) {
+    EXPECT_NEAR(centre[3 * s], began[2 * s] + 0.01, 1e-12);
+    EXPECT_EQ(centre[3 * s + 1], 0.0025) << "the middle of the specimen";
+    EXPECT_NEAR(centre[3 * s + 2], began[2 * s + 1] - 2e-3, 1e-12);
+    EXPECT_NEAR(size[3 * s], 1e-3, 1e-12);
+    EXPECT_EQ(size[3 * s + 1], 0.005);
+  }
+  EXPECT_THAT(fields.back().components, testing::ElementsAre("xx", "zz", "xz"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Strain, ProbeContract,

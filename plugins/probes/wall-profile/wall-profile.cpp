@@ -40,13 +40,13 @@ void WallProfile::prepare(const World& world) {
 
 std::vector<Channel> WallProfile::channels() const {
   const std::vector<std::size_t> each{static_cast<std::size_t>(strips)};
-  return {
-      {"place", "m", "middle of each strip, along " + along, each},
-      {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each},
-      {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on", each},
-      {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
-      {"shear_force", "N", "against " + along + ", of all touches", {}},
-      {"friction_angle", "degree", "mobilised: atan of the latter over the former; 0 without touches", {}}};
+  return {{"place", "m", "middle of each strip, along " + along, each},
+          {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each, "place"},
+          {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on",
+           each, "place"},
+          {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
+          {"shear_force", "N", "against " + along + ", of all touches", {}},
+          {"friction_angle", "degree", "mobilised: atan of the latter over the former; 0 without touches", {}}};
 }
 
 WallProfile::Ends WallProfile::ends(const World& world) const {
