@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+
 #include "run/conditions.hpp"
 #include "support/notes.hpp"
 #include "support/packing.hpp"
@@ -277,6 +279,81 @@ TEST(Reports, ComeAtTheirCadence) {
   EXPECT_EQ(done.notes.finished, 1);
   d["output"].erase("frames");
   EXPECT_THAT(run(d).notes.frames, testing::IsEmpty());
+}
+
+TEST(Reports, ComeByTheWayOfAWall) {
+  // There for four steps, then back, by a hundredth of a millimetre each.
+  Description d = lone(steps(12));
+  d["walls"]["floor"]["motion"]["velocity"] = {1, 0, 0};
+  d["stages"][0]["ramps"] = {{{"pointer", "/walls/floor/motion/velocity/0"},
+                              {"from", 1},
+                              {"to", -1},
+                              {"duration", 4 * dt},
+                              {"increments", 1}}};
+  const auto every = [](double metres) {
+    return Description{{"type", "watch"}, {"every_displacement", {{"wall", "floor"}, {"value", metres}}}};
+  };
+  d["probes"]["two"] = every(2e-5);
+  d["probes"]["three"] = every(3e-5);
+  d["probes"]["half"] = every(0.5e-5);
+  d["probes"]["far"] = every(1);
+  d["probes"]["aside"] = every(1e-5);
+  d["probes"]["aside"]["every_displacement"]["axis"] = "y";
+  d["output"]["frames"]["every_displacement"] = {{"wall", "floor"}, {"value", 4e-5}};
+  watched() = [](const World& w) { return std::round(1e5 * w.walls()[0].position.x()); };
+  const Done done = run(d);
+  EXPECT_THAT(done.notes.values_of("two"), ElementsAre(0, 2, 4, 2, 0, -2, -4));
+  EXPECT_THAT(done.notes.steps_of("two"), ElementsAre(0, 2, 4, 6, 8, 10, 12));
+  EXPECT_THAT(done.notes.steps_of("three"), ElementsAre(0, 3, 8, 11, 12)) << "one turn back is not three";
+  EXPECT_THAT(done.notes.steps_of("half"), ElementsAre(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
+  EXPECT_THAT(done.notes.steps_of("far"), ElementsAre(0, 12));
+  EXPECT_THAT(done.notes.steps_of("aside"), ElementsAre(0, 12));
+  EXPECT_THAT(done.notes.frames, ElementsAre(0, 4, 8, 12));
+}
+
+TEST(Reports, ComeByTheWayOfAWallAnewInEachStage) {
+  Description d = lone(steps(5));
+  d["stages"].push_back(stage("second", steps(5)));
+  d["walls"]["floor"]["motion"]["velocity"] = {1, 0, 0};
+  d["probes"]["three"] = {{"type", "watch"}, {"every_displacement", {{"wall", "floor"}, {"value", 3e-5}}}};
+  EXPECT_THAT(run(d).notes.steps_of("three"), ElementsAre(0, 3, 5, 8, 10));
+}
+
+TEST(Reports, ComeByWhatHasLeft) {
+  // Five grains leave one after the other.
+  Description d = lone(seconds(8e-3));
+  d.erase("walls");
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
+  auto& grains = d["bodies"]["grains"]["grains"]["grains"] = Description::array();
+  for (int i = 0; i < 5; ++i)
+    grains.push_back(
+        {{"position", {-8e-3 + 4e-3 * i, 0, -0.009 + 1e-3 * i}}, {"radius", radius}, {"velocity", {0, 0, -1}}});
+  d["probes"]["each"] = {{"type", "watch"}, {"every_left", 0.2}};
+  d["probes"]["two"] = {{"type", "watch"}, {"every_left", 0.4}};
+  d["probes"]["all"] = {{"type", "watch"}, {"every_left", 1}};
+  watched() = [](const World& w) { return static_cast<double>(w.ids().size()); };
+  const Done done = run(d);
+  EXPECT_THAT(done.notes.values_of("each"), ElementsAre(5, 4, 3, 2, 1, 0, 0)) << "and at the end of the stage";
+  EXPECT_THAT(done.notes.values_of("two"), ElementsAre(5, 3, 1, 0));
+  EXPECT_THAT(done.notes.values_of("all"), ElementsAre(5, 0, 0));
+}
+
+TEST(Reports, ChangeNoBitHoweverOftenTheyCome) {
+  Description d = description("linear-rolling", {{"contact_modulus", 1e6}}, jumble({4, 4, 4}, 1e-3, 0.1, 8));
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["floor"]["motion"]["velocity"] = {1, 0, 0};
+  d["time_step"]["value"] = 2e-6;
+  d["stages"] = {stage("all", steps(200))};
+  const Done unseen = run(d);
+  d["probes"]["way"] = {{"type", "watch"}, {"every_displacement", {{"wall", "floor"}, {"value", 7e-6}}}};
+  d["probes"]["left"] = {{"type", "watch"}, {"every_left", 0.1}};
+  watched() = [](const World& w) { return w.time(); };
+  const Done seen = run(d);
+  EXPECT_GT(seen.notes.steps_of("way").size(), 50u);
+  for (std::uint32_t id = 0; id < 64; ++id) {
+    const auto row = [&](const Done& of) { return xyz(of.world->positions()[index_of(*of.world, id)]); };
+    EXPECT_EQ(row(unseen), row(seen)) << id;
+  }
 }
 
 TEST(Reports, SaySummaryAndStages) {

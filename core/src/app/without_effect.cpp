@@ -66,8 +66,9 @@ std::vector<std::string> without_effect(const SceneDescription& scene, const Sim
     if (!used && !later) say("/materials/" + name, "no body and no wall is of it");
   }
   for (const auto& [name, probe] : scene.probes)
-    if (!probe.cadence.every_time && probe.cadence.every_steps == 0)
-      say("/probes/" + name, "it never looks: it has neither every_time nor every_steps");
+    if (probe.cadence.never())
+      say("/probes/" + name,
+          "it never looks: it has none of every_time, every_steps, every_displacement and every_left");
   return lines;
 }
 

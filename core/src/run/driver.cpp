@@ -17,32 +17,57 @@ using Instant = std::chrono::steady_clock::time_point;
 constexpr std::uint64_t contacts_counted_every = 100;
 
 /// Says when something that happens again and again is due.
+/// It looks at what is known before forces are, so that a step which nobody looks at need not be told from others.
 class Schedule {
  public:
   explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
-  void restart(const World& world) { first_time_ = world.time(), first_step_ = world.step(), count_ = 0; }
-  bool is_due(const World& world) const {
-    return due_by_time(world) || (cadence_.every_steps > 0 &&
-                                  (world.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0);
+  void restart(const Simulation& now) {
+    first_time_ = now.time(), first_step_ = now.step(), first_left_ = now.share_left();
+    count_ = 0, level_ = 0, began_ = true;
+  }
+  bool is_due(const Simulation& now) const {
+    return due_by_time(now) ||
+           (cadence_.every_steps > 0 &&
+            (now.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0) ||
+           due_by_displacement(now) || due_by_mass(now);
   }
   /// The same, and goes on to the next time.
-  bool take(const World& world) {
-    const bool due = is_due(world);
-    if (due_by_time(world)) ++count_;
+  bool take(const Simulation& now) {
+    const bool due = is_due(now);
+    if (due_by_time(now)) ++count_;
+    if (due_by_mass(now)) count_ = static_cast<std::uint64_t>(shares(now)) + 1;  // one step may take several at once
+    if (due_by_displacement(now)) level_ += std::trunc(beyond(now)), began_ = false;
     return due;
   }
-  bool never() const { return !cadence_.every_time && cadence_.every_steps == 0; }
+  bool never() const { return cadence_.never(); }
 
  private:
-  bool due_by_time(const World& world) const {
-    // Counted, not summed up, so that the instants do not drift.
+  // Counted, not summed up, so that the instants do not drift.
+  bool due_by_time(const Simulation& now) const {
     return cadence_.every_time &&
-           world.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * world.dt();
+           now.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * now.dt();
+  }
+  bool due_by_mass(const Simulation& now) const {
+    return cadence_.every_left && shares(now) >= static_cast<double>(count_);
+  }
+  bool due_by_displacement(const Simulation& now) const {
+    return cadence_.every_displacement && (began_ || std::abs(beyond(now)) >= 1);
+  }
+
+  /// Whole and part shares of the mass that have left since the stage began; a hair more, for rounding.
+  double shares(const Simulation& now) const { return (now.share_left() - first_left_) / *cadence_.every_left + 1e-9; }
+  /// Displacements since the last time, in its direction; a hair more, for rounding.
+  double beyond(const Simulation& now) const {
+    const auto& [wall, axis, value] = *cadence_.every_displacement;
+    const auto found = std::ranges::find(now.walls(), wall, &WallView::name);
+    const double gone = found->stage_position[axis[0] - 'x'] / value - level_;
+    return gone + std::copysign(1e-9, gone);
   }
 
   Cadence cadence_;
-  double first_time_ = 0;
+  double first_time_ = 0, first_left_ = 0, level_ = 0;
   std::uint64_t first_step_ = 0, count_ = 0;
+  bool began_ = true;
 };
 
 /// A probe of the description at work.

@@ -105,14 +105,37 @@ void declare_parts(Parameters& p, std::vector<std::unique_ptr<Condition>>& of, c
 
 }  // namespace
 
+void DisplacementCadence::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall");
+  p.add("axis", axis).one_of(one_axis).doc("axis of the displacement");
+  p.add("value", value)
+      .unit("m")
+      .symbol("u")
+      .above(0)
+      .required()
+      .doc("displacement from one to the next, there or back");
+}
 void Cadence::declare(Parameters& p) {
   p.add("every_time", every_time).unit("s").above(0).doc("simulated time from one to the next");
   p.add("every_steps", every_steps).at_least(0).doc("steps from one to the next; 0: not by steps");
+  p.add("every_displacement", every_displacement).doc("displacement of a wall from one to the next");
+  p.add("every_left", every_left)
+      .above(0)
+      .at_most(1)
+      .doc("share of the mass at the start that leaves the domain from one to the next");
   p.check(
       [this](const Complain& complain) {
-        if (every_time && every_steps > 0) complain("every_steps", "a cadence in time and in steps", "one of the two");
+        std::string key, given;
+        const auto count = [&](bool there, const char* name, const char* what) {
+          if (there) key = name, given += (given.empty() ? "a cadence " : " and ") + std::string(what);
+        };
+        count(every_time.has_value(), "every_time", "in time");
+        count(every_steps > 0, "every_steps", "in steps");
+        count(every_displacement.has_value(), "every_displacement", "in displacement");
+        count(every_left.has_value(), "every_left", "in mass that leaves");
+        if (given.find(" and ") != std::string::npos) complain(key, given, "one of them");
       },
-      {"every_time", "every_steps"});
+      {"every_time", "every_steps", "every_displacement", "every_left"});
 }
 
 // ---- grains
@@ -594,6 +617,11 @@ void SceneDescription::declare(Parameters& p) {
     const References known("wall", keys(walls), complain);
     for (std::size_t i = 0; i < stages.size(); ++i)
       check_walls_of(stages[i].until, "stages/" + std::to_string(i) + "/until", known);
+    const auto check_cadence = [&](const std::string& key, const Cadence& cadence) {
+      if (cadence.every_displacement) known.check(key + "/every_displacement/wall", cadence.every_displacement->wall);
+    };
+    for (const auto& [name, probe] : probes) check_cadence("probes/" + name, probe.cadence);
+    check_cadence("output/frames", output.frames);
   });
   p.check_names([this](const Complain& complain) {
     std::set<std::string> names;

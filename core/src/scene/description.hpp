@@ -16,10 +16,19 @@
 
 namespace grit {
 
-/// When something is to happen again and again. Neither given: never.
+/// Each time a wall has gone so far, there or back, from where it was the last time.
+struct DisplacementCadence {
+  std::string wall, axis = "x";
+  double value = 0;  ///< m, above 0
+  void declare(Parameters& p);
+};
+/// When something is to happen again and again. None given: never.
 struct Cadence {
   std::optional<double> every_time;
   std::int64_t every_steps = 0;
+  std::optional<DisplacementCadence> every_displacement;
+  std::optional<double> every_left;  ///< share of the mass at the start
+  bool never() const { return !every_time && every_steps == 0 && !every_displacement && !every_left; }
   void declare(Parameters& p);
 };
 
