@@ -94,10 +94,67 @@ TEST(ReportPage, HasTheGrainsToATenThousandth) {
   const auto x_of_7 = static_cast<std::uint16_t>(before[2] + after[2]);
   EXPECT_NEAR(2 * x_of_7 / 65535.0, 0.5, 2e-5);
   EXPECT_EQ(after[0], 0) << "what has not moved";
-  EXPECT_EQ(grains.at("ranges").at("speed"), 5);
+  EXPECT_EQ(grains.at("stages").at("shear").at("ranges").at("speed"), 5);
   EXPECT_THAT(std::vector(after.begin() + 9, after.begin() + 12), ElementsAre(0, 0, 65535)) << "speed";
-  EXPECT_EQ(grains.at("ranges").at("rotation"), 1);
+  EXPECT_EQ(grains.at("stages").at("shear").at("ranges").at("rotation"), 1);
   EXPECT_THAT(std::vector(after.begin() + 15, after.begin() + 18), ElementsAre(0, 32768, 49151)) << "rotation about y";
+}
+
+TEST(ReportPage, HasScalesForEachStage) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  run.world.stage_name = "fill";
+  results.frame(run.world, {});
+  run.world.stage_name = "shear";
+  run.world.velocity[0] = {0.03, 0.04, 0, 0}, run.world.rotation[1] = {0, 0.25, 0};
+  results.frame(run.world, {});
+  results.finish(run.world, {});
+  const auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains");
+  EXPECT_EQ(grains.at("stages").at("fill").at("ranges").at("speed"), 5);
+  EXPECT_NEAR(grains.at("stages").at("shear").at("ranges").at("speed").get<double>(), 0.05, 1e-15);
+  EXPECT_EQ(grains.at("stages").at("shear").at("ranges").at("rotation"), 0.5);
+  const auto shear = planes_of(page.html, grains.at("frames").at(1).at("data"));
+  EXPECT_EQ(shear[11], 65535) << "the fastest of its stage";
+}
+
+TEST(ReportPage, LeavesOutGrainsThatAreNowhere) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  results.frame(run.world, {});
+  run.world.position[1].z = std::numeric_limits<double>::quiet_NaN();
+  results.frame(run.world, {});
+  results.finish(run.world, {});
+  const auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains");
+  EXPECT_FALSE(grains.at("frames").at(0).contains("unplaced"));
+  const json& last = grains.at("frames").at(1);
+  EXPECT_EQ(last.at("unplaced"), 1);
+  EXPECT_EQ(grains.at("bodies").at(last.at("set").get<std::size_t>()).at("count"), 2);
+  EXPECT_THAT(planes_of(page.html, last.at("data")), SizeIs(2 * (3 + 1 + 3)));
+}
+
+TEST(ReportPage, KnowsWhereTheNumbersOfAListAre) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  const std::vector<ProbeGroup> probes{{"chains",
+                                        {{"direction", "degree", "middle", {2}},
+                                         {"force", "N", "by direction", {2}, "direction"},
+                                         {"strain", "1", "whole", {2}, "", {"xx", "xz"}}}}};
+  results.begin(run.world, probes);
+  const double at[] = {90, 270}, force[] = {1, 2};
+  const std::span<const double> values[] = {at, force, force};
+  results.sample(0, run.world, values);
+  results.finish(run.world, {});
+  const json shown = json_of(page_of(folder / "run").html).at("runs").at(0);
+  EXPECT_EQ(channel_of(shown, "chains", "force").at("coordinate"), "direction");
+  EXPECT_EQ(channel_of(shown, "chains", "direction").at("coordinate"), "");
+  EXPECT_EQ(channel_of(shown, "chains", "strain").at("components"), json({"xx", "xz"}));
 }
 
 TEST(ReportPage, HasTheContactsAboveTheMean) {

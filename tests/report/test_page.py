@@ -14,6 +14,7 @@ import xml.etree.ElementTree
 
 try:
     import h5py
+    import numpy
 except ImportError:
     print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
     sys.exit(77)
@@ -38,6 +39,8 @@ SCENE = {
                "picture": {"x": "packing/time", "y": ["packing/coordination_number"], "color": "rotation", "view": "xz"}},
 }
 GRAINS = "document.querySelector('figure.grains').grains"
+MAP = "document.querySelector('figure.map').map"
+LISTS = {"forces": {"type": "force-chains", "every_time": "2 ms"}, "moved": {"type": "displacements", "every_time": "2 ms"}}
 DRAWN = "document.querySelector('figure.grains')?.grains.shownPlaces && document.querySelector('figure.chart[data-drawn]')"
 
 
@@ -55,9 +58,11 @@ class Page(unittest.TestCase):
         cls.place = tempfile.TemporaryDirectory(prefix="grit-page-")
         cls.folder = pathlib.Path(cls.place.name)
         run(cls.folder, "one")
-        run(cls.folder, "two", seed=2)
+        run(cls.folder, "two", seed=2, probes={"packing": {"type": "packing", "every_time": "3 ms"}, "walls": SCENE["probes"]["walls"]})
+        run(cls.folder, "lists", probes=LISTS, output={})
         subprocess.run([GRIT, "report", "one"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
         subprocess.run([GRIT, "report", "one", "two", "--out", "both.html"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([GRIT, "report", "lists"], cwd=cls.folder, check=True, stdout=subprocess.DEVNULL)
         cls.browser = Browser(CHROMIUM, timeout=150).__enter__()
 
     @classmethod
@@ -150,14 +155,14 @@ class Page(unittest.TestCase):
         self.browser.wait(f"{frame} === '1'")
         self.assertIn("fall · 2/", self.browser.evaluate("document.querySelector('.clock').textContent"))
         self.press(" ", " ")
-        self.browser.wait(f"{frame} === '{last}' && !{GRAINS}.playing")
+        self.browser.wait(f"{frame} === '{last}' && !{GRAINS}.player.playing")
 
     def test_grains_are_those_of_the_frames(self):
         for number in (0, 3):
             shown = self.browser.evaluate(f"""(async () => {{ const frames = {GRAINS}.frames, frame = await frames.frame({number});
                 const list = (values, axis) => Array.from(values, (q) => frames.metres(axis, q));
                 return {{time: frame.time, id: [...frame.id], radius: [...frame.radius], position: ['x', 'y', 'z'].map((name, axis) => list(frame[name], axis)),
-                         rotation: Array.from(frame.rotation[1], (q) => (q / 65535 * 2 - 1) * frames.json.ranges.rotation),
+                         rotation: Array.from(frame.rotation[1], (q) => (q / 65535 * 2 - 1) * frames.json.stages[frame.stage].ranges.rotation),
                          quantum: frames.json.high.map((high, axis) => (high - frames.json.low[axis]) / 65535)}}; }})()""")
             with h5py.File(self.folder / f"one/frames/{number:06}.h5") as frame:
                 self.assertEqual(shown["time"], frame.attrs["time"])
@@ -217,6 +222,133 @@ class Page(unittest.TestCase):
         self.assertTrue(name.startswith("two-"))
         self.assertNotEqual(first, second)
 
+    def go(self, frame):
+        self.browser.evaluate(f"{GRAINS}.player.go({frame})")
+        self.browser.wait(f"document.querySelector('.map .stage').dataset.frame === '{frame}'")
+
+    def test_maps_are_those_of_the_frames(self):
+        compared = 0
+        for number in (1, 4):
+            self.go(number)
+            with h5py.File(self.folder / f"one/frames/{number:06}.h5") as frame:
+                tables = frame["probes/packing"]
+                for name in ("void_ratio", "coordination_number", "stress"):
+                    shown = self.browser.evaluate(f"""(async () => {{ const map = {MAP};
+                        map.takeField('packing/{name}');
+                        await map.turn({number});
+                        const {{cells}} = map.now, width = Math.max(1, map.field.components.length), text = (list) => Array.from(list, String);
+                        return {{centre: cells.centre.map(text), size: cells.size.map(text), components: map.field.components,
+                                 values: Array.from({{length: width}}, (_, k) => text(cells.list(map.place(map.field, k))))}}; }})()""")
+                    for got, wanted in ((shown["centre"], tables["centre"]), (shown["size"], tables["size"]), (shown["values"], tables[name])):
+                        wanted = wanted[()].reshape(len(tables["centre"]), -1).T.astype(numpy.float32)
+                        numpy.testing.assert_array_equal(numpy.array([[float(value) for value in row] for row in got], numpy.float32), wanted)
+                        compared += wanted.size
+                    self.assertEqual(shown["components"], "xx xy xz yx yy yz zx zy zz".split() if name == "stress" else [])
+        self.assertGreater(compared, 100)
+
+    def test_maps_turn_with_the_grains_and_keep_their_colours(self):
+        self.browser.evaluate(f"{MAP}.takeField('packing/stress')")
+        scales, pictures = set(), set()
+        for number in (1, 3, 5):
+            self.browser.evaluate(f"(() => {{ const slider = document.querySelector('.map [name=frame]'); slider.value = {number}; slider.dispatchEvent(new Event('input')); }})()")
+            for stage in (".grains .stage", ".map .stage"):
+                self.browser.wait(f"document.querySelector('{stage}').dataset.frame === '{number}'")
+            scales.add(self.browser.evaluate(f"JSON.stringify([{MAP}.colours.low, {MAP}.colours.high])"))
+            pictures.add(bytes(self.saved("figure.map", "PNG")[1]))
+        self.assertEqual(len(scales), 1)
+        self.assertEqual(len(pictures), 3)
+
+    def test_maps_tell_values_and_are_saved(self):
+        self.browser.evaluate(f"{MAP}.takeField('packing/coordination_number')")
+        self.go(5)
+        place = self.browser.evaluate(f"""(() => {{ const map = {MAP}, {{cells}} = map.now, {{left, top}} = map.stage.getBoundingClientRect();
+            map.stage.scrollIntoView({{block: 'center'}});
+            const at = map.stage.getBoundingClientRect(), view = views[map.state.view], i = map.shown[3];
+            return {{x: at.left + map.layout.across(cells.centre[view.right][i]), y: at.top + map.layout.down(cells.centre[view.up][i]), i}}; }})()""")
+        self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=place["x"], y=place["y"])
+        told = self.browser.wait(f"{MAP}.under.textContent") and self.browser.evaluate(f"{MAP}.under.textContent")
+        field, component = self.browser.evaluate(f"[{MAP}.field.name, {MAP}.state.component]")
+        with h5py.File(self.folder / "one/frames/000005.h5") as frame:
+            tables = frame["probes/packing"]
+            wanted, cells = tables[field][()].reshape(len(tables["centre"]), -1)[:, component], tables["centre"][()]
+        self.assertIn(f"coordination number {float(format(wanted[place['i']], '.4g')):g}", told)
+        name, svg = self.saved("figure.map", "SVG")
+        self.assertEqual(name, f"one-packing-{field}-005.svg")
+        self.assertGreaterEqual(len(xml.etree.ElementTree.fromstring(bytes(svg).decode()).findall(".//{http://www.w3.org/2000/svg}rect")), len(cells) + 64)
+        lines = bytes(self.saved("figure.map", "CSV")[1]).decode().splitlines()
+        self.assertEqual(len(lines), len(cells) + 1)
+        self.assertTrue(lines[0].startswith("x [m],y [m],z [m],size x [m],size y [m],size z [m]," + field))
+        numpy.testing.assert_allclose([float(line.split(",")[2]) for line in lines[1:]], cells[:, 2], rtol=1e-6)
+        numpy.testing.assert_allclose([float(line.split(",")[6]) for line in lines[1:]], wanted, rtol=1e-6)
+
+    def list_chart(self, probe, name):
+        """Of a chart of lists its kind and its series as [label, x, y]."""
+        return self.browser.evaluate(f"""(async () => {{
+            const {{chart}} = [...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{probe}' && chart.name === '{name}');
+            await chart.draw();
+            return [chart.constructor.name, chart.series.map(({{label, x, y}}) => [label, Array.from(x, String), Array.from(y, String)])]; }})()""")
+
+    def test_profiles_and_directions_are_those_of_the_series(self):
+        self.browser.open(self.folder / "lists/report.html")
+        self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
+        self.browser.wait("[...document.querySelectorAll('.times .clock')].filter((clock) => clock.textContent).length === 2")
+        numbers = lambda row: [float(value) for value in row]
+        with h5py.File(self.folder / "lists/series.h5") as series:
+            for probe, name, at, kind in (("moved", "profile", "place", "ListChart"), ("moved", "fluctuation", "place", "ListChart"),
+                                          ("forces", "force_by_direction", "direction", "PolarChart"), ("forces", "contacts_by_direction", "direction", "PolarChart")):
+                found, shown = self.list_chart(probe, name)
+                self.assertEqual(found, kind)
+                time = series[f"{probe}/time"][()]
+                samples = [max(i for i, t in enumerate(time) if t <= part * (time[-1] - time[0]) + time[0]) for part in (1 / 3, 2 / 3, 1)]
+                self.assertEqual([label for label, _, _ in shown], [f"{float(format(1e3 * time[i], '.4g')):g} ms" for i in samples])
+                for (_, x, y), i in zip(shown, samples):
+                    numpy.testing.assert_array_equal(numbers(x), series[f"{probe}/{at}"][i])
+                    numpy.testing.assert_array_equal(numbers(y), series[f"{probe}/{name}"][i])
+            self.assertFalse(self.browser.evaluate("[...document.querySelectorAll('figure.chart')].some(({chart}) => ['place', 'direction'].includes(chart.name))"))
+            # Another time alone, then that one kept beside a third.
+            act = "(() => {{ const box = [...document.querySelectorAll('details.probe')].find((part) => part.querySelector('summary').textContent.startsWith('{}')), slider = box.querySelector('[name=sample]'); {} }})()"
+            press = "[...box.querySelectorAll('.times button')].find((button) => button.textContent === '{}').click();"
+            turn = "slider.value = {}; slider.dispatchEvent(new Event('input'));"
+            self.browser.evaluate(act.format("forces", press.format("alone") + turn.format(500) + press.format("keep") + turn.format(250)))
+            _, shown = self.list_chart("forces", "force_by_direction")
+            time = series["forces/time"][()]
+            samples = [max(i for i, t in enumerate(time) if t <= part * (time[-1] - time[0]) + time[0]) for part in (0.5, 0.25)]
+            self.assertEqual([numbers(y) for _, _, y in shown], [list(series["forces/force_by_direction"][i]) for i in samples])
+        chart = "[...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'force_by_direction')"
+        root = xml.etree.ElementTree.fromstring(self.browser.evaluate(f"{chart}.chart.view.toSVG()"))
+        self.assertGreater(len(root.findall(".//{http://www.w3.org/2000/svg}path")), 5)
+        # Pointing upwards tells the numbers of about 90°.
+        area = self.browser.evaluate(f"(() => {{ {chart}.scrollIntoView({{block: 'center'}}); const {{left, right, top, bottom}} = {chart}.chart.area(); return {{left, right, top, bottom}}; }})()")
+        self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=(area["left"] + area["right"]) / 2 + 1, y=0.7 * area["top"] + 0.3 * area["bottom"])
+        self.browser.wait(f"{chart}.querySelector('.values').textContent.includes('direction 85°')")
+
+    def test_keys_go_through_the_same_abscissa_in_all_runs(self):
+        self.open("both.html")
+        self.browser.evaluate("document.querySelector('figure.chart').focus()")
+        for _ in range(7):
+            self.press("ArrowRight")
+        times = self.browser.evaluate("(({series, places}) => series.map(({x}, k) => x[places[k]]))(document.querySelector('figure.chart').chart)")
+        self.assertAlmostEqual(times[0], 6e-3, delta=2e-5)
+        self.assertAlmostEqual(times[1], 6e-3, delta=2e-5)
+
+    def test_long_series_are_drawn_by_what_is_seen_of_them(self):
+        count, lowest, highest, gap = self.browser.evaluate("""(() => { const y = Float64Array.from({length: 100001}, (_, i) => Math.sin(i));
+            y[5000] = -7, y[70000] = 9, y[30000] = NaN;
+            const places = [...pointsToDraw(y, 800)];
+            return [places.length, places.includes(5000), places.includes(70000), places.includes(30000)]; })()""")
+        self.assertLess(count, 5000)
+        self.assertTrue(lowest and highest and gap)
+        self.assertTrue(self.browser.evaluate("[...pointsToDraw(Float64Array.of(1, 2, 3), 800)].join() === '0,1,2'"))
+
+    def test_figures_say_in_words_what_they_show(self):
+        with h5py.File(self.folder / "one/series.h5") as series:
+            last = series["packing/time"][-1]
+        said = self.browser.evaluate("document.querySelector('figure.chart .plot[role=img]').getAttribute('aria-label')")
+        self.assertRegex(said, rf"^coordination number against time: coordination number 0 to .* over 0 s to {float(format(last, '.4g')):g} s$")
+        self.assertRegex(self.browser.evaluate("document.querySelector('.grains .stage[role=img]').getAttribute('aria-label')"), "^40 grains at ")
+        self.go(5)
+        self.assertRegex(self.browser.evaluate("document.querySelector('.map .stage[role=img]').getAttribute('aria-label')"), r"^\w[\w ]* of \d+ cells of packing at ")
+
     def test_a_phone_and_the_dark_have_it_too(self):
         self.browser.resize(400, 800)
         self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
@@ -236,9 +368,10 @@ class Page(unittest.TestCase):
         try:
             self.open("one/report.html")
             self.assertTrue(self.browser.evaluate(f"{GRAINS}.painter === null"))
-            pixels = self.browser.evaluate("""(() => { const {canvas} = document.querySelector('.overlay').getContext('2d');
-                return new Set(new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size; })()""")
-            self.assertGreater(pixels, 100)
+            covered = self.browser.evaluate("""(() => { const {canvas} = document.querySelector('.overlay').getContext('2d');
+                const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, 0.7 * canvas.width, 0.8 * canvas.height).data.buffer);
+                return pixels.filter((pixel) => pixel !== 0).length / pixels.length; })()""")
+            self.assertGreater(covered, 0.1, "where the scale of colours is not, and the bar of length")
         finally:
             self.browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
 

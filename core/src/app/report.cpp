@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
@@ -28,11 +30,13 @@ void convert(const std::filesystem::path& svg, const std::filesystem::path& png)
 
 void make_pictures(const std::filesystem::path& folder) {
   RunResults run = read_results(folder);
-  for (const auto& [name, picture] :
-       {std::pair("curves", curves_picture(run)), std::pair("grains", grains_picture(run))}) {
-    if (!picture) continue;
-    const auto svg = folder / (std::string(name) + ".svg"), png = folder / (std::string(name) + ".png");
-    write_atomically(svg, *picture);
+  std::vector<NamedPicture> pictures;
+  if (auto curves = curves_picture(run)) pictures.push_back({"curves", std::move(*curves)});
+  if (auto grains = grains_picture(run)) pictures.push_back({"grains", std::move(*grains)});
+  std::ranges::move(map_pictures(run), std::back_inserter(pictures));
+  for (const auto& [name, picture] : pictures) {
+    const auto svg = folder / (name + ".svg"), png = folder / (name + ".png");
+    write_atomically(svg, picture);
     convert(svg, png);
     std::cout << "picture: " << png.string() << '\n';
   }
@@ -53,7 +57,9 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   Options options(command("report"));
   options.add()("out", po::value<std::string>()->value_name("FILE"),
                 "the page; default: report.html in the first folder")(
-      "png", "instead of a page, pictures in each folder, as curves.png and grains.png, and the same as SVG");
+      "png",
+      "instead of a page, pictures in each folder, as curves.png, grains.png and map-PROBE-FIELD.png, and the same as "
+      "SVG");
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <string>
 
 namespace grit {
 
@@ -14,5 +16,12 @@ using Rgb = std::array<double, 3>;  ///< 0 to 255
 /// ColorBrewer's RdBu from negative to positive, about zero: safe for colour-blind readers; red is positive.
 inline constexpr std::array<Rgb, 7> diverging_colours{
     {{20, 78, 140}, {67, 147, 195}, {164, 207, 228}, {246, 246, 244}, {246, 178, 147}, {214, 96, 77}, {160, 18, 40}}};
+
+/// Viridis, from small to large.
+inline constexpr std::array<Rgb, 7> sequential_colours{
+    {{68, 1, 84}, {68, 57, 131}, {49, 104, 142}, {33, 145, 140}, {53, 183, 121}, {144, 215, 67}, {253, 231, 37}}};
+
+/// "#rrggbb" at a place of a scale, 0 to 1; the nearest end beyond.
+std::string colour_at(std::span<const Rgb> scale, double place);
 
 }  // namespace grit

@@ -35,21 +35,10 @@ struct Range {
   bool empty() const { return !(low <= high); }
 };
 
-/// A colour of the map at 0…1.
-std::string colour(double place) {
-  const double along = std::clamp(place, 0.0, 1.0) * (diverging_colours.size() - 1);
-  const auto i = std::min(static_cast<std::size_t>(along), diverging_colours.size() - 2);
-  const double part = along - static_cast<double>(i);
-  std::array<int, 3> mixed{};
-  for (std::size_t k = 0; k < 3; ++k)
-    mixed[k] = static_cast<int>(std::lround(diverging_colours[i][k] * (1 - part) + diverging_colours[i + 1][k] * part));
-  return fmt::format("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]);
-}
-
 /// The colour of class i: blue–white–red, or its half from white to blue.
 std::string class_colour(int i, bool symmetric) {
   const double place = static_cast<double>(i) / (classes - 1);
-  return colour(symmetric ? place : 0.5 - 0.5 * place);
+  return colour_at(diverging_colours, symmetric ? place : 0.5 - 0.5 * place);
 }
 
 std::string style(const Picture& picture) {

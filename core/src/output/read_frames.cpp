@@ -1,6 +1,8 @@
 #include "output/read_frames.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 
 #include "grit/error.hpp"
 #include "output/hdf5.hpp"
@@ -67,6 +69,37 @@ Frame read_frame(const std::filesystem::path& path) {
   read_contacts(file.group("contacts"), frame);
   read_walls(file.group("walls"), frame);
   return frame;
+}
+
+std::vector<FieldGroup> read_maps(const std::filesystem::path& path) {
+  const hdf5::File file(path, hdf5::Mode::read);
+  std::vector<FieldGroup> maps;
+  if (!file.has("probes")) return maps;
+  const auto probes = file.group("probes");
+  for (const auto& probe : probes.names()) {
+    const auto tables = probes.group(probe);
+    if (!tables.has("centre") || !tables.has("size")) continue;
+    const auto cells = tables.dataset("centre").rows();
+    FieldGroup map{probe, {}};
+    const auto add = [&](const std::string& name) {
+      const auto table = tables.dataset(name);
+      const auto shape = table.shape();
+      if (shape.empty() || shape.front() != cells) return;
+      std::istringstream components(table.has_attribute("components") ? table.text("components") : "");
+      map.fields.push_back({name,
+                            table.text("units"),
+                            table.text("long_name"),
+                            hdf5::product(std::span(shape).subspan(1)),
+                            table.read<double>(),
+                            {std::istream_iterator<std::string>(components), {}}});
+    };
+    add("centre"), add("size");
+    const bool placed = map.fields.size() == 2 && map.fields[0].width == 3 && map.fields[1].width == 3;
+    for (const auto& name : tables.names())
+      if (name != "centre" && name != "size") add(name);
+    if (placed && map.fields.size() > 2) maps.push_back(std::move(map));
+  }
+  return maps;
 }
 
 std::size_t bodies_in_frame(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grit/vec.hpp"
+#include "run/recorder.hpp"
 
 namespace grit {
 
@@ -41,6 +42,10 @@ std::vector<std::filesystem::path> frame_files(const std::filesystem::path& fold
 
 /// Throws FileError for what is not whole.
 Frame read_frame(const std::filesystem::path& file);
+
+/// Tables of a frame that are maps, a group a probe: its fields "centre" and "size" first, then those of as many rows.
+/// Throws FileError.
+std::vector<FieldGroup> read_maps(const std::filesystem::path& file);
 
 /// How many bodies a frame has. Throws FileError.
 std::size_t bodies_in_frame(const std::filesystem::path& file);

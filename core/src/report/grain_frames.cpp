@@ -9,6 +9,7 @@
 
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
+#include "report/cell_maps.hpp"
 
 namespace grit {
 namespace {
@@ -86,25 +87,61 @@ struct Box {
   }
 };
 
-/// What all frames together reach.
-struct Extent : Box {
-  double speed = 0, speed_limit = 0, reach = 0, diameters = 0;
-  std::size_t bodies = 0;
+/// What the frames of a stage reach: a fast one leaves the others their colours.
+struct StageExtent {
+  double speed = 0, speed_limit = 0;
   VectorRange rotation, displacement;
 
   void add(const Frame& frame) {
-    Box::add(frame.position);
     std::vector<double> finite = speeds(frame);
     std::erase_if(finite, [](double v) { return !std::isfinite(v); });
     for (const double v : finite) speed = std::max(speed, v);
     speed_limit = std::max(speed_limit, percentile(std::move(finite)));
+    rotation.add(frame.rotation, frame.bodies()), displacement.add(frame.displacement, frame.bodies());
+  }
+};
+
+/// What all frames together reach.
+struct Extent : Box {
+  double reach = 0, diameters = 0;
+  std::size_t bodies = 0;
+  std::map<std::string, StageExtent> stages;
+
+  void add(const Frame& frame) {
+    Box::add(frame.position);
     for (const double part : frame.branch)
       if (std::isfinite(part)) reach = std::max(reach, std::abs(part));
     for (const double radius : frame.radius) diameters += 2 * radius;
     bodies += frame.bodies();
-    rotation.add(frame.rotation, frame.bodies()), displacement.add(frame.displacement, frame.bodies());
+    stages[frame.stage].add(frame);
+  }
+  bool everywhere(VectorRange StageExtent::*vectors) const {
+    return std::ranges::all_of(stages, [&](const auto& stage) { return (stage.second.*vectors).everywhere; });
   }
 };
+
+/// Takes out of a frame the bodies that are nowhere, as those of a run that has failed; returns how many.
+std::size_t drop_unplaced(Frame& frame) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < frame.bodies(); ++i)
+    if (std::isfinite(length(frame.position, i))) kept.push_back(i);
+  const std::size_t dropped = frame.bodies() - kept.size();
+  if (dropped == 0) return 0;
+  const auto keep = [&]<class T>(std::vector<T>& rows, std::size_t width) {
+    if (rows.empty()) return;
+    std::vector<T> left;
+    for (const std::size_t i : kept)
+      for (std::size_t k = 0; k < width; ++k) left.push_back(rows[width * i + k]);
+    rows = std::move(left);
+  };
+  keep(frame.radius, 1), keep(frame.clump, 1);
+  for (auto* vectors : {&frame.position, &frame.velocity, &frame.rotation, &frame.displacement}) keep(*vectors, 3);
+  keep(frame.id, 1);
+  return dropped;
+}
+
+constexpr std::array vector_colours{std::pair("rotation", &StageExtent::rotation),
+                                    std::pair("displacement", &StageExtent::displacement)};
 
 using Numbers = std::vector<std::uint16_t>;
 
@@ -139,9 +176,10 @@ class Writer {
   Writer(const Extent& extent, const GrainLimits& limits, DataElements& data)
       : extent_(extent), limits_(limits), data_(data) {}
 
-  void add(const Frame& frame) {
+  void add(const Frame& frame, std::size_t unplaced) {
     const std::size_t set = set_of(frame);
     Description json = {{"time", frame.time}, {"step", frame.step}, {"stage", frame.stage}, {"set", set}};
+    if (unplaced > 0) json["unplaced"] = unplaced;
     Box box;
     box.add(frame.position);
     if (frame.bodies() > 0) json["low"] = box.low, json["high"] = box.high;
@@ -151,6 +189,7 @@ class Writer {
     frames_.push_back(std::move(json));
   }
 
+  std::size_t frames() const { return frames_.size(); }
   Description result() const {
     Description bodies = Description::array(), walls = Description::array();
     for (const Set& set : sets_) bodies.push_back(Description{{"count", set.id.size()}, {"data", set.data}});
@@ -164,12 +203,14 @@ class Writer {
         {"clumps", clumps_},
         {"bodies", bodies},
         {"walls", walls},
-        {"ranges", {{"speed", extent_.speed}}},
-        {"limits", {{"speed", extent_.speed_limit}}},
         {"frames", frames_}};
-    for (const auto& [name, range] :
-         {std::pair("rotation", extent_.rotation), std::pair("displacement", extent_.displacement)})
-      if (range.everywhere) json["ranges"][name] = range.largest, json["limits"][name] = range.limits;
+    for (const auto& [stage, extent] : extent_.stages) {
+      Description ranges = {{"speed", extent.speed}}, limits = {{"speed", extent.speed_limit}};
+      for (const auto& [name, vectors] : vector_colours)
+        if (extent_.everywhere(vectors))
+          ranges[name] = (extent.*vectors).largest, limits[name] = (extent.*vectors).limits;
+      json["stages"][stage] = {{"ranges", std::move(ranges)}, {"limits", std::move(limits)}};
+    }
     return json;
   }
 
@@ -212,13 +253,15 @@ class Writer {
       for (std::size_t i = 0; i < numbers.size(); ++i)
         numbers[i] = static_cast<std::uint16_t>(numbers[i] - set.positions[i]);
     }
-    append(numbers, speeds(frame), 0, extent_.speed);
-    const auto add_vectors = [&](const VectorRange& range, const std::vector<double>& vectors) {
-      for (std::size_t axis = 0; axis < 3 && range.everywhere; ++axis)
-        append(numbers, component(vectors, axis), -range.largest, range.largest);
+    const StageExtent& extent = extent_.stages.at(frame.stage);
+    append(numbers, speeds(frame), 0, extent.speed);
+    const auto add_vectors = [&](VectorRange StageExtent::*range, const std::vector<double>& vectors) {
+      const double largest = (extent.*range).largest;
+      for (std::size_t axis = 0; axis < 3 && extent_.everywhere(range); ++axis)
+        append(numbers, component(vectors, axis), -largest, largest);
     };
-    add_vectors(extent_.rotation, frame.rotation);
-    add_vectors(extent_.displacement, frame.displacement);
+    add_vectors(&StageExtent::rotation, frame.rotation);
+    add_vectors(&StageExtent::displacement, frame.displacement);
     json["base"] = set.first_frame;
     json["data"] = data_.add(byte_planes(numbers));
   }
@@ -280,7 +323,9 @@ Description grain_frames(std::span<const std::filesystem::path> files, const Gra
   Extent extent;
   std::vector<std::filesystem::path> whole;
   for (const auto& file : taken) try {
-      extent.add(read_frame(file));
+      Frame frame = read_frame(file);
+      drop_unplaced(frame);
+      extent.add(frame);
       whole.push_back(file);
     } catch (const FileError& error) {
       problems.emplace_back(error.what());
@@ -288,8 +333,18 @@ Description grain_frames(std::span<const std::filesystem::path> files, const Gra
   if (whole.empty()) return nullptr;
   if (extent.low[0] > extent.high[0]) extent.low.fill(0), extent.high.fill(0);  // no body anywhere
   Writer writer(extent, limits, data);
-  for (const auto& file : whole) writer.add(read_frame(file));
+  CellMaps maps(data, limits.map_bytes);
+  for (const auto& file : whole) try {
+      Frame frame = read_frame(file);
+      const std::size_t unplaced = drop_unplaced(frame);
+      maps.add(writer.frames(), frame.stage, read_maps(file));
+      writer.add(frame, unplaced);
+    } catch (const FileError& error) {  // gone, or written anew, since
+      problems.emplace_back(error.what());
+    }
+  if (writer.frames() == 0) return nullptr;
   Description json = writer.result();
+  json["maps"] = maps.result();
   json["left_out"] = left_out;
   return json;
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <numeric>
+#include <ranges>
 
 #include "grit/error.hpp"
 #include "output/grain_view.hpp"
+#include "output/map_picture.hpp"
 #include "output/picture.hpp"
 #include "output/read_frames.hpp"
 #include "output/scale.hpp"
+#include "report/cell_maps.hpp"
 #include "report/facts.hpp"
 
 namespace grit {
@@ -101,6 +104,54 @@ std::optional<std::string> curves_picture(const RunResults& run) {
   }
   if (picture.panels.empty()) return std::nullopt;
   return draw(picture);
+}
+
+std::vector<NamedPicture> map_pictures(RunResults& run) {
+  std::vector<NamedPicture> pictures;
+  const auto frame = last_frame(run);
+  if (!frame) return pictures;
+  const std::string view = text_or(run.at("/description/output/picture/view"), "xz");
+  const int right = view[0] - 'x', up = view[1] - 'x';
+  const auto depth = static_cast<std::size_t>(3 - right - up);
+  for (const FieldGroup& map : read_maps(run.frames.back())) {
+    const auto &centre = map.fields[0].values, &size = map.fields[1].values;
+    const auto at = [](const std::vector<double>& rows, std::size_t cell, auto axis) {
+      return rows[3 * cell + static_cast<std::size_t>(axis)];
+    };
+    std::vector<std::size_t> cells(centre.size() / 3);
+    std::iota(cells.begin(), cells.end(), std::size_t{0});
+    if (cells.empty()) continue;
+    // Through the middle of cells, so that the cut is never between two.
+    const auto by_depth = [&](std::size_t cell) { return at(centre, cell, depth); };
+    std::ranges::nth_element(cells, cells.begin() + static_cast<std::ptrdiff_t>(cells.size() / 2), {}, by_depth);
+    const double plane = by_depth(cells[cells.size() / 2]);
+    std::erase_if(cells,
+                  [&](std::size_t cell) { return std::abs(by_depth(cell) - plane) > 0.49999 * at(size, cell, depth); });
+    std::ranges::sort(cells);
+    for (const Field& field : map.fields | std::views::drop(2)) {
+      MapPicture picture{
+          run.title(),
+          fmt::format("{} of {}  ·  stage {}  ·  {:.4g} s", spelled(field.name), map.name, frame->stage, frame->time),
+          view.substr(0, 1),
+          view.substr(1, 1),
+          {},
+          {},
+          field.unit};
+      for (const std::string& component : components_of(field))
+        picture.labels.push_back(spelled(field.name) + ' ' + component);
+      if (field.width == 1) picture.labels = {spelled(field.name)};
+      for (const std::size_t cell : cells) {
+        const auto row = field.values.begin() + static_cast<std::ptrdiff_t>(field.width * cell);
+        picture.cells.push_back({at(centre, cell, right),
+                                 at(centre, cell, up),
+                                 at(size, cell, right),
+                                 at(size, cell, up),
+                                 {row, row + static_cast<std::ptrdiff_t>(field.width)}});
+      }
+      pictures.push_back({"map-" + map.name + '-' + field.name, draw(picture)});
+    }
+  }
+  return pictures;
 }
 
 std::optional<std::string> grains_picture(RunResults& run) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "report/run_results.hpp"
 
@@ -15,5 +16,14 @@ std::optional<std::string> curves_picture(const RunResults& run);
 /// The grains of the last frame that can be read, as the description's picture has them; by speed where nothing else is
 /// kept. Nothing where there is no frame.
 std::optional<std::string> grains_picture(RunResults& run);
+
+struct NamedPicture {
+  std::string name;  ///< for a file: "map-packing-void_ratio"
+  std::string svg;
+};
+
+/// The maps of the last frame that can be read, a picture a field with a panel a component. Seen as the description's
+/// picture has it, cut through the middle.
+std::vector<NamedPicture> map_pictures(RunResults& run);
 
 }  // namespace grit

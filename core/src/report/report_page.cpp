@@ -182,6 +182,8 @@ Description channel_json(const ProbeSeries::Channel& channel, DataElements& data
           {"about", channel.sampled.doc},
           {"largest", largest},
           {"width", channel.width()},
+          {"coordinate", channel.sampled.coordinate},
+          {"components", channel.sampled.components},
           {"samples", channel.sampled.samples},
           {"data", data.add_numbers<double>(channel.sampled.values)}};
 }
@@ -269,6 +271,7 @@ ReportPage report_page(std::span<const std::filesystem::path> folders, const Gra
   tell_apart(runs);
   GrainLimits share = limits;
   share.bytes /= std::max<std::size_t>(1, runs.size());
+  share.map_bytes /= std::max<std::size_t>(1, runs.size());
   ReportPage page;
   DataElements data;
   Description json = {{"colours", {{"series", series_colours}, {"diverging", diverging_colours}}},
@@ -286,7 +289,7 @@ ReportPage report_page(std::span<const std::filesystem::path> folders, const Gra
   page.html = page_begin(runs.size() == 1 ? runs[0].title() : "Runs side by side", report_style, policy);
   page.html += head_of(runs, diameters) + problems_part(page.problems);
   page.html +=
-      "<main>\n<section id=\"curves\"></section>\n<section id=\"grains\"></section>\n"
+      "<main>\n<section id=\"curves\"></section>\n<section id=\"grains\"></section>\n<section id=\"maps\"></section>\n"
       "<noscript><p class=\"message\">Curves and grains are drawn by JavaScript, which is switched "
       "off.</p></noscript>\n"
       "</main>\n";

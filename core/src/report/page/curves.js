@@ -1,12 +1,12 @@
 // Curves: a chart for each channel of each probe, runs over each other, values under the pointer.
 "use strict";
 
-const componentNames = (width) =>
-  width === 3 ? ["x", "y", "z"] : width === 9 ? ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] : Array.from({ length: width }, (_, i) => String(i + 1));
+const componentNames = ({ width, components }) =>
+  components.length === width ? components : width === 3 ? ["x", "y", "z"] : width === 9 ? ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] : Array.from({ length: width }, (_, i) => String(i + 1));
 
 // Pixels about the lines, the same for all charts, so that their axes stand below each other.
-const around = { left: 58, right: 14, top: 34, bottom: 44 }, plotHeight = 180;
-const widestForLines = 9; // numbers a sample; more are a profile, of which the last is drawn
+const around = { left: 58, right: 20, top: 34, bottom: 44 }, plotHeight = 180;
+const widestForLines = 9; // numbers a sample; more are a list, of which some samples are drawn
 
 /** Smallest and largest finite number. */
 function rangeOf(lists) {
@@ -39,17 +39,22 @@ function pointsToDraw(y, pixels) {
   const places = [0];
   for (let piece = 0; piece < pieces; ++piece) {
     const first = Math.floor((piece * y.length) / pieces), end = Math.floor(((piece + 1) * y.length) / pieces);
-    let low = first, high = first;
+    let low = first, high = first, gap = -1; // a gap stays one
     for (let i = first; i < end; ++i) {
-      if (!(y[i] >= y[low])) low = i;
-      if (!(y[i] <= y[high])) high = i;
+      if (!Number.isFinite(y[i])) gap = i;
+      else {
+        if (!(y[i] >= y[low])) low = i;
+        if (!(y[i] <= y[high])) high = i;
+      }
     }
-    places.push(Math.min(low, high));
-    if (low !== high) places.push(Math.max(low, high));
+    places.push(...[...new Set(gap < 0 ? [low, high] : [low, high, gap])].sort((a, b) => a - b));
   }
   places.push(y.length - 1);
   return places;
 }
+
+/** A value with its unit. */
+const told = (value, { shown_unit }) => readable(value) + (shown_unit === "1" ? "" : /^deg/.test(shown_unit) ? "°" : ` ${shown_unit}`);
 
 /** One channel of one probe over an abscissa, of all runs that have it. */
 class Chart {
@@ -61,11 +66,13 @@ class Chart {
     this.values = make("output", { className: "values" });
     const tool = (text, title, act) => make("button", { type: "button", title, onclick: () => act.call(this) }, text);
     this.figure = make("figure", { className: "chart", tabIndex: 0 }, this.plot,
-      make("figcaption", {}, this.values, make("span", { className: "about" }, this.about()),
+      make("figcaption", {}, this.values, make("span", { className: "about" }, this.channel.about),
         make("span", { className: "tools" }, tool("SVG", "Save as SVG", this.saveSvg), tool("PNG", "Save as PNG", this.savePng),
           tool("CSV", "Save the numbers, in SI", this.saveCsv))));
     this.figure.chart = this;
+    this.figure.setAttribute("role", "group");
     this.figure.setAttribute("aria-label", `${this.channel.label}; arrow keys show values`);
+    this.plot.setAttribute("role", "img");
     this.plot.addEventListener("pointermove", (event) => this.point(event));
     this.plot.addEventListener("pointerdown", (event) => this.point(event));
     this.plot.addEventListener("pointerleave", () => this.show(null));
@@ -79,14 +86,8 @@ class Chart {
     }, { rootMargin: "400px" }).observe(this.figure);
   }
 
-  get isProfile() {
-    return this.channel.width > widestForLines;
-  }
-  about() {
-    return this.isProfile ? `${this.channel.about}; last sample` : this.channel.about;
-  }
   get abscissa() {
-    return this.isProfile ? { label: "place", shown_unit: "1", unit: "1", factor: 1, name: "place" } : this.group.abscissa();
+    return this.group.abscissa();
   }
 
   /** [{run, label, x, y, colour, dashed}], x and y as in series.h5. */
@@ -94,13 +95,8 @@ class Chart {
     const series = [];
     for (const { run, place, channel, probe } of this.group.channelsNamed(this.name)) {
       const all = await numbersOf(channel.data);
-      const parts = componentNames(channel.width);
+      const parts = componentNames(channel);
       const many = report.runs.length > 1;
-      if (this.isProfile) {
-        const last = all.slice(all.length - channel.width);
-        series.push({ run, label: many ? run.name : this.channel.label, x: Float64Array.from(last.keys()), y: last, colour: place });
-        continue;
-      }
       const against = probe.channels.find((one) => one.name === this.abscissa.name);
       if (!against && this.group.channelsNamed(this.abscissa.name).length > 0) continue; // this run has not got it
       const x = against ? await numbersOf(against.data) : Float64Array.from({ length: all.length / channel.width }, (_, i) => i);
@@ -117,7 +113,7 @@ class Chart {
     const full = `${this.group.name}/${this.name}`, found = new Map();
     for (const run of report.runs) for (const one of run.references) {
       const against = one.against || `${this.group.name}/time`;
-      if (one.of !== full || this.isProfile || (one.value === undefined && against !== `${this.group.name}/${this.abscissa.name}`)) continue;
+      if (one.of !== full || (one.value === undefined && against !== `${this.group.name}/${this.abscissa.name}`)) continue;
       const [x, y] = one.value === undefined ? [await numbersOf(one.x), await numbersOf(one.y)]
         : [Float64Array.from(rangeOf(series.map(({ x }) => x))), Float64Array.of(one.value, one.value)];
       found.set(one.name, { label: one.name, x, y, colour: series.length + found.size, reference: true });
@@ -135,13 +131,29 @@ class Chart {
       one.shownX = shown(one.x, abscissa.factor);
       one.shownY = shown(one.y, channel.factor);
     }
-    this.xDomain = rangeOf(this.series.map((one) => one.shownX));
-    if (this.xDomain[0] === this.xDomain[1]) this.xDomain = [this.xDomain[0] - 0.5, this.xDomain[1] + 0.5];
-    this.yDomain = settled(rangeOf(this.series.map((one) => one.shownY)));
+    this.settle();
     this.view?.finalize();
     this.view = new vega.View(vega.parse(this.spec()), { renderer: "svg", container: this.plot, hover: false });
     this.view.run();
+    this.plot.setAttribute("aria-label", this.inWords());
     this.figure.dataset.drawn = "yes";
+  }
+
+  /** What the axes reach. */
+  settle() {
+    this.xDomain = rangeOf(this.series.map((one) => one.shownX));
+    if (this.xDomain[0] === this.xDomain[1]) this.xDomain = [this.xDomain[0] - 0.5, this.xDomain[1] + 0.5];
+    this.yDomain = settled(rangeOf(this.series.map((one) => one.shownY)));
+  }
+  /** What a reader who does not see the chart wants to know of it. */
+  inWords() {
+    const between = (list, of) => rangeOf([list]).map((value) => told(value, of)).join(" to ");
+    const each = this.series.map(({ label, shownX, shownY }) => `${label} ${between(shownY, this.channel)} over ${between(shownX, this.abscissa)}`);
+    return `${this.channel.label} against ${this.abscissa.label}: ${each.join("; ")}`;
+  }
+  /** Where a point of a series is drawn. */
+  pointOf({ shownX, shownY }, i) {
+    return { x: shownX[i], y: shownY[i] };
   }
 
   spec() {
@@ -237,12 +249,21 @@ class Chart {
   /** Marks a point of each series, and writes its values; null: none. */
   show(places) {
     this.places = places;
-    const points = (places ?? []).flatMap((i, k) => (i < 0 ? [] : [{ x: this.series[k].shownX[i], y: this.series[k].shownY[i], s: this.series[k].label, k }]));
+    const points = (places ?? []).flatMap((i, k) => (i < 0 ? [] : [{ ...this.pointOf(this.series[k], i), s: this.series[k].label, k, i }]));
     this.view?.data("near", points).runAsync();
-    const unit = (of) => (of.shown_unit === "1" ? "" : ` ${of.shown_unit}`);
-    this.values.replaceChildren(...(points.length === 0 ? [] : [`${this.abscissa.label} ${readable(points[0].x)}${unit(this.abscissa)}`]),
-      ...points.map(({ y, s, k }) => make("span", {}, make("span", { className: "key", style: `background:${this.colour(this.series[k])}` }),
-        `${s} ${readable(y)}${unit(this.channel)}`)));
+    this.values.replaceChildren(...(points.length === 0 ? [] : [`${this.abscissa.label} ${told(this.series[points[0].k].shownX[points[0].i], this.abscissa)}`]),
+      ...points.map(({ s, k, i }) => make("span", {}, make("span", { className: "key", style: `background:${this.colour(this.series[k])}` }),
+        `${s} ${told(this.series[k].shownY[i], this.channel)}`)));
+  }
+
+  /** The sample whose abscissa is nearest; of those that are as near, the one as far along. */
+  nearestX(list, wanted, along) {
+    let best = -1, least = Infinity, off = Infinity;
+    for (let i = 0; i < list.length; ++i) {
+      const distance = Math.abs(list[i] - wanted), aside = Math.abs(i / list.length - along);
+      if (distance < least || (distance === least && aside < off)) (least = distance), (off = aside), (best = i);
+    }
+    return best;
   }
 
   key(event) {
@@ -252,7 +273,10 @@ class Chart {
     if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in steps)) return; // those are the browser's
     event.preventDefault();
     const far = event.shiftKey ? 20 : 1;
-    this.show(this.series.map(({ x }, k) => Math.min(x.length - 1, Math.max(0, (this.places?.[k] ?? -1) + far * steps[event.key]))));
+    // The longest series goes from sample to sample, and the others to where it is then.
+    const leader = this.series.reduce((best, { x }, k) => (x.length > this.series[best].x.length ? k : best), 0), { x } = this.series[leader];
+    const i = Math.min(x.length - 1, Math.max(0, (this.places?.[leader] ?? -1) + far * steps[event.key]));
+    this.show(this.series.map((one) => (one.x[i] === x[i] ? i : this.nearestX(one.x, x[i], i / x.length))));
   }
 
   get fileName() {
@@ -286,7 +310,25 @@ class ProbeCharts {
     this.against = x?.startsWith(`${name}/`) && this.scalars().includes(x.slice(name.length + 1)) ? x.slice(name.length + 1) : "time";
     const rank = (one) => (shown.includes(one) ? shown.indexOf(one) : shown.length);
     const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.samples > 0);
-    this.ordered = this.names.filter((one) => one !== "time" && sampled(one)).sort((a, b) => rank(a) - rank(b));
+    this.ordered = this.names.filter((one) => one !== "time" && sampled(one) && !this.isCoordinate(one)).sort((a, b) => rank(a) - rank(b));
+  }
+  /** The channel that says where each number of a list is; "place" does so in results of older programs too. */
+  coordinateOf({ name, coordinate, width }) {
+    const wanted = coordinate || (width > widestForLines && name !== "place" ? "place" : "");
+    return this.channelsNamed(wanted).find(({ channel }) => channel.width === width)?.channel;
+  }
+  /** Whether a channel only says where numbers of others are. */
+  isCoordinate(name) {
+    return this.names.some((other) => this.coordinateOf(this.channelsNamed(other)[0].channel)?.name === name);
+  }
+  isList(name) {
+    const { channel } = this.channelsNamed(name)[0];
+    return channel.width > widestForLines || this.coordinateOf(channel) !== undefined;
+  }
+  chart(name) {
+    if (!this.isList(name)) return new Chart(this, name);
+    const angle = /^(rad|deg)/.test(this.coordinateOf(this.channelsNamed(name)[0].channel)?.unit ?? "");
+    return angle ? new PolarChart(this, name) : new ListChart(this, name);
   }
   channelsNamed(name) {
     return this.probes.map((one) => ({ ...one, channel: one.probe.channels.find((channel) => channel.name === name) })).filter(({ channel }) => channel);
@@ -301,12 +343,19 @@ class ProbeCharts {
     const choice = make("select", { onchange: () => this.turn(choice.value) },
       ...this.scalars().map((name) => make("option", { value: name, selected: name === this.against }, this.channelsNamed(name)[0].channel.label)));
     this.grid = make("div", { className: "charts" });
-    parent.append(make("label", { className: "against" }, "against ", choice), this.grid);
+    parent.append(make("label", { className: "against" }, "against ", choice));
+    if (this.ordered.some((one) => this.isList(one))) {
+      this.choice = new TimeChoice(this.channelsNamed("time"), () => {
+        for (const { chart } of this.grid.children) if (chart instanceof ListChart && chart.view) chart.draw();
+      });
+      parent.append(this.choice.controls);
+    }
+    parent.append(this.grid);
     this.turn(this.against);
   }
   turn(against) {
     this.against = against;
-    this.grid.replaceChildren(...this.ordered.filter((name) => name !== against).map((name) => new Chart(this, name).figure));
+    this.grid.replaceChildren(...this.ordered.filter((name) => name !== against).map((name) => this.chart(name).figure));
   }
 }
 

@@ -15,7 +15,7 @@ class GrainFrames {
     return this.json.frames.length;
   }
   has(range) {
-    return this.json.ranges[range] !== undefined;
+    return Object.values(this.json.stages).every(({ ranges }) => ranges[range] !== undefined);
   }
 
   /** Radius [m], id and clump of the bodies of a set. */

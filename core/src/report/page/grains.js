@@ -1,47 +1,26 @@
 // The grains: a slider over the frames, a way to look, what colours say, force chains, walls.
 "use strict";
 
-// Axis to the right, upwards, along the line of sight with its sign away from the reader; as in picture.svg.
-const views = {
-  xz: { label: "front (x, z)", right: 0, up: 2, depth: 1, away: 1 },
-  yz: { label: "side (y, z)", right: 1, up: 2, depth: 0, away: -1 },
-  xy: { label: "above (x, y)", right: 0, up: 1, depth: 2, away: -1 },
-};
-const letter = (axis) => "xyz"[axis];
-
-// How a colour gets a number in its unit from a frame, and which scale it uses.
+// How a colour gets a number in its unit from a frame `of` a stage, and which scale it uses.
 const colourings = {
   rotation: { label: "rotation", unit: "°", table: "diverging", note: "clockwise +", needs: "rotation",
-    limit: (json, view) => (json.limits.rotation[view.depth] * 180) / Math.PI,
-    value: (json, view, frame) => (i) => ((frame.rotation[view.depth][i] / 65535) * 2 - 1) * json.ranges.rotation * view.away * (180 / Math.PI) },
+    limit: (of, view) => (of.limits.rotation[view.depth] * 180) / Math.PI,
+    value: (of, view, frame) => (i) => ((frame.rotation[view.depth][i] / 65535) * 2 - 1) * of.ranges.rotation * view.away * (180 / Math.PI) },
   displacement: { label: "displacement", unit: "m", table: "diverging", needs: "displacement", note: (view) => `${letter(view.right)} +`,
-    limit: (json, view) => json.limits.displacement[view.right],
-    value: (json, view, frame) => (i) => ((frame.displacement[view.right][i] / 65535) * 2 - 1) * json.ranges.displacement },
-  speed: { label: "speed", unit: "m/s", table: "sequential", limit: (json) => json.limits.speed,
-    value: (json, view, frame) => (i) => (frame.speed[i] / 65535) * json.ranges.speed },
-  radius: { label: "radius", unit: "m", table: "sequential", between: true, value: (json, view, frame) => (i) => frame.radius[i] },
-  clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (json, view, frame) => (i) => frame.clump?.[i] ?? -1 },
+    limit: (of, view) => of.limits.displacement[view.right],
+    value: (of, view, frame) => (i) => ((frame.displacement[view.right][i] / 65535) * 2 - 1) * of.ranges.displacement },
+  speed: { label: "speed", unit: "m/s", table: "sequential", limit: (of) => of.limits.speed,
+    value: (of, view, frame) => (i) => (frame.speed[i] / 65535) * of.ranges.speed },
+  radius: { label: "radius", unit: "m", table: "sequential", between: true, value: (of, view, frame) => (i) => frame.radius[i] },
+  clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (of, view, frame) => (i) => frame.clump?.[i] ?? -1 },
 };
 
-const prefixes = [[1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
-/** A unit with the prefix that reads best for numbers up to `largest`. */
-function prefixed(unit, largest) {
-  if (unit !== "m" && unit !== "m/s") return [1, unit];
-  const [size, prefix] = prefixes.find(([one]) => largest >= one) ?? prefixes.at(-1);
-  return [1 / size, prefix + unit];
-}
-/** 1, 2 or 5 times a power of ten, at most `most`. */
-function niceBelow(most) {
-  const power = 10 ** Math.floor(Math.log10(most));
-  return [5, 2, 1].map((lead) => lead * power).find((one) => one <= most * 1.0001) ?? power;
-}
-
 class GrainView {
-  constructor(section, runs) {
+  constructor(section, runs, player) {
+    this.player = player;
     this.runs = runs.map((run) => ({ name: run.name, frames: new GrainFrames(run.grains), leftOut: run.grains.left_out }));
     this.state = { run: 0, frame: 0, view: "xz", colour: "speed", cut: 0, chains: false, walls: true, zoom: 1, pan: [0, 0] };
     this.build(section);
-    this.takeRun(0);
     new ResizeObserver(() => this.redraw()).observe(this.stage);
     dark.addEventListener("change", () => this.redraw());
   }
@@ -64,7 +43,7 @@ class GrainView {
     const choice = (name, entries, act) => make("select", { name, onchange: (event) => act(event.target.value) }, ...entries.map(([value, label]) => make("option", { value }, label)));
     const labelled = (words, control) => make("label", {}, `${words} `, control);
     const tool = (text, title, act) => make("button", { type: "button", title, onclick: act }, text);
-    this.runChoice = choice("run", this.runs.map((run, i) => [i, run.name]), (value) => this.takeRun(+value));
+    this.runChoice = choice("run", this.runs.map((run, i) => [i, run.name]), (value) => this.player.takeRun(+value));
     const { view } = report.runs[0].picture ?? {};
     if (view in views) this.state.view = view;
     this.viewChoice = choice("view", Object.entries(views).map(([name, one]) => [name, one.label]), (value) => this.change({ view: value, zoom: 1, pan: [0, 0] }));
@@ -77,16 +56,12 @@ class GrainView {
     this.overlay = make("canvas", { className: "overlay" });
     this.stage = make("div", { className: "stage", tabIndex: 0 }, this.canvas, this.overlay);
     this.stage.setAttribute("role", "img");
-    this.play = make("button", { type: "button", className: "play", title: "Play (space)", onclick: () => this.toggle() }, "▶");
-    this.slider = make("input", { type: "range", name: "frame", min: 0, value: 0, oninput: () => (this.stop(), this.go(+this.slider.value)) });
-    this.slider.setAttribute("aria-label", "frame");
-    this.clock = make("output", { className: "clock" });
     this.under = make("output", { className: "values" });
     this.about = make("span", { className: "about" });
     section.append(make("h2", {}, "Grains"),
       make("div", { className: "controls" }, ...(this.runs.length > 1 ? [labelled("run", this.runChoice)] : []), labelled("seen from", this.viewChoice),
         labelled("colour", this.colourPlace), labelled("cut away", this.cut), make("label", {}, this.chains, " force chains"), make("label", {}, this.walls, " walls")),
-      make("figure", { className: "grains" }, this.stage, make("div", { className: "player" }, this.play, this.slider, this.clock),
+      make("figure", { className: "grains" }, this.stage, this.player.strip(),
         make("figcaption", {}, this.under, this.about, make("span", { className: "tools" }, tool("−", "Smaller", () => this.scale(1 / 1.4)), tool("+", "Larger", () => this.scale(1.4)),
           tool("fit", "All of it", () => this.change({ zoom: 1, pan: [0, 0] })), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
     section.querySelector("figure").grains = this;
@@ -102,8 +77,7 @@ class GrainView {
     const { stage } = this, fingers = new Map();
     let spread = 0;
     stage.addEventListener("keydown", (event) => {
-      const acts = { " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.go(0), End: () => this.go(this.frames.count - 1),
-        "+": () => this.scale(1.4), "-": () => this.scale(1 / 1.4), 0: () => this.change({ zoom: 1, pan: [0, 0] }) };
+      const acts = { ...this.player.keys(), "+": () => this.scale(1.4), "-": () => this.scale(1 / 1.4), 0: () => this.change({ zoom: 1, pan: [0, 0] }) };
       if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in acts)) return; // those are the browser's
       event.preventDefault();
       acts[event.key]();
@@ -138,6 +112,7 @@ class GrainView {
 
   takeRun(run) {
     this.state.run = run;
+    this.now = null;
     const { json } = this;
     const there = Object.entries(colourings).filter(([, one]) => !one.needs || (one.needs === "clumps" ? json.clumps : this.frames.has(one.needs)));
     const wanted = report.runs[0].picture?.color;
@@ -150,48 +125,15 @@ class GrainView {
     const deep = json.high[this.view.depth] - json.low[this.view.depth] > 3 * json.mean_diameter;
     this.cut.value = deep ? 33 : 0;
     this.state.cut = this.cut.value / 100;
-    this.slider.max = this.frames.count - 1;
-    this.slider.disabled = this.play.disabled = this.frames.count < 2;
-    const { leftOut } = this.runs[run];
-    this.about.textContent = leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, so that the page stays light` : "";
-    this.state.frame = -1;
-    this.go(this.frames.count - 1);
   }
 
-  // ---- time
-
-  async go(number) {
-    if (number === this.state.frame) return;
+  /** Shows a frame, unless another is asked for meanwhile. */
+  async turn(number) {
     this.state.frame = number;
     const frame = await this.frames.frame(number);
     if (this.state.frame !== number) return; // overtaken
-    this.slider.value = number;
     await this.show(frame);
     if (number + 1 < this.frames.count) this.frames.frame(number + 1);
-  }
-  step(by) {
-    this.stop();
-    return this.go(Math.min(this.frames.count - 1, Math.max(0, this.state.frame + by)));
-  }
-  toggle() {
-    return this.playing ? this.stop() : this.start();
-  }
-  stop() {
-    this.playing = false;
-    this.play.textContent = "▶";
-  }
-  async start() {
-    if (this.frames.count < 2) return;
-    this.playing = true;
-    this.play.textContent = "❚❚";
-    if (this.state.frame === this.frames.count - 1) await this.go(0);
-    const pace = Math.min(200, Math.max(40, 6000 / this.frames.count)); // ms: a run lasts some seconds
-    while (this.playing && this.state.frame < this.frames.count - 1) {
-      const next = performance.now() + pace;
-      await this.go(this.state.frame + 1);
-      await new Promise((done) => setTimeout(done, Math.max(0, next - performance.now())));
-    }
-    this.stop();
   }
 
   // ---- what is seen
@@ -220,30 +162,14 @@ class GrainView {
   }
   /** Where metres are on the stage. */
   arrange() {
-    const { json, view } = this, margin = { left: 14, right: 92, top: 14, bottom: 44 };
-    const radius = 0.75 * json.mean_diameter;
-    const extent = this.extent(), low = extent.low.map((v) => v - radius), high = extent.high.map((v) => v + radius);
-    const across = Math.max(high[view.right] - low[view.right], 1e-9), upward = Math.max(high[view.up] - low[view.up], 1e-9);
-    const width = this.stage.clientWidth;
-    const inner = Math.max(80, width - margin.left - margin.right);
-    const height = Math.round(Math.min(Math.max((inner * upward) / across + margin.top + margin.bottom, 240), Math.max(300, 0.78 * innerHeight), 900));
-    if (this.stage.style.height !== `${height}px`) this.stage.style.height = `${height}px`;
-    const metresPerPixel = Math.max(across / inner, upward / (height - margin.top - margin.bottom)) / this.state.zoom;
-    const centre = [
-      (low[view.right] + high[view.right]) / 2 + this.state.pan[0] + (metresPerPixel * (margin.right - margin.left)) / 2,
-      (low[view.up] + high[view.up]) / 2 + this.state.pan[1] - (metresPerPixel * (margin.bottom - margin.top)) / 2,
-    ];
+    const { json, view } = this, radius = 0.75 * json.mean_diameter, extent = this.extent();
+    const low = extent.low.map((v) => v - radius), high = extent.high.map((v) => v + radius);
+    this.layout = new Layout(this.stage, view, low, high, this.state.zoom, this.state.pan);
     // Depth grows away from the reader.
     const ends = [view.away * low[view.depth], view.away * high[view.depth]].sort((a, b) => a - b);
     const cut = this.state.cut > 0 ? ends[0] + this.state.cut * (ends[1] - ends[0]) : -Infinity;
-    this.layout = { width, height, metresPerPixel, centre, near: ends[0], far: ends[1], cut: Math.max(cut, ends[0] - 1e-9 - (ends[1] - ends[0])), margin };
+    Object.assign(this.layout, { near: ends[0], far: ends[1], cut: Math.max(cut, ends[0] - 1e-9 - (ends[1] - ends[0])) });
     return this.layout;
-  }
-  across(metres) {
-    return this.layout.width / 2 + (metres - this.layout.centre[0]) / this.layout.metresPerPixel;
-  }
-  down(metres) {
-    return this.layout.height / 2 - (metres - this.layout.centre[1]) / this.layout.metresPerPixel;
   }
 
   /** What colours mean: {low, high} of the value, and the table. */
@@ -254,11 +180,11 @@ class GrainView {
       const [low, high] = rangeOf([frame.radius]);
       return { table, low, high: high > low ? high : low + 1e-12 };
     }
-    const high = (colouring.limit ? colouring.limit(json, view) : 1) || 1;
+    const high = (colouring.limit ? colouring.limit(json.stages[frame.stage], view) : 1) || 1;
     return { table, low: colouring.table === "diverging" ? -high : 0, high };
   }
   places(frame) {
-    const value = this.colouring.value(this.json, this.view, frame), { low, high } = this.colours;
+    const value = this.colouring.value(this.json.stages[frame.stage], this.view, frame), { low, high } = this.colours;
     const places = new Float32Array(frame.count);
     if (this.state.colour === "clump") {
       for (let i = 0; i < frame.count; ++i) places[i] = value(i) < 0 ? -1 : (value(i) % 251) / 255;
@@ -323,10 +249,11 @@ class GrainView {
       this.painter.setColours(this.colours.table);
     }
     this.paint();
-    const unit = frame.time === 0 ? [1, "s"] : frame.time >= 1 ? [1, "s"] : frame.time >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
-    this.clock.textContent = `${+(frame.time * unit[0]).toPrecision(4)} ${unit[1]} · ${frame.stage} · ${frame.number + 1}/${this.frames.count}`;
     this.stage.setAttribute("aria-label", `${frame.count} grains at ${frame.time} s, coloured by ${this.colouring.label}`);
     this.stage.dataset.frame = frame.number;
+    const { leftOut } = this.runs[this.state.run], { unplaced } = this.json.frames[frame.number];
+    this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, so that the page stays light` : "",
+      unplaced > 0 ? `bodies that are nowhere are left out: ${unplaced}` : ""].filter(Boolean).join("; ");
     this.painted = frame;
   }
   redraw() {
@@ -372,45 +299,29 @@ class GrainView {
     const fills = this.colours.table.map(mixed), rims = this.colours.table.map((colour) => mixed(colour.map((c) => c * 0.55))), grey = mixed([180, 180, 176]);
     for (const i of this.seen()) {
       const place = this.shownPlaces[i], k = Math.round(place * 255);
-      pen.disc(this.across(this.frames.metres(view.right, lists[view.right][i])), this.down(this.frames.metres(view.up, lists[view.up][i])),
+      pen.disc(this.layout.across(this.frames.metres(view.right, lists[view.right][i])), this.layout.down(this.frames.metres(view.up, lists[view.up][i])),
         Math.max(0.5, now.radius[i] / layout.metresPerPixel), place < 0 ? grey : fills[k], place < 0 ? "#666" : rims[k]);
     }
     const { from, to, width, alpha } = this.shownSegments;
     for (let i = 0; i < width.length; ++i)
-      pen.line(this.across(from[2 * i]), this.down(from[2 * i + 1]), this.across(to[2 * i]), this.down(to[2 * i + 1]), look.ink, (2 * width[i]) / devicePixelRatio, alpha[i]);
+      pen.line(this.layout.across(from[2 * i]), this.layout.down(from[2 * i + 1]), this.layout.across(to[2 * i]), this.layout.down(to[2 * i + 1]), look.ink, (2 * width[i]) / devicePixelRatio, alpha[i]);
   }
 
   /** Scale bar, axes, and what colours mean. */
   annotate(pen, look) {
-    const { layout, view, colours, colouring } = this, { width, height, metresPerPixel, margin } = layout;
-    const long = niceBelow(0.3 * Math.min(width, 480) * metresPerPixel), [factor, unit] = prefixed("m", long), y = height - 16;
-    pen.box(margin.left - 6, y - 11, long / metresPerPixel + 70, 22, look.paper);
-    pen.line(margin.left, y, margin.left + long / metresPerPixel, y, look.ink, 2);
-    pen.text(margin.left + long / metresPerPixel + 8, y + 4, `${+(long * factor).toPrecision(3)} ${unit}`, look.ink);
-    pen.text(width - margin.right, y + 4, `${letter(view.right)} →  ${letter(view.up)} ↑`, look.soft, "end");
+    const { layout, view, colours, colouring } = this, { width, height, margin } = layout;
+    drawLengthBar(pen, look, layout);
+    pen.text(width - margin.right, height - 12, `${letter(view.right)} →  ${letter(view.up)} ↑`, look.soft, "end");
     if (this.state.colour === "clump") return;
-    const tall = Math.min(240, height - 110), left = width - 70, top = 46;
-    const [scale, shown] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
-    pen.text(width - 6, 20, colouring.label, look.ink, "end", 12.5);
-    pen.text(width - 6, 35, `[${shown}]`, look.soft, "end", 11.5);
-    const pieces = 64;
-    for (let i = 0; i < pieces; ++i) pen.box(left, top + (tall * (pieces - 1 - i)) / pieces, 13, tall / pieces + 0.6, rgb(colours.table[Math.round((i / (pieces - 1)) * 255)]));
-    const step = niceBelow((colours.high - colours.low) / 3), digits = Math.max(0, -Math.floor(Math.log10(step * scale) + 1e-9));
-    for (let k = Math.ceil(colours.low / step - 1e-9); k * step <= colours.high * (1 + 1e-9); ++k) {
-      const at = top + tall * (1 - (k * step - colours.low) / (colours.high - colours.low));
-      pen.line(left + 13, at, left + 17, at, look.frame, 1);
-      pen.text(left + 20, at + 4, (k * step * scale).toFixed(Math.min(digits, 6)).replace("-", "−"), look.ink, "start", 11.5);
-    }
-    const note = typeof colouring.note === "function" ? colouring.note(view) : colouring.note;
-    if (note) pen.text(width - 6, top + tall + 18, note, look.soft, "end", 11);
+    const [factor, unit] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
+    drawColourScale(pen, look, { width, height, ...colours, label: colouring.label, unit, factor,
+      note: typeof colouring.note === "function" ? colouring.note(view) : colouring.note });
   }
 
   /** Says what is under the pointer. */
   pick(event) {
     if (!this.now || !this.layout) return;
-    const { left, top } = this.stage.getBoundingClientRect(), { view, now, layout } = this, lists = [now.x, now.y, now.z];
-    const right = layout.centre[0] + (event.clientX - left - layout.width / 2) * layout.metresPerPixel;
-    const up = layout.centre[1] - (event.clientY - top - layout.height / 2) * layout.metresPerPixel;
+    const { view, now, layout } = this, lists = [now.x, now.y, now.z], [right, up] = layout.metresAt(this.stage, event);
     let found = -1, nearest = Infinity;
     for (let i = 0; i < now.count; ++i) {
       const dx = this.frames.metres(view.right, lists[view.right][i]) - right, dy = this.frames.metres(view.up, lists[view.up][i]) - up;
@@ -419,7 +330,7 @@ class GrainView {
       if (depth >= layout.cut && depth < nearest) (nearest = depth), (found = i);
     }
     if (found < 0) return this.under.replaceChildren();
-    const { colouring } = this, value = colouring.value(this.json, view, now)(found), [size, unit] = prefixed("m", now.radius[found]);
+    const { colouring } = this, value = colouring.value(this.json.stages[now.stage], view, now)(found), [size, unit] = prefixed("m", now.radius[found]);
     const [scale, shown] = prefixed(colouring.unit, Math.abs(value));
     const rest = ["radius", "clump"].includes(this.state.colour) ? [] : [make("span", {}, `${colouring.label} ${readable(value * scale)} ${shown}`)];
     this.under.replaceChildren(make("span", {}, `grain ${now.id[found]}`), make("span", {}, `radius ${readable(now.radius[found] * size)} ${unit}`), ...rest);
@@ -445,7 +356,7 @@ class GrainView {
     all.toBlob((blob) => save(`${this.fileName}.png`, blob));
   }
   saveCsv() {
-    const { now, colouring, json, view } = this, lists = [now.x, now.y, now.z], value = colouring.value(json, view, now);
+    const { now, colouring, json, view } = this, lists = [now.x, now.y, now.z], value = colouring.value(json.stages[now.stage], view, now);
     const lines = [`id,x [m],y [m],z [m],radius [m],${withUnit(colouring.label, colouring.unit)}`];
     for (let i = 0; i < now.count; ++i)
       lines.push([now.id[i], ...lists.map((list, axis) => this.frames.metres(axis, list[i]).toPrecision(6)), now.radius[i].toPrecision(6), value(i).toPrecision(5)].join(","));
@@ -453,7 +364,12 @@ class GrainView {
   }
 }
 
-function showGrains(section) {
+/** Grains, and maps of cells below them, which turn by the same slider. */
+function showFrames(grains, maps) {
   const runs = report.runs.filter((run) => run.grains && run.grains.frames.length > 0);
-  if (runs.length > 0) new GrainView(section, runs);
+  if (runs.length === 0) return;
+  const player = new Player(runs.map((run) => run.grains.frames));
+  player.viewers.push(new GrainView(grains, runs, player));
+  if (runs.some((run) => run.grains.maps.length > 0)) player.viewers.push(new MapView(maps, runs, player));
+  player.takeRun(0);
 }

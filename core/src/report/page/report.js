@@ -1,3 +1,3 @@
 "use strict";
 showCurves(document.getElementById("curves"));
-showGrains(document.getElementById("grains"));
+showFrames(document.getElementById("grains"), document.getElementById("maps"));

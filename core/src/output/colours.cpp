@@ -1,0 +1,20 @@
+#include "output/colours.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grit {
+
+std::string colour_at(std::span<const Rgb> scale, double place) {
+  const double along = std::clamp(place, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
+  const auto i = std::min(static_cast<std::size_t>(along), scale.size() - 2);
+  const double part = along - static_cast<double>(i);
+  std::array<int, 3> mixed{};
+  for (std::size_t k = 0; k < 3; ++k)
+    mixed[k] = static_cast<int>(std::lround(scale[i][k] * (1 - part) + scale[i + 1][k] * part));
+  return fmt::format("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]);
+}
+
+}  // namespace grit

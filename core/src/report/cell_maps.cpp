@@ -1,0 +1,133 @@
+#include "report/cell_maps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "output/scale.hpp"
+
+namespace grit {
+namespace {
+
+constexpr double share_shown = 0.98;    // of the cells of a frame, in the middle: the rest is drawn as the scale's ends
+constexpr double share_of_sign = 0.05;  // of the larger side, by which values on the other side of zero count
+
+/// One component of all rows.
+std::vector<float> column(const Field& field, std::size_t component) {
+  std::vector<float> all;
+  for (std::size_t i = component; i < field.values.size(); i += field.width)
+    all.push_back(static_cast<float>(field.values[i]));
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> components_of(const Field& field) {
+  if (field.components.size() == field.width) return field.components;
+  if (field.width == 1) return {};
+  if (field.width == 3) return {"x", "y", "z"};
+  if (field.width == 9) return {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+  std::vector<std::string> numbers;
+  for (std::size_t i = 1; i <= field.width; ++i) numbers.push_back(std::to_string(i));
+  return numbers;
+}
+
+CellMaps::Map& CellMaps::map_of(const FieldGroup& group) {
+  const auto known = std::ranges::find(maps_, group.name, &Map::probe);
+  if (known != maps_.end()) return *known;
+  Map map{group.name, {}, Description::array(), 0, {}, {}};
+  map.low.fill(std::numeric_limits<double>::infinity()), map.high.fill(-std::numeric_limits<double>::infinity());
+  for (const Field& field : group.fields) {
+    if (field.name == "centre" || field.name == "size") continue;
+    map.fields.push_back({field.name, field.unit, field.doc, components_of(field), field.width, {}});
+  }
+  return maps_.emplace_back(std::move(map));
+}
+
+void CellMaps::add(std::size_t frame, const std::string& stage, const std::vector<FieldGroup>& groups) {
+  for (const FieldGroup& group : groups) {
+    Map& map = map_of(group);
+    const std::size_t cells = group.fields[0].values.size() / 3;
+    for (std::size_t i = 0; i < 3 * cells; ++i) {
+      const double centre = group.fields[0].values[i], half = 0.5 * group.fields[1].values[i];
+      map.low[i % 3] = std::min(map.low[i % 3], centre - half);
+      map.high[i % 3] = std::max(map.high[i % 3], centre + half);
+    }
+    std::vector<float> numbers;
+    for (const std::size_t place : {0, 1})
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto all = column(group.fields[place], axis);
+        numbers.insert(numbers.end(), all.begin(), all.end());
+      }
+    for (MapField& field : map.fields) {
+      const auto found = std::ranges::find(group.fields, field.name, &Field::name);
+      const bool there = found != group.fields.end() && found->width == field.width;
+      auto& ranges = field.ranges[stage];
+      ranges.resize(field.width);
+      for (std::size_t k = 0; k < field.width; ++k) {
+        const auto all = there ? column(*found, k) : std::vector<float>(cells, std::numeric_limits<float>::quiet_NaN());
+        numbers.insert(numbers.end(), all.begin(), all.end());
+        std::vector<float> finite;
+        std::ranges::copy_if(all, std::back_inserter(finite), [](float value) { return std::isfinite(value); });
+        if (finite.empty()) continue;
+        std::ranges::sort(finite);
+        const auto rim = static_cast<std::size_t>(0.5 * (1 - share_shown) * static_cast<double>(finite.size()));
+        const Range here{finite[rim], finite[finite.size() - 1 - rim]};
+        if (auto& range = ranges[k]) *range = {std::min(range->low, here.low), std::max(range->high, here.high)};
+        else range = here;
+      }
+    }
+    const std::size_t bytes = sizeof(float) * numbers.size();
+    if (bytes > bytes_left_) {
+      ++map.left_out;
+      continue;
+    }
+    bytes_left_ -= bytes;
+    map.frames.push_back(Description{{"frame", frame}, {"cells", cells}, {"data", data_.add_numbers<float>(numbers)}});
+  }
+}
+
+Description CellMaps::result() const {
+  Description all = Description::array();
+  for (const Map& map : maps_) {
+    if (map.low[0] > map.high[0]) continue;  // no cell in any frame
+    Description fields = Description::array();
+    for (const MapField& field : map.fields) {
+      std::vector<Range> whole(field.width, {0, 0});
+      Description ranges = Description::object(), parted = Description::array();
+      for (const auto& [stage, components] : field.ranges) {
+        Description& list = ranges[stage] = Description::array();
+        for (std::size_t k = 0; k < components.size(); ++k) {
+          const auto& range = components[k];
+          list.push_back(range ? Description{range->low, range->high} : Description());
+          if (range) whole[k] = {std::min(whole[k].low, range->low), std::max(whole[k].high, range->high)};
+        }
+      }
+      double largest = 0;
+      for (const auto& [low, high] : whole) {
+        largest = std::max({largest, -low, high});
+        parted.push_back(std::min(-low, high) > share_of_sign * std::max(-low, high));
+      }
+      const ReadableUnit shown = readable(field.unit, largest);
+      fields.push_back(Description{{"name", field.name},
+                                   {"label", spelled(field.name)},
+                                   {"unit", field.unit},
+                                   {"shown_unit", shown.unit},
+                                   {"factor", shown.factor},
+                                   {"about", field.doc},
+                                   {"components", field.components},
+                                   {"signed", parted},
+                                   {"ranges", ranges}});
+    }
+    all.push_back(Description{{"probe", map.probe},
+                              {"low", map.low},
+                              {"high", map.high},
+                              {"fields", fields},
+                              {"frames", map.frames},
+                              {"left_out", map.left_out}});
+  }
+  return all;
+}
+
+}  // namespace grit

@@ -1,0 +1,145 @@
+// Lists that have a place or a direction for each number: profiles and polar plots, of some instants over each other.
+"use strict";
+
+/** The place of the last of rising numbers that is not above `most`; of the first where all are. */
+function lastUpTo(rising, most) {
+  let low = 0, high = rising.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (rising[middle] <= most) low = middle + 1;
+    else high = middle;
+  }
+  return Math.max(0, low - 1);
+}
+
+/** Which samples of a probe's lists are shown: the one of a slider, and those that were kept; at first those at a third and two. */
+class TimeChoice {
+  constructor(channels, changed) {
+    this.changed = changed;
+    this.kept = [];
+    this.slider = make("input", { type: "range", name: "sample", min: 0, max: 1000, value: 1000, oninput: () => this.take() });
+    this.slider.setAttribute("aria-label", "time of profiles and directions");
+    this.shown = make("output", { className: "clock" });
+    const button = (text, title, act) => make("button", { type: "button", title, onclick: act }, text);
+    this.controls = make("div", { className: "controls times" }, make("label", {}, "profiles and directions at ", this.slider), this.shown,
+      button("keep", "Keep this time beside others", () => this.keep([...this.kept, this.now])), button("alone", "Keep no other time", () => this.keep([])));
+    this.known = Promise.all(channels.map(({ channel }) => numbersOf(channel.data))).then((lists) => {
+      this.span = rangeOf(lists);
+      this.kept = [1 / 3, 2 / 3].map((part) => this.at(part));
+      this.tell();
+    });
+  }
+  at(part) {
+    return this.span[0] + part * (this.span[1] - this.span[0]);
+  }
+  get now() {
+    return this.at(this.slider.value / 1000);
+  }
+  /** Seconds, the one of the slider last. */
+  get times() {
+    return [...this.kept, this.now];
+  }
+  inWords(seconds) {
+    const largest = Math.max(Math.abs(this.span[1]), Math.abs(this.span[0])), [size, unit] = largest >= 1 || largest === 0 ? [1, "s"] : largest >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
+    return `${readable(seconds * size)} ${unit}`;
+  }
+  tell() {
+    this.shown.textContent = this.inWords(this.now);
+    this.slider.setAttribute("aria-valuetext", this.shown.textContent);
+  }
+  take() {
+    if (!this.span) return;
+    this.tell();
+    this.changed();
+  }
+  keep(times) {
+    this.kept = times;
+    this.take();
+  }
+}
+
+class ListChart extends Chart {
+  get abscissa() {
+    return this.group.coordinateOf(this.channel) ?? { label: "number", shown_unit: "1", unit: "1", factor: 1, name: "number" };
+  }
+  async load() {
+    const { choice } = this.group, series = [], many = report.runs.length > 1;
+    await choice.known;
+    for (const { run, place, channel, probe } of this.group.channelsNamed(this.name)) {
+      const { width } = channel, all = await numbersOf(channel.data), samples = all.length / width;
+      const named = (name) => probe.channels.find((one) => one.name === name), time = named("time"), where = named(this.abscissa.name);
+      const instants = time ? await numbersOf(time.data) : Float64Array.from({ length: samples }, (_, i) => i), places = where && (await numbersOf(where.data));
+      for (const [k, wanted] of choice.times.entries()) {
+        if (samples === 0) continue;
+        const sample = Math.min(samples - 1, lastUpTo(instants, wanted)), row = (list) => list.slice(sample * width, (sample + 1) * width);
+        const label = `${many ? `${run.name} ` : ""}${choice.inWords(instants[sample])}`;
+        if (series.some((one) => one.label === label)) continue;
+        series.push({ run, label, x: places ? row(places) : Float64Array.from({ length: width }, (_, i) => i + 1), y: row(all), colour: many ? place + k * report.runs.length : k });
+      }
+    }
+    return series;
+  }
+}
+
+/** A list by direction, round a middle that is zero. */
+class PolarChart extends ListChart {
+  settle() {
+    const [, most] = rangeOf(this.series.map(({ shownY }) => shownY)), high = most > 0 ? most : 1;
+    this.step = niceBelow(high / 2);
+    this.reach = Math.max(Math.ceil((high / this.step) * (1 - 1e-9)), 1) * this.step;
+  }
+  /** Half a turn, in the unit of the directions. */
+  get half() {
+    return this.abscissa.shown_unit.startsWith("rad") ? Math.PI : 180;
+  }
+  at(angle, radius) {
+    return { x: radius * Math.cos((angle / this.half) * Math.PI), y: radius * Math.sin((angle / this.half) * Math.PI) };
+  }
+  pointOf({ shownX, shownY }, i) {
+    return this.at(shownX[i], Math.max(0, shownY[i]));
+  }
+  /** Steps round the middle: each number stands for the directions about it. */
+  outline({ shownX, shownY, label }) {
+    const wide = shownX.length > 1 ? Math.abs(shownX[1] - shownX[0]) / 2 : this.half, points = [];
+    shownX.forEach((angle, i) => [-1, -0.5, 0, 0.5, 1].forEach((part) => points.push({ ...this.at(angle + part * wide, Math.max(0, shownY[i]) || 0), s: label })));
+    return [...points, points[0]];
+  }
+
+  spec() {
+    const look = theme(), spec = super.spec(), { half, reach, step } = this, font = getComputedStyle(document.body).fontFamily;
+    const rings = Array.from({ length: Math.round(reach / step) }, (_, k) => (k + 1) * step);
+    const grid = rings.flatMap((radius) => Array.from({ length: 121 }, (_, i) => ({ ...this.at((i / 60) * half, radius), g: String(radius) })));
+    for (let k = 0; k < 6; ++k) for (const end of [k, k + 6]) grid.push({ ...this.at((end / 6) * half, reach), g: `spoke ${k}` });
+    const names = [0, 90, 180, 270].map((degree) => ({ ...this.at((degree / 180) * half, 1.13 * reach), t: `${degree}°` }));
+    const radii = rings.map((radius) => ({ ...this.at(half * 5 / 12, radius), t: readable(radius) }));
+    const at = (field) => ({ scale: field, field });
+    const lines = (data, by, stroke) => ({ type: "group", from: { facet: { name: `${data} one`, data, groupby: by } },
+      marks: [{ type: "line", interactive: false, from: { data: `${data} one` }, encode: { update: { x: at("x"), y: at("y"), strokeJoin: { value: "round" }, ...stroke } } }] });
+    const words = (data, colour) => ({ type: "text", interactive: false, from: { data }, encode: { update: { x: at("x"), y: at("y"), text: { field: "t" },
+      fill: { value: colour }, font: { value: font }, fontSize: { value: 11.5 }, baseline: { value: "middle" }, align: { value: "center" } } } });
+    return { ...spec, height: this.size, padding: { ...around, bottom: 12 + this.legendHeight }, axes: [],
+      data: [{ name: "grid", values: grid }, { name: "names", values: names }, { name: "radii", values: radii },
+        { name: "curves", values: this.series.flatMap((one) => this.outline(one)) }, { name: "near", values: [] }],
+      scales: spec.scales.map((scale) => (["x", "y"].includes(scale.name) ? { ...scale, nice: false, domain: this.domain(scale.name) } : scale)),
+      marks: [lines("grid", "g", { stroke: { value: look.line } }), words("names", look.soft),
+        lines("curves", "s", { stroke: { scale: "colour", field: "s" }, strokeDash: { scale: "dash", field: "s" }, strokeWidth: { value: 2 } }),
+        words("radii", look.soft), spec.marks.at(-1)] };
+  }
+  /** A circle stays one, whatever the width. */
+  domain(axis) {
+    const half = 1.2 * this.reach * (axis === "x" ? this.width / this.size : 1);
+    return [-half, half];
+  }
+  get size() {
+    return Math.min(this.width, plotHeight + 80);
+  }
+
+  point(event) {
+    if (!this.view) return;
+    const area = this.area(), right = event.clientX - (area.left + area.right) / 2, up = (area.top + area.bottom) / 2 - event.clientY;
+    if (Math.hypot(right, up) > 0.5 * area.height) return this.show(null);
+    const turn = 2 * this.half, angle = (Math.atan2(up, right) / Math.PI) * this.half;
+    const off = (one) => Math.abs(((((one - angle) % turn) + 1.5 * turn) % turn) - turn / 2);
+    this.show(this.series.map(({ shownX }) => shownX.reduce((best, one, i) => (off(one) < off(shownX[best]) ? i : best), 0)));
+  }
+}

@@ -1,0 +1,78 @@
+// Time: which frame of which run is shown, by sliders that go together.
+"use strict";
+
+class Player {
+  /** Of each run its frames: [{time [s], stage}]. What has turn(number) and takeRun(run) may be put among the viewers. */
+  constructor(runs) {
+    this.runs = runs;
+    this.viewers = [];
+    this.strips = [];
+  }
+  get count() {
+    return this.frames.length;
+  }
+
+  /** A button, a slider and a clock. */
+  strip() {
+    const play = make("button", { type: "button", className: "play", title: "Play (space)", onclick: () => this.toggle() }, "▶");
+    const slider = make("input", { type: "range", name: "frame", min: 0, value: 0, oninput: () => (this.stop(), this.go(+slider.value)) });
+    slider.setAttribute("aria-label", "frame");
+    play.setAttribute("aria-label", "play");
+    const clock = make("output", { className: "clock" });
+    this.strips.push({ play, slider, clock });
+    return make("div", { className: "player" }, play, slider, clock);
+  }
+  /** What keys do. */
+  keys() {
+    return { " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.step(-Infinity), End: () => this.step(Infinity) };
+  }
+
+  /** Goes to the last frame of a run. */
+  takeRun(run) {
+    this.stop();
+    this.frames = this.runs[run];
+    for (const viewer of this.viewers) viewer.takeRun(run);
+    for (const { play, slider } of this.strips) {
+      slider.max = this.count - 1;
+      play.disabled = slider.disabled = this.count < 2;
+    }
+    this.number = -1;
+    return this.go(this.count - 1);
+  }
+  async go(number) {
+    if (number === this.number) return;
+    this.number = number;
+    const { time, stage } = this.frames[number];
+    const [size, unit] = time === 0 || time >= 1 ? [1, "s"] : time >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
+    for (const { slider, clock } of this.strips) {
+      slider.value = number;
+      clock.textContent = `${+(time * size).toPrecision(4)} ${unit} · ${stage} · ${number + 1}/${this.count}`;
+      slider.setAttribute("aria-valuetext", clock.textContent);
+    }
+    await Promise.all(this.viewers.map((viewer) => viewer.turn(number)));
+  }
+  step(by) {
+    this.stop();
+    return this.go(Math.min(this.count - 1, Math.max(0, this.number + by)));
+  }
+  toggle() {
+    return this.playing ? this.stop() : this.start();
+  }
+  stop() {
+    this.playing = false;
+    for (const { play } of this.strips) play.textContent = "▶";
+  }
+  async start() {
+    if (this.count < 2) return;
+    this.playing = true;
+    for (const { play } of this.strips) play.textContent = "❚❚";
+    if (this.number === this.count - 1) await this.go(0);
+    const pace = Math.min(200, Math.max(40, 6000 / this.count)); // ms: a run lasts some seconds
+    while (this.playing && this.number < this.count - 1) {
+      const next = performance.now() + pace;
+      await this.go(this.number + 1);
+      await new Promise((done) => setTimeout(done, Math.max(0, next - performance.now())));
+    }
+    this.stop();
+  }
+}
