@@ -1,6 +1,9 @@
 // A packing in a box of smooth walls: what the contacts inside carry is what the walls feel.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
@@ -53,6 +56,79 @@ TEST(PackingStress, OfContactsIsThatOfWalls) {
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(inside(axis, axis), 1e3) << "pressed";
   EXPECT_NEAR(inside(0, 1), inside(1, 0), 1e-9 * inside.norm()) << "moments balance";
   EXPECT_EQ(outside(0, 1), 0) << "smooth walls";
+}
+
+/// What a probe of the description says at this instant, by channel.
+std::map<std::string, std::vector<double>> sampled(const Trial& t, const std::string& name) {
+  const auto& probe = t.scene().description->probes.at(name).probe;
+  probe->prepare(t.world());
+  std::map<std::string, std::vector<double>> rooms;
+  std::vector<std::span<double>> spans;
+  for (const Channel& channel : probe->channels()) {
+    std::size_t size = 1;
+    for (const std::size_t extent : channel.shape) size *= extent;
+    spans.emplace_back(rooms[channel.name] = std::vector<double>(size));
+  }
+  probe->sample(t.world(), spans);
+  return rooms;
+}
+
+TEST(PackingStress, OfEachSliceBearsWhatItsWallsPressWith) {
+  Description d = boxed();
+  for (const char* axis : {"x", "y", "z"})
+    d["probes"][axis] = {{"type", "stress"}, {"along", axis}, {"slices", 13}, {"every_steps", 1000}};
+  Trial t(d);
+  while (unrest(t.world()).unbalanced_force > 1e-9 && t.world().step() < 60000) t.step(100);
+  ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-9);
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string letter{"xyz"[axis]};
+    const auto walls = t.world().walls();
+    const auto wall = std::ranges::find_if(walls, [&](const WallView& view) { return view.name == "high_" + letter; });
+    ASSERT_NE(wall, walls.end());
+    const Vec3 pressed = wall->force / wall->area;
+    const auto values = sampled(t, letter);
+    const auto& profile = values.at("stress_profile");
+    // The other walls are smooth: any section across the axis bears along it what the wall at its end feels.
+    for (std::size_t s = 0; s < 13; ++s)
+      EXPECT_NEAR(profile[9 * s + 4 * static_cast<std::size_t>(axis)], pressed[axis], 1e-8 * pressed.norm())
+          << letter << ", slice " << s;
+    EXPECT_GT(pressed.norm(), 1e3) << "pressed";
+  }
+}
+
+TEST(PackingStress, CouplesChangeAsForcesAreAsymmetric) {
+  // Between a rough floor and a rough lid, periodic sideways, at rest: from section to section the couple stress
+  // changes by what the stress has of a skew part in between, as moments of grains are in equilibrium.
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}}, jumble({6, 6, 6}, 1e-3, 0, 12));
+  d["domain"] = {{"low", {0, 0, -1e-3}}, {"high", {side_length, side_length, side_length + 1e-3}}};
+  d["domain"]["periodic"] = {true, true, false};
+  const Vec3 low(-side_length, -side_length, 0), high(2 * side_length, 2 * side_length, 0);
+  d["walls"]["floor"] = side(2, 0, low, high, true);
+  d["walls"]["lid"] = side(2, side_length, low, high, false);
+  d["specimen"] = {{"low", {"", "", "floor"}}, {"high", {"", "", "lid"}}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.7}};
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  constexpr std::size_t slices = 600;
+  d["probes"]["z"] = {{"type", "stress"}, {"slices", slices}, {"every_steps", 1000}};
+  Trial t(d);
+  while (unrest(t.world()).unbalanced_force > 1e-7 && t.world().step() < 60000) t.step(100);
+  ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-7);
+  const auto values = sampled(t, "z");
+  const auto &stress = values.at("stress_profile"), &couple = values.at("couple_stress_profile");
+  const double thickness = side_length / slices;
+  const auto couple_at = [&](std::size_t s) { return Vec3(couple[9 * s + 2], couple[9 * s + 5], couple[9 * s + 8]); };
+  const auto skew_at = [&](std::size_t s) {
+    const double* const of = &stress[9 * s];
+    return Vec3(of[7] - of[5], of[2] - of[6], of[3] - of[1]);
+  };
+  // From the middle between the first two layers of grains to that between the last two.
+  const std::size_t from = 100, to = 500;
+  Vec3 changed = couple_at(to) - couple_at(from), balance = changed;
+  for (std::size_t s = from; s < to; ++s) balance += 0.5 * thickness * (skew_at(s) + skew_at(s + 1));
+  double largest = 0;
+  for (std::size_t s = from; s <= to; ++s) largest = std::max(largest, couple_at(s).norm());
+  EXPECT_LT(balance.norm(), 1e-4 * largest) << balance.transpose() << " of " << changed.transpose();
+  EXPECT_GT(changed.norm(), 1e-3 * largest) << "something to balance";
 }
 
 TEST(PackingStress, IsTheSameInSinglePrecision) {
