@@ -258,15 +258,15 @@ TEST(LinearChains, BendNoMoreThanTheAngle) {
   }
 }
 
-// A row that leans on a column at right angles: their contact is in line with the row's grain alone.
+// A row that leans on the top of a column at 80°: their contact is in line with the row's grain alone.
 TEST(LinearChains, AreInLineAtBothGrains) {
   std::vector<Vec3> places;
   for (int k = 0; k < 5; ++k) places.push_back({0, 0, 1.0 * k});
-  for (int k = 1; k < 6; ++k) places.push_back({1.0 * k, 0, 2});
+  for (int k = 1; k < 6; ++k) places.push_back(Vec3(0, 0, 4) + k * on_arc(10));
   for (int k = 0; k < 20; ++k) places.push_back({0, 50, 2.0 * k});  // bear nothing and lower the mean
   const FakeWorld world = packed(
       places,
-      {{0, 1, 20}, {1, 2, 20}, {2, 3, 20}, {3, 4, 20}, {2, 5, 10}, {5, 6, 10}, {6, 7, 10}, {7, 8, 10}, {8, 9, 10}});
+      {{0, 1, 20}, {1, 2, 20}, {2, 3, 20}, {3, 4, 20}, {4, 5, 10}, {5, 6, 10}, {6, 7, 10}, {7, 8, 10}, {8, 9, 10}});
   EXPECT_THAT(ForceChainsProbe().fields(world)[4].values, ElementsAre(1, 1, 1, 1, 0, 2, 2, 2, 2));
 }
 
