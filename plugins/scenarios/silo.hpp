@@ -28,6 +28,7 @@ struct Silo {
   double contact_modulus = 10e6, shear_to_normal_stiffness = 0.3, rolling_stiffness = 0.2, rolling_limit = 0.4;
   double local_damping = 0.01, filling_damping = 0.3;
   double void_ratio = 0.6;
+  std::string filling = "cloud";
   std::optional<double> filling_friction_angle;
   std::int64_t layers = 6, seed = 1;
 
@@ -87,6 +88,9 @@ struct Silo {
         .at_least(0)
         .below(right_angle)
         .doc("between grains while they fall; low: dense, high: loose; left out: their own");
+    p.add("filling", filling)
+        .one_of({"cloud", "layers"})
+        .doc("cloud: all grains fall at once; layers: one layer after the other, each once all before it rest");
     p.add("layers", layers)
         .at_least(1)
         .at_most(100)
@@ -139,6 +143,10 @@ struct Silo {
   double falling_time() const {
     return std::sqrt(2 * std::max(cloud_height() - height, height) / gravity / (1 - filling_damping));
   }
+  /// The same of the first layers, whose share of the silo is filled.
+  double falling_time(std::int64_t first_layers) const {
+    return falling_time() * std::sqrt(static_cast<double>(first_layers) / static_cast<double>(layers));
+  }
   /// By which walls and bottom reach beyond each other, so that no grain comes between them [m].
   double overhang() const { return groove_depth() + largest_diameter; }
 
@@ -180,6 +188,9 @@ struct Silo {
             {"high", vector(width, depth, next(cloud_height()))},
             {"count", std::llround(next(all)) - std::llround(share(all))},
             {"sizes", {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}}}}}};
+      // Where it would hang in the cloud is above all that has fallen.
+      if (filling == "layers" && layer > 0)
+        d["bodies"]["layer-" + std::to_string(layer + 1)]["stage"] = fill(layer + 1);
     }
 
     auto& walls = d["walls"];
@@ -203,22 +214,29 @@ struct Silo {
     return rectangle(vector(low, 0, 0), vector(high - low, 0, 0), vector(0, depth, 0), "wall");
   }
 
-  /// "fill": the cloud falls and comes to rest. "settle": friction is the grains' own.
-  std::vector<Description> filling() const {
-    const auto at_rest = [](double after, double unbalanced) -> Description {
-      return {{"type", "all"},
-              {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}};
+  /// "fill": the cloud falls and comes to rest; or "fill-1" and so on: a layer does. "settle": friction is the grains'
+  /// own.
+  std::vector<Description> filling_stages() const {
+    const auto stage = [&](const std::string& name, const Description& change, double after, double unbalanced) {
+      Description d = {{"name", name}};
+      if (!change.empty()) d["change"] = change;
+      d["until"] = {
+          {"type", "all"},
+          {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}};
+      d["limit"] = 20 * falling_time();
+      return d;
     };
-    Description fill, settle;
-    fill["name"] = "fill";
-    fill["until"] = at_rest(falling_time(), 0.01);
-    fill["limit"] = 20 * falling_time();
-    settle["name"] = "settle";
+    const Description none = Description::object();
+    std::vector<Description> stages;
+    if (filling == "cloud") stages.push_back(stage("fill", none, falling_time(), 0.01));
+    else
+      for (std::int64_t layer = 1; layer <= layers; ++layer)
+        stages.push_back(stage(fill(layer), none, falling_time(layer), 0.01));
+    Description own_friction;
     for (const char* name : {"sand", "dyed"})
-      if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
-    settle["until"] = at_rest(0.1 * falling_time(), 1e-3);
-    settle["limit"] = 20 * falling_time();
-    return {fill, settle};
+      if (name != dyed || layers > 1) own_friction["materials"][name]["friction_angle"] = friction_angle;
+    stages.push_back(stage("settle", own_friction, 0.1 * falling_time(), 1e-3));
+    return stages;
   }
 
   /// Curves of the forces in the silo, for a probe "formula"; `floor` are the walls that bear the sand from below, and
@@ -269,6 +287,9 @@ struct Silo {
 
  private:
   static constexpr const char* dyed = "dyed";
+
+  /// The stage in which a layer falls, from 1.
+  static std::string fill(std::int64_t layer) { return "fill-" + std::to_string(layer); }
 
   /// A side's wall between two heights [m]; grooves go on from piece to piece.
   Description wall(const std::string& side, double low, double high) const {

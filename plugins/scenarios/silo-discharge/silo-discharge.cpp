@@ -108,7 +108,7 @@ Description SiloDischarge::expand() const {
                    {"high", {silo_.piece("right", 1), "back", ""}}};
 
   // A gate opens at once: it is below the domain from one step to the next.
-  auto stages = silo_.filling();
+  auto stages = silo_.filling_stages();
   for (std::size_t i = 0; i < shares_.size(); ++i) {
     Description stage;
     stage["name"] = "discharge-" + std::to_string(std::lround(100 * shares_[i]));
@@ -138,7 +138,7 @@ Description SiloDischarge::expand() const {
   test["every_time"] = duration / curve_samples;
   Description looked_at = Description::array();
   for (const Description& stage : stages)
-    if (stage["name"] != "fill") looked_at.push_back(stage["name"]);
+    if (!stage["name"].get_ref<const std::string&>().starts_with("fill")) looked_at.push_back(stage["name"]);
   test["stages"] = looked_at;
   test["curves"]["discharged_mass"] = {
       {"formula", "departed_mass"}, {"unit", "kg"}, {"doc", "that has left through the outlets"}};

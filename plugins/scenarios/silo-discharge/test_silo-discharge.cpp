@@ -74,6 +74,15 @@ TEST(SiloDischarge, HasAStageForEachShare) {
   EXPECT_FALSE(stages[3].contains("change"));
 }
 
+TEST(SiloDischarge, OpensOnceTheLastLayerRests) {
+  const Description d = expanded({{"layers", 2}, {"filling", "layers"}, {"shares", {0.5}}});
+  std::vector<std::string> names;
+  for (const Description& stage : d["stages"]) names.push_back(stage["name"]);
+  EXPECT_THAT(names, ElementsAre("fill-1", "fill-2", "settle", "discharge-50"));
+  EXPECT_TRUE(d["stages"][3]["change"]["walls"].contains("gate-1"));
+  EXPECT_EQ(d["probes"]["test"]["stages"], Description({"settle", "discharge-50"}));
+}
+
 TEST(SiloDischarge, ExpectsTheRateOfBeverlooThroughSlots) {
   const double d50 = 1.5e-3, width = 30e-3, depth = 7.5e-3, bulk = 2600 / 1.6;
   const double one = 1.03 * bulk * std::sqrt(9.81) * depth * std::pow(width - 1.4 * d50, 1.5);

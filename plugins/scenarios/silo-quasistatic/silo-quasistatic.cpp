@@ -25,7 +25,7 @@ Description SiloQuasistatic::expand() const {
   d["specimen"] = {{"low", {silo_.piece("left", 1), "front", "bottom"}},
                    {"high", {silo_.piece("right", 1), "back", ""}}};
 
-  auto stages = silo_.filling();
+  auto stages = silo_.filling_stages();
   Description lower;
   lower["name"] = "lower";
   lower["change"]["engines"]["damping"]["coefficient"] = silo_.local_damping;

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-
 #include "contracts/scenario.hpp"
 
 namespace grit {
@@ -83,6 +82,25 @@ TEST(SiloQuasistatic, FillsWithOneFrictionAndGoesOnWithTheGrainsOwn) {
   EXPECT_EQ(d["stages"][2]["change"]["engines"]["damping"]["coefficient"], 0.02);
 }
 
+TEST(SiloQuasistatic, FillsLayerAfterLayer) {
+  const Description at_once = expanded({{"layers", 3}}), d = expanded({{"layers", 3}, {"filling", "layers"}});
+  ASSERT_EQ(d["stages"].size(), 5u);
+  double before = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::string number = std::to_string(k + 1);
+    const Description& stage = d["stages"][k];
+    EXPECT_EQ(stage["name"], "fill-" + number);
+    EXPECT_EQ(d["bodies"]["layer-" + number].value("stage", ""), k == 0 ? "" : "fill-" + number);
+    EXPECT_EQ(d["bodies"]["layer-" + number]["grains"], at_once["bodies"]["layer-" + number]["grains"]);
+    const double falls = stage["until"]["of"][0]["value"];
+    EXPECT_GT(falls, before) << "those that come later fall from higher up";
+    before = falls;
+  }
+  EXPECT_EQ(d["stages"][2]["until"], at_once["stages"][0]["until"]) << "the last falls like the cloud";
+  EXPECT_EQ(d["stages"][3], at_once["stages"][1]);
+  EXPECT_EQ(d["stages"][4], at_once["stages"][2]);
+}
+
 TEST(SiloQuasistatic, LowersTheBottomIntoWhereWallsGoOn) {
   const Description d = expanded({{"settlement", "12 mm"}, {"velocity", "3 mm/s"}});
   const Description& lower = d["stages"][2];
@@ -101,6 +119,7 @@ TEST(SiloQuasistatic, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"depth", "4 mm"}}), HasSubstr("at least 2 of the largest grains"));
   EXPECT_THAT(problem({{"smallest_diameter", "3 mm"}}), HasSubstr("at most largest_diameter"));
   EXPECT_THAT(problem({{"velocity", 0}}), HasSubstr("/velocity"));
+  EXPECT_THAT(problem({{"filling", "rain"}}), HasSubstr("one of cloud, layers"));
 }
 
 }  // namespace
