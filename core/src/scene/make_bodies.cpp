@@ -65,7 +65,8 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
 void check_inside(const Cell& cell, const Bodies& bodies) {
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     const Row& x = bodies.position[i];
-    const std::uint32_t c = bodies.clumps.clump_of(i);
+    // Spheres after the last clump are entered there by finish() alone.
+    const std::uint32_t c = i < bodies.clumps.of_body.size() ? bodies.clumps.of_body[i].clump : no_clump;
     const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
     for (int k = 0; k < 3; ++k) {
       const double over = cell.periodic[k] ? reach : 0;  // just past a periodic side a body is inside at the other
