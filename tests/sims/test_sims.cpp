@@ -14,6 +14,7 @@
 #include "scene/sphere_body.hpp"
 #include "schema_check.hpp"
 #include "study/variants.hpp"
+#include "support/packing.hpp"
 
 namespace grit {
 namespace {
@@ -120,6 +121,46 @@ std::vector<std::filesystem::path> quick_files() {
 
 INSTANTIATE_TEST_SUITE_P(All, QuickSims, testing::ValuesIn(quick_files()),
                          [](const auto& info) { return Sims::name_of(info.param); });
+
+/// A quick direct shear test with these probes, each sampled every 20 steps; frames ask them for their fields too.
+std::unique_ptr<Simulation> sheared(const std::map<std::string, std::string>& probes) {
+  Document document = load_document(sims_folder / "direct-shear/quick.json", {}, registry());
+  document.set("/probes={}");
+  for (const auto& [type, settings] : probes)
+    document.set("/probes/" + type + "={\"type\": \"" + type + "\", \"every_steps\": 20" +
+                 (settings.empty() ? "" : ", " + settings) + "}");
+  document.set(R"(/output={"frames": {"every_steps": 40}})");
+  const std::size_t stages = document.json().at("stages").size();
+  for (std::size_t i = 0; i < stages; ++i) {
+    const std::string stage = "/stages/" + std::to_string(i);
+    document.set(stage + R"(/until={"type": "steps", "value": 60})");
+    if (document.json().at("stages")[i].contains("expect")) document.erase(stage + "/expect");
+  }
+  const Scene scene = read_scene(document, registry());
+  auto world = std::make_unique<Simulation>(*scene.description,
+                                            make_bodies(*scene.description, requested_state(*scene.description)), 2);
+  Silent recorder;
+  run(scene, *world, recorder, {});
+  EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
+  return world;
+}
+
+TEST(Probes, AllAtOnceChangeNotOneBit) {
+  // What a probe cannot do without, where the defaults are not enough.
+  const std::map<std::string, std::string> asked = {
+      {"flow", R"("outlets": {"all": {"low": "-1 m", "high": "1 m"}})"},
+      {"formula", R"("curves": {"way": {"formula": "platen_travel_z", "unit": "m", "doc": "of the platen"}})"},
+      {"interface", R"("wall": "platen", "driven_by": "bottom")"},
+      {"slip", R"("wall": "platen", "driven_by": "bottom")"},
+      {"spectrum", R"("wall": "platen", "interval": "1 us", "points": 16)"},
+      {"wall-profile", R"("walls": ["lower-left"], "width": "9 mm")"}};
+  std::map<std::string, std::string> all;
+  for (const std::string& name : registry().names("probe")) all[name] = asked.contains(name) ? asked.at(name) : "";
+  EXPECT_GE(all.size(), 16u);
+  const auto without = sheared({}), with = sheared(all);
+  EXPECT_GT(with->pair_count(), 100u);
+  EXPECT_TRUE(test::same_bits(*without, *with));
+}
 
 class Studies : public testing::TestWithParam<std::filesystem::path> {};
 
