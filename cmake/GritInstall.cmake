@@ -19,9 +19,13 @@ endif()
 
 file(REMOVE_RECURSE ${build_package})  # what another GRIT_ARCH left would be offered beside this one
 write_basic_package_version_file(${build_package}/grit-config-version.cmake COMPATIBILITY SameMinorVersion)
+string(REGEX MATCH "^[0-9]+" major "${CMAKE_CXX_COMPILER_VERSION}")
+file(WRITE ${build_package}/${GRIT_ARCH}/grit-compiler.cmake
+     "set(grit_COMPILER \"${CMAKE_CXX_COMPILER_ID} ${major}\")\nset(grit_CXX_COMPILER \"${CMAKE_CXX_COMPILER}\")\n")
 configure_file(cmake/grit-config.cmake ${build_package}/grit-config.cmake COPYONLY)
 configure_file(cmake/GritPlugin.cmake ${build_package}/GritPlugin.cmake COPYONLY)
 install(FILES cmake/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
         DESTINATION ${package})
+install(FILES ${build_package}/${GRIT_ARCH}/grit-compiler.cmake DESTINATION ${package}/${GRIT_ARCH})
 install(EXPORT grit NAMESPACE grit:: FILE grit-targets.cmake DESTINATION ${package}/${GRIT_ARCH})
 export(EXPORT grit NAMESPACE grit:: FILE ${build_package}/${GRIT_ARCH}/grit-targets.cmake)

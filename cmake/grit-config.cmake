@@ -14,6 +14,15 @@ instruction sets to build: ${installed}")
   return()
 endif()
 
+include(${CMAKE_CURRENT_LIST_DIR}/${GRIT_ARCH}/grit-compiler.cmake)
+string(REGEX MATCH "^[0-9]+" major "${CMAKE_CXX_COMPILER_VERSION}")
+if(NOT "${CMAKE_CXX_COMPILER_ID} ${major}" STREQUAL grit_COMPILER)
+  set(grit_FOUND FALSE)
+  set(grit_NOT_FOUND_MESSAGE "grit was built with ${grit_COMPILER}, and this is ${CMAKE_CXX_COMPILER_ID} ${major}: configure \
+anew with cmake --fresh … -DCMAKE_CXX_COMPILER=${grit_CXX_COMPILER}")
+  return()
+endif()
+
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)

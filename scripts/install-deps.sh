@@ -3,7 +3,7 @@
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build git          # the build
+  clang-16 g++ cmake ninja-build git # the build; of g++ the C++ library
   libboost-dev                       # Boost.DLL
   libboost-program-options-dev
   libeigen3-dev

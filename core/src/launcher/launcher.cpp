@@ -19,11 +19,18 @@ namespace fs = std::filesystem;
 enum ExitStatus { wrong_instruction_set = 2, not_executable = 5 };
 
 /// Whether the processor has it, and the system keeps its registers. A build for one processor has no name to ask for.
+/// Of each level those instructions are asked for that came last: there are compilers that do not know a level's name.
 bool runs_here(const std::string& level) {
 #if defined(__x86_64__)
-  if (level == "x86-64-v4") return __builtin_cpu_supports("x86-64-v4");
-  if (level == "x86-64-v3") return __builtin_cpu_supports("x86-64-v3");
-  if (level == "x86-64-v2") return __builtin_cpu_supports("x86-64-v2");
+  const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
+  const bool v3 =
+      v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                  __builtin_cpu_supports("avx512vl");
+  if (level == "x86-64-v4") return v4;
+  if (level == "x86-64-v3") return v3;
+  if (level == "x86-64-v2") return v2;
 #endif
   return true;
 }
