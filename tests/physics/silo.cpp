@@ -17,7 +17,7 @@ namespace {
 
 constexpr double wide = 10e-3, across = std::numbers::pi * wide * wide / 4, g = 9.81, slice = 2.5e-3;
 
-/// Means over the second half of the raising, slice by slice from the bottom up.
+/// Means over the last 0.2 s of the raising, slice by slice from the bottom up.
 struct Raised : Curves {
   static constexpr std::size_t most = 24;
   std::array<double, most> vertical{}, lateral{}, shear{};  ///< Pa: in the sand; on the wall
@@ -28,7 +28,7 @@ struct Raised : Curves {
     Curves::sample(probe, world, values);
     if (world.stage() != "raise" || probe_names_[probe] != "walls") return;
     if (start_ < 0) start_ = world.time();
-    if (world.time() - start_ < 0.05) return;
+    if (world.time() - start_ < 0.1) return;
     ++samples;
     for (std::size_t i = 0; i < most; ++i) {
       const double low = static_cast<double>(i) * slice;
@@ -63,16 +63,27 @@ struct Raised : Curves {
   double start_ = -1;
 };
 
-/// A silo filled to about so many times its width.
+/// Mean of silos filled to about so many times their width: one alone may be 5 % off another.
 Raised raised(int times) {
+  constexpr int fillings = 2;
   const double more = times / 3.0;
-  Raised silo;
-  run_to_the_end("sims/round-silo/quick.json",
-                 {"/bodies/sand/grains/count=" + std::to_string(std::lround(2500 * more)),
-                  "/bodies/sand/grains/high/2=" + std::to_string(95e-3 * more),
-                  "/walls/wall/end/2=" + std::to_string(0.15 * more)},
-                 silo);
-  return silo;
+  Raised mean;
+  for (int seed = 1; seed <= fillings; ++seed) {
+    Raised silo;
+    run_to_the_end("sims/round-silo/quick.json",
+                   {"/bodies/sand/grains/count=" + std::to_string(std::lround(2500 * more)),
+                    "/bodies/sand/grains/high/2=" + std::to_string(95e-3 * more),
+                    "/walls/wall/end/2=" + std::to_string(0.15 * more), "/seed=" + std::to_string(seed)},
+                   silo);
+    for (std::size_t i = 0; i < Raised::most; ++i) {
+      mean.vertical[i] += silo.vertical[i] / fillings;
+      mean.lateral[i] += silo.lateral[i] / fillings;
+      mean.shear[i] += silo.shear[i] / fillings;
+    }
+    mean.bottom += silo.bottom / fillings, mean.wall += silo.wall / fillings;
+    mean.weight += silo.weight / fillings, mean.centre += silo.centre / fillings;
+  }
+  return mean;
 }
 
 TEST(Silo, CarriesItsFillingAsJanssenSays) {
@@ -90,12 +101,12 @@ TEST(Silo, CarriesItsFillingAsJanssenSays) {
   for (std::size_t i = 0; i < full; ++i)
     square += std::pow(tall.vertical[i] / limit - janssen(surface - (static_cast<double>(i) + 0.5) * slice) / limit, 2);
   verify("root mean square of stress by depth less Janssen's, over his limit",
-         std::sqrt(square / static_cast<double>(full)), 0, 0.06, 1);
+         std::sqrt(square / static_cast<double>(full)), 0, 0.03, 1);
   verify("stress on the bottom, filled to 5 D, over Janssen's", tall.bottom / across / janssen(surface), 1, 0.06);
   verify("stress on the bottom, filled to 3 D, over that at 5 D", low.bottom / tall.bottom,
          janssen(2 * low.centre) / janssen(surface), 0.1);
-  verify("weight that bottom and wall carry, filled to 5 D", (tall.bottom + tall.wall) / tall.weight, 1, 0.03);
-  verify("weight that bottom and wall carry, filled to 3 D", (low.bottom + low.wall) / low.weight, 1, 0.03);
+  verify("weight that bottom and wall carry, filled to 5 D", (tall.bottom + tall.wall) / tall.weight, 1, 0.01);
+  verify("weight that bottom and wall carry, filled to 3 D", (low.bottom + low.wall) / low.weight, 1, 0.01);
   RecordProperty("K", std::to_string(lateral / vertical));
   RecordProperty("friction of the wall", std::to_string(shear / lateral));
   EXPECT_LT(tall.bottom, 0.3 * tall.weight) << "or nothing was carried by the wall";
