@@ -343,7 +343,7 @@ TEST(Reports, ChangeNoBitHoweverOftenTheyCome) {
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
   d["walls"]["floor"]["motion"]["velocity"] = {1, 0, 0};
   d["time_step"]["value"] = 2e-6;
-  d["stages"] = {stage("all", steps(200))};
+  d["stages"] = Description::array({stage("all", steps(200))});
   const Done unseen = run(d);
   d["probes"]["way"] = {{"type", "watch"}, {"every_displacement", {{"wall", "floor"}, {"value", 7e-6}}}};
   d["probes"]["left"] = {{"type", "watch"}, {"every_left", 0.1}};
