@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
 
 #include "grit/error.hpp"
 #include "support/clump.hpp"
@@ -220,6 +221,39 @@ TEST(Arrivals, WithoutRoomOrOutsideAreRefused) {
   d["domain"] = {{"low", {-5e-3, -5e-3, -5e-3}}, {"high", {5e-3, 5e-3, 5e-3}}};
   EXPECT_THAT(refusal(d),
               HasSubstr("/bodies/late: a body at (0.000000, 0.000000, 0.006000) m lies outside the domain"));
+}
+
+/// Two grains, of which one leaves, then two more; three are gone in the end.
+Description leaving() {
+  const Vec3 down(0, 0, -1);
+  Description d = first_and_late({{{0, 0, -9.5e-3}, radius, down}, {{3e-3, 0, -7e-3}, radius, down}},
+                                 {{{-3e-3, 0, -5e-3}, radius, down}, {{-6e-3, 0, 9e-3}, radius, down}});
+  d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
+  d["stages"][0]["until"] = {{"type", "time"}, {"value", 1.5e-3}};
+  d["stages"][1]["until"] = {{"type", "left"}, {"share", 0.75}};
+  return d;
+}
+
+TEST(Arrivals, CountInTheShareThatProbesWaitFor) {
+  Description d = leaving();
+  d["probes"]["half"] = {{"type", "watch"}, {"every_left", 0.5}};
+  watched() = [](const World& w) { return static_cast<double>(w.ids().size()); };
+  const Done done = run(d);
+  watched() = {};
+  EXPECT_EQ(done.summary().status, "done") << done.summary().message;
+  EXPECT_THAT(done.notes.values_of("half"), ElementsAre(2, 1, 1, 1))
+      << "one of two; the end of the stage; two of four, which end the other";
+}
+
+TEST(Arrivals, CountInTheProgressFromTheStart) {
+  std::set<double> seen;
+  RunControl control;
+  control.progress_every = 0;
+  control.progress = [&](const Progress& now) {
+    if (now.stage == "second") seen.insert(std::round(1e6 * now.fraction.value()) / 1e6);
+  };
+  EXPECT_EQ(run(leaving(), control).summary().status, "done");
+  EXPECT_THAT(seen, ElementsAre(0, 0.5)) << "of the two that are still to leave";
 }
 
 TEST(Arrivals, OfAFileThatIsNotThereAreRefusedAtTheStart) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -319,8 +320,8 @@ TEST(Reports, ComeByTheWayOfAWallAnewInEachStage) {
   EXPECT_THAT(run(d).notes.steps_of("three"), ElementsAre(0, 3, 5, 8, 10));
 }
 
-TEST(Reports, ComeByWhatHasLeft) {
-  // Five grains leave one after the other.
+/// Five grains that leave one after the other.
+Description five_leave() {
   Description d = lone(seconds(8e-3));
   d.erase("walls");
   d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
@@ -328,6 +329,11 @@ TEST(Reports, ComeByWhatHasLeft) {
   for (int i = 0; i < 5; ++i)
     grains.push_back(
         {{"position", {-8e-3 + 4e-3 * i, 0, -0.009 + 1e-3 * i}}, {"radius", radius}, {"velocity", {0, 0, -1}}});
+  return d;
+}
+
+TEST(Reports, ComeByWhatHasLeft) {
+  Description d = five_leave();
   d["probes"]["each"] = {{"type", "watch"}, {"every_left", 0.2}};
   d["probes"]["two"] = {{"type", "watch"}, {"every_left", 0.4}};
   d["probes"]["all"] = {{"type", "watch"}, {"every_left", 1}};
@@ -336,6 +342,33 @@ TEST(Reports, ComeByWhatHasLeft) {
   EXPECT_THAT(done.notes.values_of("each"), ElementsAre(5, 4, 3, 2, 1, 0, 0)) << "and at the end of the stage";
   EXPECT_THAT(done.notes.values_of("two"), ElementsAre(5, 3, 1, 0));
   EXPECT_THAT(done.notes.values_of("all"), ElementsAre(5, 0, 0));
+}
+
+TEST(Reports, ComeAtTheSameStepsWhoeverElseLooks) {
+  Description d = five_leave();
+  d["probes"]["each"] = {{"type", "watch"}, {"every_left", 0.2}};
+  d["output"]["frames"]["every_left"] = 0.4;
+  const Done alone = run(d);
+  d["probes"]["always"] = {{"type", "watch"}, {"every_steps", 1}};
+  const Done beside = run(d);
+  EXPECT_EQ(alone.notes.steps_of("each").size(), 7u);
+  EXPECT_EQ(alone.notes.steps_of("each"), beside.notes.steps_of("each"));
+  EXPECT_EQ(alone.notes.frames.size(), 4u);
+  EXPECT_EQ(alone.notes.frames, beside.notes.frames);
+}
+
+TEST(Reports, FramesHaveFieldsOfProbesThatLookInTheirStage) {
+  Description d = lone(steps(10));
+  d["stages"].push_back(stage("second", steps(8)));
+  d["probes"]["always"] = {{"type", "watch"}};
+  d["probes"]["first"] = {{"type", "watch"}, {"stages", {"only"}}};
+  d["probes"]["second"] = {{"type", "watch"}, {"stages", {"second"}}};
+  d["probes"]["unseen"] = {{"type", "watch"}, {"frames", false}};
+  d["output"]["frames"]["every_steps"] = 6;
+  const Done done = run(d);
+  EXPECT_THAT(done.notes.frames, ElementsAre(0, 6, 10, 16, 18));
+  const auto in_first = ElementsAre("always", "first"), in_second = ElementsAre("always", "second");
+  EXPECT_THAT(done.notes.mapped, ElementsAre(in_first, in_first, in_second, in_second, in_second));
 }
 
 TEST(Reports, ChangeNoBitHoweverOftenTheyCome) {
@@ -374,7 +407,7 @@ TEST(Reports, AnInterruptedRunEndsAtOnceAndWhole) {
   d["probes"]["stop"] = {{"type", "watch"}, {"every_steps", 1}};
   d["output"]["frames"]["every_steps"] = 1000;
   watched() = [&](const World& w) { return interrupted = w.step() == 120, 0.0; };
-  const Done done = run(d, &interrupted);
+  const Done done = run(d, {.interrupted = &interrupted});
   EXPECT_EQ(done.summary().status, "interrupted");
   EXPECT_EQ(done.summary().message, "");
   EXPECT_EQ(done.summary().steps, 120u);
@@ -387,7 +420,7 @@ TEST(Reports, AnInterruptedRunEndsAtOnceAndWhole) {
 
   watched() = {};
   interrupted = true;
-  EXPECT_EQ(run(d, &interrupted).summary().steps, 0u);
+  EXPECT_EQ(run(d, {.interrupted = &interrupted}).summary().steps, 0u);
 }
 
 }  // namespace

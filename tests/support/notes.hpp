@@ -1,7 +1,6 @@
 // Runs of whole descriptions whose results are kept in memory.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -24,9 +23,10 @@ struct Notes final : Recorder {
   };
   std::vector<ProbeGroup> groups;
   std::vector<Sample> samples;
-  std::vector<std::uint64_t> frames;    ///< steps
-  std::vector<std::string> ended;       ///< what stages reached
-  std::vector<std::uint64_t> ended_at;  ///< steps
+  std::vector<std::uint64_t> frames;             ///< steps
+  std::vector<std::vector<std::string>> mapped;  ///< whose fields each frame has
+  std::vector<std::string> ended;                ///< what stages reached
+  std::vector<std::uint64_t> ended_at;           ///< steps
   int begun = 0, finished = 0;
   RunSummary summary;
 
@@ -38,7 +38,10 @@ struct Notes final : Recorder {
     samples.push_back({groups.at(probe).name, world.stage(), world.step(), world.time(),
                        std::vector<double>(values[0].begin(), values[0].end())});
   }
-  void frame(const World& world, std::span<const FieldGroup>) override { frames.push_back(world.step()); }
+  void frame(const World& world, std::span<const FieldGroup> fields) override {
+    frames.push_back(world.step()), mapped.emplace_back();
+    for (const FieldGroup& group : fields) mapped.back().push_back(group.name);
+  }
   void stage_ended(const World& world, const std::string& what) override {
     ended.push_back(what), ended_at.push_back(world.step());
   }
@@ -81,7 +84,7 @@ struct Done {
   const RunSummary& summary() const { return notes.summary; }
 };
 
-inline Done run(const Description& plain, const std::atomic<bool>* interrupted = nullptr) {
+inline Done run(const Description& plain, const RunControl& control = {}) {
   static const PluginInfo watch = [] {
     PluginInfo info;
     info.kind = "probe", info.name = "watch", info.version = "1.0.0", info.doc = "what a test asks for";
@@ -93,8 +96,6 @@ inline Done run(const Description& plain, const std::atomic<bool>* interrupted =
   done.scene = scene_of(plain);
   const SceneDescription& start = *done.scene.description;
   done.world = std::make_unique<Simulation>(start, make_bodies(start, {}), 1);
-  RunControl control;
-  control.interrupted = interrupted;
   grit::run(done.scene, *done.world, done.notes, control);
   return done;
 }

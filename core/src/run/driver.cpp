@@ -17,28 +17,23 @@ using Instant = std::chrono::steady_clock::time_point;
 constexpr std::uint64_t contacts_counted_every = 100;
 
 /// Says when something that happens again and again is due.
-/// It looks at what is known before forces are, so that a step which nobody looks at need not be told from others.
 class Schedule {
  public:
   explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
   void restart(const Simulation& now) {
     first_time_ = now.time(), first_step_ = now.step(), first_left_ = now.share_left();
-    count_ = 0, level_ = 0, began_ = true;
+    count_ = 0, level_ = 0, began_ = true, due_ = false;
   }
-  bool is_due(const Simulation& now) const {
-    return due_by_time(now) ||
-           (cadence_.every_steps > 0 &&
-            (now.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0) ||
-           due_by_displacement(now) || due_by_mass(now);
+  /// Decides about this step, and goes on to the next time. To be asked once a step, before forces, which may change
+  /// the time step and let bodies leave: then it is due at the same steps, whoever else looks.
+  void ask(const Simulation& now) {
+    const bool by_time = due_by_time(now), by_mass = due_by_mass(now), by_displacement = due_by_displacement(now);
+    due_ = by_time || by_mass || by_displacement || due_by_steps(now);
+    if (by_time) ++count_;
+    if (by_mass) count_ = static_cast<std::uint64_t>(shares(now)) + 1;  // one step may take several at once
+    if (by_displacement) level_ += std::trunc(beyond(now)), began_ = false;
   }
-  /// The same, and goes on to the next time.
-  bool take(const Simulation& now) {
-    const bool due = is_due(now);
-    if (due_by_time(now)) ++count_;
-    if (due_by_mass(now)) count_ = static_cast<std::uint64_t>(shares(now)) + 1;  // one step may take several at once
-    if (due_by_displacement(now)) level_ += std::trunc(beyond(now)), began_ = false;
-    return due;
-  }
+  bool is_due() const { return due_; }
   bool never() const { return cadence_.never(); }
 
  private:
@@ -46,6 +41,10 @@ class Schedule {
   bool due_by_time(const Simulation& now) const {
     return cadence_.every_time &&
            now.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * now.dt();
+  }
+  bool due_by_steps(const Simulation& now) const {
+    return cadence_.every_steps > 0 &&
+           (now.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
   }
   bool due_by_mass(const Simulation& now) const {
     return cadence_.every_left && shares(now) >= static_cast<double>(count_);
@@ -67,7 +66,7 @@ class Schedule {
   Cadence cadence_;
   double first_time_ = 0, first_left_ = 0, level_ = 0;
   std::uint64_t first_step_ = 0, count_ = 0;
-  bool began_ = true;
+  bool began_ = true, due_ = false;
 };
 
 /// A probe of the description at work.
@@ -145,8 +144,8 @@ class Run {
   void stage(std::size_t index) {
     const StagePlan& plan = scene_.stages[index];
     const StageDescription& stage = scene_.description->stages[index];
-    start_ = {simulation_.time(), simulation_.step(), simulation_.share_left()};
     simulation_.begin_stage(stage.name, *plan.start);
+    start_ = {simulation_.time(), simulation_.step(), simulation_.share_left()};  // with what has come
     for (Observer& observer : observers_) observer.schedule().restart(simulation_);
     frames_.restart(simulation_);
     ramped_ = 0;
@@ -157,6 +156,7 @@ class Run {
       ramp(stage, plan);
       // Asked before forces, whose time step may be another: a stage ends the same, whoever looks.
       const bool may_end = may_be_met(stage.until, simulation_, start_);
+      ask_who_looks();
       if (!may_end && !is_looked_at(stage)) {
         step_on();
         report(index, stage);
@@ -187,11 +187,15 @@ class Run {
 
   bool too_late(const StageDescription& stage) const { return simulation_.time() - start_.time > stage.limit; }
   bool is_time_to_count() const { return simulation_.step() % contacts_counted_every == 0; }
+  void ask_who_looks() {
+    frames_.ask(simulation_);
+    for (Observer& observer : observers_) observer.schedule().ask(simulation_);
+  }
   /// Whether somebody may ask for the forces of this instant.
   bool is_looked_at(const StageDescription& stage) {
-    return interrupted() || too_late(stage) || is_time_to_count() || frames_.is_due(simulation_) ||
+    return interrupted() || too_late(stage) || is_time_to_count() || frames_.is_due() ||
            std::any_of(observers_.begin(), observers_.end(), [&](Observer& observer) {
-             return observer.watches(simulation_.stage()) && observer.schedule().is_due(simulation_);
+             return observer.watches(simulation_.stage()) && observer.schedule().is_due();
            });
   }
 
@@ -226,7 +230,7 @@ class Run {
 
   void observe(bool all) {
     sample(all);
-    if (frames_.take(simulation_)) frame();
+    if (frames_.is_due()) frame();
   }
 
   void sample(bool all) {
@@ -234,8 +238,7 @@ class Run {
     for (std::size_t i = 0; i < observers_.size(); ++i) {
       Observer& observer = observers_[i];
       if (!observer.watches(simulation_.stage())) continue;
-      const bool due = observer.schedule().take(simulation_);
-      if (due || all) observer.sample(i, simulation_, recorder_);
+      if (all || observer.schedule().is_due()) observer.sample(i, simulation_, recorder_);
     }
     if (is_time_to_count() && simulation_.positions().size() > 0)
       contact_sum_ +=
@@ -249,14 +252,14 @@ class Run {
     const Stopwatch watch(phases_[1].seconds);
     std::vector<FieldGroup> fields;
     for (const Observer& observer : observers_)
-      if (observer.in_frames()) fields.push_back(observer.fields(simulation_));
+      if (observer.in_frames() && observer.watches(simulation_.stage())) fields.push_back(observer.fields(simulation_));
     recorder_.frame(simulation_, fields);
   }
 
   void report(std::size_t index, const StageDescription& stage) {
     if (!control_.progress || simulation_.step() % 8 != 0) return;
     const double since = seconds_since(last_report_);
-    if (since < 0.2) return;
+    if (since < control_.progress_every) return;
     Progress now;
     now.stage = stage.name, now.stage_number = index + 1, now.stages = scene_.stages.size();
     now.fraction = progress(stage.until, simulation_, start_);

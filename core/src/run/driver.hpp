@@ -25,7 +25,8 @@ struct Progress {
 
 struct RunControl {
   const std::atomic<bool>* interrupted = nullptr;  ///< looked at every step
-  std::function<void(const Progress&)> progress;   ///< called a few times a second
+  std::function<void(const Progress&)> progress;   ///< called a few times a second:
+  double progress_every = 0.2;                     ///< s, at most so often
 };
 
 /// Runs all stages. Returns what came of it: status "done", "interrupted" or "failed" (a guard, a stage that did not

@@ -122,7 +122,7 @@ void Cadence::declare(Parameters& p) {
   p.add("every_left", every_left)
       .above(0)
       .at_most(1)
-      .doc("share of the mass at the start that leaves the domain from one to the next");
+      .doc("share of all mass that has come that leaves the domain from one to the next");
   p.check(
       [this](const Complain& complain) {
         std::string key, given;

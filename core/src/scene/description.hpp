@@ -27,7 +27,7 @@ struct Cadence {
   std::optional<double> every_time;
   std::int64_t every_steps = 0;
   std::optional<DisplacementCadence> every_displacement;
-  std::optional<double> every_left;  ///< share of the mass at the start
+  std::optional<double> every_left;  ///< share of all mass that has come
   bool never() const { return !every_time && every_steps == 0 && !every_displacement && !every_left; }
   void declare(Parameters& p);
 };
