@@ -63,13 +63,14 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   EXPECT_THAT(check({}), testing::Not(HasSubstr("without effect")));
   const auto idle =
       check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})", R"(/engines/hold={"type": "hold"})",
-             "/seed=7", "/bodies/grains/heavier_below=2 mm", "/time_step/value=1e-9", "/time_step/safety=0.5",
-             "/materials/steel={}", R"(/probes/idle={"type": "packing"})",
+             "/seed=7", "/bodies/grains/heavier_below=2 mm", "/bodies/grains/overlap=0.02", "/time_step/value=1e-9",
+             "/time_step/safety=0.5", "/materials/steel={}", R"(/probes/idle={"type": "packing"})",
              R"(/output/picture={"x": "packing/time", "y": ["packing/kinetic_energy"]})"});
   EXPECT_THAT(
       idle, AllOf(HasSubstr("\nwithout effect\n"), HasSubstr("  /engines/damping: with these values it does nothing\n"),
                   HasSubstr("  /output/picture/color: rotations are held"), HasSubstr("  /seed: nothing is random"),
                   HasSubstr("  /bodies/grains/heavier_below: no grain is smaller\n"),
+                  HasSubstr("  /bodies/grains/overlap: it is looked at where bodies appear in a stage"),
                   HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
                   HasSubstr("  /probes/idle: it never looks")));
   EXPECT_THAT(idle, testing::Not(HasSubstr("/engines/hold")));

@@ -63,8 +63,11 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << simulation.pair_count() << '\n';
   std::map<std::string, std::size_t> coming;  // by stage
   std::size_t all_bodies = bodies;
-  for (const auto& [name, group] : description.bodies)
-    if (!group.stage.empty()) all_bodies += body_count(group), coming[group.stage] += body_count(group);
+  for (const auto& [name, group] : description.bodies) {
+    if (group.stage.empty()) continue;
+    const std::size_t count = body_count(group);
+    all_bodies += count, coming[group.stage] += count;
+  }
   for (const StageDescription& stage : description.stages)
     if (coming.contains(stage.name))
       std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';

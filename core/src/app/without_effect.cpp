@@ -53,6 +53,9 @@ std::vector<std::string> without_effect(const SceneDescription& scene, const Sim
     if (group.stage.empty() && group.heavier_below > 0 && smallest != radii.end() &&
         group.heavier_below <= 2 * smallest->w)
       say("/bodies/" + name + "/heavier_below", "no grain is smaller");
+  for (const auto& [name, group] : scene.bodies)
+    if (group.stage.empty() && group.overlap != BodiesDescription::usual_overlap)
+      say("/bodies/" + name + "/overlap", "it is looked at where bodies appear in a stage, and these are there before");
 
   if (scene.time_step.value && scene.time_step.safety != TimeStepDescription().safety)
     say("/time_step/safety", "the step is given by /time_step/value");

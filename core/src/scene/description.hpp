@@ -91,8 +91,9 @@ struct BodiesDescription {
   std::string material;
   std::string stage;  ///< at whose begin they appear; empty: the start of the run
   Vec3 velocity = Vec3::Zero();
-  double overlap = 0.01;     ///< of the smaller radius
-  double heavier_below = 0;  ///< m
+  static constexpr double usual_overlap = 0.01;
+  double overlap = usual_overlap;  ///< of the smaller radius
+  double heavier_below = 0;        ///< m
   OneOf<CloudGrains, FileGrains, PlacedGrains> grains{"source of grains"};
   explicit BodiesDescription(const Registry& registry);
   void declare(Parameters& p);
