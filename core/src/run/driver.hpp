@@ -25,8 +25,8 @@ struct Progress {
 
 struct RunControl {
   const std::atomic<bool>* interrupted = nullptr;  ///< looked at every step
-  std::function<void(const Progress&)> progress;   ///< called a few times a second:
-  double progress_every = 0.2;                     ///< s, at most so often
+  std::function<void(const Progress&)> progress;   ///< called while the run goes on
+  double progress_every = 0.2;                     ///< s, no oftener
 };
 
 /// Runs all stages. Returns what came of it: status "done", "interrupted" or "failed" (a guard, a stage that did not

@@ -32,13 +32,6 @@ constexpr std::uint64_t energy_check_every = 500;
 // Of so many chunks one is timed: a look at the clock takes some 30 ns, a chunk some 20 µs.
 constexpr std::uint64_t timed_every = 8;
 
-/// How fast the periods change [m/s], half a step ago as the velocities.
-Vec3 growth_of_period(const Clock& clock) {
-  const Vec3 period = clock.cell.high - clock.cell.low;
-  if (clock.last_time_step == 0) return period.cwiseProduct(clock.cell.strain_rate);
-  return (period - clock.period_before) / clock.last_time_step;
-}
-
 bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high == b.high; }
 
 }  // namespace
@@ -57,27 +50,6 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
   check_periods();
   walls_.apply(scene);
   apply(scene);
-}
-
-void Simulation::take_stock(std::size_t first, std::size_t first_clump) {
-  for (std::size_t i = first; i < bodies_.count(); ++i) {
-    const double r = bodies_.position[i].w;
-    largest_radius_ = std::max(largest_radius_, r);
-    smallest_radius_ = smallest_radius_ == 0 ? r : std::min(smallest_radius_, r);
-    one_material_ = one_material_ && bodies_.material[i] == 0;
-    if (bodies_.clumps.clump_of(i) != no_clump) continue;
-    ++grains_;
-    diameters_ += 2 * r, mass_ += 1 / bodies_.velocity[i].w, solids_ += 4.0 / 3.0 * std::numbers::pi * r * r * r;
-  }
-  for (std::size_t c = first_clump; c < bodies_.clumps.clump.size(); ++c) {
-    const Clump& clump = bodies_.clumps.clump[c];
-    ++grains_;
-    diameters_ += 2 * clump.radius, mass_ += 1 / clump.inverse_mass, solids_ += clump.volume;
-  }
-  if (grains_ > 0) mean_diameter_ = diameters_ / static_cast<double>(grains_), solid_density_ = mass_ / solids_;
-  sum_.resize(bodies_.count() + 1);
-  std::fill(sum_.begin() + static_cast<std::ptrdiff_t>(first), sum_.end(), BodySum{});
-  chunk_.resize(chunks_of(bodies_.count()));
 }
 
 void Simulation::begin_stage(const std::string& name, const SceneDescription& scene) {
@@ -151,44 +123,6 @@ void Simulation::apply(const SceneDescription& scene) {
   net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
 }
 
-void Simulation::admit() {
-  Newcomers newcomers;
-  try {
-    newcomers = make_newcomers(*scene_, stage_, clock_.cell, positions(), bodies_.state);
-  } catch (const FileError&) {
-    throw;
-  } catch (const Error& error) {
-    fail(error.what(), "what is there by then takes room as well");
-  }
-  Bodies& bodies = newcomers.bodies;
-  if (bodies.count() == 0) return;
-  // They take part in the mean flow of a deforming cell, and velocities are those of half a step ago.
-  const Vec3 fall = 0.5 * clock_.last_time_step * next_motion().free_translation().cwiseProduct(settings_.gravity);
-  const auto change = [&](const Vec3& place) -> Vec3 {
-    return clock_.cell.strain_rate.isZero(0.0) ? Vec3(-fall)
-                                               : Vec3(clock_.cell.strain_rate.cwiseProduct(place - centre()) - fall);
-  };
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    const std::uint32_t c = bodies.clumps.clump_of(i);
-    const Vec3 v = change(c == no_clump ? xyz(bodies.position[i]) : bodies.clumps.clump[c].centre);
-    bodies.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
-  }
-  for (Clump& clump : bodies.clumps.clump) clump.velocity += change(clump.centre);
-
-  const auto stored = [this] { return flows_.begun ? kinetic_energy() + elastic_energy().total() : 0; };
-  const double put_in = flows_.settings - stored();  // but for what is stored; bodies may also leave in a search
-  const std::size_t first = bodies_.count(), first_clump = bodies_.clumps.clump.size();
-  newcomers_ = std::move(newcomers.groups);
-  for (auto& group : newcomers_) group.first_id += bodies_.ids;
-  bodies_.append(bodies);
-  take_stock(first, first_clump);
-  if (settings_.flat) flatten(*settings_.flat);
-  stiffens_ = law_stiffens();
-  search_now_ = true;
-  find_forces();
-  flows_.settings = put_in + stored();
-}
-
 void Simulation::flatten(int axis) {
   // Those that come later as well.
   if (std::ranges::any_of(scene_->bodies, [](const auto& group) { return group.second.kind->clump() != nullptr; }))
@@ -198,19 +132,6 @@ void Simulation::flatten(int axis) {
     v[axis] = 0, w = w.cwiseProduct(Vec3::Unit(axis));
     bodies_.velocity[i] = {v.x(), v.y(), v.z(), bodies_.velocity[i].w};
     bodies_.spin[i] = {w.x(), w.y(), w.z(), bodies_.spin[i].w};
-  }
-}
-
-void Simulation::update_shifts() {
-  const Vec3 period = clock_.cell.high - clock_.cell.low, growth = growth_of_period(clock_);
-  for (std::uint8_t image = 0; image < 27; ++image) {
-    const auto shift = image_shift(image);
-    double position[3], velocity[3];
-    for (int k = 0; k < 3; ++k) {
-      position[k] = shift[k] != 0 ? shift[k] * period[k] : 0;
-      velocity[k] = shift[k] != 0 ? shift[k] * growth[k] : 0;
-    }
-    shifts_[image] = {{position[0], position[1], position[2], 0}, {velocity[0], velocity[1], velocity[2], 0}};
   }
 }
 
@@ -253,96 +174,13 @@ bool Simulation::search_is_due() {
   return false;
 }
 
-bool Simulation::may_leave(int axis, bool high) const {
-  const std::string side = std::string(high ? "+" : "-") + "xyz"[axis];
-  return std::ranges::find(scene_->domain.open_sides, side) != scene_->domain.open_sides.end();
-}
-
-std::vector<bool> Simulation::wrap() {
-  const Cell& cell = clock_.cell;
-  const Vec3 period = cell.high - cell.low, growth = growth_of_period(clock_);
-  std::vector<bool> leaves(bodies_.count(), false);
-  const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
-  const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
-  // A clump leaves as a whole, by its centre.
-  for (Clump& clump : bodies_.clumps.clump)
-    for (int k = 0; k < 3; ++k) {
-      if (!cell.periodic[k]) {
-        if (!outside(clump.centre, k) || !may_leave(k, clump.centre[k] > cell.high[k])) continue;
-        for (std::uint32_t s = clump.first; s < clump.last; ++s) leaves[bodies_.clumps.spheres[s]] = true;
-        continue;
-      }
-      const double periods = periods_off(clump.centre, k);
-      if (periods == 0) continue;
-      clump.centre[k] -= periods * period[k], clump.velocity[k] -= periods * growth[k];
-      for (std::uint32_t s = clump.first; s < clump.last; ++s)
-        bodies_.clumps.of_body[bodies_.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
-            static_cast<std::int8_t>(periods);
-    }
-  for (std::size_t i = 0; i < bodies_.count(); ++i) {
-    Vec3 x = xyz(bodies_.position[i]), v = xyz(bodies_.velocity[i]);
-    const bool in_clump = bodies_.clumps.clump_of(i) != no_clump;
-    bool moved = false;
-    for (int k = 0; k < 3; ++k) {
-      if (!cell.periodic[k]) {
-        const bool high = x[k] > cell.high[k];
-        if (!outside(x, k)) continue;
-        if (!may_leave(k, high))
-          fail_at_body(
-              i, "left the domain through its " + std::string(high ? "upper" : "lower") + " " + "xyz"[k] + " side",
-              "close the domain there with a wall, make it larger, or name the side in /domain/open_sides");
-        if (!in_clump) leaves[i] = true;
-        continue;
-      }
-      const double periods = periods_off(x, k);
-      if (periods == 0) continue;
-      x[k] -= periods * period[k], v[k] -= periods * growth[k];
-      if (in_clump) bodies_.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
-      else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
-      moved = true;
-    }
-    if (!moved) continue;
-    bodies_.position[i] = {x.x(), x.y(), x.z(), bodies_.position[i].w};
-    bodies_.velocity[i] = {v.x(), v.y(), v.z(), bodies_.velocity[i].w};
-  }
-  return leaves;
-}
-
-void Simulation::take_leave(const std::vector<bool>& leaves) {
-  const auto depart = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass, double turning) {
-    departures_.push_back({.id = bodies_.id[i],
-                           .material = bodies_.material[i],
-                           .time = clock_.time,
-                           .mass = 1 / inverse_mass,
-                           .position = x});
-    mass_left_ += 1 / inverse_mass;
-    const double kinetic = 0.5 / inverse_mass * v.squaredNorm() + turning;
-    if (flows_.begun) flows_.settings -= kinetic;
-    // The guard goes on with what stays.
-    energy_.stored_at_start -= kinetic - settings_.gravity.dot(x) / inverse_mass;
-  };
-  std::vector<std::size_t> leaving;
-  for (std::size_t i = 0; i < bodies_.count(); ++i)
-    if (leaves[i]) leaving.push_back(i);
-  std::ranges::sort(leaving, {}, [this](std::size_t i) { return bodies_.id[i]; });
-  for (const std::size_t i : leaving) {
-    const std::uint32_t c = bodies_.clumps.clump_of(i);
-    if (c == no_clump) {
-      depart(i, xyz(bodies_.position[i]), xyz(bodies_.velocity[i]), bodies_.velocity[i].w,
-             0.5 / bodies_.spin[i].w * xyz(bodies_.spin[i]).squaredNorm());
-    } else if (const Clump& clump = bodies_.clumps.clump[c]; bodies_.clumps.spheres[clump.first] == i) {
-      depart(i, clump.centre, clump.velocity, clump.inverse_mass, 0.5 * clump.momentum.dot(clump.spin));
-    }
-  }
-}
-
 /// By speeds alone, so that a run is the same on every machine.
 void Simulation::lay_on_skins() {
-  const double least = least_skin * mean_diameter_;
-  double most = most_skin * mean_diameter_;
+  const double least = least_skin * stock_.mean_diameter;
+  double most = most_skin * stock_.mean_diameter;
   for (int k = 0; k < 3; ++k)
     if (clock_.cell.periodic[k])
-      most = std::min(most, 0.25 * (clock_.cell.high[k] - clock_.cell.low[k]) - largest_radius_);
+      most = std::min(most, 0.25 * (clock_.cell.high[k] - clock_.cell.low[k]) - stock_.largest_radius);
   const auto skin = [&](double speed) {
     return std::max(least, std::min(most, steps_of_skin * clock_.time_step * speed));
   };
@@ -363,7 +201,7 @@ void Simulation::lay_on_skins() {
 
 /// Skins are no wider than periods allow, but never narrower than the least.
 void Simulation::check_periods() const {
-  double shortest = NeighbourSearch::shortest_period(largest_radius_, least_skin * mean_diameter_);
+  double shortest = NeighbourSearch::shortest_period(stock_.largest_radius, least_skin * stock_.mean_diameter);
   double furthest = 0;
   for (const Clump& clump : bodies_.clumps.clump) furthest = std::max(furthest, clump.furthest);
   shortest += 2 * furthest;  // a clump shall not meet itself
@@ -399,7 +237,7 @@ void Simulation::search() {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     arms_[w] = 0;
     for (std::size_t i = 0; i < bodies_.count(); ++i)
-      arms_[w] = std::max(arms_[w], (xyz(bodies_.position[i]) - walls_.reference(w)).norm() + largest_radius_);
+      arms_[w] = std::max(arms_[w], (xyz(bodies_.position[i]) - walls_.reference(w)).norm() + stock_.largest_radius);
   }
   ++clock_.rebuilds;
   search_now_ = false;
@@ -415,7 +253,7 @@ CriticalStep::Instant Simulation::near_contacts() const {
           .law = *law_,
           .shifts = shifts_.data(),
           .skins = clock_.skins,
-          .near = as_good_as_touching * mean_diameter_};
+          .near = as_good_as_touching * stock_.mean_diameter};
 }
 
 void Simulation::set_time_step() {
@@ -456,8 +294,8 @@ bool Simulation::prepare() {
     if (search_is_due()) search();
     else if (time_step_now_) set_time_step();
     // Contacts form long before the next search.
-    else if (critical_.due(clock_.skins, stepped_way * mean_diameter_))
-      choose_time_step(critical_.renew(near_contacts(), stepped_way * mean_diameter_, team_));
+    else if (critical_.due(clock_.skins, stepped_way * stock_.mean_diameter))
+      choose_time_step(critical_.renew(near_contacts(), stepped_way * stock_.mean_diameter, team_));
   }
   // What contacts remember goes with a step once, however often its forces are asked for: a stage asks again.
   const bool again = clock_.forces_step == clock_.step;
@@ -483,7 +321,7 @@ void Simulation::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& lap
   own.overlap = pairs_.evaluate(chunk, instant(again), sum, losses);
   laps(own.seconds[pair_contacts]);
   if (surfaces_.empty()) return;
-  own.overlap = std::max(own.overlap, wall_contacts_.evaluate(chunk, *law_, bodies_, one_material_, surfaces_,
+  own.overlap = std::max(own.overlap, wall_contacts_.evaluate(chunk, *law_, bodies_, stock_.one_material, surfaces_,
                                                               again ? 0 : clock_.last_time_step, sum, losses));
   laps(own.seconds[wall_touches]);
 }
@@ -583,7 +421,7 @@ bool Simulation::in_one_pass() const {
 
 /// Asked before forces, whoever wants them, so that the time step does not depend on that.
 bool Simulation::springs_may_stiffen() const {
-  return springs_stiffen(clock_.overlap + clock_.last_approach / smallest_radius_);
+  return springs_stiffen(clock_.overlap + clock_.last_approach / stock_.smallest_radius);
 }
 
 bool Simulation::springs_stiffen(double overlap) const {
@@ -592,7 +430,7 @@ bool Simulation::springs_stiffen(double overlap) const {
 
 bool Simulation::law_stiffens() const {
   const auto stiffness = [this](std::size_t a, std::size_t b, bool wall, double overlap) {
-    const double r = smallest_radius_, per_mass = 1 / (solid_density_ * r * r * r);
+    const double r = stock_.smallest_radius, per_mass = 1 / (stock_.solid_density * r * r * r);
     return law_
         ->stiffness({.radius_a = r,
                      .radius_b = r,
@@ -692,7 +530,7 @@ void Simulation::end_step() {
   tell_walls_of_specimen();
 
   const double strained =
-      dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * 2 * (largest_radius_ + clock_.skins.largest());
+      dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * 2 * (stock_.largest_radius + clock_.skins.largest());
   clock_.strain_travel += strained;
   double furthest = 0;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {
@@ -707,9 +545,9 @@ void Simulation::end_step() {
     // A flat wall may slide along itself as fast as it likes.
     const Vec3 normal = wall.pose.turn * walls_.geometry(w).normal();
     const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
-    if (!(dt * closing <= scene_->guards.travel * smallest_radius_) && bodies_.count() > 0)
+    if (!(dt * closing <= scene_->guards.travel * stock_.smallest_radius) && bodies_.count() > 0)
       fail(
-          "wall \"" + walls_.name(w) + "\" moves " + number(dt * closing / smallest_radius_) +
+          "wall \"" + walls_.name(w) + "\" moves " + number(dt * closing / stock_.smallest_radius) +
               " of the smallest radius in one step, more than /guards/travel " + number(scene_->guards.travel),
           "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step smaller");
     wall_speed = std::max(wall_speed, speed);
@@ -718,7 +556,7 @@ void Simulation::end_step() {
   clock_.skins.walls_go(dt * wall_speed);
   clock_.last_approach = dt * std::max(2 * fastest, fastest + wall_speed) + strained;
 
-  if (!finite || dt * fastest > scene_->guards.travel * smallest_radius_) {
+  if (!finite || dt * fastest > scene_->guards.travel * stock_.smallest_radius) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {
       const Vec3 v = xyz(bodies_.velocity[i]), w = xyz(bodies_.spin[i]);
       if (!v.allFinite() || !w.allFinite())
@@ -757,7 +595,7 @@ Model Simulation::model() const {
   };
   add(!bodies_.rotation.empty(), "rotation"), add(!bodies_.displacement.empty(), "displacement");
   add(bodies_.energies(), "energy"), add(!bodies_.clumps.none(), "clump");
-  model.one_material = one_material_, model.periodic = periodic_, model.walls = walls_.size() > 0;
+  model.one_material = stock_.one_material, model.periodic = periodic_, model.walls = walls_.size() > 0;
   model.gravity = !settings_.gravity.isZero(0.0), model.local_damping = settings_.local_damping > 0;
   model.bytes = memory();
   return model;

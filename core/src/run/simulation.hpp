@@ -62,14 +62,23 @@ struct EnergyFlows {
   double settings = 0;
 };
 
+/// What is known of all bodies that have come.
+struct Stock {
+  std::size_t grains = 0;                          ///< spheres by themselves and clumps
+  double mass = 0, diameters = 0, solids = 0;      ///< of grains, summed up: kg, m, m³
+  double mean_diameter = 0, solid_density = 0;     ///< that follow: m, kg/m³
+  double largest_radius = 0, smallest_radius = 0;  ///< of spheres, m
+  bool one_material = true;
+};
+
 class Simulation final : public World {
  public:
   /// Bodies as made for this scene; `state` is what its components ask for.
   Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads);
 
   /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first, and lets
-  /// the bodies in that appear in it. Throws NumericsError where they cannot: no room, or deeper in others than they
-  /// may.
+  /// the bodies in that appear in it. Throws NumericsError where they cannot: no room, or deeper in others or in walls
+  /// than they may; then they are not there.
   void begin_stage(const std::string& name, const SceneDescription& scene);
   /// Changes settings within a stage.
   void change(const SceneDescription& scene);
@@ -92,7 +101,7 @@ class Simulation final : public World {
   unsigned threads() const { return team_.threads(); }
   std::size_t pair_count() const { return pairs_.touching_count(); }
   /// Share of all mass that has come that has left.
-  double share_left() const { return mass_ > 0 ? mass_left_ / mass_ : 0; }
+  double share_left() const { return stock_.mass > 0 ? mass_left_ / stock_.mass : 0; }
   std::size_t candidate_count() const { return pairs_.candidates(); }
   std::vector<PhaseTime> phases() const;
   const Walls& wall_states() const { return walls_; }
@@ -131,8 +140,8 @@ class Simulation final : public World {
   Region specimen() const override { return region(0); }
   Region envelope() const override { return region(0, Side::far); }
   Region interior(double margin) const override { return region(margin); }
-  double mean_diameter() const override { return mean_diameter_; }
-  double solid_density() const override { return solid_density_; }
+  double mean_diameter() const override { return stock_.mean_diameter; }
+  double solid_density() const override { return stock_.solid_density; }
   EnergyLedger energies() const override;
 
  private:
@@ -143,10 +152,10 @@ class Simulation final : public World {
   void admit();
   /// Reckons with bodies that have come, from this one on, and from this clump on.
   void take_stock(std::size_t first, std::size_t first_clump);
-  /// Throws for newcomers that overlap others by more than they may.
+  /// Throws for newcomers that overlap others or walls by more than they may.
   void check_newcomers() const;
   ContactTable::Instant instant(bool again) const {
-    return {*law_, bodies_, one_material_, shifts_.data(), clock_.last_time_step, clock_.skins, again};
+    return {*law_, bodies_, stock_.one_material, shifts_.data(), clock_.last_time_step, clock_.skins, again};
   }
   /// All that comes before the contacts. Returns whether this instant has been evaluated before.
   bool prepare();
@@ -202,6 +211,8 @@ class Simulation final : public World {
   Region region(double margin, Side side_of_walls = Side::near) const;
   void tell_walls_of_specimen();
   Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
+  /// `what` ends with advice.
+  [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(const std::string& what, const std::string& advice) const;
   [[noreturn]] void fail_at_body(std::size_t body, const std::string& what, const std::string& advice) const;
 
@@ -246,13 +257,11 @@ class Simulation final : public World {
   std::vector<PhaseTime> phases_;
   std::vector<Departure> departures_;
   std::vector<Newcomers::Group> newcomers_;  // since the last search, with their first ids
-  double mass_ = 0, mass_left_ = 0;          // kg, of all that have come and of departures
-  double diameters_ = 0, solids_ = 0;        // m and m³, of all that have come
-  std::size_t grains_ = 0;                   // the same, spheres by themselves and clumps
+  Stock stock_;
+  double mass_left_ = 0;  // kg, of departures
   double body_steps_ = 0;
   double passes_ = 0;  // s, in which the threads shared chunks
-  double largest_radius_ = 0, smallest_radius_ = 0, mean_diameter_ = 0, solid_density_ = 0;
-  bool one_material_ = true, periodic_ = false, search_now_ = true, time_step_now_ = true;
+  bool periodic_ = false, search_now_ = true, time_step_now_ = true;
   bool stiffens_ = true;  // springs of the law, with overlap
 
   // What probes ask for, worked out at most once an instant.

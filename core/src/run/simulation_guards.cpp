@@ -29,44 +29,6 @@ void Simulation::check_overlap(double largest) const {
                "the contact modulus may be too low for this load, or bodies began inside each other");
 }
 
-void Simulation::check_newcomers() const {
-  Skins skins;
-  skins.lay_on(std::vector<double>(chunk_.size(), 0.0), 0);
-  NeighbourSearch touching;
-  touching.build(bodies_, clock_.cell, skins);
-  const auto is_new = [this](std::uint32_t body) { return bodies_.id[body] >= newcomers_.front().first_id; };
-  const auto group_of = [this](std::uint32_t body) -> const std::string& {
-    const auto next = std::ranges::upper_bound(newcomers_, bodies_.id[body], {}, &Newcomers::Group::first_id);
-    return std::prev(next)->name;
-  };
-  double deepest = 0;
-  std::uint32_t newcomer = 0, other = 0;
-  std::size_t count = 0;
-  std::vector<Candidate> found;
-  for (std::uint32_t body = 0; body < bodies_.count(); ++body) {
-    found.clear();
-    touching.neighbours(bodies_, body, found);
-    for (const Candidate& c : found) {
-      if (!c.touching() || is_new(c.a) == is_new(c.b)) continue;
-      const Row &a = bodies_.position[c.a], &b = bodies_.position[c.b];
-      const double distance = (xyz(b) - xyz(a) + xyz(shifts_[c.image].position)).norm();
-      const double share = (a.w + b.w - distance) / std::min(a.w, b.w);
-      const std::uint32_t fresh = is_new(c.a) ? c.a : c.b;
-      if (!(share > scene_->bodies.at(group_of(fresh)).overlap)) continue;
-      ++count;
-      if (share > deepest) deepest = share, newcomer = fresh, other = is_new(c.a) ? c.b : c.a;
-    }
-  }
-  if (count == 0) return;
-  const std::string& group = group_of(newcomer);
-  fail_at_body(newcomer,
-               "of the group \"" + group + "\" appears inside body " + std::to_string(bodies_.id[other]) +
-                   ": they overlap by " + number(deepest) + " of the smaller radius, more than /bodies/" + group +
-                   "/overlap " + number(scene_->bodies.at(group).overlap) +
-                   (count > 1 ? ", the deepest of " + std::to_string(count) + " such pairs" : ""),
-               "place it where nothing is, let it come in another stage, or take a cloud, which keeps clear");
-}
-
 double Simulation::kinetic_energy_ratio() const {
   const double elastic = elastic_energy().total();
   return elastic > 0 ? kinetic_energy() / elastic : std::numeric_limits<double>::infinity();
@@ -101,10 +63,12 @@ void Simulation::check_energy() {
          "the time step may be too large for the stiffest contact; try a smaller /time_step/safety");
 }
 
-void Simulation::fail(const std::string& what, const std::string& advice) const {
+void Simulation::fail(const std::string& what) const {
   throw NumericsError("step " + std::to_string(clock_.step) + ", time " + number(clock_.time) + " s" +
-                      (stage_.empty() ? "" : ", stage \"" + stage_ + "\"") + ": " + what + "; " + advice);
+                      (stage_.empty() ? "" : ", stage \"" + stage_ + "\"") + ": " + what);
 }
+
+void Simulation::fail(const std::string& what, const std::string& advice) const { fail(what + "; " + advice); }
 
 void Simulation::fail_at_body(std::size_t body, const std::string& what, const std::string& advice) const {
   const Vec3 x = xyz(bodies_.position[body]);

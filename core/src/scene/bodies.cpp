@@ -28,7 +28,7 @@ void Bodies::add(const Vec3& centre, double radius, double mass, double inertia,
   velocity.push_back({v.x(), v.y(), v.z(), 1 / mass});
   spin.push_back({w.x(), w.y(), w.z(), 1 / inertia});
   material.push_back(body_material);
-  id.push_back(ids++);
+  id.push_back(ids_given++);
 }
 
 void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass, const Vec3& inertia,
@@ -36,7 +36,7 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
                        const Vec3& w) {
   const auto index = static_cast<std::uint32_t>(clumps.clump.size());
   Clump clump;
-  clump.id = clump_ids++;
+  clump.id = clump_ids_given++;
   clump.first = static_cast<std::uint32_t>(clumps.spheres.size());
   clump.centre = centre, clump.velocity = v, clump.spin = w;
   clump.orientation = orientation, clump.axes = orientation.toRotationMatrix();
@@ -78,7 +78,7 @@ void Bodies::append(const Bodies& others) {
   position.pop_back(), velocity.pop_back(), spin.pop_back(), material.pop_back();
   go_on(position, others.position), go_on(velocity, others.velocity), go_on(spin, others.spin);
   go_on(material, others.material), go_on(rotation, others.rotation), go_on(displacement, others.displacement);
-  for (const std::uint32_t other : others.id) id.push_back(ids + other);
+  for (const std::uint32_t other : others.id) id.push_back(ids_given + other);
   if (!clumps.none() || !others.clumps.none()) {
     clumps.of_body.resize(before), clumps.volume_share.resize(before, 1.0);
     go_on(clumps.of_body, others.clumps.of_body), go_on(clumps.volume_share, others.clumps.volume_share);
@@ -87,11 +87,11 @@ void Bodies::append(const Bodies& others) {
       if (std::uint32_t& clump = clumps.of_body[i].clump; clump != no_clump) clump += clumps_before;
     for (const std::uint32_t sphere : others.clumps.spheres) clumps.spheres.push_back(before + sphere);
     for (Clump clump : others.clumps.clump) {
-      clump.id += clump_ids, clump.first += spheres_before, clump.last += spheres_before;
+      clump.id += clump_ids_given, clump.first += spheres_before, clump.last += spheres_before;
       clumps.clump.push_back(clump);
     }
   }
-  ids += others.ids, clump_ids += others.clump_ids;
+  ids_given += others.ids_given, clump_ids_given += others.clump_ids_given;
 }
 
 void Bodies::reorder(std::span<const std::uint32_t> order) {

@@ -23,8 +23,8 @@ struct Bodies {
   std::vector<Vec3> rotation;      ///< cumulative [rad]; empty unless asked for
   std::vector<Vec3> displacement;  ///< since the start of the stage [m]; empty unless asked for
   Clumps clumps;
-  StateRequest state;                    ///< that components asked for
-  std::uint32_t ids = 0, clump_ids = 0;  ///< ever given away
+  StateRequest state;                                ///< that components asked for
+  std::uint32_t ids_given = 0, clump_ids_given = 0;  ///< ever, to those that have left too
 
   std::size_t count() const { return id.size(); }
   /// Whether a component asked for the ledger of energies.

@@ -224,7 +224,8 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
         out << "cloud: only " << placed.size() << " of " << diameters.size() << " grains found a place in the box "
             << text(box) << ": solid fraction " << solid / size.prod() << ", and no room for a grain of diameter "
             << diameter << " m in " << most_tries
-            << " tries; equal grains placed at random end near 0.38: give a bigger box, fewer grains or smaller ones";
+            << " tries; equal grains placed at random end near 0.38: give a bigger box, fewer grains or smaller ones"
+            << (in_the_way.empty() ? "" : "; what is there by then takes room as well");
         throw Error(out.str());
       }
       grain.x = coordinate(0, grain.w), grain.y = coordinate(1, grain.w), grain.z = coordinate(2, grain.w);

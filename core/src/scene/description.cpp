@@ -212,7 +212,7 @@ void BodiesDescription::declare(Parameters& p) {
   p.add("velocity", velocity).unit("m/s").symbol("v").doc("with which they appear, on top of what a list says of each");
   p.add("overlap", overlap)
       .at_least(0)
-      .doc("largest overlap with bodies that are there when they appear in a stage, over the smaller radius");
+      .doc("largest overlap with walls and bodies that are there when they appear in a stage, over the smaller radius");
   p.add("heavier_below", heavier_below)
       .unit("m")
       .at_least(0)
