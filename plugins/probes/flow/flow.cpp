@@ -1,9 +1,11 @@
-// Sums over World::departures(). See README.md.
 #include "flow.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "../grain_masses.hpp"
+#include "../specimen.hpp"
 #include "../wall_names.hpp"
 #include "grit/plugin.hpp"
 
@@ -19,6 +21,15 @@ void FlowProbe::Outlet::declare(Parameters& parameters) {
       {"low", "high"});
 }
 
+void FlowPattern::declare(Parameters& parameters) {
+  Averaging::declare(parameters, "of the specimen");
+  parameters.add("rim", rim).above(0).doc("width of what counts as being at the walls, over the mean diameter");
+  parameters.add("moving", moving)
+      .above(0)
+      .below(1)
+      .doc("share of the mean speed of a slice above which what is at the walls counts as moving");
+}
+
 void FlowProbe::declare(Parameters& parameters) {
   parameters.add("axis", axis).one_of({"x", "y", "z"}).doc("along which outlets lie");
   parameters.add("outlets", outlets)
@@ -26,6 +37,8 @@ void FlowProbe::declare(Parameters& parameters) {
           "ranges along the axis by name (snake_case), with channels of their own; what leaves elsewhere counts in the "
           "sums alone");
   parameters.add("window", window).unit("s").above(0).doc("rates are means over so much time before the sample");
+  parameters.add("pattern", pattern)
+      .doc("how what is there flows: a profile along the height, the type of flow, a map of velocities; left out: not");
   parameters.check(
       [this](const Complain& complain) {
         for (const auto& [name, outlet] : outlets) {
@@ -38,6 +51,12 @@ void FlowProbe::declare(Parameters& parameters) {
         }
       },
       {"outlets"});
+  parameters.check(
+      [this](const Complain& complain) {
+        if (pattern && pattern->along == axis)
+          complain("pattern", "a profile along " + axis + ", where outlets lie", "another `along`, the height");
+      },
+      {"pattern", "axis"});
 }
 
 std::vector<Channel> FlowProbe::channels() const {
@@ -49,6 +68,26 @@ std::vector<Channel> FlowProbe::channels() const {
   for (const auto& [name, outlet] : outlets) {
     channels.push_back({name + "_mass", "kg", "that has left through this outlet", {}});
     channels.push_back({name + "_rate", "kg s-1", "through this outlet, as rate", {}});
+  }
+  if (pattern) {
+    const auto slices = static_cast<std::size_t>(pattern->slices);
+    channels.push_back(pattern->place_channel());
+    channels.push_back({"speed", "m s-1", "mean speed downwards of each slice; NaN without bodies", {slices}, "place"});
+    channels.push_back({"wall_speed_share",
+                        "1",
+                        "that of what is at the walls over that of the slice; NaN without bodies at both walls, or "
+                        "where the slice does not sink",
+                        {slices},
+                        "place"});
+    channels.push_back({"transition_height",
+                        "m",
+                        "above which all that is at the walls moves: the effective transition; NaN where nothing "
+                        "flows, or where what is uppermost does not move at the walls",
+                        {}});
+    channels.push_back({"flow_type",
+                        "1",
+                        "of EN 1991-4: 0 nothing has left in the window, 1 pipe flow, 2 mixed flow, 3 mass flow",
+                        {}});
   }
   return channels;
 }
@@ -69,6 +108,79 @@ void FlowProbe::sample(const World& world, std::span<const std::span<double>> va
     }
   }
   values[2].front() = mass_of(world);
+  if (pattern) sample_pattern(world, values[3].front() > 0, values.subspan(4 + 2 * outlets.size()));
+}
+
+void FlowProbe::sample_pattern(const World& world, bool flows, std::span<const std::span<double>> values) const {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const Region box = pattern->region(specimen_box(world));
+  const int up = pattern->along[0] - 'x', side = axis[0] - 'x';
+  const double low = box.low[up], height = box.high[up] - low, rim = pattern->rim * world.mean_diameter();
+  struct Sum {
+    double volume = 0, sunk = 0;  // m³, m⁴/s
+    double speed() const { return sunk / volume; }
+  };
+  struct Slice {
+    Sum all;
+    std::array<Sum, 2> walls;
+  };
+  std::vector<Slice> slices(static_cast<std::size_t>(pattern->slices));
+  const auto shares = world.volume_shares();
+  for (std::size_t i = 0; i < world.positions().size(); ++i) {
+    const Vec3 centre = xyz(world.positions()[i]);
+    const double part = (centre[up] - low) / height;
+    if (!centre.allFinite() || !(part >= 0 && part < 1)) continue;
+    Slice& slice = slices[static_cast<std::size_t>(part * static_cast<double>(slices.size()))];
+    const double radius = world.positions()[i].w, volume = radius * radius * radius * (shares.empty() ? 1 : shares[i]),
+                 sunk = -volume * xyz(world.velocities()[i])[up];
+    const auto count = [&](Sum& sum) { sum.volume += volume, sum.sunk += sunk; };
+    count(slice.all);
+    if (centre[side] < box.low[side] + rim) count(slice.walls[0]);
+    if (centre[side] > box.high[side] - rim) count(slice.walls[1]);
+  }
+  pattern->fill_places(box, values[0]);
+  double transition = unknown;
+  bool all_the_way = flows, any = false;
+  for (std::size_t s = slices.size(); s-- > 0;) {
+    const auto& [all, walls] = slices[s];
+    const bool tells = walls[0].volume > 0 && walls[1].volume > 0;
+    values[1][s] = all.volume > 0 ? all.speed() : unknown;
+    values[2][s] = tells && all.sunk > 0 ? std::min(walls[0].speed(), walls[1].speed()) / all.speed() : unknown;
+    if (!tells) continue;  // above the surface
+    all_the_way = all_the_way && values[2][s] > pattern->moving;
+    if (all_the_way)
+      transition = low + height * static_cast<double>(s) / static_cast<double>(slices.size()), any = true;
+  }
+  values[3].front() = transition;
+  values[4].front() = !flows ? 0 : !any ? 1 : !all_the_way ? 2 : 3;
+}
+
+std::vector<Field> FlowProbe::fields(const World& world) {
+  if (!pattern) return {};
+  const Region box = pattern->region(specimen_box(world));
+  const AveragingCells cells = pattern->cells(world, box);
+  struct Sums {
+    double volume = 0;
+    Vec3 flux = Vec3::Zero();
+    Sums& operator+=(const Sums& other) { return volume += other.volume, flux += other.flux, *this; }
+  };
+  std::vector<Sums> parts(cells.parts());
+  const auto shares = world.volume_shares();
+  for (std::size_t i = 0; i < world.positions().size(); ++i) {
+    const Vec3 velocity = xyz(world.velocities()[i]);
+    cells.share_out_sphere(xyz(world.positions()[i]), world.positions()[i].w, [&](std::size_t part, double volume) {
+      if (!shares.empty()) volume *= shares[i];
+      parts[part].volume += volume, parts[part].flux += volume * velocity;
+    });
+  }
+  std::vector<Field> fields = map_of(cells);
+  fields.push_back(
+      {"velocity", "m s-1", "mean of the grains in it by volume; NaN without any", 3, {}, {"x", "y", "z"}});
+  for (const Sums& sums : cells.sum_up(parts)) {
+    const Vec3 velocity = sums.flux / sums.volume;  // 0 / 0 without any
+    fields.back().values.insert(fields.back().values.end(), velocity.begin(), velocity.end());
+  }
+  return fields;
 }
 
 }  // namespace grit
@@ -77,7 +189,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "probe",
                                      .name = "flow",
                                      .version = "1.0.0",
-                                     .doc = "mass, number and rate of bodies that leave through open sides, by outlet",
+                                     .doc = "what leaves through open sides, by outlet, and how the rest flows",
                                      .make_probe = []() -> grit::Probe* { return new grit::FlowProbe; }};
   return &info;
 }

@@ -1,14 +1,23 @@
-// What has left through open sides of the domain: mass, number, rate, by outlet.
+// What has left through open sides of the domain: mass, number, rate, by outlet; and how the rest flows.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "../averaging_cells.hpp"
 #include "grit/probe.hpp"
 
 namespace grit {
+
+/// How what is still there flows, seen across the axis of the outlets.
+struct FlowPattern : Averaging {
+  double rim = 2;       ///< mean diameters
+  double moving = 0.1;  ///< of the mean speed of a slice
+  void declare(Parameters& parameters);
+};
 
 class FlowProbe : public Probe {
  public:
@@ -20,10 +29,15 @@ class FlowProbe : public Probe {
   std::string axis = "x";
   std::map<std::string, Outlet> outlets;
   double window = 0.05;  ///< s
+  std::optional<FlowPattern> pattern;
 
   void declare(Parameters& parameters) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
+  std::vector<Field> fields(const World& world) override;
+
+ private:
+  void sample_pattern(const World& world, bool flows, std::span<const std::span<double>> values) const;
 };
 
 }  // namespace grit

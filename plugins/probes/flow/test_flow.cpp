@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "contracts/probe.hpp"
 #include "input/document.hpp"
 #include "input/reader.hpp"
@@ -87,10 +89,98 @@ TEST(Flow, RefusesOutletsThatOverlapOrAreNone) {
   EXPECT_THAT(problems_of({{"window", 0}}), testing::ElementsAre(HasSubstr("/window")));
 }
 
+/// Grains of 1 mm, twenty by two by twenty, that sink by speed(x, z), as some leave; the walls across x are 20 mm
+/// apart.
+template <class Speed>
+FakeWorld sinking(Speed speed) {
+  FakeWorld world;
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 place(1e-3 * (i + 0.5), 1e-3 * (j + 0.5), 1e-3 * (k + 0.5));
+        world.add(place, 0.5e-3, {0.01, 0, -speed(place.x(), place.z())});
+      }
+  world.whole = {Vec3::Zero(), {20e-3, 2e-3, 20e-3}};
+  world.now = 1;
+  world.departure = {{.id = 9999, .material = 0, .time = 0.99, .mass = 1, .position = Vec3::Zero()}};
+  return world;
+}
+FlowProbe patterned() {
+  FlowProbe probe;
+  probe.pattern.emplace().depth_axis = "y";
+  return probe;
+}
+
+TEST(FlowPattern, IsMassFlowWhereAllSinks) {
+  const FakeWorld world = sinking([](double x, double) { return x < 2e-3 || x > 18e-3 ? 0.1 : 0.2; });
+  FlowProbe probe = patterned();
+  EXPECT_EQ(channel_value(probe, world, "flow_type"), 3);
+  EXPECT_EQ(channel_value(probe, world, "transition_height"), 0);
+  // 2 + 2 columns of 20 at half the speed of the others.
+  for (const double speed : channel_values(probe, world, "speed")) EXPECT_NEAR(speed, 0.18, 1e-15);
+  for (const double share : channel_values(probe, world, "wall_speed_share")) EXPECT_NEAR(share, 0.1 / 0.18, 1e-14);
+  EXPECT_NEAR(channel_values(probe, world, "place").back(), 19.5e-3, 1e-17);
+  probe.pattern->moving = 0.6;
+  EXPECT_EQ(channel_value(probe, world, "flow_type"), 1);
+}
+
+TEST(FlowPattern, IsPipeFlowWhereNothingMovesAtAWall) {
+  // Along the left wall all sinks, along the right nothing does.
+  const FakeWorld world = sinking([](double x, double) { return x < 15e-3 ? 0.2 : 0; });
+  FlowProbe probe = patterned();
+  EXPECT_EQ(channel_value(probe, world, "flow_type"), 1);
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "transition_height")));
+}
+
+TEST(FlowPattern, IsMixedFlowWhereTheChannelMeetsTheWalls) {
+  const auto funnel = [](double x, double z) { return z > 12e-3 || std::abs(x - 10e-3) < 5e-3 ? 0.2 : 0; };
+  FakeWorld world = sinking(funnel);
+  FlowProbe probe = patterned();
+  EXPECT_EQ(channel_value(probe, world, "flow_type"), 2);
+  EXPECT_NEAR(channel_value(probe, world, "transition_height"), 12e-3, 1e-17);
+  // What is above the surface says nothing.
+  world.whole.high.z() = 40e-3;
+  EXPECT_EQ(channel_value(probe, world, "flow_type"), 2);
+  EXPECT_TRUE(std::isnan(channel_values(probe, world, "speed").back()));
+  world.departure.front().time = 0.5;
+  EXPECT_EQ(channel_value(probe, world, "flow_type"), 0) << "nothing leaves any more";
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "transition_height")));
+}
+
+TEST(FlowPattern, HasAMapOfVelocities) {
+  const FakeWorld world = sinking([](double x, double) { return x < 10e-3 ? 0.2 : 0; });
+  FlowProbe probe = patterned();
+  const auto fields = probe.fields(world);
+  ASSERT_EQ(fields.size(), 3u);
+  const auto &centre = fields[0].values, &velocity = fields[2].values;
+  ASSERT_EQ(centre.size(), velocity.size());
+  int left = 0, right = 0;
+  for (std::size_t i = 0; i < centre.size(); i += 3) {
+    EXPECT_NEAR(velocity[i], 0.01, 1e-15);
+    if (centre[i] < 7.4e-3) {
+      EXPECT_NEAR(velocity[i + 2], -0.2, 1e-14);
+      ++left;
+    } else if (centre[i] > 12.6e-3) {
+      EXPECT_NEAR(velocity[i + 2], 0, 1e-14);
+      ++right;
+    }
+  }
+  EXPECT_GT(left, 20);
+  EXPECT_GT(right, 20);
+  EXPECT_TRUE(FlowProbe().fields(world).empty());
+}
+
+TEST(FlowPattern, IsNotSeenAlongTheOutlets) {
+  EXPECT_TRUE(problems_of({{"pattern", Description::object()}}).empty());
+  EXPECT_THAT(problems_of({{"axis", "z"}, {"pattern", Description::object()}}),
+              testing::ElementsAre(HasSubstr("a profile along z, where outlets lie")));
+}
+
 INSTANTIATE_TEST_SUITE_P(Flow, ProbeContract,
                          testing::Values(ProbeCase{"all", [] { return std::make_shared<FlowProbe>(); }},
                                          ProbeCase{"outlets",
-                                                   [] { return std::make_shared<FlowProbe>(two_outlets()); }}),
+                                                   [] { return std::make_shared<FlowProbe>(two_outlets()); }},
+                                         ProbeCase{"pattern", [] { return std::make_shared<FlowProbe>(patterned()); }}),
                          probe_case_name);
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 
 #include "../displacement_fit.hpp"
 #include "../specimen.hpp"
@@ -16,6 +17,12 @@ void Strain::declare(Parameters& p) {
       .at_least(0.5)
       .doc("side of a subset of bodies, over the mean diameter; as deep as the specimen");
   p.add("step", step).at_least(0.1).doc("distance between neighbouring subsets, over the mean diameter");
+  p.add("sliding", sliding)
+      .doc("tells where the specimen slides on a wall and where it shears in itself; left out: not told");
+}
+
+void Strain::prepare(const World& world) {
+  if (sliding) sliding->prepare(world, plane()[0], plane()[1], "probe strain");
 }
 
 std::array<int, 2> Strain::plane() const {
@@ -27,7 +34,7 @@ std::vector<Channel> Strain::channels() const {
   const auto [first, second] = plane();
   const std::string a{"xyz"[first]}, b{"xyz"[second]};
   const std::string which = "E_" + a + a + ", E_" + b + b + ", E_" + a + b;
-  return {
+  std::vector<Channel> channels{
       {"strain",
        "1",
        which + " of all bodies, Green-Lagrange since the stage began, positive in extension; NaN with fewer than four",
@@ -35,6 +42,8 @@ std::vector<Channel> Strain::channels() const {
        {},
        {a + a, b + b, a + b}},
       {"largest_shear", "1", "largest magnitude of E_" + a + b + " of a subset; 0 without any", {}}};
+  if (sliding) std::ranges::move(SlidingLengths::channels(), std::back_inserter(channels));
+  return channels;
 }
 
 std::vector<Strain::Body> Strain::bodies(const World& world) const {
@@ -99,6 +108,13 @@ void Strain::sample(const World& world, std::span<const std::span<double>> value
   for (const Subset& one : subsets(world))
     if (const double shear = std::abs(one.green[2]); shear > largest) largest = shear;
   values[1][0] = largest;
+  if (!sliding) return;
+  std::vector<SlidingLengths::Point> points;
+  for (std::size_t i = 0; i < world.displacements().size(); ++i)
+    points.push_back({.along = xyz(world.positions()[i])[sliding->along()],
+                      .across = xyz(world.positions()[i])[sliding->across()],
+                      .moved = world.displacements()[i][sliding->along()]});
+  SlidingLengths::fill(sliding->of(world, points), values.subspan(2));
 }
 
 std::vector<Field> Strain::fields(const World& world) {

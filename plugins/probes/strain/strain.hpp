@@ -3,10 +3,12 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "../sliding_lengths.hpp"
 #include "grit/probe.hpp"
 
 namespace grit {
@@ -15,9 +17,12 @@ class Strain final : public Probe {
  public:
   std::string depth_axis = "y";
   double subset = 5, step = 1;  ///< mean diameters
+  std::optional<SlidingLengths> sliding;
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::displacement; }
+  /// Throws Error for a wall that cannot be slid along in the plane.
+  void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
   std::vector<Field> fields(const World& world) override;

@@ -150,6 +150,86 @@ TEST(Strain, HasItsSubsetsGoAsTheirBodiesDo) {
   EXPECT_THAT(fields.back().components, testing::ElementsAre("xx", "zz", "xz"));
 }
 
+/// Rows of grains of 1 mm between two walls that are perpendicular to z, of which the lower one has gone back by 3 mm.
+/// Bodies in its layer went with it, but for those with x below `slides_below`, which stayed.
+FakeWorld sliding_along(double slides_below) {
+  FakeWorld world;
+  world.whole = {Vec3::Zero(), {0.06, 0.005, 0.02}};
+  for (const double sign : {1.0, -1.0}) {
+    WallView wall;
+    wall.name = sign > 0 ? "low" : "high";
+    wall.normal = sign * Vec3::UnitZ();
+    wall.position = wall.stage_position = Vec3(sign > 0 ? -3e-3 : 0, 0, 0);
+    world.wall.push_back(wall);
+  }
+  for (int i = 0; i < 60; ++i)
+    for (int k = 0; k < 20; ++k) {
+      const Vec3 place((i + 0.5) * 1e-3, 2.5e-3, (k + 0.5) * 1e-3);
+      world.add(place, 0.5e-3);
+      world.displacement.push_back({k == 0 && place.x() > slides_below ? -2.9e-3 : 0, 0, 0});
+    }
+  return world;
+}
+Strain told_along(const FakeWorld& world, const std::string& wall = "low") {
+  Strain probe;
+  probe.sliding.emplace();
+  probe.sliding->wall = wall, probe.sliding->driven_by = "high";
+  probe.prepare(world);
+  return probe;
+}
+
+TEST(Sliding, IsToldFromShearByWhatGoesWithTheWall) {
+  FakeWorld world = sliding_along(0.02);
+  Strain probe = told_along(world);
+  EXPECT_NEAR(channel_value(probe, world, "surface_length"), 0.02, 1e-15);
+  EXPECT_NEAR(channel_value(probe, world, "internal_length"), 0.04, 1e-15);
+  EXPECT_NEAR(channel_value(probe, world, "contact_factor"), 1.0 / 3, 1e-14);
+  // The same upside down, and driven the other way.
+  for (std::size_t i = 0; i < world.position.size(); ++i) world.position[i].z = 0.02 - world.position[i].z;
+  for (WallView& wall : world.wall) wall.normal = -wall.normal;
+  for (Vec3& moved : world.displacement) moved = -moved;
+  world.wall[0].stage_position = -world.wall[0].stage_position;
+  EXPECT_NEAR(channel_value(probe, world, "contact_factor"), 1.0 / 3, 1e-14);
+}
+
+TEST(Sliding, IsToldBySharesOfWhatTheWallWasDriven) {
+  FakeWorld world = sliding_along(0.06);
+  for (std::size_t i = 0; i < world.position.size(); ++i)
+    if (world.position[i].z < 1e-3) world.displacement[i].x() = -3e-3 * (1 - world.position[i].x / 0.06);
+  Strain probe = told_along(world);
+  EXPECT_NEAR(channel_value(probe, world, "contact_factor"), 0.5, 1e-14);
+  probe.sliding->share = 0.75;
+  EXPECT_NEAR(channel_value(probe, world, "contact_factor"), 0.25, 1e-14);
+}
+
+TEST(Sliding, IsNeitherWithoutBodiesAndUnknownBeforeTheWallIsDriven) {
+  FakeWorld world = sliding_along(0.02);
+  for (std::size_t i = 0; i < world.position.size(); ++i)
+    if (world.position[i].x > 0.05) world.position[i].z += 5e-3;
+  Strain probe = told_along(world);
+  EXPECT_NEAR(channel_value(probe, world, "surface_length"), 0.02, 1e-15);
+  EXPECT_NEAR(channel_value(probe, world, "internal_length"), 0.03, 1e-15);
+  world.wall[0].stage_position.setZero();
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "contact_factor")));
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "surface_length")));
+}
+
+TEST(Sliding, NeedsAWallInThePlane) {
+  FakeWorld world = sliding_along(0.02);
+  const auto refusal = [&](const std::string& wall) -> std::string {
+    try {
+      told_along(world, wall);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("low"), "");
+  EXPECT_THAT(refusal("lower"), testing::HasSubstr("there is no wall \"lower\""));
+  world.wall[0].normal = Vec3::UnitY();
+  EXPECT_THAT(refusal("low"), testing::HasSubstr("/sliding/wall: wall \"low\" is not perpendicular"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Strain, ProbeContract,
                          testing::Values(ProbeCase{"lattice", [] { return std::make_shared<Strain>(); },
                                                    [] {
