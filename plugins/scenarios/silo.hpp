@@ -285,6 +285,14 @@ struct Silo {
     return test;
   }
 
+  /// Stresses on both walls together, by height.
+  Description wall_profile() const {
+    Description walls = Description::array();
+    for (const char* side : {"left", "right"})
+      for (std::int64_t i = 1; i <= wall_pieces; ++i) walls.push_back(piece(side, i));
+    return {{"type", "wall-profile"}, {"walls", walls}, {"width", 2 * depth}, {"low", 0}, {"high", height}};
+  }
+
  private:
   static constexpr const char* dyed = "dyed";
 

@@ -142,7 +142,8 @@ Description DirectShear::expand() const {
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {
       {"type", "packing"}, {"driven_by", "platen"}, {"driven_axis", "x"}, {"every_time", duration / 100}};
-  d["probes"]["force-chains"] = {{"type", "force-chains"}, {"every_time", duration / 100}, {"stages", {"shear"}}};
+  for (const char* type : {"force-chains", "rotations", "strain"})
+    d["probes"][type] = {{"type", type}, {"every_time", duration / 100}, {"stages", {"shear"}}};
   d["output"] = {{"frames", {{"every_time", duration / frames_in_shear}}},
                  {"picture",
                   {{"x", "test/shear_displacement"},

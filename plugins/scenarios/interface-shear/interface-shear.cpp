@@ -199,12 +199,15 @@ Description InterfaceShear::expand() const {
         "rise of the lid over the specimen's height above the tips, dilation positive");
   curve("wall_contact_factor", "(" + mu + " - tan_phi_i) / (mu_w - tan_phi_i)", "1",
         "a_w of EN 1991-4: 1 where the sand slides on the surface, 0 where it shears in itself");
-  d["probes"]["slip"] = {{"type", "slip"}, {"wall", "surface"},   {"driven_by", "lid"},
-                         {"axis", "x"},    {"stages", {"shear"}}, {"every_time", duration / curve_samples}};
+  for (const char* type : {"slip", "interface"})
+    d["probes"][type] = {{"type", type}, {"wall", "surface"},   {"driven_by", "lid"},
+                         {"axis", "x"},  {"stages", {"shear"}}, {"every_time", duration / curve_samples}};
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {
       {"type", "packing"}, {"driven_by", "lid"}, {"driven_axis", "x"}, {"every_time", duration / 100}};
-  d["probes"]["force-chains"] = {{"type", "force-chains"}, {"every_time", duration / 100}, {"stages", {"shear"}}};
+  for (const char* type : {"force-chains", "rotations", "strain"})
+    d["probes"][type] = {{"type", type}, {"every_time", duration / 100}, {"stages", {"shear"}}};
+  d["probes"]["strain"]["sliding"] = {{"wall", "surface"}, {"driven_by", "lid"}};
   d["output"] = {{"frames", {{"every_time", duration / frames_in_shear}}},
                  {"picture",
                   {{"x", "test/shear_displacement"},

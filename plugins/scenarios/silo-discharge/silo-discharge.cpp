@@ -145,7 +145,11 @@ Description SiloDischarge::expand() const {
   test["curves"]["discharged_share"] = {
       {"formula", "departed_mass / (departed_mass + mass)"}, {"unit", "1"}, {"doc", "of the mass at the start"}};
   auto& flow = d["probes"]["flow"];
-  flow = {{"type", "flow"}, {"stages", looked_at}, {"every_time", duration / curve_samples}, {"window", duration / 20}};
+  flow = {{"type", "flow"},
+          {"stages", looked_at},
+          {"every_time", duration / curve_samples},
+          {"window", duration / 20},
+          {"pattern", {{"depth_axis", "y"}}}};
   for (std::size_t i = 0; i < slots.size() && slots.size() > 1; ++i) {
     // What falls spreads: an outlet's grains are those nearer to it than to others.
     const double reach = silo_.width + beyond;
@@ -155,6 +159,8 @@ Description SiloDischarge::expand() const {
   }
   d["probes"]["walls"] = {{"type", "walls"}, {"stages", looked_at}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {{"type", "packing"}, {"stages", looked_at}, {"every_time", duration / 100}};
+  auto& profile = d["probes"]["wall-profile"] = silo_.wall_profile();
+  profile["stages"] = looked_at, profile["every_time"] = duration / 100;
   d["output"] = {{"frames", {{"every_time", duration / frames_while_discharged}}},
                  {"picture",
                   {{"x", "test/discharged_share"},

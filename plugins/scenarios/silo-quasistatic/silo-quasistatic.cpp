@@ -44,6 +44,8 @@ Description SiloQuasistatic::expand() const {
       {"formula", "-bottom_travel_z"}, {"unit", "m"}, {"doc", "of the bottom, downwards positive"}};
   d["probes"]["walls"] = {{"type", "walls"}, {"stages", {"settle", "lower"}}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {{"type", "packing"}, {"every_time", duration / 100}, {"stages", {"settle", "lower"}}};
+  auto& profile = d["probes"]["wall-profile"] = silo_.wall_profile();
+  profile["stages"] = {"settle", "lower"}, profile["every_time"] = duration / 100;
   d["output"] = {{"frames", {{"every_time", duration / frames_while_lowered}}},
                  {"picture",
                   {{"x", "test/settlement"},
