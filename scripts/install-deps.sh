@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
   clang-16 g++ cmake ninja-build git # the build; of g++ the C++ library
-  libboost-dev                       # Boost.DLL
+  libboost-dev                       # Boost.DLL, Boost.Beast
   libboost-program-options-dev
   libeigen3-dev
   libhdf5-dev

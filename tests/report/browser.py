@@ -88,9 +88,9 @@ class Browser:
                 self.events.append(answer)
 
     def open(self, path):
-        """Opens a file; returns the seconds until its scripts have run."""
+        """Opens a file or an address; returns the seconds until its scripts have run."""
         began, self.events = time.monotonic(), []
-        self.call("Page.navigate", url="file://" + os.path.abspath(path))
+        self.call("Page.navigate", url=path if str(path).startswith("http:") else "file://" + os.path.abspath(path))
         deadline = began + self.timeout
         while not any(event["method"] == "Page.loadEventFired" for event in self.events):
             self.events.append(self.receive(deadline))

@@ -50,5 +50,19 @@ TEST(DataElements, AreNumbered) {
   EXPECT_THAT(numbers_of<float>(data.html(), 1), ElementsAre(3));
 }
 
+TEST(DataElements, KeepTheNumbersOfWhatIsTheSame) {
+  DataElements first;
+  first.add_numbers<float>(std::vector<float>{1, 2});
+  first.add_numbers<float>(std::vector<float>{3});
+  DataElements second = first.next();
+  EXPECT_GT(second.end(), first.end()) << "two states differ even where nothing is new";
+  EXPECT_EQ(second.add_numbers<float>(std::vector<float>{3}), 1u);
+  EXPECT_GE(second.add_numbers<float>(std::vector<float>{4}), first.end());
+  EXPECT_EQ(second.texts().size(), 2u);
+  DataElements third = second.next();
+  EXPECT_GE(third.add_numbers<float>(std::vector<float>{1, 2}), second.end())
+      << "a number of the first one may not come again";
+}
+
 }  // namespace
 }  // namespace grit

@@ -1,5 +1,6 @@
 #include "run/driver.hpp"
 
+#include <charconv>
 #include <iostream>
 
 #include "app/curve_summary.hpp"
@@ -7,6 +8,7 @@
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
+#include "app/watch.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
@@ -73,8 +75,24 @@ void make_report(const std::filesystem::path& folder) {
   }
 }
 
+/// Where the page is served while runs go on; nothing where it is not asked for.
+std::optional<Listener> listener_of(const Options& options) {
+  if (!options.has("watch")) {
+    if (options.has("port")) throw UsageError("--port is where the page of --watch is served: give both");
+    return std::nullopt;
+  }
+  std::uint16_t port = 0;
+  if (options.has("port")) {
+    const auto text = options.get<std::string>("port");
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+    if (error != std::errc() || end != text.data() + text.size() || port == 0)
+      throw UsageError("--port takes a number from 1 to 65535, not \"" + text + '"');
+  }
+  return std::optional<Listener>(std::in_place, port);
+}
+
 ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
-                   const std::atomic<bool>& interrupted) {
+                   const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
   const auto& [file, folder, scene] = job;
   const unsigned threads = options.threads();
   const bool quiet = options.has("quiet");
@@ -97,6 +115,8 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
   }
   ResultsFolder recorder(std::move(results));
+  std::optional<Watch> watch;
+  if (listener) watch.emplace(*listener, folder);
 
   const auto say = [&](const std::string& line) {
     if (!quiet) std::cerr << line << std::endl;
@@ -113,7 +133,11 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   });
   RunControl control;
   control.interrupted = &interrupted;
-  if (!quiet) control.progress = [&](const Progress& now) { bar.show(now); };
+  if (!quiet || watch)
+    control.progress = [&](const Progress& now) {
+      if (!quiet) bar.show(now);
+      if (watch) watch->say(progress_text(now));
+    };
   const RunSummary summary = run(scene, simulation, summary_curves, control);
   bar.end();
 
@@ -148,7 +172,9 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(
       "overwrite", "replace results that are there")("no-report", "do not make the page report.html")(
-      "quiet,q", "no progress, only what came of it");
+      "quiet,q", "no progress, only what came of it")(
+      "watch", "serve the page of the run while it goes, for browsers on this machine")(
+      "port", po::value<std::string>()->value_name("N"), "where --watch serves it; default: one that is free");
   options.add_threads("threads; results are the same bits for any number");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
@@ -157,12 +183,14 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   auto jobs = jobs_of(options);
   const auto registry = options.registry();
   read_all(jobs, options, *registry);
+  const auto listener = listener_of(options);
+  if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ while the run goes" << std::endl;
   const auto& interrupted = catch_interrupts();
   ExitStatus status = ExitStatus::done;
   for (const Job& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return run_one(job, options, *registry, interrupted);
+        return run_one(job, options, *registry, listener, interrupted);
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }

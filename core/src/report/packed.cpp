@@ -38,11 +38,30 @@ std::uint16_t quantised(double value, double low, double high) {
   return static_cast<std::uint16_t>(std::lround(65535 * std::clamp((value - low) / (high - low), 0.0, 1.0)));
 }
 
+DataElements DataElements::next() const {
+  DataElements later;
+  later.before_ = texts_;
+  for (const auto& [number, text] : later.before_) later.known_.emplace(*text, number);
+  later.end_ = end_ + 1;
+  return later;
+}
+
 std::size_t DataElements::add(std::span<const std::byte> bytes) {
-  html_ += "<script type=\"application/octet-stream\" id=\"data-" + std::to_string(count_) + "\">";
-  html_ += packed(bytes);
-  html_ += "</script>\n";
-  return count_++;
+  auto text = std::make_shared<const std::string>(packed(bytes));
+  const auto same = known_.find(*text);
+  const std::size_t number = same == known_.end() ? end_++ : same->second;
+  texts_[number] = std::move(text);
+  return number;
+}
+
+std::string DataElements::html() const {
+  std::string html;
+  for (const auto& [number, text] : texts_) {
+    html += "<script type=\"application/octet-stream\" id=\"data-" + std::to_string(number) + "\">";
+    html += *text;
+    html += "</script>\n";
+  }
+  return html;
 }
 
 }  // namespace grit

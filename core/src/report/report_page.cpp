@@ -18,14 +18,14 @@
 namespace grit {
 
 // What CMake makes of page/ and of Vega.
-extern const std::string_view report_style, report_script, vega_script, vega_licence;
+extern const std::string_view report_style, report_script, live_script, vega_script, vega_licence;
 
 namespace {
 
-// A page that may fetch nothing cannot tell anybody that it was opened. Vega makes functions of its expressions.
+// Vega makes functions of its expressions.
 constexpr const char* policy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
-    "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:; base-uri 'none'; form-action 'none'\">\n";
+    "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:; {}base-uri 'none'; form-action 'none'\">\n";
 
 std::string text_at(const RunResults& run, const std::string& pointer) {
   const Description& found = run.at(pointer);
@@ -265,42 +265,59 @@ void tell_apart(std::vector<RunResults>& runs) {
 
 }  // namespace
 
-ReportPage report_page(std::span<const std::filesystem::path> folders, const GrainLimits& limits) {
+ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
+                             DataElements& data) {
   std::vector<RunResults> runs;
   for (const auto& folder : folders) runs.push_back(read_results(folder));
   tell_apart(runs);
   GrainLimits share = limits;
   share.bytes /= std::max<std::size_t>(1, runs.size());
   share.map_bytes /= std::max<std::size_t>(1, runs.size());
-  ReportPage page;
-  DataElements data;
-  Description json = {{"colours", {{"series", series_colours}, {"diverging", diverging_colours}}},
-                      {"runs", Description::array()}};
+  ReportContent content = empty_content(runs.size() == 1 ? runs[0].title() : "Runs side by side", "");
   std::vector<double> diameters;
   for (RunResults& run : runs) {
     Description one = run_json(run, data);
     one["grains"] = grain_frames(run.frames, share, data, run.problems);
     diameters.push_back(one["grains"].is_null() ? 0 : one["grains"]["mean_diameter"].get<double>());
-    page.problems.insert(page.problems.end(), run.problems.begin(), run.problems.end());
-    json["runs"].push_back(std::move(one));
+    content.problems.insert(content.problems.end(), run.problems.begin(), run.problems.end());
+    content.json["runs"].push_back(std::move(one));
   }
-  add_readable_units(json["runs"]);
+  add_readable_units(content.json["runs"]);
+  content.head = head_of(runs, diameters) + problems_part(content.problems);
+  return content;
+}
 
-  page.html = page_begin(runs.size() == 1 ? runs[0].title() : "Runs side by side", report_style, policy);
-  page.html += head_of(runs, diameters) + problems_part(page.problems);
-  page.html +=
+ReportContent empty_content(const std::string& title, const std::string& words) {
+  return {title,
+          "<header>\n<h1>" + escaped(title) + "</h1>\n<p>" + escaped(words) + "</p>\n</header>\n",
+          {{"colours", {{"series", series_colours}, {"diverging", diverging_colours}}}, {"runs", Description::array()}},
+          {}};
+}
+
+std::string report_html(const ReportContent& content, const DataElements& data, Reach reach) {
+  const bool asks = reach == Reach::server;
+  std::string html = page_begin(content.title, report_style, fmt::format(policy, asks ? "connect-src 'self'; " : ""));
+  html += "<div id=\"head\">\n" + content.head + "</div>\n";
+  html +=
       "<main>\n<section id=\"curves\"></section>\n<section id=\"grains\"></section>\n<section id=\"maps\"></section>\n"
       "<noscript><p class=\"message\">Curves and grains are drawn by JavaScript, which is switched "
       "off.</p></noscript>\n"
       "</main>\n";
-  page.html += json_element("report", json);
-  page.html += data.html();
-  page.html += "<script type=\"text/plain\" id=\"vega-licence\">";
-  page.html += vega_licence;
-  page.html += "</script>\n";
-  page.html += script_element(vega_script) + script_element(report_script);
-  page.html += page_end;
-  return page;
+  html += json_element("report", content.json);
+  html += data.html();
+  html += "<script type=\"text/plain\" id=\"vega-licence\">";
+  html += vega_licence;
+  html += "</script>\n";
+  html += script_element(vega_script) + script_element(report_script);
+  if (asks) html += script_element(live_script);
+  html += page_end;
+  return html;
+}
+
+ReportPage report_page(std::span<const std::filesystem::path> folders, const GrainLimits& limits) {
+  DataElements data;
+  ReportContent content = report_content(folders, limits, data);
+  return {report_html(content, data, Reach::closed), std::move(content.problems)};
 }
 
 }  // namespace grit

@@ -156,6 +156,15 @@ class Chart {
     return { x: shownX[i], y: shownY[i] };
   }
 
+  /** With what its group has read anew. */
+  async refresh() {
+    this.channel = this.group.channelsNamed(this.name)[0].channel;
+    if (!this.view) return;
+    const { places } = this;
+    await this.draw();
+    this.show(places?.length === this.series.length ? places : null);
+  }
+
   spec() {
     const look = theme();
     const values = [];
@@ -303,14 +312,21 @@ class Chart {
 class ProbeCharts {
   constructor(name) {
     this.name = name;
+    this.read();
+    const { x } = report.runs[0].picture ?? {};
+    this.against = x?.startsWith(`${name}/`) && this.scalars().includes(x.slice(name.length + 1)) ? x.slice(name.length + 1) : "time";
+  }
+  /** What the report has of this probe now. */
+  read() {
+    const { name } = this;
     this.probes = report.runs.map((run, place) => ({ run, place, probe: run.probes.find((one) => one.name === name) })).filter(({ probe }) => probe);
     this.names = [...new Set(this.probes.flatMap(({ probe }) => probe.channels.map((channel) => channel.name)))];
-    const { x, y } = report.runs[0].picture ?? {};
+    const { y } = report.runs[0].picture ?? {};
     const shown = (y ?? []).filter((one) => one.startsWith(`${name}/`)).map((one) => one.slice(name.length + 1));
-    this.against = x?.startsWith(`${name}/`) && this.scalars().includes(x.slice(name.length + 1)) ? x.slice(name.length + 1) : "time";
     const rank = (one) => (shown.includes(one) ? shown.indexOf(one) : shown.length);
     const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.samples > 0);
     this.ordered = this.names.filter((one) => one !== "time" && sampled(one) && !this.isCoordinate(one)).sort((a, b) => rank(a) - rank(b));
+    this.choice?.read(this.channelsNamed("time"));
   }
   /** The channel that says where each number of a list is; "place" does so in results of older programs too. */
   coordinateOf({ name, coordinate, width }) {
@@ -345,9 +361,10 @@ class ProbeCharts {
     this.grid = make("div", { className: "charts" });
     parent.append(make("label", { className: "against" }, "against ", choice));
     if (this.ordered.some((one) => this.isList(one))) {
-      this.choice = new TimeChoice(this.channelsNamed("time"), () => {
+      this.choice = new TimeChoice(() => {
         for (const { chart } of this.grid.children) if (chart instanceof ListChart && chart.view) chart.draw();
       });
+      this.choice.read(this.channelsNamed("time"));
       parent.append(this.choice.controls);
     }
     parent.append(this.grid);
@@ -359,12 +376,17 @@ class ProbeCharts {
   }
 }
 
+/** All probes of all runs. */
+function curveGroups() {
+  return [...new Set(report.runs.flatMap((run) => run.probes.map((probe) => probe.name)))].map((name) => new ProbeCharts(name));
+}
+
 function showCurves(section) {
-  const names = [...new Set(report.runs.flatMap((run) => run.probes.map((probe) => probe.name)))];
-  if (names.length === 0) return;
+  const groups = curveGroups();
+  if (groups.length === 0) return;
   section.append(make("h2", {}, "Curves"));
-  for (const name of names) {
-    const charts = new ProbeCharts(name);
+  for (const charts of groups) {
+    const { name } = charts;
     if (charts.ordered.length === 0) {
       section.append(make("p", { className: "probe" }, make("b", {}, name), make("small", {}, " no sample")));
       continue;
@@ -372,6 +394,7 @@ function showCurves(section) {
     const count = charts.ordered.length;
     const part = make("details", { className: "probe" }, make("summary", {}, name, make("small", {}, ` ${count} channel${count === 1 ? "" : "s"}`)));
     part.addEventListener("toggle", () => part.open && !charts.grid && charts.fill(part));
+    part.charts = charts;
     part.open = !section.querySelector("details");
     section.append(part);
   }

@@ -43,6 +43,12 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+/** The entries [value, label] of a choice; where it has them already it is left alone, as a reader may have it open. */
+function offer(choice, entries) {
+  const now = Array.from(choice.options, (one) => [one.value, one.label]);
+  if (JSON.stringify(now) !== JSON.stringify(entries)) choice.replaceChildren(...entries.map(([value, label]) => make("option", { value }, label)));
+}
+
 /** Hands a file to the reader. Tests look at the last one. */
 function save(name, content, type) {
   const blob = content instanceof Blob ? content : new Blob([content], { type });

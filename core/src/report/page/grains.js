@@ -18,11 +18,16 @@ const colourings = {
 class GrainView {
   constructor(section, runs, player) {
     this.player = player;
-    this.runs = runs.map((run) => ({ name: run.name, frames: new GrainFrames(run.grains), leftOut: run.grains.left_out }));
+    this.refresh(runs);
     this.state = { run: 0, frame: 0, view: "xz", colour: "speed", cut: 0, chains: false, walls: true, zoom: 1, pan: [0, 0] };
     this.build(section);
     new ResizeObserver(() => this.redraw()).observe(this.stage);
     dark.addEventListener("change", () => this.redraw());
+  }
+  /** More frames of the same runs; one of them is turned to then. */
+  refresh(runs) {
+    this.runs = runs.map((run) => ({ name: run.name, frames: new GrainFrames(run.grains), leftOut: run.grains.left_out }));
+    this.now = null;
   }
   get frames() {
     return this.runs[this.state.run].frames;
@@ -130,8 +135,8 @@ class GrainView {
   /** Shows a frame, unless another is asked for meanwhile. */
   async turn(number) {
     this.state.frame = number;
-    const frame = await this.frames.frame(number);
-    if (this.state.frame !== number) return; // overtaken
+    const { frames } = this, frame = await frames.frame(number);
+    if (this.state.frame !== number || this.frames !== frames) return; // overtaken
     await this.show(frame);
     if (number + 1 < this.frames.count) this.frames.frame(number + 1);
   }
@@ -364,12 +369,15 @@ class GrainView {
   }
 }
 
+function runsWithGrains() {
+  return report.runs.filter((run) => run.grains && run.grains.frames.length > 0);
+}
+
 /** Grains, and maps of cells below them, which turn by the same slider. */
 function showFrames(grains, maps) {
-  const runs = report.runs.filter((run) => run.grains && run.grains.frames.length > 0);
+  const runs = runsWithGrains();
   if (runs.length === 0) return;
-  const player = new Player(runs.map((run) => run.grains.frames));
-  player.viewers.push(new GrainView(grains, runs, player));
-  if (runs.some((run) => run.grains.maps.length > 0)) player.viewers.push(new MapView(maps, runs, player));
+  const player = new Player(runs);
+  player.viewers.push(new GrainView(grains, runs, player), new MapView(maps, runs, player));
   player.takeRun(0);
 }

@@ -12,20 +12,25 @@ function lastUpTo(rising, most) {
   return Math.max(0, low - 1);
 }
 
-/** Which samples of a probe's lists are shown: the one of a slider, and those that were kept; at first those at a third and two. */
+/** Which samples of a probe's lists are shown: the one of a slider, and those that were kept; until then those at a third and two. */
 class TimeChoice {
-  constructor(channels, changed) {
+  constructor(changed) {
     this.changed = changed;
-    this.kept = [];
-    this.slider = make("input", { type: "range", name: "sample", min: 0, max: 1000, value: 1000, oninput: () => this.take() });
+    this.kept = null;
+    this.chosen = null; // s; null: the end, wherever that is
+    this.slider = make("input", { type: "range", name: "sample", min: 0, max: 1000, value: 1000, oninput: () => this.choose(this.slider.value / 1000) });
     this.slider.setAttribute("aria-label", "time of profiles and directions");
     this.shown = make("output", { className: "clock" });
     const button = (text, title, act) => make("button", { type: "button", title, onclick: act }, text);
     this.controls = make("div", { className: "controls times" }, make("label", {}, "profiles and directions at ", this.slider), this.shown,
-      button("keep", "Keep this time beside others", () => this.keep([...this.kept, this.now])), button("alone", "Keep no other time", () => this.keep([])));
+      button("keep", "Keep this time beside others", () => this.keep(this.times)), button("alone", "Keep no other time", () => this.keep([])));
+  }
+  /** What there is to choose from, of the channels of time: whoever is at the end goes along with it. */
+  read(channels) {
     this.known = Promise.all(channels.map(({ channel }) => numbersOf(channel.data))).then((lists) => {
       this.span = rangeOf(lists);
-      this.kept = [1 / 3, 2 / 3].map((part) => this.at(part));
+      const [low, high] = this.span;
+      this.slider.value = this.chosen === null ? 1000 : (1000 * (this.chosen - low)) / (high - low);
       this.tell();
     });
   }
@@ -33,11 +38,11 @@ class TimeChoice {
     return this.span[0] + part * (this.span[1] - this.span[0]);
   }
   get now() {
-    return this.at(this.slider.value / 1000);
+    return this.chosen ?? this.span[1];
   }
   /** Seconds, the one of the slider last. */
   get times() {
-    return [...this.kept, this.now];
+    return [...(this.kept ?? [1 / 3, 2 / 3].map((part) => this.at(part))), this.now];
   }
   inWords(seconds) {
     const largest = Math.max(Math.abs(this.span[1]), Math.abs(this.span[0])), [size, unit] = largest >= 1 || largest === 0 ? [1, "s"] : largest >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
@@ -47,14 +52,16 @@ class TimeChoice {
     this.shown.textContent = this.inWords(this.now);
     this.slider.setAttribute("aria-valuetext", this.shown.textContent);
   }
-  take() {
+  choose(part) {
     if (!this.span) return;
+    this.chosen = part < 1 ? this.at(part) : null;
     this.tell();
     this.changed();
   }
   keep(times) {
+    if (!this.span) return;
     this.kept = times;
-    this.take();
+    this.changed();
   }
 }
 

@@ -4,13 +4,22 @@
 class MapView {
   constructor(section, runs, player) {
     this.section = section;
-    this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames }));
     this.player = player;
+    this.read(runs);
     this.state = { field: "", component: 0, view: null, slice: 0.5 };
     this.cells = new Map();
     this.build();
     new ResizeObserver(() => this.draw()).observe(this.stage);
     dark.addEventListener("change", () => this.draw());
+  }
+
+  read(runs) {
+    this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames }));
+  }
+  /** More frames of the same runs, and maybe more maps; a frame is turned to then. */
+  refresh(runs) {
+    this.read(runs);
+    this.takeRun(this.shownRun);
   }
 
   build() {
@@ -44,6 +53,7 @@ class MapView {
   }
 
   takeRun(run) {
+    this.shownRun = run;
     this.run = this.runs[run];
     this.section.hidden = this.run.maps.length === 0;
     this.cells.clear();
@@ -51,7 +61,7 @@ class MapView {
     if (this.section.hidden) return;
     const names = this.run.maps.flatMap(({ probe, fields }) => fields.map(({ name, label }) => [`${probe}/${name}`, `${probe}: ${label}`]));
     if (!names.some(([name]) => name === this.state.field)) this.state.field = names[0][0];
-    this.fieldChoice.replaceChildren(...names.map(([value, label]) => make("option", { value, selected: value === this.state.field }, label)));
+    offer(this.fieldChoice, names);
     this.takeField(this.state.field);
   }
   takeField(name) {
@@ -60,7 +70,8 @@ class MapView {
     const { components } = this.field;
     if (this.state.component >= Math.max(1, components.length)) this.state.component = 0;
     this.componentLabel.hidden = components.length < 2;
-    this.componentChoice.replaceChildren(...components.map((label, value) => make("option", { value, selected: value === this.state.component }, label)));
+    offer(this.componentChoice, components.map((label, place) => [String(place), label]));
+    this.componentChoice.value = this.state.component;
     const { left_out } = this.map;
     this.about.textContent = this.field.about + (left_out > 0 ? `; ${left_out} frames have no map, so that the page stays light` : "");
     if (this.number !== undefined) this.turn(this.number);

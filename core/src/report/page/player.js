@@ -2,11 +2,18 @@
 "use strict";
 
 class Player {
-  /** Of each run its frames: [{time [s], stage}]. What has turn(number) and takeRun(run) may be put among the viewers. */
+  /** What has takeRun(run), turn(number) and refresh(runs) may be put among the viewers. */
   constructor(runs) {
-    this.runs = runs;
+    this.read(runs);
     this.viewers = [];
     this.strips = [];
+  }
+  read(runs) {
+    this.runs = runs.map((run) => run.grains.frames);
+  }
+  /** Those of the run that is shown: [{time [s], step, stage}]. */
+  get frames() {
+    return this.runs[this.run];
   }
   get count() {
     return this.frames.length;
@@ -30,14 +37,24 @@ class Player {
   /** Goes to the last frame of a run. */
   takeRun(run) {
     this.stop();
-    this.frames = this.runs[run];
+    this.run = run;
     for (const viewer of this.viewers) viewer.takeRun(run);
+    return this.takeFrames(this.count - 1);
+  }
+  /** With more frames of the same runs: goes along with the last one, and stays at any other. */
+  refresh(runs) {
+    const last = this.number === this.count - 1, { step } = this.frames[this.number];
+    this.read(runs);
+    for (const viewer of this.viewers) viewer.refresh(runs);
+    return this.takeFrames(last ? this.count - 1 : Math.max(0, this.frames.findLastIndex((frame) => frame.step <= step)));
+  }
+  takeFrames(shown) {
     for (const { play, slider } of this.strips) {
       slider.max = this.count - 1;
       play.disabled = slider.disabled = this.count < 2;
     }
     this.number = -1;
-    return this.go(this.count - 1);
+    return this.go(shown);
   }
   async go(number) {
     if (number === this.number) return;

@@ -1,0 +1,224 @@
+#include "app/page_server.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <charconv>
+#include <chrono>
+#include <map>
+#include <string_view>
+
+#include "app/command.hpp"
+
+namespace grit {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::ip::tcp;
+using boost::system::error_code;
+using Clock = std::chrono::steady_clock;
+using Response = http::response<http::string_body>;
+using namespace std::chrono_literals;
+
+constexpr std::size_t most_sessions = 64, longest_header = 16 << 10;
+// However long a folder takes to be read then: the end of a run does not wait for more.
+constexpr unsigned most_seconds_for_the_end = 20;
+constexpr auto answer_within = 25s, reader_gone_after = 60s, last_words_within = 3s;
+
+auto into(error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
+
+/// "127.0.0.1:8000" without its port.
+std::string_view host_name(std::string_view host) {
+  const auto colon = host.rfind(':');
+  return colon == std::string_view::npos || host.ends_with(']') ? host : host.substr(0, colon);
+}
+
+bool is_this_machine(std::string_view host) {
+  static constexpr std::array<std::string_view, 3> names{"127.0.0.1", "localhost", "[::1]"};
+  return std::ranges::find(names, host_name(host)) != names.end();
+}
+
+/// The value of "name=value" in "path?a=1&b=2"; empty where it is missing.
+std::string_view parameter(std::string_view target, std::string_view name) {
+  for (auto at = target.find('?'); at != std::string_view::npos; at = target.find('&', at + 1)) {
+    const auto rest = target.substr(at + 1);
+    if (rest.starts_with(name) && rest.substr(name.size()).starts_with('='))
+      return rest.substr(name.size() + 1, rest.find('&') - name.size() - 1);
+  }
+  return {};
+}
+
+class PageServer {
+ public:
+  PageServer(int listening_socket, int control, LivePage& page)
+      : acceptor_(io_, tcp::v4(), listening_socket),
+        control_(io_, asio::local::stream_protocol(), control),
+        page_(page) {}
+
+  void operator()() {
+    for (auto work : {&PageServer::accept, &PageServer::listen_to_run, &PageServer::look_again})
+      asio::co_spawn(io_, (this->*work)(), asio::detached);
+    io_.run();
+  }
+
+ private:
+  asio::awaitable<void> accept() {
+    for (;;) {
+      error_code error;
+      tcp::socket socket = co_await acceptor_.async_accept(into(error));
+      if (!error && sessions_ < most_sessions) asio::co_spawn(io_, session(std::move(socket)), asio::detached);
+    }
+  }
+
+  asio::awaitable<void> listen_to_run() {
+    asio::streambuf lines;
+    for (;;) {
+      error_code error;
+      const std::size_t length = co_await asio::async_read_until(control_, lines, '\n', into(error));
+      if (error) break;
+      progress_.assign(asio::buffers_begin(lines.data()), asio::buffers_begin(lines.data()) + length - 1);
+      lines.consume(length);
+    }
+    ::alarm(most_seconds_for_the_end);
+    progress_.clear(), ended_ = true;
+    if (!readers_.empty()) page_.refresh();
+    news_.cancel();
+    if (readers_.empty()) io_.stop();
+    asio::steady_timer patience(io_, last_words_within);
+    co_await patience.async_wait(asio::use_awaitable);
+    io_.stop();
+  }
+
+  /// Reads the folder every second or, where that takes long, less often.
+  asio::awaitable<void> look_again() {
+    asio::steady_timer timer(io_);
+    for (;;) {
+      const auto began = Clock::now();
+      std::erase_if(readers_, [&](const auto& reader) { return began - reader.second > reader_gone_after; });
+      if (!readers_.empty() && !ended_) {
+        page_.refresh();
+        news_.cancel();
+      }
+      timer.expires_after(std::max<Clock::duration>(1s, 10 * (Clock::now() - began)));
+      co_await timer.async_wait(asio::use_awaitable);
+    }
+  }
+
+  asio::awaitable<void> session(tcp::socket socket) {
+    ++sessions_;
+    beast::tcp_stream stream(std::move(socket));
+    beast::flat_buffer buffer;
+    for (;;) {
+      http::request_parser<http::empty_body> parser;
+      parser.header_limit(longest_header);
+      stream.expires_after(reader_gone_after);
+      error_code error;
+      co_await http::async_read_header(stream, buffer, parser, into(error));
+      if (error) break;
+      const auto& request = parser.get();
+      stream.expires_never();
+      const std::string reader(parameter(text(request.target()), "page"));
+      Response response = co_await answer(request);
+      const bool last_words = ended_;
+      response.keep_alive(request.keep_alive() && parser.is_done() && !ended_);
+      response.prepare_payload();
+      stream.expires_after(reader_gone_after);
+      co_await http::async_write(stream, response, into(error));
+      if (last_words) readers_.erase(reader);
+      if (error || !response.keep_alive()) break;
+    }
+    error_code ignored;
+    stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    --sessions_;
+    if (ended_ && readers_.empty()) io_.stop();
+  }
+
+  static std::string_view text(beast::string_view view) { return {view.data(), view.size()}; }
+
+  asio::awaitable<Response> answer(const http::request<http::empty_body>& request) {
+    const std::string target(text(request.target()));
+    const auto say = [&](http::status status, const char* type, std::string body) {
+      Response response(status, request.version());
+      response.set(http::field::content_type, type);
+      response.set(http::field::cache_control, "no-store");
+      response.set("X-Content-Type-Options", "nosniff");
+      response.set("Cross-Origin-Resource-Policy", "same-origin");
+      response.body() = std::move(body);
+      return response;
+    };
+    constexpr const char *plain = "text/plain; charset=utf-8", *html = "text/html; charset=utf-8";
+    if (!is_this_machine(text(request[http::field::host])))
+      co_return say(http::status::forbidden, plain, "this page is for 127.0.0.1 and localhost\n");
+    if (request.method() != http::verb::get) {
+      Response response = say(http::status::method_not_allowed, plain, "only GET is answered\n");
+      response.set(http::field::allow, "GET");
+      co_return response;
+    }
+    if (target == "/") {
+      page_.refresh();
+      co_return say(http::status::ok, html, page_.html());
+    }
+    if (!target.starts_with("/new?")) co_return say(http::status::not_found, plain, "there is nothing here but /\n");
+    const auto since_text = parameter(target, "since");
+    std::size_t since = 0;
+    const auto [end, slip] = std::from_chars(since_text.data(), since_text.data() + since_text.size(), since);
+    if (slip != std::errc() || end != since_text.data() + since_text.size())
+      co_return say(http::status::bad_request, plain, "since takes a number\n");
+    const Description news = co_await news_for(since, std::string(parameter(target, "page")));
+    co_return say(http::status::ok, "application/json",
+                  news.dump(-1, ' ', false, Description::error_handler_t::replace));
+  }
+
+  /// Waits for something that the reader does not know.
+  asio::awaitable<Description> news_for(std::size_t since, const std::string reader) {
+    if (readers_.size() < most_sessions) readers_[reader] = Clock::now();
+    const std::string progress = progress_;
+    const auto until = Clock::now() + answer_within;
+    while (page_.since() == since && progress_ == progress && !ended_ && Clock::now() < until) {
+      error_code woken;
+      co_await news_.async_wait(into(woken));
+    }
+    Description news = page_.news(since);
+    news["progress"] = progress_, news["ended"] = ended_;
+    if (const auto known = readers_.find(reader); known != readers_.end()) known->second = Clock::now();
+    co_return news;
+  }
+
+  asio::io_context io_{1};
+  tcp::acceptor acceptor_;
+  asio::local::stream_protocol::socket control_;
+  LivePage& page_;
+  asio::steady_timer news_{io_, Clock::time_point::max()};  ///< cancelled to wake those who wait
+  std::map<std::string, Clock::time_point> readers_;        ///< pages that are open, and when they asked last
+  std::string progress_;
+  bool ended_ = false;
+  std::size_t sessions_ = 0;
+};
+
+}  // namespace
+
+Listener::Listener(std::uint16_t port) {
+  asio::io_context io;
+  try {
+    tcp::acceptor acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), port));
+    port_ = acceptor.local_endpoint().port();
+    socket_ = ::dup(acceptor.native_handle());
+  } catch (const boost::system::system_error& error) {
+    const std::string asked = "--port " + std::to_string(port);
+    if (error.code() == asio::error::address_in_use)
+      throw UsageError(asked + ": 127.0.0.1 has this port in use; give another, or none for one that is free");
+    throw UsageError(asked + ": cannot listen there: " + error.code().message());
+  }
+}
+
+Listener::~Listener() { ::close(socket_); }
+
+void serve_page(int listening_socket, int control, LivePage& page) { PageServer(listening_socket, control, page)(); }
+
+}  // namespace grit

@@ -1,0 +1,89 @@
+// A page that is served while its run goes: asks for what is new, and shows it where the reader is.
+"use strict";
+
+const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+
+class Follower {
+  constructor() {
+    const { since, run } = report.live;
+    Object.assign(this, { since, run, page: Math.random().toString(36).slice(2) });
+    this.used = this.inPage();
+    this.line = make("p", { className: "progress" });
+    this.line.setAttribute("role", "status");
+    document.getElementById("head").before(this.line);
+  }
+  inPage() {
+    return new Set(Array.from(document.querySelectorAll("[id^=data-]"), (element) => element.id.slice(5)));
+  }
+  say(words) {
+    this.line.textContent = words;
+  }
+
+  /** Until another run is served from here. */
+  async follow() {
+    for (;;) {
+      const news = await this.ask();
+      if (!news) {
+        this.say(this.ended ? "The run has ended, and this page is served no longer: 'grit report' makes one that stays." : "No answer: the run has stopped, or cannot be reached.");
+        await pause(2000);
+      } else if (news.run !== this.run) {
+        return location.reload();
+      } else {
+        if (news.report) await this.take(news);
+        this.ended = news.ended;
+        this.say(news.progress);
+      }
+    }
+  }
+  async ask() {
+    try {
+      const answer = await fetch(`new?since=${this.since}&page=${this.page}`);
+      return answer.ok ? await answer.json() : null;
+    } catch {
+      return null;
+    }
+  }
+
+  async take({ since, head, report: now, elements, used }) {
+    this.since = since;
+    for (const [number, text] of Object.entries(elements))
+      document.body.append(make("script", { type: "application/octet-stream", id: `data-${number}`, textContent: text }));
+    // What was used until now may still be being drawn.
+    const needed = new Set([...this.used, ...used.map(String)]);
+    for (const number of this.inPage()) if (!needed.has(number)) this.forget(number);
+    this.used = new Set(used.map(String));
+    Object.assign(report, now);
+    this.showHead(head);
+    await Promise.all([this.showCurves(document.getElementById("curves")), this.showFrames(document.getElementById("grains"), document.getElementById("maps"))]);
+  }
+  forget(number) {
+    document.getElementById(`data-${number}`).remove();
+    doubles.delete(+number);
+  }
+
+  showHead(html) {
+    const place = document.getElementById("head"), folds = () => [...place.querySelectorAll("details")];
+    const open = folds().map((fold) => fold.open);
+    place.innerHTML = html;
+    folds().forEach((fold, i) => (fold.open = open[i] ?? false));
+    document.title = place.querySelector("h1").textContent;
+  }
+  async showCurves(section) {
+    const parts = [...section.querySelectorAll("details.probe")], names = (charts) => charts.ordered.join();
+    const before = parts.map(({ charts }) => charts.name + names(charts)).join();
+    for (const { charts } of parts) charts.read();
+    const now = curveGroups().filter(({ ordered }) => ordered.length > 0);
+    if (now.map((charts) => charts.name + names(charts)).join() === before)
+      return Promise.all(Array.from(section.querySelectorAll("figure.chart"), ({ chart }) => chart.refresh()));
+    const open = parts.filter((part) => part.open).map(({ charts }) => charts.name);
+    section.replaceChildren();
+    showCurves(section);
+    if (open.length > 0) for (const part of section.querySelectorAll("details.probe")) part.open = open.includes(part.charts.name);
+  }
+  async showFrames(grains, maps) {
+    const player = grains.querySelector("figure.grains")?.grains.player;
+    return player ? player.refresh(runsWithGrains()) : showFrames(grains, maps);
+  }
+}
+
+new Follower().follow();

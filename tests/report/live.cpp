@@ -1,0 +1,111 @@
+// The page of a run that goes on: what is new is given, and given once.
+#include <gmock/gmock.h>
+
+#include "report/live_page.hpp"
+#include "results.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+json channel_of(const json& report, const std::string& name) {
+  for (const auto& probe : report.at("runs").at(0).at("probes"))
+    for (const auto& channel : probe.at("channels"))
+      if (channel.at("name") == name) return channel;
+  throw std::runtime_error("there is no " + name);
+}
+
+void set_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+TEST(LivePage, SaysWhereThereIsNothingYet) {
+  const Folder folder;
+  LivePage page(folder / "run", "1");
+  EXPECT_FALSE(page.refresh());
+  EXPECT_THAT(page.html(), HasSubstr("The run is being prepared."));
+  const json report = json_of(page.html());
+  EXPECT_THAT(report.at("runs"), IsEmpty());
+  EXPECT_EQ(report.at("live").at("run"), "1");
+  EXPECT_EQ(report.at("live").at("since"), page.since());
+  const json news = page.news(page.since());
+  EXPECT_EQ(news, json({{"run", "1"}}));
+}
+
+TEST(LivePage, GivesWhatIsNewAndKeepsTheNumbersOfTheRest) {
+  const Folder folder;
+  SmallRun(folder / "run").write();
+  LivePage page(folder / "run", "1");
+  const std::size_t nothing = page.since();
+  ASSERT_TRUE(page.refresh());
+  const json first = page.news(nothing);
+  EXPECT_THAT(std::string(first.at("head")), HasSubstr("a small run"));
+  EXPECT_EQ(first.at("elements").size(), first.at("used").size()) << "all of it";
+  EXPECT_FALSE(page.refresh()) << "nothing was written";
+  EXPECT_EQ(page.since(), first.at("since"));
+
+  // The same run, of which the ratio came out otherwise, which the stress has as its first component.
+  SmallRun other(folder / "run");
+  other.ratio[1] = 0.5;
+  other.options.existing = Existing::overwrite;
+  other.write();
+  ASSERT_TRUE(page.refresh());
+  const json second = page.news(first.at("since"));
+  const json changed = channel_of(second.at("report"), "stress_ratio"),
+             same = channel_of(second.at("report"), "largest_overlap");
+  ASSERT_EQ(second.at("elements").size(), 2u);
+  EXPECT_GE(changed.at("data"), first.at("since"));
+  const auto text = unpacked(second.at("elements").at(changed.at("data").dump()));
+  double value = 0;
+  std::memcpy(&value, text.data() + sizeof value, sizeof value);
+  EXPECT_EQ(value, 0.5);
+  EXPECT_EQ(same.at("data"), channel_of(first.at("report"), "largest_overlap").at("data"));
+  EXPECT_LT(same.at("data"), first.at("since"));
+
+  const json all = page.news(nothing);
+  EXPECT_EQ(all.at("elements").size(), all.at("used").size()) << "for who knows nothing";
+}
+
+TEST(LivePage, HasAsAWholeWhatItHasInParts) {
+  const Folder folder;
+  SmallRun(folder / "run").write();
+  LivePage page(folder / "run", "1");
+  const std::size_t nothing = page.since();
+  ASSERT_TRUE(page.refresh());
+  const std::string html = page.html();
+  const json news = page.news(nothing);
+  EXPECT_EQ(json_of(html), news.at("report"));
+  EXPECT_EQ(json_of(html).at("live").at("since"), page.since());
+  for (const auto& [number, text] : news.at("elements").items())
+    EXPECT_EQ(between(html, "id=\"data-" + number + "\">", "</script>"), std::string(text));
+}
+
+TEST(LivePage, MayAskWhereItCameFromAndAPageFromDiskMayNot) {
+  const Folder folder;
+  SmallRun(folder / "run").write();
+  const auto place = folder / "run";
+  LivePage page(place, "1");
+  ASSERT_TRUE(page.refresh());
+  EXPECT_THAT(page.html(), HasSubstr("connect-src 'self'; "));
+  EXPECT_THAT(page.html(), HasSubstr("fetch("));
+  const std::string closed = report_page(std::span(&place, 1)).html;
+  EXPECT_THAT(closed, Not(HasSubstr("connect-src")));
+  EXPECT_THAT(closed, Not(HasSubstr("class Follower")));
+}
+
+TEST(LivePage, ShowsWhatCanBeReadOfAFolderInPieces) {
+  const Folder folder;
+  SmallRun(folder / "run").write();
+  set_file(folder / "run/series.h5", "not HDF5");
+  LivePage page(folder / "run", "1");
+  const std::size_t nothing = page.since();
+  ASSERT_TRUE(page.refresh());
+  const json news = page.news(nothing);
+  EXPECT_THAT(std::string(news.at("head")), HasSubstr("What could not be read"));
+  EXPECT_EQ(news.at("report").at("runs").at(0).at("grains").at("frames").size(), 2u);
+}
+
+}  // namespace
+}  // namespace grit

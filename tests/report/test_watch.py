@@ -1,0 +1,335 @@
+#!/usr/bin/env python3
+"""The page that a run serves while it goes: who gets it, what a browser makes of it, and that the run does not notice.
+
+usage: test_watch.py GRIT     exit status 77 where there is no h5py; without Chromium the tests of a browser are left out
+"""
+
+import filecmp
+import http.client
+import json
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+except ImportError:
+    print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
+    sys.exit(77)
+
+from browser import Browser, PageError, find_chromium
+
+CHROMIUM = find_chromium()
+GRIT = None
+
+# It ends when it is told to: a second of it takes hours.
+SCENE = {
+    "title": "grains that are watched",
+    "contacts": {"type": "linear-rolling"},
+    "materials": {"sand": {"density": 2600, "contact_modulus": "1 MPa", "friction_angle": "30 deg"}},
+    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
+        "type": "cloud", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "10 mm"], "count": 40,
+        "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "1.5 mm"}}}},
+    "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "12 mm"], "open": ["z_high"], "material": "sand"}},
+    "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.2}},
+    "stages": [{"name": "fall", "until": {"type": "time", "value": "1e6 s"}, "limit": "1e7 s"}],
+    "probes": {"packing": {"type": "packing", "every_steps": 200}},
+    "output": {"frames": {"every_steps": 20000}},
+}
+SHORT = [{"name": "fall", "until": {"type": "time", "value": "0.3 s"}, "limit": "1 s"}]
+GRAINS = "document.querySelector('figure.grains').grains"
+MAP = "document.querySelector('figure.map').map"
+
+
+class WatchedRun:
+    """A run with --watch; ended by Ctrl-C with the block, if it has not ended before."""
+
+    def __init__(self, folder, name, *words, **changes):
+        scene = json.loads(json.dumps(SCENE))
+        scene.update(changes)
+        (folder / f"{name}.json").write_text(json.dumps(scene))
+        self.process = subprocess.Popen([GRIT, "run", f"{name}.json", "--out", name, "--threads", "1", "--quiet", "--watch", *words],
+                                        cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        said = self.process.stderr.readline()
+        self.address = re.search(r"http://127\.0\.0\.1:\d+/", said)[0]
+        self.port = int(self.address.rsplit(":", 1)[1].rstrip("/"))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.interrupt()
+        self.process.stderr.close()
+
+    def interrupt(self):
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait()
+
+    def ask(self, path="/", method="GET", host=None):
+        """Status, header and body of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        connection.putrequest(method, path, skip_host=True)
+        connection.putheader("Host", f"127.0.0.1:{self.port}" if host is None else host)
+        connection.endheaders()
+        answer = connection.getresponse()
+        body = answer.read()
+        connection.close()
+        return answer.status, answer.headers, body
+
+    def news(self, since):
+        return json.loads(self.ask(f"/new?since={since}&page=test")[2])
+
+
+def samples(report):
+    """Of the first channel of the first probe of a page's JSON."""
+    return report["runs"][0]["probes"][0]["channels"][0]["samples"] if report["runs"] else 0
+
+
+class Served(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory(prefix="grit-watch-")
+        cls.folder = pathlib.Path(cls.place.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
+    def test_only_this_machine_gets_it(self):
+        with WatchedRun(self.folder, "asked") as run:
+            for host in ("localhost", f"localhost:{run.port}", "127.0.0.1", "[::1]:9000"):
+                status, headers, body = run.ask(host=host)
+                self.assertEqual(status, 200, host)
+                self.assertIn(b"</html>", body)
+            self.assertEqual(headers["Cache-Control"], "no-store")
+            self.assertEqual(headers["X-Content-Type-Options"], "nosniff")
+            self.assertNotIn("Access-Control-Allow-Origin", headers)
+            for host in ("evil.example", f"evil.example:{run.port}", "127.0.0.1.evil.example", "localhost@evil.example", ""):
+                for path in ("/", "/new?since=0&page=x"):
+                    status, _, body = run.ask(path, host=host)
+                    self.assertEqual(status, 403, host)
+                    self.assertNotIn(b"html", body)
+            addresses = pathlib.Path("/proc/net/tcp").read_text(), pathlib.Path("/proc/net/tcp6").read_text()
+            listening = [line.split()[1] for text in addresses for line in text.splitlines()[1:] if line.split()[3] == "0A"]
+            self.assertEqual([one for one in listening if one.endswith(f":{run.port:04X}")], [f"0100007F:{run.port:04X}"])
+
+    def test_nothing_but_get_is_answered(self):
+        with WatchedRun(self.folder, "methods") as run:
+            for method in ("POST", "PUT", "DELETE", "HEAD", "OPTIONS"):
+                self.assertEqual(run.ask(method=method)[0], 405, method)
+            for path in ("/run.json", "/../run.json", "/new", "//", "/report.html"):
+                self.assertEqual(run.ask(path)[0], 404, path)
+            for since in ("", "x", "-1", "1e3", "99999999999999999999999"):
+                self.assertEqual(run.ask(f"/new?since={since}&page=x")[0], 400, since)
+            with socket.create_connection(("127.0.0.1", run.port)) as other:
+                other.sendall(b"GET / HTTP/1.1\r\nHost: localhost\r\nX: " + b"x" * 100_000 + b"\r\n\r\n")
+                other.settimeout(60)
+                try:
+                    self.assertEqual(other.recv(100), b"")
+                except ConnectionResetError:
+                    pass
+            self.assertEqual(run.ask()[0], 200, "it is still there")
+
+    def test_a_port_in_use_is_said_before_anything_runs(self):
+        with socket.create_server(("127.0.0.1", 0)) as other:
+            port = other.getsockname()[1]
+            (self.folder / "refused.json").write_text(json.dumps(SCENE))
+            ended = subprocess.run([GRIT, "run", "refused.json", "--out", "refused", "--watch", "--port", str(port)], cwd=self.folder,
+                                   capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 1)
+        self.assertEqual(ended.stderr, f"grit: --port {port}: 127.0.0.1 has this port in use; give another, or none for one that is free\n")
+        self.assertFalse((self.folder / "refused").exists())
+
+    def test_ports_that_are_none_are_said(self):
+        (self.folder / "none.json").write_text(json.dumps(SCENE))
+        for words, said in ((["--watch", "--port", "65536"], 'grit: --port takes a number from 1 to 65535, not "65536"\n'),
+                            (["--watch", "--port", "http"], 'grit: --port takes a number from 1 to 65535, not "http"\n'),
+                            (["--port", "8000"], "grit: --port is where the page of --watch is served: give both\n")):
+            ended = subprocess.run([GRIT, "run", "none.json", *words], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual((ended.returncode, ended.stderr), (1, said))
+
+    def test_what_is_new_is_given_once(self):
+        with WatchedRun(self.folder, "news") as run:
+            news = run.news(0)
+            while samples(news.get("report", {"runs": []})) < 1:
+                news = run.news(news.get("since", 0))
+            later = run.news(news["since"])
+            while "report" not in later:
+                later = run.news(news["since"])
+            self.assertGreater(samples(later["report"]), samples(news["report"]))
+            self.assertGreaterEqual(min(map(int, later["elements"]), default=news["since"]), news["since"])
+            self.assertLess(set(map(int, later["elements"])), set(later["used"]), "curves that are as they were are not sent again")
+            self.assertIn("fall", later["progress"])
+            # A reader who waits at the end gets the last state.
+            run.process.send_signal(signal.SIGINT)
+            while not later["ended"]:
+                later = run.news(later.get("since", news["since"]))
+            self.assertIn("interrupted", later["head"])
+            with h5py.File(self.folder / "news/series.h5") as series:
+                self.assertEqual(samples(later["report"]), len(series["packing/time"]))
+            self.assertEqual(run.process.wait(), 130)
+            with self.assertRaises(ConnectionRefusedError):
+                run.ask()
+
+    def test_the_run_does_not_notice(self):
+        scene = dict(SCENE, stages=SHORT)
+        (self.folder / "alone.json").write_text(json.dumps(scene))
+        subprocess.run([GRIT, "run", "alone.json", "--out", "alone", "--threads", "1", "--quiet"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        with WatchedRun(self.folder, "seen", stages=SHORT) as run:
+            news = {"ended": False}
+            while not news["ended"]:
+                try:
+                    news = run.news(0)
+                except ConnectionError:
+                    break
+            self.assertEqual(run.process.wait(), 0)
+        self.assertTrue(filecmp.cmp(self.folder / "alone/packing.txt", self.folder / "seen/packing.txt", shallow=False))
+        with h5py.File(self.folder / "alone/series.h5") as alone, h5py.File(self.folder / "seen/series.h5") as seen:
+            compared = [name for name in alone["packing"] if alone["packing"][name][()].tobytes() == seen["packing"][name][()].tobytes()]
+            self.assertEqual(compared, list(seen["packing"]))
+        for frame in sorted((self.folder / "alone/frames").iterdir()):
+            with h5py.File(frame) as alone, h5py.File(self.folder / "seen/frames" / frame.name) as seen:
+                for name in alone["bodies"]:
+                    self.assertEqual(alone["bodies"][name][()].tobytes(), seen["bodies"][name][()].tobytes())
+
+    def test_a_run_goes_on_where_its_server_is_gone(self):
+        with WatchedRun(self.folder, "left", stages=SHORT) as run:
+            children = pathlib.Path(f"/proc/{run.process.pid}/task/{run.process.pid}/children")
+            run.ask()  # by now it is there
+            subprocess.run(["kill", "-KILL", children.read_text().strip()], check=True)
+            self.assertEqual(run.process.wait(), 0)
+        self.assertEqual(json.loads((self.folder / "left/run.json").read_text())["status"], "done")
+
+
+@unittest.skipIf(CHROMIUM is None, "there is no Chromium to open the page with (Debian: chromium)")
+class InABrowser(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory(prefix="grit-watch-")
+        self.folder = pathlib.Path(self.place.name)
+        self.browser = Browser(CHROMIUM, timeout=150).__enter__()
+
+    def tearDown(self):
+        self.browser.__exit__()
+        self.place.cleanup()
+
+    def shown(self):
+        """How many samples the first curve shows, and how many frames there are."""
+        return self.browser.evaluate(f"[document.querySelector('figure.chart').chart.series[0].x.length, {GRAINS}.frames.count]")
+
+    def seen(self, condition):
+        """Whether it holds; not while the page gives way to another one."""
+        try:
+            return self.browser.evaluate(f"!!({condition})")
+        except PageError:
+            return False
+
+    def test_it_fills_without_a_reload(self):
+        wait, evaluate = self.browser.wait, self.browser.evaluate
+        with WatchedRun(self.folder, "watched") as run:
+            self.browser.open(run.address)
+            evaluate("window.sameDocument = true")
+            wait("document.querySelector('figure.chart[data-drawn]') && document.querySelector('figure.grains')?.grains.painted")
+            curve, frames = self.shown()
+            evaluate("document.querySelector('header details').open = true")
+            wait(f"document.querySelector('figure.chart').chart.series[0].x.length > {curve} && {GRAINS}.frames.count > {frames + 1}")
+            self.assertIn("fall", evaluate("document.querySelector('.progress').textContent"))
+            wait(f"{GRAINS}.painted?.number === {GRAINS}.frames.count - 1")  # goes along with the last frame
+            self.assertTrue(evaluate("document.querySelector('header details').open"), "what was unfolded stays so")
+
+            # Who looks at another frame, or another abscissa, is left there.
+            evaluate(f"{GRAINS}.player.go(1)")
+            wait(f"{GRAINS}.painted?.number === 1")
+            step = evaluate(f"{GRAINS}.json.frames[1].step")
+            evaluate("""(() => { const choice = document.querySelector('.against select');
+                choice.value = 'void_ratio'; choice.dispatchEvent(new Event('change')); })()""")
+            frames = evaluate(f"{GRAINS}.frames.count")
+            wait(f"{GRAINS}.frames.count > {frames} && {GRAINS}.painted")
+            self.assertEqual(evaluate(f"{GRAINS}.json.frames[{GRAINS}.state.frame].step"), step)
+            self.assertEqual(evaluate("document.querySelector('.against select').value"), "void_ratio")
+            self.assertEqual(self.browser.complaints(), [])
+
+            run.process.send_signal(signal.SIGINT)
+            wait("document.querySelector('.status.interrupted')")
+            self.assertEqual(run.process.wait(), 130)
+            wait("document.querySelector('.progress').textContent.startsWith('The run has ended')")
+            self.assertTrue(evaluate("window.sameDocument"))
+
+            # To the last bit, as in the file.
+            evaluate("(() => { const choice = document.querySelector('.against select'); choice.value = 'time'; choice.dispatchEvent(new Event('change')); })()")
+            with h5py.File(self.folder / "watched/series.h5") as series:
+                group = series["packing"]
+                for name in ("coordination_number", "kinetic_energy"):
+                    got = evaluate(f"""(async () => {{ const charts = document.querySelector('details.probe').charts;
+                        const [{{channel}}] = charts.channelsNamed('{name}'); return Array.from(await numbersOf(channel.data), String); }})()""")
+                    self.assertEqual([float(value) for value in got], list(group[name][()]))
+            self.assertEqual(evaluate(f"{GRAINS}.frames.count"), len(list((self.folder / "watched/frames").glob("*.h5"))))
+
+    def test_maps_profiles_and_directions_go_along(self):
+        wait, evaluate = self.browser.wait, self.browser.evaluate
+        probes = {**SCENE["probes"], "forces": {"type": "force-chains", "every_steps": 200}, "moved": {"type": "displacements", "every_steps": 200}}
+        found = "[...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{}' && chart.name === '{}').chart".format
+        forces, moved = found("forces", "force_by_direction"), found("moved", "profile")
+        with WatchedRun(self.folder, "lists", probes=probes) as run:
+            self.browser.open(run.address)
+            wait("document.querySelectorAll('details.probe').length === 3 && document.querySelector('figure.map')?.map.now")
+            evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
+            wait("[...document.querySelectorAll('.times .clock')].filter((clock) => clock.textContent).length === 2")
+            for chart in (forces, moved):
+                evaluate(f"{chart}.draw()")
+            evaluate(f"{MAP}.takeField('packing/stress')")
+            frame, end = evaluate(f"[{MAP}.now.number, {moved}.group.choice.now]")
+            # One slider stays at its time, the other at the end.
+            evaluate(f"(() => {{ const {{slider}} = {forces}.group.choice; slider.value = 500; slider.dispatchEvent(new Event('input')); }})()")
+            chosen = evaluate(f"{forces}.group.choice.now")
+            self.assertLess(chosen, 0.6 * end)
+            wait(f"{MAP}.now?.number > {frame + 1} && {moved}.group.choice.now > {1.2 * end}")
+            self.assertEqual(evaluate(f"[{forces}.group.choice.now, {MAP}.state.field, {MAP}.fieldChoice.value]"), [chosen, "packing/stress", "packing/stress"])
+            self.assertLess(evaluate(f"+{forces}.group.choice.slider.value"), 450)
+            self.assertEqual(evaluate(f"{moved}.group.choice.slider.value"), "1000")
+            self.assertEqual(self.browser.complaints(), [])
+
+            run.process.send_signal(signal.SIGINT)
+            wait("document.querySelector('.progress').textContent.startsWith('The run has ended')")
+            self.assertEqual(run.process.wait(), 130)
+            last = len(list((self.folder / "lists/frames").glob("*.h5"))) - 1
+            wait(f"document.querySelector('.map .stage').dataset.frame === '{last}'")
+            with h5py.File(self.folder / "lists/series.h5") as series:
+                for chart, name, time in ((forces, "force_by_direction", chosen), (moved, "profile", None)):
+                    probe, wanted = evaluate(f"{chart}.group.name"), evaluate(f"Array.from({chart}.series.at(-1).y, String)")
+                    times = list(series[f"{probe}/time"])
+                    sample = max(i for i, t in enumerate(times) if time is None or t <= time)
+                    self.assertEqual([float(value) for value in wanted], list(series[f"{probe}/{name}"][sample]))
+            with h5py.File(self.folder / f"lists/frames/{last:06}.h5") as frame:
+                shown = evaluate(f"Array.from({MAP}.now.cells.list({MAP}.place({MAP}.field, 0)), String)")
+                self.assertEqual([float(value) for value in shown], frame["probes/packing/stress"][:].reshape(len(shown), 9)[:, 0].astype("float32").tolist())
+
+    def test_it_asks_for_nothing_else(self):
+        with WatchedRun(self.folder, "asking") as run:
+            self.browser.open(run.address)
+            self.browser.wait("document.querySelector('figure.chart[data-drawn]') && document.querySelector('figure.grains')?.grains.painted")
+            asked = self.browser.requests()
+            self.assertGreater(len(asked), 0)
+            for url in asked:
+                self.assertTrue(url.startswith(run.address + "new?since="), url)
+
+    def test_the_next_run_at_a_port_is_shown(self):
+        with WatchedRun(self.folder, "first") as run:
+            port = run.port
+            self.browser.open(run.address)
+            self.browser.wait("document.querySelector('.status.running')")
+        with WatchedRun(self.folder, "second", "--port", str(port), title="the next one"):
+            while not self.seen("document.querySelector('h1')?.textContent === 'the next one' && document.querySelector('.status.running')"):
+                pass
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    GRIT = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main(verbosity=1)
