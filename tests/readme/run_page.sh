@@ -43,7 +43,7 @@ run_page() {
           "$candidate" -c 'import h5py' 2> /dev/null && python=$candidate && break
         done
         if [[ -n $python ]]; then
-          (cd "$place" && "$python" -c "$text") > "$place/.log" 2>&1 || { complain "python failed"; cat "$place/.log"; }
+          (cd "$place" && PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$root/python "$python" -c "$text") > "$place/.log" 2>&1 || { complain "python failed"; cat "$place/.log"; }
         fi ;;
     esac
   }

@@ -1,0 +1,212 @@
+"""Results of grit as numpy arrays.
+
+    import grit
+    run = grit.open("results/box")
+    run.status, run.bodies, run.description["title"]
+    run.series["packing/coordination_number"]         # numpy array; run.series.units(...) tells its unit
+    run.frames[-1].bodies["position"]                 # n × 3, m
+
+Units are SI, names those of docs/results.md. Nothing is kept open: a run that goes on can be read again and again.
+"""
+
+import difflib
+import json
+import pathlib
+from collections.abc import Mapping, Sequence
+
+import h5py
+import numpy
+
+__all__ = ["open", "Run", "Series", "Frames", "Frame", "Table", "Wall", "ResultsError"]
+
+
+class ResultsError(Exception):
+    """A folder or a file that is not what `grit run` writes, or not yet."""
+
+
+class UnknownName(KeyError):
+    """A name that is not there; says which are."""
+
+    def __init__(self, what, name, names):
+        super().__init__(name)
+        near = difflib.get_close_matches(str(name), names, 1)
+        listed = ", ".join(names) if names else "none"
+        self.message = f"there is no {what} {name!r}" + (f"; did you mean {near[0]!r}?" if near else "") + f" There are: {listed}"
+
+    def __str__(self):
+        return self.message
+
+
+def open(folder):
+    """The run whose results are in a folder. Raises ResultsError where there are none."""
+    return Run(folder)
+
+
+def _opened(path):
+    try:
+        return h5py.File(path, "r")
+    except FileNotFoundError:
+        raise ResultsError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise ResultsError(f"{path}: cannot be read: {error}; if the run is still going on, try again, else the file is damaged") from error
+
+
+class Table(Mapping):
+    """The datasets of a group by their names: each an array, rows first. Read when asked for."""
+
+    def __init__(self, path, group, what):
+        self._path, self._group, self._what = path, group, what
+
+    def _use(self, act):
+        with _opened(self._path) as file:
+            return act(file[self._group] if self._group in file else {})
+
+    def _of(self, name, act):
+        def look(group):
+            if name not in group or not isinstance(group[name], h5py.Dataset):
+                raise UnknownName(self._what, name, sorted(group))
+            try:
+                return act(group[name])
+            except OSError as error:
+                raise ResultsError(f"{self._path}: {self._group}/{name} cannot be read: {error}; if the run is still going on, try again, "
+                                   "else the file is damaged") from error
+        return self._use(look)
+
+    def __getitem__(self, name):
+        return self._of(name, lambda dataset: dataset[()])
+
+    def __iter__(self):
+        return iter(self._use(lambda group: sorted(group)))
+
+    def __len__(self):
+        return self._use(len)
+
+    def __repr__(self):
+        return f"<{self._what}s of {self._path}: {', '.join(self)}>"
+
+    def units(self, name):
+        """UDUNITS spelling, "1" for plain numbers."""
+        return self._of(name, lambda dataset: dataset.attrs["units"])
+
+    def about(self, name):
+        """What it is, in words."""
+        return self._of(name, lambda dataset: dataset.attrs["long_name"])
+
+    def records(self):
+        """All of it as one structured array, a record a row."""
+        columns = {name: self[name] for name in self}
+        kinds = [(name, column.dtype, column.shape[1:]) for name, column in columns.items()]
+        records = numpy.empty(len(next(iter(columns.values()), ())), dtype=kinds)
+        for name, column in columns.items():
+            records[name] = column
+        return records
+
+
+class Series(Mapping):
+    """Channels of all probes, as "probe/channel": arrays whose rows are samples."""
+
+    def __init__(self, path):
+        self._path = path
+
+    def __getitem__(self, name):
+        return self._read(name, Table.__getitem__)
+
+    def _read(self, name, act):
+        probe, _, channel = str(name).partition("/")
+        with _opened(self._path) as file:
+            if probe not in file or channel not in file[probe]:
+                raise UnknownName("channel", name, list(self))
+        return act(Table(self._path, probe, "channel"), channel)
+
+    def __iter__(self):
+        with _opened(self._path) as file:
+            return iter([f"{probe}/{channel}" for probe in file for channel in file[probe]])
+
+    def __len__(self):
+        return len(list(iter(self)))
+
+    def __repr__(self):
+        return f"<series of {self._path}: {', '.join(self)}>"
+
+    def units(self, name):
+        return self._read(name, Table.units)
+
+    def about(self, name):
+        return self._read(name, Table.about)
+
+
+class Wall:
+    """A wall in one frame: `triangles` t × 3 × 3 corners [m], `index`, `pressure` [Pa], `displacement` [m], `force` [N]."""
+
+    def __init__(self, dataset):
+        self.triangles = dataset[()]
+        self.index = int(dataset.attrs["index"])
+        self.pressure = float(dataset.attrs["pressure"])
+        self.displacement, self.force = (numpy.array([dataset.attrs[f"{name}_{axis}"] for axis in "xyz"]) for name in ("displacement", "force"))
+
+
+class Frame:
+    """The world at one instant: `time` [s], `step`, `stage`; tables `bodies`, `contacts`, `clumps`; `walls` and `probes` by name."""
+
+    def __init__(self, path):
+        self.path = path
+        with _opened(path) as file:
+            self.time, self.step, self.stage = float(file.attrs["time"]), int(file.attrs["step"]), str(file.attrs["stage"])
+            self.walls = {name: Wall(wall) for name, wall in file["walls"].items()}
+            self.probes = {name: Table(path, f"probes/{name}", "field") for name in file["probes"]}
+        self.bodies, self.contacts, self.clumps = (Table(path, group, "array") for group in ("bodies", "contacts", "clumps"))
+
+    def __repr__(self):
+        return f"<frame {self.path}: {self.time:g} s, stage {self.stage!r}>"
+
+
+class Frames(Sequence):
+    """The frames of a run, in their order. Those that are written meanwhile come along."""
+
+    def __init__(self, folder):
+        self._folder = folder
+
+    def _files(self):
+        return sorted(self._folder.glob("*.h5"))
+
+    def __len__(self):
+        return len(self._files())
+
+    def __getitem__(self, place):
+        files = self._files()
+        if isinstance(place, slice):
+            return [Frame(path) for path in files[place]]
+        try:
+            return Frame(files[place])
+        except IndexError:
+            raise IndexError(f"{self._folder}: there is no frame {place} of {len(files)}") from None
+
+
+class Run:
+    """What a run left, or has left so far. Keys of run.json are attributes, as `status`, `time`, `bodies`, `description`."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        path = self.folder / "run.json"
+        try:
+            self.json = json.loads(path.read_text())
+        except (FileNotFoundError, NotADirectoryError):
+            raise ResultsError(f"{self.folder}: there is no run: it has no run.json; give a folder that 'grit run' has written") from None
+        except ValueError as error:
+            raise ResultsError(f"{path}: is not JSON: {error}") from error
+        self.series = Series(self.folder / "series.h5")
+        self.frames = Frames(self.folder / "frames")
+
+    def __getattr__(self, name):
+        if name.startswith("_") or "json" not in self.__dict__:
+            raise AttributeError(name)
+        try:
+            return self.json[name]
+        except KeyError:
+            raise AttributeError(str(UnknownName("key of run.json", name, list(self.json)))) from None
+
+    def __dir__(self):
+        return [*super().__dir__(), *self.json]
+
+    def __repr__(self):
+        return f"<run {self.folder}: {self.status}>"

@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+"""The Python module against plain h5py, and its words for what is not there.
+
+usage: test_grit.py GRIT     exit status 77 where there is no h5py
+"""
+
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import h5py
+    import numpy
+except ImportError:
+    print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
+    sys.exit(77)
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
+import grit
+
+GRIT = None
+
+SCENE = {
+    "title": "two grains that fall",
+    "contacts": {"type": "linear-rolling"},
+    "materials": {"sand": {"contact_modulus": "1 MPa"}},
+    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [
+        {"position": [0, 0, "2 mm"], "radius": "1 mm"}, {"position": [0, "3 mm", "2 mm"], "radius": "1 mm"}]}}},
+    "walls": {"floor": {"type": "rectangle", "corner": ["-10 mm", "-10 mm", 0], "edge_a": ["20 mm", 0, 0], "edge_b": [0, "20 mm", 0], "material": "sand"}},
+    "engines": {"gravity": {"type": "gravity"}},
+    "stages": [{"name": "fall", "until": {"type": "time", "value": "20 ms"}, "limit": "1 s"}],
+    "probes": {"packing": {"type": "packing", "every_time": "1 ms"}},
+    "output": {"frames": {"every_time": "5 ms"}},
+}
+
+
+class Results(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory(prefix="grit-python-")
+        cls.folder = pathlib.Path(cls.place.name)
+        (cls.folder / "fall.json").write_text(json.dumps(SCENE))
+        subprocess.run([GRIT, "run", "fall.json", "--out", "fall", "--threads", "1", "--quiet", "--no-report"], cwd=cls.folder, check=True,
+                       stdout=subprocess.DEVNULL)
+        cls.run_ = grit.open(cls.folder / "fall")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
+    def copy(self):
+        target = self.folder / self.id().rsplit(".", 1)[1]
+        shutil.copytree(self.folder / "fall", target)
+        return target
+
+    def test_run_json_as_attributes(self):
+        written = json.loads((self.folder / "fall/run.json").read_text())
+        self.assertEqual((self.run_.status, self.run_.bodies), ("done", 2))
+        for key, value in written.items():
+            self.assertEqual(getattr(self.run_, key), value)
+        self.assertEqual(self.run_.description["title"], SCENE["title"])
+        self.assertIn("time_step_s", dir(self.run_))
+        with self.assertRaisesRegex(AttributeError, "there is no key of run.json 'statu'; did you mean 'status'"):
+            self.run_.statu
+
+    def test_series_are_those_of_the_file(self):
+        with h5py.File(self.folder / "fall/series.h5") as file:
+            names = [f"{probe}/{channel}" for probe in file for channel in file[probe]]
+            self.assertEqual(list(self.run_.series), names)
+            self.assertEqual(len(self.run_.series), len(names))
+            self.assertGreater(len(names), 10)
+            for name in names:
+                values = self.run_.series[name]
+                self.assertIs(type(values), numpy.ndarray)
+                self.assertEqual(values.shape, file[name].shape)
+                self.assertEqual(values.tobytes(), file[name][()].tobytes())
+                self.assertEqual(self.run_.series.units(name), file[name].attrs["units"])
+                self.assertEqual(self.run_.series.about(name), file[name].attrs["long_name"])
+        self.assertEqual(self.run_.series.units("packing/time"), "s")
+        self.assertEqual(self.run_.series["packing/stress"].shape[1:], (3, 3))
+
+    def test_a_channel_that_is_not_there(self):
+        for name, said in (("packing/void_rati", "did you mean 'packing/void_ratio'"), ("void_ratio", "There are: packing/"), ("packing", "There are:"), ("", "There are:")):
+            with self.assertRaises(KeyError) as raised:
+                self.run_.series[name]
+            self.assertIn(f"there is no channel {name!r}", str(raised.exception))
+            self.assertIn(said, str(raised.exception))
+        self.assertNotIn("packing/nothing", self.run_.series)
+
+    def test_frames_are_those_of_the_files(self):
+        files = sorted((self.folder / "fall/frames").iterdir())
+        self.assertEqual(len(self.run_.frames), len(files))
+        self.assertGreater(len(files), 3)
+        for frame, path in zip(self.run_.frames, files):
+            with h5py.File(path) as file:
+                self.assertEqual((frame.time, frame.step, frame.stage), (file.attrs["time"], file.attrs["step"], file.attrs["stage"]))
+                for table, group in ((frame.bodies, file["bodies"]), (frame.contacts, file["contacts"])):
+                    self.assertEqual(list(table), sorted(group))
+                    for name in table:
+                        self.assertEqual(table[name].tobytes(), group[name][()].tobytes())
+                        self.assertEqual(table.units(name), group[name].attrs["units"])
+                wall, written = frame.walls["floor"], file["walls/floor"]
+                self.assertEqual(wall.triangles.tobytes(), written[()].tobytes())
+                self.assertEqual(list(wall.force), [written.attrs[f"force_{axis}"] for axis in "xyz"])
+                self.assertEqual((wall.index, wall.pressure), (written.attrs["index"], written.attrs["pressure"]))
+        self.assertEqual(self.run_.frames[-1].time, self.run_.frames[len(files) - 1].time)
+        self.assertEqual([frame.step for frame in self.run_.frames[1:3]], [self.run_.frames[1].step, self.run_.frames[2].step])
+        with self.assertRaisesRegex(IndexError, f"there is no frame 99 of {len(files)}"):
+            self.run_.frames[99]
+        with self.assertRaisesRegex(KeyError, "there is no array 'positon'; did you mean 'position'"):
+            self.run_.frames[0].bodies["positon"]
+        self.assertEqual(len(self.run_.frames[0].clumps), 0)
+
+    def test_records_are_rows(self):
+        bodies = self.run_.frames[0].bodies
+        records = bodies.records()
+        self.assertEqual(len(records), 2)
+        self.assertEqual(set(records.dtype.names), set(bodies))
+        self.assertEqual(records["position"].tobytes(), bodies["position"].tobytes())
+        self.assertEqual(records[1]["radius"], bodies["radius"][1])
+        self.assertEqual(len(self.run_.frames[0].clumps.records()), 0)
+
+    def test_fields_of_probes_and_vectors_of_walls(self):
+        target = self.copy()
+        with h5py.File(target / "frames/000000.h5", "r+") as file:
+            for place, (name, axis) in enumerate((name, axis) for name in ("displacement", "force") for axis in "xyz"):
+                file["walls/floor"].attrs[f"{name}_{axis}"] = place
+            field = file.create_dataset("probes/cells/centre", data=numpy.arange(6.0).reshape(2, 3))
+            field.attrs["units"] = "m"
+        wall = grit.open(target).frames[0].walls["floor"]
+        self.assertEqual((wall.displacement.tolist(), wall.force.tolist()), ([0, 1, 2], [3, 4, 5]))
+        cells = grit.open(target).frames[0].probes["cells"]
+        self.assertEqual(cells["centre"].tolist(), [[0, 1, 2], [3, 4, 5]])
+        self.assertEqual(cells.units("centre"), "m")
+
+    def test_no_run_is_said(self):
+        for folder in (self.folder / "nowhere", self.folder, self.folder / "fall.json"):
+            with self.assertRaisesRegex(grit.ResultsError, "there is no run: it has no run.json; give a folder that 'grit run' has written"):
+                grit.open(folder)
+
+    def test_what_is_torn_or_missing_is_said(self):
+        target = self.copy()
+        run = grit.open(target)
+        (target / "series.h5").write_bytes((target / "series.h5").read_bytes()[:300])
+        with self.assertRaisesRegex(grit.ResultsError, "series.h5: cannot be read: .*if the run is still going on, try again"):
+            run.series["packing/time"]
+        (target / "series.h5").unlink()
+        with self.assertRaisesRegex(grit.ResultsError, "series.h5: there is no such file"):
+            list(run.series)
+        (target / "frames/000001.h5").write_bytes(b"")
+        with self.assertRaisesRegex(grit.ResultsError, "000001.h5: cannot be read"):
+            run.frames[1]
+        (target / "run.json").write_text('{"status": ')
+        with self.assertRaisesRegex(grit.ResultsError, "run.json: is not JSON"):
+            grit.open(target)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    GRIT = str(pathlib.Path(sys.argv.pop(1)).resolve())
+    unittest.main(verbosity=1)
