@@ -199,7 +199,9 @@ class Served(unittest.TestCase):
                     self.assertEqual(alone["bodies"][name][()].tobytes(), seen["bodies"][name][()].tobytes())
 
     def test_a_run_goes_on_where_its_server_is_gone(self):
-        with WatchedRun(self.folder, "left", stages=SHORT) as run:
+        # Long enough to tell that process several times how far it is.
+        stages = [dict(SHORT[0], until={"type": "time", "value": "3 s"}, limit="10 s")]
+        with WatchedRun(self.folder, "left", stages=stages) as run:
             children = pathlib.Path(f"/proc/{run.process.pid}/task/{run.process.pid}/children")
             run.ask()  # by now it is there
             subprocess.run(["kill", "-KILL", children.read_text().strip()], check=True)
