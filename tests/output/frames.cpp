@@ -139,7 +139,7 @@ void check_item(const boost::property_tree::ptree& item, const std::filesystem::
 
 TEST(Frames, IndexNamesWhatIsThere) {
   const Folder folder;
-  Frames frames(folder.path(), {});
+  Frames frames(folder.path(), lid);
   auto world = three_grains();
   frames.write(world, {});
   world.add(9, {0.9, 0, 0}, 0.09);
@@ -150,25 +150,30 @@ TEST(Frames, IndexNamesWhatIsThere) {
 
   boost::property_tree::ptree xml;
   read_xml((folder / "frames.xdmf").string(), xml);
-  const auto& series = xml.get_child("Xdmf.Domain.Grid");
-  EXPECT_EQ(series.get<std::string>("<xmlattr>.CollectionType"), "Temporal");
-  std::vector<double> times;
-  std::vector<std::size_t> points, items;
-  for (const auto& [name, grid] : series) {
-    if (name != "Grid") continue;
-    times.push_back(grid.get<double>("Time.<xmlattr>.Value"));
-    points.push_back(grid.get<std::size_t>("Topology.<xmlattr>.NumberOfElements"));
-    EXPECT_EQ(grid.get<std::string>("Topology.<xmlattr>.TopologyType"), "Polyvertex");
-    items.push_back(0);
-    for (const auto& [kind, child] : grid)
-      if (const auto item = child.get_child_optional("DataItem")) {
-        check_item(*item, folder.path());
-        ++items.back();
-      }
+  std::map<std::string, std::vector<std::size_t>> elements, items;
+  for (const auto& [tag, series] : xml.get_child("Xdmf.Domain")) {
+    EXPECT_EQ(series.get<std::string>("<xmlattr>.CollectionType"), "Temporal");
+    const auto of = series.get<std::string>("<xmlattr>.Name");
+    std::vector<double> times;
+    for (const auto& [name, grid] : series) {
+      if (name != "Grid") continue;
+      times.push_back(grid.get<double>("Time.<xmlattr>.Value"));
+      elements[of].push_back(grid.get<std::size_t>("Topology.<xmlattr>.NumberOfElements"));
+      EXPECT_EQ(grid.get<std::string>("Topology.<xmlattr>.TopologyType"), of == "lid" ? "Triangle" : "Polyvertex");
+      items[of].push_back(0);
+      for (const auto& [kind, child] : grid)
+        if (const auto item = child.get_child_optional("DataItem"); item && kind != "Topology") {
+          check_item(*item, folder.path());
+          ++items[of].back();
+        }
+    }
+    EXPECT_THAT(times, ElementsAre(0.25, 0.5)) << of;
   }
-  EXPECT_THAT(times, ElementsAre(0.25, 0.5));
-  EXPECT_THAT(points, ElementsAre(3, 4));
-  EXPECT_THAT(items, ElementsAre(6, 8));
+  using testing::Pair;
+  EXPECT_THAT(elements, ElementsAre(Pair("contacts", ElementsAre(2, 2)), Pair("grains", ElementsAre(3, 4)),
+                                    Pair("lid", ElementsAre(1, 1))));
+  EXPECT_THAT(items, ElementsAre(Pair("contacts", ElementsAre(6, 6)), Pair("grains", ElementsAre(6, 8)),
+                                 Pair("lid", ElementsAre(1, 1))));
 }
 
 TEST(Frames, GoOnFromAStep) {

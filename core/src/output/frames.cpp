@@ -3,11 +3,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/hdf5.hpp"
+#include "output/svg.hpp"
 
 namespace grit {
 namespace {
@@ -104,14 +106,16 @@ void write_contacts(hdf5::Group group, const World& world) {
   const auto ids = world.ids();
   const auto contacts = world.contacts();
   std::vector<std::int64_t> a, b, feature;
-  std::vector<double> force, normal_force, branch;
+  std::vector<double> force, normal_force, branch, middle;
   for (const auto& contact : contacts) {
+    const Vec3 centre = xyz(world.positions()[contact.a]) + 0.5 * contact.branch;
     a.push_back(ids[contact.a]);
     b.push_back(contact.with_wall ? -1 - std::int64_t{contact.b} : std::int64_t{ids[contact.b]});
     feature.push_back(contact.with_wall ? std::int64_t{contact.feature} : -1);
     force.insert(force.end(), contact.force.data(), contact.force.data() + 3);
     normal_force.push_back(contact.normal_force);
     branch.insert(branch.end(), contact.branch.data(), contact.branch.data() + 3);
+    middle.insert(middle.end(), centre.data(), centre.data() + 3);
   }
   const auto m = contacts.size();
   put(group, {"body_a", "1", "id of the first body", {}}, {m}, a);
@@ -122,6 +126,7 @@ void write_contacts(hdf5::Group group, const World& world) {
   put(group, {"normal_force", "N", "normal force, positive in compression", {}}, {m}, normal_force);
   put(group, {"branch", "m", "from the first body's centre to the second's, or to the touching point on the wall", {}},
       {m, 3}, branch);
+  put(group, {"middle", "m", "middle of the branch", {}}, {m, 3}, middle);
 }
 
 void write_walls(hdf5::Group group, const World& world, std::span<const WallShape> shapes) {
@@ -160,6 +165,72 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
   }
 }
 
+// ---- the index
+
+/// A dataset that ParaView gets.
+struct Column {
+  const char *name, *type;
+  int bytes, width;
+};
+constexpr Column radius{"radius", "Float", 8, 1}, velocity{"velocity", "Float", 8, 3}, spin{"spin", "Float", 8, 3},
+    id{"id", "Int", 8, 1}, material{"material", "Int", 4, 1}, clump{"clump", "Int", 8, 1},
+    rotation{"rotation", "Float", 8, 3}, displacement{"displacement", "Float", 8, 3},
+    normal_force{"normal_force", "Float", 8, 1}, force{"force", "Float", 8, 3}, branch{"branch", "Float", 8, 3},
+    body_a{"body_a", "Int", 8, 1}, body_b{"body_b", "Int", 8, 1};
+
+// Corners are counted in the index itself, anew for each frame: ParaView reads no reference to what stands there.
+constexpr std::size_t most_triangles = 1000;
+
+/// The grids of one frame.
+class FrameIndex {
+ public:
+  FrameIndex(std::size_t number, double time) : number_(number), time_(time) {}
+
+  std::string points(const std::string& group, std::size_t rows, const char* position,
+                     const std::vector<Column>& columns) const {
+    std::string attributes;
+    for (const Column& column : columns)
+      attributes += fmt::format(
+          "    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", column.name,
+          column.width == 3 ? "Vector" : "Scalar",
+          item(column, column.width == 3 ? fmt::format("{} 3", rows) : std::to_string(rows), group + column.name));
+    return grid(
+        fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>", rows),
+        item({position, "Float", 8, 3}, fmt::format("{} 3", rows), group + position), attributes);
+  }
+
+  std::string triangles(const std::string& path, std::size_t count) const {
+    std::vector<std::size_t> corners(3 * count);
+    std::iota(corners.begin(), corners.end(), 0u);
+    return grid(
+        fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{0}\"><DataItem Dimensions=\"{0} 3\" "
+                    "NumberType=\"Int\" Precision=\"4\" Format=\"XML\">{1}</DataItem></Topology>",
+                    count, fmt::join(corners, " ")),
+        item({"", "Float", 8, 3}, fmt::format("{} 3 3", count), path), "");
+  }
+
+ private:
+  std::string item(const Column& column, const std::string& dimensions, const std::string& path) const {
+    return fmt::format(
+        "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">frames/{}:{}</DataItem>",
+        dimensions, column.type, column.bytes, file_name(number_), escaped(path));
+  }
+  std::string grid(const std::string& topology, const std::string& points, const std::string& attributes) const {
+    return fmt::format(
+        "   <Grid Name=\"{:06}\">\n    <Time Value=\"{}\"/>\n    {}\n    <Geometry "
+        "GeometryType=\"XYZ\">{}</Geometry>\n{}   </Grid>\n",
+        number_, time_, topology, points, attributes);
+  }
+
+  std::size_t number_;
+  double time_;
+};
+
+std::string collection(const std::string& name, const std::string& grids) {
+  return fmt::format("  <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n{}  </Grid>\n",
+                     escaped(name), grids);
+}
+
 }  // namespace
 
 std::vector<Vec3> placed(const WallShape& shape, const World& world) {
@@ -183,15 +254,27 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
   for (std::size_t number = 0; std::filesystem::exists(folder / file_name(number)); ++number) {
     if (keep) {
       const hdf5::File file(folder / file_name(number), hdf5::Mode::read);
-      const auto bodies = file.group("bodies");
-      const Instant instant{file.number<double>("time"), file.number<std::uint64_t>("step"),
-                            bodies.dataset("id").rows(), bodies.has("rotation"), bodies.has("displacement")};
+      const Instant instant = instant_of(file);
       keep = instant.step <= *last_step;
       if (keep) instants_.push_back(instant);
     }
     if (!keep) std::filesystem::remove(folder / file_name(number), error);
   }
   write_index();
+}
+
+Frames::Instant Frames::instant_of(const hdf5::File& file) {
+  const auto bodies = file.group("bodies"), walls = file.group("walls");
+  Instant instant{.time = file.number<double>("time"),
+                  .step = file.number<std::uint64_t>("step"),
+                  .bodies = bodies.dataset("id").rows(),
+                  .contacts = file.group("contacts").dataset("middle").rows(),
+                  .clump = bodies.has("clump"),
+                  .rotation = bodies.has("rotation"),
+                  .displacement = bodies.has("displacement"),
+                  .walls = {}};
+  for (const auto& name : walls.names()) instant.walls.push_back({name, walls.dataset(name).rows()});
+  return instant;
 }
 
 void Frames::write(const World& world, std::span<const FieldGroup> fields) {
@@ -205,46 +288,32 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   write_contacts(file.create_group("contacts"), world);
   write_walls(file.create_group("walls"), world, walls_);
   write_probes(file.create_group("probes"), fields);
+  Instant instant = instant_of(file);
   file.close();
   publish(path);
-  instants_.push_back(
-      {world.time(), world.step(), world.ids().size(), !world.rotations().empty(), !world.displacements().empty()});
+  instants_.push_back(std::move(instant));
   write_index();
 }
 
 void Frames::write_index() const {
-  std::string text =
-      "<?xml version=\"1.0\"?>\n"
-      "<Xdmf Version=\"3.0\">\n <Domain>\n  <Grid Name=\"grains\" GridType=\"Collection\" "
-      "CollectionType=\"Temporal\">\n";
+  std::string grains, contacts;
+  std::map<std::string, std::string> walls;
   for (std::size_t number = 0; number < instants_.size(); ++number) {
     const auto& instant = instants_[number];
-    const auto item = [&](const char* name, const char* type, int width) {
-      return fmt::format(
-          "<DataItem Dimensions=\"{}{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">"
-          "frames/{}:/bodies/{}</DataItem>",
-          instant.bodies, width == 3 ? " 3" : "", type, std::string_view(name) == "material" ? 4 : 8, file_name(number),
-          name);
-    };
-    const auto attribute = [&](const char* name, const char* type, int width) {
-      text += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", name,
-                          width == 3 ? "Vector" : "Scalar", item(name, type, width));
-    };
-    text += fmt::format("   <Grid Name=\"{:06}\">\n    <Time Value=\"{}\"/>\n", number, instant.time);
-    text += fmt::format("    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>\n",
-                        instant.bodies);
-    text += "    <Geometry GeometryType=\"XYZ\">" + item("position", "Float", 3) + "</Geometry>\n";
-    attribute("radius", "Float", 1);
-    attribute("velocity", "Float", 3);
-    attribute("spin", "Float", 3);
-    attribute("id", "Int", 1);
-    attribute("material", "Int", 1);
-    if (instant.rotation) attribute("rotation", "Float", 3);
-    if (instant.displacement) attribute("displacement", "Float", 3);
-    text += "   </Grid>\n";
+    const FrameIndex index(number, instant.time);
+    std::vector<Column> columns{radius, velocity, spin, id, material};
+    if (instant.clump) columns.push_back(clump);
+    if (instant.rotation) columns.push_back(rotation);
+    if (instant.displacement) columns.push_back(displacement);
+    grains += index.points("/bodies/", instant.bodies, "position", columns);
+    contacts += index.points("/contacts/", instant.contacts, "middle", {normal_force, force, branch, body_a, body_b});
+    for (const auto& [name, triangles] : instant.walls)
+      if (triangles > 0 && triangles <= most_triangles) walls[name] += index.triangles("/walls/" + name, triangles);
   }
-  text += "  </Grid>\n </Domain>\n</Xdmf>\n";
-  write_atomically(results_ / "frames.xdmf", text);
+  std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n";
+  text += collection("grains", grains) + collection("contacts", contacts);
+  for (const auto& [name, grids] : walls) text += collection(name, grids);
+  write_atomically(results_ / "frames.xdmf", text + " </Domain>\n</Xdmf>\n");
 }
 
 }  // namespace grit

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "output/hdf5.hpp"
 #include "run/recorder.hpp"
 
 namespace grit {
@@ -37,9 +38,11 @@ class Frames {
   struct Instant {
     double time;
     std::uint64_t step;
-    std::size_t bodies;
-    bool rotation, displacement;
+    std::size_t bodies, contacts;
+    bool clump, rotation, displacement;
+    std::vector<std::pair<std::string, std::size_t>> walls;  ///< names, and how many triangles
   };
+  static Instant instant_of(const hdf5::File& file);
 
   void write_index() const;
 
