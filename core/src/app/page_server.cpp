@@ -1,5 +1,8 @@
 #include "app/page_server.hpp"
 
+// Debian 12's Boost looks for the coroutines of clang where they were before they became standard.
+#define BOOST_ASIO_HAS_CO_AWAIT 1
+
 #include <unistd.h>
 
 #include <algorithm>
