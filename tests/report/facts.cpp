@@ -87,5 +87,19 @@ TEST(Facts, SayNothingOfWhatIsNotKnown) {
   EXPECT_EQ(status_of(run_with(Description::object(), {})), "unknown");
 }
 
+TEST(Facts, WaitForTheFirstStageToEnd) {
+  Description json = {{"status", "running"}, {"bodies", 7},  {"time", 0.0},        {"steps", 0},
+                      {"wall_s", 0.0},       {"threads", 1}, {"time_step_s", 0.0}, {"particle_steps_per_s", 0.0}};
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const Fact& fact : cost_facts(run_with(json, {}))) all.push_back(fact.name);
+    for (const Fact& fact : trust_facts(run_with(json, {}), 0)) all.push_back(fact.name);
+    return all;
+  };
+  EXPECT_THAT(names(), testing::ElementsAre("bodies"));
+  json["time"] = 0.1, json["steps"] = 100;
+  EXPECT_THAT(names(), testing::ElementsAre("bodies", "simulated", "took", "speed", "time step"));
+}
+
 }  // namespace
 }  // namespace grit

@@ -24,6 +24,11 @@ std::string time_text(double seconds) {
   return seconds == 0 ? "0 s" : fmt::format("{:.3g} ns", seconds * 1e9);
 }
 
+/// Whether run.json knows how far the run is and how long it took: it is written when a stage ends, and then of that.
+bool has_ended_a_stage(const RunResults& run) {
+  return status_of(run) != "running" || number(run, "/steps").value_or(0) > 0;
+}
+
 /// When the last stage began [s]: what came before it was preparation.
 double last_stage_began(const RunResults& run) {
   const Description& stages = run.at("/stages");
@@ -79,24 +84,25 @@ std::vector<Fact> cost_facts(const RunResults& run) {
     facts.push_back({"bodies", grouped(static_cast<std::uint64_t>(*bodies)),
                      contacts ? fmt::format("{:.2f} contacts each", *contacts) : "", false});
   }
-  if (const auto time = number(run, "/time")) {
+  const bool told = has_ended_a_stage(run);
+  if (const auto time = number(run, "/time"); time && told) {
     const auto steps = number(run, "/steps");
     facts.push_back(
         {"simulated", time_text(*time), steps ? grouped(static_cast<std::uint64_t>(*steps)) + " steps" : "", false});
   }
-  if (const auto wall = number(run, "/wall_s")) {
+  if (const auto wall = number(run, "/wall_s"); wall && told) {
     const auto threads = number(run, "/threads");
     facts.push_back({"took", cost_text(*wall),
                      threads ? fmt::format("{:g} thread{}", *threads, *threads == 1 ? "" : "s") : "", false});
   }
-  if (const auto speed = number(run, "/particle_steps_per_s"))
+  if (const auto speed = number(run, "/particle_steps_per_s"); speed && told)
     facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps a second", false});
   return facts;
 }
 
 std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
   std::vector<Fact> facts;
-  if (const auto dt = number(run, "/time_step_s")) {
+  if (const auto dt = number(run, "/time_step_s"); dt && has_ended_a_stage(run)) {
     const auto critical = number(run, "/critical_time_step_s");
     const double share = critical && *critical > 0 ? *dt / *critical : 0;
     facts.push_back(

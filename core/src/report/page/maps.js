@@ -5,7 +5,7 @@ class MapView {
   constructor(section, runs, player) {
     this.section = section;
     this.player = player;
-    this.read(runs);
+    this.readRuns(runs);
     this.state = { field: "", component: 0, view: null, slice: 0.5 };
     this.cells = new Map();
     this.build();
@@ -13,12 +13,12 @@ class MapView {
     dark.addEventListener("change", () => this.draw());
   }
 
-  read(runs) {
+  readRuns(runs) {
     this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames }));
   }
   /** More frames of the same runs, and maybe more maps; a frame is turned to then. */
   refresh(runs) {
-    this.read(runs);
+    this.readRuns(runs);
     this.takeRun(this.shownRun);
   }
 
