@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what grit is built from, on Debian 12. Needs root or sudo only where something is missing; can be run again.
+#   install-deps.sh [--viewers]      with Chromium and ParaView, 1 GB, in which some tests look at results as users do
 set -euo pipefail
 
 packages=(
@@ -19,6 +20,14 @@ packages=(
   librsvg2-bin                       # pictures as PNG
   python3 python3-h5py               # tests of the loops' instructions and of the README
 )
+case ${1-} in
+  '') ;;
+  --viewers) packages+=(chromium paraview python3-paraview xvfb) ;;
+  *)
+    echo "install-deps: there is no option '$1'; usage: install-deps.sh [--viewers]" >&2
+    exit 1
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -15,8 +15,11 @@
 namespace grit {
 namespace {
 
+using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Pair;
+using testing::Pointwise;
 
 NumberedWorld three_grains() {
   NumberedWorld world;
@@ -72,6 +75,7 @@ TEST(Frames, PlaceContactsWallsAndFields) {
   EXPECT_THAT(contacts.dataset("force").read<double>(), ElementsAre(1, 2, 3, 1, 2, 3));
   EXPECT_THAT(contacts.dataset("normal_force").read<double>(), ElementsAre(4, 4));
   EXPECT_THAT(contacts.dataset("branch").shape(), ElementsAre(2, 3));
+  EXPECT_THAT(contacts.dataset("middle").read<double>(), Pointwise(DoubleEq(), {0.6, 0.0, 0.0, 0.1, 0.0, 0.0}));
 
   const auto walls = file.group("walls");
   EXPECT_THAT(walls.dataset("base").shape(), ElementsAre(0, 3, 3));
@@ -79,6 +83,8 @@ TEST(Frames, PlaceContactsWallsAndFields) {
   EXPECT_THAT(walls.dataset("lid").read<double>(), ElementsAre(0, 0, 0.5, 1, 0, 0.5, 0, 1, 0.5));
   EXPECT_EQ(walls.dataset("lid").number<std::int64_t>("index"), 1);
   EXPECT_EQ(walls.dataset("lid").number<double>("pressure"), 2e5);
+  EXPECT_THAT(file.dataset("corners").shape(), ElementsAre(1, 3));
+  EXPECT_THAT(file.dataset("corners").read<std::int32_t>(), ElementsAre(0, 1, 2));
 
   const auto strength = file.group("probes").group("chains").dataset("strength");
   EXPECT_THAT(strength.shape(), ElementsAre(2, 2));
@@ -162,18 +168,17 @@ TEST(Frames, IndexNamesWhatIsThere) {
       EXPECT_EQ(grid.get<std::string>("Topology.<xmlattr>.TopologyType"), of == "lid" ? "Triangle" : "Polyvertex");
       items[of].push_back(0);
       for (const auto& [kind, child] : grid)
-        if (const auto item = child.get_child_optional("DataItem"); item && kind != "Topology") {
+        if (const auto item = child.get_child_optional("DataItem")) {
           check_item(*item, folder.path());
           ++items[of].back();
         }
     }
     EXPECT_THAT(times, ElementsAre(0.25, 0.5)) << of;
   }
-  using testing::Pair;
   EXPECT_THAT(elements, ElementsAre(Pair("contacts", ElementsAre(2, 2)), Pair("grains", ElementsAre(3, 4)),
                                     Pair("lid", ElementsAre(1, 1))));
   EXPECT_THAT(items, ElementsAre(Pair("contacts", ElementsAre(6, 6)), Pair("grains", ElementsAre(6, 8)),
-                                 Pair("lid", ElementsAre(1, 1))));
+                                 Pair("lid", ElementsAre(2, 2))));
 }
 
 TEST(Frames, GoOnFromAStep) {

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""What ParaView's own reader makes of frames.xdmf, held against the frames.
+"""What ParaView's own reader makes of frames.xdmf, held against the frames; and that the script in docs/results.md draws.
 
 usage: test_xdmf.py GRIT     exit status 77 where there is no h5py or no ParaView
 """
 
 import json
+import os
 import pathlib
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,6 +24,7 @@ except ImportError as error:
     sys.exit(77)
 
 GRIT = None
+DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs/results.md"
 
 GRAIN = {"type": "sphere", "material": "sand"}
 SCENE = {
@@ -31,9 +35,10 @@ SCENE = {
         "single": {**GRAIN, "grains": {"type": "list", "grains": [{"position": [0, 0, "1 mm"], "radius": "1 mm"}]}},
         "pair": {"type": "clump", "material": "sand", "shape": {"type": "rod"}, "grains": {"type": "list", "grains": [{"position": [0, 0, "3.2 mm"], "radius": "1 mm"}]}},
     },
-    "walls": {"box": {"type": "box", "low": ["-5 mm", "-5 mm", 0], "high": ["5 mm", "5 mm", "9 mm"], "open": ["z_high"], "material": "sand"}},
-    "engines": {"gravity": {"type": "gravity"}},
-    "stages": [{"name": "fall", "until": {"type": "time", "value": "20 ms"}, "limit": "1 s"}],
+    "walls": {"box": {"type": "box", "low": ["-5 mm", "-5 mm", 0], "high": ["5 mm", "5 mm", "9 mm"], "open": ["z_high"], "material": "sand"},
+              "shelf": {"type": "plane", "point": [0, 0, "-1 mm"], "extent": "20 mm", "material": "sand"}},
+    "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.7}},
+    "stages": [{"name": "fall", "until": {"type": "time", "value": "40 ms"}, "limit": "1 s"}],
     "output": {"frames": {"every_time": "5 ms"}},
 }
 
@@ -51,18 +56,25 @@ class InParaView(unittest.TestCase):
     def tearDownClass(cls):
         cls.place.cleanup()
 
-    def test_blocks_are_those_of_the_frames(self):
+    def reader(self):
         reader = vtkXdmf3Reader()
         reader.SetFileName(str(self.folder / "fall/frames.xdmf"))
         reader.UpdateInformation()
-        times = reader.GetOutputInformation(0).Get(reader.GetExecutive().TIME_STEPS())
+        return reader
+
+    def times(self):
+        reader = self.reader()
+        return reader.GetOutputInformation(0).Get(reader.GetExecutive().TIME_STEPS())
+
+    def test_blocks_are_those_of_the_frames(self):
+        reader, times = self.reader(), self.times()
         files = sorted((self.folder / "fall/frames").iterdir())
         self.assertEqual(len(times), len(files))
         touched = 0
         for time, path in zip(times, files):
             reader.UpdateTimeStep(time)
             blocks = reader.GetOutputDataObject(0)
-            grains, contacts, box = (blocks.GetBlock(i) for i in range(3))
+            grains, contacts, *walls = (blocks.GetBlock(i) for i in range(blocks.GetNumberOfBlocks()))
             with h5py.File(path) as frame:
                 self.assertEqual(time, frame.attrs["time"])
                 self.check(grains, frame["bodies"], "position")
@@ -71,15 +83,50 @@ class InParaView(unittest.TestCase):
                 bodies, table = frame["bodies"], frame["contacts"]
                 place = numpy.searchsorted(bodies["id"][:], table["body_a"][:])
                 self.assertTrue(numpy.array_equal(table["middle"][:], bodies["position"][:][place] + table["branch"][:] / 2))
-                corners = frame["walls/box"][:]
-                self.assertEqual(box.GetNumberOfCells(), len(corners))
-                for i, triangle in enumerate(corners):
-                    self.assertEqual([box.GetCell(i).GetPoints().GetPoint(k) for k in range(3)], [tuple(corner) for corner in triangle])
+                self.assertEqual([wall.GetNumberOfCells() for wall in walls], [10, 2])
+                for wall, name in zip(walls, ("box", "shelf")):
+                    for i, triangle in enumerate(frame[f"walls/{name}"][:]):
+                        self.assertEqual([wall.GetCell(i).GetPoints().GetPoint(k) for k in range(3)], [tuple(corner) for corner in triangle])
                 for name in ("radius", "velocity", "spin", "id", "material", "clump"):
                     self.assertTrue(grains.GetPointData().HasArray(name), name)
                 for name in ("normal_force", "force", "branch", "body_a", "body_b"):
-                    self.assertTrue(contacts.GetPointData().HasArray(name), name)
-        self.assertGreater(touched, 3)
+                    self.assertEqual(contacts.GetPointData().HasArray(name), len(table["middle"]) > 0, name)
+        self.assertGreater(touched, 10)
+
+    @unittest.skipIf(shutil.which("pvpython") is None or shutil.which("Xvfb") is None, "there is no pvpython or no Xvfb (scripts/install-deps.sh --viewers)")
+    def test_the_documented_script_draws_force_chains(self):
+        script = re.search("```pvpython\n(.*?)```", DOCS.read_text(), re.S)[1]
+        script = script.replace("/home/me/results/box", str(self.folder / "fall"))
+        self.assertIn("GoToLast()", script)
+        script = script.replace("GoToLast()", f"AnimationTime = {self.times()[1]}")  # while grains touch
+        measured = """
+tubes.UpdatePipeline(GetAnimationScene().AnimationTime)
+lines, contacts = servermanager.Fetch(lines).GetBlock(0), servermanager.Fetch(contacts).GetBlock(0)
+ends = [[lines.GetCell(i).GetPoints().GetPoint(k) for k in (0, -1 + lines.GetCell(i).GetNumberOfPoints())] for i in range(lines.GetNumberOfCells())]
+import json
+print(json.dumps([tubes.GetDataInformation().GetNumberOfCells(), ends]))
+"""
+        (self.folder / "chains.py").write_text(script + measured)
+        screen = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        try:
+            display = {"DISPLAY": ":" + screen.stdout.readline().strip()}
+            ended = subprocess.run(["pvpython", "chains.py"], cwd=self.folder, env={**os.environ, **display}, capture_output=True, text=True)
+        finally:
+            screen.terminate()
+            screen.wait()
+            screen.stdout.close()
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        cells, ends = json.loads(ended.stdout.splitlines()[-1])
+        with h5py.File(sorted((self.folder / "fall/frames").iterdir())[1]) as frame:
+            middle, branch = frame["contacts/middle"][:], frame["contacts/branch"][:]
+        self.assertGreater(len(branch), 0)
+        self.assertGreaterEqual(cells, len(branch))
+        # A line for each contact, from the first centre to the second; glyphs have single precision.
+        self.assertTrue(numpy.allclose(ends, numpy.stack([middle - branch / 2, middle + branch / 2], axis=1), rtol=0, atol=1e-9))
+        from PIL import Image  # ParaView needs it too
+        colours = Image.open(self.folder / "force-chains.png").convert("RGB").getcolors(1 << 24)
+        self.assertEqual(max(colours)[1], (255, 255, 255))
+        self.assertGreater(len(colours), 1, "something is drawn")
 
     def check(self, points, group, position):
         """Points and all arrays of a block are those of a group."""

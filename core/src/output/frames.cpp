@@ -149,6 +149,15 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
   }
 }
 
+/// ParaView takes triangles by the places of their corners, and as many rows of these as a wall has triangles.
+void write_corners(hdf5::Group& file, const std::vector<std::pair<std::string, std::size_t>>& walls) {
+  std::size_t most = 0;
+  for (const auto& [name, triangles] : walls) most = std::max(most, triangles);
+  std::vector<std::int32_t> corners(3 * most);
+  std::iota(corners.begin(), corners.end(), 0);
+  put(file, {"corners", "1", "0, 1, 2 …: places of the corners of the triangles of any wall", {}}, {most, 3}, corners);
+}
+
 void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
   for (const auto& probe : probes) {
     auto tables = group.create_group(probe.name);
@@ -167,7 +176,7 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
 
 // ---- the index
 
-/// A dataset that ParaView gets.
+/// A dataset of a group that ParaView gets with its points.
 struct Column {
   const char *name, *type;
   int bytes, width;
@@ -178,9 +187,6 @@ constexpr Column radius{"radius", "Float", 8, 1}, velocity{"velocity", "Float", 
     normal_force{"normal_force", "Float", 8, 1}, force{"force", "Float", 8, 3}, branch{"branch", "Float", 8, 3},
     body_a{"body_a", "Int", 8, 1}, body_b{"body_b", "Int", 8, 1};
 
-// Corners are counted in the index itself, anew for each frame: ParaView reads no reference to what stands there.
-constexpr std::size_t most_triangles = 1000;
-
 /// The grids of one frame.
 class FrameIndex {
  public:
@@ -190,30 +196,28 @@ class FrameIndex {
                      const std::vector<Column>& columns) const {
     std::string attributes;
     for (const Column& column : columns)
-      attributes += fmt::format(
-          "    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n", column.name,
-          column.width == 3 ? "Vector" : "Scalar",
-          item(column, column.width == 3 ? fmt::format("{} 3", rows) : std::to_string(rows), group + column.name));
+      attributes += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
+                                column.name, column.width == 3 ? "Vector" : "Scalar",
+                                item(column.type, column.bytes, dimensions(rows, column.width), group + column.name));
     return grid(
         fmt::format("<Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" NodesPerElement=\"1\"/>", rows),
-        item({position, "Float", 8, 3}, fmt::format("{} 3", rows), group + position), attributes);
+        item("Float", 8, dimensions(rows, 3), group + position), attributes);
   }
 
   std::string triangles(const std::string& path, std::size_t count) const {
-    std::vector<std::size_t> corners(3 * count);
-    std::iota(corners.begin(), corners.end(), 0u);
-    return grid(
-        fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{0}\"><DataItem Dimensions=\"{0} 3\" "
-                    "NumberType=\"Int\" Precision=\"4\" Format=\"XML\">{1}</DataItem></Topology>",
-                    count, fmt::join(corners, " ")),
-        item({"", "Float", 8, 3}, fmt::format("{} 3 3", count), path), "");
+    return grid(fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>", count,
+                            item("Int", 4, dimensions(count, 3), "/corners")),
+                item("Float", 8, fmt::format("{} 3 3", count), path), "");
   }
 
  private:
-  std::string item(const Column& column, const std::string& dimensions, const std::string& path) const {
+  static std::string dimensions(std::size_t rows, int width) {
+    return width == 3 ? fmt::format("{} 3", rows) : std::to_string(rows);
+  }
+  std::string item(const char* type, int bytes, const std::string& dimensions, const std::string& path) const {
     return fmt::format(
         "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">frames/{}:{}</DataItem>",
-        dimensions, column.type, column.bytes, file_name(number_), escaped(path));
+        dimensions, type, bytes, file_name(number_), escaped(path));
   }
   std::string grid(const std::string& topology, const std::string& points, const std::string& attributes) const {
     return fmt::format(
@@ -289,6 +293,7 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   write_walls(file.create_group("walls"), world, walls_);
   write_probes(file.create_group("probes"), fields);
   Instant instant = instant_of(file);
+  write_corners(file, instant.walls);
   file.close();
   publish(path);
   instants_.push_back(std::move(instant));
@@ -308,7 +313,7 @@ void Frames::write_index() const {
     grains += index.points("/bodies/", instant.bodies, "position", columns);
     contacts += index.points("/contacts/", instant.contacts, "middle", {normal_force, force, branch, body_a, body_b});
     for (const auto& [name, triangles] : instant.walls)
-      if (triangles > 0 && triangles <= most_triangles) walls[name] += index.triangles("/walls/" + name, triangles);
+      if (triangles > 0) walls[name] += index.triangles("/walls/" + name, triangles);
   }
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n";
   text += collection("grains", grains) + collection("contacts", contacts);
