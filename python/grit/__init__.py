@@ -12,6 +12,7 @@ Units are SI, names those of docs/results.md. Nothing is kept open: a run that g
 import difflib
 import json
 import pathlib
+import time
 from collections.abc import Mapping, Sequence
 
 import h5py
@@ -42,13 +43,39 @@ def open(folder):
     return Run(folder)
 
 
-def _opened(path):
+# A run flushes its series every second, which takes it some milliseconds; in between its file rests. Seconds.
+_REST, _PATIENCE = 0.02, 5
+
+
+def _stamp(path):
     try:
-        return h5py.File(path, "r")
+        state = path.stat()
     except FileNotFoundError:
         raise ResultsError(f"{path}: there is no such file") from None
-    except OSError as error:
-        raise ResultsError(f"{path}: cannot be read: {error}; if the run is still going on, try again, else the file is damaged") from error
+    return state.st_mtime_ns, state.st_size
+
+
+def _read(path, act):
+    """What `act` makes of an open file to which nobody has written meanwhile."""
+    until = time.monotonic() + _PATIENCE
+    while True:
+        before, slip = _stamp(path), None
+        rested = not 0 <= time.time_ns() - before[0] < _REST * 1e9
+        try:
+            with h5py.File(path, "r") as file:
+                found = act(file)
+        except (OSError, RuntimeError, KeyError) as error:
+            slip = error
+        if rested and _stamp(path) == before:
+            break
+        if time.monotonic() > until:
+            raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again")
+        time.sleep(_REST)
+    if isinstance(slip, KeyError):
+        raise slip
+    if slip:
+        raise ResultsError(f"{path}: cannot be read: {slip}; the file is damaged") from slip
+    return found
 
 
 class Table(Mapping):
@@ -58,18 +85,13 @@ class Table(Mapping):
         self._path, self._group, self._what = path, group, what
 
     def _use(self, act):
-        with _opened(self._path) as file:
-            return act(file[self._group] if self._group in file else {})
+        return _read(self._path, lambda file: act(file[self._group] if self._group in file else {}))
 
     def _of(self, name, act):
         def look(group):
             if name not in group or not isinstance(group[name], h5py.Dataset):
                 raise UnknownName(self._what, name, sorted(group))
-            try:
-                return act(group[name])
-            except OSError as error:
-                raise ResultsError(f"{self._path}: {self._group}/{name} cannot be read: {error}; if the run is still going on, try again, "
-                                   "else the file is damaged") from error
+            return act(group[name])
         return self._use(look)
 
     def __getitem__(self, name):
@@ -92,14 +114,22 @@ class Table(Mapping):
         """What it is, in words."""
         return self._of(name, lambda dataset: dataset.attrs["long_name"])
 
+    def all(self):
+        """All of them, read at one instant: {name: array}. Of a run that goes on they are as long as each other."""
+        return self._use(lambda group: {name: group[name][()] for name in sorted(group)})
+
     def records(self):
         """All of it as one structured array, a record a row."""
-        columns = {name: self[name] for name in self}
+        columns = self.all()
         kinds = [(name, column.dtype, column.shape[1:]) for name, column in columns.items()]
         records = numpy.empty(len(next(iter(columns.values()), ())), dtype=kinds)
         for name, column in columns.items():
             records[name] = column
         return records
+
+
+def _channels(file):
+    return [f"{probe}/{channel}" for probe in file for channel in file[probe]]
 
 
 class Series(Mapping):
@@ -109,18 +139,18 @@ class Series(Mapping):
         self._path = path
 
     def __getitem__(self, name):
-        return self._read(name, Table.__getitem__)
+        return self._of(name, lambda dataset: dataset[()])
 
-    def _read(self, name, act):
-        probe, _, channel = str(name).partition("/")
-        with _opened(self._path) as file:
+    def _of(self, name, act):
+        def look(file):
+            probe, _, channel = str(name).partition("/")
             if probe not in file or channel not in file[probe]:
-                raise UnknownName("channel", name, list(self))
-        return act(Table(self._path, probe, "channel"), channel)
+                raise UnknownName("channel", name, _channels(file))
+            return act(file[probe][channel])
+        return _read(self._path, look)
 
     def __iter__(self):
-        with _opened(self._path) as file:
-            return iter([f"{probe}/{channel}" for probe in file for channel in file[probe]])
+        return iter(_read(self._path, _channels))
 
     def __len__(self):
         return len(list(iter(self)))
@@ -129,10 +159,18 @@ class Series(Mapping):
         return f"<series of {self._path}: {', '.join(self)}>"
 
     def units(self, name):
-        return self._read(name, Table.units)
+        return self._of(name, lambda dataset: dataset.attrs["units"])
 
     def about(self, name):
-        return self._read(name, Table.about)
+        return self._of(name, lambda dataset: dataset.attrs["long_name"])
+
+    def probe(self, name):
+        """All channels of a probe, read at one instant: {channel: array}. Of a run that goes on they are as long as each other."""
+        def look(file):
+            if name not in file:
+                raise UnknownName("probe", name, list(file))
+            return {channel: dataset[()] for channel, dataset in file[name].items()}
+        return _read(self._path, look)
 
 
 class Wall:
@@ -150,10 +188,9 @@ class Frame:
 
     def __init__(self, path):
         self.path = path
-        with _opened(path) as file:
-            self.time, self.step, self.stage = float(file.attrs["time"]), int(file.attrs["step"]), str(file.attrs["stage"])
-            self.walls = {name: Wall(wall) for name, wall in file["walls"].items()}
-            self.probes = {name: Table(path, f"probes/{name}", "field") for name in file["probes"]}
+        attributes, self.walls, probes = _read(path, lambda file: (dict(file.attrs), {name: Wall(wall) for name, wall in file["walls"].items()}, list(file["probes"])))
+        self.time, self.step, self.stage = float(attributes["time"]), int(attributes["step"]), str(attributes["stage"])
+        self.probes = {name: Table(path, f"probes/{name}", "field") for name in probes}
         self.bodies, self.contacts, self.clumps = (Table(path, group, "array") for group in ("bodies", "contacts", "clumps"))
 
     def __repr__(self):

@@ -7,10 +7,12 @@ usage: test_grit.py GRIT     exit status 77 where there is no h5py
 import json
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 try:
     import h5py
@@ -123,6 +125,61 @@ class Results(unittest.TestCase):
         self.assertEqual(records["position"].tobytes(), bodies["position"].tobytes())
         self.assertEqual(records[1]["radius"], bodies["radius"][1])
         self.assertEqual(len(self.run_.frames[0].clumps.records()), 0)
+        self.assertEqual(list(bodies.all()), list(bodies))
+
+    def test_a_probe_at_once(self):
+        channels = self.run_.series.probe("packing")
+        self.assertEqual({f"packing/{name}" for name in channels}, set(self.run_.series))
+        for name, values in channels.items():
+            self.assertEqual(values.tobytes(), self.run_.series[f"packing/{name}"].tobytes())
+        with self.assertRaisesRegex(KeyError, "there is no probe 'pack'; did you mean 'packing'"):
+            self.run_.series.probe("pack")
+
+    def test_a_run_that_goes_on_and_is_interrupted(self):
+        # It ends when it is told to: a second of it takes hours.
+        scene = dict(SCENE, stages=[dict(SCENE["stages"][0], until={"type": "time", "value": "1e6 s"}, limit="1e7 s")],
+                     engines={"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.7}},
+                     probes={"packing": {"type": "packing", "every_steps": 1000}}, output={"frames": {"every_steps": 200000}})
+        (self.folder / "going.json").write_text(json.dumps(scene))
+        going = subprocess.Popen([GRIT, "run", "going.json", "--out", "going", "--threads", "1", "--quiet", "--no-report"], cwd=self.folder,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            while not (self.folder / "going/run.json").exists():
+                self.assertIsNone(going.poll())
+            run = grit.open(self.folder / "going")
+            self.assertEqual(run.status, "running")
+            seen = [0]
+            while len(seen) < 4 or len(run.frames) < 3:
+                samples = run.series.probe("packing")
+                self.assertEqual({len(values) for values in samples.values()}, {len(samples["time"])})
+                self.assertEqual(samples["step"].tolist(), list(range(0, 1000 * len(samples["step"]), 1000)), "none is missing, torn or from elsewhere")
+                if len(samples["time"]) > seen[-1]:
+                    seen.append(len(samples["time"]))
+            for frame in run.frames:
+                self.assertEqual(frame.bodies["position"].shape, (2, 3))
+        finally:
+            going.send_signal(signal.SIGINT)
+            self.assertEqual(going.wait(), 130)
+        self.assertEqual(run.status, "running", "run.json is as it was when the run was opened")
+        run = grit.open(self.folder / "going")
+        self.assertEqual(run.status, "interrupted")
+        self.assertGreater(len(run.series["packing/time"]), seen[-1])
+        self.assertEqual((run.frames[-1].step, run.frames[-1].time), (run.steps, run.time))
+
+    def test_a_file_that_is_being_written_is_waited_for(self):
+        target = self.copy()
+        whole, series = (target / "series.h5").read_bytes(), target / "series.h5"
+        series.write_bytes(whole[:300])
+        looks = []
+
+        def mend(path, stamp=grit._stamp):
+            looks.append(path)
+            if len(looks) == 2:
+                series.write_bytes(whole)
+            return stamp(path)
+
+        with unittest.mock.patch("grit._stamp", mend):
+            self.assertEqual(grit.open(target).series["packing/time"].tobytes(), self.run_.series["packing/time"].tobytes())
 
     def test_fields_of_probes_and_vectors_of_walls(self):
         target = self.copy()
@@ -146,7 +203,7 @@ class Results(unittest.TestCase):
         target = self.copy()
         run = grit.open(target)
         (target / "series.h5").write_bytes((target / "series.h5").read_bytes()[:300])
-        with self.assertRaisesRegex(grit.ResultsError, "series.h5: cannot be read: .*if the run is still going on, try again"):
+        with self.assertRaisesRegex(grit.ResultsError, "series.h5: cannot be read: .*the file is damaged"):
             run.series["packing/time"]
         (target / "series.h5").unlink()
         with self.assertRaisesRegex(grit.ResultsError, "series.h5: there is no such file"):
