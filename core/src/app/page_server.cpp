@@ -12,6 +12,7 @@
 #include <boost/beast/http.hpp>
 #include <charconv>
 #include <chrono>
+#include <ctime>
 #include <map>
 #include <string_view>
 
@@ -87,6 +88,7 @@ class PageServer {
       if (error) break;
       progress_.assign(asio::buffers_begin(lines.data()), asio::buffers_begin(lines.data()) + length - 1);
       lines.consume(length);
+      news_.cancel();
     }
     ::alarm(most_seconds_for_the_end);
     progress_.clear(), ended_ = true;
@@ -98,17 +100,19 @@ class PageServer {
     io_.stop();
   }
 
-  /// Reads the folder every second or, where that takes long, less often.
+  /// Reads the folder every second or, where that is more than a tenth of a core, less often.
   asio::awaitable<void> look_again() {
     asio::steady_timer timer(io_);
     for (;;) {
-      const auto began = Clock::now();
-      std::erase_if(readers_, [&](const auto& reader) { return began - reader.second > reader_gone_after; });
+      const std::clock_t began = std::clock();  // of the processor: to wait for one is no work
+      std::erase_if(readers_,
+                    [now = Clock::now()](const auto& reader) { return now - reader.second > reader_gone_after; });
       if (!readers_.empty() && !ended_) {
         page_.refresh();
         news_.cancel();
       }
-      timer.expires_after(std::max<Clock::duration>(1s, 10 * (Clock::now() - began)));
+      const std::chrono::duration<double> worked(static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
+      timer.expires_after(std::max<Clock::duration>(1s, std::chrono::duration_cast<Clock::duration>(10 * worked)));
       co_await timer.async_wait(asio::use_awaitable);
     }
   }

@@ -21,7 +21,7 @@ namespace {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
   try {
-    static_cast<void>(::nice(10));
+    static_cast<void>(::nice(5));
     const auto now = std::chrono::system_clock::now().time_since_epoch().count();
     LivePage page(folder, std::to_string(now));
     serve_page(::dup(listening_socket), control, page);

@@ -33,9 +33,11 @@ bool rests(const path& file) {
   return none || std::filesystem::file_time_type::clock::now() - changed > 20ms;
 }
 
+using Clock = std::chrono::steady_clock;
+
 // A flush of the series takes some milliseconds, in which their file fits together for nobody: what was read counts if
-// the file rested before and is the same after. Where it never rests, what is there has to do, until next time.
-constexpr int attempts = 10;
+// the file rested before and is the same after. Where it never rests so long, what is there has to do, until next time.
+constexpr auto patience = std::chrono::seconds(1);
 constexpr auto between_attempts = std::chrono::milliseconds(25);
 
 }  // namespace
@@ -51,14 +53,15 @@ LivePage::LivePage(path folder, std::string run, const GrainLimits& limits)
 bool LivePage::refresh() {
   if (stamp_of(folder_) == stamp_ || !std::filesystem::exists(folder_ / "run.json")) return false;
   const path series = folder_ / "series.h5";
-  for (int attempt = 0; attempt < attempts; ++attempt) {
-    if (attempt > 0) std::this_thread::sleep_for(between_attempts);
-    if (!rests(series) && attempt + 1 < attempts) continue;
+  const auto until = Clock::now() + patience;
+  for (bool first = true; first || Clock::now() < until; first = false) {
+    if (!first) std::this_thread::sleep_for(between_attempts);
+    while (!rests(series) && Clock::now() < until) std::this_thread::sleep_for(between_attempts);
     const std::string before = stamp_of(folder_), series_before = stamp_of_file(series);
     DataElements data = data_.next();
     try {
       ReportContent content = report_content(std::span(&folder_, 1), limits_, data);
-      if (stamp_of_file(series) != series_before && attempt + 1 < attempts) continue;
+      if (stamp_of_file(series) != series_before && Clock::now() < until) continue;
       content_ = std::move(content);
     } catch (const std::exception&) {  // of files that are being replaced
       continue;
