@@ -222,6 +222,27 @@ class Page(unittest.TestCase):
         self.assertTrue(name.startswith("two-"))
         self.assertNotEqual(first, second)
 
+    def test_layers_are_those_of_the_start_of_a_stage(self):
+        self.go(5)
+        self.browser.evaluate(f"{GRAINS}.change({{colour: 'layers'}})")
+        self.browser.wait(f"{GRAINS}.layers && {GRAINS}.now === {GRAINS}.painted")
+        ids, layers = self.browser.evaluate(f"[...{GRAINS}.layers.keys()]"), self.browser.evaluate(f"[...{GRAINS}.layers.values()]")
+        with h5py.File(self.folder / "one/frames/000000.h5") as frame:
+            height = dict(zip(frame["bodies/id"][()].tolist(), frame["bodies/position"][:, 2].tolist()))
+        low, high = min(height.values()), max(height.values())
+        self.assertEqual(sorted(ids), sorted(height))
+        for one, layer in zip(ids, layers):
+            share = 10 * (height[one] - low) / (high - low)
+            if min(share % 1, 1 - share % 1) > 1e-3 or share > 9:
+                self.assertEqual(layer, min(10, 1 + int(share)))
+        self.assertEqual(set(layers) & {1, 10}, {1, 10})
+        # Where grains leave, the layers are of the stage in which the first one does.
+        origin = lambda counts, stages: self.browser.evaluate(f"""(() => {{ const json = {{bodies: {counts}.map((count) => ({{count}})),
+            frames: {stages}.map((stage, set) => ({{stage, set}}))}}; return Object.getOwnPropertyDescriptor(GrainView.prototype, 'origin').get.call({{json}}); }})()""")
+        self.assertEqual(origin([9, 9, 9, 8, 7], ["fill", "fill", "out", "out", "more"]), {"stage": "out", "number": 2})
+        self.assertEqual(origin([9, 9, 8, 7], ["fill", "fill", "out", "out"]), {"stage": "out", "number": 1})
+        self.assertEqual(origin([9, 9, 9], ["fill", "shear", "shear"]), {"stage": "shear", "number": 1})
+
     def go(self, frame):
         self.browser.evaluate(f"{GRAINS}.player.go({frame})")
         self.browser.wait(f"document.querySelector('.map .stage').dataset.frame === '{frame}'")
@@ -263,7 +284,7 @@ class Page(unittest.TestCase):
         self.go(5)
         place = self.browser.evaluate(f"""(() => {{ const map = {MAP}, {{cells}} = map.now, {{left, top}} = map.stage.getBoundingClientRect();
             map.stage.scrollIntoView({{block: 'center'}});
-            const at = map.stage.getBoundingClientRect(), view = views[map.state.view], i = map.shown[3];
+            const at = map.stage.getBoundingClientRect(), view = views[map.state.view], i = map.shown.at(-1);
             return {{x: at.left + map.layout.across(cells.centre[view.right][i]), y: at.top + map.layout.down(cells.centre[view.up][i]), i}}; }})()""")
         self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=place["x"], y=place["y"])
         told = self.browser.wait(f"{MAP}.under.textContent") and self.browser.evaluate(f"{MAP}.under.textContent")

@@ -56,6 +56,8 @@ class Geometry {
   virtual double area() const = 0;
   /// Mean unit normal, towards the side of the bodies; zero if there is none to speak of.
   virtual Vec3 normal() const = 0;
+  /// Whether it is made of plane faces that are wide: without grooves, curves or facets that a body could be as large as.
+  virtual bool flat() const { return false; }
   /// Appends the touches of each sphere, in the order of the spheres and, for one sphere, by feature. What is touched
   /// at an edge or corner that two faces share counts once.
   virtual void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const = 0;

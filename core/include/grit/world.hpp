@@ -72,6 +72,7 @@ struct WallView {
   double pressure = 0;  ///< normal force over area, > 0 in compression [Pa]
   Vec3 normal;          ///< mean unit normal, towards the bodies; zero where the geometry has none
   std::uint32_t touches = 0;
+  bool flat = false;  ///< made of wide plane faces
 };
 
 /// How far a point is from the surface of a wall.

@@ -250,7 +250,7 @@ void Walls::view(std::vector<WallView>& views) const {
     view.spin = state.spin;
     view.force = state.force;
     view.moment = state.moment;
-    view.area = area(wall);
+    view.area = area(wall), view.flat = geometry.flat();
     view.normal = state.pose.turn * geometry.normal();
     view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
     view.touches = state.touches;

@@ -21,6 +21,7 @@ class Box : public Geometry {
   /// None: no single pressure acts on all faces.
   double area() const override { return 0; }
   Vec3 normal() const override { return Vec3::Zero(); }
+  bool flat() const override { return true; }
   void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
   std::vector<Vec3> triangles() const override;

@@ -16,6 +16,7 @@ class Plane : public Geometry {
   Bounds bounds() const override;
   double area() const override { return area_; }
   Vec3 normal() const override { return normal_; }
+  bool flat() const override { return true; }
   void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
   /// A square about `point`; none if neither extent nor area says how large.

@@ -13,6 +13,7 @@ class Rectangle : public Geometry {
   Bounds bounds() const override { return sheet_.bounds(); }
   double area() const override { return sheet_.length_a * sheet_.length_b; }
   Vec3 normal() const override { return sheet_.axes.col(2); }
+  bool flat() const override { return true; }
   void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
   std::vector<Vec3> triangles() const override;

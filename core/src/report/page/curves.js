@@ -72,7 +72,6 @@ class Chart {
     this.figure.chart = this;
     this.figure.setAttribute("role", "group");
     this.figure.setAttribute("aria-label", `${this.channel.label}; arrow keys show values`);
-    this.plot.setAttribute("role", "img");
     this.plot.addEventListener("pointermove", (event) => this.point(event));
     this.plot.addEventListener("pointerdown", (event) => this.point(event));
     this.plot.addEventListener("pointerleave", () => this.show(null));
@@ -135,6 +134,7 @@ class Chart {
     this.view?.finalize();
     this.view = new vega.View(vega.parse(this.spec()), { renderer: "svg", container: this.plot, hover: false });
     this.view.run();
+    this.plot.setAttribute("role", "img"); // the library has given it another one
     this.plot.setAttribute("aria-label", this.inWords());
     this.figure.dataset.drawn = "yes";
   }

@@ -12,8 +12,12 @@ const colourings = {
   speed: { label: "speed", unit: "m/s", table: "sequential", limit: (of) => of.limits.speed,
     value: (of, view, frame) => (i) => (frame.speed[i] / 65535) * of.ranges.speed },
   radius: { label: "radius", unit: "m", table: "sequential", between: true, value: (of, view, frame) => (i) => frame.radius[i] },
+  layers: { label: "layer", unit: "1", table: "sequential", note: (view, seen) => `by ${letter(view.up)} when ${seen.origin.stage} began`,
+    value: (of, view, frame, seen) => (i) => seen.layers.get(frame.id[i]) ?? -1 },
   clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (of, view, frame) => (i) => frame.clump?.[i] ?? -1 },
 };
+
+const layerCount = 10;
 
 class GrainView {
   constructor(section, runs, player) {
@@ -27,7 +31,7 @@ class GrainView {
   /** More frames of the same runs; one of them is turned to then. */
   refresh(runs) {
     this.runs = runs.map((run) => ({ name: run.name, frames: new GrainFrames(run.grains), leftOut: run.grains.left_out }));
-    this.now = null;
+    this.now = this.layersOf = null;
   }
   get frames() {
     return this.runs[this.state.run].frames;
@@ -185,18 +189,45 @@ class GrainView {
       const [low, high] = rangeOf([frame.radius]);
       return { table, low, high: high > low ? high : low + 1e-12 };
     }
+    if (this.state.colour === "layers") return { table, low: 1, high: layerCount };
     const high = (colouring.limit ? colouring.limit(json.stages[frame.stage], view) : 1) || 1;
     return { table, low: colouring.table === "diverging" ? -high : 0, high };
   }
   places(frame) {
-    const value = this.colouring.value(this.json.stages[frame.stage], this.view, frame), { low, high } = this.colours;
+    const value = this.valueOf(frame), { low, high } = this.colours;
     const places = new Float32Array(frame.count);
     if (this.state.colour === "clump") {
       for (let i = 0; i < frame.count; ++i) places[i] = value(i) < 0 ? -1 : (value(i) % 251) / 255;
       return places;
     }
+    if (this.state.colour === "layers") {
+      for (let i = 0; i < frame.count; ++i) places[i] = value(i) < 0 ? -1 : (value(i) - 1) / (layerCount - 1);
+      return places;
+    }
     for (let i = 0; i < frame.count; ++i) places[i] = Math.min(1, Math.max(0, (value(i) - low) / (high - low)));
     return places;
+  }
+  valueOf(frame) {
+    return this.colouring.value(this.json.stages[frame.stage], this.view, frame, this);
+  }
+
+  /** The frame that layers are of: the first of the stage in which grains begin to leave, else of the last stage. */
+  get origin() {
+    const { frames, bodies } = this.json, count = (frame) => bodies[frame.set].count;
+    const leaving = frames.findIndex((frame, i) => i > 0 && count(frame) < count(frames[i - 1]));
+    const { stage } = frames[leaving < 0 ? frames.length - 1 : leaving];
+    // Where a stage's first frame has lost grains already, the one before is nearer to how it began.
+    const first = frames.findIndex((frame) => frame.stage === stage);
+    return { stage, number: leaving === first ? first - 1 : first };
+  }
+  /** By its id the layer of each grain, from 1: of equal height, along the view's upward axis. */
+  async findLayers() {
+    const { number } = this.origin, { up } = this.view, key = `${this.state.run} ${number} ${up}`;
+    if (this.layersOf === key) return;
+    const start = await this.frames.frame(number), list = [start.x, start.y, start.z][up];
+    const [low, high] = rangeOf([list]), layers = new Map();
+    for (let i = 0; i < start.count; ++i) layers.set(start.id[i], 1 + Math.min(layerCount - 1, Math.floor((layerCount * (list[i] - low)) / (high - low || 1))));
+    this.layers = layers, this.layersOf = key;
   }
 
   /** Chains and walls as segments in the plane of the view. */
@@ -242,6 +273,10 @@ class GrainView {
 
   async show(frame) {
     this.now = frame;
+    if (this.state.colour === "layers") {
+      await this.findLayers();
+      if (this.now !== frame) return;
+    }
     this.arrange();
     this.colours = this.scaleOfColours(frame);
     const places = this.places(frame), segments = await this.segments(frame);
@@ -320,7 +355,7 @@ class GrainView {
     if (this.state.colour === "clump") return;
     const [factor, unit] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
     drawColourScale(pen, look, { width, height, ...colours, label: colouring.label, unit, factor,
-      note: typeof colouring.note === "function" ? colouring.note(view) : colouring.note });
+      note: typeof colouring.note === "function" ? colouring.note(view, this) : colouring.note });
   }
 
   /** Says what is under the pointer. */
@@ -335,9 +370,9 @@ class GrainView {
       if (depth >= layout.cut && depth < nearest) (nearest = depth), (found = i);
     }
     if (found < 0) return this.under.replaceChildren();
-    const { colouring } = this, value = colouring.value(this.json.stages[now.stage], view, now)(found), [size, unit] = prefixed("m", now.radius[found]);
+    const { colouring } = this, value = this.valueOf(now)(found), [size, unit] = prefixed("m", now.radius[found]);
     const [scale, shown] = prefixed(colouring.unit, Math.abs(value));
-    const rest = ["radius", "clump"].includes(this.state.colour) ? [] : [make("span", {}, `${colouring.label} ${readable(value * scale)} ${shown}`)];
+    const rest = ["radius", "clump"].includes(this.state.colour) || (this.state.colour === "layers" && value < 0) ? [] : [make("span", {}, `${colouring.label} ${readable(value * scale)} ${shown}`)];
     this.under.replaceChildren(make("span", {}, `grain ${now.id[found]}`), make("span", {}, `radius ${readable(now.radius[found] * size)} ${unit}`), ...rest);
   }
 
@@ -361,7 +396,7 @@ class GrainView {
     all.toBlob((blob) => save(`${this.fileName}.png`, blob));
   }
   saveCsv() {
-    const { now, colouring, json, view } = this, lists = [now.x, now.y, now.z], value = colouring.value(json.stages[now.stage], view, now);
+    const { now, colouring } = this, lists = [now.x, now.y, now.z], value = this.valueOf(now);
     const lines = [`id,x [m],y [m],z [m],radius [m],${withUnit(colouring.label, colouring.unit)}`];
     for (let i = 0; i < now.count; ++i)
       lines.push([now.id[i], ...lists.map((list, axis) => this.frames.metres(axis, list[i]).toPrecision(6)), now.radius[i].toPrecision(6), value(i).toPrecision(5)].join(","));
