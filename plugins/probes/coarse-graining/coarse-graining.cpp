@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "../specimen.hpp"
 #include "grit/error.hpp"
@@ -27,55 +28,81 @@ void CoarseGraining::declare(Parameters& parameters) {
   parameters.add("slice", slice)
       .one_of({"none", "x", "y", "z"})
       .doc("axis along which there is one point alone, in the middle");
-  parameters.add("low", low).unit("m").doc("lowest corner of the box of points; left out: of the specimen");
-  parameters.add("high", high).unit("m").doc("its highest corner; left out: of the specimen");
+  parameters.add("region_low", region_low)
+      .unit("m")
+      .doc("lower corner of the box of points; left out: of the specimen");
+  parameters.add("region_high", region_high).unit("m").doc("its upper corner; left out: of the specimen");
   parameters.check(
       [this](const Complain& complain) {
-        if (low && high && !(low->array() < high->array()).all())
-          complain("high", "a corner that is not above low", "more than low along x, y and z");
+        if (region_low && region_high && !(region_low->array() < region_high->array()).all())
+          complain("region_high", "a corner that is not above region_low", "more than region_low along x, y and z");
       },
-      {"low", "high"});
+      {"region_low", "region_high"});
 }
 
 std::vector<Channel> CoarseGraining::channels() const {
-  return {{"density", "kg m-3", "mass over space, mean of the points; 0 without any", {}},
-          {"mean_stress", "Pa", "a third of the trace of the stress, positive in compression, mean of the points", {}},
-          {"kinetic_stress", "Pa", "the part of it that fluctuations of velocities have", {}},
-          {"points", "1", "number of points", {}}};
+  const std::string unknown = "; NaN without points";
+  return {{"density", "kg m-3", "mass over space, mean of the points" + unknown, {}},
+          {"mean_stress",
+           "Pa",
+           "a third of the trace of the stress, positive in compression, mean of the points" + unknown,
+           {}},
+          {"kinetic_stress", "Pa", "the part of it that fluctuations of velocities have" + unknown, {}},
+          {"points", "1", "number of points; 0 without grains, or where they would be too many", {}}};
 }
 
-PointGrid CoarseGraining::grid(const World& world) const {
-  Region box = specimen_box(world);
-  if (low) box.low = *low;
-  if (high) box.high = *high;
+Region CoarseGraining::box(const World& world) const {
+  const Region specimen = specimen_box(world);
+  return {region_low.value_or(specimen.low), region_high.value_or(specimen.high)};
+}
+
+std::array<double, 3> CoarseGraining::counts(const World& world) const {
+  const Region box = this->box(world);
   const double step = spacing * world.mean_diameter();
-  PointGrid points{box.low, Vec3::Zero(), {0, 0, 0}};
-  if (!(step > 0) || !(box.volume() > 0) || !std::isfinite(box.volume())) return points;
+  if (!(step > 0) || !(box.volume() > 0) || !std::isfinite(box.volume())) return {0, 0, 0};
   std::array<double, 3> count{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = box.high[axis] - box.low[axis];
-    double& n = count[static_cast<std::size_t>(axis)];
-    n = slice[0] - 'x' == axis ? 1 : std::max(1.0, std::floor(length / step + 1e-9));
-    points.step[axis] = length / n;
-  }
-  points.first += 0.5 * points.step;
+  for (int axis = 0; axis < 3; ++axis)
+    count[static_cast<std::size_t>(axis)] =
+        slice[0] - 'x' == axis ? 1 : std::max(1.0, std::floor((box.high[axis] - box.low[axis]) / step + 1e-9));
+  return count;
+}
+
+void CoarseGraining::prepare(const World& world) {
+  const auto count = counts(world);
   const double all = count[0] * count[1] * count[2];
   if (!(all <= most_points))
     throw Error("probe coarse-graining, /spacing: makes " +
                 std::to_string(static_cast<std::uint64_t>(std::min(all, 1e18))) +
-                " points, 5000000 are allowed; space them wider, say a slice, or a smaller box by low and high");
+                " points, 5000000 are allowed; space them wider, say a slice, or a smaller box by region_low and "
+                "region_high");
+}
+
+std::optional<PointGrid> CoarseGraining::grid(const World& world) const {
+  const auto count = counts(world);
+  const double all = count[0] * count[1] * count[2];
+  if (!(all > 0 && all <= most_points)) return std::nullopt;
+  const Region box = this->box(world);
+  PointGrid points{};
+  points.step = (box.high - box.low).cwiseQuotient(Vec3(count[0], count[1], count[2]));
+  points.first = box.low + 0.5 * points.step;
   for (std::size_t axis = 0; axis < 3; ++axis) points.count[axis] = static_cast<std::size_t>(count[axis]);
   return points;
 }
 
 void CoarseGraining::sample(const World& world, std::span<const std::span<double>> values) {
-  const auto all = smoothed(world, grid(world));
+  const auto points = grid(world);
+  if (!points) {
+    for (const auto& channel : values.first(3)) channel[0] = std::numeric_limits<double>::quiet_NaN();
+    values[3][0] = 0;
+    return;
+  }
+  const auto all = smoothed(world, *points);
   double density = 0, stress = 0, kinetic = 0;
   for (const CoarseFields& field : all) {
     density += field.density, kinetic += field.kinetic.trace() / 3;
     stress += (field.contact + field.kinetic).trace() / 3;
   }
-  const double count = std::max<double>(1, static_cast<double>(all.size()));
+  const auto count = static_cast<double>(all.size());
   values[0][0] = density / count, values[1][0] = stress / count, values[2][0] = kinetic / count;
   values[3][0] = static_cast<double>(all.size());
 }
@@ -94,7 +121,9 @@ std::vector<Field> CoarseGraining::fields(const World& world) {
        {}},
       {"kinetic_stress", "Pa", "the part that fluctuations of velocities have", 9, {}},
       {"wall_force", "N m-3", "force that walls exert on the grains, over space", 3, {}}};
-  const PointGrid points = grid(world);
+  const auto grid = this->grid(world);
+  if (!grid) return fields;
+  const PointGrid& points = *grid;
   const auto all = smoothed(world, points);
   for (auto& field : fields) field.values.reserve(field.width * all.size());
   const auto put = [&](std::size_t field, const auto& matrix) {

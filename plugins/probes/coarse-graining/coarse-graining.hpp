@@ -1,6 +1,7 @@
 // Density, momentum, velocity and stress of the continuum that grains make. See README.md.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,18 +16,21 @@ class CoarseGraining final : public Probe {
  public:
   double cutoff = 2, spacing = 1;  ///< mean diameters
   std::string slice = "none";
-  std::optional<Vec3> low, high;  ///< m
+  std::optional<Vec3> region_low, region_high;  ///< m
 
   void declare(Parameters& parameters) override;
   /// Throws Error where the grid has too many points.
-  void prepare(const World& world) override { grid(world); }
+  void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
   std::vector<Field> fields(const World& world) override;
 
  private:
-  /// No points where there is no mean diameter.
-  PointGrid grid(const World& world) const;
+  Region box(const World& world) const;
+  /// Of points along each axis; 0 where there is no mean diameter or no box.
+  std::array<double, 3> counts(const World& world) const;
+  /// None where there are no points, or too many.
+  std::optional<PointGrid> grid(const World& world) const;
   std::vector<CoarseFields> smoothed(const World& world, const PointGrid& points) const {
     return coarse_fields(world, points, cutoff * world.mean_diameter());
   }
