@@ -1,6 +1,7 @@
 #include "spectrum.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "../wall_names.hpp"
 #include "grit/plugin.hpp"
@@ -9,12 +10,28 @@ namespace grit {
 
 namespace {
 
+constexpr double most_kept = 1e8;  // points of all windows: 1.6 GB of densities
+
+/// Whether a box holds a point or one of its periodic images. The box is no longer than a period.
+bool holds(const Cell& domain, const Region& box, const Vec3& point) {
+  for (int k = 0; k < 3; ++k) {
+    double above = point[k] - box.low[k];
+    if (domain.periodic[static_cast<std::size_t>(k)]) {
+      const double period = domain.high[k] - domain.low[k];
+      above -= period * std::floor(above / period);
+      if (above >= period) above = 0;  // by rounding, of a point just below the box
+    }
+    if (!(above >= 0 && above < box.high[k] - box.low[k])) return false;
+  }
+  return true;
+}
+
 /// Mean over mass of the acceleration of the grains whose centres lie in a box, before damping; 0 without any.
 Vec3 mean_acceleration(const World& world, const Region& box) {
   Vec3 force = Vec3::Zero();
   double mass = 0;
   const auto add = [&](const Vec3& centre, const Vec3& on_it, double of_it) {
-    if (!((centre.array() >= box.low.array()).all() && (centre.array() < box.high.array()).all())) return;
+    if (!holds(world.cell(), box, centre)) return;
     force += on_it, mass += of_it;
   };
   const auto clump_of = world.clump_of();
@@ -29,8 +46,10 @@ Vec3 mean_acceleration(const World& world, const Region& box) {
 
 void Spectrum::declare(Parameters& parameters) {
   parameters.add("wall", wall).doc("what is listened to: a wall; leave it out for a box");
-  parameters.add("low", low).unit("m").doc("lowest corner of a box whose grains are listened to");
-  parameters.add("high", high).unit("m").doc("its highest corner");
+  parameters.add("region_low", region_low).unit("m").doc("lower corner of a box whose grains are listened to");
+  parameters.add("region_high", region_high)
+      .unit("m")
+      .doc("its upper corner, at most a period from the lower one along periodic axes");
   parameters.add("interval", interval)
       .unit("s")
       .above(0)
@@ -42,24 +61,39 @@ void Spectrum::declare(Parameters& parameters) {
       .doc("over which the density is the mean, the last ones");
   parameters.check(
       [this](const Complain& complain) {
-        const bool box = low && high;
-        if (low.has_value() != high.has_value())
-          complain(low ? "high" : "low", "one corner of a box", "both low and high, or neither");
+        const bool box = region_low && region_high;
+        if (region_low.has_value() != region_high.has_value())
+          complain(region_low ? "region_high" : "region_low", "one corner of a box",
+                   "both region_low and region_high, or neither");
         else if (wall.empty() != box)
           complain("wall", box ? "a wall and a box" : "neither a wall nor a box", "one of them");
-        else if (box && !(low->array() < high->array()).all())
-          complain("high", "a corner that is not above low", "more than low along x, y and z");
+        else if (box && !(region_low->array() < region_high->array()).all())
+          complain("region_high", "a corner that is not above region_low", "more than region_low along x, y and z");
       },
-      {"wall", "low", "high"});
+      {"wall", "region_low", "region_high"});
   parameters.check(
       [this](const Complain& complain) {
         if (points % 2 != 0) complain("points", std::to_string(points), "an even number");
       },
       {"points"});
+  parameters.check(
+      [this](const Complain& complain) {
+        if (const double kept = static_cast<double>(points) * static_cast<double>(windows); kept > most_kept)
+          complain("windows", std::to_string(windows) + " of " + std::to_string(points) + " points",
+                   "at most 100000000 points in all windows");
+      },
+      {"points", "windows"});
 }
 
 void Spectrum::prepare(const World& world) {
   if (!wall.empty()) wall_ = wall_index(world, wall, "probe spectrum, /wall");
+  const Cell& domain = world.cell();
+  for (int k = 0; wall.empty() && k < 3; ++k)
+    if (const double period = domain.high[k] - domain.low[k], length = (*region_high)[k] - (*region_low)[k];
+        domain.periodic[static_cast<std::size_t>(k)] && length > (1 + 1e-9) * period)
+      throw Error(std::string("probe spectrum, /region_high: the box is ") + std::to_string(length) + " m long along " +
+                  "xyz"[k] + ", along which the domain repeats itself after " + std::to_string(period) +
+                  " m; make the box no longer than that, which has all grains");
   last_.reset();
   begin_again();
 }
@@ -67,18 +101,21 @@ void Spectrum::prepare(const World& world) {
 std::vector<Channel> Spectrum::channels() const {
   const auto bins = static_cast<std::size_t>(points / 2 + 1);
   const std::string unknown = "; NaN before the first window is full";
-  return {{"frequency", "Hz", "of each value of the densities", {bins}},
-          {"acceleration_density",
-           "m2 s-4 Hz-1",
-           "one-sided power spectral density of the acceleration along x, y, z" + unknown,
-           {bins, 3}},
-          {"pressure_density", "Pa2 Hz-1", "the same of the pressure" + unknown, {bins}},
-          {"windows", "1", "number of windows that the densities are the mean of", {}}};
+  std::vector<Channel> channels{{"frequency", "Hz", "of each value of the densities", {bins}}};
+  for (const std::string axis : {"x", "y", "z"})
+    channels.push_back({"acceleration_density_" + axis,
+                        "m2 s-4 Hz-1",
+                        "one-sided power spectral density of the acceleration along " + axis + unknown,
+                        {bins},
+                        "frequency"});
+  channels.push_back({"pressure_density", "Pa2 Hz-1", "the same of the pressure" + unknown, {bins}, "frequency"});
+  channels.push_back({"windows", "1", "number of windows that the densities are the mean of", {}});
+  return channels;
 }
 
 Spectrum::Signals Spectrum::look(const World& world) const {
   if (wall.empty()) {
-    const Region box{*low, *high};
+    const Region box{*region_low, *region_high};
     const Vec3 acceleration = mean_acceleration(world, box);
     return {acceleration.x(), acceleration.y(), acceleration.z(), mean_stress(world, box).trace() / 3};
   }
@@ -91,19 +128,16 @@ Spectrum::Signals Spectrum::look(const World& world) const {
 void Spectrum::take(const World& world) {
   const double now = world.time();
   if (last_ && now <= last_->time) return;
+  if (last_ && now - last_->time > 2 * interval) last_.reset();
+  if (!last_) begin_again();
   const Instant instant{now, wall.empty() ? Vec3::Zero() : world.walls()[wall_].velocity, look(world)};
-  if (!last_ || now - last_->time > 2 * interval) {
-    begin_again();
-    first_time_ = now, count_ = 0;
-    if (!wall.empty()) count_ = 1;  // its acceleration is known from the second sample on
-  }
+  // The acceleration of a wall is known from the second sample on.
+  if (!first_time_ && (wall.empty() || last_)) first_time_ = now;
   // Counted, not summed up, so that the points do not drift.
-  for (double at; (at = first_time_ + static_cast<double>(count_) * interval) <= now; ++count_) {
+  for (double at; first_time_ && (at = *first_time_ + static_cast<double>(count_) * interval) <= now; ++count_) {
     const double part = last_ ? (at - last_->time) / (now - last_->time) : 1;
-    for (std::size_t i = 0; i < welch_.size(); ++i) {
-      const double value = instant.signals[i], before = last_ ? last_->signals[i] : value;
-      welch_[i].add(before + part * (value - before));
-    }
+    for (std::size_t i = 0; i < welch_.size(); ++i)
+      welch_[i].add(std::lerp(last_ ? last_->signals[i] : instant.signals[i], instant.signals[i], part));
   }
   last_ = instant;
 }
@@ -112,13 +146,8 @@ void Spectrum::sample(const World& world, std::span<const std::span<double>> val
   take(world);
   for (std::size_t k = 0; k < values[0].size(); ++k)
     values[0][k] = static_cast<double>(k) / (static_cast<double>(points) * interval);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto density = welch_[i].mean();
-    for (std::size_t k = 0; k < density.size(); ++k) values[1][3 * k + i] = density[k];
-  }
-  const auto density = welch_[3].mean();
-  std::copy(density.begin(), density.end(), values[2].begin());
-  values[3][0] = static_cast<double>(welch_[3].windows());
+  for (std::size_t i = 0; i < welch_.size(); ++i) std::ranges::copy(welch_[i].mean(), values[1 + i].begin());
+  values[5][0] = static_cast<double>(welch_.front().windows());
 }
 
 }  // namespace grit

@@ -16,12 +16,12 @@ namespace grit {
 class Spectrum final : public Probe {
  public:
   std::string wall;
-  std::optional<Vec3> low, high;  ///< m
-  double interval = 1e-4;         ///< s
+  std::optional<Vec3> region_low, region_high;  ///< m
+  double interval = 1e-4;                       ///< s
   std::int64_t points = 256, windows = 8;
 
   void declare(Parameters& parameters) override;
-  /// Throws Error for a wall that does not exist.
+  /// Throws Error for a wall that does not exist, and for a box that is longer than a period of the domain.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
@@ -36,13 +36,14 @@ class Spectrum final : public Probe {
   Signals look(const World& world) const;
   void take(const World& world);
   void begin_again() {
+    first_time_.reset(), count_ = 0;
     welch_.assign(4, Welch(static_cast<std::size_t>(points), interval, static_cast<std::size_t>(windows)));
   }
 
   std::size_t wall_ = 0;
   std::optional<Instant> last_;
-  double first_time_ = 0;    ///< of the evenly spaced points [s]
-  std::uint64_t count_ = 0;  ///< of them
+  std::optional<double> first_time_;  ///< of the evenly spaced points [s]; none before all signals are known
+  std::uint64_t count_ = 0;           ///< of the points
   std::vector<Welch> welch_;
 };
 

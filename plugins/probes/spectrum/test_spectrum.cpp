@@ -137,11 +137,12 @@ Spectrum at_wall() {
   probe.wall = "wall";
   return probe;
 }
+constexpr std::size_t of_acceleration = 1, of_pressure = 4, windows = 5;  // channels
 std::vector<double> along(const SampleRoom& room, std::size_t axis) {
-  std::vector<double> density;
-  for (std::size_t k = axis; k < room[1].size(); k += 3) density.push_back(room[1][k]);
-  return density;
+  const auto density = room[of_acceleration + axis];
+  return {density.begin(), density.end()};
 }
+std::vector<double> pressed(const SampleRoom& room) { return {room[of_pressure].begin(), room[of_pressure].end()}; }
 
 TEST(Spectrum, FindsThePitchOfAWall) {
   Spectrum probe = at_wall();
@@ -149,7 +150,7 @@ TEST(Spectrum, FindsThePitchOfAWall) {
   const double step = room[0][1];
   EXPECT_NEAR(step, 1 / 0.0256, 1e-12);
   EXPECT_NEAR(room[0].back(), 5000, 1e-9);
-  const Tone pressure = loudest({room[2].begin(), room[2].end()}, step);
+  const Tone pressure = loudest(pressed(room), step);
   EXPECT_NEAR(pressure.frequency, pitch, 0.05 * step);
   EXPECT_NEAR(pressure.amplitude, loudness, 0.01 * loudness);
   // A difference over h has sin(πfh) / πfh of the derivative.
@@ -158,7 +159,7 @@ TEST(Spectrum, FindsThePitchOfAWall) {
   EXPECT_NEAR(acceleration.frequency, pitch, 0.05 * step);
   EXPECT_NEAR(acceleration.amplitude, 0.1 * turn * pitch * less, 0.01 * 0.1 * turn * pitch);
   for (const double density : along(room, 0)) EXPECT_EQ(density, 0);
-  EXPECT_EQ(room[3][0], 8);
+  EXPECT_EQ(room[windows][0], 8);
 }
 
 TEST(Spectrum, BringsSamplesToEqualTimes) {
@@ -168,7 +169,7 @@ TEST(Spectrum, BringsSamplesToEqualTimes) {
   while (times.back() < 0.2) times.push_back(times.back() + step(random));
   Spectrum probe = at_wall();
   const auto room = listened(probe, swinging, times);
-  const Tone pressure = loudest({room[2].begin(), room[2].end()}, room[0][1]);
+  const Tone pressure = loudest(pressed(room), room[0][1]);
   EXPECT_NEAR(pressure.frequency, pitch, 0.05 * room[0][1]);
   EXPECT_NEAR(pressure.amplitude, loudness, 0.01 * loudness);
 }
@@ -185,10 +186,10 @@ TEST(Spectrum, ListensToTheGrainsInABox) {
     return world;
   };
   Spectrum probe;
-  probe.low = Vec3(0, 0, 0), probe.high = Vec3(1, 1, 0.8);
+  probe.region_low = Vec3(0, 0, 0), probe.region_high = Vec3(1, 1, 0.8);
   const auto room = listened(probe, shaken, evenly(1e-4, 2000));
   EXPECT_NEAR(loudest(along(room, 0), room[0][1]).amplitude, 7, 0.01 * 7);
-  EXPECT_NEAR(loudest({room[2].begin(), room[2].end()}, room[0][1]).amplitude, 3 * 0.2 / 0.8 / 3, 0.01 * 0.25);
+  EXPECT_NEAR(loudest(pressed(room), room[0][1]).amplitude, 3 * 0.2 / 0.8 / 3, 0.01 * 0.25);
   for (const double density : along(room, 1)) EXPECT_EQ(density, 0);
 }
 
@@ -197,32 +198,109 @@ TEST(Spectrum, KnowsNothingBeforeTheFirstWindowIsFullAndAfterAGap) {
   probe.points = 16;
   auto times = evenly(1e-4, 16);  // the first has no acceleration yet
   auto room = listened(probe, swinging, times);
-  EXPECT_EQ(room[3][0], 0);
-  EXPECT_TRUE(std::isnan(room[2][3]));
+  EXPECT_EQ(room[windows][0], 0);
+  EXPECT_TRUE(std::isnan(room[of_pressure][3]));
   times.push_back(16e-4);
   room = listened(probe, swinging, times);
-  EXPECT_EQ(room[3][0], 1);
-  EXPECT_TRUE(std::isfinite(room[2][3]));
+  EXPECT_EQ(room[windows][0], 1);
+  EXPECT_TRUE(std::isfinite(room[of_pressure][3]));
   for (int i = 0; i < 16; ++i) times.push_back(16e-4 + 1.5e-4 + 1e-4 * i);
-  EXPECT_EQ(listened(probe, swinging, times)[3][0], 3) << "bridged by a line";
+  EXPECT_EQ(listened(probe, swinging, times)[windows][0], 3) << "bridged by a line";
   for (int i = 17; i < 33; ++i) times[static_cast<std::size_t>(i)] += 1e-4;
-  EXPECT_EQ(listened(probe, swinging, times)[3][0], 0) << "begun again";
+  EXPECT_EQ(listened(probe, swinging, times)[windows][0], 0) << "begun again";
+}
+
+/// A grain just above the lower side and one just below the upper side of a period of 1 along x, that are pushed.
+FakeWorld across_a_side(double) {
+  FakeWorld world;
+  for (const double x : {0.1, 0.9, 0.5}) {
+    const auto body = world.add({x, 0.5, 0.5}, 0.05);
+    world.force[body] = {(x == 0.1 ? 3 : x == 0.9 ? 5 : 100) / world.velocity[body].w, 0, 0, 0};
+  }
+  world.box = {{0, -9, -9}, {1, 9, 9}, {true, false, false}};
+  return world;
+}
+
+/// A box of grains that are pushed now and then: the amplitude of their mean acceleration along x.
+double heard(double low, double high) {
+  Spectrum probe;
+  probe.region_low = Vec3(low, 0, 0), probe.region_high = Vec3(high, 1, 1);
+  const At shaken = [](double time) {
+    FakeWorld world = across_a_side(time);
+    for (Row& force : world.force) force.x *= std::sin(turn * pitch * time);
+    return world;
+  };
+  const auto room = listened(probe, shaken, evenly(1e-4, 300));
+  return loudest(along(room, 0), room[0][1]).amplitude;
+}
+
+TEST(Spectrum, ListensToPeriodicImagesToo) {
+  for (const double shift : {-1.0, 0.0, 2.0}) EXPECT_NEAR(heard(shift - 0.2, shift + 0.2), 4, 0.04) << shift;
+  EXPECT_NEAR(heard(0, 0.2), 3, 0.03);
+  EXPECT_NEAR(heard(0.1, 0.9), 51.5, 0.5) << "the upper side is not of the box";
+  EXPECT_NEAR(heard(0.1, 1.1), 36, 0.4) << "all, each once";
+}
+
+TEST(Spectrum, RefusesABoxLongerThanThePeriod) {
+  Spectrum probe;
+  probe.region_low = Vec3(0, -20, 0), probe.region_high = Vec3(1, 20, 1);
+  EXPECT_NO_THROW(probe.prepare(across_a_side(0)));
+  probe.region_high->x() = 1.25;
+  EXPECT_THAT([&] { probe.prepare(across_a_side(0)); },
+              testing::ThrowsMessage<Error>(
+                  HasSubstr("probe spectrum, /region_high: the box is 1.250000 m long along x, along which the domain "
+                            "repeats itself after 1.000000 m")));
+}
+
+/// A wall at rest that is at a bound in no time at `jump` [s], and then speeds up evenly.
+At kicked(double jump) {
+  return [jump](double time) {
+    FakeWorld world = swinging(time);
+    world.wall[1].velocity = {0, 0, 7 * time + (time > jump ? 1e3 : 0)};
+    return world;
+  };
+}
+
+TEST(Spectrum, DoesNotTakeTheFirstInstantNorAGapForAcceleration) {
+  std::vector<double> times;
+  for (int i = 0; i < 60; ++i) times.push_back(1.5e-4 * i + (i < 10 ? 0 : 0.1));  // not a whole number of points apart
+  for (const auto& [from, jump] : std::vector<std::pair<std::ptrdiff_t, double>>{{0, 0.05}, {10, -1}}) {
+    Spectrum probe = at_wall();
+    probe.points = 16;
+    const auto room = listened(probe, kicked(jump), {times.begin() + from, times.end()});
+    EXPECT_EQ(room[windows][0], 8) << from;
+    for (const double density : along(room, 2)) EXPECT_NEAR(density, 0, 1e-12) << from;
+  }
+}
+
+TEST(Spectrum, SaysWhereEachNumberOfAListIs) {
+  for (const Channel& channel : Spectrum().channels())
+    EXPECT_EQ(channel.coordinate, channel.shape.empty() || channel.name == "frequency" ? "" : "frequency")
+        << channel.name;
 }
 
 TEST(Spectrum, RefusesWhatIsNeitherAWallNorABox) {
   Spectrum probe;
   EXPECT_THAT(complaints(probe), HasSubstr("wall: found neither a wall nor a box, allowed: one of them"));
-  probe.low = Vec3::Zero();
-  EXPECT_THAT(complaints(probe), HasSubstr("high: found one corner of a box, allowed: both low and high, or neither"));
-  probe.high = Vec3(1, 0, 1);
-  EXPECT_THAT(complaints(probe), HasSubstr("high: found a corner that is not above low"));
-  probe.high = Vec3(1, 1, 1);
+  probe.region_low = Vec3::Zero();
+  EXPECT_THAT(
+      complaints(probe),
+      HasSubstr("region_high: found one corner of a box, allowed: both region_low and region_high, or neither"));
+  probe.region_high = Vec3(1, 0, 1);
+  EXPECT_THAT(complaints(probe), HasSubstr("region_high: found a corner that is not above region_low"));
+  probe.region_high = Vec3(1, 1, 1);
   EXPECT_EQ(complaints(probe), "");
   probe.wall = "wall";
   EXPECT_THAT(complaints(probe), HasSubstr("wall: found a wall and a box, allowed: one of them"));
   Spectrum odd = at_wall();
   odd.points = 25;
   EXPECT_EQ(complaints(odd), "points: found 25, allowed: an even number\n");
+  Spectrum large = at_wall();
+  large.points = 100000, large.windows = 1000;
+  EXPECT_EQ(complaints(large), "");
+  large.windows = 1001;
+  EXPECT_EQ(complaints(large),
+            "windows: found 1001 of 100000 points, allowed: at most 100000000 points in all windows\n");
   Spectrum nowhere = at_wall();
   nowhere.wall = "well";
   try {
@@ -244,7 +322,8 @@ INSTANTIATE_TEST_SUITE_P(Spectrum, ProbeContract,
                                          ProbeCase{"box",
                                                    [] {
                                                      auto probe = std::make_shared<Spectrum>();
-                                                     probe->low = Vec3::Zero(), probe->high = Vec3::Constant(2e-3);
+                                                     probe->region_low = Vec3::Zero();
+                                                     probe->region_high = Vec3::Constant(2e-3);
                                                      return probe;
                                                    }}),
                          probe_case_name);

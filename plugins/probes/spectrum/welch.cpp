@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <unsupported/Eigen/FFT>
@@ -34,13 +33,9 @@ void Welch::add(double value) {
   densities_.push_back(power_density(values_, interval_));
   if (densities_.size() > windows_) densities_.pop_front();
   values_.erase(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(points_ / 2));
-}
-
-std::vector<double> Welch::mean() const {
-  std::vector<double> mean(points_ / 2 + 1, densities_.empty() ? std::numeric_limits<double>::quiet_NaN() : 0);
+  mean_.assign(mean_.size(), 0);  // anew from all windows, so that no rounding gathers
   for (const auto& density : densities_)
-    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += density[k] / static_cast<double>(densities_.size());
-  return mean;
+    for (std::size_t k = 0; k < mean_.size(); ++k) mean_[k] += density[k] / static_cast<double>(densities_.size());
 }
 
 }  // namespace grit

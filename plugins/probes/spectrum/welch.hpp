@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,19 +18,23 @@ class Welch {
  public:
   /// `points` of a window, even; `interval` between them [s]; mean over `windows` at most.
   Welch(std::size_t points, double interval, std::size_t windows)
-      : points_(points), windows_(windows), interval_(interval) {}
+      : points_(points),
+        windows_(windows),
+        interval_(interval),
+        mean_(points / 2 + 1, std::numeric_limits<double>::quiet_NaN()) {}
 
   void add(double value);
   /// Windows in the mean: 0 before the first is full.
   std::size_t windows() const { return densities_.size(); }
   /// points / 2 + 1 values; NaN before the first window is full.
-  std::vector<double> mean() const;
+  const std::vector<double>& mean() const { return mean_; }
 
  private:
   std::size_t points_, windows_;
   double interval_;
   std::vector<double> values_;                 ///< of the window that fills
   std::deque<std::vector<double>> densities_;  ///< the latest last
+  std::vector<double> mean_;                   ///< of them
 };
 
 }  // namespace grit
