@@ -28,8 +28,8 @@ class WallLayer {
             "of the layer at the wall, over the mean diameter: bodies count whose centres were in it, or behind it, "
             "when the stage began");
   }
-  /// Throws Error, beginning with `who`, for a wall that does not exist, that is not perpendicular to an axis, or along
-  /// whose normal the slip would be.
+  /// Throws Error, beginning with `who`, for a wall that does not exist, that is not perpendicular to an axis, along
+  /// whose normal the slip would be, or at which the specimen does not end.
   void prepare(const World& world, const std::string& who) {
     wall_ = wall_index(world, wall, who + ", /wall");
     driver_ = wall_index(world, driven_by, who + ", /driven_by");
@@ -40,6 +40,8 @@ class WallLayer {
     if (across_ == along_)
       throw Error(who + ", /axis: wall \"" + wall + "\" is perpendicular to " + axis +
                   "; slip is along a wall, so name another axis");
+    if (!bounds_specimen(world))
+      throw Error(who + ", /wall: the specimen does not end at wall \"" + wall + "\"; name it in /specimen");
   }
 
   std::size_t index() const { return wall_; }  ///< of the wall, in World::walls()
@@ -79,6 +81,18 @@ class WallLayer {
   }
 
  private:
+  /// Whether the wall is where the face is, as far as can be told from the middle of the face: there the surface may
+  /// lie behind, in a groove, but not before. Without bodies it cannot be told.
+  bool bounds_specimen(const World& world) const {
+    const double diameter = world.mean_diameter();
+    if (!(diameter > 0)) return true;
+    const Region specimen = specimen_box(world);
+    Vec3 point = 0.5 * (specimen.low + specimen.high);
+    point[across_] = face(world) + 0.5 * diameter * surface(world).normal[across_];
+    const auto clear = world.clearance(wall_, point, diameter);
+    return clear && clear->distance > (0.5 - 1e-6) * diameter;
+  }
+
   std::size_t wall_ = 0, driver_ = 0;
   int along_ = 0, across_ = 2;
 };

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -76,6 +77,7 @@ inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3)
       }
   for (auto& wall : world.wall) wall.area = nx * ny * volume, wall.pressure = std::abs(wall.force.z()) / wall.area;
   world.whole = {Vec3::Zero(), spacing * Vec3(nx, ny, nz)};
+  world.surface = {flat_surface(world.whole.low, Vec3::UnitZ()), flat_surface(world.whole.high, -Vec3::UnitZ())};
   world.now = 0.25, world.steps = 250000;
   return world;
 }
@@ -232,6 +234,11 @@ TEST_P(ProbeContract, NamesItsChannels) {
     EXPECT_FALSE(channel.doc.empty()) << channel.name;
     EXPECT_EQ(channel.doc.find('\n'), std::string::npos) << channel.name;
     for (const auto extent : channel.shape) EXPECT_GT(extent, 0u) << channel.name;
+    if (channel.coordinate.empty()) continue;
+    const auto channels = probe_->channels();
+    const auto where = std::ranges::find(channels, channel.coordinate, &Channel::name);
+    ASSERT_NE(where, channels.end()) << channel.name << ": there is no channel " << channel.coordinate;
+    EXPECT_EQ(where->shape, channel.shape) << channel.name;
   }
   EXPECT_FALSE(names.empty());
 }

@@ -5,12 +5,18 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "grit/world.hpp"
 
 namespace grit {
+
+/// Of a wall that is solid behind a plane, whose unit normal looks at the bodies.
+inline std::function<std::optional<Clearance>(const Vec3&)> flat_surface(const Vec3& point, const Vec3& normal) {
+  return [=](const Vec3& x) { return Clearance{normal.dot(x - point), -normal}; };
+}
 
 struct FakeWorld : World {
   double now = 0, time_step = 1e-6, density = 2600;

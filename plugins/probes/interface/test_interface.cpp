@@ -20,6 +20,7 @@ FakeWorld rolling(double way) {
   FakeWorld world;
   world.wall = {still_wall("surface"), still_wall("lid")};
   world.wall[0].normal = Vec3::UnitZ(), world.wall[1].normal = -Vec3::UnitZ();
+  world.surface = {flat_surface(Vec3::Zero(), Vec3::UnitZ()), flat_surface(Vec3::UnitZ(), -Vec3::UnitZ())};
   world.wall[0].area = world.wall[1].area = 2;
   world.wall[1].stage_position = {4 * way, 0, 0};
   for (const Vec3& start : {Vec3(0.2, 0, 0.1), Vec3(0.4, 0, 0.1), Vec3(0.6, 0, 0.1), Vec3(0.4, 0, 0.9)}) {
@@ -97,6 +98,8 @@ TEST(Interface, IsTheSameAtAWallAboveAndTheOtherWayAround) {
         const Vec3 at = (xyz(row) - Vec3::Constant(0.5)).cwiseProduct(half) + Vec3::Constant(0.5);
         row = {at.x(), at.y(), at.z(), row.w};
       }
+      if (half.z() < 0)
+        w.surface = {flat_surface(Vec3::UnitZ(), -Vec3::UnitZ()), flat_surface(Vec3::Zero(), Vec3::UnitZ())};
       for (Vec3& v : w.displacement) vector(v);
       for (Vec3& v : w.rotation) vector(v);
       for (WallView& wall : w.wall) vector(wall.normal), vector(wall.stage_position);
@@ -124,6 +127,11 @@ TEST(Interface, RefusesAWallThatThereIsNot) {
   Interface across = made();
   across.layer.axis = "z";
   EXPECT_THROW(across.prepare(rolling(0)), Error);
+  FakeWorld elsewhere = rolling(0);
+  elsewhere.whole.low.z() = -0.2;
+  EXPECT_THAT([&] { made().prepare(elsewhere); },
+              testing::ThrowsMessage<Error>(
+                  "probe interface, /wall: the specimen does not end at wall \"surface\"; name it in /specimen"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Interface, ProbeContract,

@@ -15,6 +15,7 @@ FakeWorld world_between() {
   FakeWorld world;
   world.wall = {still_wall("surface"), still_wall("lid")};
   world.wall[0].normal = Vec3::UnitZ(), world.wall[1].normal = -Vec3::UnitZ();
+  world.surface = {flat_surface(Vec3::Zero(), Vec3::UnitZ()), flat_surface(Vec3::UnitZ(), -Vec3::UnitZ())};
   return world;
 }
 void add(FakeWorld& world, const Vec3& at_start, const Vec3& displacement) {
@@ -47,6 +48,7 @@ TEST(Slip, IsTheSameForASurfaceThatMovesAndForOneOnTop) {
   FakeWorld world = world_between();
   // The surface is driven by -0.4 and down by 0.2; the specimen's face is where the surface is now.
   world.wall[0].stage_position = {-0.4, 0, -0.2}, world.whole.low.z() = -0.2;
+  world.surface[0] = flat_surface(Vec3(0, 0, -0.2), Vec3::UnitZ());
   add(world, {0.5, 0, 0.05}, {-0.3, 0, -0.2});
   Slip below = made();
   below.prepare(world);
@@ -91,6 +93,25 @@ TEST(Slip, RefusesWallsThatThereAreNotOrThatFaceTheWrongWay) {
   FakeWorld aslant = world_between();
   aslant.wall[0].normal = Vec3(0, 0.6, 0.8);
   EXPECT_EQ(refusal(made(), aslant), "probe slip, /wall: wall \"surface\" is not perpendicular to x, y or z");
+}
+
+TEST(Slip, RefusesAWallAtWhichTheSpecimenDoesNotEnd) {
+  FakeWorld world = world_between();
+  add(world, {0.5, 0, 0.3}, Vec3::Zero());
+  EXPECT_EQ(refusal(made(), world), "");
+  EXPECT_EQ(refusal(made("lid", "surface"), world), "");
+  const char* const not_there =
+      "probe slip, /wall: the specimen does not end at wall \"surface\"; name it in /specimen";
+  for (const double way : {-0.11, 1e-3}) {  // off by more than half a diameter, or before the face
+    FakeWorld elsewhere = world;
+    elsewhere.surface[0] = flat_surface(Vec3(0, 0, way), Vec3::UnitZ());
+    EXPECT_EQ(refusal(made(), elsewhere), not_there) << way;
+  }
+  FakeWorld grooved = world;
+  grooved.surface[0] = flat_surface(Vec3(0, 0, -0.09), Vec3::UnitZ());  // as the bottom of a groove
+  EXPECT_EQ(refusal(made(), grooved), "");
+  grooved.whole.low.z() = -std::numeric_limits<double>::infinity();  // the specimen ends at its bodies
+  EXPECT_EQ(refusal(made(), grooved), not_there);
 }
 
 INSTANTIATE_TEST_SUITE_P(Slip, ProbeContract,

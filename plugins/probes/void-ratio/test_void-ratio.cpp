@@ -35,8 +35,7 @@ void add_wall(FakeWorld& world, std::function<std::optional<Clearance>(const Vec
 }
 /// Solid behind a plane, whose normal looks at the bodies.
 void add_plane(FakeWorld& world, const Vec3& point, const Vec3& normal) {
-  const Vec3 unit = normal.normalized();
-  add_wall(world, [=](const Vec3& x) { return Clearance{unit.dot(x - point), -unit}; });
+  add_wall(world, flat_surface(point, normal.normalized()));
 }
 
 /// What a segment a … b in the xz plane is away.
@@ -281,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(VoidRatio, ProbeContract,
                                                    },
                                                    [] {
                                                      FakeWorld world = lattice_world(6, 4, 8);
-                                                     world.wall.clear(), world.contact.clear();
+                                                     world.wall.clear(), world.surface.clear(), world.contact.clear();
                                                      add_teeth(world, 4e-4, 1e-4);
                                                      return world;
                                                    }}),
