@@ -85,22 +85,19 @@ Vec2 SmoothImage::slope(std::ptrdiff_t column, std::ptrdiff_t row) const {
   return sum;
 }
 
-Correlation::Correlation(const Image& before, const Image& after, std::ptrdiff_t half)
-    : before_(before),
-      coarse_before_(halved(before)),
-      coarse_after_(halved(after)),
-      smooth_before_(before),
-      smooth_after_(after),
-      half_(half) {}
+FilteredImage::FilteredImage(Image image) : full(std::move(image)), coarse(halved(full)), smooth(full) {}
+
+Correlation::Correlation(const FilteredImage& before, FilteredImage after, std::ptrdiff_t half)
+    : before_(before), after_(std::move(after)), half_(half) {}
 
 bool Correlation::has(std::ptrdiff_t column, std::ptrdiff_t row) const {
-  return column - half_ >= 1 && row - half_ >= 1 && column + half_ < before_.width - 1 &&
-         row + half_ < before_.height - 1;
+  return column - half_ >= 1 && row - half_ >= 1 && column + half_ < before_.full.width - 1 &&
+         row + half_ < before_.full.height - 1;
 }
 
 std::optional<Match> Correlation::search(std::ptrdiff_t column, std::ptrdiff_t row, std::ptrdiff_t reach) const {
   const std::ptrdiff_t left = (column - half_ + 1) / 2, low = (row - half_ + 1) / 2, side = half_, range = reach / 2;
-  const Image &from = coarse_before_, &to = coarse_after_;
+  const Image &from = before_.coarse, &to = after_.coarse;
   std::vector<float> square;
   for (std::ptrdiff_t j = 0; j < side; ++j)
     square.insert(square.end(), from.row(low + j) + left, from.row(low + j) + left + side);
@@ -151,8 +148,8 @@ std::optional<Match> Correlation::refined(std::ptrdiff_t column, std::ptrdiff_t 
   Mat6 normal = Mat6::Zero();
   for (std::ptrdiff_t j = -half_; j <= half_; ++j)
     for (std::ptrdiff_t i = -half_; i <= half_; ++i) {
-      const Vec2 slope = smooth_before_.slope(column + i, row + j);
-      square.push_back({before_.row(row + j)[column + i], slope.x(), slope.y()});
+      const Vec2 slope = before_.smooth.slope(column + i, row + j);
+      square.push_back({before_.full.row(row + j)[column + i], slope.x(), slope.y()});
       mean += square.back().grey / count;
       const auto x = static_cast<double>(i), y = static_cast<double>(j);
       Vec6 steepest;
@@ -172,14 +169,14 @@ std::optional<Match> Correlation::refined(std::ptrdiff_t column, std::ptrdiff_t 
     const Vec2 middle = moved + Vec2(static_cast<double>(column), static_cast<double>(row));
     for (const double x : {-width, width})
       for (const double y : {-width, width})
-        if (const Vec2 corner = middle + stretch * Vec2(x, y); !smooth_after_.has(corner.x(), corner.y()))
+        if (const Vec2 corner = middle + stretch * Vec2(x, y); !after_.smooth.has(corner.x(), corner.y()))
           return std::nullopt;
     double average = 0, squares = 0, together = 0;
     auto to = seen.begin();
     for (std::ptrdiff_t j = -half_; j <= half_; ++j)
       for (std::ptrdiff_t i = -half_; i <= half_; ++i) {
         const Vec2 place = middle + stretch * Vec2(static_cast<double>(i), static_cast<double>(j));
-        average += (*to++ = smooth_after_.grey(place.x(), place.y())) / count;
+        average += (*to++ = after_.smooth.grey(place.x(), place.y())) / count;
       }
     for (std::size_t n = 0; n < seen.size(); ++n) {
       seen[n] -= average;

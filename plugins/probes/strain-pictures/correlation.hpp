@@ -30,6 +30,14 @@ class SmoothImage {
   Image weights_;
 };
 
+/// A picture and what a correlation needs of it. Kept of the first one, as each later one is compared with that.
+struct FilteredImage {
+  FilteredImage() = default;
+  explicit FilteredImage(Image image);
+  Image full, coarse;  ///< coarse: of half the size
+  SmoothImage smooth;
+};
+
 /// Where a square of one picture is in another, to first order.
 struct Match {
   Eigen::Vector2d moved = Eigen::Vector2d::Zero();     ///< its middle, pixels
@@ -41,7 +49,9 @@ struct Match {
 class Correlation {
  public:
   /// `half`: a square has 2 half + 1 pixels a side; at least 2.
-  Correlation(const Image& before, const Image& after, std::ptrdiff_t half);
+  /// `before` must outlive it.
+  Correlation(const FilteredImage& before, FilteredImage after, std::ptrdiff_t half);
+  Correlation(FilteredImage&& before, FilteredImage after, std::ptrdiff_t half) = delete;
 
   /// Whether the square around a pixel has its slopes inside the picture.
   bool has(std::ptrdiff_t column, std::ptrdiff_t row) const;
@@ -53,8 +63,8 @@ class Correlation {
   std::optional<Match> refined(std::ptrdiff_t column, std::ptrdiff_t row, Match guess) const;
 
  private:
-  Image before_, coarse_before_, coarse_after_;
-  SmoothImage smooth_before_, smooth_after_;
+  const FilteredImage& before_;
+  FilteredImage after_;
   std::ptrdiff_t half_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "../displacement_fit.hpp"
 #include "../specimen.hpp"
@@ -124,15 +125,26 @@ Image StrainPictures::picture(const World& world, const View& view) const {
         disc.y + disc.radius > -1 && disc.y - disc.radius < static_cast<double>(view.height))
       discs.push_back(disc);
   };
-  // Beyond a periodic side the specimen goes on.
-  const auto images = [&](int axis) { return cell.periodic[static_cast<std::size_t>(axis)] ? 1 : 0; };
-  const double width = cell.high[look.right] - cell.low[look.right], height = cell.high[look.up] - cell.low[look.up];
+  // Beyond a periodic side the specimen goes on, as often as the picture reaches over.
+  struct Images {
+    double first, last, period;
+  };
+  const auto images = [&](int axis, double place, double radius, double corner, std::ptrdiff_t pixels) -> Images {
+    if (!cell.periodic[static_cast<std::size_t>(axis)]) return {0, 0, 0};
+    const double period = cell.high[axis] - cell.low[axis], end = corner + static_cast<double>(pixels) * view.pixel;
+    return {std::ceil((corner - view.pixel - radius - place) / period), std::floor((end + radius - place) / period),
+            period};
+  };
   for (std::size_t i = 0; i < std::min(world.positions().size(), world.rotations().size()); ++i) {
     const Vec3 centre = xyz(world.positions()[i]);
     if (!centre.allFinite() || !world.rotations()[i].allFinite()) continue;  // a run that has failed
-    for (int a = -images(look.right); a <= images(look.right); ++a)
-      for (int b = -images(look.up); b <= images(look.up); ++b)
-        see(centre[look.right] + (a == 0 ? 0 : a * width), centre[look.up] + (b == 0 ? 0 : b * height), i);
+    const double radius = world.positions()[i].w;
+    const Images across = images(look.right, centre[look.right], radius, view.corner.x(), view.width),
+                 upwards = images(look.up, centre[look.up], radius, view.corner.y(), view.height);
+    if (std::max(std::abs(across.first), std::abs(upwards.first)) > 1e6) continue;  // thrown out of the domain
+    for (double a = across.first; a <= across.last; ++a)
+      for (double b = upwards.first; b <= upwards.last; ++b)
+        see(centre[look.right] + a * across.period, centre[look.up] + b * upwards.period, i);
   }
   return camera_->picture(discs, view.width, view.height);
 }
@@ -146,7 +158,7 @@ void StrainPictures::look(const World& world) {
   if (!began_ || stage_ != world.stage()) {
     began_ = true, stage_ = world.stage();
     view_ = view(world);
-    start_ = view_ ? picture(world, *view_) : Image();
+    start_ = view_ ? FilteredImage(picture(world, *view_)) : FilteredImage();
   } else if (step_ == world.step()) {
     return;
   }
@@ -154,14 +166,14 @@ void StrainPictures::look(const World& world) {
   subsets_ = view_ ? found(picture(world, *view_)) : std::vector<Subset>();
 }
 
-std::vector<StrainPictures::Subset> StrainPictures::found(const Image& now) const {
+std::vector<StrainPictures::Subset> StrainPictures::found(Image now) const {
   const SquareGrid& grid = view_->subsets;
   const auto half = static_cast<std::ptrdiff_t>(std::lround(0.5 * subset * pixels_per_diameter));
   const auto apart = [&](double diameters) {
     return std::max(1l, std::lround(diameters * pixels_per_diameter / static_cast<double>(grid.apart)));
   };
   const MatchGrid found =
-      matches(Correlation(start_, now, half), grid, apart(3),
+      matches(Correlation(start_, FilteredImage(std::move(now)), half), grid, apart(3),
               static_cast<std::ptrdiff_t>(std::ceil(search * pixels_per_diameter)), least_correlation);
   std::vector<Subset> all;
   for (std::ptrdiff_t j = 0; j < grid.rows; ++j)
@@ -198,7 +210,9 @@ std::vector<Channel> StrainPictures::channels() const {
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
            " of all subsets that were found, Green-Lagrange since the first look of the stage, positive in extension; "
            "NaN with fewer than four",
-       {3}},
+       {3},
+       {},
+       {a + a, b + b, a + b}},
       {"largest_shear", "1", "largest magnitude of E_" + a + b + " of a window; 0 without any", {}},
       {"found", "1", "share of the subsets that were found; NaN without any", {}},
       {"correlation", "1", "mean of the subsets that were found; NaN without any", {}}};
@@ -234,14 +248,16 @@ std::vector<Field> StrainPictures::fields(const World& world) {
        "m",
        "along " + a + " and " + b + " since the first look of the stage; NaN where it was lost",
        2,
-       {}},
+       {},
+       {a, b}},
       {"strain",
        "1",
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
            " of the window around it, Green-Lagrange, positive in extension; NaN with fewer than six, or nearly on one "
            "line",
        3,
-       {}},
+       {},
+       {a + a, b + b, a + b}},
       {"correlation", "1", "zero-mean normalised; NaN where it was lost", 1, {}}};
   for (const Subset& one : subsets_) {
     const Vec2 now = one.moved.allFinite() ? Vec2(one.start + one.moved) : one.start;
@@ -261,10 +277,11 @@ std::vector<Field> StrainPictures::fields(const World& world) {
 }  // namespace grit
 
 const grit::PluginInfo* grit_plugin() {
-  static const grit::PluginInfo info{.kind = "probe",
-                                     .name = "strain-pictures",
-                                     .version = "1.0.0",
-                                     .doc = "strain in a plane from pictures of the grains, by image correlation",
-                                     .make_probe = []() -> grit::Probe* { return new grit::StrainPictures; }};
+  static const grit::PluginInfo info{
+      .kind = "probe",
+      .name = "strain-pictures",
+      .version = "1.0.0",
+      .doc = "strain in a plane from pictures of the grains, by digital image correlation (DIC)",
+      .make_probe = []() -> grit::Probe* { return new grit::StrainPictures; }};
   return &info;
 }

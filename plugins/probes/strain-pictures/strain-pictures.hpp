@@ -59,7 +59,7 @@ class StrainPictures final : public Probe {
   double pixels(const World& world) const;
   Image picture(const World& world, const View& view) const;
   void look(const World& world);
-  std::vector<Subset> found(const Image& now) const;
+  std::vector<Subset> found(Image now) const;
 
   std::optional<Camera> camera_;
   // Kept from the first look of a stage on, and from the last one.
@@ -67,7 +67,7 @@ class StrainPictures final : public Probe {
   std::string stage_;
   std::uint64_t step_ = 0;
   std::optional<View> view_;
-  Image start_;
+  FilteredImage start_;
   std::vector<Subset> subsets_;
 };
 

@@ -51,7 +51,8 @@ Image moved_waves(const Mat2& gradient, const Vec2& shift, double light = 0) {
 
 /// The largest error of any square's displacement [pixels]; all must be found.
 double worst_error(const Mat2& gradient, const Vec2& shift, double light = 0) {
-  const Correlation pictures(moved_waves(Mat2::Zero(), Vec2::Zero()), moved_waves(gradient, shift, light), 15);
+  const FilteredImage before(moved_waves(Mat2::Zero(), Vec2::Zero()));
+  const Correlation pictures(before, FilteredImage(moved_waves(gradient, shift, light)), 15);
   const SquareGrid grid{.columns = 6, .rows = 6, .left = 35, .bottom = 35, .apart = 18};
   const MatchGrid found = matches(pictures, grid, 6, 20, 0.9);
   double worst = 0;
@@ -84,7 +85,7 @@ TEST(Correlation, FindsTurnsInAnyLight) {
 }
 
 TEST(Correlation, FindsNothingWhereThereIsNothingToSee) {
-  const Image grey(picture_size, picture_size), waves = moved_waves(Mat2::Zero(), Vec2::Zero());
+  const FilteredImage grey(Image(picture_size, picture_size)), waves(moved_waves(Mat2::Zero(), Vec2::Zero()));
   EXPECT_FALSE(Correlation(grey, waves, 15).search(80, 80, 20).has_value());
   EXPECT_FALSE(Correlation(grey, waves, 15).refined(80, 80, {}).has_value());
   EXPECT_FALSE(Correlation(waves, grey, 15).search(80, 80, 20).has_value());
@@ -92,7 +93,7 @@ TEST(Correlation, FindsNothingWhereThereIsNothingToSee) {
 }
 
 TEST(Correlation, LosesWhatLeavesThePicture) {
-  const Image waves = moved_waves(Mat2::Zero(), Vec2::Zero());
+  const FilteredImage waves(moved_waves(Mat2::Zero(), Vec2::Zero()));
   const Correlation pictures(waves, waves, 15);
   EXPECT_TRUE(pictures.has(16, 16) && !pictures.has(15, 16) && !pictures.has(16, 144) && pictures.has(143, 143));
   EXPECT_TRUE(pictures.refined(20, 20, {}).has_value());
@@ -351,7 +352,8 @@ TEST(StrainPictures, BeginsAnewWithEachStage) {
   probe.fields(before);
   EXPECT_GT(probe.fields(after).at(2).values.at(0), 0.9e-4);
   after.stage_name = "next";
-  for (const double moved : probe.fields(after).at(2).values) EXPECT_NEAR(moved, 0, 1e-10);
+  const auto fields = probe.fields(after);
+  for (const double moved : fields.at(2).values) EXPECT_NEAR(moved, 0, 1e-10);
 }
 
 TEST(StrainPictures, SeesTheSpecimenGoOnBeyondAPeriodicSide) {
@@ -365,6 +367,51 @@ TEST(StrainPictures, SeesTheSpecimenGoOnBeyondAPeriodicSide) {
   const Errors found = errors(probe, before, after, Mat3::Identity(), shift);
   EXPECT_EQ(found.found, 1);
   EXPECT_LT(found.worst, 0.02);
+}
+
+// A picture reaches over a search and a subset beyond the specimen: here over five periods.
+TEST(StrainPictures, SeesAsManyPeriodsAsThePictureReachesOver) {
+  FakeWorld world = packing(4, 4);
+  world.box = {Vec3::Zero(), {4e-3, 3e-3, 4e-3}, {true, false, true}};
+  StrainPictures probe;
+  probe.search = 8;
+  probe.prepare(world);
+  const Image image = probe.picture(world);
+  ASSERT_GT(image.width, 5 * 4 * 23);
+  const auto dark = [&](std::ptrdiff_t first, std::ptrdiff_t last, bool columns) {
+    std::ptrdiff_t count = 0;
+    for (std::ptrdiff_t j = columns ? 0 : first; j < (columns ? image.height : last); ++j)
+      for (std::ptrdiff_t i = columns ? first : 0; i < (columns ? last : image.width); ++i)
+        count += image.row(j)[i] == 0;
+    return static_cast<double>(count) / static_cast<double>(columns ? image.height : image.width) /
+           static_cast<double>(last - first);
+  };
+  for (const bool columns : {true, false}) {
+    const std::ptrdiff_t size = columns ? image.width : image.height;
+    for (const std::ptrdiff_t first : {std::ptrdiff_t{0}, size / 2, size - 50})
+      EXPECT_LT(dark(first, first + 50, columns), 0.05) << columns << ' ' << first;
+  }
+}
+
+TEST(StrainPictures, NamesTheComponentsOfItsPlane) {
+  StrainPictures probe;
+  probe.depth_axis = "x";
+  const FakeWorld world = packing(6, 5, 0);
+  probe.prepare(world);
+  EXPECT_THAT(probe.channels().front().components, testing::ElementsAre("yy", "zz", "yz"));
+  const auto fields = probe.fields(world);
+  EXPECT_THAT(fields.at(2).components, testing::ElementsAre("y", "z"));
+  EXPECT_THAT(fields.at(3).components, testing::ElementsAre("yy", "zz", "yz"));
+}
+
+TEST(StrainPictures, HasNoPictureOfASpecimenThatHasGrownTooLarge) {
+  FakeWorld world = packing(6, 5);
+  StrainPictures probe;
+  probe.prepare(world);
+  world.whole.high = {16, 3e-3, 12}, world.stage_name = "next";
+  for (const auto& channel : {"found", "correlation", "strain"})
+    EXPECT_TRUE(std::isnan(channel_values(probe, world, channel).at(0))) << channel;
+  for (const Field& field : probe.fields(world)) EXPECT_TRUE(field.values.empty()) << field.name;
 }
 
 TEST(StrainPictures, IsTheSameStrainWithOtherSpecklesAndMorePixels) {
