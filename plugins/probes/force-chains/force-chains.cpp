@@ -21,6 +21,9 @@ double mean_normal_force(const std::vector<const Contact*>& contacts) {
   return contacts.empty() ? 0 : sum / static_cast<double>(contacts.size());
 }
 
+/// Of an axis whose doubled angle has this sine and cosine: -90 to 90.
+double axis_degrees(double sine, double cosine) { return 90 / std::numbers::pi * std::atan2(sine, cosine); }
+
 /// The bin of a direction; bin 0 begins at the first axis of the plane.
 std::size_t bin_of(double first, double second) {
   constexpr double width = 2 * std::numbers::pi / ForceChainsProbe::bins;
@@ -85,21 +88,20 @@ std::vector<Channel> ForceChainsProbe::channels() const {
        "direction"},
       {"anisotropy", "1", "amplitude a of E = (1 + a cos 2(theta - theta_a)) / 2 pi, fitted to the directions", {}},
       {"anisotropy_direction",
-       "rad",
-       "direction theta_a that most contacts prefer, from the first axis of the plane towards the second, "
-       "-pi/2 to pi/2",
+       "degree",
+       "direction theta_a that most contacts prefer, from the first axis of the plane towards the second, -90 to 90",
        {}},
       {"normal_force_anisotropy",
        "1",
        "a_n of f_n = f_0 (1 + a_n cos 2(theta - theta_n)), fitted to normal forces; NaN where directions or forces "
        "do not tell",
        {}},
-      {"normal_force_direction", "rad", "theta_n, as anisotropy_direction; NaN as above", {}},
+      {"normal_force_direction", "degree", "theta_n, as anisotropy_direction; NaN as above", {}},
       {"tangential_force_anisotropy",
        "1",
        "a_t of f_t = -f_0 a_t sin 2(theta - theta_t), fitted to forces along the contacts in the plane; NaN as above",
        {}},
-      {"tangential_force_direction", "rad", "theta_t, as anisotropy_direction; NaN as above", {}},
+      {"tangential_force_direction", "degree", "theta_t, as anisotropy_direction; NaN as above", {}},
       {"mean_major_stress", "Pa", "mean over the grains of their major stress, positive in compression", {}},
       {"chains", "1", "number of linear force chains, of three grains or more", {}},
       {"chain_grains", "1", "number of grains in chains", {}},
@@ -147,13 +149,13 @@ void ForceChainsProbe::sample(const World& world, std::span<const std::span<doub
   std::copy(force.begin(), force.end(), values[3].begin());
   std::copy(count.begin(), count.end(), values[4].begin());
   values[5][0] = directed > 0 ? 2 * std::hypot(cosines, sines) / directed : 0;
-  values[6][0] = 0.5 * std::atan2(sines, cosines);
+  values[6][0] = axis_degrees(sines, cosines);
 
   const Eigen::Vector3d f_n = normal.factors();
   const Eigen::Vector2d f_t = tangential.factors();
   const double f_0 = f_n[0] > 0 ? f_n[0] : std::numeric_limits<double>::quiet_NaN();
-  values[7][0] = std::hypot(f_n[1], f_n[2]) / f_0, values[8][0] = 0.5 * std::atan2(f_n[2], f_n[1]);
-  values[9][0] = f_t.norm() / f_0, values[10][0] = 0.5 * std::atan2(f_t[0], -f_t[1]);
+  values[7][0] = std::hypot(f_n[1], f_n[2]) / f_0, values[8][0] = axis_degrees(f_n[2], f_n[1]);
+  values[9][0] = f_t.norm() / f_0, values[10][0] = axis_degrees(f_t[0], -f_t[1]);
   sample_chains(world, values.subspan(11));
 }
 

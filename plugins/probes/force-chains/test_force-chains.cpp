@@ -83,7 +83,7 @@ TEST(ForceChains, FindsTheDirectionOfAlignedContacts) {
     const FakeWorld world = world_of({{angle, 1}, {angle + 180, 3}});
     ForceChainsProbe probe;
     EXPECT_NEAR(channel_value(probe, world, "anisotropy"), 2, 1e-12);
-    EXPECT_NEAR(channel_value(probe, world, "anisotropy_direction"), angle * degree, 1e-12);
+    EXPECT_NEAR(channel_value(probe, world, "anisotropy_direction"), angle, 5e-11);
   }
 }
 
@@ -110,7 +110,7 @@ TEST(ForceChains, FindsTheAmplitudeOfADistribution) {
   const FakeWorld world = world_of(contacts);
   ForceChainsProbe probe;
   EXPECT_NEAR(channel_value(probe, world, "anisotropy"), amplitude, 1e-5);
-  EXPECT_NEAR(channel_value(probe, world, "anisotropy_direction"), direction, 1e-5);
+  EXPECT_NEAR(channel_value(probe, world, "anisotropy_direction"), direction / degree, 5e-4);
 }
 
 TEST(ForceChains, TakesWallsOnlyIfAsked) {
@@ -163,9 +163,9 @@ TEST(ForceChains, FindsTheAnisotropiesOfForces) {
   const FakeWorld world = distributed(0.4, 0.3, 0.2, direction);
   ForceChainsProbe probe;
   EXPECT_NEAR(channel_value(probe, world, "normal_force_anisotropy"), 0.3, 1e-12);
-  EXPECT_NEAR(channel_value(probe, world, "normal_force_direction"), direction, 1e-12);
+  EXPECT_NEAR(channel_value(probe, world, "normal_force_direction"), 20, 5e-11);
   EXPECT_NEAR(channel_value(probe, world, "tangential_force_anisotropy"), 0.2, 1e-12);
-  EXPECT_NEAR(channel_value(probe, world, "tangential_force_direction"), direction, 1e-12);
+  EXPECT_NEAR(channel_value(probe, world, "tangential_force_direction"), 20, 5e-11);
 }
 
 // (σ1 − σ3) / (σ1 + σ3) = (a + a_n + a_t) / 2 / (1 + a a_n / 2) (Rothenburg, Bathurst 1989, eq. 15 with the product
