@@ -169,7 +169,7 @@ TEST(VoidRatio, KnowsTheCubicLattice) {
   EXPECT_THAT(channel_value(probe, world, "smallest"), near);
   EXPECT_THAT(channel_value(probe, world, "largest"), near);
   EXPECT_THAT(channel_value(probe, world, "mean"), near);
-  EXPECT_NEAR(channel_value(probe, world, "scatter"), 0, 1e-12);
+  EXPECT_NEAR(channel_value(probe, world, "standard_deviation"), 0, 1e-12);
   const auto cells = field_values(probe, world, "void_ratio");
   EXPECT_EQ(cells.size(), 64u);  // cubes of 5, moved by 1, in 8
   EXPECT_THAT(cells, testing::Each(near));
@@ -196,7 +196,7 @@ TEST(VoidRatio, OfCellsAndSlicesAgreesWithThatOfEachBox) {
   }
   const double mean = sum / 48;
   EXPECT_NEAR(channel_value(probe, world, "mean"), mean, 1e-12);
-  EXPECT_NEAR(channel_value(probe, world, "scatter"), std::sqrt(squares / 48 - mean * mean), 1e-9);
+  EXPECT_NEAR(channel_value(probe, world, "standard_deviation"), std::sqrt(squares / 48 - mean * mean), 1e-9);
   EXPECT_EQ(channel_value(probe, world, "smallest"), *std::ranges::min_element(ratios));
   EXPECT_EQ(channel_value(probe, world, "largest"), *std::ranges::max_element(ratios));
   EXPECT_NEAR(channel_value(probe, world, "void_ratio"), void_ratio(world, region), 1e-10);
@@ -252,6 +252,44 @@ TEST(VoidRatio, LeavesCellsOutThatAreMostlyBehindWalls) {
   world.surface.clear(), world.wall.clear();
   add_plane(world, {0, 0, 6}, {0, 0, 1});  // nothing is left before it
   EXPECT_TRUE(std::isnan(channel_value(probe, world, "largest")));
+}
+
+// Grains that a wall has left behind it take room that is none: neither −1 nor anything above says something there.
+TEST(VoidRatio, IsUnknownBehindWalls) {
+  FakeWorld world = cubic(6);
+  add_plane(world, {0, 0, 3.2}, {0, 0, 1});
+  VoidRatio probe;
+  probe.averaging.cell_size = 1, probe.averaging.slices = 6;
+  const auto ratios = field_values(probe, world, "void_ratio"),
+             profile = channel_values(probe, world, "void_ratio_profile");
+  ASSERT_EQ(ratios.size(), 216u);
+  for (std::size_t n = 0; n < ratios.size(); ++n) EXPECT_EQ(std::isnan(ratios[n]), n % 6 < 3) << n;
+  for (std::size_t s = 0; s < 6; ++s) EXPECT_EQ(std::isnan(profile[s]), s < 3) << s;
+  EXPECT_NEAR(profile[5], 1 / sixth - 1, 1e-10);
+  EXPECT_NEAR(channel_value(probe, world, "smallest"), 0.8 / sixth - 1, 1e-10);
+  EXPECT_TRUE(std::isfinite(channel_value(probe, world, "mean")));
+  probe.averaging.region_low = Vec3(0, 0, 2.4), probe.averaging.region_high = Vec3(6, 6, 3.3);
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "void_ratio"))) << "more solids than room";
+  probe.averaging.region_high = Vec3(6, 6, 3.1);
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "void_ratio"))) << "no room";
+  world.position.assign(1, {3, 3, 5, 0.5});
+  EXPECT_TRUE(std::isnan(channel_value(probe, world, "void_ratio"))) << "no room and no solids";
+}
+
+TEST(VoidRatio, IsNoneInsideOfAGrain) {
+  FakeWorld world;
+  world.add({0, 0, 0}, 2);
+  VoidRatio probe;
+  probe.averaging.region_low = Vec3(-0.3, 0.1, -0.5), probe.averaging.region_high = Vec3(0.9, 0.2, 0.7);
+  probe.averaging.cell_size = probe.averaging.cell_step = 0.1;
+  EXPECT_NEAR(channel_value(probe, world, "void_ratio"), 0, 1e-6);
+  for (const double ratio : field_values(probe, world, "void_ratio")) EXPECT_NEAR(ratio, 0, 1e-6);
+}
+
+TEST(VoidRatio, SaysWhereEachNumberOfItsProfileIs) {
+  const auto channels = VoidRatio().channels();
+  EXPECT_EQ(channels.back().name, "void_ratio_profile");
+  EXPECT_EQ(channels.back().coordinate, "place");
 }
 
 TEST(VoidRatio, CountsTheUnionOfClumpsOnce) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../cell_contents.hpp"
 #include "free_volume.hpp"
 #include "grit/plugin.hpp"
 
@@ -21,9 +22,16 @@ struct Volumes {
     free += other.free, solid += other.solid;
     return *this;
   }
-  /// Infinite without solids.
-  double void_ratio() const { return solid > 0 ? free / solid - 1 : std::numeric_limits<double>::infinity(); }
 };
+
+constexpr double negligible = 1e-6;  // of a box's volume: more than what rounding makes of nothing
+
+/// Of a box; infinite without solids. NaN behind walls, and where more solids lie than there is room before them.
+double void_ratio(const Volumes& in, const Region& box) {
+  const double nothing = negligible * box.volume();
+  if (!(in.free > nothing && in.free >= in.solid - nothing)) return std::numeric_limits<double>::quiet_NaN();
+  return in.solid > 0 ? in.free / in.solid - 1 : std::numeric_limits<double>::infinity();
+}
 
 /// Of each cell; none without bodies.
 std::vector<Volumes> volumes(const World& world, const AveragingCells& cells) {
@@ -32,20 +40,17 @@ std::vector<Volumes> volumes(const World& world, const AveragingCells& cells) {
   std::vector<Volumes> parts(cells.parts());
   const auto free = free_volumes(world, cells, surface_error * diameter);
   for (std::size_t part = 0; part < parts.size(); ++part) parts[part].free = free[part];
-  const auto positions = world.positions();
-  const auto shares = world.volume_shares();
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    cells.share_out_sphere(xyz(positions[i]), positions[i].w, [&](std::size_t part, double volume) {
-      parts[part].solid += shares.empty() ? volume : shares[i] * volume;
-    });
+  share_out_solids(world, cells, [&](std::size_t part, double volume) { parts[part].solid += volume; });
   return cells.sum_up(parts);
 }
 
 /// Whether enough of a cell is before the walls for its void ratio to say something.
-bool tells(const Volumes& cell, const Region& box) { return cell.solid > 0 && cell.free >= 0.5 * box.volume(); }
+bool tells(const Volumes& cell, const Region& box) {
+  return std::isfinite(void_ratio(cell, box)) && cell.free >= 0.5 * box.volume();
+}
 
 struct Spread {
-  double smallest, largest, mean, scatter;
+  double smallest, largest, mean, standard_deviation;
 };
 Spread spread(const std::vector<double>& ratios) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -60,20 +65,21 @@ Spread spread(const std::vector<double>& ratios) {
 
 }  // namespace
 
-void VoidRatio::declare(Parameters& p) { averaging.declare(p, "the specimen's, the grooves of its walls included"); }
+void VoidRatio::declare(Parameters& p) {
+  averaging.declare(p, "the specimen's, out to the far side of its walls, be they blocks or grooved");
+}
 
 std::vector<Channel> VoidRatio::channels() const {
   const std::string which = "of the cells that have solids and half of their volume before the walls; NaN without any";
-  return {{"void_ratio", "1", "of the region, up to the surface of walls; infinite without solids", {}},
+  const std::string without = "infinite without solids, NaN behind walls";
+  const Channel place = averaging.place_channel();
+  return {{"void_ratio", "1", "of the region, up to the surface of walls; " + without, {}},
           {"smallest", "1", which, {}},
           {"largest", "1", which, {}},
           {"mean", "1", which, {}},
-          {"scatter", "1", "standard deviation " + which, {}},
-          averaging.place_channel(),
-          {"void_ratio_profile",
-           "1",
-           "of each slice; infinite without solids",
-           {static_cast<std::size_t>(averaging.slices)}}};
+          {"standard_deviation", "1", which, {}},
+          place,
+          {"void_ratio_profile", "1", "of each slice; " + without, place.shape, place.name}};
 }
 
 void VoidRatio::sample(const World& world, std::span<const std::span<double>> values) {
@@ -82,26 +88,29 @@ void VoidRatio::sample(const World& world, std::span<const std::span<double>> va
   std::vector<double> ratios;
   const auto of_cells = volumes(world, cells);
   for (std::size_t n = 0; n < of_cells.size(); ++n)
-    if (tells(of_cells[n], cells.cell(n))) ratios.push_back(of_cells[n].void_ratio());
+    if (tells(of_cells[n], cells.cell(n))) ratios.push_back(void_ratio(of_cells[n], cells.cell(n)));
   const Spread of = spread(ratios);
-  values[1][0] = of.smallest, values[2][0] = of.largest, values[3][0] = of.mean, values[4][0] = of.scatter;
+  values[1][0] = of.smallest, values[2][0] = of.largest, values[3][0] = of.mean;
+  values[4][0] = of.standard_deviation;
 
   averaging.fill_places(box, values[5]);
   std::ranges::fill(values[6], std::numeric_limits<double>::infinity());
   Volumes whole;
-  const auto of_slices = volumes(world, averaging.profile(world, box));
-  for (std::size_t s = 0; s < of_slices.size(); ++s) values[6][s] = of_slices[s].void_ratio(), whole += of_slices[s];
-  values[0][0] = whole.void_ratio();
+  const AveragingCells slices = averaging.profile(world, box);
+  const auto of_slices = volumes(world, slices);
+  for (std::size_t s = 0; s < of_slices.size(); ++s)
+    values[6][s] = void_ratio(of_slices[s], slices.cell(s)), whole += of_slices[s];
+  values[0][0] = of_slices.empty() ? std::numeric_limits<double>::infinity() : void_ratio(whole, box);
 }
 
 std::vector<Field> VoidRatio::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.envelope()), world));
   std::vector<Field> fields = map_of(cells);
-  Field ratio{"void_ratio", "1", "up to the surface of walls; infinite without solids", 1, {}};
+  Field ratio{"void_ratio", "1", "up to the surface of walls; infinite without solids, NaN behind walls", 1, {}};
   Field share{"free_share", "1", "of the cell's volume, what lies on the bodies' side of all walls", 1, {}};
   const auto each = volumes(world, cells);
   for (std::size_t n = 0; n < each.size(); ++n) {
-    ratio.values.push_back(each[n].void_ratio());
+    ratio.values.push_back(void_ratio(each[n], cells.cell(n)));
     share.values.push_back(each[n].free / cells.cell(n).volume());
   }
   fields.push_back(std::move(ratio)), fields.push_back(std::move(share));
