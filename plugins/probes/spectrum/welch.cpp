@@ -35,7 +35,8 @@ void Welch::add(double value) {
   values_.erase(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(points_ / 2));
   mean_.assign(mean_.size(), 0);  // anew from all windows, so that no rounding gathers
   for (const auto& density : densities_)
-    for (std::size_t k = 0; k < mean_.size(); ++k) mean_[k] += density[k] / static_cast<double>(densities_.size());
+    for (std::size_t k = 0; k < mean_.size(); ++k) mean_[k] += density[k];
+  for (double& one : mean_) one /= static_cast<double>(densities_.size());
 }
 
 }  // namespace grit
