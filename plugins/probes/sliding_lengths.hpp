@@ -52,9 +52,16 @@ class SlidingLengths {
   int along() const { return along_; }  ///< 0, 1, 2: x, y, z
   int across() const { return across_; }
 
+  /// Where both walls are along the wall, from which displacements count [m]; 0: as they were when the stage began.
+  struct Start {
+    double wall = 0, driver = 0;
+  };
+  Start now(const World& world) const {
+    return {world.walls()[wall_].stage_position[along_], world.walls()[driver_].stage_position[along_]};
+  }
   struct Point {
     double along, across;  ///< where it is now [m]
-    double moved;          ///< along the wall since the stage began [m]
+    double moved;          ///< along the wall since the start [m]
   };
   /// m; NaN before `driven_by` has moved.
   struct Lengths {
@@ -62,15 +69,15 @@ class SlidingLengths {
     double contact_factor() const { return on_surface / (on_surface + internal); }
   };
   /// Strips without a point are neither.
-  Lengths of(const World& world, std::span<const Point> points) const {
+  Lengths of(const World& world, std::span<const Point> points, const Start& start) const {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
-    const WallView& surface = world.walls()[wall_];
-    const double driven = world.walls()[driver_].stage_position[along_] - surface.stage_position[along_];
+    const Start at = now(world);
+    const double moved = at.wall - start.wall, driven = at.driver - start.driver - moved;
     const Region box = specimen_box(world);
     const double diameter = world.mean_diameter(), length = box.high[along_] - box.low[along_];
     const double strips = std::max(1.0, std::round(length / (strip * diameter)));
     if (driven == 0 || !(diameter > 0) || !(length > 0) || !(strips < 1e7)) return {unknown, unknown};
-    const bool below = surface.normal[across_] > 0;
+    const bool below = world.walls()[wall_].normal[across_] > 0;
     const double face = (below ? box.low : box.high)[across_];
     struct Sum {
       double moved = 0, count = 0;
@@ -86,7 +93,7 @@ class SlidingLengths {
     Lengths found{0, 0};
     for (const Sum& sum : sums) {
       if (sum.count == 0) continue;
-      const double slip = sum.moved / sum.count - surface.stage_position[along_];
+      const double slip = sum.moved / sum.count - moved;
       (slip / driven > share ? found.on_surface : found.internal) += length / strips;
     }
     return found;

@@ -56,13 +56,14 @@ class Geometry {
   virtual double area() const = 0;
   /// Mean unit normal, towards the side of the bodies; zero if there is none to speak of.
   virtual Vec3 normal() const = 0;
-  /// Whether it is made of plane faces that are wide: without grooves, curves or facets that a body could be as large as.
+  /// Whether it is made of plane faces that are wide: without grooves, curves or facets that a body could be as large
+  /// as.
   virtual bool flat() const { return false; }
   /// Appends the touches of each sphere, in the order of the spheres and, for one sphere, by feature. What is touched
   /// at an edge or corner that two faces share counts once.
   virtual void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const = 0;
-  /// Whether a sphere is within `reach` of the shape: may say yes too often, never no when it touches, nor when it would
-  /// say yes to a smaller sphere within it.
+  /// Whether a sphere is within `reach` of the shape: may say yes too often, never no when it touches, nor when it
+  /// would say yes to a smaller sphere within it.
   virtual bool near(const Pose& pose, const Vec3& centre, double reach) const = 0;
   /// Triangles (three corners each) for pictures.
   virtual std::vector<Vec3> triangles() const = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -35,6 +36,8 @@ void StrainPictures::declare(Parameters& p) {
       .below(1)
       .doc("zero-mean normalised correlation from which on a subset counts as found");
   p.add("seed", seed).at_least(0).doc("of the speckles on the grains");
+  p.add("sliding", sliding)
+      .doc("tells where the specimen slides on a wall and where it shears in itself; left out: not told");
   p.check(
       [this](const Complain& complain) {
         if (window < 2 * step)
@@ -81,6 +84,7 @@ void StrainPictures::prepare(const World& world) {
     throw Error(who + ", /pixels_per_diameter: a picture of the specimen would have " + std::to_string(count * 1e-6) +
                 " million pixels with " + std::to_string(pixels_per_diameter) + " a diameter; at most " +
                 std::to_string(most_pixels * 1e-6) + " million; use fewer, or a smaller search");
+  if (sliding) sliding->prepare(world, axes().right, axes().up, who);
   camera_.emplace(static_cast<std::uint64_t>(seed), pixels_per_diameter);
   began_ = false;
 }
@@ -157,6 +161,7 @@ Image StrainPictures::picture(const World& world) {
 void StrainPictures::look(const World& world) {
   if (!began_ || stage_ != world.stage()) {
     began_ = true, stage_ = world.stage();
+    if (sliding) walls_ = sliding->now(world);
     view_ = view(world);
     start_ = view_ ? FilteredImage(picture(world, *view_)) : FilteredImage();
   } else if (step_ == world.step()) {
@@ -204,7 +209,7 @@ std::vector<StrainPictures::Subset> StrainPictures::found(Image now) const {
 
 std::vector<Channel> StrainPictures::channels() const {
   const std::string a{"xyz"[axes().right]}, b{"xyz"[axes().up]};
-  return {
+  std::vector<Channel> channels{
       {"strain",
        "1",
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
@@ -216,6 +221,8 @@ std::vector<Channel> StrainPictures::channels() const {
       {"largest_shear", "1", "largest magnitude of E_" + a + b + " of a window; 0 without any", {}},
       {"found", "1", "share of the subsets that were found; NaN without any", {}},
       {"correlation", "1", "mean of the subsets that were found; NaN without any", {}}};
+  if (sliding) std::ranges::move(SlidingLengths::channels(), std::back_inserter(channels));
+  return channels;
 }
 
 void StrainPictures::sample(const World& world, std::span<const std::span<double>> values) {
@@ -231,6 +238,14 @@ void StrainPictures::sample(const World& world, std::span<const std::span<double
   values[1][0] = largest;
   values[2][0] = subsets_.empty() ? unknown : count / static_cast<double>(subsets_.size());
   values[3][0] = count > 0 ? sum / count : unknown;
+  if (!sliding) return;
+  const auto component = [&](const Vec2& of, int axis) { return of[axis == axes().right ? 0 : 1]; };
+  std::vector<SlidingLengths::Point> points;
+  for (const Subset& one : subsets_)
+    points.push_back({.along = component(one.start + one.moved, sliding->along()),
+                      .across = component(one.start + one.moved, sliding->across()),
+                      .moved = component(one.moved, sliding->along())});
+  SlidingLengths::fill(sliding->of(world, points, walls_), values.subspan(4));
 }
 
 std::vector<Field> StrainPictures::fields(const World& world) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../sliding_lengths.hpp"
 #include "camera.hpp"
 #include "correlation.hpp"
 #include "grit/probe.hpp"
@@ -22,10 +23,12 @@ class StrainPictures final : public Probe {
   double subset = 1.2, step = 0.5, window = 3, search = 4;  ///< mean diameters
   double least_correlation = 0.7;
   std::int64_t seed = 1;
+  std::optional<SlidingLengths> sliding;
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::rotation; }
-  /// Throws Error where the domain is periodic along the depth axis, or where the picture would have too many pixels.
+  /// Throws Error where the domain is periodic along the depth axis, where the picture would have too many pixels, or
+  /// for a wall that cannot be slid along in the plane.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
@@ -68,6 +71,7 @@ class StrainPictures final : public Probe {
   std::uint64_t step_ = 0;
   std::optional<View> view_;
   FilteredImage start_;
+  SlidingLengths::Start walls_;
   std::vector<Subset> subsets_;
 };
 

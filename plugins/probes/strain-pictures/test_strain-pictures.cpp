@@ -344,6 +344,33 @@ TEST(StrainPictures, IsLocal) {
   EXPECT_GT(channel_value(probe, after, "largest_shear"), 0.05);
 }
 
+TEST(StrainPictures, TellsSlidingFromShearAsGrainsDo) {
+  FakeWorld before = packing(24, 12);
+  for (const double sign : {1.0, -1.0}) {
+    WallView wall;
+    wall.name = sign > 0 ? "low" : "high", wall.normal = sign * Vec3::UnitZ();
+    wall.position = wall.stage_position = Vec3(sign > 0 ? 7e-3 : 8e-3, 0, 0);  // before the first look
+    before.wall.push_back(wall);
+  }
+  // Then the wall below goes back by 0.6 diameters, with what lies on the right of it.
+  const double way = 0.6 * before.mean_diameter(), edge = 0.4 * before.whole.high.x();
+  FakeWorld after = before;
+  after.steps = 1, after.wall[0].stage_position.x() -= way;
+  for (std::size_t i = 0; i < after.position.size(); ++i) {
+    const bool stuck = after.position[i].z < 3 * before.mean_diameter() && after.position[i].x > edge;
+    after.position[i].x -= stuck ? way : 0;
+  }
+  StrainPictures probe;
+  probe.sliding.emplace();
+  probe.sliding->wall = "low", probe.sliding->driven_by = "high", probe.sliding->reach = 1.5;
+  probe.prepare(before);
+  EXPECT_TRUE(std::isnan(channel_value(probe, before, "contact_factor")));
+  EXPECT_NEAR(channel_value(probe, after, "contact_factor"), 0.4, 0.06);
+  EXPECT_NEAR(channel_value(probe, after, "surface_length") + channel_value(probe, after, "internal_length"),
+              before.whole.high.x(), 3 * before.mean_diameter())
+      << "few strips are lost";
+}
+
 TEST(StrainPictures, BeginsAnewWithEachStage) {
   const FakeWorld before = packing();
   FakeWorld after = moved(before, Mat3::Identity(), {1e-4, 0, 0});

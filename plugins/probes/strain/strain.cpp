@@ -114,7 +114,7 @@ void Strain::sample(const World& world, std::span<const std::span<double>> value
     points.push_back({.along = xyz(world.positions()[i])[sliding->along()],
                       .across = xyz(world.positions()[i])[sliding->across()],
                       .moved = world.displacements()[i][sliding->along()]});
-  SlidingLengths::fill(sliding->of(world, points), values.subspan(2));
+  SlidingLengths::fill(sliding->of(world, points, {}), values.subspan(2));
 }
 
 std::vector<Field> Strain::fields(const World& world) {

@@ -149,8 +149,10 @@ class Carver {
     const auto count = static_cast<double>(halves.size());
     by_halves /= count;
     const double side = box.size.maxCoeff();
-    const bool agree = std::abs(by_halves - by_planes(box, cut)) * side <= error_;
-    if ((agree && side <= coarsest * error_) || side <= finest * error_) return by_halves;
+    const double differ = std::abs(by_halves - by_planes(box, cut)) * side;
+    const bool as_planes = differ <= error_ && side <= coarsest * error_,
+               as_flat_walls = differ <= flattest * error_ && side <= widest * error_ && all_flat(cut);
+    if (as_planes || as_flat_walls || side <= finest * error_) return by_halves;
     double sum = 0;
     for (std::size_t i = 0; i < halves.size(); ++i) sum += solid_share(halves[i], cuts[i]);
     return sum / count;
@@ -169,6 +171,10 @@ class Carver {
     return 1 - open;
   }
 
+  bool all_flat(const Cut& cut) const {
+    return std::ranges::all_of(cut.walls, [&](const Near& near) { return world_.walls()[near.wall].flat; });
+  }
+
   /// Whether there is solid on the far side of a surface, which there is not of a sheet that has two sides, or beyond
   /// its rim.
   bool solid_beyond(const Box& box, const Near& near) const {
@@ -178,7 +184,9 @@ class Carver {
     return beyond && beyond->distance < 0;
   }
 
-  static constexpr double coarsest = 250, finest = 32;  // sides of boxes, over the error
+  // Sides of boxes, over the error; of flat walls, which have no grooves to be missed, and how little halves may
+  // differ.
+  static constexpr double coarsest = 250, finest = 32, widest = 4000, flattest = 1e-3;
 
   const World& world_;
   const AveragingCells& cells_;

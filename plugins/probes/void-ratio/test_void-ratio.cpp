@@ -111,6 +111,37 @@ TEST(ShareBelow, IsExactAlongTheAxes) {
   EXPECT_NEAR(share_below({1, 1, 1}, {1e-7, 3e-6, 1}, 0.2), 0.7, 1e-9);
 }
 
+TEST(FreeVolume, TakeFlatWallsAtOnce) {
+  const Region box{Vec3::Zero(), {4, 3, 2}};
+  int asked = 0;
+  const auto volume = [&](bool flat) {
+    FakeWorld world = cubic(2);
+    for (const auto& [point, normal] : {std::pair<Vec3, Vec3>({0, 0, 0.3}, {0, 0, 1}), {{3.5, 0, 0}, {-1, 0, 0}}})
+      add_wall(world, [&asked, surface = flat_surface(point, normal)](const Vec3& x) { return ++asked, surface(x); });
+    for (WallView& wall : world.wall) wall.flat = flat;
+    asked = 0;
+    return free_volume(world, box, {4, 3, 2}, 1e-3);
+  };
+  EXPECT_NEAR(volume(false), 3.5 * 3 * 1.7, 1e-12);
+  const int before = asked;
+  EXPECT_NEAR(volume(true), 3.5 * 3 * 1.7, 1e-12);
+  EXPECT_LT(20 * asked, before);
+}
+
+TEST(FreeVolume, FindEdgesOfFlatWalls) {
+  // Solid below z = 0.4 where x is below 0.3.
+  FakeWorld world = cubic(2);
+  add_wall(world, [](const Vec3& x) {
+    const Vec3 out(std::max(0.0, x.x() - 0.3), 0, std::max(0.0, x.z() - 0.4));
+    if (out.norm() > 0) return Clearance{out.norm(), -out.normalized()};
+    return x.x() - 0.3 > x.z() - 0.4 ? Clearance{x.x() - 0.3, -Vec3::UnitX()} : Clearance{x.z() - 0.4, -Vec3::UnitZ()};
+  });
+  world.wall.back().flat = true;
+  constexpr double error = 1e-3;
+  for (const double cells : {1.0, 2.0, 3.0})
+    EXPECT_NEAR(free_volume(world, {Vec3::Zero(), Vec3::Ones()}, {cells, 1, cells}, error), 1 - 0.3 * 0.4, 0.7 * error);
+}
+
 TEST(FreeVolume, IsAllWithoutWalls) {
   const FakeWorld world = cubic(2);
   EXPECT_DOUBLE_EQ(free_volume(world, world.whole, {1, 3, 4}, 1e-3), 8);
