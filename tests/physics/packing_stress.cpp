@@ -87,11 +87,10 @@ TEST(PackingStress, OfEachSliceBearsWhatItsWallsPressWith) {
     ASSERT_NE(wall, walls.end());
     const Vec3 pressed = wall->force / wall->area;
     const auto values = sampled(t, letter);
-    const auto& profile = values.at("stress_profile");
+    const auto& profile = values.at("stress_profile_" + letter + letter);
     // The other walls are smooth: any section across the axis bears along it what the wall at its end feels.
     for (std::size_t s = 0; s < 13; ++s)
-      EXPECT_NEAR(profile[9 * s + 4 * static_cast<std::size_t>(axis)], pressed[axis], 1e-8 * pressed.norm())
-          << letter << ", slice " << s;
+      EXPECT_NEAR(profile[s], pressed[axis], 1e-8 * pressed.norm()) << letter << ", slice " << s;
     EXPECT_GT(pressed.norm(), 1e3) << "pressed";
   }
 }
@@ -114,12 +113,14 @@ TEST(PackingStress, CouplesChangeAsForcesAreAsymmetric) {
   while (unrest(t.world()).unbalanced_force > 1e-7 && t.world().step() < 60000) t.step(100);
   ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-7);
   const auto values = sampled(t, "z");
-  const auto &stress = values.at("stress_profile"), &couple = values.at("couple_stress_profile");
   const double thickness = side_length / slices;
-  const auto couple_at = [&](std::size_t s) { return Vec3(couple[9 * s + 2], couple[9 * s + 5], couple[9 * s + 8]); };
+  const auto couple_at = [&](std::size_t s) {
+    const auto of = [&](const char* ij) { return values.at("couple_stress_profile_" + std::string(ij))[s]; };
+    return Vec3(of("xz"), of("yz"), of("zz"));
+  };
   const auto skew_at = [&](std::size_t s) {
-    const double* const of = &stress[9 * s];
-    return Vec3(of[7] - of[5], of[2] - of[6], of[3] - of[1]);
+    const auto of = [&](const char* ij) { return values.at("stress_profile_" + std::string(ij))[s]; };
+    return Vec3(of("zy") - of("yz"), of("xz") - of("zx"), of("yx") - of("xy"));
   };
   // From the middle between the first two layers of grains to that between the last two.
   const std::size_t from = 100, to = 500;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "../averaging_cells.hpp"
+#include "../cell_contents.hpp"
 
 namespace grit {
 
@@ -22,36 +22,22 @@ struct Sums {
 
 }  // namespace
 
-std::vector<CellAverage> cell_averages(const World& world, const Region& box, int depth, double size, double step) {
-  Vec3 sizes = Vec3::Constant(size);
-  if (size > 0) sizes[depth] = std::numeric_limits<double>::infinity();
-  const AveragingCells cells(world.cell(), box, sizes, Vec3::Constant(step));
+std::vector<CellAverage> cell_averages(const World& world, const AveragingCells& cells) {
   std::vector<Sums> parts(cells.parts());
-
-  const auto positions = world.positions();
-  const auto shares = world.volume_shares();
   const Grains grains = grains_of(world);
   std::vector<double> touching(grains.centre.size());
-  for (const auto& contact : world.contacts()) {
-    const Branch branch = branch_of(world, contact);
-    const Mat3 load = contact.force * branch.way.transpose();
-    cells.share_out_branch(branch,
-                           [&](std::size_t part, double from, double to) { parts[part].load += (to - from) * load; });
+  for (const auto& contact : world.contacts())
     if (!contact.with_wall) ++touching[grains.of_body[contact.a]], ++touching[grains.of_body[contact.b]];
-  }
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    cells.share_out_sphere(xyz(positions[i]), positions[i].w, [&](std::size_t part, double volume) {
-      parts[part].solid += shares.empty() ? volume : shares[i] * volume;
-    });
+  share_out_contacts(world, cells, [&](std::size_t part, const Piece& piece) { parts[part].load += piece.load; });
+  share_out_solids(world, cells, [&](std::size_t part, double volume) { parts[part].solid += volume; });
   for (std::size_t g = 0; g < touching.size(); ++g)
     cells.place(grains.centre[g], [&](std::size_t part) { ++parts[part].grains, parts[part].touching += touching[g]; });
 
   std::vector<CellAverage> averages;
   averages.reserve(cells.cells());
   for (const Sums& sums : cells.sum_up(parts)) {
-    const Region region = cells.cell(averages.size());
-    const double volume = region.volume();
-    averages.push_back({region, sums.solid > 0 ? volume / sums.solid - 1 : std::numeric_limits<double>::infinity(),
+    const double volume = cells.cell(averages.size()).volume();
+    averages.push_back({sums.solid > 0 ? volume / sums.solid - 1 : std::numeric_limits<double>::infinity(),
                         sums.grains > 0 ? sums.touching / sums.grains : 0, sums.load / volume});
   }
   return averages;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../specimen.hpp"
+#include "../stress_invariants.hpp"
 #include "../wall_names.hpp"
 #include "cell_averages.hpp"
 #include "grit/plugin.hpp"
@@ -37,13 +38,6 @@ Coordination coordination(const World& world) {
   const auto grains = static_cast<double>(touches.size());
   if (touches.empty()) return {};
   return {all / grains, held > 0 ? of_held / held : 0, 1 - held / grains};
-}
-
-/// q = sqrt(3/2 s : s), s the deviator of the symmetric part.
-double deviatoric(const Mat3& stress) {
-  const Mat3 symmetric = 0.5 * (stress + stress.transpose());
-  const Mat3 deviator = symmetric - symmetric.trace() / 3 * Mat3::Identity();
-  return std::sqrt(1.5) * deviator.norm();
 }
 
 struct Figures {
@@ -153,7 +147,7 @@ void PackingProbe::sample(const World& world, std::span<const std::span<double>>
       .coordination_number_mechanical = mechanical,
       .rattler_share = rattlers,
       .mean_stress = p,
-      .deviatoric_stress = deviatoric(stress),
+      .deviatoric_stress = grit::deviatoric_stress(stress),
       .kinetic_energy = rest.kinetic_energy,
       .unbalanced_force = rest.unbalanced_force,
       .mean_contact_force = rest.mean_contact_force,
@@ -167,32 +161,23 @@ void PackingProbe::sample(const World& world, std::span<const std::span<double>>
 }
 
 std::vector<Field> PackingProbe::fields(const World& world) {
-  const double d50 = world.mean_diameter();
-  const auto cells = cell_averages(world, specimen_box(world), depth_axis[0] - 'x', cell_size * d50, cell_step * d50);
-  std::vector<Field> fields{
-      {"centre", "m", "centre of an averaging cell", 3, {}},
-      {"size", "m", "from one cell to the next, as they overlap; of the cell where there is no other", 3, {}},
-      {"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}},
-      {"coordination_number",
-       "1",
-       "touching grains of a grain, over the grains centred in the cell; 0 without any",
-       1,
-       {}},
-      {"stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}}};
-  for (auto& field : fields) field.values.reserve(field.width * cells.size());
-  Vec3 size = Vec3::Zero();
-  for (int axis = 0; axis < 3 && !cells.empty(); ++axis) {
-    const Region &first = cells.front().region, &last = cells.back().region;
-    size[axis] = last.low[axis] > first.low[axis] ? cell_step * d50 : first.high[axis] - first.low[axis];
+  Averaging averaging;
+  averaging.cell_size = cell_size, averaging.cell_step = cell_step, averaging.depth_axis = depth_axis;
+  const AveragingCells cells = averaging.cells(world, specimen_box(world));
+  std::vector<Field> fields = map_of(cells);
+  Field ratio{"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}};
+  Field touching{"coordination_number",
+                 "1",
+                 "touching grains of a grain, over the grains centred in the cell; 0 without any",
+                 1,
+                 {}};
+  Field stress{
+      "stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}};
+  for (const CellAverage& cell : cell_averages(world, cells)) {
+    ratio.values.push_back(cell.void_ratio), touching.values.push_back(cell.coordination_number);
+    for (int i = 0; i < 9; ++i) stress.values.push_back(cell.stress(i / 3, i % 3));
   }
-  for (const auto& cell : cells) {
-    const Vec3 centre = 0.5 * (cell.region.low + cell.region.high);
-    fields[0].values.insert(fields[0].values.end(), centre.begin(), centre.end());
-    fields[1].values.insert(fields[1].values.end(), size.begin(), size.end());
-    fields[2].values.push_back(cell.void_ratio);
-    fields[3].values.push_back(cell.coordination_number);
-    for (int i = 0; i < 9; ++i) fields[4].values.push_back(cell.stress(i / 3, i % 3));
-  }
+  for (Field* field : {&ratio, &touching, &stress}) fields.push_back(std::move(*field));
   return fields;
 }
 

@@ -207,9 +207,16 @@ TEST(AveragingCells, KnowTheirStripsForAnySizeAndStep) {
   }
 }
 
+/// Cells of this size, as deep as the specimen along one axis, moved by this step.
+AveragingCells columns(const FakeWorld& world, int depth, double size, double step) {
+  Vec3 sizes = Vec3::Constant(size);
+  sizes[depth] = std::numeric_limits<double>::infinity();
+  return {world.box, world.whole, sizes, Vec3::Constant(step)};
+}
+
 TEST(AveragingCells, AreOneWhereTheSpecimenIsSmall) {
   const FakeWorld world = cubic(3, 1, {1, 2, 3});
-  const auto cells = cell_averages(world, world.whole, 1, 5, 1);
+  const auto cells = cell_averages(world, columns(world, 1, 5, 1));
   ASSERT_EQ(cells.size(), 1u);
   EXPECT_NEAR(cells[0].void_ratio, 1 / sixth - 1, 1e-10);
   EXPECT_NEAR((cells[0].stress - Mat3(Vec3(1, 2, 3).asDiagonal())).norm(), 0, 1e-10);
@@ -218,7 +225,7 @@ TEST(AveragingCells, AreOneWhereTheSpecimenIsSmall) {
 
 TEST(AveragingCells, KnowTheCubicLattice) {
   const FakeWorld world = cubic(8, 1, {1, 2, 3});
-  const auto cells = cell_averages(world, world.whole, 1, 5, 1);
+  const auto cells = cell_averages(world, columns(world, 1, 5, 1));
   ASSERT_EQ(cells.size(), 16u);
   for (const auto& cell : cells) {  // whole periods, wherever they begin
     EXPECT_NEAR(cell.void_ratio, 1 / sixth - 1, 1e-10);
@@ -235,16 +242,19 @@ TEST_P(AveragingCellsOf, RandomGrainsAgreeWithAveragesOfEachBox) {
   std::vector<double> touching(world.position.size());
   for (const auto& contact : world.contact)
     if (!contact.with_wall) ++touching[contact.a], ++touching[contact.b];
-  const auto cells = cell_averages(world, world.whole, depth, size, step);
-  ASSERT_GT(cells.size(), 3u);
-  for (const auto& cell : cells) {
-    EXPECT_NEAR(cell.void_ratio, void_ratio(world, cell.region), 1e-9);
-    const Mat3 stress = mean_stress(world, cell.region);
+  const AveragingCells cells = columns(world, depth, size, step);
+  const auto averages = cell_averages(world, cells);
+  ASSERT_GT(averages.size(), 3u);
+  for (std::size_t n = 0; n < averages.size(); ++n) {
+    const CellAverage& cell = averages[n];
+    const Region region = cells.cell(n);
+    EXPECT_NEAR(cell.void_ratio, void_ratio(world, region), 1e-9);
+    const Mat3 stress = mean_stress(world, region);
     EXPECT_NEAR((cell.stress - stress).norm(), 0, 1e-9);
     double grains = 0, touches = 0;
     for (std::size_t i = 0; i < touching.size(); ++i) {
       const Vec3 centre = xyz(world.position[i]);
-      if ((centre.array() >= cell.region.low.array()).all() && (centre.array() < cell.region.high.array()).all())
+      if ((centre.array() >= region.low.array()).all() && (centre.array() < region.high.array()).all())
         ++grains, touches += touching[i];
     }
     EXPECT_DOUBLE_EQ(cell.coordination_number, grains > 0 ? touches / grains : 0);
@@ -265,6 +275,9 @@ TEST(Packing, GivesItsCellsAsFields) {
   ASSERT_EQ(fields[0].values.size(), 9 * 3u);
   EXPECT_THAT(std::vector(fields[0].values.begin(), fields[0].values.begin() + 6),
               ElementsAre(1.25, 1.75, 1.25, 1.25, 1.75, 1.75));
+  for (std::size_t n = 0; n < 9; ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(fields[1].values[3 * n + axis], axis == 1 ? 3.5 : 0.5, 1e-12) << n;
   EXPECT_NEAR(fields[4].values[8], 12, 1e-9);
 }
 

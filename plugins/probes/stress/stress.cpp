@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "../cell_contents.hpp"
+#include "../stress_invariants.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -14,8 +16,7 @@ namespace {
 
 const std::string angle_doc =
     "mobilised: asin((s1 - s3) / (s1 + s3)) of the largest and least principal stress; NaN where one is below 0 or "
-    "both "
-    "are 0";
+    "both are 0";
 
 /// What contacts transmit in a part of the region, or a cell.
 struct Transmitted {
@@ -32,18 +33,14 @@ struct Transmitted {
 std::vector<Transmitted> transmitted(const World& world, const AveragingCells& cells) {
   std::vector<Transmitted> parts(cells.parts());
   const auto arms = world.arms();
-  for (const Contact& contact : world.contacts()) {
-    const Branch branch = branch_of(world, contact);
-    Vec3 moment_at_end = contact.moment;
-    if (!arms.empty() && !contact.with_wall) moment_at_end += arms[contact.b].cross(contact.force);
-    const Vec3 lever = branch.way.cross(contact.force);
-    cells.share_out_branch(branch, [&](std::size_t part, double from, double to) {
-      // The moment is linear along the branch: its mean over a piece is that of the piece's middle.
-      const Vec3 moment = moment_at_end + (1 - 0.5 * (from + to)) * lever;
-      parts[part].load += (to - from) * contact.force * branch.way.transpose();
-      parts[part].couple += (to - from) * moment * branch.way.transpose();
-    });
-  }
+  share_out_contacts(world, cells, [&](std::size_t part, const Piece& piece) {
+    const auto& [contact, branch, from, to, load] = piece;
+    // The moment is linear along the branch: its mean over a piece is that of the piece's middle.
+    Vec3 moment = contact.moment + (1 - 0.5 * (from + to)) * branch.way.cross(contact.force);
+    if (!arms.empty() && !contact.with_wall) moment += arms[contact.b].cross(contact.force);
+    parts[part].load += load;
+    parts[part].couple += (to - from) * moment * branch.way.transpose();
+  });
   return cells.sum_up(parts);
 }
 
@@ -52,15 +49,13 @@ struct Invariants {
   double mean, deviatoric, friction_angle;
 };
 Invariants invariants(const Mat3& stress) {
-  const Mat3 symmetric = 0.5 * (stress + stress.transpose());
-  const double mean = symmetric.trace() / 3;
-  const Mat3 deviator = symmetric - mean * Mat3::Identity();
-  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  const Vec3 principal =
+      Eigen::SelfAdjointEigenSolver<Mat3>(symmetric_part(stress), Eigen::EigenvaluesOnly).eigenvalues();
   const double least = principal[0], most = principal[2];
   // Where a stress vanishes rounding may leave it a little below 0.
   const bool pressed = most > 0 && least >= -1e-12 * most;
-  return {.mean = mean,
-          .deviatoric = std::sqrt(1.5) * deviator.norm(),
+  return {.mean = stress.trace() / 3,
+          .deviatoric = deviatoric_stress(stress),
           .friction_angle = pressed ? std::asin(std::min(1.0, (most - least) / (most + least))) * 180 / std::numbers::pi
                                     : std::numeric_limits<double>::quiet_NaN()};
 }
@@ -69,6 +64,8 @@ void copy(const Mat3& tensor, double* to) {
   for (int i = 0; i < 9; ++i) to[i] = tensor(i / 3, i % 3);
 }
 
+constexpr const char* component_names[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+
 }  // namespace
 
 void Stress::declare(Parameters& p) { averaging.declare(p, "the specimen's"); }
@@ -76,19 +73,26 @@ void Stress::declare(Parameters& p) { averaging.declare(p, "the specimen's"); }
 std::vector<Channel> Stress::channels() const {
   const auto n = static_cast<std::size_t>(averaging.slices);
   const std::string unknown = "; NaN where the region has no volume";
-  const std::string tensor = "Love-Weber, row by row (force, branch), positive in compression" + unknown,
-                    couple = "row by row (moment, branch), of what the side before exerts on the side behind" + unknown;
-  return {{"stress", "Pa", "of the region: " + tensor, {3, 3}},
-          {"couple_stress", "N/m", "of the region: " + couple, {3, 3}},
-          {"mean_stress", "Pa", "of the region, a third of the trace, positive in compression" + unknown, {}},
-          {"deviatoric_stress", "Pa", "of the region, q = sqrt(3/2 s:s), never negative" + unknown, {}},
-          {"friction_angle", "degree", "of the region, " + angle_doc, {}},
-          averaging.place_channel(),
-          {"stress_profile", "Pa", "of each slice: " + tensor, {n, 3, 3}},
-          {"couple_stress_profile", "N/m", "of each slice: " + couple, {n, 3, 3}},
-          {"mean_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}},
-          {"deviatoric_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}},
-          {"friction_angle_profile", "degree", "of each slice, " + angle_doc, {n}}};
+  const std::string tensor = "(force, branch), positive in compression" + unknown,
+                    couple = "(moment, branch), of what the side before exerts on the side behind" + unknown;
+  const Channel place = averaging.place_channel();
+  std::vector<Channel> channels{
+      {"stress", "Pa", "of the region: Love-Weber, row by row " + tensor, {3, 3}},
+      {"couple_stress", "N m-1", "of the region: row by row " + couple, {3, 3}},
+      {"mean_stress", "Pa", "of the region, a third of the trace, positive in compression" + unknown, {}},
+      {"deviatoric_stress", "Pa", "of the region, q = sqrt(3/2 s:s), never negative" + unknown, {}},
+      {"friction_angle", "degree", "of the region, " + angle_doc, {}},
+      place,
+      {"mean_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}, place.name},
+      {"deviatoric_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}, place.name},
+      {"friction_angle_profile", "degree", "of each slice, " + angle_doc, {n}, place.name}};
+  for (const std::string ij : component_names)
+    channels.push_back(
+        {"stress_profile_" + ij, "Pa", "of each slice: Love-Weber, " + ij + " " + tensor, {n}, place.name});
+  for (const std::string ij : component_names)
+    channels.push_back(
+        {"couple_stress_profile_" + ij, "N m-1", "of each slice: " + ij + " " + couple, {n}, place.name});
+  return channels;
 }
 
 void Stress::sample(const World& world, std::span<const std::span<double>> values) {
@@ -103,8 +107,11 @@ void Stress::sample(const World& world, std::span<const std::span<double>> value
   for (std::size_t s = 0; s < each.size(); ++s) {
     const Mat3 stress = each[s].load / slice_volume;
     const Invariants of = invariants(stress);
-    copy(stress, &values[6][9 * s]), copy(each[s].couple / slice_volume, &values[7][9 * s]);
-    values[8][s] = of.mean, values[9][s] = of.deviatoric, values[10][s] = of.friction_angle;
+    values[6][s] = of.mean, values[7][s] = of.deviatoric, values[8][s] = of.friction_angle;
+    for (std::size_t ij = 0; ij < 9; ++ij) {
+      const auto i = static_cast<Eigen::Index>(ij / 3), j = static_cast<Eigen::Index>(ij % 3);
+      values[9 + ij][s] = stress(i, j), values[18 + ij][s] = each[s].couple(i, j) / slice_volume;
+    }
     whole += each[s];
   }
   const Invariants of = invariants(whole.load / volume);
@@ -116,8 +123,11 @@ std::vector<Field> Stress::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.specimen()), world));
   std::vector<Field> fields = map_of(cells);
   Field stress{"stress", "Pa", "Love-Weber, row by row (force, branch), positive in compression", 9, {}};
-  Field couple{
-      "couple_stress", "N/m", "row by row (moment, branch), of what the side before exerts on the side behind", 9, {}};
+  Field couple{"couple_stress",
+               "N m-1",
+               "row by row (moment, branch), of what the side before exerts on the side behind",
+               9,
+               {}};
   Field mean{"mean_stress", "Pa", "a third of the trace, positive in compression", 1, {}};
   Field deviatoric{"deviatoric_stress", "Pa", "q = sqrt(3/2 s:s), never negative", 1, {}};
   Field angle{"friction_angle", "degree", angle_doc, 1, {}};

@@ -15,8 +15,15 @@ Mat3 tensor(const std::vector<double>& values, std::size_t n) {
   for (int i = 0; i < 9; ++i) made(i / 3, i % 3) = values.at(9 * n + static_cast<std::size_t>(i));
   return made;
 }
-Mat3 channel_tensor(Stress& probe, const World& world, const std::string& name, std::size_t slice = 0) {
-  return tensor(channel_values(probe, world, name), slice);
+Mat3 channel_tensor(Stress& probe, const World& world, const std::string& name) {
+  return tensor(channel_values(probe, world, name), 0);
+}
+/// Of a profile that has a channel for each component.
+Mat3 slice_tensor(Stress& probe, const World& world, const std::string& name, std::size_t slice) {
+  Mat3 made;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) made(i, j) = channel_values(probe, world, name + "_" + "xyz"[i] + "xyz"[j]).at(slice);
+  return made;
 }
 /// One field of a frame.
 std::vector<double> field_values(Stress& probe, const World& world, const std::string& name) {
@@ -111,7 +118,7 @@ TEST(Stress, OfAColumnIsTheWallsForceOverTheArea) {
   expected.col(2) = force / 6;
   EXPECT_NEAR((channel_tensor(probe, world, "stress") - expected).norm(), 0, 1e-14);
   for (std::size_t s = 0; s < 7; ++s)
-    EXPECT_NEAR((channel_tensor(probe, world, "stress_profile", s) - expected).norm(), 0, 1e-14) << s;
+    EXPECT_NEAR((slice_tensor(probe, world, "stress_profile", s) - expected).norm(), 0, 1e-14) << s;
   const auto places = channel_values(probe, world, "place");
   for (std::size_t s = 0; s < 7; ++s) EXPECT_NEAR(places[s], (static_cast<double>(s) + 0.5) * 5 / 7, 1e-14);
 }
@@ -126,7 +133,7 @@ TEST(Stress, OfAColumnThatIsBentAndTwistedHasTheMomentOfEachSection) {
     for (std::size_t s = 0; s < 9; ++s) {
       Mat3 expected = Mat3::Zero();
       expected.col(2) = (at_floor - places[s] * Vec3::UnitZ().cross(force)) / 6;
-      EXPECT_NEAR((channel_tensor(probe, world, "couple_stress_profile", s) - expected).norm(), 0, 1e-14) << s;
+      EXPECT_NEAR((slice_tensor(probe, world, "couple_stress_profile", s) - expected).norm(), 0, 1e-14) << s;
     }
   };
   expect_moments();
@@ -167,8 +174,8 @@ TEST(Stress, OfSlicesAddsUpToThatOfTheRegion) {
     probe.averaging.along = axis, probe.averaging.slices = 6;
     Mat3 sum = Mat3::Zero(), couples = Mat3::Zero();
     for (std::size_t s = 0; s < 6; ++s) {
-      sum += channel_tensor(probe, world, "stress_profile", s) / 6;
-      couples += channel_tensor(probe, world, "couple_stress_profile", s) / 6;
+      sum += slice_tensor(probe, world, "stress_profile", s) / 6;
+      couples += slice_tensor(probe, world, "couple_stress_profile", s) / 6;
     }
     const Mat3 stress = mean_stress(world, world.whole);
     EXPECT_NEAR((sum - stress).norm(), 0, 1e-12 * stress.norm()) << axis;
@@ -200,6 +207,17 @@ TEST(Stress, SaysWhatAMapIsToFill) {
     EXPECT_NEAR(size[3 * n + 1], 8, 1e-12);
     EXPECT_NEAR(size[3 * n + 2], 2, 1e-12);
   }
+}
+
+TEST(Stress, SaysWhereEachNumberOfAListIs) {
+  Stress probe;
+  int lists = 0;
+  for (const Channel& channel : probe.channels()) {
+    if (channel.shape != std::vector<std::size_t>{20} || channel.name == "place") continue;
+    EXPECT_EQ(channel.coordinate, "place") << channel.name;
+    ++lists;
+  }
+  EXPECT_EQ(lists, 3 + 9 + 9);
 }
 
 TEST(Stress, HasNoFrictionAngleInTension) {
