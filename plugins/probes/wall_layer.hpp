@@ -1,6 +1,7 @@
 // The bodies that lay at a wall when the stage began, and how far they slip along it.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "grit/error.hpp"
@@ -89,7 +90,9 @@ class WallLayer {
     const Region specimen = specimen_box(world);
     Vec3 point = 0.5 * (specimen.low + specimen.high);
     point[across_] = face(world) + 0.5 * diameter * surface(world).normal[across_];
-    const auto clear = world.clearance(wall_, point, diameter);
+    const Region all = closed_box(world.envelope(), world);
+    const double depth = std::max(specimen.low[across_] - all.low[across_], all.high[across_] - specimen.high[across_]);
+    const auto clear = world.clearance(wall_, point, diameter + std::max(0.0, depth));
     return clear && clear->distance > (0.5 - 1e-6) * diameter;
   }
 

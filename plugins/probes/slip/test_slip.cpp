@@ -110,6 +110,11 @@ TEST(Slip, RefusesAWallAtWhichTheSpecimenDoesNotEnd) {
   FakeWorld grooved = world;
   grooved.surface[0] = flat_surface(Vec3(0, 0, -0.09), Vec3::UnitZ());  // as the bottom of a groove
   EXPECT_EQ(refusal(made(), grooved), "");
+  FakeWorld deep = world;
+  deep.surface[0] = flat_surface(Vec3(0, 0, -0.6), Vec3::UnitZ());
+  EXPECT_EQ(refusal(made(), deep), not_there);
+  deep.with_grooves = deep.whole, deep.with_grooves->low.z() = -0.6;  // of a groove three diameters deep
+  EXPECT_EQ(refusal(made(), deep), "");
   grooved.whole.low.z() = -std::numeric_limits<double>::infinity();  // the specimen ends at its bodies
   EXPECT_EQ(refusal(made(), grooved), not_there);
 }
