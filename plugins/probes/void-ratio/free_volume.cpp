@@ -151,7 +151,7 @@ class Carver {
     const double side = box.size.maxCoeff();
     const double differ = std::abs(by_halves - by_planes(box, cut)) * side;
     const bool as_planes = differ <= error_ && side <= coarsest * error_,
-               as_flat_walls = differ <= flattest * error_ && side <= widest * error_ && all_flat(cut);
+               as_flat_walls = differ <= flattest * error_ && all_planes(box, cut);
     if (as_planes || as_flat_walls || side <= finest * error_) return by_halves;
     double sum = 0;
     for (std::size_t i = 0; i < halves.size(); ++i) sum += solid_share(halves[i], cuts[i]);
@@ -171,8 +171,21 @@ class Carver {
     return 1 - open;
   }
 
-  bool all_flat(const Cut& cut) const {
-    return std::ranges::all_of(cut.walls, [&](const Near& near) { return world_.walls()[near.wall].flat; });
+  /// Whether walls are planes all over the box: of a flat wall a face is convex, so that its corners tell.
+  bool all_planes(const Box& box, const Cut& cut) const {
+    return std::ranges::all_of(cut.walls, [&](const Near& near) {
+      if (!world_.walls()[near.wall].flat) return false;
+      const double rounding = 1e-9 * box.half_diagonal();
+      for (const int corner : {0, 1, 2, 3, 4, 5, 6, 7}) {
+        const Vec3 way =
+            0.5 * box.size.cwiseProduct(Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+        const double distance = near.clearance.distance - near.clearance.normal.dot(way);
+        const auto seen = world_.clearance(near.wall, box.middle + way, std::abs(distance) + 2 * rounding);
+        if (!seen || std::abs(seen->distance - distance) > rounding) return false;
+        if ((seen->normal - near.clearance.normal).norm() > 1e-9) return false;
+      }
+      return true;
+    });
   }
 
   /// Whether there is solid on the far side of a surface, which there is not of a sheet that has two sides, or beyond

