@@ -107,7 +107,7 @@ import json
 print(json.dumps([tubes.GetDataInformation().GetNumberOfCells(), ends]))
 """
         (self.folder / "chains.py").write_text(script + measured)
-        screen = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        screen = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-noreset"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         try:
             display = {"DISPLAY": ":" + screen.stdout.readline().strip()}
             ended = subprocess.run(["pvpython", "chains.py"], cwd=self.folder, env={**os.environ, **display}, capture_output=True, text=True)

@@ -8,7 +8,7 @@ namespace {
 
 void expect_done(const std::string& file, const std::vector<std::string>& sets) {
   const Scene scene = load_scene(std::string(GRIT_SOURCE_DIR) + "/sims/" + file, sets, installed());
-  Simulation world(*scene.description, make_bodies(*scene.description, {}), 2);
+  Simulation world(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
   Notes notes;
   run(scene, world, notes, {});
   EXPECT_EQ(notes.summary.status, "done") << notes.summary.message;
