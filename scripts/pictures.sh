@@ -21,6 +21,8 @@ gallery triaxial sims/triaxial/quick.json
 gallery interface-rn-100 sims/interface-shear/quick-rn-100.json
 gallery interface-dl-0240 sims/interface-shear/quick-dl-0240.json
 gallery silo-discharge sims/silo-discharge/quick.json
+drawn direct-shear/map-strain-strain.svg gallery/direct-shear-strain
+drawn silo-discharge/map-flow-velocity.svg gallery/silo-discharge-velocity
 
 # The page of a run, for the README, where there is a browser.
 if command -v chromium > /dev/null; then
