@@ -3,6 +3,8 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
 
 #include "grit/error.hpp"
 
@@ -171,6 +173,11 @@ std::string Object::text(const std::string& name) const {
   std::string text(value == nullptr ? "" : value);
   H5free_memory(value);
   return text;
+}
+
+std::vector<std::string> Object::words(const std::string& name) const {
+  std::istringstream words(has_attribute(name) ? text(name) : "");
+  return {std::istream_iterator<std::string>(words), {}};
 }
 
 void Object::get_number(const std::string& name, Number type, void* value) const {

@@ -73,6 +73,8 @@ class Object {
   }
   bool has_attribute(const std::string& name) const;
   std::string text(const std::string& name) const;
+  /// Words of a text with blanks between them; none where there is no such attribute.
+  std::vector<std::string> words(const std::string& name) const;
   template <class T>
   T number(const std::string& name) const {
     T value{};

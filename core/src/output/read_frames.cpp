@@ -1,8 +1,6 @@
 #include "output/read_frames.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <sstream>
 
 #include "grit/error.hpp"
 #include "output/hdf5.hpp"
@@ -85,13 +83,9 @@ std::vector<FieldGroup> read_maps(const std::filesystem::path& path) {
       const auto table = tables.dataset(name);
       const auto shape = table.shape();
       if (shape.empty() || shape.front() != cells) return;
-      std::istringstream components(table.has_attribute("components") ? table.text("components") : "");
-      map.fields.push_back({name,
-                            table.text("units"),
-                            table.text("long_name"),
-                            hdf5::product(std::span(shape).subspan(1)),
-                            table.read<double>(),
-                            {std::istream_iterator<std::string>(components), {}}});
+      map.fields.push_back({name, table.text("units"), table.text("long_name"),
+                            hdf5::product(std::span(shape).subspan(1)), table.read<double>(),
+                            table.words("components")});
     };
     add("centre"), add("size");
     const bool placed = map.fields.size() == 2 && map.fields[0].width == 3 && map.fields[1].width == 3;

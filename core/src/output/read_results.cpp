@@ -3,8 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <fstream>
-#include <iterator>
-#include <sstream>
 
 #include "grit/error.hpp"
 #include "output/hdf5.hpp"
@@ -39,10 +37,8 @@ SampledChannel read_channel(const std::filesystem::path& folder, const std::stri
   const auto text = [&](const char* attribute, const char* otherwise) {
     return dataset.has_attribute(attribute) ? dataset.text(attribute) : otherwise;
   };
-  std::istringstream components(text("components", ""));
-  return {text("units", "1"),      text("long_name", ""),
-          text("coordinates", ""), {std::istream_iterator<std::string>(components), {}},
-          dataset.rows(),          dataset.read<double>()};
+  return {text("units", "1"),          text("long_name", ""), text("coordinates", ""),
+          dataset.words("components"), dataset.rows(),        dataset.read<double>()};
 }
 
 std::vector<std::string> channel_names(const std::filesystem::path& folder) {

@@ -140,7 +140,7 @@ void FlowProbe::sample_pattern(const World& world, bool flows, std::span<const s
   }
   pattern->fill_places(box, values[0]);
   double transition = unknown;
-  bool all_the_way = flows, any = false;
+  bool all_the_way = flows;
   for (std::size_t s = slices.size(); s-- > 0;) {
     const auto& [all, walls] = slices[s];
     const bool tells = walls[0].volume > 0 && walls[1].volume > 0;
@@ -148,11 +148,10 @@ void FlowProbe::sample_pattern(const World& world, bool flows, std::span<const s
     values[2][s] = tells && all.sunk > 0 ? std::min(walls[0].speed(), walls[1].speed()) / all.speed() : unknown;
     if (!tells) continue;  // above the surface
     all_the_way = all_the_way && values[2][s] > pattern->moving;
-    if (all_the_way)
-      transition = low + height * static_cast<double>(s) / static_cast<double>(slices.size()), any = true;
+    if (all_the_way) transition = low + height * static_cast<double>(s) / static_cast<double>(slices.size());
   }
   values[3].front() = transition;
-  values[4].front() = !flows ? 0 : !any ? 1 : !all_the_way ? 2 : 3;
+  values[4].front() = !flows ? 0 : std::isnan(transition) ? 1 : !all_the_way ? 2 : 3;
 }
 
 std::vector<Field> FlowProbe::fields(const World& world) {
