@@ -6,15 +6,15 @@
 
 namespace grit {
 
-/// Calls visit(part, volume) with what of each body's volume [m³] lies in each part that it may reach into. Overlaps of
-/// contacts count twice, those within a clump once.
+/// Calls visit(part, volume, body) with what of each body's volume [m³] lies in each part that it may reach into.
+/// Overlaps of contacts count twice, those within a clump once.
 template <class Visit>
 void share_out_solids(const World& world, const AveragingCells& cells, const Visit& visit) {
   const auto positions = world.positions();
   const auto shares = world.volume_shares();
   for (std::size_t i = 0; i < positions.size(); ++i)
     cells.share_out_sphere(xyz(positions[i]), positions[i].w, [&](std::size_t part, double volume) {
-      visit(part, shares.empty() ? volume : shares[i] * volume);
+      visit(part, shares.empty() ? volume : shares[i] * volume, i);
     });
 }
 

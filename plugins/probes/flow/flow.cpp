@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../cell_contents.hpp"
 #include "../grain_masses.hpp"
 #include "../specimen.hpp"
 #include "../wall_names.hpp"
@@ -164,14 +165,9 @@ std::vector<Field> FlowProbe::fields(const World& world) {
     Sums& operator+=(const Sums& other) { return volume += other.volume, flux += other.flux, *this; }
   };
   std::vector<Sums> parts(cells.parts());
-  const auto shares = world.volume_shares();
-  for (std::size_t i = 0; i < world.positions().size(); ++i) {
-    const Vec3 velocity = xyz(world.velocities()[i]);
-    cells.share_out_sphere(xyz(world.positions()[i]), world.positions()[i].w, [&](std::size_t part, double volume) {
-      if (!shares.empty()) volume *= shares[i];
-      parts[part].volume += volume, parts[part].flux += volume * velocity;
-    });
-  }
+  share_out_solids(world, cells, [&](std::size_t part, double volume, std::size_t body) {
+    parts[part].volume += volume, parts[part].flux += volume * xyz(world.velocities()[body]);
+  });
   std::vector<Field> fields = map_of(cells);
   fields.push_back(
       {"velocity", "m s-1", "mean of the grains in it by volume; NaN without any", 3, {}, {"x", "y", "z"}});

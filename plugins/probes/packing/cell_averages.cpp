@@ -29,7 +29,7 @@ std::vector<CellAverage> cell_averages(const World& world, const AveragingCells&
   for (const auto& contact : world.contacts())
     if (!contact.with_wall) ++touching[grains.of_body[contact.a]], ++touching[grains.of_body[contact.b]];
   share_out_contacts(world, cells, [&](std::size_t part, const Piece& piece) { parts[part].load += piece.load; });
-  share_out_solids(world, cells, [&](std::size_t part, double volume) { parts[part].solid += volume; });
+  share_out_solids(world, cells, [&](std::size_t part, double volume, std::size_t) { parts[part].solid += volume; });
   for (std::size_t g = 0; g < touching.size(); ++g)
     cells.place(grains.centre[g], [&](std::size_t part) { ++parts[part].grains, parts[part].touching += touching[g]; });
 

@@ -40,7 +40,7 @@ std::vector<Volumes> volumes(const World& world, const AveragingCells& cells) {
   std::vector<Volumes> parts(cells.parts());
   const auto free = free_volumes(world, cells, surface_error * diameter);
   for (std::size_t part = 0; part < parts.size(); ++part) parts[part].free = free[part];
-  share_out_solids(world, cells, [&](std::size_t part, double volume) { parts[part].solid += volume; });
+  share_out_solids(world, cells, [&](std::size_t part, double volume, std::size_t) { parts[part].solid += volume; });
   return cells.sum_up(parts);
 }
 
