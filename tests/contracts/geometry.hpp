@@ -162,6 +162,24 @@ TEST_P(GeometryContract, AppendsInTheOrderOfSpheresThenFeatures) {
   }
 }
 
+TEST_P(GeometryContract, TouchesManySpheresAsItDoesEachByItself) {
+  std::vector<Sphere> spheres;
+  std::vector<Touch> one_by_one, together;
+  for (std::uint32_t i = 0; i < samples; ++i) {
+    spheres.push_back(draw_sphere());
+    spheres.back().body = i;
+    shape().touch({}, {&spheres.back(), 1}, one_by_one);
+  }
+  shape().touch({}, spheres, together);
+  ASSERT_EQ(together.size(), one_by_one.size());
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    EXPECT_EQ(together[i].body, one_by_one[i].body);
+    EXPECT_EQ(together[i].feature, one_by_one[i].feature);
+    EXPECT_EQ(together[i].overlap, one_by_one[i].overlap) << "to the last bit";
+    EXPECT_EQ(together[i].normal, one_by_one[i].normal) << "to the last bit";
+  }
+}
+
 TEST_P(GeometryContract, EachTouchLiesOnTheSurfaceAlongItsUnitNormal) {
   for (int i = 0; i < samples; ++i) {
     const Sphere sphere = draw_sphere();

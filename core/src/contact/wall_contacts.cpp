@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -11,7 +13,7 @@
 namespace grit {
 namespace {
 
-auto key(const WallTouch& t) { return std::tuple(t.wall, t.body, t.feature); }
+auto key(const auto& t) { return std::tuple(t.wall, t.body, t.feature); }
 
 /// A point counts as one of a plane within so many radii: round-off of positions a thousand radii away is far less.
 constexpr double on_plane = 1e-9;
@@ -35,6 +37,8 @@ void stand_still_in_valley(WallTouch& touch, const Row& body, const Row& body_ve
   const Vec3 passes = xyz(body_velocity) - touch.velocity + touch.spin.cross((body.w - touch.overlap) * touch.normal);
   if (dt > 0 && turned.dot(passes) > 0) touch.velocity -= touch.overlap / dt * turned;
 }
+
+static_assert(offsetof(Sphere, radius) == offsetof(Row, w));
 
 }  // namespace
 
@@ -109,40 +113,42 @@ void WallContacts::set_fields(std::span<const StateField> fields) {
 
 double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies& bodies, bool one_material,
                               std::span<const WallSurface> walls, double dt, BodySum* sum, Losses* losses) {
+  static thread_local Workspace work;
   Chunk& chunk = chunks_[c];
   chunk.load.assign(walls.size(), {});
   if (chunk.candidate.empty()) {
     chunk.touch.clear(), chunk.state.clear(), chunk.row.clear();
     return 0;
   }
-  chunk.touch.swap(chunk.touch_before), chunk.state.swap(chunk.state_before);
+  work.before.clear();
+  for (const WallTouch& t : chunk.touch) work.before.push_back({t.normal, t.body, t.wall, t.feature, t.material});
   chunk.touch.clear();
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
     const WallSurface& wall = walls[w];
-    chunk.spheres.clear(), chunk.found.clear();
+    work.spheres.clear(), work.found.clear();
     for (std::uint32_t n = chunk.candidate_start[w]; n < chunk.candidate_start[w + 1]; ++n) {
-      const Row& x = bodies.position[chunk.candidate[n]];
-      chunk.spheres.push_back({{x.x, x.y, x.z}, x.w, chunk.candidate[n]});
+      Sphere& sphere = work.spheres.emplace_back();
+      // At once: a vector that is read before its components have arrived in the cache is waited for.
+      std::memcpy(sphere.centre.data(), &bodies.position[chunk.candidate[n]], sizeof(Row));
+      sphere.body = chunk.candidate[n];
     }
-    if (chunk.spheres.empty()) continue;
-    wall.geometry->touch(wall.pose, chunk.spheres, chunk.found);
-    for (const Touch& t : chunk.found) {
+    if (work.spheres.empty()) continue;
+    wall.geometry->touch(wall.pose, work.spheres, work.found);
+    const bool turns = !wall.spin.isZero(0);
+    for (const Touch& t : work.found) {
+      WallTouch& touch = chunk.touch.emplace_back();
+      touch.normal = touch.normal_before = t.normal;
+      touch.velocity = wall.velocity, touch.spin = wall.spin;
+      touch.overlap = t.overlap, touch.body = t.body;
+      touch.wall = w, touch.feature = t.feature, touch.material = wall.material;
+      if (!turns) continue;
       const Row& x = bodies.position[t.body];
-      const Vec3 point = xyz(x) + (x.w - t.overlap) * t.normal;
-      chunk.touch.push_back({.normal = t.normal,
-                             .normal_before = t.normal,
-                             .velocity = wall.point_velocity(point),
-                             .spin = wall.spin,
-                             .overlap = t.overlap,
-                             .body = t.body,
-                             .wall = w,
-                             .feature = t.feature,
-                             .material = wall.material});
+      touch.velocity = wall.point_velocity(xyz(x) + (x.w - t.overlap) * t.normal);
     }
   }
 
-  leave_out_hidden(chunk, bodies);
-  hand_on_memories(chunk, bodies, dt);
+  leave_out_hidden(chunk, work, bodies);
+  hand_on_memories(chunk, work, bodies, dt);
   chunk.row.resize(chunk.touch.size());
   WallBatch batch{.position = bodies.position.data(),
                   .velocity = bodies.velocity.data(),
@@ -161,11 +167,15 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
   for (std::size_t i = 0; i < chunk.touch.size(); ++i) {
     const WallTouch& t = chunk.touch[i];
     const Row& x = bodies.position[t.body];
-    const Vec3 point = xyz(x) + (x.w - t.overlap) * t.normal;
-    const Vec3 force = xyz(chunk.row[i].force);
+    const Vec3 reference = walls[t.wall].reference();
+    const double out = x.w - t.overlap;  // from the centre to the point, from there to the reference point
+    const double px = x.x + out * t.normal.x() - reference.x(), py = x.y + out * t.normal.y() - reference.y(),
+                 pz = x.z + out * t.normal.z() - reference.z();
+    const Row force = chunk.row[i].force, moment = chunk.row[i].moment;
     WallLoad& load = chunk.load[t.wall];
-    load.force += force;
-    load.moment += (point - walls[t.wall].reference()).cross(force) + xyz(chunk.row[i].moment);
+    load.force += Vec3(force.x, force.y, force.z);
+    load.moment += Vec3(py * force.z - pz * force.y + moment.x, pz * force.x - px * force.z + moment.y,
+                        px * force.y - py * force.x + moment.z);
     ++load.touches;
     if (!walls[t.wall].gives_way) continue;
     const PairSize size{.radius_a = x.w,
@@ -183,13 +193,13 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
   return batch.largest_overlap;
 }
 
-void WallContacts::leave_out_hidden(Chunk& chunk, const Bodies& bodies) {
+void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies) {
   if (chunk.touch.size() < 2) return;
   constexpr std::uint32_t none = ~0u;
   std::array<std::uint32_t, chunk_bodies> latest;  // touch of each body
   latest.fill(none);
-  auto& before = chunk.same_body_before;
-  auto& hide = chunk.hide;
+  auto& before = work.same_body_before;
+  auto& hide = work.hide;
   before.assign(chunk.touch.size(), none), hide.assign(chunk.touch.size(), false);
   bool any = false;
   for (std::uint32_t i = 0; i < chunk.touch.size(); ++i) {
@@ -210,31 +220,38 @@ void WallContacts::leave_out_hidden(Chunk& chunk, const Bodies& bodies) {
   chunk.touch.resize(kept);
 }
 
-void WallContacts::hand_on_memories(Chunk& chunk, const Bodies& bodies, double dt) const {
+void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const {
+  // What was touched is touched still, but for few steps.
+  const auto same = [](const WallTouch& now, const Before& before) { return key(now) == key(before); };
+  if (std::ranges::equal(chunk.touch, work.before, same)) {
+    for (std::size_t i = 0; i < chunk.touch.size(); ++i) chunk.touch[i].normal_before = work.before[i].normal;
+    return;
+  }
   const std::size_t fields = fields_.size();
+  work.state_before.swap(chunk.state);
   chunk.state.assign(chunk.touch.size() * fields, 0.0);
   const auto hand_on = [&](std::size_t from, std::size_t to) {
-    chunk.touch[to].normal_before = chunk.touch_before[from].normal;
-    for (std::size_t f = 0; f < fields; ++f) chunk.state[to * fields + f] = chunk.state_before[from * fields + f];
+    chunk.touch[to].normal_before = work.before[from].normal;
+    for (std::size_t f = 0; f < fields; ++f) chunk.state[to * fields + f] = work.state_before[from * fields + f];
   };
-  auto &fresh = chunk.fresh, &gone = chunk.gone;
+  auto &fresh = work.fresh, &gone = work.gone;
   fresh.clear(), gone.clear();
   std::uint32_t old = 0;
   for (std::uint32_t i = 0; i < chunk.touch.size(); ++i) {
     const auto own = key(chunk.touch[i]);
-    for (; old < chunk.touch_before.size() && key(chunk.touch_before[old]) < own; ++old) gone.push_back(old);
-    if (old < chunk.touch_before.size() && key(chunk.touch_before[old]) == own) hand_on(old++, i);
+    for (; old < work.before.size() && key(work.before[old]) < own; ++old) gone.push_back(old);
+    if (old < work.before.size() && key(work.before[old]) == own) hand_on(old++, i);
     else fresh.push_back(i);
   }
   if (fresh.empty()) return;
-  for (; old < chunk.touch_before.size(); ++old) gone.push_back(old);
+  for (; old < work.before.size(); ++old) gone.push_back(old);
   // What goes on in another wall's surface remembers what it did on the one that it left.
   for (const std::uint32_t i : fresh) {
     const WallTouch& t = chunk.touch[i];
     auto best = gone.end();
     double nearest = goes_on;
     for (auto g = gone.begin(); g != gone.end(); ++g) {
-      const WallTouch& left = chunk.touch_before[*g];
+      const Before& left = work.before[*g];
       const double cosine = left.normal.dot(t.normal);
       if (left.body == t.body && left.material == t.material && cosine > nearest) best = g, nearest = cosine;
     }

@@ -88,20 +88,30 @@ class WallContacts {
   struct Chunk {
     std::vector<std::uint32_t> candidate_start;  // by wall
     std::vector<std::uint32_t> candidate;        // bodies
-    std::vector<WallTouch> touch, touch_before;
-    std::vector<double> state, state_before;
+    std::vector<WallTouch> touch;
+    std::vector<double> state;
     std::vector<ContactRow> row;
     std::vector<WallLoad> load;  // by wall
+  };
+  /// What a touch of the last step was.
+  struct Before {
+    Vec3 normal;
+    std::uint32_t body, wall, feature, material;
+  };
+  /// What evaluate() works with. One for all chunks of a thread, so that it stays in the cache.
+  struct Workspace {
     std::vector<Sphere> spheres;
     std::vector<Touch> found;
+    std::vector<Before> before;
+    std::vector<double> state_before;
     std::vector<std::uint32_t> same_body_before, fresh, gone;  // indices of touches
     std::vector<bool> hide;
   };
   /// Leaves out touches where the surface of another touch of the same body goes on: edges of coplanar faces, and edges
   /// that faces share, count once, whatever walls they belong to.
-  static void leave_out_hidden(Chunk& chunk, const Bodies& bodies);
+  static void leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies);
   /// From the touches of the last step to those of this one.
-  void hand_on_memories(Chunk& chunk, const Bodies& bodies, double dt) const;
+  void hand_on_memories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const;
 
   std::vector<Chunk> chunks_;
   std::vector<StateField> fields_;

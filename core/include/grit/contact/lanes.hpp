@@ -312,21 +312,25 @@ struct RowLanes {
   [[gnu::always_inline]] Vec<L> xyz() const { return {x, y, z}; }
 };
 
-/// Loads the rows `base[index(k)]`, k = 0 … width − 1, one a lane.
-template <class L, class Index>
-[[gnu::always_inline]] inline RowLanes<L> load_rows(const Row* base, Index index) {
+/// Loads four numbers from `address(k)`, k = 0 … width − 1, one row a lane.
+template <class L, class Address>
+[[gnu::always_inline]] inline RowLanes<L> load_fours(Address address) {
   constexpr std::size_t width = lane_width<L>;
+  const auto load = [&](std::size_t k) {
+    Quad quad;
+    std::memcpy(&quad, address(k), sizeof quad);
+    return quad;
+  };
   const auto quads = [&](std::size_t first) {
     struct Columns {
       Quad x, y, z, w;
-    } rows{load(base[index(first)]), load(base[index(first + 1)]), load(base[index(first + 2)]),
-           load(base[index(first + 3)])};
+    } rows{load(first), load(first + 1), load(first + 2), load(first + 3)};
     detail::transpose(rows.x, rows.y, rows.z, rows.w);
     return rows;
   };
   if constexpr (width == 1) {
-    const Row& row = base[index(0)];
-    return {row.x, row.y, row.z, row.w};
+    const double* const row = address(0);
+    return {static_cast<L>(row[0]), static_cast<L>(row[1]), static_cast<L>(row[2]), static_cast<L>(row[3])};
   } else if constexpr (width == 4) {
     const auto q = quads(0);
     return {L(q.x), L(q.y), L(q.z), L(q.w)};
@@ -337,16 +341,22 @@ template <class L, class Index>
     };
     return {join(p.x, q.x), join(p.y, q.y), join(p.z, q.z), join(p.w, q.w)};
   } else {
-    const auto column = [&](double Row::*member) { return L([&](std::size_t k) { return base[index(k)].*member; }); };
-    return {column(&Row::x), column(&Row::y), column(&Row::z), column(&Row::w)};
+    const auto column = [&](std::size_t c) { return L([&](std::size_t k) { return address(k)[c]; }); };
+    return {column(0), column(1), column(2), column(3)};
   }
+}
+
+/// Loads the rows `base[index(k)]`.
+template <class L, class Index>
+[[gnu::always_inline]] inline RowLanes<L> load_rows(const Row* base, Index index) {
+  return load_fours<L>([&](std::size_t k) { return &base[index(k)].x; });
 }
 
 /// The reverse of load_rows: hands the numbers of row k to `store(k, quad)`.
 template <class L, class Store>
 [[gnu::always_inline]] inline void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
   constexpr std::size_t width = lane_width<L>;
-  const auto four = [&](std::size_t first, Quad r0, Quad r1, Quad r2, Quad r3) {
+  const auto four = [&](std::size_t first, Quad r0, Quad r1, Quad r2, Quad r3) __attribute__((always_inline)) {
     detail::transpose(r0, r1, r2, r3);
     store(first, r0), store(first + 1, r1), store(first + 2, r2), store(first + 3, r3);
   };

@@ -432,6 +432,14 @@ void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>*
   batch.largest_overlap = largest;
 }
 
+/// Calls use(f) for groups of four numbers from f on that cover all of `count`; the last group may take in some of the
+/// one before. None if there are fewer than four.
+template <std::size_t count, class Use>
+[[gnu::always_inline]] inline void for_fours(Use use) {
+  for (std::size_t f = 0; f + 4 <= count; f += 4) use(f);
+  if constexpr (count > 4 && count % 4 != 0) use(count - 4);
+}
+
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact.
 template <class Law, unsigned Features, class L>
 [[gnu::flatten]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
@@ -439,28 +447,27 @@ template <class Law, unsigned Features, class L>
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
-  double largest = 0;
+  L most(0.0);
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
     // Lanes past the end repeat the last touch and are not stored.
     const auto touch = [&](std::size_t k) -> const WallTouch& { return batch.touch[first + std::min(k, used - 1)]; };
-    const auto lanes = [&](auto get) { return gather_lanes<L>([&](std::size_t k) { return get(touch(k)); }); };
-    const auto vector = [&](auto get) {
-      return Vec<L>{lanes([&](const WallTouch& t) { return get(t)[0]; }),
-                    lanes([&](const WallTouch& t) { return get(t)[1]; }),
-                    lanes([&](const WallTouch& t) { return get(t)[2]; })};
-    };
     const auto body = [&](std::size_t k) { return touch(k).body; };
     const RowLanes<L> pa = load_rows<L>(batch.position, body), va = load_rows<L>(batch.velocity, body),
                       wa = load_rows<L>(batch.spin, body);
-    const Vec<L> normal = vector([](const WallTouch& t) -> const Vec3& { return t.normal; });
-    const Vec<L> normal_before = vector([](const WallTouch& t) -> const Vec3& { return t.normal_before; });
-    const Vec<L> wall_velocity = vector([](const WallTouch& t) -> const Vec3& { return t.velocity; });
-    const Vec<L> wall_spin = vector([](const WallTouch& t) -> const Vec3& { return t.spin; });
+    // Their numbers follow each other without a gap: what a row has beyond its vector is of the next.
+    const auto rows = [&](Vec3 WallTouch::*member) {
+      return load_fours<L>([&](std::size_t k) { return (touch(k).*member).data(); });
+    };
+    static_assert(offsetof(WallTouch, overlap) == offsetof(WallTouch, spin) + sizeof(Vec3));
+    const Vec<L> normal = rows(&WallTouch::normal).xyz(), normal_before = rows(&WallTouch::normal_before).xyz(),
+                 wall_velocity = rows(&WallTouch::velocity).xyz();
+    const RowLanes<L> spin_and_overlap = rows(&WallTouch::spin);
+    const Vec<L> wall_spin = spin_and_overlap.xyz();
 
     ContactPoint<L> at;
     at.normal = normal;
-    at.overlap = lanes([](const WallTouch& t) { return t.overlap; });
+    at.overlap = spin_and_overlap.w;
     at.radius_a = at.radius_b = pa.w;
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
     at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
@@ -471,17 +478,23 @@ template <class Law, unsigned Features, class L>
     at.spin = wall_spin - wa.xyz();
     at.dt = L(batch.dt);
 
+    const auto memory = [&](std::size_t k) { return batch.state + (first + std::min(k, used - 1)) * fields; };
     State state{};
-    for (std::size_t f = 0; f < fields; ++f) {
-      const auto number = [&](std::size_t k) { return batch.state[(first + std::min(k, used - 1)) * fields + f]; };
-      member<L>(state, f) = gather_lanes<L>(number);
-    }
+    for_fours<fields>([&](std::size_t f) {
+      const RowLanes<L> row = load_fours<L>([&](std::size_t k) { return memory(k) + f; });
+      member<L>(state, f) = row.x, member<L>(state, f + 1) = row.y;
+      member<L>(state, f + 2) = row.z, member<L>(state, f + 3) = row.w;
+    });
+    for (std::size_t f = 0; fields < 4 && f < fields; ++f)
+      member<L>(state, f) = gather_lanes<L>([&](std::size_t k) { return memory(k)[f]; });
     const auto kind = [&](std::size_t k) {
       const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
       return own * materials + touch(k).material;
     };
+    bool alike = true;
+    for (std::size_t k = 1; k < width; ++k) alike = alike & (kind(k) == kind(0));
+    const auto pair = alike ? broadcast_pair<Law, L>(table[kind(0)]) : load_pair<Law, L>(table, kind);
     const State before_step = state;
-    const auto pair = load_pair<Law, L>(table, kind);
     const Response<L> response = Law::template evaluate<Features>(at, pair, state);
     if (batch.losses != nullptr) {
       const Loss<L> lost = losses_of<Law, Features>(at, pair, before_step, state, response);
@@ -493,20 +506,29 @@ template <class Law, unsigned Features, class L>
 
     const Vec<L> force = response.normal_force * normal + response.shear;
     const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
-    for (std::size_t k = 0; k < used; ++k) {
-      for (std::size_t f = 0; f < fields; ++f) batch.state[(first + k) * fields + f] = lane(member<L>(state, f), k);
-      const Quad on_wall{lane(force.x, k), lane(force.y, k), lane(force.z, k), lane(response.normal_force, k)};
-      ContactRow& row = batch.row[first + k];
-      store(on_wall, row.force);
-      row.moment = {lane(response.moment.x, k), lane(response.moment.y, k), lane(response.moment.z, k),
-                    lane(at.overlap, k)};
-      BodySum& sum = batch.sum[touch(k).body];
-      sum.force -= on_wall;
-      sum.moment += Quad{lane(moment_a.x, k), lane(moment_a.y, k), lane(moment_a.z, k), 0};
-      largest = std::max(largest, touch(k).overlap / batch.position[touch(k).body].w);
-    }
+    for_fours<fields>([&](std::size_t f) {
+      store_rows(member<L>(state, f), member<L>(state, f + 1), member<L>(state, f + 2), member<L>(state, f + 3),
+                 [&](std::size_t k, const Quad& numbers) {
+                   if (k < used) std::memcpy(memory(k) + f, &numbers, sizeof numbers);
+                 });
+    });
+    for (std::size_t k = 0; fields < 4 && k < used; ++k)
+      for (std::size_t f = 0; f < fields; ++f) memory(k)[f] = lane(member<L>(state, f), k);
+    store_rows(force.x, force.y, force.z, response.normal_force, [&](std::size_t k, const Quad& on_wall) {
+      if (k >= used) return;
+      store(on_wall, batch.row[first + k].force);
+      batch.sum[touch(k).body].force -= on_wall;
+    });
+    store_rows(response.moment.x, response.moment.y, response.moment.z, at.overlap,
+               [&](std::size_t k, const Quad& on_wall) {
+                 if (k < used) store(on_wall, batch.row[first + k].moment);
+               });
+    store_rows(moment_a.x, moment_a.y, moment_a.z, L(0.0), [&](std::size_t k, const Quad& on_body) {
+      if (k < used) batch.sum[touch(k).body].moment += on_body;
+    });
+    most = max(most, at.overlap / pa.w);
   }
-  batch.largest_overlap = largest;
+  batch.largest_overlap = largest(most);
 }
 
 }  // namespace detail
