@@ -2,10 +2,13 @@
 #include "saw-tooth.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <sstream>
 
+#include "grit/contact/lanes.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -14,6 +17,7 @@ namespace {
 
 constexpr double same_length = 1e-9;  // of a period: room for decimals written by hand
 constexpr double most_grooves = 1e6;  // each is drawn, and a feature's number has 32 bits
+constexpr std::size_t several = lane_width<Lane>;
 
 std::string number(double value) { return (std::ostringstream() << value).str(); }
 
@@ -151,38 +155,154 @@ Vec3 SawTooth::beyond(const Vec3& place) const {
   return place - place.cwiseMax(Vec3(0, 0, -depth_)).cwiseMin(Vec3(sheet_.length_a, sheet_.length_b, 0));
 }
 
+/// Spheres that may touch, as many as there are lanes, and the sheet as it stands.
+struct SawTooth::Several {
+  struct Placed {
+    double x, z;  // in the section, from where the period starts that the centre is over
+    double past_end, radius;
+    int own;  // feature under the centre
+    std::uint32_t body;
+  };
+  Mat3 axes;
+  std::array<Vec3, 4> into;  // against the normal of each face
+  std::array<Placed, several> spheres{};
+  std::size_t count = 0;
+};
+
 void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
   const Sheet::Frame at = sheet_.at(pose);
+  Several few{.axes = at.axes, .into = {}};
+  for (std::size_t i = 0; i < faces_.size(); ++i)
+    few.into[i] = -(at.axes * Vec3(faces_[i].normal.x(), 0, faces_[i].normal.y())).normalized();
   for (const Sphere& sphere : spheres) {
-    const double squared_radius = sphere.radius * sphere.radius;
     const Vec3 place = at.place(sphere.centre), beyond = this->beyond(place);
-    if (!(beyond.squaredNorm() < squared_radius)) continue;
-    const double past_end = beyond.y();
-    const double half_width = std::sqrt(squared_radius - past_end * past_end - beyond.z() * beyond.z());
-    const bool over = beyond.x() == 0 && past_end == 0;
-    const int own = feature_at(place.x()), last = feature_at(place.x() + half_width);
-    for (int feature = feature_at(place.x() - half_width); feature <= last; ++feature) {
-      const Closest to = closest(feature, {place.x(), place.z()});
-      const double squared = to.squared + past_end * past_end;
-      if (!(squared < squared_radius)) continue;
-      // What is under the centre is always touched. Of the rest no valley is: there the face that shares it comes
-      // closer, and whatever is seen from behind is seen at its valley.
-      if (feature != own && to.in_valley) continue;
-      const Face& face = *to.face;
-      Vec3 away(to.past * face.along.x() + to.above * face.normal.x(), past_end,
-                to.past * face.along.y() + to.above * face.normal.y());
-      double distance = std::sqrt(squared);
-      if (over && to.height < 0) {
-        away = {to.highest->normal.x(), 0, to.highest->normal.y()};
-        distance = to.height;
-      } else if (to.past == 0 && past_end == 0) {  // however close the centre is
-        const double side = to.above < 0 ? -1 : 1;
-        away = {side * face.normal.x(), 0, side * face.normal.y()};
-      }
-      touches.push_back(
-          {-(at.axes * away).normalized(), sphere.radius - distance, sphere.body, static_cast<std::uint32_t>(feature)});
-    }
+    if (!(beyond.squaredNorm() < sphere.radius * sphere.radius)) continue;
+    const int own = feature_at(place.x());
+    const bool whole_teeth_alone = floor_ == 0 && sphere.radius <= spacing_ && own - 2 > first_ && own + 2 < last_;
+    if (whole_teeth_alone)
+      few.spheres[few.count++] = {.x = place.x() - period_start(own),
+                                  .z = place.z(),
+                                  .past_end = beyond.y(),
+                                  .radius = sphere.radius,
+                                  .own = own,
+                                  .body = sphere.body};
+    if (!whole_teeth_alone || few.count == several) touch(few, touches);
+    if (!whole_teeth_alone) touch(at, sphere, place, touches);
   }
+  touch(few, touches);
+}
+
+void SawTooth::touch(const Sheet::Frame& at, const Sphere& sphere, const Vec3& place,
+                     std::vector<Touch>& touches) const {
+  const double squared_radius = sphere.radius * sphere.radius;
+  const Vec3 beyond = this->beyond(place);
+  const double past_end = beyond.y();
+  const double half_width = std::sqrt(squared_radius - past_end * past_end - beyond.z() * beyond.z());
+  const bool over = beyond.x() == 0 && past_end == 0;
+  const int own = feature_at(place.x()), last = feature_at(place.x() + half_width);
+  for (int feature = feature_at(place.x() - half_width); feature <= last; ++feature) {
+    const Closest to = closest(feature, {place.x(), place.z()});
+    const double squared = to.squared + past_end * past_end;
+    if (!(squared < squared_radius)) continue;
+    // What is under the centre is always touched. Of the rest no valley is: there the face that shares it comes
+    // closer, and whatever is seen from behind is seen at its valley.
+    if (feature != own && to.in_valley) continue;
+    const Face& face = *to.face;
+    Vec3 away(to.past * face.along.x() + to.above * face.normal.x(), past_end,
+              to.past * face.along.y() + to.above * face.normal.y());
+    double distance = std::sqrt(squared);
+    if (over && to.height < 0) {
+      away = {to.highest->normal.x(), 0, to.highest->normal.y()};
+      distance = to.height;
+    } else if (to.past == 0 && past_end == 0) {  // however close the centre is
+      const double side = to.above < 0 ? -1 : 1;
+      away = {side * face.normal.x(), 0, side * face.normal.y()};
+    }
+    touches.push_back(
+        {-(at.axes * away).normalized(), sphere.radius - distance, sphere.body, static_cast<std::uint32_t>(feature)});
+  }
+}
+
+/// What the other does sphere by sphere, for spheres that reach no further than the whole teeth before, under and after
+/// their centres. Most grains at a rough wall are such, and between two flanks no branch can be foretold.
+void SawTooth::touch(Several& few, std::vector<Touch>& touches) const {
+  if (few.count == 0) return;
+  const auto each = [&](double Several::Placed::*number) {
+    return Lane([&](std::size_t k) { return few.spheres[std::min(k, few.count - 1)].*number; });
+  };
+  const Lane x = each(&Several::Placed::x), z = each(&Several::Placed::z), past_end = each(&Several::Placed::past_end),
+             radius = each(&Several::Placed::radius);
+  const Lane zero(0.0), end_squared = past_end * past_end;
+  const auto over = past_end == zero;
+
+  struct Found {
+    std::array<Quad, several> normal_and_overlap;
+    std::uint32_t lanes = 0;
+  };
+  static_assert(offsetof(Touch, overlap) == sizeof(Vec3));
+  std::array<Found, 3> found{};
+  for (int tooth = 0; tooth < 3; ++tooth) {
+    Lane squared(std::numeric_limits<double>::infinity()), height = -squared, past = zero, above = zero;
+    Vec<Lane> away{zero, past_end, zero}, face_into{}, highest_into{};
+    auto in_valley = zero > zero;
+    for (std::size_t f = 0; f < 3; ++f) {
+      const Face& face = faces_[f];
+      if (face.length == 0) continue;
+      const Vec<Lane> into{few.into[f].x(), few.into[f].y(), few.into[f].z()};
+      const Lane from_x = x - Lane((tooth - 1) * spacing_ + face.start.x()), from_z = z - Lane(face.start.y());
+      const Lane along = Lane(face.along.x()) * from_x + Lane(face.along.y()) * from_z;
+      const Lane off = Lane(face.normal.x()) * from_x + Lane(face.normal.y()) * from_z;
+      const Lane beyond = along - min(max(along, zero), Lane(face.length)), square = beyond * beyond + off * off;
+      const auto higher = off > height, closer = square < squared;
+      height = select(higher, off, height), highest_into = select<Lane>(higher, into, highest_into);
+      squared = select(closer, square, squared), past = select(closer, beyond, past),
+      above = select(closer, off, above);
+      away.x = select(closer, beyond * Lane(face.along.x()) + off * Lane(face.normal.x()), away.x);
+      away.z = select(closer, beyond * Lane(face.along.y()) + off * Lane(face.normal.y()), away.z);
+      face_into = select<Lane>(closer, into, face_into);
+      const auto valley = f == 0 ? beyond < zero : f == 2 ? beyond > zero : zero > zero;
+      in_valley = (closer && valley) || (!closer && in_valley);
+    }
+    squared = squared + end_squared;
+    auto touching = squared < radius * radius;
+    if (tooth != 1) touching = touching && !in_valley;
+    Found& to = found[static_cast<std::size_t>(tooth)];
+    to.lanes = detail::bits(touching);
+    if (to.lanes == 0) continue;
+
+    // However close the centre is.
+    const auto on_face = over && past == zero, behind = over && height < zero;
+    Vec<Lane> normal = face_into;
+    Lane distance = above;
+    if (detail::bits(touching && !on_face) != 0) {
+      const auto row = [&](int i) {
+        return -(Lane(few.axes(i, 0)) * away.x + Lane(few.axes(i, 1)) * away.y + Lane(few.axes(i, 2)) * away.z);
+      };
+      const Vec<Lane> way{row(0), row(1), row(2)};
+      const Lane length = sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+      normal = select<Lane>(on_face, normal, {way.x / length, way.y / length, way.z / length});
+      distance = select(on_face, distance, sqrt(squared));
+    }
+    normal = select<Lane>(behind, highest_into, normal);
+    distance = select(behind, height, distance);
+    store_rows(normal.x, normal.y, normal.z, radius - distance,
+               [&](std::size_t k, const Quad& quad) { to.normal_and_overlap[k] = quad; });
+  }
+
+  // All are written, and what is none by the next.
+  std::size_t end = touches.size();
+  touches.resize(end + found.size() * few.count);
+  for (std::size_t k = 0; k < few.count; ++k)
+    for (int tooth = 0; tooth < 3; ++tooth) {
+      const Found& to = found[static_cast<std::size_t>(tooth)];
+      Touch& touch = touches[end];
+      std::memcpy(touch.normal.data(), &to.normal_and_overlap[k], sizeof(Quad));
+      touch.body = few.spheres[k].body;
+      touch.feature = static_cast<std::uint32_t>(few.spheres[k].own + 2 * (tooth - 1));
+      end += to.lanes >> k & 1u;
+    }
+  touches.resize(end);
+  few.count = 0;
 }
 
 bool SawTooth::near(const Pose& pose, const Vec3& centre, double reach) const {

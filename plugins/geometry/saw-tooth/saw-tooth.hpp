@@ -36,6 +36,7 @@ class SawTooth : public Geometry {
     bool from_valley, to_valley;
   };
   struct Closest;
+  struct Several;
   struct Widths {
     double falling, floor, rising, spacing;  // the flanks' are those of their projections on the sheet
     double groove() const { return falling + floor + rising; }
@@ -48,14 +49,16 @@ class SawTooth : public Geometry {
   std::optional<std::pair<double, double>> extent(int feature, const Face& face) const;
   Closest closest(int feature, const Vec2& centre) const;
   Vec3 beyond(const Vec3& place) const;
+  void touch(const Sheet::Frame& at, const Sphere& sphere, const Vec3& place, std::vector<Touch>& touches) const;
+  void touch(Several& few, std::vector<Touch>& touches) const;
 
   Sheet sheet_;
   double depth_ = 0, inclination_ = std::numbers::pi / 4, floor_ = 0, offset_ = 0;
   std::optional<double> second_inclination_, given_spacing_;
   double spacing_ = 1, start_ = 0, tooth_ = 1;  // of a period: length, start of the first, width of its tooth
   double per_spacing_ = 1;
-  int first_ = 0, last_ = 0;                    // features on the sheet
-  std::array<Face, 4> faces_{};                 // of a period: rising flank, land, falling flank, floor
+  int first_ = 0, last_ = 0;     // features on the sheet
+  std::array<Face, 4> faces_{};  // of a period: rising flank, land, falling flank, floor
 };
 
 }  // namespace grit
