@@ -2,6 +2,7 @@
 #include "saw-tooth.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -155,47 +156,81 @@ Vec3 SawTooth::beyond(const Vec3& place) const {
   return place - place.cwiseMax(Vec3(0, 0, -depth_)).cwiseMin(Vec3(sheet_.length_a, sheet_.length_b, 0));
 }
 
-/// Spheres that may touch, as many as there are lanes, and the sheet as it stands.
-struct SawTooth::Several {
-  struct Placed {
-    double x, z;  // in the section, from where the period starts that the centre is over
-    double past_end, radius;
-    int own;  // feature under the centre
-    std::uint32_t body;
-  };
-  Mat3 axes;
+/// The sheet at one instant.
+struct SawTooth::Standing {
+  Sheet::Frame at;
   std::array<Vec3, 4> into;  // against the normal of each face
-  std::array<Placed, several> spheres{};
-  std::size_t count = 0;
+};
+/// As many spheres as there are lanes.
+struct SawTooth::Several {
+  Lane x, z;  // of the centres in the section, from where the periods start that they are over
+  Lane past_end, radius;
+};
+/// What they touch of a tooth.
+struct SawTooth::Touched {
+  std::array<Quad, several> normal_and_overlap;
+  std::uint32_t lanes = 0;
 };
 
 void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
-  const Sheet::Frame at = sheet_.at(pose);
-  Several few{.axes = at.axes, .into = {}};
+  Standing sheet{.at = sheet_.at(pose), .into = {}};
   for (std::size_t i = 0; i < faces_.size(); ++i)
-    few.into[i] = -(at.axes * Vec3(faces_[i].normal.x(), 0, faces_[i].normal.y())).normalized();
-  for (const Sphere& sphere : spheres) {
-    const Vec3 place = at.place(sphere.centre), beyond = this->beyond(place);
-    if (!(beyond.squaredNorm() < sphere.radius * sphere.radius)) continue;
-    const int own = feature_at(place.x());
-    const bool whole_teeth_alone = floor_ == 0 && sphere.radius <= spacing_ && own - 2 > first_ && own + 2 < last_;
-    if (whole_teeth_alone)
-      few.spheres[few.count++] = {.x = place.x() - period_start(own),
-                                  .z = place.z(),
-                                  .past_end = beyond.y(),
-                                  .radius = sphere.radius,
-                                  .own = own,
-                                  .body = sphere.body};
-    if (!whole_teeth_alone || few.count == several) touch(few, touches);
-    if (!whole_teeth_alone) touch(at, sphere, place, touches);
+    if (faces_[i].length > 0)
+      sheet.into[i] = -(sheet.at.axes * Vec3(faces_[i].normal.x(), 0, faces_[i].normal.y())).normalized();
+  const Lane zero(0.0);
+  for (std::size_t first = 0; first < spheres.size(); first += several) {
+    const std::span<const Sphere> some = spheres.subspan(first, std::min(several, spheres.size() - first));
+    const RowLanes<Lane> sphere =
+        load_fours<Lane>([&](std::size_t k) { return some[std::min(k, some.size() - 1)].centre.data(); });
+    const Vec<Lane> from_corner =
+        sphere.xyz() - Vec<Lane>{sheet.at.corner.x(), sheet.at.corner.y(), sheet.at.corner.z()};
+    const auto along = [&](int axis) {
+      return Lane(sheet.at.axes(0, axis)) * from_corner.x + Lane(sheet.at.axes(1, axis)) * from_corner.y +
+             Lane(sheet.at.axes(2, axis)) * from_corner.z;
+    };
+    const Vec<Lane> place{along(0), along(1), along(2)};
+    const Vec<Lane> beyond{place.x - min(max(place.x, zero), Lane(sheet_.length_a)),
+                           place.y - min(max(place.y, zero), Lane(sheet_.length_b)),
+                           place.z - min(max(place.z, Lane(-depth_)), zero)};
+    const auto reaches = dot(beyond, beyond) < sphere.w * sphere.w;
+    const std::uint32_t reaching = detail::bits(reaches) & ((1u << some.size()) - 1);
+    if (reaching == 0) continue;
+
+    const Lane periods = (place.x - Lane(start_)) * Lane(per_spacing_);
+    const Lane period([&](std::size_t k) { return std::floor(periods[k]); });
+    const auto whole_teeth_alone = sphere.w <= Lane(floor_ == 0 ? spacing_ : 0) &&
+                                   Lane(2.0) * period - Lane(2.0) > Lane(first_) &&
+                                   Lane(2.0) * period + Lane(2.0) < Lane(last_);
+    const std::uint32_t together = detail::bits(whole_teeth_alone) & reaching;
+    std::array<Touched, 3> teeth;  // before, under and after the centres
+    if (together != 0)
+      touch(sheet,
+            {.x = place.x - (Lane(start_) + period * Lane(spacing_)),
+             .z = place.z,
+             .past_end = beyond.y,
+             .radius = sphere.w},
+            teeth);
+    for (std::uint32_t left = reaching; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      if ((together >> k & 1u) == 0) {
+        touch(sheet.at, some[k], touches);
+        continue;
+      }
+      for (std::size_t tooth = 0; tooth < teeth.size(); ++tooth) {
+        if ((teeth[tooth].lanes >> k & 1u) == 0) continue;
+        Touch& touch = touches.emplace_back();
+        std::memcpy(touch.normal.data(), &teeth[tooth].normal_and_overlap[k], sizeof(Quad));
+        touch.body = some[k].body;
+        touch.feature = static_cast<std::uint32_t>(2 * (static_cast<int>(period[k]) + static_cast<int>(tooth) - 1));
+      }
+    }
   }
-  touch(few, touches);
 }
 
-void SawTooth::touch(const Sheet::Frame& at, const Sphere& sphere, const Vec3& place,
-                     std::vector<Touch>& touches) const {
+/// One sphere, wherever it is.
+void SawTooth::touch(const Sheet::Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const {
   const double squared_radius = sphere.radius * sphere.radius;
-  const Vec3 beyond = this->beyond(place);
+  const Vec3 place = at.place(sphere.centre), beyond = this->beyond(place);
   const double past_end = beyond.y();
   const double half_width = std::sqrt(squared_radius - past_end * past_end - beyond.z() * beyond.z());
   const bool over = beyond.x() == 0 && past_end == 0;
@@ -223,33 +258,22 @@ void SawTooth::touch(const Sheet::Frame& at, const Sphere& sphere, const Vec3& p
   }
 }
 
-/// What the other does sphere by sphere, for spheres that reach no further than the whole teeth before, under and after
-/// their centres. Most grains at a rough wall are such, and between two flanks no branch can be foretold.
-void SawTooth::touch(Several& few, std::vector<Touch>& touches) const {
-  if (few.count == 0) return;
-  const auto each = [&](double Several::Placed::*number) {
-    return Lane([&](std::size_t k) { return few.spheres[std::min(k, few.count - 1)].*number; });
-  };
-  const Lane x = each(&Several::Placed::x), z = each(&Several::Placed::z), past_end = each(&Several::Placed::past_end),
-             radius = each(&Several::Placed::radius);
-  const Lane zero(0.0), end_squared = past_end * past_end;
-  const auto over = past_end == zero;
-
-  struct Found {
-    std::array<Quad, several> normal_and_overlap;
-    std::uint32_t lanes = 0;
-  };
+/// The same for spheres that reach no further than the whole teeth before, under and after their centres, tooth by
+/// tooth. Most grains at a rough wall are such, and between two flanks no branch can be foretold.
+void SawTooth::touch(const Standing& sheet, const Several& spheres, std::array<Touched, 3>& teeth) const {
   static_assert(offsetof(Touch, overlap) == sizeof(Vec3));
-  std::array<Found, 3> found{};
+  const Lane zero(0.0), end_squared = spheres.past_end * spheres.past_end;
+  const auto over = spheres.past_end == zero;
   for (int tooth = 0; tooth < 3; ++tooth) {
     Lane squared(std::numeric_limits<double>::infinity()), height = -squared, past = zero, above = zero;
-    Vec<Lane> away{zero, past_end, zero}, face_into{}, highest_into{};
+    Vec<Lane> away{zero, spheres.past_end, zero}, face_into{}, highest_into{};
     auto in_valley = zero > zero;
     for (std::size_t f = 0; f < 3; ++f) {
       const Face& face = faces_[f];
       if (face.length == 0) continue;
-      const Vec<Lane> into{few.into[f].x(), few.into[f].y(), few.into[f].z()};
-      const Lane from_x = x - Lane((tooth - 1) * spacing_ + face.start.x()), from_z = z - Lane(face.start.y());
+      const Vec<Lane> into{sheet.into[f].x(), sheet.into[f].y(), sheet.into[f].z()};
+      const Lane from_x = spheres.x - Lane((tooth - 1) * spacing_ + face.start.x()),
+                 from_z = spheres.z - Lane(face.start.y());
       const Lane along = Lane(face.along.x()) * from_x + Lane(face.along.y()) * from_z;
       const Lane off = Lane(face.normal.x()) * from_x + Lane(face.normal.y()) * from_z;
       const Lane beyond = along - min(max(along, zero), Lane(face.length)), square = beyond * beyond + off * off;
@@ -264,9 +288,9 @@ void SawTooth::touch(Several& few, std::vector<Touch>& touches) const {
       in_valley = (closer && valley) || (!closer && in_valley);
     }
     squared = squared + end_squared;
-    auto touching = squared < radius * radius;
+    auto touching = squared < spheres.radius * spheres.radius;
     if (tooth != 1) touching = touching && !in_valley;
-    Found& to = found[static_cast<std::size_t>(tooth)];
+    Touched& to = teeth[static_cast<std::size_t>(tooth)];
     to.lanes = detail::bits(touching);
     if (to.lanes == 0) continue;
 
@@ -276,7 +300,8 @@ void SawTooth::touch(Several& few, std::vector<Touch>& touches) const {
     Lane distance = above;
     if (detail::bits(touching && !on_face) != 0) {
       const auto row = [&](int i) {
-        return -(Lane(few.axes(i, 0)) * away.x + Lane(few.axes(i, 1)) * away.y + Lane(few.axes(i, 2)) * away.z);
+        return -(Lane(sheet.at.axes(i, 0)) * away.x + Lane(sheet.at.axes(i, 1)) * away.y +
+                 Lane(sheet.at.axes(i, 2)) * away.z);
       };
       const Vec<Lane> way{row(0), row(1), row(2)};
       const Lane length = sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
@@ -285,24 +310,9 @@ void SawTooth::touch(Several& few, std::vector<Touch>& touches) const {
     }
     normal = select<Lane>(behind, highest_into, normal);
     distance = select(behind, height, distance);
-    store_rows(normal.x, normal.y, normal.z, radius - distance,
+    store_rows(normal.x, normal.y, normal.z, spheres.radius - distance,
                [&](std::size_t k, const Quad& quad) { to.normal_and_overlap[k] = quad; });
   }
-
-  // All are written, and what is none by the next.
-  std::size_t end = touches.size();
-  touches.resize(end + found.size() * few.count);
-  for (std::size_t k = 0; k < few.count; ++k)
-    for (int tooth = 0; tooth < 3; ++tooth) {
-      const Found& to = found[static_cast<std::size_t>(tooth)];
-      Touch& touch = touches[end];
-      std::memcpy(touch.normal.data(), &to.normal_and_overlap[k], sizeof(Quad));
-      touch.body = few.spheres[k].body;
-      touch.feature = static_cast<std::uint32_t>(few.spheres[k].own + 2 * (tooth - 1));
-      end += to.lanes >> k & 1u;
-    }
-  touches.resize(end);
-  few.count = 0;
 }
 
 bool SawTooth::near(const Pose& pose, const Vec3& centre, double reach) const {

@@ -37,6 +37,8 @@ class SawTooth : public Geometry {
   };
   struct Closest;
   struct Several;
+  struct Standing;
+  struct Touched;
   struct Widths {
     double falling, floor, rising, spacing;  // the flanks' are those of their projections on the sheet
     double groove() const { return falling + floor + rising; }
@@ -49,8 +51,8 @@ class SawTooth : public Geometry {
   std::optional<std::pair<double, double>> extent(int feature, const Face& face) const;
   Closest closest(int feature, const Vec2& centre) const;
   Vec3 beyond(const Vec3& place) const;
-  void touch(const Sheet::Frame& at, const Sphere& sphere, const Vec3& place, std::vector<Touch>& touches) const;
-  void touch(Several& few, std::vector<Touch>& touches) const;
+  void touch(const Sheet::Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const;
+  void touch(const Standing& sheet, const Several& spheres, std::array<Touched, 3>& teeth) const;
 
   Sheet sheet_;
   double depth_ = 0, inclination_ = std::numbers::pi / 4, floor_ = 0, offset_ = 0;
