@@ -11,13 +11,16 @@
 namespace grit {
 namespace {
 
-constexpr std::ptrdiff_t rays = 5;         // a pixel, along each axis; odd. Three double the error of displacements
-constexpr std::ptrdiff_t band_rows = 8;    // of pixels, drawn at a time
-constexpr std::uint32_t tile = 512;        // samples of the pattern along each axis
-constexpr float samples_per_pixel = 2;     // of the pattern
+constexpr std::ptrdiff_t rays = 5;        // a pixel, along each axis; odd. Three double the error of displacements
+constexpr std::ptrdiff_t band_rows = 10;  // of rays, drawn at a time: they stay in the cache
+constexpr std::uint32_t tile = 512;       // samples of the pattern along each axis
+constexpr float samples_per_pixel = 2;    // of the pattern
+constexpr std::uint32_t finer = 2;        // than that is what rays see of it; its steps then vanish in their mean
+constexpr std::uint32_t fine_tile = finer * tile;
 constexpr double speckle_deviation = 1.2;  // of the Gauss bell that noise is smoothed with, pixels: speckles of four
 constexpr float darkest = 0.35f, lightest = 0.65f;  // grains, at the face
 constexpr float contrast = 0.12f;                   // standard deviation of the speckles
+constexpr float most_contrast = 5 * contrast;       // what is told apart, in 127 steps
 
 /// Steele, Lea and Flood's mixer, doi:10.1145/2660193.2660195.
 std::uint64_t mixed(std::uint64_t x) {
@@ -45,7 +48,28 @@ void smooth(std::vector<float>& pattern, std::uint32_t stride, std::uint32_t lin
   }
 }
 
-std::vector<float> speckled(std::uint64_t seed) {
+/// Where sample (i, j) of the fine pattern is kept, around and around: squares of 8 by 8 after each other, as what a
+/// grain shows of it then is on few lines of the cache, whichever way it has turned.
+constexpr std::uint32_t kept_at(std::uint32_t i, std::uint32_t j) {
+  constexpr std::uint32_t within = fine_tile - 1;
+  return ((j & within & ~7u) * fine_tile) + ((i & within & ~7u) << 3) + ((j & 7) << 3) + (i & 7);
+}
+
+/// The pattern with samples between by linear interpolation, in parts of `most_contrast`.
+std::vector<std::int8_t> refined(const std::vector<float>& pattern) {
+  std::vector<std::int8_t> fine(fine_tile * fine_tile);
+  for (std::uint32_t j = 0; j < fine_tile; ++j)
+    for (std::uint32_t i = 0; i < fine_tile; ++i) {
+      const std::uint32_t left = i / finer, low = j / finer, right = (left + 1) % tile, high = (low + 1) % tile;
+      const float a = static_cast<float>(i % finer) / finer, b = static_cast<float>(j % finer) / finer;
+      const float grey = (1 - b) * ((1 - a) * pattern[low * tile + left] + a * pattern[low * tile + right]) +
+                         b * ((1 - a) * pattern[high * tile + left] + a * pattern[high * tile + right]);
+      fine[kept_at(i, j)] = static_cast<std::int8_t>(std::lround(127 * std::clamp(grey / most_contrast, -1.0f, 1.0f)));
+    }
+  return fine;
+}
+
+std::vector<std::int8_t> speckled(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<float> pattern(tile * tile);
   // Twelve bits are as good as a bell once they are smoothed, and the same with every standard library.
@@ -55,14 +79,14 @@ std::vector<float> speckled(std::uint64_t seed) {
   for (const float one : pattern) square += one * one;
   const auto scale = static_cast<float>(contrast / std::sqrt(square / (tile * tile)));
   for (float& one : pattern) one *= scale;
-  return pattern;
+  return refined(pattern);
 }
 
 }  // namespace
 
-/// What a disc looks like, in single precision.
+/// What a disc looks like; places in samples of the fine pattern.
 struct Camera::Skin {
-  float x, y, grey, cosine, sine, right, up;
+  float grey, cosine, sine, right, up;
 };
 
 Camera::Camera(std::uint64_t seed, double fade)
@@ -72,27 +96,131 @@ Camera::Skin Camera::skin(const Disc& disc) const {
   const std::uint64_t drawn = mixed(mixed(seed_) + disc.id), more = mixed(drawn);
   const auto share = [](std::uint64_t bits) { return static_cast<double>(bits & 0xffffff) * 0x1p-24; };
   const double angle = disc.angle + 2 * std::numbers::pi * share(drawn);
-  return {static_cast<float>(disc.x),
-          static_cast<float>(disc.y),
-          darkest + (lightest - darkest) * static_cast<float>(share(drawn >> 32)),
-          samples_per_pixel * static_cast<float>(std::cos(angle)),
-          samples_per_pixel * static_cast<float>(std::sin(angle)),
-          static_cast<float>(tile * share(more)),
-          static_cast<float>(tile * share(more >> 32))};
+  return {darkest + (lightest - darkest) * static_cast<float>(share(drawn >> 32)),
+          finer * samples_per_pixel * static_cast<float>(std::cos(angle)),
+          finer * samples_per_pixel * static_cast<float>(std::sin(angle)), static_cast<float>(fine_tile * share(more)),
+          static_cast<float>(fine_tile * share(more >> 32))};
 }
 
-/// At a place relative to the centre of the disc.
-float Camera::grey(const Skin& skin, float x, float y, float depth) const {
-  // 64 tiles on, so that what is cut off is the floor.
-  const float u = skin.right + skin.cosine * x + skin.sine * y + 64 * tile;
-  const float v = skin.up - skin.sine * x + skin.cosine * y + 64 * tile;
-  const auto i = static_cast<std::uint32_t>(u), j = static_cast<std::uint32_t>(v);
-  const float a = u - static_cast<float>(i), b = v - static_cast<float>(j);
-  const std::uint32_t left = i % tile, right = (i + 1) % tile, low = j % tile * tile, high = (j + 1) % tile * tile;
-  const float lower = (1 - a) * speckles_[low + left] + a * speckles_[low + right];
-  const float upper = (1 - a) * speckles_[high + left] + a * speckles_[high + right];
-  return (skin.grey + (1 - b) * lower + b * upper) * fade_ / (fade_ + std::max(0.0f, depth));
+/// The light of rays side by side that all meet one disc, the first of them at (x, y) from its centre.
+void Camera::shade(const Skin& skin, float x, float y, std::span<const float> depth, float* light) const {
+  // The nearest sample; half a one on, so that what is cut off is the floor.
+  const float u = skin.right + skin.cosine * x + skin.sine * y + 0.5f,
+              v = skin.up - skin.sine * x + skin.cosine * y + 0.5f;
+  const float right = skin.cosine / rays, up = -skin.sine / rays;
+  constexpr int most = 64;
+  std::array<std::uint32_t, most> from;
+  std::array<std::int8_t, most> speckle;
+  for (std::size_t done = 0; done < depth.size(); done += most) {
+    const int count = static_cast<int>(std::min<std::size_t>(most, depth.size() - done));
+    const float *const depths = depth.data() + done, start = static_cast<float>(done);
+    float* const to = light + done;
+    // One loop for what vectorises and one for what does not.
+    for (int k = 0; k < count; ++k) {
+      const float along = start + static_cast<float>(k);
+      from[static_cast<std::size_t>(k)] =
+          kept_at(static_cast<std::uint32_t>(static_cast<int>(std::floor(u + right * along))),
+                  static_cast<std::uint32_t>(static_cast<int>(std::floor(v + up * along))));
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) speckle[k] = speckles_[from[k]];
+    for (int k = 0; k < count; ++k)
+      to[k] = (skin.grey + most_contrast / 127 * static_cast<float>(speckle[static_cast<std::size_t>(k)])) * fade_ /
+              (fade_ + std::max(0.0f, depths[k]));
+  }
 }
+
+namespace {
+
+constexpr std::uint32_t nobody = ~0u;
+
+// Rays of column or row k meet the picture at (k + ½) / rays − ½; those of the first and the last that meet a disc.
+std::ptrdiff_t first_ray(double low, std::ptrdiff_t from) {
+  return static_cast<std::ptrdiff_t>(std::max(std::ceil((low + 0.5) * rays - 0.5), static_cast<double>(from)));
+}
+std::ptrdiff_t last_ray(double high, std::ptrdiff_t end) {
+  return static_cast<std::ptrdiff_t>(std::min(std::floor((high + 0.5) * rays - 0.5), static_cast<double>(end - 1)));
+}
+double place(std::ptrdiff_t ray) { return (static_cast<double>(ray) + 0.5) / rays - 0.5; }
+
+/// What the rays of one row meet.
+struct RayRow {
+  float* depth;        ///< infinite where nothing
+  std::uint32_t* who;  ///< index of the disc, or nobody
+};
+
+/// Columns of rays that may meet a disc, from the first to the last.
+struct RayColumns {
+  std::ptrdiff_t first, last;
+};
+
+/// Where disc n is in front of what they have met so far. Loops without branches: they vectorise.
+void meet(const Disc& disc, std::uint32_t n, const RayColumns& reach, double y, std::ptrdiff_t columns,
+          const RayRow& row) {
+  const auto front = static_cast<float>(disc.depth - disc.radius);
+  int hidden = 1;
+  for (std::ptrdiff_t i = reach.first; i <= reach.last; ++i) hidden &= row.depth[i] < front ? 1 : 0;
+  const double dy = y - disc.y, square = disc.radius * disc.radius - dy * dy;
+  if (hidden != 0 || !(square > 0)) return;
+  const double half = std::sqrt(square);
+  const std::ptrdiff_t left = first_ray(disc.x - half, 0), right = last_ray(disc.x + half, columns);
+  const int count = static_cast<int>(right - left + 1);
+  const auto depth = static_cast<float>(disc.depth), most = static_cast<float>(square),
+             from = static_cast<float>(place(left) - disc.x);
+  float* const depths = row.depth + left;
+  std::uint32_t* const whose = row.who + left;
+  for (int k = 0; k < count; ++k) {
+    const float dx = from + static_cast<float>(k) * (1.0f / rays);
+    const float surface = depth - std::sqrt(std::max(0.0f, most - dx * dx));
+    const bool nearer = surface < depths[k];
+    depths[k] = nearer ? surface : depths[k];
+    whose[k] = nearer ? n : whose[k];
+  }
+}
+
+/// Light of rays to grey values of pixels. A pixel is lit by rays of its own and of its neighbours, by a tent: edges of
+/// grains then move in grey values.
+class Exposure {
+ public:
+  explicit Exposure(Image& image) : image_(image) {
+    for (auto& row : rows_) row.assign(static_cast<std::size_t>(rays * image.width + 2 * wing), 0);
+    for (std::ptrdiff_t k = 0; k < 2 * rays - 1; ++k)
+      tent_[static_cast<std::size_t>(k)] =
+          static_cast<float>(std::min(k + 1, 2 * rays - 1 - k)) / static_cast<float>(rays * rays);
+  }
+  /// Row j of rays, in rising order.
+  void add(std::ptrdiff_t j, const std::vector<float>& light) {
+    const std::ptrdiff_t middle = j / rays;
+    for (const std::ptrdiff_t pixel : {middle - 1, middle, middle + 1}) {
+      const std::ptrdiff_t k = j - rays * pixel + wing;  // of the tent
+      if (pixel < 0 || pixel >= image_.height || k < 0 || k > 2 * (rays - 1)) continue;
+      float* const sum = rows_[static_cast<std::size_t>(pixel % 3)].data() + wing;
+      const float weight = tent_[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < light.size(); ++i) sum[i] += weight * light[i];
+      if (k == 2 * (rays - 1) || j == rays * image_.height - 1) finish(pixel);
+    }
+  }
+
+ private:
+  static constexpr std::ptrdiff_t wing = (rays - 1) / 2;  // of the tent that is beyond the pixel
+
+  void finish(std::ptrdiff_t pixel) {
+    std::vector<float>& sum = rows_[static_cast<std::size_t>(pixel % 3)];
+    float* const row = image_.row(pixel);
+    for (std::ptrdiff_t i = 0; i < image_.width; ++i) {
+      const float* const from = sum.data() + rays * i;
+      float grey = 0;
+      for (std::size_t k = 0; k < tent_.size(); ++k) grey += tent_[k] * from[k];
+      row[i] = grey;
+    }
+    std::ranges::fill(sum, 0.0f);
+  }
+
+  Image& image_;
+  std::array<float, 2 * rays - 1> tent_;
+  std::array<std::vector<float>, 3> rows_;  ///< of pixel rows that are not finished, a number a ray
+};
+
+}  // namespace
 
 Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::ptrdiff_t height) const {
   std::vector<Disc> near(discs.begin(), discs.end());
@@ -100,80 +228,42 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
   std::vector<Skin> skins;
   for (const Disc& disc : near) skins.push_back(skin(disc));
 
-  // Rays of column or row k meet the picture at (k + ½) / rays − ½; those of the first and the last that meet a disc.
-  const auto first = [](double low, std::ptrdiff_t from) {
-    return static_cast<std::ptrdiff_t>(std::max(std::ceil((low + 0.5) * rays - 0.5), static_cast<double>(from)));
-  };
-  const auto last = [](double high, std::ptrdiff_t to) {
-    return static_cast<std::ptrdiff_t>(std::min(std::floor((high + 0.5) * rays - 0.5), static_cast<double>(to - 1)));
-  };
-  const auto place = [](std::ptrdiff_t k) { return (static_cast<double>(k) + 0.5) / rays - 0.5; };
-
-  const std::ptrdiff_t bands = (height + band_rows - 1) / band_rows;
+  const std::ptrdiff_t columns = rays * width, rows = rays * height, bands = (rows + band_rows - 1) / band_rows;
   std::vector<std::vector<std::uint32_t>> in_band(static_cast<std::size_t>(bands));
   for (std::size_t n = 0; n < near.size(); ++n) {
-    const auto low = first(near[n].y - near[n].radius, 0), high = last(near[n].y + near[n].radius, rays * height);
-    for (std::ptrdiff_t band = low / (rays * band_rows); low <= high && band <= high / (rays * band_rows); ++band)
+    const auto low = first_ray(near[n].y - near[n].radius, 0), high = last_ray(near[n].y + near[n].radius, rows);
+    for (std::ptrdiff_t band = low / band_rows; low <= high && band <= high / band_rows; ++band)
       in_band[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(n));
   }
 
-  constexpr std::uint32_t nobody = ~0u;
-  // A pixel is lit by rays of its own and of its neighbours, by a tent: edges of grains then move in grey values.
-  constexpr std::ptrdiff_t wing = (rays - 1) / 2;  // of the tent that is beyond the pixel
-  std::array<float, 2 * rays - 1> tent;
-  for (std::ptrdiff_t k = 0; k < 2 * rays - 1; ++k)
-    tent[static_cast<std::size_t>(k)] =
-        static_cast<float>(std::min(k + 1, 2 * rays - 1 - k)) / static_cast<float>(rays * rays);
   Image image(width, height);
-  const std::ptrdiff_t columns = rays * width;
-  std::vector<float> depth(static_cast<std::size_t>(columns * rays * band_rows)),
-      light(static_cast<std::size_t>(columns + 2 * wing)), reduced(static_cast<std::size_t>(width));
+  Exposure exposure(image);
+  std::vector<float> depth(static_cast<std::size_t>(columns * band_rows)), light(static_cast<std::size_t>(columns));
   std::vector<std::uint32_t> who(depth.size());
   for (std::ptrdiff_t band = 0; band < bands; ++band) {
     std::ranges::fill(depth, std::numeric_limits<float>::infinity());
     std::ranges::fill(who, nobody);
-    const std::ptrdiff_t begin = rays * band * band_rows, end = std::min(begin + rays * band_rows, rays * height);
+    const std::ptrdiff_t begin = band * band_rows, end = std::min(begin + band_rows, rows);
+    const auto row = [&](std::ptrdiff_t j) -> RayRow {
+      return {depth.data() + (j - begin) * columns, who.data() + (j - begin) * columns};
+    };
     for (const std::uint32_t n : in_band[static_cast<std::size_t>(band)]) {
       const Disc& disc = near[n];
-      const auto low = first(disc.y - disc.radius, begin), high = last(disc.y + disc.radius, end);
-      for (std::ptrdiff_t j = low; j <= high; ++j) {
-        const double dy = place(j) - disc.y, square = disc.radius * disc.radius - dy * dy;
-        if (!(square > 0)) continue;
-        const double half = std::sqrt(square);
-        const auto left = first(disc.x - half, 0), right = last(disc.x + half, columns);
-        float* const depths = &depth[static_cast<std::size_t>((j - begin) * columns)];
-        std::uint32_t* const whose = &who[static_cast<std::size_t>((j - begin) * columns)];
-        for (std::ptrdiff_t i = left; i <= right; ++i) {
-          const double dx = place(i) - disc.x;
-          const auto surface = static_cast<float>(disc.depth - std::sqrt(std::max(0.0, square - dx * dx)));
-          if (surface < depths[i]) depths[i] = surface, whose[i] = n;
-        }
-      }
+      const RayColumns reach{first_ray(disc.x - disc.radius, 0), last_ray(disc.x + disc.radius, columns)};
+      const auto low = first_ray(disc.y - disc.radius, begin), high = last_ray(disc.y + disc.radius, end);
+      for (std::ptrdiff_t j = low; j <= high; ++j) meet(disc, n, reach, place(j), columns, row(j));
     }
     for (std::ptrdiff_t j = begin; j < end; ++j) {
-      const auto at = static_cast<std::size_t>((j - begin) * columns);
-      const auto y = static_cast<float>(place(j));
-      for (std::ptrdiff_t i = 0; i < columns; ++i) {
-        const std::uint32_t n = who[at + static_cast<std::size_t>(i)];
-        light[static_cast<std::size_t>(i + wing)] = n == nobody
-                                                        ? 0
-                                                        : grey(skins[n], static_cast<float>(place(i)) - skins[n].x,
-                                                               y - skins[n].y, depth[at + static_cast<std::size_t>(i)]);
+      const RayRow met = row(j);
+      for (std::ptrdiff_t i = 0, after; i < columns; i = after) {
+        const std::uint32_t n = met.who[i];
+        for (after = i + 1; after < columns && met.who[after] == n;) ++after;
+        if (n == nobody) std::fill(light.begin() + i, light.begin() + after, 0.0f);
+        else
+          shade(skins[n], static_cast<float>(place(i) - near[n].x), static_cast<float>(place(j) - near[n].y),
+                {met.depth + i, met.depth + after}, light.data() + i);
       }
-      for (std::ptrdiff_t i = 0; i < width; ++i) {
-        float sum = 0;
-        for (std::size_t k = 0; k < tent.size(); ++k) sum += tent[k] * light[static_cast<std::size_t>(rays * i) + k];
-        reduced[static_cast<std::size_t>(i)] = sum;
-      }
-      const std::ptrdiff_t middle = j / rays, off = j % rays;
-      for (std::ptrdiff_t pixel = std::max<std::ptrdiff_t>(0, middle - 1); pixel <= std::min(height - 1, middle + 1);
-           ++pixel) {
-        const std::ptrdiff_t k = rays * (middle - pixel) + off + wing;  // of the tent
-        if (k < 0 || k >= static_cast<std::ptrdiff_t>(tent.size())) continue;
-        float* const row = image.row(pixel);
-        for (std::ptrdiff_t i = 0; i < width; ++i)
-          row[i] += tent[static_cast<std::size_t>(k)] * reduced[static_cast<std::size_t>(i)];
-      }
+      exposure.add(j, light);
     }
   }
   return image;

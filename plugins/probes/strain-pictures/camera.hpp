@@ -29,11 +29,11 @@ class Camera {
  private:
   struct Skin;
   Skin skin(const Disc& disc) const;
-  float grey(const Skin& skin, float x, float y, float depth) const;
+  void shade(const Skin& skin, float x, float y, std::span<const float> depth, float* light) const;
 
   std::uint64_t seed_;
   float fade_;
-  std::vector<float> speckles_;  ///< a periodic pattern that every grain has a part of
+  std::vector<std::int8_t> speckles_;  ///< a periodic pattern that every grain has a part of
 };
 
 }  // namespace grit

@@ -9,33 +9,29 @@
 
 namespace grit {
 
-/// A picture between its pixels: B-splines of third degree (Unser 1999, doi:10.1109/79.799930).
-class SmoothImage {
+/// The first picture, and what later ones are compared with.
+struct ReferenceImage {
+  ReferenceImage() = default;
+  explicit ReferenceImage(Image image);
+  Image full, coarse;  ///< coarse: of half the size
+  Image across, up;    ///< slopes of the picture's B-splines at its pixels, grey values a pixel; not at its sides
+};
+
+/// A later picture, between its pixels: B-splines of third degree (Unser 1999, doi:10.1109/79.799930).
+class DeformedImage {
  public:
-  SmoothImage() = default;
-  explicit SmoothImage(const Image& image);
-  std::ptrdiff_t width() const { return weights_.width; }
-  std::ptrdiff_t height() const { return weights_.height; }
-  /// Whether a place is two pixels or more off the picture's sides.
+  explicit DeformedImage(Image image);
+  const Image& coarse() const { return coarse_; }
+  /// Weights of the splines at pixels, over 36: the splines are to be taken six times.
+  const Image& weights() const { return weights_; }
+  /// Whether a place is two pixels or more off the picture's sides, where grey values are known between pixels.
   bool has(double x, double y) const {
     return x >= 2 && y >= 2 && x < static_cast<double>(weights_.width - 3) &&
            y < static_cast<double>(weights_.height - 3);
   }
-  /// Where has(x, y).
-  double grey(double x, double y) const;
-  /// At a pixel one or more off the sides, grey values a pixel.
-  Eigen::Vector2d slope(std::ptrdiff_t column, std::ptrdiff_t row) const;
 
  private:
-  Image weights_;
-};
-
-/// A picture and what a correlation needs of it. Kept of the first one, as each later one is compared with that.
-struct FilteredImage {
-  FilteredImage() = default;
-  explicit FilteredImage(Image image);
-  Image full, coarse;  ///< coarse: of half the size
-  SmoothImage smooth;
+  Image coarse_, weights_;
 };
 
 /// Where a square of one picture is in another, to first order.
@@ -50,8 +46,8 @@ class Correlation {
  public:
   /// `half`: a square has 2 half + 1 pixels a side; at least 2.
   /// `before` must outlive it.
-  Correlation(const FilteredImage& before, FilteredImage after, std::ptrdiff_t half);
-  Correlation(FilteredImage&& before, FilteredImage after, std::ptrdiff_t half) = delete;
+  Correlation(const ReferenceImage& before, DeformedImage after, std::ptrdiff_t half);
+  Correlation(ReferenceImage&& before, DeformedImage after, std::ptrdiff_t half) = delete;
 
   /// Whether the square around a pixel has its slopes inside the picture.
   bool has(std::ptrdiff_t column, std::ptrdiff_t row) const;
@@ -63,9 +59,10 @@ class Correlation {
   std::optional<Match> refined(std::ptrdiff_t column, std::ptrdiff_t row, Match guess) const;
 
  private:
-  const FilteredImage& before_;
-  FilteredImage after_;
+  const ReferenceImage& before_;
+  DeformedImage after_;
   std::ptrdiff_t half_;
+  Image sums_, squares_;  ///< of the coarse square whose lower left pixel it is, of grey values and of their squares
 };
 
 /// Squares in rows and columns, and where they were found.

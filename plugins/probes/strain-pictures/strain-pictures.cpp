@@ -163,7 +163,7 @@ void StrainPictures::look(const World& world) {
     began_ = true, stage_ = world.stage();
     if (sliding) walls_ = sliding->now(world);
     view_ = view(world);
-    start_ = view_ ? FilteredImage(picture(world, *view_)) : FilteredImage();
+    start_ = view_ ? ReferenceImage(picture(world, *view_)) : ReferenceImage();
   } else if (step_ == world.step()) {
     return;
   }
@@ -178,7 +178,7 @@ std::vector<StrainPictures::Subset> StrainPictures::found(Image now) const {
     return std::max(1l, std::lround(diameters * pixels_per_diameter / static_cast<double>(grid.apart)));
   };
   const MatchGrid found =
-      matches(Correlation(start_, FilteredImage(std::move(now)), half), grid, apart(3),
+      matches(Correlation(start_, DeformedImage(std::move(now)), half), grid, apart(3),
               static_cast<std::ptrdiff_t>(std::ceil(search * pixels_per_diameter)), least_correlation);
   std::vector<Subset> all;
   for (std::ptrdiff_t j = 0; j < grid.rows; ++j)

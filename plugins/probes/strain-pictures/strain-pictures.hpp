@@ -70,7 +70,7 @@ class StrainPictures final : public Probe {
   std::string stage_;
   std::uint64_t step_ = 0;
   std::optional<View> view_;
-  FilteredImage start_;
+  ReferenceImage start_;
   SlidingLengths::Start walls_;
   std::vector<Subset> subsets_;
 };
