@@ -69,6 +69,12 @@ def window(path, scene, folder, threads, settings=None):
                   float(contacts.group(1)) if contacts else facts['contacts_per_body'], done.others, facts)
 
 
+def stepping(path, scene, folder, threads, settings=None):
+    """Seconds of all stages of a scene, and how many cores other processes kept busy meanwhile."""
+    done = run(path, scene, folder, threads, settings)
+    return json.loads((Path(folder) / 'run.json').read_text(encoding='utf-8'))['wall_s'], done.others
+
+
 def _started(path, scene, folder, threads, settings):
     """A run that is watched while it goes on."""
     Path(folder).mkdir(parents=True, exist_ok=True)
