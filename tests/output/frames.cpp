@@ -96,6 +96,21 @@ TEST(Frames, PlaceContactsWallsAndFields) {
   EXPECT_FALSE(std::filesystem::exists(folder / "frames/000000.h5")) << "a frame that failed is no frame";
 }
 
+TEST(Frames, DrawWallsAsTheirStageHasThem) {
+  const Folder folder;
+  std::vector<WallShape> shapes = lid;
+  shapes.push_back({"lid", {Vec3(0, 0, -7), Vec3(1, 0, -7), Vec3(0, 1, -7)}, "open"});
+  auto world = three_grains();
+  Frames frames(folder.path(), shapes);
+  for (const char* stage : {"closed", "open", "closed"}) world.stage_name = stage, frames.write(world, {});
+  const double heights[] = {0.5, -7.5, 0.5};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const hdf5::File file(folder / ("frames/00000" + std::to_string(i) + ".h5"), hdf5::Mode::read);
+    EXPECT_EQ(file.group("walls").dataset("lid").read<double>().at(2), heights[i])
+        << "half a metre lower, by its motion";
+  }
+}
+
 // A square of four triangles with their tips in its middle; a ball rests on the second and one on the last.
 TEST(Frames, TellTheForceOnEachFacetOfAMesh) {
   const std::vector<Vec3> corner{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};

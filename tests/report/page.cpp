@@ -194,6 +194,28 @@ TEST(ReportPage, HasWallsAndWhereTheyGo) {
   EXPECT_THAT(json_of(page.html).at("runs").at(0).at("grains").at("frames").at(1).at("walls"), IsEmpty());
 }
 
+TEST(ReportPage, HasWallsThatBecomeOthers) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.options.walls.push_back({"floor", {{0, 0, -3}, {1, 0, -3}, {0, 1, -3}}, "open"});
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  for (const char* stage : {"shear", "open", "open"}) {
+    run.world.stage_name = stage, run.world.wall[0].position.x() += 0.125;
+    results.frame(run.world, {});
+  }
+  results.finish(run.world, {});
+  const auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains");
+  ASSERT_THAT(grains.at("walls"), SizeIs(2));
+  EXPECT_THAT(numbers_of<float>(page.html, grains.at("walls").at(0).at("data")),
+              ElementsAre(0, 0, 0, 1, 0, 0, 0, 1, 0));
+  EXPECT_THAT(numbers_of<float>(page.html, grains.at("walls").at(1).at("data")),
+              ElementsAre(0, 0, -3, 1, 0, -3, 0, 1, -3));
+  EXPECT_EQ(grains.at("frames").at(0).at("walls"), json({{0, 0.125, 0, 0}}));
+  EXPECT_EQ(grains.at("frames").at(2).at("walls"), json({{1, 0.375, 0, 0}}));
+}
+
 TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
   const Folder folder;
   SmallRun run(folder / "run");

@@ -20,9 +20,16 @@
 namespace grit {
 namespace {
 
-std::vector<WallShape> wall_shapes(const SceneDescription& scene) {
+/// As they begin, and as stages change them.
+std::vector<WallShape> wall_shapes(const Scene& scene) {
   std::vector<WallShape> shapes;
-  for (const auto& [name, wall] : scene.walls) shapes.push_back({name, wall.geometry->triangles()});
+  for (const auto& [name, wall] : scene.description->walls) {
+    const std::vector<Vec3> first = wall.geometry->triangles();
+    shapes.push_back({name, first});
+    for (std::size_t i = 0; i < scene.stages.size(); ++i)
+      if (auto now = scene.stages[i].start->walls.at(name).geometry->triangles(); now != first)
+        shapes.push_back({name, std::move(now), scene.description->stages[i].name});
+  }
   return shapes;
 }
 
@@ -105,7 +112,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
                                    .plugins = plugins_used(description, registry),
                                    .seed = description.seed,
                                    .threads = threads},
-                         .walls = wall_shapes(description),
+                         .walls = wall_shapes(scene),
                          .picture = {}};
   if (const auto& picture = description.output.picture)
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};

@@ -133,10 +133,9 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
   const auto walls = world.walls();
   for (std::size_t index = 0; index < walls.size(); ++index) {
     const auto& wall = walls[index];
-    const auto shape = std::ranges::find(shapes, wall.name, &WallShape::name);
     std::vector<double> corners;
-    if (shape != shapes.end())
-      for (const auto& corner : placed(*shape, world)) corners.insert(corners.end(), corner.data(), corner.data() + 3);
+    for (const auto& corner : triangles_of(wall, shapes, world.stage()))
+      corners.insert(corners.end(), corner.data(), corner.data() + 3);
     auto triangles = put(group, {wall.name, "m", "corners of the wall's triangles where it has moved to", {}},
                          {corners.size() / 9, 3, 3}, corners);
     triangles.set_attribute("index", static_cast<std::int64_t>(index));
@@ -237,11 +236,15 @@ std::string collection(const std::string& name, const std::string& grids) {
 
 }  // namespace
 
-std::vector<Vec3> placed(const WallShape& shape, const World& world) {
-  auto triangles = shape.triangles;
-  const auto walls = world.walls();
-  if (const auto wall = std::ranges::find(walls, shape.name, &WallView::name); wall != walls.end())
-    for (auto& corner : triangles) corner += wall->position;
+std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> shapes, const std::string& stage) {
+  const auto in = [&](const std::string& when) {
+    return std::ranges::find_if(shapes, [&](const WallShape& s) { return s.name == wall.name && s.stage == when; });
+  };
+  auto shape = in(stage);
+  if (shape == shapes.end()) shape = in("");
+  if (shape == shapes.end()) return {};
+  auto triangles = shape->triangles;
+  for (auto& corner : triangles) corner += wall.position;
   return triangles;
 }
 

@@ -16,11 +16,12 @@ namespace grit {
 struct WallShape {
   std::string name;
   std::vector<Vec3> triangles;  ///< three corners each [m]
+  std::string stage = {};       ///< that changes the wall into this; empty: whatever it is in no such stage
 };
 
-/// The triangles where the wall of this name is now. Its displacement counts, its turning does not: a wall that spins
-/// is drawn as it stood at the start.
-std::vector<Vec3> placed(const WallShape& shape, const World& world);
+/// The triangles of a wall where it is now; none if no shape has its name. Its displacement counts, its turning does
+/// not: a wall that spins is drawn as it stood at the start.
+std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> shapes, const std::string& stage);
 
 /// Writes frames: /bodies sorted by id, /contacts, /walls/<name>, /probes/<name>/<field>; every dataset has `units` and
 /// `long_name`, the file `time`, `step`, `stage`. A file appears under its name only when it is whole. All functions

@@ -103,7 +103,7 @@ GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> 
 GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
                      const std::string& color) {
   std::vector<std::vector<Vec3>> where;
-  for (const auto& wall : walls) where.push_back(placed(wall, world));
+  for (const WallView& wall : world.walls()) where.push_back(triangles_of(wall, walls, world.stage()));
   return grain_view(SeenBodies{world.positions(), world.velocities(), world.rotations(), world.displacements(),
                                world.mean_diameter(), world.specimen()},
                     where, view, color);

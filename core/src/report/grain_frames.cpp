@@ -171,6 +171,13 @@ std::vector<std::uint32_t> chain_contacts(const Frame& frame, std::size_t most, 
   return strong;
 }
 
+/// But for what a displacement leaves when it is taken off again.
+bool alike(const std::vector<float>& a, const std::vector<float>& b) {
+  const auto size = [](float most, float x) { return std::max(most, std::abs(x)); };
+  const float slack = 1e-6f * std::accumulate(a.begin(), a.end(), 0.0f, size);
+  return std::ranges::equal(a, b, [&](float x, float y) { return std::abs(x - y) <= slack; });
+}
+
 class Writer {
  public:
   Writer(const Extent& extent, const GrainLimits& limits, DataElements& data)
@@ -193,8 +200,7 @@ class Writer {
   Description result() const {
     Description bodies = Description::array(), walls = Description::array();
     for (const Set& set : sets_) bodies.push_back(Description{{"count", set.id.size()}, {"data", set.data}});
-    for (const Wall& wall : walls_)
-      walls.push_back(Description{{"name", wall.name}, {"data", wall.data ? Description(*wall.data) : Description()}});
+    for (const Wall& wall : walls_) walls.push_back(Description{{"name", wall.name}, {"data", wall.data}});
     Description json = {
         {"low", extent_.low},
         {"high", extent_.high},
@@ -223,8 +229,8 @@ class Writer {
   };
   struct Wall {
     std::string name;
-    std::optional<std::size_t> data;
-    Vec3 displacement;  ///< where its corners are of
+    std::size_t data;
+    std::vector<float> corners;  ///< less its displacement then
   };
 
   std::size_t set_of(const Frame& frame) {
@@ -291,15 +297,16 @@ class Writer {
   void add_walls(const Frame& frame, Description& json) {
     json["walls"] = Description::array();
     for (const Frame::Wall& wall : frame.walls) {
-      auto known = std::ranges::find(walls_, wall.name, &Wall::name);
-      if (known == walls_.end()) {
-        const bool shown = !wall.corners.empty() && wall.corners.size() <= 3 * limits_.wall_corners;
-        std::optional<std::size_t> element;
-        if (shown) element = data_.add_numbers<float>(std::vector<float>(wall.corners.begin(), wall.corners.end()));
-        known = walls_.insert(walls_.end(), {wall.name, element, wall.displacement});
-      }
-      if (!known->data) continue;
-      const Vec3 moved = wall.displacement - known->displacement;
+      if (wall.corners.empty() || wall.corners.size() > 3 * limits_.wall_corners) continue;
+      std::vector<float> corners(wall.corners.size());
+      for (std::size_t i = 0; i < corners.size(); ++i)
+        corners[i] = static_cast<float>(wall.corners[i] - wall.displacement[static_cast<Eigen::Index>(i % 3)]);
+      // A stage may have made another of it.
+      auto known = std::ranges::find_if(
+          walls_, [&](const Wall& one) { return one.name == wall.name && alike(one.corners, corners); });
+      if (known == walls_.end())
+        known = walls_.insert(walls_.end(), {wall.name, data_.add_numbers<float>(corners), corners});
+      const Vec3& moved = wall.displacement;
       json["walls"].push_back(Description{known - walls_.begin(), moved.x(), moved.y(), moved.z()});
     }
   }
