@@ -127,6 +127,23 @@ TEST(Picture, DrawsGrainsToScaleAndRedForPositive) {
   EXPECT_THAT(style, testing::AllOf(HasSubstr(".c20{fill:#a01228}"), HasSubstr(".c0{fill:#144e8c}"))) << "red, blue";
 }
 
+TEST(Picture, HasAColourALayer) {
+  GrainView view;
+  view.value = {"layer", "1"};
+  view.symmetric = false, view.layers = 3;
+  for (const double layer : {1.0, 2.0, 3.0, nan}) view.discs.push_back({layer, 0, 0.1, layer});
+  view.discs.back().x = 0;
+  const auto svg = parsed(draw({.title = "layers", .facts = "", .panels = {}, .grains = view}));
+  std::vector<std::string> classes, words;
+  for (const auto& disc : elements(svg, "circle")) classes.push_back(disc.get<std::string>("<xmlattr>.class"));
+  EXPECT_THAT(classes, ElementsAre("c0", "c1", "c2", "n"));
+  for (const auto& text : elements(svg, "text")) words.push_back(text.data());
+  EXPECT_THAT(words, testing::IsSupersetOf({"layer", "1", "2", "3"}));
+  EXPECT_THAT(svg.get<std::string>("svg.style"),
+              testing::AllOf(HasSubstr(".c0{fill:#440154}"), HasSubstr(".c2{fill:#fde725}"),
+                             testing::Not(HasSubstr(".c3{fill"))));
+}
+
 TEST(Picture, StaysSmallForManyGrains) {
   GrainView view;
   for (int i = 0; i < 55000; ++i) view.discs.push_back({(i % 300) * 1.37, (i / 300) * 1.37, 0.5, std::sin(0.1 * i)});

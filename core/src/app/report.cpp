@@ -33,6 +33,7 @@ void make_pictures(const std::filesystem::path& folder) {
   std::vector<NamedPicture> pictures;
   if (auto curves = curves_picture(run)) pictures.push_back({"curves", std::move(*curves)});
   if (auto grains = grains_picture(run)) pictures.push_back({"grains", std::move(*grains)});
+  if (auto layers = layers_picture(run)) pictures.push_back({"layers", std::move(*layers)});
   std::ranges::move(map_pictures(run), std::back_inserter(pictures));
   for (const auto& [name, picture] : pictures) {
     const auto svg = folder / (name + ".svg"), png = folder / (name + ".png");
@@ -58,8 +59,8 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   options.add()("out", po::value<std::string>()->value_name("FILE"),
                 "the page; default: report.html in the first folder")(
       "png",
-      "instead of a page, pictures in each folder, as curves.png, grains.png and map-PROBE-FIELD.png, and the same as "
-      "SVG");
+      "instead of a page, pictures in each folder, as curves.png, grains.png, layers.png and map-PROBE-FIELD.png, and "
+      "the same as SVG");
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");

@@ -47,6 +47,14 @@ Value colouring(const SeenBodies& seen, const Sight& look, const std::string& co
     shown.symmetric = false;
     return [velocities = seen.velocities](std::uint32_t i) { return xyz(velocities[i]).norm(); };
   }
+  if (color == "layer" && !seen.layers.empty()) {
+    shown.value = {"layer", "1"};
+    shown.symmetric = false;
+    shown.layers = layer_count;
+    return [layers = seen.layers](std::uint32_t i) {
+      return layers[i] > 0 ? layers[i] : std::numeric_limits<double>::quiet_NaN();
+    };
+  }
   throw Error("picture: there is no color '" + color + "'; there are 'rotation', 'displacement' and 'speed'");
 }
 

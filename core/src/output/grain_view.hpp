@@ -16,13 +16,17 @@ struct SeenBodies {
   std::span<const Vec3> rotations, displacements;
   double mean_diameter = 0;                     ///< m
   Region specimen{Vec3::Zero(), Vec3::Zero()};  ///< where walls are cut through if there is no body
+  std::span<const int> layers = {};             ///< from 1, 0 for none; for the colour "layer"
 };
+
+/// Of as many layers the pictures of a run are; the page has as many.
+inline constexpr int layer_count = 10;
 
 /// Which way to look, and what the colours say.
 ///
 /// `view`: "xz" (from the front, y into the page), "xy" (from above), "yz" (from the side); first axis to the right,
 /// second upwards. `color`: "rotation" about the line of sight, positive clockwise as seen; "displacement" along the
-/// first axis; "speed". Where the world does not keep the state, grains are grey.
+/// first axis; "speed"; "layer" where layers are told. Where the world does not keep the state, grains are grey.
 ///
 /// Grains whose centres lie in the middle third of the depth are shown, back to front; all of them where the depth is
 /// less than three mean diameters. Walls, as triangles of three corners each [m], are cut at mid-depth. Throws Error

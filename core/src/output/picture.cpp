@@ -35,10 +35,13 @@ struct Range {
   bool empty() const { return !(low <= high); }
 };
 
-/// The colour of class i: blue–white–red, or its half from white to blue.
-std::string class_colour(int i, bool symmetric) {
-  const double place = static_cast<double>(i) / (classes - 1);
-  return colour_at(diverging_colours, symmetric ? place : 0.5 - 0.5 * place);
+int classes_of(const GrainView& view) { return view.layers > 0 ? view.layers : classes; }
+
+/// The colour of class i: blue–white–red, or its half from white to blue; of layers from dark to bright.
+std::string class_colour(int i, const GrainView& view) {
+  const double place = static_cast<double>(i) / std::max(1, classes_of(view) - 1);
+  if (view.layers > 0) return colour_at(sequential_colours, place);
+  return colour_at(diverging_colours, view.symmetric ? place : 0.5 - 0.5 * place);
 }
 
 std::string style(const Picture& picture) {
@@ -55,8 +58,8 @@ std::string style(const Picture& picture) {
   for (std::size_t i = 0; i < palette.size(); ++i)
     sheet += fmt::format(".k{0}{{stroke:{1}}}.f{0}{{fill:{1}}}\n", i, palette[i]);
   if (picture.grains)
-    for (int i = 0; i < classes; ++i)
-      sheet += fmt::format(".c{}{{fill:{}}}", i, class_colour(i, picture.grains->symmetric));
+    for (int i = 0; i < classes_of(*picture.grains); ++i)
+      sheet += fmt::format(".c{}{{fill:{}}}", i, class_colour(i, *picture.grains));
   return sheet + '\n';
 }
 
@@ -232,8 +235,9 @@ ViewLayout layout(const GrainView& view) {
   return result;
 }
 
-int class_of(double value, double limit, bool symmetric) {
-  const double place = symmetric ? 0.5 + 0.5 * value / limit : value / limit;
+int class_of(double value, double limit, const GrainView& view) {
+  if (view.layers > 0) return std::clamp(static_cast<int>(std::lround(value)), 1, view.layers) - 1;
+  const double place = view.symmetric ? 0.5 + 0.5 * value / limit : value / limit;
   return static_cast<int>(std::lround(std::clamp(place, 0.0, 1.0) * (classes - 1)));
 }
 
@@ -248,14 +252,13 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double t
   for (const auto& disc : view.discs) mean += disc.radius / static_cast<double>(view.discs.size());
   svg.open_group(
       fmt::format("class=\"grains\" stroke-width=\"{:.2f}\"", std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
-  std::array<std::string, classes> names;
-  for (int i = 0; i < classes; ++i) names[static_cast<std::size_t>(i)] = fmt::format("class=\"c{}\"", i);
+  std::vector<std::string> names;
+  for (int i = 0; i < classes_of(view); ++i) names.push_back(fmt::format("class=\"c{}\"", i));
   for (const auto& disc : view.discs) {
     if (!std::isfinite(disc.x) || !std::isfinite(disc.y)) continue;
     const bool coloured = std::isfinite(disc.value);
-    svg.circle(
-        place(disc.x, disc.y), disc.radius * at.scale,
-        coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view.symmetric))] : "class=\"n\"");
+    svg.circle(place(disc.x, disc.y), disc.radius * at.scale,
+               coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view))] : "class=\"n\"");
   }
   svg.close_group();
   std::set<std::array<long, 4>> drawn;  // an edge that two triangles share is one line
@@ -286,11 +289,17 @@ void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doub
   const double left = margin + inner - 64, tall = std::clamp(at.high - 60, 120.0, 240.0), first = top + 30;
   const auto unit = readable(view.value.unit, at.limit);
   svg.text({margin + inner, top + 4}, axis_title(view.value.label, unit.unit), "class=\"axis e\"");
-  for (int i = 0; i < classes; ++i)
-    svg.rectangle({left, first + tall * (classes - 1 - i) / classes}, 14, tall / classes + 0.3,
+  const int pieces = classes_of(view);
+  for (int i = 0; i < pieces; ++i)
+    svg.rectangle({left, first + tall * (pieces - 1 - i) / pieces}, 14, tall / pieces + 0.3,
                   fmt::format("class=\"c{}\"", i));
-  const double high = at.limit * unit.factor, low = view.symmetric ? -high : 0;
-  const auto marks = ticks(low, high, 4);
+  double high = at.limit * unit.factor, low = view.symmetric ? -high : 0;
+  auto marks = ticks(low, high, 4);
+  if (view.layers > 0) {  // a number at the middle of each piece
+    low = 0.5, high = view.layers + 0.5;
+    marks.clear();
+    for (int layer = 1; layer <= view.layers; ++layer) marks.push_back(layer);
+  }
   for (const double mark : marks) {
     const double y = first + tall * (1 - (mark - low) / (high - low));
     svg.line({left + 14, y}, {left + 18, y}, "class=\"frame\"");

@@ -40,6 +40,7 @@ struct GrainView {
   Axis value;
   std::string note;       ///< beneath the colour bar: the sign convention
   bool symmetric = true;  ///< blue–white–red about zero, else white–blue from zero
+  int layers = 0;         ///< above 0: values are 1, 2, … up to it, with a colour each
 };
 
 struct Picture {

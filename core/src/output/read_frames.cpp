@@ -100,4 +100,8 @@ std::size_t bodies_in_frame(const std::filesystem::path& path) {
   return hdf5::File(path, hdf5::Mode::read).group("bodies").dataset("id").rows();
 }
 
+std::string stage_of_frame(const std::filesystem::path& path) {
+  return hdf5::File(path, hdf5::Mode::read).text("stage");
+}
+
 }  // namespace grit

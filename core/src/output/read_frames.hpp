@@ -50,4 +50,7 @@ std::vector<FieldGroup> read_maps(const std::filesystem::path& file);
 /// How many bodies a frame has. Throws FileError.
 std::size_t bodies_in_frame(const std::filesystem::path& file);
 
+/// The stage that a frame is of. Throws FileError.
+std::string stage_of_frame(const std::filesystem::path& file);
+
 }  // namespace grit

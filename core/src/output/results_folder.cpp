@@ -53,9 +53,9 @@ std::filesystem::path prepared(const ResultsOptions& options) {
     if (options.existing == Existing::refuse && std::filesystem::exists(folder / mark))
       throw FileError(folder.string() + ": holds a run already (" + mark +
                       " is there): choose another folder, resume that run, or allow it to be overwritten");
-  for (const char* mine :
-       {"run.json", "description.json", "series.h5", "checkpoint.h5", "frames", "frames.xdmf", "packing.txt",
-        "picture.svg", "report.html", "curves.svg", "curves.png", "grains.svg", "grains.png"}) {
+  for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "frames", "frames.xdmf",
+                           "packing.txt", "picture.svg", "report.html", "curves.svg", "curves.png", "grains.svg",
+                           "grains.png", "layers.svg", "layers.png"}) {
     std::filesystem::remove_all(folder / mine, error);
     if (error) throw FileError((folder / mine).string() + ": cannot remove it: " + error.message());
   }

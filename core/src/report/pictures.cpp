@@ -3,6 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 #include <numeric>
 #include <ranges>
 
@@ -87,6 +90,45 @@ std::optional<Frame> last_frame(RunResults& run) {
   return std::nullopt;
 }
 
+std::string view_wanted(const RunResults& run) { return text_or(run.at("/description/output/picture/view"), "xz"); }
+
+/// The frame in which the stage began where grains begin to leave, else the last stage; the page has the same.
+std::size_t where_layers_begin(const std::vector<std::filesystem::path>& frames) {
+  std::vector<std::string> stages;
+  for (const auto& file : frames) stages.push_back(stage_of_frame(file));
+  std::size_t leaving = frames.size() - 1;
+  bool leave = false;
+  for (std::size_t i = 1, before = bodies_in_frame(frames[0]); i < frames.size() && !leave; ++i) {
+    const std::size_t now = bodies_in_frame(frames[i]);
+    if ((leave = now < before)) leaving = i;
+    before = now;
+  }
+  const auto first = static_cast<std::size_t>(std::ranges::find(stages, stages[leaving]) - stages.begin());
+  // Where a stage's first frame has lost grains already, the one before is nearer to how it began.
+  return leave && leaving == first ? first - 1 : first;
+}
+
+/// The grains of a frame as the description's picture sees them.
+Picture view_of(const RunResults& run, const Frame& frame, const std::string& color, std::span<const int> layers) {
+  std::vector<Row> positions, velocities;
+  for (std::size_t i = 0; i < frame.bodies(); ++i) {
+    const double *x = &frame.position[3 * i], *v = &frame.velocity[3 * i];
+    positions.push_back({x[0], x[1], x[2], frame.radius[i]});
+    velocities.push_back({v[0], v[1], v[2], 0});
+  }
+  const auto rotations = vectors(frame.rotation), displacements = vectors(frame.displacement);
+  std::vector<std::vector<Vec3>> walls;
+  for (const auto& wall : frame.walls) walls.push_back(vectors(wall.corners));
+  const double diameters = 2 * std::accumulate(frame.radius.begin(), frame.radius.end(), 0.0);
+  SeenBodies seen{positions, velocities, rotations, displacements,
+                  positions.empty() ? 0 : diameters / static_cast<double>(positions.size())};
+  seen.layers = layers;
+  return {run.title(),
+          fmt::format("{} grains  ·  stage {}  ·  {:.4g} s", grouped(frame.bodies()), frame.stage, frame.time),
+          {},
+          grain_view(seen, walls, view_wanted(run), color)};
+}
+
 }  // namespace
 
 std::optional<std::string> curves_picture(const RunResults& run) {
@@ -110,7 +152,7 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
   std::vector<NamedPicture> pictures;
   const auto frame = last_frame(run);
   if (!frame) return pictures;
-  const std::string view = text_or(run.at("/description/output/picture/view"), "xz");
+  const std::string view = view_wanted(run);
   const int right = view[0] - 'x', up = view[1] - 'x';
   const auto depth = static_cast<std::size_t>(3 - right - up);
   for (const FieldGroup& map : read_maps(run.frames.back())) {
@@ -157,25 +199,38 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
 std::optional<std::string> grains_picture(RunResults& run) {
   const auto frame = last_frame(run);
   if (!frame) return std::nullopt;
-  std::vector<Row> positions, velocities;
-  for (std::size_t i = 0; i < frame->bodies(); ++i) {
-    const double *x = &frame->position[3 * i], *v = &frame->velocity[3 * i];
-    positions.push_back({x[0], x[1], x[2], frame->radius[i]});
-    velocities.push_back({v[0], v[1], v[2], 0});
+  const std::string wanted = text_or(run.at("/description/output/picture/color"), "rotation");
+  const bool kept =
+      (wanted != "rotation" || !frame->rotation.empty()) && (wanted != "displacement" || !frame->displacement.empty());
+  return draw(view_of(run, *frame, kept ? wanted : "speed", {}));
+}
+
+std::optional<std::string> layers_picture(RunResults& run) {
+  const auto frame = last_frame(run);
+  if (!frame) return std::nullopt;
+  const std::size_t first = where_layers_begin(run.frames);
+  if (first + 1 == run.frames.size()) return std::nullopt;
+  const Frame start = read_frame(run.frames[first]);
+  const auto up = static_cast<std::size_t>(view_wanted(run)[1] - 'x');
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < start.bodies(); ++i) heights.push_back(start.position[3 * i + up]);
+  std::map<std::int64_t, int> layer_of;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double height : heights)
+    if (std::isfinite(height)) low = std::min(low, height), high = std::max(high, height);
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (std::isfinite(heights[i])) {
+      const double share = high > low ? (heights[i] - low) / (high - low) : 0;
+      layer_of[start.id[i]] = 1 + std::min(layer_count - 1, static_cast<int>(layer_count * share));
+    }
+  std::vector<int> layers;
+  for (const std::int64_t id : frame->id) {
+    const auto found = layer_of.find(id);
+    layers.push_back(found == layer_of.end() ? 0 : found->second);
   }
-  const auto rotations = vectors(frame->rotation), displacements = vectors(frame->displacement);
-  std::vector<std::vector<Vec3>> walls;
-  for (const auto& wall : frame->walls) walls.push_back(vectors(wall.corners));
-  const double diameters = 2 * std::accumulate(frame->radius.begin(), frame->radius.end(), 0.0);
-  const SeenBodies seen{positions, velocities, rotations, displacements,
-                        positions.empty() ? 0 : diameters / static_cast<double>(positions.size())};
-  const std::string view = text_or(run.at("/description/output/picture/view"), "xz");
-  std::string color = text_or(run.at("/description/output/picture/color"), "rotation");
-  if ((color == "rotation" && rotations.empty()) || (color == "displacement" && displacements.empty())) color = "speed";
-  return draw({run.title(),
-               fmt::format("{} grains  ·  stage {}  ·  {:.4g} s", grouped(frame->bodies()), frame->stage, frame->time),
-               {},
-               grain_view(seen, walls, view, color)});
+  Picture picture = view_of(run, *frame, "layer", layers);
+  picture.facts += fmt::format("  ·  layers by {} when {} began", "xyz"[up], start.stage);
+  return draw(picture);
 }
 
 }  // namespace grit

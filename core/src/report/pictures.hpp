@@ -17,6 +17,10 @@ std::optional<std::string> curves_picture(const RunResults& run);
 /// kept. Nothing where there is no frame.
 std::optional<std::string> grains_picture(RunResults& run);
 
+/// The same, coloured by the layers in which grains were when the stage began in which some leave, or else the last
+/// one. Nothing where there is no frame after that.
+std::optional<std::string> layers_picture(RunResults& run);
+
 struct NamedPicture {
   std::string name;  ///< for a file: "map-packing-void_ratio"
   std::string svg;

@@ -1,0 +1,95 @@
+// Grains by the layers in which they were when a stage began, without a browser.
+#include <gmock/gmock.h>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <sstream>
+
+#include "report/pictures.hpp"
+#include "results.hpp"
+
+namespace grit {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Instants of a run: a stage, and heights of grains by id; a grain without a height is not there.
+struct Instant {
+  const char* stage;
+  std::vector<std::optional<double>> heights;
+};
+
+void write(const std::filesystem::path& folder, const std::vector<Instant>& instants) {
+  ResultsOptions options;
+  options.folder = folder;
+  options.facts.description = {{"title", "layers"}};
+  ResultsFolder results(options);
+  results.begin(FakeWorld(), {});
+  for (const auto& [stage, heights] : instants) {
+    FakeWorld world;
+    world.stage_name = stage;
+    for (std::size_t id = 0; id < heights.size(); ++id) {
+      if (!heights[id]) continue;
+      world.add({static_cast<double>(id), 0, *heights[id]}, 0.1);
+      world.id.back() = static_cast<std::uint32_t>(id);
+    }
+    results.frame(world, {});
+  }
+  results.finish(FakeWorld(), {});
+}
+
+/// Classes of the discs, from the left.
+std::vector<std::string> classes(const std::string& svg) {
+  std::istringstream text(svg);
+  boost::property_tree::ptree tree;
+  read_xml(text, tree);
+  std::vector<std::pair<double, std::string>> discs;
+  const auto look = [&](auto& self, const boost::property_tree::ptree& of) -> void {
+    for (const auto& [tag, child] : of) {
+      if (tag == "circle")
+        discs.emplace_back(child.get<double>("<xmlattr>.cx"), child.get<std::string>("<xmlattr>.class"));
+      self(self, child);
+    }
+  };
+  look(look, tree);
+  std::ranges::sort(discs);
+  std::vector<std::string> all;
+  for (auto& [x, name] : discs) all.push_back(std::move(name));
+  return all;
+}
+
+std::optional<std::string> drawn(const std::filesystem::path& folder) {
+  RunResults run = read_results(folder);
+  return layers_picture(run);
+}
+
+TEST(Layers, AreOfTheStartOfTheLastStage) {
+  const Folder folder;
+  write(folder / "run", {{"fill", {4, 3, 2, 1}}, {"shear", {1, 2, 3, 11}}, {"shear", {5, 5, 5, 5}}});
+  const auto svg = drawn(folder / "run");
+  ASSERT_TRUE(svg);
+  EXPECT_THAT(classes(*svg), ElementsAre("c0", "c1", "c2", "c9")) << "of ten, from 1 to 11";
+  EXPECT_THAT(*svg, HasSubstr("layers by z when shear began"));
+}
+
+TEST(Layers, AreOfTheStageInWhichGrainsBeginToLeave) {
+  const Folder folder;
+  write(folder / "run",
+        {{"fill", {1, 2, {}, 11}}, {"out", {1, 2, 6, 11}}, {"out", {{}, 2, 6, 11}}, {"more", {{}, 1, 1, 1}}});
+  EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c1", "c5", "c9"));
+  // The first frame of that stage has lost one already, and what comes later has no layer.
+  write(folder / "other", {{"fill", {1, 2, 11}}, {"out", {{}, 2, 11}}, {"out", {{}, 2, 11, 7}}});
+  EXPECT_THAT(classes(drawn(folder / "other").value()), ElementsAre("c1", "c9", "n"));
+}
+
+TEST(Layers, AreNotDrawnOfTheFrameTheyAreOf) {
+  const Folder folder;
+  write(folder / "run", {{"fill", {1, 2}}, {"shear", {1, 2}}});
+  EXPECT_FALSE(drawn(folder / "run"));
+  write(folder / "none", {});
+  EXPECT_FALSE(drawn(folder / "none"));
+}
+
+}  // namespace
+}  // namespace grit
