@@ -50,6 +50,11 @@ TEST(Scale, UnitsAreReadable) {
   EXPECT_DOUBLE_EQ(readable("Pa", 2e5).factor, 1e-3);
   EXPECT_DOUBLE_EQ(readable("rad", 1).factor * std::acos(-1.0), 180);
   EXPECT_EQ(readable("1", 1e6).factor, 1);
+  EXPECT_EQ(readable("kg", 0.02).unit, "g");
+  EXPECT_EQ(readable("kg s-1", 0.02).unit, "g s-1");
+  EXPECT_EQ(readable("kg s-1", 0.02).factor, 1e3);
+  EXPECT_EQ(readable("kg", 2).unit, "kg");
+  EXPECT_EQ(readable("kg m-3", 0.02).unit, "kg m-3");
 }
 
 boost::property_tree::ptree parsed(const std::string& svg) {

@@ -1,4 +1,5 @@
-"""Headless Chromium by its debugging pipe: JSON messages with a zero byte between them, nothing but Python's own library."""
+"""What tests of pages share: a scene, its runs' files, and headless Chromium by its debugging pipe: JSON messages with a zero byte
+between them, nothing but Python's own library."""
 
 import base64
 import json
@@ -6,8 +7,24 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
+
+
+# Grains that fall into a box; tests say how long, and who looks.
+BOX_OF_GRAINS = {
+    "title": "grains in a <box> & a probe",
+    "contacts": {"type": "linear-rolling"},
+    "materials": {"sand": {"density": 2600, "contact_modulus": "1 MPa", "friction_angle": "30 deg"}},
+    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
+        "type": "cloud", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "10 mm"], "count": 40,
+        "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "1.5 mm"}}}},
+    "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "12 mm"], "open": ["z_high"], "material": "sand"}},
+    "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.2}},
+}
+GRAINS = "document.querySelector('figure.grains').grains"
+MAP = "document.querySelector('figure.map').map"
 
 
 class PageError(Exception):
@@ -16,6 +33,24 @@ class PageError(Exception):
 
 def find_chromium():
     return next((path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None)
+
+
+def skip(why):
+    """Ends the tests with the status by which CTest knows that they were skipped."""
+    print("skipped:", why)
+    sys.exit(77)
+
+
+def h5py_or_skip():
+    try:
+        import h5py
+    except ImportError:
+        skip("Python's h5py is not installed (Debian: python3-h5py)")
+    return h5py
+
+
+def write_scene(folder, name, scene):
+    (folder / f"{name}.json").write_text(json.dumps(scene))
 
 
 class Browser:

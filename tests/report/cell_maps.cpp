@@ -40,8 +40,8 @@ TEST(CellMaps, HasTheCellsOfEachFrame) {
   ASSERT_THAT(all, SizeIs(1));
   const json& map = all.at(0);
   EXPECT_EQ(map.at("probe"), "cells");
-  EXPECT_EQ(map.at("low"), json({0, -1, 0}));
-  EXPECT_EQ(map.at("high"), json({2, 1, 1}));
+  EXPECT_EQ(map.at("boxes").at("shear").at("low"), json({0, -1, 0}));
+  EXPECT_EQ(map.at("boxes").at("shear").at("high"), json({2, 1, 1}));
   ASSERT_THAT(map.at("frames"), SizeIs(2));
   EXPECT_EQ(map.at("frames").at(1).at("frame"), 1);
   EXPECT_EQ(map.at("frames").at(1).at("cells"), 2);
@@ -65,6 +65,18 @@ TEST(CellMaps, HasOneScaleForAStage) {
   EXPECT_EQ(fields.at(0).at("signed"), json::parse("[false]"));
   EXPECT_EQ(fields.at(1).at("ranges").at("shear").at(1), json({-1, 1}));
   EXPECT_EQ(fields.at(1).at("signed"), json({false, true})) << "E_zz is positive throughout";
+}
+
+TEST(CellMaps, HasABoxForAStage) {
+  DataElements data;
+  CellMaps maps(data, 1 << 20);
+  FieldGroup taller = two_cells(10, 50);
+  taller.fields[0].values[2] = 4.5;
+  maps.add(0, "fill", {taller});
+  maps.add(1, "shear", {two_cells(1000, 0.5)});
+  const json boxes = made_of(maps).at(0).at("boxes");
+  EXPECT_EQ(boxes.at("fill").at("high"), json({2, 1, 5}));
+  EXPECT_EQ(boxes.at("shear").at("high"), json({2, 1, 1}));
 }
 
 TEST(CellMaps, LeavesTheFarthestOfManyCellsToTheEndsOfTheScale) {

@@ -57,7 +57,7 @@ TEST(Facts, SayHowFarToTrustARun) {
   EXPECT_TRUE(fact(facts, "energy closure").doubtful);
   EXPECT_EQ(fact(facts, "inertial number").value, "0.0009");
   EXPECT_FALSE(fact(facts, "inertial number").doubtful);
-  EXPECT_EQ(fact(facts, "stiffness level").value, "1500");
+  EXPECT_EQ(fact(facts, "stiffness level").value, "1\u202f500");
   EXPECT_EQ(fact(facts, "largest overlap").value, "2 %");
   EXPECT_FALSE(fact(facts, "largest overlap").doubtful);
 }

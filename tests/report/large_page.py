@@ -13,9 +13,7 @@ import time
 import h5py
 import numpy
 
-from browser import Browser, find_chromium
-
-GRAINS = "document.querySelector('figure.grains').grains"
+from browser import GRAINS, Browser, find_chromium
 
 
 def write_frames(folder, grains, frames):
@@ -54,16 +52,17 @@ def measure(grit, grains, frames):
             browser.open(page)
             browser.wait(f"{GRAINS}?.painted")
             print(f"open, grains drawn: {time.monotonic() - began:.1f} s")
-            unpack, show, paint = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, mean = async (count, act) => {{
+            unpack, move, fine, play = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, mean = async (count, act) => {{
                     const began = performance.now();
                     for (let i = 0; i < count; ++i) await act(i);
                     return (performance.now() - began) / count; }};
                 const unpack = await mean(5, (i) => view.frames.read(i));
-                const show = await mean(5, () => view.show(view.now));
-                const paint = await mean(5, (i) => {{ view.state.pan[0] += 1e-4; view.arrange(); view.paint(); const {{gl}} = view.painter; gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); }});
-                return [unpack, show, paint]; }})()""")
-            print(f"a frame: {unpack:.0f} ms to unpack, {show:.0f} ms to show, of which {paint:.0f} ms to draw (without a graphics processor); heap "
-                  f"{browser.evaluate('performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
+                const move = await mean(10, (i) => view.change({{pan: [1e-4 * i, 0]}}));
+                const fine = await mean(3, () => view.paint(true));
+                const play = await mean(view.frames.count, (i) => view.player.go(i));
+                return [unpack, move, fine, play]; }})()""")
+            print(f"a frame: {unpack:.0f} ms to unpack, {1000 / move:.0f} a second while dragged, {1000 / play:.0f} while played as fast as can be, {fine:.0f} ms "
+                  f"when it rests, by {browser.evaluate(f'{GRAINS}.painter.constructor.name')}; heap {browser.evaluate('performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
             print("console:", browser.complaints() or "silent")
 
 

@@ -12,42 +12,27 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
-try:
-    import h5py
-    import numpy
-except ImportError:
-    print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
-    sys.exit(77)
+from browser import BOX_OF_GRAINS, GRAINS, MAP, Browser, find_chromium, h5py_or_skip, skip, write_scene
 
-from browser import Browser, find_chromium
+h5py = h5py_or_skip()
+import numpy  # which comes with it
 
 CHROMIUM = find_chromium()
 GRIT = None
 
 SCENE = {
-    "title": "grains in a <box> & a probe",
-    "contacts": {"type": "linear-rolling"},
-    "materials": {"sand": {"density": 2600, "contact_modulus": "1 MPa", "friction_angle": "30 deg"}},
-    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
-        "type": "cloud", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "10 mm"], "count": 40,
-        "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "1.5 mm"}}}},
-    "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "12 mm"], "open": ["z_high"], "material": "sand"}},
-    "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.2}},
+    **BOX_OF_GRAINS,
     "stages": [{"name": "fall", "until": {"type": "time", "value": "60 ms"}, "limit": "1 s"}],
     "probes": {"packing": {"type": "packing", "every_time": "1 ms"}, "walls": {"type": "walls", "every_time": "2 ms"}},
     "output": {"frames": {"every_time": "10 ms"},
                "picture": {"x": "packing/time", "y": ["packing/coordination_number"], "color": "rotation", "view": "xz"}},
 }
-GRAINS = "document.querySelector('figure.grains').grains"
-MAP = "document.querySelector('figure.map').map"
 LISTS = {"forces": {"type": "force-chains", "every_time": "2 ms"}, "moved": {"type": "displacements", "every_time": "2 ms"}}
 DRAWN = "document.querySelector('figure.grains')?.grains.shownPlaces && document.querySelector('figure.chart[data-drawn]')"
 
 
 def run(folder, name, **changes):
-    scene = json.loads(json.dumps(SCENE))
-    scene.update(changes)
-    (folder / f"{name}.json").write_text(json.dumps(scene))
+    write_scene(folder, name, {**SCENE, **changes})
     subprocess.run([GRIT, "run", f"{name}.json", "--out", name, "--threads", "1", "--quiet"], cwd=folder, check=True,
                    stdout=subprocess.DEVNULL)
 
@@ -236,12 +221,89 @@ class Page(unittest.TestCase):
             if min(share % 1, 1 - share % 1) > 1e-3 or share > 9:
                 self.assertEqual(layer, min(10, 1 + int(share)))
         self.assertEqual(set(layers) & {1, 10}, {1, 10})
+        by_id, shown = dict(zip(ids, layers)), self.browser.evaluate(f"[[...{GRAINS}.now.id], [...{GRAINS}.shownPlaces]]")
+        numpy.testing.assert_allclose(shown[1], [(by_id[one] - 1) / 9 for one in shown[0]], atol=1e-6)
         # Where grains leave, the layers are of the stage in which the first one does.
         origin = lambda counts, stages: self.browser.evaluate(f"""(() => {{ const json = {{bodies: {counts}.map((count) => ({{count}})),
             frames: {stages}.map((stage, set) => ({{stage, set}}))}}; return Object.getOwnPropertyDescriptor(GrainView.prototype, 'origin').get.call({{json}}); }})()""")
         self.assertEqual(origin([9, 9, 9, 8, 7], ["fill", "fill", "out", "out", "more"]), {"stage": "out", "number": 2})
         self.assertEqual(origin([9, 9, 8, 7], ["fill", "fill", "out", "out"]), {"stage": "out", "number": 1})
         self.assertEqual(origin([9, 9, 9], ["fill", "shear", "shear"]), {"stage": "shear", "number": 1})
+
+    def test_a_graphics_processor_and_none_draw_the_same(self):
+        for view, zoom in (("xz", 1), ("yz", 1), ("xy", 1), ("xz", 12)):  # so near that points would be too large
+            colours, off, apart = self.browser.evaluate(f"""(async () => {{ const view = {GRAINS}, {{painter}} = view;
+                const {{low, high}} = view.extent(), {{now}} = view, middle = (axis) => (low[axis] + high[axis]) / 2;
+                const pan = {zoom} === 1 ? [0, 0] : [view.frames.metres(0, now.x[7]) - middle(0), view.frames.metres(2, now.z[7]) - middle(2)];
+                await view.change({{view: '{view}', zoom: {zoom}, pan, cut: {zoom} === 1 ? 0.4 : 0, chains: false}});
+                let what;
+                view.painter = {{draw: (all) => void (what = all)}};
+                view.paint(true);
+                view.painter = painter;
+                const {{width, height}} = view.canvas, pixels = (Painter) => {{
+                    const canvas = make('canvas', {{width, height}}), one = new Painter(canvas), seen = new OffscreenCanvas(width, height).getContext('2d');
+                    one.setBodies(view.now), one.setPlaces(view.shownPlaces), one.setSegments(view.shownSegments), one.setColours(view.colours.table);
+                    one.draw(what);
+                    seen.fillStyle = 'white', seen.fillRect(0, 0, width, height), seen.drawImage(canvas, 0, 0);
+                    return seen.getImageData(0, 0, width, height).data; }};
+                const a = pixels(GlPainter), b = pixels(PixelPainter), differences = a.map((value, i) => Math.abs(value - b[i]));
+                return [new Set(new Uint32Array(a.buffer)).size, differences.reduce((sum, one) => sum + one, 0) / a.length, differences.filter((one) => one > 100).length / a.length]; }})()""")
+            self.assertGreater(colours, 20)
+            self.assertLess(off, 1, "of 255, on the average")
+            self.assertLess(apart, 2e-3)
+
+    def test_a_graphics_processor_is_used_where_there_is_one(self):
+        for renderer, painter in (("ANGLE (NVIDIA GeForce RTX)", "GlPainter"), ("ANGLE (Google, Vulkan (SwiftShader Device))", "PixelPainter"), ("llvmpipe (LLVM 15)", "PixelPainter")):
+            self.assertEqual(self.browser.evaluate(f"""(() => {{ const {{prototype}} = WebGL2RenderingContext, {{getParameter}} = prototype;
+                prototype.getParameter = () => '{renderer}';
+                try {{ return painterFor(make('canvas')).constructor.name; }} finally {{ prototype.getParameter = getParameter; }} }})()"""), painter)
+
+    def test_what_takes_long_is_drawn_fine_when_it_rests(self):
+        coarse = self.browser.evaluate(f"""(() => {{ const view = {GRAINS}, {{painter}} = view, draw = painter.draw.bind(painter), answers = [];
+            painter.draw = (what) => (answers.push(draw(what)), answers.at(-1));
+            painter.took = 1e9;
+            view.paint(true), (painter.took = 1e9), view.paint();
+            return answers; }})()""")
+        self.assertEqual(coarse, [False, True])
+        self.browser.wait(f"{GRAINS}.painter.took < 1e9")
+
+    def test_grains_are_taken_from_the_nearest_on(self):
+        ways = self.browser.evaluate("""(() => { const list = Uint16Array.of(500, 65535, 0, 500, 7, 40000);
+            return [ordered(list, 0, 65535, true), ordered(list, 0, 65535, false), ordered(list, 7.5, Infinity, true), ordered(list, -Infinity, 6, false)].map((places) => [...places]); })()""")
+        self.assertEqual(ways, [[2, 4, 0, 3, 5, 1], [1, 5, 3, 0, 4, 2], [0, 3, 5, 1], [2]])
+
+    def test_a_wall_that_a_stage_moves_is_drawn_there(self):
+        gate = lambda z: {"type": "rectangle", "corner": [0, 0, z], "edge_a": ["8 mm", 0, 0], "edge_b": [0, "6 mm", 0], "material": "sand"}
+        stages = [{"name": name, "until": {"type": "time", "value": "10 ms"}, "limit": "1 s", "change": change}
+                  for name, change in (("shut", {}), ("open", {"walls": {"gate": {"corner": [0, 0, "-20 mm"]}}}))]
+        run(self.folder, "gate", walls={**SCENE["walls"], "gate": gate("11 mm")}, stages=stages, output={"frames": {"every_time": "5 ms"}})
+        with h5py.File(self.folder / "gate/frames/000000.h5") as first, h5py.File(self.folder / "gate/frames/000004.h5") as last:
+            self.assertEqual([frame["walls/gate"][0, 0, 2] for frame in (first, last)], [0.011, -0.02])
+            self.assertEqual(last.attrs["stage"], "open")
+        self.browser.open(self.folder / "gate/report.html")
+        self.browser.wait(f"{GRAINS}?.painted")
+        heights = self.browser.evaluate(f"""Promise.all([0, 4].map(async (frame) => (await {GRAINS}.frames.walls(frame)).find(({{name}}) => name === 'gate').corners[2]))""")
+        numpy.testing.assert_allclose(heights, [0.011, -0.02], rtol=1e-6)
+
+    def test_what_the_picture_names_is_seen_first(self):
+        shown = "[...document.querySelectorAll('details.probe')[0].querySelectorAll('figure.chart')].filter((figure) => !figure.hidden).map(({chart}) => chart.name)"
+        self.assertEqual(self.browser.evaluate(shown), ["coordination_number"])
+        count = self.browser.evaluate("document.querySelectorAll('details.probe')[0].querySelectorAll('figure.chart').length")
+        self.assertEqual(self.browser.evaluate("document.querySelector('.more').textContent"), f"{count - 1} more")
+        self.browser.evaluate("document.querySelector('.more').click()")
+        self.assertEqual(len(self.browser.evaluate(shown)), count)
+        self.assertEqual(self.browser.evaluate("document.querySelector('.more').getAttribute('aria-expanded')"), "true")
+        self.browser.evaluate("document.querySelector('.more').click()")
+        self.assertEqual(len(self.browser.evaluate(shown)), 1)
+
+    def test_axes_go_from_tick_to_tick(self):
+        # With zero where it is near, no tick more for noise about one, and something where nothing changes.
+        for span, wanted in (([0, 1.03], [0, 1]), ([-0.03, 1], [0, 1]), ([-0.2, 1], [-0.2, 1]), ([99, 101], [99, 101]), ([7, 7], [3.5, 10.5]), ([0, 0], [-1, 1])):
+            numpy.testing.assert_allclose(self.browser.evaluate(f"settled({span})"), wanted, atol=1e-12)
+
+    def test_units_are_written_as_people_do(self):
+        for unit, written in (("kg m-3", "kg m⁻³"), ("degree", "°"), ("m", "m"), ("Pa2 Hz-1", "Pa² Hz⁻¹"), ("rad/s", "rad/s")):
+            self.assertEqual(self.browser.evaluate(f"writtenUnit('{unit}')"), written)
 
     def go(self, frame):
         self.browser.evaluate(f"{GRAINS}.player.go({frame})")
@@ -388,20 +450,19 @@ class Page(unittest.TestCase):
             HTMLCanvasElement.prototype.getContext = function (kind, ...rest) { return kind === 'webgl2' ? null : context.call(this, kind, ...rest); };""")
         try:
             self.open("one/report.html")
-            self.assertTrue(self.browser.evaluate(f"{GRAINS}.painter === null"))
-            covered = self.browser.evaluate("""(() => { const {canvas} = document.querySelector('.overlay').getContext('2d');
+            self.assertTrue(self.browser.evaluate(f"{GRAINS}.painter instanceof PixelPainter"))
+            covered = self.browser.evaluate(f"""(() => {{ const {{canvas}} = {GRAINS};
                 const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, 0.7 * canvas.width, 0.8 * canvas.height).data.buffer);
-                return pixels.filter((pixel) => pixel !== 0).length / pixels.length; })()""")
+                return pixels.filter((pixel) => pixel !== 0).length / pixels.length; }})()""")
             self.assertGreater(covered, 0.1, "where the scale of colours is not, and the bar of length")
         finally:
             self.browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) < 2:
         sys.exit(__doc__)
-    GRIT = str(pathlib.Path(sys.argv.pop()).resolve())
+    GRIT = str(pathlib.Path(sys.argv.pop(1)).resolve())
     if CHROMIUM is None:
-        print("skipped: there is no Chromium to open the page with (Debian: chromium)")
-        sys.exit(77)
+        skip("there is no Chromium to open the page with (Debian: chromium)")
     unittest.main(verbosity=1)

@@ -16,43 +16,28 @@ import sys
 import tempfile
 import unittest
 
-try:
-    import h5py
-except ImportError:
-    print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
-    sys.exit(77)
+from browser import BOX_OF_GRAINS, GRAINS, MAP, Browser, PageError, find_chromium, h5py_or_skip, write_scene
 
-from browser import Browser, PageError, find_chromium
-
+h5py = h5py_or_skip()
 CHROMIUM = find_chromium()
 GRIT = None
 
 # It ends when it is told to: a second of it takes hours.
 SCENE = {
+    **BOX_OF_GRAINS,
     "title": "grains that are watched",
-    "contacts": {"type": "linear-rolling"},
-    "materials": {"sand": {"density": 2600, "contact_modulus": "1 MPa", "friction_angle": "30 deg"}},
-    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
-        "type": "cloud", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "10 mm"], "count": 40,
-        "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "1.5 mm"}}}},
-    "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "12 mm"], "open": ["z_high"], "material": "sand"}},
-    "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.2}},
     "stages": [{"name": "fall", "until": {"type": "time", "value": "1e6 s"}, "limit": "1e7 s"}],
     "probes": {"packing": {"type": "packing", "every_steps": 200}},
     "output": {"frames": {"every_steps": 20000}},
 }
 SHORT = [{"name": "fall", "until": {"type": "time", "value": "0.3 s"}, "limit": "1 s"}]
-GRAINS = "document.querySelector('figure.grains').grains"
-MAP = "document.querySelector('figure.map').map"
 
 
 class WatchedRun:
     """A run with --watch; ended by Ctrl-C with the block, if it has not ended before."""
 
     def __init__(self, folder, name, *words, **changes):
-        scene = json.loads(json.dumps(SCENE))
-        scene.update(changes)
-        (folder / f"{name}.json").write_text(json.dumps(scene))
+        write_scene(folder, name, {**SCENE, **changes})
         self.process = subprocess.Popen([GRIT, "run", f"{name}.json", "--out", name, "--threads", "1", "--quiet", "--watch", *words],
                                         cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         said = self.process.stderr.readline()
@@ -139,7 +124,7 @@ class Served(unittest.TestCase):
     def test_a_port_in_use_is_said_before_anything_runs(self):
         with socket.create_server(("127.0.0.1", 0)) as other:
             port = other.getsockname()[1]
-            (self.folder / "refused.json").write_text(json.dumps(SCENE))
+            write_scene(self.folder, "refused", SCENE)
             ended = subprocess.run([GRIT, "run", "refused.json", "--out", "refused", "--watch", "--port", str(port)], cwd=self.folder,
                                    capture_output=True, text=True)
         self.assertEqual(ended.returncode, 1)
@@ -147,7 +132,7 @@ class Served(unittest.TestCase):
         self.assertFalse((self.folder / "refused").exists())
 
     def test_ports_that_are_none_are_said(self):
-        (self.folder / "none.json").write_text(json.dumps(SCENE))
+        write_scene(self.folder, "none", SCENE)
         for words, said in ((["--watch", "--port", "65536"], 'grit: --port takes a number from 1 to 65535, not "65536"\n'),
                             (["--watch", "--port", "http"], 'grit: --port takes a number from 1 to 65535, not "http"\n'),
                             (["--port", "8000"], "grit: --port is where the page of --watch is served: give both\n")):
@@ -178,8 +163,7 @@ class Served(unittest.TestCase):
                 run.ask()
 
     def test_the_run_does_not_notice(self):
-        scene = dict(SCENE, stages=SHORT)
-        (self.folder / "alone.json").write_text(json.dumps(scene))
+        write_scene(self.folder, "alone", {**SCENE, "stages": SHORT})
         subprocess.run([GRIT, "run", "alone.json", "--out", "alone", "--threads", "1", "--quiet"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
         with WatchedRun(self.folder, "seen", stages=SHORT) as run:
             news = {"ended": False}
@@ -310,6 +294,26 @@ class InABrowser(unittest.TestCase):
             with h5py.File(self.folder / f"lists/frames/{last:06}.h5") as frame:
                 shown = evaluate(f"Array.from({MAP}.now.cells.list({MAP}.place({MAP}.field, 0)), String)")
                 self.assertEqual([float(value) for value in shown], frame["probes/packing/stress"][:].reshape(len(shown), 9)[:, 0].astype("float32").tolist())
+
+    def test_a_run_that_fails_is_shown_to_who_looks(self):
+        # Grains never come to such a rest within so short a time.
+        stages = [dict(SHORT[0], until={"type": "time", "value": "1 s"}, limit="2 s"),
+                  {"name": "rest", "until": {"type": "unbalanced-force", "below": 1e-15}, "limit": "10 ms"}]
+        with WatchedRun(self.folder, "failing", stages=stages) as run:
+            self.browser.open(run.address)
+            self.browser.evaluate("window.sameDocument = true")
+            self.browser.wait("document.querySelector('.status.failed')")
+            self.assertEqual(run.process.wait(), 4)
+            self.browser.wait("document.querySelector('.progress').textContent.startsWith('The run has ended')")
+            self.assertTrue(self.browser.evaluate("window.sameDocument"))
+            message = json.loads((self.folder / "failing/run.json").read_text())["message"]
+            self.assertIn("/stages/1", message)
+            self.assertEqual(self.browser.evaluate("document.querySelector('.message').textContent"), message)
+            # What it had reached is all there.
+            with h5py.File(self.folder / "failing/series.h5") as series:
+                self.browser.wait(f"document.querySelector('figure.chart')?.chart.series?.[0].x.length === {len(series['packing/time'])}")
+            self.assertEqual(self.browser.evaluate(f"{GRAINS}.frames.count"), len(list((self.folder / "failing/frames").glob("*.h5"))))
+            self.assertEqual([one for one in self.browser.complaints() if "ERR_CONNECTION_REFUSED" not in one], [], "but that it is gone")
 
     def test_it_asks_for_nothing_else(self):
         with WatchedRun(self.folder, "asking") as run:

@@ -49,6 +49,8 @@ std::string short_number(double value) {
 
 ReadableUnit readable(const std::string& unit, double largest) {
   if (unit == "rad") return {180 / std::numbers::pi, "deg"};
+  if (unit.starts_with("kg") && (unit.size() == 2 || unit[2] == ' ') && largest > 0 && largest < 1 && unit != "kg m-3")
+    return {1e3, unit.substr(1)};
   if (unit != "m" && unit != "Pa" && unit != "N" && unit != "J" && unit != "m/s" && unit != "W") return {1, unit};
   struct Prefix {
     double size;

@@ -36,8 +36,7 @@ std::vector<std::string> components_of(const Field& field) {
 CellMaps::Map& CellMaps::map_of(const FieldGroup& group) {
   const auto known = std::ranges::find(maps_, group.name, &Map::probe);
   if (known != maps_.end()) return *known;
-  Map map{group.name, {}, Description::array(), 0, {}, {}};
-  map.low.fill(std::numeric_limits<double>::infinity()), map.high.fill(-std::numeric_limits<double>::infinity());
+  Map map{group.name, {}, Description::array(), 0, {}};
   for (const Field& field : group.fields) {
     if (field.name == "centre" || field.name == "size") continue;
     map.fields.push_back({field.name, field.unit, field.doc, components_of(field), field.width, {}});
@@ -50,9 +49,10 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
     Map& map = map_of(group);
     const std::size_t cells = group.fields[0].values.size() / 3;
     for (std::size_t i = 0; i < 3 * cells; ++i) {
+      auto& [low, high] = map.boxes.try_emplace(stage).first->second;
       const double centre = group.fields[0].values[i], half = 0.5 * group.fields[1].values[i];
-      map.low[i % 3] = std::min(map.low[i % 3], centre - half);
-      map.high[i % 3] = std::max(map.high[i % 3], centre + half);
+      low[i % 3] = std::min(low[i % 3], centre - half);
+      high[i % 3] = std::max(high[i % 3], centre + half);
     }
     std::vector<float> numbers;
     for (const std::size_t place : {0, 1})
@@ -91,8 +91,9 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
 Description CellMaps::result() const {
   Description all = Description::array();
   for (const Map& map : maps_) {
-    if (map.low[0] > map.high[0]) continue;  // no cell in any frame
-    Description fields = Description::array();
+    if (map.boxes.empty()) continue;  // no cell in any frame
+    Description fields = Description::array(), boxes = Description::object();
+    for (const auto& [stage, box] : map.boxes) boxes[stage] = {{"low", box.low}, {"high", box.high}};
     for (const MapField& field : map.fields) {
       std::vector<Range> whole(field.width, {0, 0});
       Description ranges = Description::object(), parted = Description::array();
@@ -121,8 +122,7 @@ Description CellMaps::result() const {
                                    {"ranges", ranges}});
     }
     all.push_back(Description{{"probe", map.probe},
-                              {"low", map.low},
-                              {"high", map.high},
+                              {"boxes", boxes},
                               {"fields", fields},
                               {"frames", map.frames},
                               {"left_out", map.left_out}});

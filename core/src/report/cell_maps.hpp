@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,8 +28,8 @@ class CellMaps {
   /// The maps of a frame. What they lack is NaN.
   void add(std::size_t frame, const std::string& stage, const std::vector<FieldGroup>& maps);
 
-  /// [{probe, low, high, fields, frames}], a probe each:
-  ///   low, high  corners of the box of all cells of all frames [m]
+  /// [{probe, boxes, fields, frames}], a probe each:
+  ///   boxes    by stage {low, high}: corners of the box of all cells of its frames [m]
   ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, ranges}], of what cells hold:
   ///   signed
   ///            says of each component whether zero parts its values; ranges has for each stage [[low, high] a
@@ -39,8 +40,12 @@ class CellMaps {
   Description result() const;
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Range {
     double low, high;
+  };
+  struct Box {
+    std::array<double, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};  ///< m
   };
   struct MapField {
     std::string name, unit, doc;
@@ -53,7 +58,7 @@ class CellMaps {
     std::vector<MapField> fields;
     Description frames = Description::array();
     std::size_t left_out = 0;
-    std::array<double, 3> low, high;  ///< m
+    std::map<std::string, Box> boxes;  ///< by stage
   };
   Map& map_of(const FieldGroup& group);
 

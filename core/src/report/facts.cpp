@@ -55,6 +55,13 @@ std::optional<double> largest(const RunResults& run, const std::string& channel)
   return found;
 }
 
+/// "758", "45 800": large ratios are not known better.
+std::string three_digits(double value) {
+  if (value < 1000) return fmt::format("{:.3g}", value);
+  const double step = std::pow(10, std::floor(std::log10(value)) - 2);
+  return grouped(static_cast<std::uint64_t>(step * std::round(value / step)));
+}
+
 bool has_engine(const RunResults& run, const std::string& type) {
   return std::ranges::any_of(run.at("/description/engines"), [&](const Description& engine) {
     return engine.is_object() && engine.contains("type") && engine["type"] == type;
@@ -118,7 +125,7 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
   const auto modulus = least_modulus(run);
   const auto stress = largest(run, "mean_stress");
   if (modulus && stress && *stress > 0)
-    facts.push_back({"stiffness level", short_number(*modulus / *stress),
+    facts.push_back({"stiffness level", three_digits(*modulus / *stress),
                      "contact modulus over the largest mean stress of the last stage", false});
   if (const auto overlap = largest(run, "largest_overlap"); overlap && mean_diameter > 0)
     facts.push_back({"largest overlap", fmt::format("{:.2g} %", 100 * *overlap / mean_diameter),

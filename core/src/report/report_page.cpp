@@ -71,19 +71,29 @@ std::string facts_table(const std::vector<RunResults>& runs, const std::vector<s
     html += fmt::format("<th><span class=\"key\" style=\"background:{}\"></span>{}</th>",
                         series_colours[i % series_colours.size()], escaped(runs[i].name));
   html += "</tr></thead><tbody>\n<tr><td class=\"name\">title</td>";
-  for (const RunResults& run : runs) html += "<td>" + escaped(run.title()) + "</td>";
+  const auto same_title = [&](const RunResults& run) { return run.title() == runs[0].title(); };
+  if (std::ranges::all_of(runs, same_title))
+    html += fmt::format("<td colspan=\"{}\">{}</td>", runs.size(), escaped(runs[0].title()));
+  else
+    for (const RunResults& run : runs) html += "<td>" + escaped(run.title()) + "</td>";
   html += "</tr>\n<tr><td class=\"name\">status</td>";
   for (const RunResults& run : runs) html += "<td>" + badge(run) + "</td>";
   html += "</tr>\n";
   for (const std::string& name : names) {
-    html += "<tr><td class=\"name\">" + escaped(name) + "</td>";
+    std::vector<const Fact*> row;
     for (const auto& of_run : facts) {
       const auto fact = std::ranges::find(of_run, name, &Fact::name);
-      html += fact == of_run.end()
-                  ? "<td>–</td>"
-                  : fmt::format("<td{}>{} <small>{}</small></td>", fact->doubtful ? " class=\"doubtful\"" : "",
-                                escaped(fact->value), escaped(fact->note));
+      row.push_back(fact == of_run.end() ? nullptr : &*fact);
     }
+    // What is said of all of them is said once.
+    const Fact& known = **std::ranges::find_if(row, [](const Fact* fact) { return fact != nullptr; });
+    const bool once = std::ranges::all_of(row, [&](const Fact* fact) { return !fact || fact->note == known.note; });
+    html += "<tr><td class=\"name\">" + escaped(name);
+    html += (once ? "<small>" + escaped(known.note) + "</small>" : "") + "</td>";
+    for (const Fact* fact : row)
+      html += !fact ? "<td>–</td>"
+                    : fmt::format("<td{}>{}{}</td>", fact->doubtful ? " class=\"doubtful\"" : "", escaped(fact->value),
+                                  once ? "" : "<small>" + escaped(fact->note) + "</small>");
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
@@ -130,6 +140,7 @@ std::string stages_table(const RunResults& run) {
 
 std::string details(const RunResults& run) {
   std::string html = phases_bar(run) + stages_table(run);
+  if (!html.empty()) html = "<details><summary>stages, and where the time went</summary>" + html + "</details>\n";
   if (const Description& description = run.at("/description"); description.is_object())
     html += "<details><summary>description, all defaults included</summary><pre>" + escaped(description.dump(2)) +
             "</pre></details>\n";

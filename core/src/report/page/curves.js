@@ -5,7 +5,7 @@ const componentNames = ({ width, components }) =>
   components.length === width ? components : width === 3 ? ["x", "y", "z"] : width === 9 ? ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] : Array.from({ length: width }, (_, i) => String(i + 1));
 
 // Pixels about the lines, the same for all charts, so that their axes stand below each other.
-const around = { left: 58, right: 20, top: 34, bottom: 44 }, plotHeight = 180;
+const around = { left: 58, right: 20, top: 34, bottom: 44 }, plotHeight = 180, ticksUp = 5;
 const widestForLines = 9; // numbers a sample; more are a list, of which some samples are drawn
 
 /** Smallest and largest finite number. */
@@ -28,8 +28,14 @@ function settled([low, high]) {
     const room = low === 0 ? 1 : 0.5 * Math.abs(low);
     return [low - room, high + room];
   }
-  const room = 0.03 * (high - low);
-  return [low === 0 ? 0 : low - room, high === 0 ? 0 : high + room];
+  // From tick to tick, and no tick more for noise about one.
+  const room = 0.03 * (high - low), step = niceStep((high - low) / ticksUp);
+  return [Math.floor((low + room) / step + 1e-9) * step, Math.ceil((high - room) / step - 1e-9) * step];
+}
+/** 1, 2 or 5 times a power of ten, about as large as a number; as axes have their ticks. */
+function niceStep(rough) {
+  const power = 10 ** Math.floor(Math.log10(rough)), lead = rough / power;
+  return power * (lead < Math.SQRT2 ? 1 : lead < Math.sqrt(10) ? 2 : lead < Math.sqrt(50) ? 5 : 10);
 }
 
 /** Places of the points that a line of `pixels` needs: of each piece its lowest and highest. */
@@ -54,7 +60,7 @@ function pointsToDraw(y, pixels) {
 }
 
 /** A value with its unit. */
-const told = (value, { shown_unit }) => readable(value) + (shown_unit === "1" ? "" : /^deg/.test(shown_unit) ? "°" : ` ${shown_unit}`);
+const told = (value, { shown_unit }) => readable(value) + ofUnit(shown_unit);
 
 /** One channel of one probe over an abscissa, of all runs that have it. */
 class Chart {
@@ -172,7 +178,8 @@ class Chart {
       for (const i of pointsToDraw(shownY, 800)) values.push({ x: shownX[i], y: shownY[i], s: label });
     const font = getComputedStyle(document.body).fontFamily;
     const axis = { domain: false, ticks: false, gridColor: look.line, labelColor: look.soft, titleColor: look.ink, labelFont: font,
-      titleFont: font, labelFontSize: 11.5, titleFontSize: 12.5, titleFontWeight: 400, grid: true, labelPadding: 6, titlePadding: 8, zindex: 0 };
+      titleFont: font, labelFontSize: 11.5, titleFontSize: 12.5, titleFontWeight: 400, grid: true, labelOverlap: true,
+      encode: { labels: { update: { text: { signal: "replace(replace(datum.label, /,/g, '\u202f'), '-', '−')" } } } }, labelPadding: 6, titlePadding: 8, zindex: 0 };
     const at = (field) => ({ scale: field, field });
     const visible = "isValid(datum.x) && isValid(datum.y)";
     const legends = this.series.length < 2 ? [] : [{ stroke: "colour", strokeDash: "dash", orient: "bottom", direction: "horizontal", symbolType: "stroke", symbolStrokeWidth: 3,
@@ -180,17 +187,17 @@ class Chart {
     return {
       width: this.width, height: plotHeight, padding: { ...around, bottom: around.bottom + this.legendHeight }, autosize: "none",
       background: look.paper,
-      title: { text: withUnit(this.channel.label, this.channel.shown_unit), anchor: "start", frame: "group", dx: 8 - around.left, color: look.ink, font, fontSize: 13.5, fontWeight: 600, offset: 8 },
+      title: { text: titled(this.channel.label, this.channel.shown_unit), anchor: "start", frame: "group", dx: -around.left, color: look.ink, font, fontSize: 13.5, fontWeight: 600, offset: 8 },
       data: [{ name: "curves", values }, { name: "near", values: [] }],
       scales: [
         { name: "x", type: "linear", range: "width", domain: this.xDomain, nice: false, zero: false },
-        { name: "y", type: "linear", range: "height", domain: this.yDomain, nice: 5, zero: false },
+        { name: "y", type: "linear", range: "height", domain: this.yDomain, nice: false, zero: false },
         { name: "colour", type: "ordinal", domain: this.series.map((one) => one.label), range: this.series.map((one) => this.colour(one)) },
         { name: "dash", type: "ordinal", domain: this.series.map((one) => one.label), range: this.series.map((one) => this.dash(one)) },
       ],
       axes: [
-        { ...axis, scale: "x", orient: "bottom", title: withUnit(this.abscissa.label, this.abscissa.shown_unit), tickCount: { signal: "max(2, floor(width / 80))" } },
-        { ...axis, scale: "y", orient: "left", tickCount: 5 },
+        { ...axis, scale: "x", orient: "bottom", title: titled(this.abscissa.label, this.abscissa.shown_unit), tickCount: { signal: "max(2, floor(width / 80))" } },
+        { ...axis, scale: "y", orient: "left", tickCount: ticksUp },
       ],
       legends,
       marks: [
@@ -218,11 +225,13 @@ class Chart {
     return Math.max(160, this.plot.clientWidth - around.left - around.right);
   }
   get legendColumns() {
-    const longest = Math.max(...this.series.map((one) => one.label.length));
-    return Math.max(1, Math.floor(this.width / (38 + 7 * Math.min(longest, 30))));
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = `11.5px ${getComputedStyle(document.body).fontFamily}`;
+    const longest = Math.min(220, Math.max(...this.series.map((one) => pen.measureText(one.label).width)));
+    return Math.max(1, Math.floor(this.width / (longest + 28)));
   }
   get legendHeight() {
-    return this.series.length < 2 ? 0 : 10 + 17 * Math.ceil(this.series.length / this.legendColumns);
+    return this.series.length < 2 ? 0 : 6 + 15 * Math.ceil(this.series.length / this.legendColumns);
   }
   /** A legend may need more rows then: the chart is drawn anew. */
   fit() {
@@ -322,8 +331,8 @@ class ProbeCharts {
     this.probes = report.runs.map((run, place) => ({ run, place, probe: run.probes.find((one) => one.name === name) })).filter(({ probe }) => probe);
     this.names = [...new Set(this.probes.flatMap(({ probe }) => probe.channels.map((channel) => channel.name)))];
     const { y } = report.runs[0].picture ?? {};
-    const shown = (y ?? []).filter((one) => one.startsWith(`${name}/`)).map((one) => one.slice(name.length + 1));
-    const rank = (one) => (shown.includes(one) ? shown.indexOf(one) : shown.length);
+    this.shown = (y ?? []).filter((one) => one.startsWith(`${name}/`)).map((one) => one.slice(name.length + 1));
+    const rank = (one) => (this.shown.includes(one) ? this.shown.indexOf(one) : this.shown.length);
     const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.samples > 0);
     this.ordered = this.names.filter((one) => one !== "time" && sampled(one) && !this.isCoordinate(one)).sort((a, b) => rank(a) - rank(b));
     this.choice?.read(this.channelsNamed("time"));
@@ -359,6 +368,7 @@ class ProbeCharts {
     const choice = make("select", { onchange: () => this.turn(choice.value) },
       ...this.scalars().map((name) => make("option", { value: name, selected: name === this.against }, this.channelsNamed(name)[0].channel.label)));
     this.grid = make("div", { className: "charts" });
+    this.more = make("button", { type: "button", className: "more", onclick: () => this.unfold(!this.unfolded) });
     parent.append(make("label", { className: "against" }, "against ", choice));
     if (this.ordered.some((one) => this.isList(one))) {
       this.choice = new TimeChoice(() => {
@@ -367,12 +377,22 @@ class ProbeCharts {
       this.choice.read(this.channelsNamed("time"));
       parent.append(this.choice.controls);
     }
-    parent.append(this.grid);
+    parent.append(this.grid, this.more);
     this.turn(this.against);
+  }
+  /** What the description's picture names is seen at once; many others when they are asked for. */
+  unfold(unfolded) {
+    this.unfolded = unfolded;
+    const rest = [...this.grid.children].filter(({ chart }) => !this.shown.includes(chart.name)), many = rest.length > 2 && rest.length < this.grid.children.length;
+    for (const figure of rest) figure.hidden = many && !unfolded;
+    this.more.hidden = !many;
+    this.more.textContent = unfolded ? "fewer" : `${rest.length} more`;
+    this.more.setAttribute("aria-expanded", unfolded);
   }
   turn(against) {
     this.against = against;
     this.grid.replaceChildren(...this.ordered.filter((name) => name !== against).map((name) => this.chart(name).figure));
+    this.unfold(this.unfolded ?? false);
   }
 }
 

@@ -66,4 +66,14 @@ function readable(value) {
   return text.replace("-", "−");
 }
 
+/** A unit of UDUNITS as people write it: "kg m⁻³", "°". */
+function writtenUnit(unit) {
+  if (/^deg(ree)?s?$/.test(unit)) return "°";
+  return unit.replace(/([A-Za-z])(-?\d+)/g, (_, letter, power) => letter + power.replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]));
+}
+/** Behind a number. */
+const ofUnit = (unit) => (unit === "1" || unit === "" ? "" : writtenUnit(unit) === "°" ? "°" : ` ${writtenUnit(unit)}`);
+
+/** A label of an axis, and, with the unit as it is in files, of a column. */
+const titled = (label, unit) => withUnit(label, writtenUnit(unit));
 const withUnit = (label, unit) => (unit === "1" || unit === "" ? label : `${label} [${unit}]`);

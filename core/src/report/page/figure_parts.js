@@ -51,6 +51,9 @@ class Layout {
   }
 }
 
+/** Where grains and maps are drawn: left of what colours mean. */
+const panel = ({ width, height, margin }) => [0, 0, Math.max(0, width - margin.right + 8), height];
+
 /** A bar that says how long things are, at the lower left. */
 function drawLengthBar(pen, look, { width, height, metresPerPixel, margin }) {
   const long = niceBelow(0.3 * Math.min(width, 480) * metresPerPixel), [factor, unit] = prefixed("m", long), y = height - 16;
@@ -61,9 +64,9 @@ function drawLengthBar(pen, look, { width, height, metresPerPixel, margin }) {
 
 /** What colours mean, at the upper right; numbers are times `factor`, in `unit`. */
 function drawColourScale(pen, look, { width, height, low, high, table, label, unit, factor, note }) {
-  const tall = Math.min(240, height - 110), left = width - 70, top = 46, pieces = 64;
-  pen.text(width - 6, 20, label, look.ink, "end", 12.5);
-  if (unit !== "1") pen.text(width - 6, 35, `[${unit}]`, look.soft, "end", 11.5);
+  const tall = Math.min(240, height - 110), left = width - 66, top = 46, pieces = 64;
+  pen.text(width - 2, 20, label, look.ink, "end", 12.5);
+  if (unit !== "1") pen.text(width - 2, 35, `[${writtenUnit(unit)}]`, look.soft, "end", 11.5);
   for (let i = 0; i < pieces; ++i) pen.box(left, top + (tall * (pieces - 1 - i)) / pieces, 13, tall / pieces + 0.6, rgb(table[Math.round((i / (pieces - 1)) * 255)]));
   const step = niceBelow((high - low) / 3), shown = step * factor;
   const words = (value) => (shown >= 1e5 || shown < 1e-5 ? value.toExponential(1) : value.toFixed(Math.max(0, -Math.floor(Math.log10(shown) + 1e-9)))).replace("-", "−");
@@ -72,5 +75,5 @@ function drawColourScale(pen, look, { width, height, low, high, table, label, un
     pen.line(left + 13, at, left + 17, at, look.frame, 1);
     pen.text(left + 20, at + 4, words(k * shown || 0), look.ink, "start", 11.5);
   }
-  if (note) pen.text(width - 6, top + tall + 18, note, look.soft, "end", 11);
+  if (note) pen.text(width - 2, top + tall + 18, note, look.soft, "end", 11);
 }

@@ -1,4 +1,4 @@
-// Draws discs and segments: by WebGL2, one point or quad each, or by a pen on a canvas or into SVG where there is none.
+// Draws discs and segments: by WebGL2, one point or quad each; and lines, circles and words by a pen, on a canvas or into SVG.
 "use strict";
 
 // Points are drawn many times faster than quads by software, but vanish with their centres at the edge, and have a largest size.
@@ -109,12 +109,14 @@ class GlPainter {
     for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
     for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
   }
-  draw({ low, span, axes, window, depth, metresPerPixel, fade, look }) {
+  draw({ low, span, axes, window, depth, metresPerPixel, fade, look, panelWidth }) {
     const { gl } = this, { width, height } = gl.canvas;
     const colour = (hex) => parsed(hex).map((c) => c / 255);
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
+    gl.disable(gl.SCISSOR_TEST);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.SCISSOR_TEST), gl.scissor(0, 0, panelWidth, height);
     if (this.count > 0) {
       const points = this.largest / metresPerPixel < largestPoint;
       const { program, uniform } = points ? this.points : this.quads;
@@ -169,6 +171,13 @@ class CanvasPen {
     c.fillStyle = colour, c.font = `${size}px ${this.font}`, c.textAlign = anchor === "middle" ? "center" : anchor;
     c.fillText(words, x, y);
   }
+  /** What `draw` does is seen within a box alone. */
+  within(box, draw) {
+    const c = this.context;
+    c.save(), c.beginPath(), c.rect(...box), c.clip();
+    draw();
+    c.restore();
+  }
 }
 
 /** The same as SVG. */
@@ -192,6 +201,12 @@ class SvgPen {
   text(x, y, words, colour, anchor = "start", size = 12) {
     const safe = words.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
     this.parts.push(`<text x="${SvgPen.number(x)}" y="${SvgPen.number(y)}" fill="${colour}" text-anchor="${anchor}" font-size="${size}">${safe}</text>`);
+  }
+  /** What `draw` does is seen within a box alone. */
+  within([x, y, width, height], draw) {
+    this.parts.push(`<clipPath id="panel"><rect x="${x}" y="${y}" width="${width}" height="${height}"/></clipPath><g clip-path="url(#panel)">`);
+    draw();
+    this.parts.push("</g>");
   }
   static number(value) {
     return +value.toFixed(2);

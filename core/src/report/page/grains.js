@@ -18,6 +18,7 @@ const colourings = {
 };
 
 const layerCount = 10;
+const stillAfter = 150; // ms
 
 class GrainView {
   constructor(section, runs, player) {
@@ -31,7 +32,7 @@ class GrainView {
   /** More frames of the same runs; one of them is turned to then. */
   refresh(runs) {
     this.runs = runs.map((run) => ({ name: run.name, frames: new GrainFrames(run.grains), leftOut: run.grains.left_out }));
-    this.now = this.layersOf = null;
+    this.now = this.layersOf = this.shownOf = null;
   }
   get frames() {
     return this.runs[this.state.run].frames;
@@ -74,11 +75,7 @@ class GrainView {
         make("figcaption", {}, this.under, this.about, make("span", { className: "tools" }, tool("−", "Smaller", () => this.scale(1 / 1.4)), tool("+", "Larger", () => this.scale(1.4)),
           tool("fit", "All of it", () => this.change({ zoom: 1, pan: [0, 0] })), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
     section.querySelector("figure").grains = this;
-    try {
-      this.painter = new GlPainter(this.canvas);
-    } catch {
-      this.painter = null; // drawn by a pen, slowly, but drawn
-    }
+    this.painter = painterFor(this.canvas);
     this.listen();
   }
 
@@ -278,16 +275,19 @@ class GrainView {
       if (this.now !== frame) return;
     }
     this.arrange();
-    this.colours = this.scaleOfColours(frame);
-    const places = this.places(frame), segments = await this.segments(frame);
+    const segments = await this.segments(frame);
     if (this.now !== frame) return;
-    this.shownPlaces = places, this.shownSegments = segments;
-    if (this.painter) {
+    const { state } = this, key = `${state.run} ${frame.number} ${state.colour} ${state.view}`;
+    if (this.shownOf !== key) { // else looked at from nearer or farther
+      this.colours = this.scaleOfColours(frame);
+      this.shownPlaces = this.places(frame);
       this.painter.setBodies(frame);
-      this.painter.setPlaces(places);
-      this.painter.setSegments(segments);
+      this.painter.setPlaces(this.shownPlaces);
       this.painter.setColours(this.colours.table);
+      this.shownOf = key;
     }
+    this.shownSegments = segments;
+    this.painter.setSegments(segments);
     this.paint();
     this.stage.setAttribute("aria-label", `${frame.count} grains at ${frame.time} s, coloured by ${this.colouring.label}`);
     this.stage.dataset.frame = frame.number;
@@ -300,27 +300,28 @@ class GrainView {
     if (this.now) this.show(this.now);
   }
 
-  paint() {
+  /** What takes long to draw is drawn fine only when it is left alone, or must be. */
+  paint(fine = false) {
     const { layout, view } = this, look = theme();
     for (const canvas of [this.canvas, this.overlay]) {
       const width = Math.round(layout.width * devicePixelRatio), height = Math.round(layout.height * devicePixelRatio);
       if (canvas.width !== width) canvas.width = width;
       if (canvas.height !== height) canvas.height = height;
     }
-    if (this.painter) {
-      const { json } = this, axes = new Float32Array(9);
-      axes[3 * view.right] = 1, axes[3 * view.up + 1] = 1, axes[3 * view.depth + 2] = view.away;
-      this.painter.draw({
-        low: json.low, span: json.high.map((high, i) => high - json.low[i]), axes, look, fade: this.state.chains ? 0.72 : 0,
-        window: [...layout.centre, 2 / (layout.width * layout.metresPerPixel), 2 / (layout.height * layout.metresPerPixel)],
-        depth: [layout.cut, layout.near, Math.max(layout.far - layout.near, 1e-12)], metresPerPixel: (0.5 * layout.metresPerPixel) / devicePixelRatio,
-      });
-    }
+    const { json } = this, axes = new Float32Array(9);
+    axes[3 * view.right] = 1, axes[3 * view.up + 1] = 1, axes[3 * view.depth + 2] = view.away;
+    const coarse = this.painter.draw({
+      low: json.low, span: json.high.map((high, i) => high - json.low[i]), axes, view, look, fine, fade: this.state.chains ? 0.72 : 0,
+      window: [...layout.centre, 2 / (layout.width * layout.metresPerPixel), 2 / (layout.height * layout.metresPerPixel)],
+      depth: [layout.cut, layout.near, Math.max(layout.far - layout.near, 1e-12)], metresPerPixel: (0.5 * layout.metresPerPixel) / devicePixelRatio,
+      panelWidth: Math.round(panel(layout)[2] * devicePixelRatio),
+    });
+    clearTimeout(this.refining);
+    if (coarse) this.refining = setTimeout(() => this.paint(true), stillAfter);
     const context = this.overlay.getContext("2d");
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, layout.width, layout.height);
     const pen = new CanvasPen(context);
-    if (!this.painter) this.drawGrains(pen, look);
     this.annotate(pen, look);
   }
 
@@ -383,12 +384,12 @@ class GrainView {
   }
   saveSvg() {
     const look = theme(), pen = new SvgPen(this.layout.width, this.layout.height, look.paper);
-    this.drawGrains(pen, look);
+    pen.within(panel(this.layout), () => this.drawGrains(pen, look));
     this.annotate(pen, look);
     save(`${this.fileName}.svg`, pen.finish(), "image/svg+xml");
   }
   savePng() {
-    this.paint(); // what WebGL drew is gone after a frame
+    this.paint(true); // what WebGL drew is gone after a frame
     const all = make("canvas", { width: this.canvas.width, height: this.canvas.height }), context = all.getContext("2d");
     context.fillStyle = theme().paper;
     context.fillRect(0, 0, all.width, all.height);

@@ -158,7 +158,8 @@ class MapView {
     this.viewChoice.value = this.state.view;
     const view = views[this.state.view];
     this.sliceLabel.hidden = this.layers(view.depth) < 2;
-    this.layout = new Layout(this.stage, view, this.map.low, this.map.high);
+    const { boxes } = this.map, box = boxes[this.now.stage] ?? Object.values(boxes)[0];
+    this.layout = new Layout(this.stage, view, box.low, box.high);
     const { width, height } = this.layout;
     this.canvas.width = Math.round(width * devicePixelRatio), this.canvas.height = Math.round(height * devicePixelRatio);
     const context = this.canvas.getContext("2d");
@@ -166,7 +167,7 @@ class MapView {
     this.paint(new CanvasPen(context), theme());
     const { label, field, now } = this, values = now.cells.list(this.place(field, this.state.component));
     const [low, high] = rangeOf([values]);
-    const told = (value) => `${readable(value * field.factor)}${field.shown_unit === "1" ? "" : ` ${field.shown_unit}`}`;
+    const told = (value) => readable(value * field.factor) + ofUnit(field.shown_unit);
     this.stage.setAttribute("aria-label", `${label} of ${values.length} cells of ${this.map.probe} at ${now.time} s, from ${told(low)} to ${told(high)}`);
     this.stage.dataset.frame = now.number;
   }
@@ -193,7 +194,7 @@ class MapView {
     const i = this.shown.findLast((one) => axes.every((axis, k) => Math.abs(at[k] - cells.centre[axis][one]) <= cells.size[axis][one] / 2));
     if (i === undefined) return this.under.replaceChildren();
     const value = cells.list(this.place(field, state.component))[i], [size, unit] = prefixed("m", Math.max(...axes.map((axis) => Math.abs(cells.centre[axis][i]))));
-    this.under.replaceChildren(make("span", {}, `${this.label} ${readable(value * field.factor)}${field.shown_unit === "1" ? "" : ` ${field.shown_unit}`}`),
+    this.under.replaceChildren(make("span", {}, `${this.label} ${readable(value * field.factor)}${ofUnit(field.shown_unit)}`),
       ...axes.map((axis) => make("span", {}, `${letter(axis)} ${readable(cells.centre[axis][i] * size)} ${unit}`)));
   }
 
