@@ -297,7 +297,7 @@ class InABrowser(unittest.TestCase):
 
     def test_a_run_that_fails_is_shown_to_who_looks(self):
         # Grains never come to such a rest within so short a time.
-        stages = [dict(SHORT[0], until={"type": "time", "value": "1 s"}, limit="2 s"),
+        stages = [dict(SHORT[0], until={"type": "time", "value": "0.5 s"}),
                   {"name": "rest", "until": {"type": "unbalanced-force", "below": 1e-15}, "limit": "10 ms"}]
         with WatchedRun(self.folder, "failing", stages=stages) as run:
             self.browser.open(run.address)
