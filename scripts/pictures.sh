@@ -23,11 +23,29 @@ gallery interface-dl-0240 sims/interface-shear/quick-dl-0240.json
 gallery silo-discharge sims/silo-discharge/quick.json
 drawn direct-shear/map-strain-strain.svg gallery/direct-shear-strain
 drawn silo-discharge/map-flow-velocity.svg gallery/silo-discharge-velocity
+drawn silo-discharge/layers.svg gallery/silo-discharge-layers
 
-# The page of a run, for the README, where there is a browser.
+# Pages, where there is a browser: that of a run for the README, and the one that a run serves when it has got some way.
 if command -v chromium > /dev/null; then
-  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --virtual-time-budget=5000 --window-size=1000,2314 \
-    --screenshot="$PWD/docs/pictures/report.png" "file://$PWD/results/pictures/direct-shear/report.html"
+  # shot URL PICTURE HEIGHT
+  shot() {
+    PYTHONPATH=tests/report /usr/bin/python3 - "$1" "docs/$2.png" "$3" << 'end'
+import sys
+from browser import GRAINS, Browser, find_chromium
+
+with Browser(find_chromium(), width=1000, height=int(sys.argv[3])) as browser:
+    browser.open(sys.argv[1])
+    browser.wait(f"document.querySelector('figure.chart[data-drawn]') && document.querySelector('figure.grains')?.grains.painted")
+    browser.screenshot(sys.argv[2])
+end
+  }
+  shot results/pictures/direct-shear/report.html pictures/report 2110
+  watched=results/pictures/watched
+  build/bin/grit run sims/silo-discharge/quick.json --out "$watched" --overwrite --threads 1 --watch 2> "$watched.log" &
+  until [[ -e $watched/frames/000018.h5 ]]; do sleep 1; done
+  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched 2250
+  kill -INT $!
+  wait $! || true
 fi
 
 # Its force chains in ParaView, where there is one, by the script of docs/results.md; in 256 colours it has a quarter of the size.
