@@ -132,6 +132,18 @@ TEST(Picture, DrawsGrainsToScaleAndRedForPositive) {
   EXPECT_THAT(style, testing::AllOf(HasSubstr(".c20{fill:#a01228}"), HasSubstr(".c0{fill:#144e8c}"))) << "red, blue";
 }
 
+TEST(Picture, LeavesNoRoomForWallsThatAreFarAway) {
+  GrainView view;
+  view.discs = {{0, 0, 0.5, nan}, {9, 9, 0.5, nan}};
+  view.walls = {{0, -1, 9, -1}};
+  const std::string near = draw({.title = "", .facts = "", .panels = {}, .grains = view});
+  view.walls.push_back({0, -100, 9, -100});
+  const auto with = elements(parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view})), "circle");
+  const auto without = elements(parsed(near), "circle");
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_EQ(with[i].get<double>("<xmlattr>.r"), without[i].get<double>("<xmlattr>.r"));
+}
+
 TEST(Picture, HasAColourALayer) {
   GrainView view;
   view.value = {"layer", "1"};

@@ -212,6 +212,10 @@ ViewLayout layout(const GrainView& view) {
   const double reach = bare ? 0 : 0.35 * std::max(result.x.span(), result.y.span());
   const Range x = result.x, y = result.y;
   for (const auto& wall : view.walls) {
+    const auto beyond = [&](double a, double b, const Range& range) {
+      return std::max(a, b) < range.low - reach || std::min(a, b) > range.high + reach;
+    };
+    if (!bare && (beyond(wall.x1, wall.x2, x) || beyond(wall.y1, wall.y2, y))) continue;  // as a gate that is put away
     const auto within = [&](double value, const Range& range) {
       return bare ? value : std::clamp(value, range.low - reach, range.high + reach);
     };
