@@ -35,7 +35,8 @@ from browser import GRAINS, Browser, find_chromium
 
 with Browser(find_chromium(), width=1000, height=int(sys.argv[3])) as browser:
     browser.open(sys.argv[1])
-    browser.wait(f"document.querySelector('figure.chart[data-drawn]') && document.querySelector('figure.grains')?.grains.painted")
+    browser.wait("document.querySelectorAll('figure.chart[data-drawn]').length > 1 && !document.querySelector('.problems')")
+    browser.wait(f"{GRAINS}.painted")
     browser.screenshot(sys.argv[2])
 end
   }
@@ -43,7 +44,7 @@ end
   watched=results/pictures/watched
   build/bin/grit run sims/silo-discharge/quick.json --out "$watched" --overwrite --threads 1 --watch 2> "$watched.log" &
   until [[ -e $watched/frames/000018.h5 ]]; do sleep 1; done
-  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched 2250
+  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched 2200
   kill -INT $!
   wait $! || true
 fi
