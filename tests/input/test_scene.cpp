@@ -118,6 +118,26 @@ TEST_F(SceneTest, AScenarioBecomesAPlainDescription) {
   EXPECT_EQ(std::get<CloudGrains>(good("extended_scenario").description->bodies.at("grains").grains.value()).count, 50);
 }
 
+TEST_F(SceneTest, NullTakesAwayWhatAScenarioWrites) {
+  const Folder folder;
+  const auto write = [&](const char* name, const char* text) { return folder.write(name, text); };
+  const auto walls = [&](const std::filesystem::path& path, const std::vector<std::string>& sets = {}) {
+    return load_document(path, sets, registry_).json().at("walls").dump();
+  };
+  const auto pile = write("pile.json", R"({"scenario": {"type": "pile"}})");
+  EXPECT_THAT(walls(pile), HasSubstr("floor"));
+  EXPECT_EQ(walls(write("beside.json", R"({"scenario": {"type": "pile"}, "walls": {"floor": null}})")), "{}");
+  write("without.json", R"({"extends": "pile.json", "walls": {"floor": null}})");
+  EXPECT_EQ(walls(folder.path() / "without.json"), "{}") << "the file that it extends lacks the key";
+  EXPECT_EQ(walls(write("further.json", R"({"extends": "without.json", "seed": 4})")), "{}");
+  EXPECT_EQ(walls(pile, {"/walls/floor=null"}), "{}");
+  // What is written again after it was taken away has nothing of what there was.
+  const char* const lid = R"({"lid":{"material":"sand"}})";
+  EXPECT_EQ(walls(write("again.json", R"({"extends": "without.json", "walls": {"lid": {"material": "sand"}}})")), lid);
+  write("none.json", R"({"scenario": {"type": "pile"}, "walls": null})");
+  EXPECT_EQ(walls(write("other.json", R"({"extends": "none.json", "walls": {"lid": {"material": "sand"}}})")), lid);
+}
+
 TEST_F(SceneTest, WhatIsResolvedReadsTheSame) {
   for (const char* name : {"plain", "units", "glue", "everything", "scenario"}) {
     const Description first = resolved(*good(name).description);

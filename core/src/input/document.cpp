@@ -275,7 +275,10 @@ void Document::set(const std::string& assignment) {
   Parser parser(value, source);
   if (!parser.parse(text)) value.json_ = text;
   else if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
-  if (value.json_.is_null()) return erase(pointer);
+  if (value.json_.is_null()) {
+    removed_.insert(pointer);
+    return erase(pointer);
+  }
   if (const auto problem = set(pointer, std::move(value.json_), {source, 0, pointer}); !problem.empty())
     refuse(problem);
 }
@@ -342,10 +345,19 @@ void Document::merge(Description& target, const std::string& at, const Descripti
     if (value.is_null()) {
       target.erase(key);
       forget(at + token);
+      removed_.insert(at + token);
     } else {
+      if (target.contains(key) && target[key].is_null()) removed_.insert(at + token);  // it was to remove something
       merge(target[key], at + token, value, other, from + token);
     }
   }
+}
+
+void Document::extend(Document base) {
+  // What was removed may have been written anew later: that comes after.
+  for (const std::string& pointer : removed_) base.erase(pointer);
+  base.merge(*this);
+  *this = std::move(base);
 }
 
 void Document::erase(const std::string& pointer) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ class Document {
   void merge(const Document& other, const std::string& from = "");
   /// Removes a value.
   void erase(const std::string& pointer);
+  /// Puts this document in place of `base` merged with it: what null removed here, by extending or set(), is removed
+  /// from `base` too, even where nothing was here to remove.
+  void extend(Document base);
 
  private:
   struct Parser;
@@ -65,6 +69,7 @@ class Document {
   void forget(const std::string& pointer);
 
   Description json_ = Description::object();
+  std::set<std::string> removed_;          // pointers that null removed, whether or not there was anything
   std::map<std::string, Origin> origins_;  // by pointer; values without an entry were written with their parent
 };
 

@@ -124,8 +124,8 @@ Document expanded(const Document& document, const Registry& registry) {
   }
   Document others = document;
   others.erase("/scenario");
-  plain.merge(others);
-  return plain;
+  others.extend(std::move(plain));
+  return others;
 }
 
 }  // namespace
