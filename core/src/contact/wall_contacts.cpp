@@ -262,6 +262,18 @@ void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies&
   }
 }
 
+void WallContacts::grow(const Bodies& bodies, double factor) {
+  const double share = 1 - 1 / factor;
+  for (Chunk& chunk : chunks_)
+    for (WallTouch& touch : chunk.touch) {
+      touch.overlap += share * bodies.position[touch.body].w;
+      // The middle of a clump's sphere comes closer as well.
+      if (const std::uint32_t c = bodies.clumps.clump_of(touch.body); c != no_clump)
+        touch.overlap +=
+            share * touch.normal.dot(bodies.clumps.clump[c].axes * bodies.clumps.of_body[touch.body].place);
+    }
+}
+
 void WallContacts::loads(std::span<WallLoad> loads) const {
   std::fill(loads.begin(), loads.end(), WallLoad{});
   for (const Chunk& chunk : chunks_)

@@ -50,6 +50,8 @@ class WallContacts {
   /// null. Returns the largest overlap over a radius.
   double evaluate(std::size_t chunk, const ContactLaw& law, const Bodies& bodies, bool one_material,
                   std::span<const WallSurface> walls, double dt, BodySum* sum, Losses* losses);
+  /// Bodies have grown by `factor` to what they are now: touches go as much deeper.
+  void grow(const Bodies& bodies, double factor);
   /// Loads on all walls, summed chunk by chunk.
   void loads(std::span<WallLoad> loads) const;
 

@@ -23,7 +23,9 @@ struct Met {
   const StageStart& start;
   bool without_forces;
 
-  bool look_now() const { return (simulation.step() - start.step) % slow_conditions_every == 0; }
+  bool look_now(std::uint64_t every = slow_conditions_every) const {
+    return (simulation.step() - start.step) % every == 0;
+  }
 
   // Half a step of tolerance: a stage of 1 ms at 0.1 ms a step has ten steps, whatever the rounding of the sum.
   bool operator()(const TimeCondition& c) const {
@@ -49,6 +51,12 @@ struct Met {
     if (!look_now()) return false;
     const double e = void_ratio(simulation, simulation.interior(simulation.mean_diameter()));
     return (!c.below || e < *c.below) && (!c.above || e > *c.above);
+  }
+  bool operator()(const MeanStressCondition& c) const {
+    if (!look_now(stress_condition_every)) return false;
+    if (without_forces) return true;
+    const double p = mean_stress(simulation, simulation.interior(simulation.mean_diameter())).trace() / 3;
+    return (!c.below || p < *c.below) && (!c.above || p > *c.above);
   }
   bool operator()(const PressureCondition& c) const {
     return without_forces ||

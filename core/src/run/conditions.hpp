@@ -18,6 +18,8 @@ struct StageStart {
 
 /// Conditions that need a pass over all bodies or contacts are looked at every so many steps.
 inline constexpr std::uint64_t slow_conditions_every = 100;
+/// The mean stress is looked at oftener: where bodies grow it rises fast once they touch.
+inline constexpr std::uint64_t stress_condition_every = 10;
 
 /// Whether the condition holds. Between looks, slow conditions count as not met.
 bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start);

@@ -74,6 +74,7 @@ void Simulation::apply(const SceneDescription& scene) {
   pairs_.set_fields(fields_), wall_contacts_.set_fields(fields_);
   if (flows_.begun) flows_.settings += elastic_energy().total() - elastic_before;
   settings_ = {};
+  growth_rate_ = growth_rate_of(stage_), grown_ = 0;
   force_engines_.clear();
   for (const auto& [name, engine] : scene.engines) {
     if (engine.engine->phase() == Phase::settings) engine.engine->settings(settings_);
@@ -398,6 +399,7 @@ void Simulation::and_show_forces(Work work) {
 
 void Simulation::advance() {
   const MotionStep next = next_motion();
+  if (growth_rate_ > 0) grow();
   const std::size_t clumps = bodies_.clumps.clump.size();
   if (clumps > 0)
     pass([&](std::size_t chunk, Laps& laps) {
@@ -415,8 +417,8 @@ void Simulation::advance() {
 /// Forces decide on nothing that bodies must wait for: neither the time step, nor what engines add.
 bool Simulation::in_one_pass() const {
   const bool free_walls = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& wall) { return wall.free; });
-  return force_engines_.empty() && bodies_.clumps.none() && !free_walls && clock_.step % energy_check_every != 0 &&
-         !springs_may_stiffen();
+  return growth_rate_ == 0 && force_engines_.empty() && bodies_.clumps.none() && !free_walls &&
+         clock_.step % energy_check_every != 0 && !springs_may_stiffen();
 }
 
 /// Asked before forces, whoever wants them, so that the time step does not depend on that.
@@ -530,7 +532,8 @@ void Simulation::end_step() {
   tell_walls_of_specimen();
 
   const double strained =
-      dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * 2 * (stock_.largest_radius + clock_.skins.largest());
+      dt * clock_.cell.strain_rate.cwiseAbs().maxCoeff() * 2 * (stock_.largest_radius + clock_.skins.largest()) +
+      2 * grown_;
   clock_.strain_travel += strained;
   double furthest = 0;
   for (std::size_t chunk = 0; chunk < chunk_.size(); ++chunk) {

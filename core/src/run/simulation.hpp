@@ -38,7 +38,8 @@ struct Clock {
   Vec3 period_before = Vec3::Zero();  ///< of the cell, one step ago
   std::uint64_t rebuilds = 0;
   Skins skins;               ///< of the present candidates
-  double strain_travel = 0;  ///< what the mean flow of the cell moved two bodies since the last search, at most [m]
+  double strain_travel = 0;  ///< what the mean flow of the cell, and growth, brought two surfaces closer since the last
+                             ///< search, at most [m]
   double wall_speed = 0;     ///< of the fastest point of a wall near bodies, at most, in the last step [m/s]
   double last_approach = 0;  ///< by how much the last step let bodies come closer at most, m
   double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
@@ -187,6 +188,10 @@ class Simulation final : public World {
   std::vector<bool> wrap();
   bool may_leave(int axis, bool high) const;
   void take_leave(const std::vector<bool>& leaves);
+  /// Per second, of radii; 0 where bodies of that stage do not grow.
+  double growth_rate_of(const std::string& stage) const;
+  /// Lets bodies grow for the step that comes.
+  void grow();
   /// Stops what moves out of a plane.
   void flatten(int axis);
   /// For what contacts ask now.
@@ -258,7 +263,9 @@ class Simulation final : public World {
   std::vector<Departure> departures_;
   std::vector<Newcomers::Group> newcomers_;  // since the last search, with their first ids
   Stock stock_;
-  double mass_left_ = 0;  // kg, of departures
+  double mass_left_ = 0;    // kg, of departures
+  double growth_rate_ = 0;  // 1/s, of radii in this stage
+  double grown_ = 0;        // m, by how much surfaces have moved in this step because bodies grow, at most
   double body_steps_ = 0;
   double passes_ = 0;  // s, in which the threads shared chunks
   bool periodic_ = false, search_now_ = true, time_step_now_ = true;

@@ -44,7 +44,8 @@ double Simulation::gravitational() const {
 }
 
 void Simulation::check_energy() {
-  bool kept = all_work_is_kept();
+  // What growth puts in is not reckoned at each step.
+  bool kept = all_work_is_kept() && growth_rate_ == 0;
   // There is no potential along a periodic axis.
   for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
   if (!kept) return;

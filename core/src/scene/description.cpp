@@ -384,6 +384,13 @@ void VoidRatioCondition::declare(Parameters& p) {
     if (!below && !above) complain("", "neither below nor above", "at least one of them");
   });
 }
+void MeanStressCondition::declare(Parameters& p) {
+  p.add("below", below).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen that is fallen below");
+  p.add("above", above).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen that is exceeded");
+  p.check([this](const Complain& complain) {
+    if (!below && !above) complain("", "neither below nor above", "at least one of them");
+  });
+}
 void PressureCondition::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall");
   p.add("value", value).unit("Pa").symbol("p").at_least(0).required().doc("pressure on the wall, compression positive");
@@ -415,6 +422,13 @@ void RampDescription::declare(Parameters& p) {
       },
       {"pointer", "from", "to"});
 }
+void GrowthDescription::declare(Parameters& p) {
+  p.add("rate", rate)
+      .unit("1/s")
+      .above(0)
+      .required()
+      .doc("of all radii R: dR/dt = rate R; masses and moments of inertia follow, density stays");
+}
 void ExpectDescription::declare(Parameters& p) {
   p.add("void_ratio", void_ratio).symbol("e").above(0).doc("void ratio of the specimen at the end of the stage");
   p.add("within", within).above(0).doc("difference that is accepted");
@@ -427,6 +441,7 @@ void StageDescription::declare(Parameters& p) {
       .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
            any_of(SceneDescription::changeable(), "").substr(7) + "; of domain only strain_rate");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
+  p.add("growth", growth).doc("all bodies grow during the stage; left out: they do not");
   p.add("expect", expect).doc("what the stage must have reached");
   p.check(
       [this](const Complain& complain) {
@@ -597,6 +612,15 @@ void SceneDescription::declare(Parameters& p) {
                      "0: their weight would grow with their mass");
       },
       {"bodies", "engines"});
+  p.check(
+      [this](const Complain& complain) {
+        const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
+        for (const auto& [name, group] : bodies)
+          if (group.heavier_below > 0 && std::ranges::any_of(stages, grows))
+            complain("bodies/" + name + "/heavier_below", "heavier grains where bodies grow in a stage",
+                     "0: they would be made heavier for a size that they do not keep");
+      },
+      {"bodies", "stages"});
   p.check_names([this](const Complain& complain) {
     const References known("material", keys(materials), complain);
     for (const auto& [name, wall] : walls) known.check("walls/" + name + "/material", wall.material);

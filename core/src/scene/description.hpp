@@ -213,6 +213,11 @@ struct VoidRatioCondition {
   std::optional<double> below, above;
   void declare(Parameters& p);
 };
+struct MeanStressCondition {
+  static constexpr const char* type_name = "mean-stress";
+  std::optional<double> below, above;
+  void declare(Parameters& p);
+};
 struct PressureCondition {
   static constexpr const char* type_name = "pressure";
   std::string wall;
@@ -236,7 +241,7 @@ struct AnyCondition {
 };
 struct Condition {
   OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, KineticEnergyCondition,
-        VoidRatioCondition, PressureCondition, LeftCondition, AllCondition, AnyCondition>
+        VoidRatioCondition, MeanStressCondition, PressureCondition, LeftCondition, AllCondition, AnyCondition>
       is{"condition"};
   void declare(Parameters& p) { p.choose(is); }
 };
@@ -247,6 +252,11 @@ struct RampDescription {
   Description from, to;  ///< as the description would give them
   double duration = 0;
   std::int64_t increments = 50;
+  void declare(Parameters& p);
+};
+/// Bodies that become larger where they are.
+struct GrowthDescription {
+  double rate = 0;  ///< 1/s, above 0
   void declare(Parameters& p);
 };
 struct ExpectDescription {
@@ -260,6 +270,7 @@ struct StageDescription {
   double limit = 0;  ///< s of simulated time after which the stage has failed
   Description change = Description::object();
   std::deque<RampDescription> ramps;
+  std::optional<GrowthDescription> growth;
   ExpectDescription expect;
   void declare(Parameters& p);
 };
