@@ -1,5 +1,6 @@
 // Preparation of a specimen, as scenarios share it: a cloud of grains is compacted by servo-controlled walls, one along
-// an axis or six around it, and friction is the control of the void ratio. See README.md.
+// an axis or six around it, or its grains grow between walls that stand; friction is the control of the void ratio. See
+// README.md.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,7 @@ struct VoidRatioRange {
   double densest, loosest;
 };
 
-/// Friction during compaction, and the void ratio of the interior that it was measured to lead to.
+/// Friction during compaction or growth, and the void ratio of the interior that it was measured to lead to.
 struct Compacted {
   double friction_angle, void_ratio;
 };
@@ -43,6 +44,16 @@ inline constexpr std::array<Compacted, 7> compacted_in_a_box{{{0, 0.558},
                                                               {60 * degree, 0.919}}};
 inline constexpr VoidRatioRange reachable_in_a_box{0.57, 0.79};
 
+/// Of the same grading that grows in a cube of 12 mean diameters until it bears 200 kPa; README.md says more.
+inline constexpr std::array<Compacted, 7> grown_in_a_cube{{{0, 0.564},
+                                                           {2 * degree, 0.601},
+                                                           {5 * degree, 0.644},
+                                                           {10 * degree, 0.695},
+                                                           {18 * degree, 0.736},
+                                                           {30 * degree, 0.795},
+                                                           {60 * degree, 0.832}}};
+inline constexpr VoidRatioRange reachable_by_growth{0.57, 0.76};
+
 struct Preparation {
   /// Solid fraction of the cloud that compaction starts from.
   static constexpr double cloud_solid_fraction = 0.3;
@@ -56,6 +67,7 @@ struct Preparation {
   std::vector<double> sieve_diameters, sieve_passing;
   double density = 2600, friction_angle = 18 * degree;
   double void_ratio = 0.6, inertial_number = 3e-3;
+  std::string way = "compaction";
   std::optional<double> compaction_friction_angle;
   std::int64_t seed = 1;
 
@@ -117,6 +129,10 @@ struct Preparation {
         .doc("of the interior, one mean diameter or more off the walls, before shear; reached within 0.01 or failed");
   }
   void declare_course(Parameters& p) {
+    p.add("preparation", way)
+        .one_of({"compaction", "growth"})
+        .doc(
+            "walls press a cloud of grains together, or grains of a cloud in the final box grow while its walls stand");
     p.add("preparation_inertial_number", inertial_number)
         .above(0)
         .at_most(0.1)
@@ -126,8 +142,8 @@ struct Preparation {
         .at_least(0)
         .below(std::numbers::pi / 2)
         .doc(
-            "between grains while the cloud is compacted; left out: as was found to lead somewhat above the void "
-            "ratio");
+            "between grains while the cloud is compacted or grows; left out: as was found to lead somewhat above the "
+            "void ratio");
     p.add("seed", seed).at_least(0).doc("of the grains' sizes and places");
   }
 
@@ -143,9 +159,12 @@ struct Preparation {
     const double cube = sieve_diameters.empty() ? 0.25 * (a + b) * (a * a + b * b) : 1 / over_sieves(inverse_cube);
     return std::llround(volume / (1 + void_ratio) / (std::numbers::pi / 6 * cube * solid_share()));
   }
-  /// Volume of the cloud for a specimen of this volume, or its length where it is longer along one axis alone.
+  bool grows() const { return way == "growth"; }
+  /// Volume of the cloud for a specimen of this volume, or its length where it is longer along one axis alone. Grains
+  /// that grow fill it when friction has led them above the wanted void ratio.
   double in_cloud(double specimen) const {
-    return specimen / (1 + void_ratio) / (cloud_solid_fraction * solid_share());
+    const double solids = specimen / (1 + void_ratio);
+    return grows() ? solids * (1 + aimed_at()) : solids / (cloud_solid_fraction * solid_share());
   }
 
   /// A grain moves its own size under the pressure [Pa] in this time [s]: the clock of everything inertial.
@@ -159,16 +178,17 @@ struct Preparation {
     return inertial_number * length / inertial_time(pressure);
   }
 
-  /// Throws Error for a void ratio out of `range`, unless the friction of compaction is the user's own, or grains are
-  /// not the spheres that it was measured of. `pressure` [Pa] is named.
-  void refuse_out_of(const VoidRatioRange& range, double pressure) const {
+  /// Throws Error for a void ratio out of the range of compaction, or of growth, unless the friction of compaction is
+  /// the user's own, or grains are not the spheres that it was measured of. `pressure` [Pa] is named.
+  void refuse_out_of(const VoidRatioRange& compacted, double pressure) const {
+    const VoidRatioRange& range = grows() ? reachable_by_growth : compacted;
     if (compaction_friction_angle || grain != "sphere" || (void_ratio >= range.densest && void_ratio <= range.loosest))
       return;
     std::ostringstream text;
     text.precision(3);
     text << "/scenario/void_ratio is " << void_ratio << "; this grading can be prepared between " << range.densest
-         << " (frictionless compaction) and " << range.loosest << " (high friction, then its own) under "
-         << pressure * 1e-3 << " kPa; wish for one in this range";
+         << " (without friction) and " << range.loosest << " (high friction, then its own) under " << pressure * 1e-3
+         << " kPa; wish for one in this range";
     throw Error(text.str());
   }
   /// Throws Error if the shortest side [m] of a specimen is less than four grains.
@@ -188,9 +208,13 @@ struct Preparation {
   Description sand() const { return {{"density", density}, {"friction_angle", friction_angle}}; }
   /// The grains, a cloud between two corners.
   Description cloud(const Description& low, const Description& high, std::int64_t count) const {
-    Description sizes = {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}};
-    if (!sieve_diameters.empty())
+    const double size = size_at_start();
+    Description sizes = {
+        {"type", "uniform"}, {"smallest", size * smallest_diameter}, {"largest", size * largest_diameter}};
+    if (!sieve_diameters.empty()) {
       sizes = {{"type", "sieve"}, {"diameters", sieve_diameters}, {"passing", sieve_passing}};
+      for (Description& diameter : sizes["diameters"]) diameter = size * diameter.get<double>();
+    }
     Description group = {
         {"type", grain},
         {"material", "sand"},
@@ -200,16 +224,18 @@ struct Preparation {
   }
 
   /// Stages "compact" (friction leads somewhat above the wanted void ratio), "densify" (friction falls until it is
-  /// there) and "settle" (friction is the sand's own). `walls` are servo-controlled to `pressure` [Pa] and close in
-  /// `closing` [s]; `compacted` says what friction leads to.
-  std::vector<Description> stages(const std::vector<std::string>& walls, double pressure, double closing,
-                                  std::span<const Compacted> compacted) const {
+  /// there) and "settle" (friction is the sand's own). Of all `walls`, the `pressing` ones are servo-controlled to
+  /// `pressure` [Pa] and close in `closing` [s]; `compacted` says what friction leads to. Where grains grow, "grow" and
+  /// "press" take the place of "compact", and the pressing walls, which stand until then, go by their servos after it.
+  std::vector<Description> stages(Description& walls, const std::vector<std::string>& pressing, double pressure,
+                                  double closing, std::span<const Compacted> compacted) const {
     const double settling = settling_time(pressure);
-    const double loose_angle = compaction_friction_angle.value_or(friction_for(void_ratio + aim_above, compacted));
+    const double loose_angle =
+        compaction_friction_angle.value_or(friction_for(aimed_at(), grows() ? grown_in_a_cube : compacted));
     const auto friction = [](double angle) -> Description { return {{"sand", {{"friction_angle", angle}}}}; };
     const auto at_rest = [&](double within, double unbalanced) -> Description {
       Description of = Description::array();
-      for (const std::string& wall : walls)
+      for (const std::string& wall : pressing)
         of.push_back({{"type", "pressure"}, {"wall", wall}, {"value", pressure}, {"within", within}});
       of.push_back({{"type", "unbalanced-force"}, {"below", unbalanced}});
       return {{"type", "all"}, {"of", of}};
@@ -232,15 +258,39 @@ struct Preparation {
     settle["until"] = at_rest(0.005, 2e-3);
     settle["limit"] = 15 * settling;
     settle["expect"] = {{"void_ratio", void_ratio}, {"within", 0.01}};
-    return {compact, densify, settle};
+    if (!grows()) return {compact, densify, settle};
+
+    // The same strain rate as that of walls that close at the inertial number; slowly once grains come to touch.
+    const double rate = inertial_number / inertial_time(pressure), slow_rate = rate / 20;
+    const double nearly_there = 0.05;  // void ratio above which grains do not bear each other yet
+    Description grow, press;
+    grow["name"] = "grow";
+    grow["change"]["materials"] = friction(loose_angle);
+    grow["growth"]["rate"] = rate;
+    grow["until"] = {{"type", "any"},
+                     {"of", Description::array({{{"type", "void-ratio"}, {"below", aimed_at() + nearly_there}},
+                                                {{"type", "mean-stress"}, {"above", 0.1 * pressure}}})}};
+    grow["limit"] = -2 * std::log(size_at_start()) / rate;
+    press["name"] = "press";
+    press["growth"]["rate"] = slow_rate;
+    press["until"] = {{"type", "mean-stress"}, {"above", pressure}};
+    press["limit"] = 0.2 / slow_rate;
+    for (const std::string& wall : pressing) {
+      densify["change"]["walls"][wall]["motion"] = walls[wall]["motion"];
+      walls[wall].erase("motion");
+    }
+    return {grow, press, densify, settle};
   }
 
  private:
+  /// Void ratio that friction is to lead to; lowering it does the rest.
+  double aimed_at() const { return void_ratio + 0.03; }
+  /// Of grains in the cloud, over that of the specimen's.
+  double size_at_start() const {
+    return grows() ? std::cbrt(cloud_solid_fraction * solid_share() * (1 + aimed_at())) : 1;
+  }
   /// Volume of a grain over that of a sphere of its diameter.
   double solid_share() const { return grain == "clump" ? clump_share : 1; }
-
-  // Compaction aims so much above the wanted void ratio; lowering the friction does the rest.
-  static constexpr double aim_above = 0.03;
 
   // Mean of d⁻³ between two sieves, by mass: what a mass holds of grains.
   static double inverse_cube(double a, double b) { return (a + b) / (2 * a * a * b * b); }

@@ -106,7 +106,7 @@ Description DirectShear::expand() const {
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
   // Aprons keep the gap between the frames closed, so that no sand is lost.
-  auto stages = preparation_.stages({"platen"}, normal_stress_, closing, compacted_in_a_box);
+  auto stages = preparation_.stages(d["walls"], {"platen"}, normal_stress_, closing, compacted_in_a_box);
   Description shear;
   shear["name"] = "shear";
   shear["change"]["engines"]["damping"]["coefficient"] = local_damping_;

@@ -160,7 +160,7 @@ Description InterfaceShear::expand() const {
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
   // The box stands on the tips while the sand is prepared, so that none is lost, and is lifted before shear.
-  auto stages = preparation_.stages({"lid"}, normal_stress_, closing, compacted_in_a_box);
+  auto stages = preparation_.stages(d["walls"], {"lid"}, normal_stress_, closing, compacted_in_a_box);
   Description lift, shear;
   lift["name"] = "lift";
   for (const char* wall : {"left", "right"})

@@ -77,6 +77,53 @@ TEST(Triaxial, SaysWhatIsWrong) {
   EXPECT_THAT(refusal<Triaxial>({{"size", {"100 mm", "29 mm", "100 mm"}}}), HasSubstr("four of the largest grains"));
 }
 
+// Growth, as every scenario with a preparation has it.
+
+TEST(GrowthOfGrains, FillsTheBoxOfTheVoidRatioAboveTheWantedOne) {
+  const Description keys = {{"preparation", "growth"}, {"void_ratio", 0.65}};
+  const Description d = made(keys)->expand(), sand = d["bodies"]["sand"]["grains"];
+  // Radii that have grown to what is wanted are at a void ratio of 0.68 in the box, whose walls stand.
+  const double box = std::cbrt(1.68 / 1.65) * 100e-3;
+  EXPECT_NEAR(sand["high"][0].get<double>() - sand["low"][0].get<double>(), box, 1e-12);
+  EXPECT_EQ(sand["count"], made({{"void_ratio", 0.65}})->expand()["bodies"]["sand"]["grains"]["count"]);
+  const double size = std::cbrt(0.3 * 1.68);
+  EXPECT_NEAR(sand["sizes"]["smallest"].get<double>(), size * 2.5e-3, 1e-12);
+  EXPECT_NEAR(sand["sizes"]["largest"].get<double>(), size * 7.5e-3, 1e-12);
+  for (const auto& [name, wall] : d["walls"].items()) EXPECT_FALSE(wall.contains("motion")) << name;
+}
+
+TEST(GrowthOfGrains, ComesBeforeServosAndSettling) {
+  const Description stages = made({{"preparation", "growth"}})->expand()["stages"];
+  ASSERT_EQ(stages.size(), 5u);
+  for (std::size_t i = 0; const char* name : {"grow", "press", "densify", "settle", "shear"})
+    EXPECT_EQ(stages[i++]["name"], name);
+  // I = rate d50 sqrt(rho / sigma_c)
+  EXPECT_NEAR(stages[0]["growth"]["rate"].get<double>() * 5e-3 * std::sqrt(2600 / 200e3), 3e-3, 1e-15);
+  EXPECT_LT(stages[1]["growth"]["rate"].get<double>(), stages[0]["growth"]["rate"].get<double>());
+  EXPECT_EQ(stages[1]["until"], Description({{"type", "mean-stress"}, {"above", 200e3}}));
+  EXPECT_FALSE(stages[2].contains("growth"));
+  EXPECT_EQ(stages[2]["change"]["walls"].size(), 6u);
+  for (const auto& [name, wall] : stages[2]["change"]["walls"].items())
+    EXPECT_EQ(wall["motion"]["servo"]["pressure"], 200e3) << name;
+}
+
+TEST(GrowthOfGrains, HasARangeOfItsOwn) {
+  EXPECT_THAT(refusal<Triaxial>({{"preparation", "growth"}, {"void_ratio", 0.79}}),
+              HasSubstr("can be prepared between 0.57 (without friction) and 0.76 ("));
+  EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.79}}), "");
+}
+
+TEST(GrowthOfGrains, BeginsWithSmallerSievesToo) {
+  const Description d = made({{"sieve_diameters", {"2.5 mm", "7.5 mm"}},
+                              {"sieve_passing", {0, 1}},
+                              {"preparation", "growth"},
+                              {"void_ratio", 0.67}})
+                            ->expand();
+  const Description diameters = d["bodies"]["sand"]["grains"]["sizes"]["diameters"];
+  EXPECT_NEAR(diameters[0].get<double>(), std::cbrt(0.3 * 1.70) * 2.5e-3, 1e-12);
+  EXPECT_NEAR(diameters[1].get<double>(), std::cbrt(0.3 * 1.70) * 7.5e-3, 1e-12);
+}
+
 // Sieves, as every scenario with a preparation has them.
 
 TEST(Sieves, FillTheSpecimenByTheMeanVolumeOfTheirGrains) {

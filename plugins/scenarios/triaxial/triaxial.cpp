@@ -135,7 +135,7 @@ Description Triaxial::expand() const {
   d["specimen"] = {{"low", {"left", "front", "bottom"}}, {"high", {"right", "back", "top"}}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
-  auto stages = preparation_.stages(names, confining_stress_, closing, compacted);
+  auto stages = preparation_.stages(d["walls"], names, confining_stress_, closing, compacted);
   const auto still = [](Description& stage, const char* wall) { stage["change"]["walls"][wall]["motion"] = nullptr; };
   if (intermediate_stress_) {
     // Slow beside the grains' own clock. The front stands, so that one ramp does for both.
