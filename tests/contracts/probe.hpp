@@ -19,68 +19,11 @@
 #include <utility>
 #include <vector>
 
+#include "contracts/lattice_world.hpp"
 #include "grit/error.hpp"
 #include "grit/probe.hpp"
-#include "support/fake_world.hpp"
 
 namespace grit {
-
-/// A wall at rest that bears nothing.
-inline WallView still_wall(std::string name) {
-  WallView wall;
-  wall.name = std::move(name);
-  for (auto* vector :
-       {&wall.position, &wall.stage_position, &wall.velocity, &wall.spin, &wall.force, &wall.moment, &wall.normal})
-    vector->setZero();
-  return wall;
-}
-
-/// A box of nx × ny × nz grains on a lattice, each pressed into its neighbours by a hundredth of its size, at (0, 0, 0)
-/// and up; forces, speeds and sizes differ from grain to grain. Walls "bottom" and "top-wall" bear the lowest and
-/// highest layer.
-inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3) {
-  FakeWorld world;
-  const double spacing = 0.99 * diameter;
-  const auto vary = [](int i, int period) { return 1 + 0.2 * ((i % period) - period / 2) / period; };
-  const auto index = [=](int i, int j, int k) { return static_cast<std::uint32_t>((i * ny + j) * nz + k); };
-  world.wall = {still_wall("bottom"), still_wall("top-wall")};
-  world.wall[0].normal = Vec3::UnitZ(), world.wall[1].normal = -Vec3::UnitZ();
-  world.wall[1].velocity = {1e-3, 0, -1e-5}, world.wall[1].position = {2e-3, 0, -1e-4};
-  for (int i = 0; i < nx; ++i)
-    for (int j = 0; j < ny; ++j)
-      for (int k = 0; k < nz; ++k) {
-        const int count = static_cast<int>(world.position.size());
-        const auto body = world.add((Vec3(i, j, k).array() + 0.5) * spacing, 0.5 * diameter * vary(count, 7),
-                                    1e-3 * Vec3(vary(count, 3), -vary(count, 5), 0.1), Vec3(0.1, vary(count, 4), 0));
-        world.force[body] = {1e-6 * vary(count, 5), -1e-6, 2e-6, 0};
-      }
-  const double volume = spacing * spacing;
-  for (int i = 0; i < nx; ++i)
-    for (int j = 0; j < ny; ++j)
-      for (int k = 0; k < nz; ++k) {
-        const int count = static_cast<int>(world.contact.size());
-        const auto touch = [&](int di, int dj, int dk, double pressure) {
-          if (i + di < nx && j + dj < ny && k + dk < nz)
-            world.touch(index(i, j, k), index(i + di, j + dj, k + dk), spacing * Vec3(di, dj, dk),
-                        volume * pressure * vary(count, 9) * Vec3(di + 0.1, dj, dk));
-        };
-        touch(1, 0, 0, 50e3), touch(0, 1, 0, 60e3), touch(0, 0, 1, 100e3);
-      }
-  for (int i = 0; i < nx; ++i)
-    for (int j = 0; j < ny; ++j)
-      for (const int side : {0, 1}) {
-        const Vec3 out = side == 0 ? Vec3(0, 0, -1) : Vec3(0, 0, 1);
-        auto& wall = world.wall[static_cast<std::size_t>(side)];
-        world.touch_wall(index(i, j, side == 0 ? 0 : nz - 1), static_cast<std::uint32_t>(side), 0.5 * spacing * out,
-                         volume * 100e3 * out);
-        wall.force += volume * 100e3 * out, ++wall.touches;
-      }
-  for (auto& wall : world.wall) wall.area = nx * ny * volume, wall.pressure = std::abs(wall.force.z()) / wall.area;
-  world.whole = {Vec3::Zero(), spacing * Vec3(nx, ny, nz)};
-  world.surface = {flat_surface(world.whole.low, Vec3::UnitZ()), flat_surface(world.whole.high, -Vec3::UnitZ())};
-  world.now = 0.25, world.steps = 250000;
-  return world;
-}
 
 /// A probe with its parameters set, not yet prepared, and a world to look at.
 struct ProbeCase {
@@ -309,9 +252,35 @@ TEST_P(ProbeContract, GivesTheSameBitsAgain) {
   EXPECT_TRUE(sampled(*probe_, world_) == first);
   probe_->fields(world_);
   EXPECT_TRUE(sampled(*probe_, world_) == first);
-  const auto other = GetParam().make();  // as after --resume: nothing may be remembered from earlier samples
+  const auto other = GetParam().make();
   other->prepare(world_);
   EXPECT_TRUE(sampled(*other, world_) == first);
+}
+
+/// What it remembers from one sample for the next must be in remember(): a probe that goes on from a checkpoint says
+/// the same as the one that was not stopped.
+TEST_P(ProbeContract, GoesOnFromACheckpoint) {
+  const int looks = 12, stops_after = 6;
+  std::shared_ptr<Probe> goes_on;
+  for (int look = 0; look < looks; ++look) {
+    const FakeWorld now = later(world_, look);
+    const auto expected = sampled(*probe_, now);
+    if (goes_on) {
+      ASSERT_TRUE(sampled(*goes_on, now) == expected) << "look " << look;
+      const auto a = probe_->fields(now), b = goes_on->fields(now);
+      ASSERT_EQ(a.size(), b.size());
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        ASSERT_EQ(a[i].values.size(), b[i].values.size()) << a[i].name;
+        EXPECT_EQ(std::memcmp(a[i].values.data(), b[i].values.data(), a[i].values.size() * sizeof(double)), 0)
+            << a[i].name;
+      }
+    }
+    if (look != stops_after) continue;
+    goes_on = GetParam().make();
+    goes_on->prepare(world_);
+    restore_memory(*goes_on, saved_memory(*probe_));
+    EXPECT_TRUE(saved_memory(*goes_on) == saved_memory(*probe_));
+  }
 }
 
 TEST_P(ProbeContract, LeavesTheWorldAsItIs) {

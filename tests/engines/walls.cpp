@@ -312,13 +312,14 @@ TEST(Walls, RestoredWallsGoOnToTheSameBits) {
   whole.apply(setups);
   for (int i = 0; i < 5; ++i) step(whole, 0.1);
   halved.apply(setups);
-  halved.restore(whole.states());
+  restore_memory(halved, saved_memory(whole));
   for (int i = 0; i < 5; ++i) step(whole, 0.1), step(halved, 0.1);
   EXPECT_EQ(whole.pose(0).shift, halved.pose(0).shift);
   EXPECT_EQ(whole.pose(0).turn, halved.pose(0).turn);
   EXPECT_EQ(view(whole).velocity, view(halved).velocity);
   try {
-    halved.restore({});
+    Walls none;
+    restore_memory(halved, saved_memory(none));
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),

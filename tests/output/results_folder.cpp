@@ -158,18 +158,22 @@ TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
 TEST(ResultsFolder, GoesOnWithARun) {
   const Folder folder;
   auto world = world_of_two();
+  std::vector<std::byte> extent;
   {
     ResultsFolder results(options(folder / "run"));
     results.begin(world, probes);
     for (world.steps = 10; world.steps <= 30; world.steps += 10) {
-      sample(results, world, 0.001, 0.5);
+      sample(results, world, 0.001 * static_cast<double>(world.steps), 0.5);
       results.frame(world, {});
       results.stage_ended(world, "step " + std::to_string(world.steps));
+      if (world.steps == 20) results.flush(), extent = saved_memory(results);
     }
+    results.checkpoint({"stage", 0, 20, {}});
   }
   auto more = options(folder / "run");
   more.existing = Existing::resume;
   ResultsFolder results(more);
+  restore_memory(results, extent);
   world.steps = 20;
   results.begin(world, probes);
   world.steps = 21;
@@ -180,9 +184,13 @@ TEST(ResultsFolder, GoesOnWithARun) {
   const auto series = hdf5::File(folder / "run/series.h5", hdf5::Mode::read);
   EXPECT_THAT(series.group("test").dataset("step").read<int>(), ElementsAre(10, 20, 21));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/frames/000002.h5"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/frames/000001.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5")) << "of a run that is done nobody needs it";
+  EXPECT_THAT(text_of(folder / "run/picture.svg"), HasSubstr(">0.02<")) << "with what was before the checkpoint";
   const auto run = json::parse(text_of(folder / "run/run.json"));
   EXPECT_EQ(run.at("stages").size(), 2u);
   EXPECT_EQ(run.at("resumed_at_step"), 20);
+  EXPECT_EQ(run.at("resumed"), 1);
 }
 
 TEST(ResultsFolder, SaysWhyItCannotBeMade) {

@@ -70,30 +70,35 @@ TEST(Series, CanBeReadWhileItIsWritten) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(Series, GoesOnFromAStep) {
+TEST(Series, GoesOnFromACheckpoint) {
   const Folder folder;
   {
     Series series(folder / "series.h5", probes);
     for (std::uint64_t step = 0; step < 10; ++step) append(series, step);
     series.close();
   }
-  auto more = probes;
-  more.push_back({"late", {{"x", "1", "", {}}}});
+  const std::vector<std::uint64_t> kept{6, 3};
   {
-    Series series(folder / "series.h5", more, 5);
+    Series series(folder / "series.h5", probes, kept);
+    EXPECT_EQ(series.samples(), kept);
     for (std::uint64_t step = 6; step < 8; ++step) append(series, 100 * step);
+    EXPECT_THAT(series.samples(), ElementsAre(8, 5));
     series.close();
   }
   {
     const hdf5::File file(folder / "series.h5", hdf5::Mode::read);
     EXPECT_THAT(file.group("test").dataset("step").read<std::uint64_t>(), ElementsAre(0, 1, 2, 3, 4, 5, 600, 700));
     EXPECT_THAT(file.group("profile").dataset("step").read<std::uint64_t>(), ElementsAre(0, 2, 4, 600, 700));
-    EXPECT_THAT(file.group("late").dataset("x").shape(), ElementsAre(0));
   }
   auto other = probes;
   other[1].channels[0].shape = {4};
-  EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", other, 5); }),
+  EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", other, kept); }),
               testing::AllOf(HasSubstr("series.h5/profile/velocity"), HasSubstr("another shape")));
+  const std::vector<std::uint64_t> too_many{9, 3}, too_few{6};
+  EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", probes, too_many); }),
+              testing::AllOf(HasSubstr("series.h5/test/time: has 8 samples of the 9"), HasSubstr("--overwrite")));
+  EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", probes, too_few); }),
+              HasSubstr("a run with 1 probes, but the description has 2"));
 }
 
 // A child writes and says after each flush how many samples it has flushed; it is killed in the midst of that.

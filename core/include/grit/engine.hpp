@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "grit/memory.hpp"
 #include "grit/parameters.hpp"
 #include "grit/world.hpp"
 
@@ -35,6 +36,9 @@ class Engine {
   /// Adds to force and moment of each body (rows by index). Must give the same sums in whatever order bodies are
   /// stored.
   virtual void forces(const World&, std::span<Row> /*force*/, std::span<Row> /*moment*/) const {}
+  /// Names what it keeps from one step for the next, each once, so that a run that goes on from a checkpoint is the
+  /// same as one that was never stopped.
+  virtual void remember(Memory&) {}
 };
 
 }  // namespace grit

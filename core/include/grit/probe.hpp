@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "grit/memory.hpp"
 #include "grit/parameters.hpp"
 #include "grit/world.hpp"
 
@@ -48,6 +49,9 @@ class Probe {
   virtual void sample(const World& world, std::span<const std::span<double>> values) = 0;
   /// What goes into frames.
   virtual std::vector<Field> fields(const World&) { return {}; }
+  /// Names what it keeps from one sample for the next, each once, so that a run that goes on from a checkpoint is the
+  /// same as one that was never stopped. Restored after prepare().
+  virtual void remember(Memory&) {}
 };
 
 }  // namespace grit

@@ -45,6 +45,11 @@ void CurveSummary::stage_ended(const World& world, const std::string& what) {
   next_.stage_ended(world, what);
 }
 
+void CurveSummary::remember(Memory& memory) {
+  for (Curve& curve : curves_) memory(curve.largest, curve.last, curve.any);
+  next_.remember(memory);
+}
+
 std::string CurveSummary::text() const {
   std::ostringstream text;
   text.precision(4);

@@ -20,6 +20,9 @@ class CurveSummary final : public Recorder {
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override { next_.frame(world, fields); }
   void stage_ended(const World& world, const std::string& what) override;
+  void flush() override { next_.flush(); }
+  void remember(Memory& memory) override;
+  void checkpoint(const Checkpoint& checkpoint) override { next_.checkpoint(checkpoint); }
   void finish(const World& world, const RunSummary& summary) override { next_.finish(world, summary); }
 
   /// A line a channel: largest value and last value, with units.

@@ -12,6 +12,8 @@
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
+#include "output/checkpoint.hpp"
+#include "output/read_results.hpp"
 #include "output/results_folder.hpp"
 #include "report/report_page.hpp"
 #include "scene/make_bodies.hpp"
@@ -38,22 +40,43 @@ struct Job {
   std::string file;
   std::filesystem::path folder;
   Scene scene;
+  Existing existing = Existing::refuse;
 };
+
+/// A description's file, or with --resume the folder of a run, which has its description.
+Job job_of(const std::string& word, const Options& options) {
+  Job job;
+  if (std::filesystem::is_directory(word)) {
+    if (!options.has("resume"))
+      throw UsageError(word + " is a folder; give a description, or go on with its run: --resume");
+    if (options.has("out")) throw UsageError(word + " is a folder, where its run goes on; leave out --out");
+    job.folder = std::filesystem::path(word).lexically_normal();
+    if (job.folder.filename().empty()) job.folder = job.folder.parent_path();
+    job.file = (job.folder / "description.json").string();
+    return job;
+  }
+  job.file = word;
+  job.folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
+  if (!options.has("out") || options.words().size() > 1) job.folder /= std::filesystem::path(word).stem();
+  return job;
+}
 
 std::vector<Job> jobs_of(const Options& options) {
   const auto& files = options.words();
   std::vector<Job> jobs;
   for (const std::string& file : files) {
-    std::filesystem::path folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
-    if (!options.has("out") || files.size() > 1) folder /= std::filesystem::path(file).stem();
+    Job job = job_of(file, options);
     for (const Job& other : jobs)
-      if (folder == other.folder)
-        throw UsageError(other.file + " and " + file + " would both write to " + folder.string() +
+      if (job.folder == other.folder)
+        throw UsageError(other.file + " and " + file + " would both write to " + job.folder.string() +
                          "; run them one by one, each with its own --out");
-    if (!options.has("overwrite") && std::filesystem::exists(folder / "run.json"))
-      throw FileError(folder.string() +
-                      " holds the results of a run; choose another folder (--out DIR) or replace them (--overwrite)");
-    jobs.push_back({file, std::move(folder), {}});
+    if (options.has("overwrite")) job.existing = Existing::overwrite;
+    else if (options.has("resume")) job.existing = Existing::resume;
+    else if (std::filesystem::exists(job.folder / "run.json"))
+      throw FileError(job.folder.string() +
+                      " holds the results of a run; choose another folder (--out DIR), go on with it (--resume) or "
+                      "replace them (--overwrite)");
+    jobs.push_back(std::move(job));
   }
   return jobs;
 }
@@ -98,15 +121,34 @@ std::optional<Listener> listener_of(const Options& options) {
   return std::optional<Listener>(std::in_place, port);
 }
 
+/// What a run goes on from; nothing where it begins at the beginning, which is said.
+std::optional<Checkpoint> resumed(const std::filesystem::path& folder, const RunFacts& facts) {
+  const auto path = folder / "checkpoint.h5";
+  if (std::filesystem::exists(path)) return read_checkpoint(path, facts);
+  std::cerr << "no checkpoint in " << folder.string() << ": the run begins at the beginning" << std::endl;
+  return std::nullopt;
+}
+
+/// Whether the folder has all of this run already. Throws Error where it has another one.
+bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
+  const auto run = read_run_json(folder);
+  if (!run) return false;
+  if (const auto other = differences(facts.description, run->value("description", Description())); !other.empty())
+    throw Error(folder.string() + ": holds a run of another description:" + other +
+                "\n  go on with the description that it began with ('grit run --resume " + folder.string() +
+                "'), choose another folder (--out DIR) or replace it (--overwrite)");
+  return run->value("status", "") == "done";
+}
+
 ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
                    const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
-  const auto& [file, folder, scene] = job;
+  const auto& [file, folder, scene, existing] = job;
   const unsigned threads = options.threads();
   const bool quiet = options.has("quiet");
   const SceneDescription& description = *scene.description;
 
   ResultsOptions results{.folder = folder,
-                         .existing = options.has("overwrite") ? Existing::overwrite : Existing::refuse,
+                         .existing = existing,
                          .title = description.title,
                          .facts = {.description = resolved(description),
                                    .plugins = plugins_used(description, registry),
@@ -121,17 +163,28 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     if (!reference.against.empty()) results.references.push_back(reference.against);
     if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
   }
-  ResultsFolder recorder(std::move(results));
-  std::optional<Watch> watch;
-  if (listener) watch.emplace(*listener, folder);
-
   const auto say = [&](const std::string& line) {
     if (!quiet) std::cerr << line << std::endl;
   };
   say(description.title.empty() ? file : file + ": " + description.title);
+  std::optional<Checkpoint> checkpoint;
+  if (existing == Existing::resume) {
+    if (is_done(folder, results.facts)) {
+      std::cout << folder.string() << ": done already\n";
+      return ExitStatus::done;
+    }
+    checkpoint = resumed(folder, results.facts);
+    if (!checkpoint) results.existing = Existing::overwrite;
+  }
+  ResultsFolder recorder(std::move(results));
+  std::optional<Watch> watch;
+  if (listener) watch.emplace(*listener, folder);
+
   Simulation simulation(description, make_bodies(description, run_state(description)), threads);
   say(std::to_string(simulation.positions().size()) + " bodies, " + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
+  if (checkpoint)
+    say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
 
   ProgressBar bar;
   CurveSummary summary_curves(recorder, description.output.summary, [&](const std::string& line) {
@@ -140,6 +193,8 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   });
   RunControl control;
   control.interrupted = &interrupted;
+  control.checkpoint_every = description.output.checkpoint_every;
+  control.resume = checkpoint ? &*checkpoint : nullptr;
   if (!quiet || watch)
     control.progress = [&](const Progress& now) {
       if (!quiet) bar.show(now);
@@ -162,8 +217,9 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
   // Who interrupts wants to be gone: a page takes time with many grains.
   if (summary.status == "interrupted") {
-    std::cerr << "interrupted; what was reached is saved in " << folder.string() << "; 'grit report " << folder.string()
-              << "' makes a page of it" << std::endl;
+    std::cerr << "interrupted; what was reached is saved in " << folder.string() << "; 'grit run --resume "
+              << folder.string() << "' goes on, 'grit report " << folder.string() << "' makes a page of it"
+              << std::endl;
     return ExitStatus::interrupted;
   }
   if (!options.has("no-report")) make_report(folder);
@@ -178,8 +234,10 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   Options options(command("run"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(
-      "overwrite", "replace results that are there")("no-report", "do not make the page report.html")(
-      "quiet,q", "no progress, only what came of it")(
+      "overwrite", "replace results that are there")(
+      "resume",
+      "go on from the last checkpoint to the same bits as if never stopped; also with a folder of results for FILE")(
+      "no-report", "do not make the page report.html")("quiet,q", "no progress, only what came of it")(
       "watch", "serve the page of the run while it goes, for browsers on this machine")(
       "port", po::value<std::string>()->value_name("N"), "where --watch serves it; default: one that is free");
   options.add_threads("threads; results are the same bits for any number");
@@ -187,6 +245,8 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no description was given; see 'grit run --help'");
   options.threads();
+  if (options.has("resume") && options.has("overwrite"))
+    throw UsageError("--resume goes on with results, --overwrite replaces them: give one of them");
   auto jobs = jobs_of(options);
   const auto registry = options.registry();
   read_all(jobs, options, *registry);

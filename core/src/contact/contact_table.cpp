@@ -9,7 +9,7 @@ namespace grit {
 namespace {
 
 /// A touching pair before the rebuild, filed by its lower body as it is now.
-struct Memory {
+struct Former {
   std::uint32_t other;
   bool swapped;
 };
@@ -47,15 +47,15 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
         const auto slot = static_cast<std::uint32_t>(block * block_size + std::countr_zero(mask));
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
-        if (p != gone && q != gone) use(std::min(p, q), Memory{std::max(p, q), p > q}, slot);
+        if (p != gone && q != gone) use(std::min(p, q), Former{std::max(p, q), p > q}, slot);
       }
   };
-  each_memory([&](std::uint32_t lower, const Memory&, std::size_t) { ++memory_start[lower + 1]; });
+  each_memory([&](std::uint32_t lower, const Former&, std::size_t) { ++memory_start[lower + 1]; });
   std::partial_sum(memory_start.begin(), memory_start.end(), memory_start.begin());
-  std::vector<Memory> memories(memory_start.back());
+  std::vector<Former> memories(memory_start.back());
   LargeArray<double> remembered(memories.size() * field_count);
   auto next = memory_start;
-  each_memory([&](std::uint32_t lower, const Memory& memory, std::size_t slot) {
+  each_memory([&](std::uint32_t lower, const Former& memory, std::size_t slot) {
     const std::size_t m = next[lower]++;
     memories[m] = memory;
     for (std::size_t f = 0; f < field_count; ++f)
@@ -123,7 +123,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
       }
       if (periodic) image_[slot] = c.image;
       for (std::uint32_t m = memory_start[c.a]; m < memory_start[c.a + 1]; ++m) {
-        const Memory& memory = memories[m];
+        const Former& memory = memories[m];
         if (memory.other != c.b) continue;
         touching_[slot / block_size] |= static_cast<std::uint8_t>(1u << (slot % block_size));
         for (std::size_t f = 0; f < field_count; ++f)
@@ -286,6 +286,15 @@ std::vector<double> ContactTable::state(std::size_t c) const {
 std::size_t ContactTable::memory() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
   return bytes(a_, b_, image_, touching_, asleep_until_, state_, row_, inbox_, near_);
+}
+
+void ContactTable::remember(Memory& memory) {
+  memory(bodies_, chunks_, a_, b_, image_, touching_, asleep_until_, state_, first_cross_, near_);
+  if (!memory.restoring()) return;
+  // Rows of pairs that touch are written before they are read.
+  row_.assign(a_.size() - first_cross_, {});
+  make_inbox(bodies_);
+  find_reached();
 }
 
 std::size_t ContactTable::touching_count() const {

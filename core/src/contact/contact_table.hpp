@@ -20,6 +20,9 @@ struct alignas(64) StateLine {
   double lane[block_size]{};
 };
 
+template <>
+inline constexpr bool plain_numbers<StateLine> = true;
+
 /// Pairs are filed by the chunk of their lower body, the nearest first, so that blocks are full of touching lanes and
 /// the others can be left asleep until they may have come near. Pairs within a chunk add to the sums of both bodies;
 /// only pairs across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
@@ -104,15 +107,19 @@ class ContactTable {
   std::size_t touching_count() const;
   /// Bytes held.
   std::size_t memory() const;
+  /// Lists as they are, in their order, which is that of all sums. Restored into a table whose fields are set.
+  void remember(Memory& memory);
 
  private:
   static constexpr std::size_t blocks_at_once = 64;
   struct Blocks {
     std::uint32_t first = 0, near = 0, last = 0;  ///< from `near` on none touched when the table was built
+    void remember(Memory& memory) { memory(first, near, last); }
   };
   struct Chunk {
     Blocks within, across;
     std::uint32_t inbox_first = 0, inbox_far = 0, inbox_last = 0;
+    void remember(Memory& memory) { memory(within, across); }
   };
   /// Where a row of another chunk goes.
   struct Letter {

@@ -41,12 +41,17 @@ class CriticalStep {
   /// Whether there are any.
   bool due(const Skins& skins, double way) const;
 
+  void remember(Memory& memory) {
+    memory(demand_, clumps_.springs, clumps_.least, clumps_.dashpots, clumps_.dashpot, chunk_, walls_walked_);
+  }
+
  private:
   struct Chunk {
     Demand demand;                    ///< the largest of its bodies by themselves
     Demand together;                  ///< of its pairs, and of clumps that it has a body of
     double walked = 0;                ///< when it was looked at [m]
     std::vector<std::uint32_t> near;  ///< candidates that count as touching
+    void remember(Memory& memory) { memory(demand, together, walked, near); }
   };
   Demand look(const std::vector<std::size_t>& chunks, const Instant& at, Team& team);
   void ask(std::size_t chunk, const Instant& at);

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "grit/memory.hpp"
+
 namespace grit {
 
 /// Upper bounds of what springs and dashpots ask of the step: Q [1/s²] and D [1/s].
@@ -14,5 +16,8 @@ struct Demand {
   double critical_time_step() const { return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring)); }
   bool more_than(const Demand& other) const { return spring > other.spring || dashpot > other.dashpot; }
 };
+
+template <>
+inline constexpr bool plain_numbers<Demand> = true;
 
 }  // namespace grit

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/chunks.hpp"
+#include "grit/memory.hpp"
 
 namespace grit {
 
@@ -43,9 +44,12 @@ class Skins {
   double walked(std::size_t chunk) const { return chunk_[chunk].walked; }
   double walls_walked() const { return wall_.walked; }
 
+  void remember(Memory& memory) { memory(chunk_, wall_, largest_); }
+
  private:
   struct Way {
     double skin = 0, gone = 0, walked = 0;
+    void remember(Memory& memory) { memory(skin, gone, walked); }
   };
   std::vector<Way> chunk_;
   Way wall_;

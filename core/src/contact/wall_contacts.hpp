@@ -10,6 +10,7 @@
 #include "contact/skins.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
+#include "grit/memory.hpp"
 #include "scene/bodies.hpp"
 
 namespace grit {
@@ -26,6 +27,9 @@ struct WallSurface {
   Vec3 reference() const { return pose.about + pose.shift; }
   Vec3 point_velocity(const Vec3& point) const { return velocity + spin.cross(point - reference()); }
 };
+
+template <>
+inline constexpr bool plain_numbers<WallTouch> = true;
 
 /// What the bodies do to one wall.
 struct WallLoad {
@@ -85,6 +89,7 @@ class WallContacts {
     }
   }
   std::size_t touching_count() const;
+  void remember(Memory& memory) { memory(chunks_); }
 
  private:
   struct Chunk {
@@ -94,6 +99,11 @@ class WallContacts {
     std::vector<double> state;
     std::vector<ContactRow> row;
     std::vector<WallLoad> load;  // by wall
+
+    void remember(Memory& memory) {
+      memory(candidate_start, candidate, touch, state);
+      row.resize(touch.size());
+    }
   };
   /// What a touch of the last step was.
   struct Before {

@@ -257,11 +257,12 @@ void Walls::view(std::vector<WallView>& views) const {
   }
 }
 
-void Walls::restore(std::vector<WallState> states) {
-  if (states.size() != states_.size())
-    throw Error("a checkpoint with " + std::to_string(states.size()) + " walls, but the scene has " +
-                std::to_string(states_.size()) + "; continue with the description that wrote it");
-  states_ = std::move(states);
+void Walls::remember(Memory& memory) {
+  const std::size_t walls = states_.size();
+  memory(states_);
+  if (states_.size() != walls)
+    throw Error("a checkpoint with " + std::to_string(states_.size()) + " walls, but the scene has " +
+                std::to_string(walls) + "; continue with the description that wrote it");
 }
 
 }  // namespace grit

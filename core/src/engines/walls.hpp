@@ -10,6 +10,7 @@
 #include "contact/demand.hpp"
 #include "contact/wall_contacts.hpp"
 #include "grit/geometry.hpp"
+#include "grit/memory.hpp"
 #include "grit/world.hpp"
 #include "scene/description.hpp"
 
@@ -24,7 +25,7 @@ struct WallSetup {
 /// The walls of a scene, in the order of their names.
 std::vector<WallSetup> wall_setups(const SceneDescription& scene);
 
-/// All that a checkpoint must keep of a wall. pose.about is its reference point, where the description puts it;
+/// All that a wall remembers. pose.about is its reference point, where the description puts it;
 /// pose.shift is how far that point has moved.
 struct WallState {
   Pose pose;
@@ -38,6 +39,8 @@ struct WallState {
   double habit = 0;                                   ///< of a servo: its velocity, averaged over recent steps [m/s]
   std::uint32_t touches = 0;
 };
+template <>
+inline constexpr bool plain_numbers<WallState> = true;
 
 /// Owns the walls while they move. A step is: clear_forces(), touch and add() for all bodies, drive(dt), move(dt).
 /// Velocities are those of the middle of the step, as the bodies' are. Used by one thread.
@@ -82,8 +85,8 @@ class Walls {
   void view(std::vector<WallView>& views) const;
 
   const std::vector<WallState>& states() const { return states_; }
-  /// Sets the states of a checkpoint. Throws grit::Error if their number is not that of the walls.
-  void restore(std::vector<WallState> states);
+  /// Restored into the same walls; throws grit::Error if their number is not that of the walls.
+  void remember(Memory& memory);
 
  private:
   using Axes = std::array<bool, 3>;

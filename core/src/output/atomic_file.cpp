@@ -1,5 +1,8 @@
 #include "output/atomic_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -26,6 +29,14 @@ void publish(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::rename(beside(path), path, error);
   if (error) throw FileError(path.string() + ": cannot put the new file in place: " + error.message());
+}
+
+void sync_to_disk(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool done = file >= 0 && ::fsync(file) == 0;
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (!done) fail(path, error);
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view text) {

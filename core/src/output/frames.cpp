@@ -248,32 +248,24 @@ std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> 
   return triangles;
 }
 
-Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> walls,
-               std::optional<std::uint64_t> last_step)
+Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept)
     : results_(results), walls_(std::move(walls)) {
   const auto folder = results_ / "frames";
   std::error_code error;
-  if (!last_step) std::filesystem::remove_all(folder, error);
+  if (kept == 0) std::filesystem::remove_all(folder, error);
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string() + ": cannot make the folder: " + error.message());
 
-  bool keep = last_step.has_value();
-  for (std::size_t number = 0; std::filesystem::exists(folder / file_name(number)); ++number) {
-    if (keep) {
-      const hdf5::File file(folder / file_name(number), hdf5::Mode::read);
-      const Instant instant = instant_of(file);
-      keep = instant.step <= *last_step;
-      if (keep) instants_.push_back(instant);
-    }
-    if (!keep) std::filesystem::remove(folder / file_name(number), error);
-  }
+  for (std::size_t number = 0; number < kept; ++number)
+    instants_.push_back(instant_of(hdf5::File(folder / file_name(number), hdf5::Mode::read)));
+  for (std::size_t number = kept; std::filesystem::exists(folder / file_name(number)); ++number)
+    std::filesystem::remove(folder / file_name(number), error);
   write_index();
 }
 
 Frames::Instant Frames::instant_of(const hdf5::File& file) {
   const auto bodies = file.group("bodies"), walls = file.group("walls");
   Instant instant{.time = file.number<double>("time"),
-                  .step = file.number<std::uint64_t>("step"),
                   .bodies = bodies.dataset("id").rows(),
                   .contacts = file.group("contacts").dataset("middle").rows(),
                   .clump = bodies.has("clump"),

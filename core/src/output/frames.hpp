@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,9 +27,8 @@ std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> 
 /// throw FileError.
 class Frames {
  public:
-  /// Numbers go on after the last frame not later than `last_step`; later ones are removed. Without it, all are.
-  Frames(const std::filesystem::path& results, std::vector<WallShape> walls,
-         std::optional<std::uint64_t> last_step = {});
+  /// The first `kept` frames that are there stay, later ones are removed.
+  Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0);
 
   void write(const World& world, std::span<const FieldGroup> fields);
   std::size_t count() const { return instants_.size(); }
@@ -38,7 +36,6 @@ class Frames {
  private:
   struct Instant {
     double time;
-    std::uint64_t step;
     std::size_t bodies, contacts;
     bool clump, rotation, displacement;
     std::vector<std::pair<std::string, std::size_t>> walls;  ///< names, and how many triangles

@@ -15,6 +15,8 @@ static_assert(std::same_as<hid_t, std::int64_t> && std::same_as<herr_t, int>);
 
 // 2 · 128 chunks of an index fit one node: it is not split, and so not rewritten in parts, for half a million samples.
 constexpr unsigned chunk_index_half = 128;
+// That share a checksum.
+constexpr std::size_t checked_bytes = std::size_t{1} << 20;
 
 /// The innermost message of the library: closest to the cause. Of failed system calls, the system's words.
 std::string reason() {
@@ -212,6 +214,12 @@ void Dataset::get(Number type, std::size_t first, std::size_t count, void* value
   checked(H5Dread(handle_.id(), native(type), memory.id(), file.id(), H5P_DEFAULT, values), where_, "read");
 }
 
+std::vector<std::byte> Dataset::read_bytes() const {
+  std::vector<std::byte> bytes(product(shape()));
+  if (!bytes.empty()) get(Number::uint8, bytes.data());
+  return bytes;
+}
+
 void Dataset::append(Number type, std::size_t size, const void* values) {
   auto dims = shape();
   const auto row = product(std::span(dims).subspan(1));
@@ -279,6 +287,22 @@ Dataset Group::write(const std::string& name, const Shape& shape, Number type, s
     throw FileError(where + ": cannot write " + std::to_string(size) + " numbers into a shape of " +
                     std::to_string(product(shape)));
   if (size > 0) checked(H5Dwrite(id.id(), native(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), where, "write");
+  return {std::move(id), std::move(where)};
+}
+
+Dataset Group::write_checked(const std::string& name, std::span<const std::byte> bytes) {
+  auto where = child(where_, name);
+  const Shape shape{bytes.size()};
+  if (bytes.empty()) return write(name, shape, Number::uint8, 0, nullptr);  // a chunk has a byte at least
+  const auto extent = space(shape, where);
+  const auto creation = owned(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, where, "prepare the dataset");
+  const hsize_t chunk = std::min(bytes.size(), checked_bytes);
+  checked(H5Pset_chunk(creation.id(), 1, &chunk), where, "prepare the dataset");
+  checked(H5Pset_fletcher32(creation.id()), where, "prepare the dataset");
+  auto id = owned(H5Dcreate2(handle_.id(), name.c_str(), native(Number::uint8), extent.id(), H5P_DEFAULT, creation.id(),
+                             H5P_DEFAULT),
+                  H5Dclose, where, "create the dataset");
+  checked(H5Dwrite(id.id(), native(Number::uint8), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()), where, "write");
   return {std::move(id), std::move(where)};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -120,6 +121,8 @@ class Dataset : public Object {
   void append(std::span<const T> values) {
     append(number_of<T>(), values.size(), values.data());
   }
+  /// Of write_checked().
+  std::vector<std::byte> read_bytes() const;
   /// Forgets the rows from `rows` on.
   void truncate(std::size_t rows);
 
@@ -144,6 +147,8 @@ class Group : public Object {
   Dataset write(const std::string& name, const Shape& shape, std::span<const T> values) {
     return write(name, shape, number_of<T>(), values.size(), values.data());
   }
+  /// Bytes with checksums: reading them fails where they are no longer what was written.
+  Dataset write_checked(const std::string& name, std::span<const std::byte> bytes);
   /// A dataset whose first dimension grows; `row` is the shape of one row.
   template <class T>
   Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk) {

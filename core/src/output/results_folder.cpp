@@ -8,6 +8,7 @@
 
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
+#include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
 #include "output/scale.hpp"
@@ -78,21 +79,16 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
   }
   for (const auto& name : options_.references) find("reference", name, probes);
   const auto path = options_.folder / "series.h5";
-  const bool resumed = options_.existing == Existing::resume && std::filesystem::exists(path);
-  if (resumed) {
-    series_.emplace(path, probes, world.step(), options_.flushing);
-    const hdf5::File file(path, hdf5::Mode::read);
-    for (auto& kept : kept_) {
-      const auto group = file.group(probes[kept.probe].name);
-      kept.steps = group.dataset("step").read<double>();
-      kept.values =
-          group.dataset(kept.channel ? probes[kept.probe].channels[*kept.channel].name : "time").read<double>();
-    }
+  const bool resumes = options_.existing == Existing::resume;
+  if (resumes) {
+    series_.emplace(path, probes, resumed_.samples, options_.flushing);
+    for (std::size_t i = 0; i < kept_.size() && i < resumed_.steps.size(); ++i)
+      kept_[i].steps = resumed_.steps[i], kept_[i].values = resumed_.values[i];
   } else {
     series_.emplace(path, probes, options_.flushing);
   }
-  frames_.emplace(options_.folder, options_.walls, resumed ? std::optional(world.step()) : std::nullopt);
-  run_json_.begin(world, resumed);
+  frames_.emplace(options_.folder, options_.walls, resumed_.frames);
+  run_json_.begin(world, resumes);
 }
 
 void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
@@ -113,12 +109,28 @@ void ResultsFolder::stage_ended(const World& world, const std::string& what) {
 
 void ResultsFolder::flush() { series_->flush(); }
 
+void ResultsFolder::remember(Memory& memory) {
+  if (!memory.restoring()) {
+    resumed_ = {series_->samples(), frames_->count(), {}, {}};
+    for (const Kept& kept : kept_) resumed_.steps.push_back(kept.steps), resumed_.values.push_back(kept.values);
+  }
+  memory(resumed_, run_json_);
+}
+
+void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
+  sync_to_disk(options_.folder / "series.h5");
+  write_checkpoint(options_.folder / "checkpoint.h5", options_.facts, checkpoint);
+}
+
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (series_) series_->close();
   if (summary.status != "failed")
     write_packing(options_.folder / "packing.txt", grains_by_id(world), comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
+  if (summary.status != "done") return;
+  std::error_code nobody_needs_it;
+  std::filesystem::remove(options_.folder / "checkpoint.h5", nobody_needs_it);
 }
 
 ResultsFolder::Kept ResultsFolder::find(const char* asking, const std::string& name,

@@ -25,7 +25,7 @@ struct PictureRequest {
 enum class Existing {
   refuse,
   overwrite,  ///< its results are removed; other files in it stay
-  resume,     ///< what it says up to the step at which the run goes on is kept
+  resume,     ///< what it says up to the checkpoint from which the run goes on is kept
 };
 
 struct ResultsOptions {
@@ -39,7 +39,8 @@ struct ResultsOptions {
   Flushing flushing = {};
 };
 
-/// Writes, at the start: description.json, run.json; meanwhile: series.h5, frames/, frames.xdmf, run.json; at the end:
+/// Writes, at the start: description.json, run.json; meanwhile: series.h5, frames/, frames.xdmf, run.json,
+/// checkpoint.h5, which goes when the run is done; at the end:
 /// packing.txt (`x y z radius` in m, by id, to the last bit; not for a failed run), picture.svg, and run.json last, so
 /// that its status vouches for the rest. All functions throw FileError for what the disk refuses.
 class ResultsFolder final : public Recorder {
@@ -53,6 +54,8 @@ class ResultsFolder final : public Recorder {
   void frame(const World& world, std::span<const FieldGroup> fields) override;
   void stage_ended(const World& world, const std::string& what) override;
   void flush() override;
+  void remember(Memory& memory) override;
+  void checkpoint(const Checkpoint& checkpoint) override;
   void finish(const World& world, const RunSummary& summary) override;
 
  private:
@@ -64,6 +67,14 @@ class ResultsFolder final : public Recorder {
     std::vector<double> steps, values;
   };
 
+  /// How much there was at a checkpoint.
+  struct Extent {
+    std::vector<std::uint64_t> samples;  ///< of each probe
+    std::uint64_t frames = 0;
+    std::vector<std::vector<double>> steps, values;  ///< of the picture's channels
+    void remember(Memory& memory) { memory(samples, frames, steps, values); }
+  };
+
   Kept find(const char* asking, const std::string& name, std::span<const ProbeGroup> probes) const;
   void draw_picture(const World& world, const RunSummary& summary) const;
 
@@ -72,6 +83,7 @@ class ResultsFolder final : public Recorder {
   std::optional<Series> series_;
   std::optional<Frames> frames_;
   std::vector<Kept> kept_;  ///< x first, then the y of the picture
+  Extent resumed_;
 };
 
 }  // namespace grit

@@ -12,7 +12,6 @@
 
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
-#include "plugins/build_facts.hpp"
 
 namespace grit {
 namespace {
@@ -46,45 +45,19 @@ double cpu_seconds() {
              : 0;
 }
 
-Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
-
-Description plugin(const PluginUsed& used) {
-  const auto& tag = used.tag;
-  return {{"kind", used.kind},
-          {"name", used.name},
-          {"version", used.version},
-          {"file", used.file.string()},
-          {"build",
-           {{"sdk_version", tag.sdk_version},
-            {"compiler", tag.compiler},
-            {"library_abi", tag.library_abi},
-            {"instruction_set", tag.instruction_set},
-            {"row", layout(tag.row)},
-            {"contact_row", layout(tag.contact_row)},
-            {"body_sum", layout(tag.body_sum)},
-            {"pair_batch", layout(tag.pair_batch)},
-            {"wall_batch", layout(tag.wall_batch)}}}};
-}
-
 }  // namespace
 
 RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std::move(path)) {
-  const auto& build = build_facts();
   json_ = {{"status", "running"},
            {"message", ""},
-           {"grit",
-            {{"version", build.version},
-             {"revision", build.revision},
-             {"compiler", build.compiler},
-             {"build_type", build.build_type},
-             {"arch", build.arch},
-             {"instruction_set", build.instruction_set}}},
+           {"grit", grit_facts()},
            {"host",
             {{"name", host_name()},
              {"cpu", cpu_model()},
              {"cores", std::thread::hardware_concurrency()},
              {"load_average_at_start", load_average()}}},
            {"started", now()},
+           {"resumed", 0},
            {"seed", facts.seed},
            {"threads", facts.threads},
            {"stage", ""},
@@ -103,19 +76,27 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"stages", Description::array()},
            {"plugins", Description::array()},
            {"description", facts.description}};
-  for (const auto& used : facts.plugins) json_["plugins"].push_back(plugin(used));
+  for (const auto& used : facts.plugins) json_["plugins"].push_back(plugin_facts(used));
 }
 
 void RunJson::begin(const World& world, bool resumed) {
-  if (std::ifstream file(path_); resumed && file) {
+  if (resumed) {
+    std::ifstream file(path_);
     const auto old = Description::parse(file, nullptr, false);
-    if (old.is_discarded()) throw FileError(path_.string() + ": is not JSON: remove it to resume without its history");
-    for (const auto& stage : old.value("stages", Description::array()))
-      if (stage.value("step", std::uint64_t{0}) <= world.step()) json_["stages"].push_back(stage);
+    json_["resumed"] = (old.is_object() ? old.value("resumed", 0) : 0) + 1;
     json_["resumed_at_step"] = world.step();
   }
   progress(world);
   write();
+}
+
+void RunJson::remember(Memory& memory) {
+  std::string started = json_["started"], stages = json_["stages"].dump();
+  double wall = wall_s(), cpu = cpu_s();
+  memory(started, stages, wall, cpu);
+  if (!memory.restoring()) return;
+  json_["started"] = started, json_["stages"] = Description::parse(stages);
+  wall_before_ = wall, cpu_before_ = cpu;
 }
 
 void RunJson::stage_ended(const World& world, const std::string& what) {
@@ -168,9 +149,15 @@ void RunJson::progress(const World& world) {
   json_["steps"] = world.step();
   json_["time_step_s"] = world.dt();
   json_["bodies"] = world.ids().size();
-  json_["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-  json_["cpu_s"] = cpu_seconds();
+  json_["wall_s"] = wall_s();
+  json_["cpu_s"] = cpu_s();
 }
+
+double RunJson::wall_s() const {
+  return wall_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
+double RunJson::cpu_s() const { return cpu_before_ + cpu_seconds(); }
 
 void RunJson::write() const {
   write_atomically(path_, json_.dump(2, ' ', false, Description::error_handler_t::replace) + '\n');

@@ -33,6 +33,11 @@ hdf5::Dataset reopened(const hdf5::Group& group, const Channel& channel, std::si
     throw FileError(dataset.where() +
                     ": has another shape than the probe's channel: resume with the description that "
                     "the run began with, or write to another folder");
+  if (dataset.rows() < rows)
+    throw FileError(dataset.where() + ": has " + std::to_string(dataset.rows()) + " samples of the " +
+                    std::to_string(rows) +
+                    " that were there at the checkpoint: the file is another one, or damaged; "
+                    "begin anew (--overwrite)");
   dataset.truncate(rows);
   return dataset;
 }
@@ -45,10 +50,14 @@ Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> pr
   file_.flush();
 }
 
-Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::uint64_t last_step,
-               Flushing flushing)
+Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes,
+               std::span<const std::uint64_t> kept, Flushing flushing)
     : file_(path, hdf5::Mode::change), flushing_(flushing) {
-  for (const auto& probe : probes) tables_.push_back(file_.has(probe.name) ? reopen(probe, last_step) : create(probe));
+  if (kept.size() != probes.size())
+    throw FileError(path.string() + ": a run with " + std::to_string(kept.size()) +
+                    " probes, but the description has " + std::to_string(probes.size()) +
+                    ": resume with the description that the run began with");
+  for (std::size_t i = 0; i < probes.size(); ++i) tables_.push_back(reopen(probes[i], kept[i]));
   file_.flush();
 }
 
@@ -58,23 +67,28 @@ Series::Table Series::create(const ProbeGroup& probe) {
               column<std::uint64_t>(group, {"step", "1", "steps since the start of the run", {}}),
               {},
               {},
-              {}};
+              {},
+              0};
   for (const auto& channel : probe.channels) table.columns.push_back({column<double>(group, channel), {}});
   return table;
 }
 
-Series::Table Series::reopen(const ProbeGroup& probe, std::uint64_t last_step) {
+Series::Table Series::reopen(const ProbeGroup& probe, std::uint64_t samples) {
   const auto group = file_.group(probe.name);
-  const auto steps = group.dataset("step").read<std::uint64_t>();
-  const auto rows = static_cast<std::size_t>(std::ranges::upper_bound(steps, last_step) - steps.begin());
-  Table table{reopened(group, {"time", "s", "", {}}, rows), reopened(group, {"step", "1", "", {}}, rows), {}, {}, {}};
-  for (const auto& channel : probe.channels) table.columns.push_back({reopened(group, channel, rows), {}});
+  Table table{reopened(group, {"time", "s", "", {}}, samples),
+              reopened(group, {"step", "1", "", {}}, samples),
+              {},
+              {},
+              {},
+              samples};
+  for (const auto& channel : probe.channels) table.columns.push_back({reopened(group, channel, samples), {}});
   return table;
 }
 
 void Series::append(std::size_t probe, double time, std::uint64_t step,
                     std::span<const std::span<const double>> values) {
   auto& table = tables_.at(probe);
+  ++table.samples;
   table.waiting_times.push_back(time);
   table.waiting_steps.push_back(step);
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -98,6 +112,12 @@ void Series::flush() {
   file_.flush();
   waiting_ = 0;
   flushed_ = std::chrono::steady_clock::now();
+}
+
+std::vector<std::uint64_t> Series::samples() const {
+  std::vector<std::uint64_t> samples;
+  for (const auto& table : tables_) samples.push_back(table.samples);
+  return samples;
 }
 
 void Series::close() {

@@ -21,19 +21,21 @@ struct Flushing {
 /// One group a probe with `time` [s], `step` and one dataset a channel: first dimension the samples, then the channel's
 /// shape; attributes `units` (UDUNITS) and `long_name`. What was flushed stays readable if the process is killed. If
 /// that happens within a flush that opens a new chunk (2048 numbers), the samples of this chunk may be counted but not
-/// readable: 7 of 600 writers killed while they did nothing but flush left such a tail. Resuming mends it. All
+/// readable: 7 of 600 writers killed while they did nothing but flush left such a tail. Going on mends it. All
 /// functions throw FileError.
 class Series {
  public:
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing = {});
-  /// Goes on with a file: samples later than `last_step` are forgotten, probes that are new begin.
-  Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::uint64_t last_step,
+  /// Goes on with a file: of each probe so many samples are kept, later ones are forgotten.
+  Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::span<const std::uint64_t> kept,
          Flushing flushing = {});
 
   /// One sample of the probe with this place in the list; one span a channel.
   void append(std::size_t probe, double time, std::uint64_t step, std::span<const std::span<const double>> values);
   void flush();
   void close();
+  /// Of each probe, how many.
+  std::vector<std::uint64_t> samples() const;
 
  private:
   struct Column {
@@ -45,10 +47,11 @@ class Series {
     std::vector<double> waiting_times;
     std::vector<std::uint64_t> waiting_steps;
     std::vector<Column> columns;
+    std::uint64_t samples = 0;
   };
 
   Table create(const ProbeGroup& probe);
-  Table reopen(const ProbeGroup& probe, std::uint64_t last_step);
+  Table reopen(const ProbeGroup& probe, std::uint64_t samples);
 
   hdf5::File file_;
   std::vector<Table> tables_;

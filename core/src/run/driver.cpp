@@ -7,6 +7,8 @@
 #include "grit/error.hpp"
 #include "run/conditions.hpp"
 #include "run/number.hpp"
+#include "run/observer.hpp"
+#include "run/schedule.hpp"
 #include "run/stopwatch.hpp"
 
 namespace grit {
@@ -15,96 +17,8 @@ namespace {
 using Instant = std::chrono::steady_clock::time_point;
 
 constexpr std::uint64_t contacts_counted_every = 100;
-
-/// Says when something that happens again and again is due.
-class Schedule {
- public:
-  explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
-  void restart(const Simulation& now) {
-    first_time_ = now.time(), first_step_ = now.step(), first_left_ = now.share_left();
-    count_ = 0, level_ = 0, began_ = true, due_ = false;
-  }
-  /// Decides about this step, and goes on to the next time. To be asked once a step, before forces, which may change
-  /// the time step and let bodies leave: then it is due at the same steps, whoever else looks.
-  void ask(const Simulation& now) {
-    const bool by_time = due_by_time(now), by_mass = due_by_mass(now), by_displacement = due_by_displacement(now);
-    due_ = by_time || by_mass || by_displacement || due_by_steps(now);
-    if (by_time) ++count_;
-    if (by_mass) count_ = static_cast<std::uint64_t>(shares(now)) + 1;  // one step may take several at once
-    if (by_displacement) level_ += std::trunc(beyond(now)), began_ = false;
-  }
-  bool is_due() const { return due_; }
-  bool never() const { return cadence_.never(); }
-
- private:
-  // Counted, not summed up, so that the instants do not drift.
-  bool due_by_time(const Simulation& now) const {
-    return cadence_.every_time &&
-           now.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * now.dt();
-  }
-  bool due_by_steps(const Simulation& now) const {
-    return cadence_.every_steps > 0 &&
-           (now.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
-  }
-  bool due_by_mass(const Simulation& now) const {
-    return cadence_.every_left && shares(now) >= static_cast<double>(count_);
-  }
-  bool due_by_displacement(const Simulation& now) const {
-    return cadence_.every_displacement && (began_ || std::abs(beyond(now)) >= 1);
-  }
-
-  /// Whole and part shares of the mass that have left since the stage began; a hair more, for rounding.
-  double shares(const Simulation& now) const { return (now.share_left() - first_left_) / *cadence_.every_left + 1e-9; }
-  /// Displacements since the last time, in its direction; a hair more, for rounding.
-  double beyond(const Simulation& now) const {
-    const auto& [wall, axis, value] = *cadence_.every_displacement;
-    const auto found = std::ranges::find(now.walls(), wall, &WallView::name);
-    const double gone = found->stage_position[axis[0] - 'x'] / value - level_;
-    return gone + std::copysign(1e-9, gone);
-  }
-
-  Cadence cadence_;
-  double first_time_ = 0, first_left_ = 0, level_ = 0;
-  std::uint64_t first_step_ = 0, count_ = 0;
-  bool began_ = true, due_ = false;
-};
-
-/// A probe of the description at work.
-class Observer {
- public:
-  Observer(const std::string& name, const ProbeDescription& description, const World& world)
-      : name_(name), description_(&description), schedule_(description.cadence) {
-    description.probe->prepare(world);
-    for (const Channel& channel : description.probe->channels()) {
-      std::size_t size = 1;
-      for (const std::size_t n : channel.shape) size *= n;
-      values_.emplace_back(size);
-    }
-  }
-  ProbeGroup group() const { return {name_, description_->probe->channels()}; }
-  bool watches(const std::string& stage) const {
-    return description_->stages.empty() ||
-           std::find(description_->stages.begin(), description_->stages.end(), stage) != description_->stages.end();
-  }
-  Schedule& schedule() { return schedule_; }
-  void sample(std::size_t index, const World& world, Recorder& recorder) {
-    if (last_step_ == world.step()) return;
-    last_step_ = world.step();
-    std::vector<std::span<double>> out(values_.begin(), values_.end());
-    description_->probe->sample(world, out);
-    const std::vector<std::span<const double>> in(values_.begin(), values_.end());
-    recorder.sample(index, world, in);
-  }
-  bool in_frames() const { return description_->frames; }
-  FieldGroup fields(const World& world) const { return {name_, description_->probe->fields(world)}; }
-
- private:
-  std::string name_;
-  const ProbeDescription* description_;
-  Schedule schedule_;
-  std::vector<std::vector<double>> values_;
-  std::uint64_t last_step_ = ~0ull;
-};
+// However short the time between checkpoints, they shall not take more than this share of it.
+constexpr double most_for_checkpoints = 0.01;
 
 class Run {
  public:
@@ -122,12 +36,20 @@ class Run {
     for (const auto& [name, probe] : scene_.description->probes) observers_.emplace_back(name, probe, simulation_);
     std::vector<ProbeGroup> groups;
     for (const Observer& observer : observers_) groups.push_back(observer.group());
+    const bool resumes = control_.resume != nullptr;
+    if (resumes) restore(*control_.resume);
     recorder_.begin(simulation_, groups);
     summary.status = "done";
+    saved_ = std::chrono::steady_clock::now();
     try {
-      simulation_.find_forces();
-      for (std::size_t i = 0; i < scene_.stages.size() && !interrupted(); ++i) stage(i);
-      if (interrupted()) summary.status = "interrupted";
+      if (!resumes) {
+        simulation_.find_forces();
+        begin_stage();
+      }
+      while (go_through_stage())
+        if (++stage_ == scene_.stages.size()) break;
+        else begin_stage();
+      if (stage_ < scene_.stages.size()) summary.status = "interrupted";
     } catch (const NumericsError& error) {
       summary.status = "failed", summary.message = error.what();
     }
@@ -141,38 +63,47 @@ class Run {
  private:
   bool interrupted() const { return control_.interrupted != nullptr && control_.interrupted->load(); }
 
-  void stage(std::size_t index) {
-    const StagePlan& plan = scene_.stages[index];
-    const StageDescription& stage = scene_.description->stages[index];
-    simulation_.begin_stage(stage.name, *plan.start);
+  const StagePlan& plan() const { return scene_.stages[stage_]; }
+
+  void begin_stage() {
+    simulation_.begin_stage(scene_.description->stages[stage_].name, *plan().start);
     start_ = {simulation_.time(), simulation_.step(), simulation_.share_left()};  // with what has come
     for (Observer& observer : observers_) observer.schedule().restart(simulation_);
     frames_.restart(simulation_);
     ramped_ = 0;
+  }
+
+  /// Returns false if it was interrupted.
+  bool go_through_stage() {
+    const StageDescription& stage = scene_.description->stages[stage_];
     wall_start_ = last_report_ = std::chrono::steady_clock::now();
     last_report_steps_ = simulation_.step();
+    begun_at_ = control_.progress ? progress(stage.until, simulation_, start_).value_or(0) : 0;
 
     for (;;) {
-      ramp(stage, plan);
+      // Asked once a step: what is saved is where the run stops.
+      const bool stops = interrupted();
+      if (stops || checkpoint_is_due()) save();
+      ramp(stage);
       // Asked before forces, whose time step may be another: a stage ends the same, whoever looks.
       const bool may_end = may_be_met(stage.until, simulation_, start_);
       ask_who_looks();
-      if (!may_end && !is_looked_at(stage)) {
+      if (!may_end && !stops && !is_looked_at(stage)) {
         step_on();
-        report(index, stage);
+        report(stage);
         continue;
       }
       step_forces();
       const bool met = may_end && is_met(stage.until, simulation_, start_);
       observe(met);
       if (met) break;
-      if (interrupted()) return;  // here, where positions and forces are of one instant
+      if (stops) return false;  // here, where positions and forces are of one instant
       if (too_late(stage))
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
-                            " s; " + reached() + "; give it more time (/stages/" + std::to_string(index) +
+                            " s; " + reached() + "; give it more time (/stages/" + std::to_string(stage_) +
                             "/limit) or a condition that it can reach");
       step_bodies();
-      report(index, stage);
+      report(stage);
     }
     const std::string what = reached();
     recorder_.stage_ended(simulation_, what);
@@ -183,6 +114,47 @@ class Run {
                             number(*stage.expect.void_ratio) + " ± " + number(stage.expect.within) + " and reached " +
                             number(e) + "; wish for another one, or prepare the specimen otherwise");
     }
+    return true;
+  }
+
+  // Between two steps, and by the wall clock alone: nothing that is simulated depends on when.
+  bool checkpoint_is_due() const {
+    if (!(control_.checkpoint_every > 0)) return false;
+    const double since = seconds_since(saved_);
+    return since >= control_.checkpoint_every && most_for_checkpoints * since >= saving_;
+  }
+
+  void save() {
+    const Instant began = std::chrono::steady_clock::now();
+    {
+      const Stopwatch watch(phases_[1].seconds);
+      recorder_.flush();
+      Memory memory;
+      memory(stage_, ramped_);
+      simulation_.save(memory);
+      remember(memory);
+      recorder_.checkpoint({simulation_.stage(), simulation_.time(), simulation_.step(), memory.bytes()});
+    }
+    saved_ = std::chrono::steady_clock::now(), saving_ = seconds_since(began);
+  }
+
+  void restore(const Checkpoint& checkpoint) {
+    Memory memory(checkpoint.memory);
+    memory(stage_, ramped_);
+    if (stage_ >= scene_.stages.size() || ramped_ > plan().ramp.size())
+      throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
+                  std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
+    simulation_.restore(ramped_ > 0 ? *plan().ramp[ramped_ - 1] : *plan().start, memory);
+    remember(memory);
+    if (!memory.at_end()) throw Error("a checkpoint has more in it than the run remembers");
+  }
+
+  void remember(Memory& memory) {
+    memory(start_.time, start_.step, start_.share_left, frames_, last_frame_, contact_samples_, contact_sum_);
+    memory(stepping_);
+    for (PhaseTime& phase : phases_) memory(phase.seconds);
+    for (Observer& observer : observers_) observer.remember(memory);
+    recorder_.remember(memory);
   }
 
   bool too_late(const StageDescription& stage) const { return simulation_.time() - start_.time > stage.limit; }
@@ -193,7 +165,7 @@ class Run {
   }
   /// Whether somebody may ask for the forces of this instant.
   bool is_looked_at(const StageDescription& stage) {
-    return interrupted() || too_late(stage) || is_time_to_count() || frames_.is_due() ||
+    return too_late(stage) || is_time_to_count() || frames_.is_due() ||
            std::any_of(observers_.begin(), observers_.end(), [&](Observer& observer) {
              return observer.watches(simulation_.stage()) && observer.schedule().is_due();
            });
@@ -213,7 +185,7 @@ class Run {
   }
 
   /// Applies the increments of the stage's ramps that are due; ramps follow one another.
-  void ramp(const StageDescription& stage, const StagePlan& plan) {
+  void ramp(const StageDescription& stage) {
     double since = simulation_.time() - start_.time;
     std::size_t due = 0;
     for (const RampDescription& one : stage.ramps) {
@@ -225,7 +197,7 @@ class Run {
     }
     if (due == ramped_) return;
     ramped_ = due;
-    simulation_.change(*plan.ramp[due - 1]);
+    simulation_.change(*plan().ramp[due - 1]);
   }
 
   void observe(bool all) {
@@ -256,15 +228,16 @@ class Run {
     recorder_.frame(simulation_, fields);
   }
 
-  void report(std::size_t index, const StageDescription& stage) {
+  void report(const StageDescription& stage) {
     if (!control_.progress || simulation_.step() % 8 != 0) return;
     const double since = seconds_since(last_report_);
     if (since < control_.progress_every) return;
     Progress now;
-    now.stage = stage.name, now.stage_number = index + 1, now.stages = scene_.stages.size();
+    now.stage = stage.name, now.stage_number = stage_ + 1, now.stages = scene_.stages.size();
     now.fraction = progress(stage.until, simulation_, start_);
     const double wall = seconds_since(wall_start_);
-    if (now.fraction && *now.fraction > 1e-3) now.seconds_left = wall * (1 - *now.fraction) / *now.fraction;
+    if (const double gone = now.fraction.value_or(0) - begun_at_; gone > 1e-3)
+      now.seconds_left = wall * (1 - *now.fraction) / gone;
     now.time = simulation_.time();
     now.particle_steps_per_second = static_cast<double>(simulation_.step() - last_report_steps_) *
                                     static_cast<double>(simulation_.positions().size()) / since;
@@ -308,10 +281,13 @@ class Run {
   const RunControl& control_;
   Schedule frames_;
   std::deque<Observer> observers_;
+  std::size_t stage_ = 0;  // the one that runs
   StageStart start_;
   std::size_t ramped_ = 0;
   std::uint64_t last_frame_ = ~0ull, last_report_steps_ = 0, contact_samples_ = 0;
-  Instant wall_start_, last_report_;
+  Instant wall_start_, last_report_, saved_;
+  double saving_ = 0;    // s, the last checkpoint
+  double begun_at_ = 0;  // share of the stage that was done when wall_start_ was
   double stepping_ = 0, contact_sum_ = 0;
   std::vector<PhaseTime> phases_;
 };

@@ -27,11 +27,14 @@ struct RunControl {
   const std::atomic<bool>* interrupted = nullptr;  ///< looked at every step
   std::function<void(const Progress&)> progress;   ///< called while the run goes on
   double progress_every = 0.2;                     ///< s, no oftener
+  double checkpoint_every = 0;                     ///< s of wall clock; 0: only when interrupted
+  const Checkpoint* resume = nullptr;              ///< of a run of the same scene, from where to go on
 };
 
 /// Runs all stages. Returns what came of it: status "done", "interrupted" or "failed" (a guard, a stage that did not
 /// end, an expectation that was not met; the message says which); in all three cases everything was recorded, the last
-/// instant included. Other errors are thrown.
+/// instant included. Other errors are thrown. A run that is interrupted has saved a checkpoint; one that goes on from
+/// it gives the same bits as one that was never stopped, apart from what was recorded after the checkpoint.
 RunSummary run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control);
 
 }  // namespace grit

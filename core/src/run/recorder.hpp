@@ -1,11 +1,13 @@
 // What a run reports while it goes. The run knows this interface; output/ fills it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "grit/memory.hpp"
 #include "grit/probe.hpp"
 #include "grit/world.hpp"
 
@@ -58,10 +60,18 @@ struct RunSummary {
   Model model;
 };
 
+/// Where a run was, and all that it needs to go on to the same bits.
+struct Checkpoint {
+  std::string stage;
+  double time = 0;  ///< simulated, s
+  std::uint64_t step = 0;
+  std::vector<std::byte> memory;
+};
+
 class Recorder {
  public:
   virtual ~Recorder() = default;
-  /// Once, before the first sample.
+  /// Once, before the first sample; of a run that goes on after remember() has restored how far it was.
   virtual void begin(const World& world, std::span<const ProbeGroup> probes) = 0;
   /// One sample of the probe with this place in begin()'s list.
   virtual void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) = 0;
@@ -70,6 +80,9 @@ class Recorder {
   virtual void stage_ended(const World& world, const std::string& what) = 0;
   /// Before a checkpoint is saved: what was recorded so far must outlive the process.
   virtual void flush() {}
+  /// Names how much was recorded; a run that goes on continues there.
+  virtual void remember(Memory&) {}
+  virtual void checkpoint(const Checkpoint&) {}
   virtual void finish(const World& world, const RunSummary& summary) = 0;
 };
 

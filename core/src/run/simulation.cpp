@@ -67,19 +67,9 @@ void Simulation::change(const SceneDescription& scene) {
 
 void Simulation::apply(const SceneDescription& scene) {
   const double elastic_before = flows_.begun ? elastic_energy().total() : 0;
-  scene_ = &scene;
-  law_ = scene.contacts.get();
-  law_->mix(material_names_);
-  fields_ = law_->state();
-  pairs_.set_fields(fields_), wall_contacts_.set_fields(fields_);
+  take_settings(scene);
   if (flows_.begun) flows_.settings += elastic_energy().total() - elastic_before;
-  settings_ = {};
   growth_rate_ = growth_rate_of(stage_), grown_ = 0;
-  force_engines_.clear();
-  for (const auto& [name, engine] : scene.engines) {
-    if (engine.engine->phase() == Phase::settings) engine.engine->settings(settings_);
-    else force_engines_.push_back(engine.engine.get());
-  }
   if (settings_.flat) flatten(*settings_.flat);
   // Bodies take part in the mean flow of a deforming cell from its first instant.
   const Vec3 change_of_rate = scene.domain.strain_rate - clock_.cell.strain_rate;
@@ -103,6 +93,26 @@ void Simulation::apply(const SceneDescription& scene) {
     for (int k = 0; k < 3; ++k)
       if (clock_.cell.periodic[k]) clock_.period_before[k] -= clock_.last_time_step * change_of_rate[k] * period[k];
   }
+  tell_walls_of_specimen();
+  energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
+  flows_.complete = flows_.complete && all_work_is_kept();
+  time_step_now_ = true;
+  stiffens_ = law_stiffens();
+  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+}
+
+void Simulation::take_settings(const SceneDescription& scene) {
+  scene_ = &scene;
+  law_ = scene.contacts.get();
+  law_->mix(material_names_);
+  fields_ = law_->state();
+  pairs_.set_fields(fields_), wall_contacts_.set_fields(fields_);
+  settings_ = {};
+  force_engines_.clear();
+  for (const auto& [name, engine] : scene.engines) {
+    if (engine.engine->phase() == Phase::settings) engine.engine->settings(settings_);
+    else force_engines_.push_back(engine.engine.get());
+  }
   loads_.resize(walls_.size());
   surfaces_.resize(walls_.size()), arms_.resize(walls_.size());
   for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -116,12 +126,6 @@ void Simulation::apply(const SceneDescription& scene) {
     surfaces_[w].material = static_cast<std::uint32_t>(
         std::find(material_names_.begin(), material_names_.end(), wall.material) - material_names_.begin());
   }
-  tell_walls_of_specimen();
-  energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
-  flows_.complete = flows_.complete && all_work_is_kept();
-  time_step_now_ = true;
-  stiffens_ = law_stiffens();
-  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
 }
 
 void Simulation::flatten(int axis) {

@@ -16,6 +16,7 @@
 #include "contact/wall_contacts.hpp"
 #include "engines/motion.hpp"
 #include "engines/walls.hpp"
+#include "grit/memory.hpp"
 #include "grit/world.hpp"
 #include "run/recorder.hpp"
 #include "run/stopwatch.hpp"
@@ -43,6 +44,8 @@ struct Clock {
   double wall_speed = 0;     ///< of the fastest point of a wall near bodies, at most, in the last step [m/s]
   double last_approach = 0;  ///< by how much the last step let bodies come closer at most, m
   double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
+
+  void remember(Memory& memory);
 };
 
 /// Energies and work, for the guard against energy from nowhere.
@@ -50,6 +53,8 @@ struct EnergyBook {
   double stored_at_start = 0;  ///< J, kinetic, elastic and gravitational, when the present settings began
   double work = 0;             ///< J, done by walls since then, but for half of the last step
   double largest = 0;          ///< J, largest kinetic and elastic energy since then
+
+  void remember(Memory& memory) { memory(stored_at_start, work, largest); }
 };
 
 /// What has gone in and out since a component first asked [J].
@@ -61,6 +66,10 @@ struct EnergyFlows {
   double damped = 0, fallen = 0;
   double walls = 0;  ///< but for half of the last step
   double settings = 0;
+
+  void remember(Memory& memory) {
+    memory(begun, complete, at_start, lost.friction, lost.rolling, lost.viscosity, damped, fallen, walls, settings);
+  }
 };
 
 /// What is known of all bodies that have come.
@@ -70,6 +79,11 @@ struct Stock {
   double mean_diameter = 0, solid_density = 0;     ///< that follow: m, kg/m³
   double largest_radius = 0, smallest_radius = 0;  ///< of spheres, m
   bool one_material = true;
+
+  void remember(Memory& memory) {
+    memory(grains, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius,
+           one_material);
+  }
 };
 
 class Simulation final : public World {
@@ -83,6 +97,10 @@ class Simulation final : public World {
   void begin_stage(const std::string& name, const SceneDescription& scene);
   /// Changes settings within a stage.
   void change(const SceneDescription& scene);
+  /// Saves all that there is, between two steps.
+  void save(Memory& memory);
+  /// Goes on, to the same bits, where a simulation of the same scene was saved, `scene` being its settings then.
+  void restore(const SceneDescription& scene, Memory& memory);
 
   /// Has find_forces() look for neighbours anew, whether or not it is due.
   void search_next() { search_now_ = true; }
@@ -149,6 +167,9 @@ class Simulation final : public World {
   enum Part { searching, pair_contacts, wall_touches, motion, part_count };
 
   void apply(const SceneDescription& scene);
+  /// What of a scene is not in the memory.
+  void take_settings(const SceneDescription& scene);
+  void remember(Memory& memory);
   /// Lets bodies in that appear in this stage.
   void admit();
   /// Reckons with bodies that have come, from this one on, and from this clump on.

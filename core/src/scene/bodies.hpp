@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "grit/memory.hpp"
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
 #include "scene/clumps.hpp"
@@ -46,6 +47,10 @@ struct Bodies {
   void append(const Bodies& others);
   /// Puts body order[i] at place i. Bodies that are not in `order` are gone.
   void reorder(std::span<const std::uint32_t> order);
+  /// All but `state`, which the scene says.
+  void remember(Memory& memory) {
+    memory(position, velocity, spin, id, material, rotation, displacement, clumps, ids_given, clump_ids_given);
+  }
 };
 
 }  // namespace grit

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grit/body_kind.hpp"
+#include "grit/memory.hpp"
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
 
@@ -32,6 +33,9 @@ struct Clump {
   Vec3 spin_of(const Vec3& of_momentum) const { return axes * (axes.transpose() * of_momentum).cwiseQuotient(inertia); }
 };
 
+template <>
+inline constexpr bool plain_numbers<Clump> = true;
+
 /// What a body has to do with its clump.
 struct ClumpSphere {
   std::uint32_t clump = no_clump;
@@ -39,12 +43,16 @@ struct ClumpSphere {
   Vec3 place = Vec3::Zero();             ///< along the clump's axes from its centre [m]
 };
 
+template <>
+inline constexpr bool plain_numbers<ClumpSphere> = true;
+
 struct Clumps {
   std::vector<Clump> clump;
   std::vector<std::uint32_t> spheres;  ///< bodies of all clumps by index, one clump after the other
   std::vector<ClumpSphere> of_body;    ///< by index; empty without clumps
   std::vector<double> volume_share;    ///< by index; empty without clumps
 
+  void remember(Memory& memory) { memory(clump, spheres, of_body, volume_share); }
   bool none() const { return clump.empty(); }
   std::uint32_t clump_of(std::size_t body) const { return of_body.empty() ? no_clump : of_body[body].clump; }
 };

@@ -501,6 +501,12 @@ void ReferenceDescription::declare(Parameters& p) {
 }
 void OutputDescription::declare(Parameters& p) {
   p.add("frames", frames).doc("when frames are written, besides the end of the run; neither given: never");
+  p.add("checkpoint_every", checkpoint_every)
+      .unit("s")
+      .at_least(0)
+      .doc(
+          "time by the clock on the wall between checkpoints, from which --resume goes on; they never take more than "
+          "1 % of the time; 0: only when the run is interrupted");
   p.add("picture", picture).doc("curves and view of the grains, drawn at the end");
   p.add("references", references)
       .doc("what the report draws curves against, by name: measured, published, by a formula");
@@ -578,7 +584,7 @@ void SceneDescription::declare(Parameters& p) {
   p.add("probes", probes, [this](const std::string&) {
      return ProbeDescription(*registry_);
    }).doc("what is measured, by name");
-  p.add("output", output).doc("frames, picture, references, summary");
+  p.add("output", output).doc("frames, checkpoints, picture, references, summary");
 
   p.check_names([this](const Complain& complain) {
     for (const auto& [name, _] : materials)

@@ -302,6 +302,7 @@ struct ReferenceDescription {
 };
 struct OutputDescription {
   Cadence frames;
+  double checkpoint_every = 600;  ///< s of wall clock
   std::optional<PictureDescription> picture;
   std::map<std::string, ReferenceDescription> references;
   std::vector<std::string> summary;

@@ -26,6 +26,7 @@ class ForceChainsProbe : public Probe {
   void sample(const World& world, std::span<const std::span<double>> values) override;
   /// Both ends, normal force, class and chain of every contact.
   std::vector<Field> fields(const World& world) override;
+  void remember(Memory& memory) override { memory(before_, now_, step_); }
 
  private:
   /// The contacts that count.

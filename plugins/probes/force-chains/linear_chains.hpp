@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "grit/memory.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -16,6 +17,8 @@ struct LinearChains {
   /// The chain, from 1, that each contact of World::contacts() is a link of; 0 for none.
   std::vector<std::uint32_t> of_contact;
   double mean_major_stress = 0;  ///< of all grains, positive in compression [Pa]; 0 without grains
+
+  void remember(Memory& memory) { memory(grains, of_contact, mean_major_stress); }
 };
 
 /// `angle` [rad]: largest one between the line of two centres and the direction of either grain's major stress.

@@ -21,6 +21,7 @@ class Interface final : public Probe {
   void prepare(const World& world) override { layer.prepare(world, "probe interface"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
+  void remember(Memory& memory) override { memory(stage_, turned_before_); }
 
  private:
   double rotation(const World& world, const Vec3& about);

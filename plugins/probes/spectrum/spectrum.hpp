@@ -25,6 +25,7 @@ class Spectrum final : public Probe {
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
+  void remember(Memory& memory) override { memory(last_, first_time_, count_, welch_); }
 
  private:
   using Signals = std::array<double, 4>;  ///< acceleration along x, y, z [m/s²], pressure [Pa]
@@ -32,6 +33,7 @@ class Spectrum final : public Probe {
     double time;    ///< s
     Vec3 velocity;  ///< of the wall [m/s]
     Signals signals;
+    void remember(Memory& memory) { memory(time, velocity, signals); }
   };
   Signals look(const World& world) const;
   void take(const World& world);

@@ -319,6 +319,12 @@ INSTANTIATE_TEST_SUITE_P(Spectrum, ProbeContract,
                                                      probe->wall = "top-wall";
                                                      return probe;
                                                    }},
+                                         ProbeCase{"short_windows",
+                                                   [] {
+                                                     auto probe = std::make_shared<Spectrum>();
+                                                     probe->wall = "top-wall", probe->points = 8, probe->windows = 2;
+                                                     return probe;
+                                                   }},
                                          ProbeCase{"box",
                                                    [] {
                                                      auto probe = std::make_shared<Spectrum>();

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "grit/memory.hpp"
+
 namespace grit {
 
 /// Of one window of evenly spaced values: one-sided density at the frequencies k / (n · interval), k = 0 … n/2, in the
@@ -17,6 +19,7 @@ std::vector<double> power_density(std::span<const double> values, double interva
 class Welch {
  public:
   /// `points` of a window, even; `interval` between them [s]; mean over `windows` at most.
+  Welch() = default;
   Welch(std::size_t points, double interval, std::size_t windows)
       : points_(points),
         windows_(windows),
@@ -28,10 +31,11 @@ class Welch {
   std::size_t windows() const { return densities_.size(); }
   /// points / 2 + 1 values; NaN before the first window is full.
   const std::vector<double>& mean() const { return mean_; }
+  void remember(Memory& memory) { memory(points_, windows_, interval_, values_, densities_, mean_); }
 
  private:
-  std::size_t points_, windows_;
-  double interval_;
+  std::size_t points_ = 0, windows_ = 0;
+  double interval_ = 0;
   std::vector<double> values_;                 ///< of the window that fills
   std::deque<std::vector<double>> densities_;  ///< the latest last
   std::vector<double> mean_;                   ///< of them

@@ -289,6 +289,12 @@ std::vector<Field> StrainPictures::fields(const World& world) {
   return fields;
 }
 
+void StrainPictures::remember(Memory& memory) {
+  Image start = start_.full;  // what is made of it is made again
+  memory(began_, stage_, step_, view_, start.width, start.height, start.grey, walls_.wall, walls_.driver, subsets_);
+  if (memory.restoring()) start_ = start.grey.empty() ? FilteredImage() : FilteredImage(std::move(start));
+}
+
 }  // namespace grit
 
 const grit::PluginInfo* grit_plugin() {

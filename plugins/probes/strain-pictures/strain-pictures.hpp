@@ -33,6 +33,7 @@ class StrainPictures final : public Probe {
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
   std::vector<Field> fields(const World& world) override;
+  void remember(Memory& memory) override;
 
   /// Of what is there now, through the camera as it stood at the first look of the stage.
   Image picture(const World& world);
@@ -47,11 +48,16 @@ class StrainPictures final : public Probe {
     double diameter = 0;  ///< mean [m]
     std::ptrdiff_t width = 0, height = 0;
     SquareGrid subsets{};
+    void remember(Memory& memory) {
+      memory(corner, pixel, face, diameter, width, height);
+      memory(subsets.columns, subsets.rows, subsets.left, subsets.bottom, subsets.apart);
+    }
   };
   struct Subset {
     Vec2 start, moved;            ///< middle when the stage began, and how far it has gone since; NaN if it is lost [m]
     std::array<double, 3> green;  ///< E_11, E_22, E_12
     double correlation;           ///< NaN if it is lost
+    void remember(Memory& memory) { memory(start, moved, green, correlation); }
   };
   struct Axes {
     int right, up, depth;

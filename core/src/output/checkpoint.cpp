@@ -1,0 +1,127 @@
+#include "output/checkpoint.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <boost/crc.hpp>
+#include <fstream>
+#include <iterator>
+
+#include "grit/error.hpp"
+#include "output/atomic_file.hpp"
+#include "output/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+/// Of the layout of the file and of what is in the memory.
+constexpr std::uint64_t format = 1;
+constexpr const char* advice = "go on with what began the run, or begin anew (--overwrite)";
+
+/// Plugins by the bytes of their files, since two builds may say the same of themselves.
+Description build_of(const PluginUsed& used) {
+  Description facts = plugin_facts(used);
+  facts.erase("file");
+  std::ifstream file(used.file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  boost::crc_32_type sum;
+  sum.process_bytes(bytes.data(), bytes.size());
+  facts["build"]["checksum"] = sum.checksum();
+  return facts;
+}
+
+std::string text_of(const Description& facts) {
+  return facts.dump(-1, ' ', false, Description::error_handler_t::replace);
+}
+
+/// A file knows neither infinite numbers nor texts that are not UTF-8.
+Description as_written(const Description& facts) { return Description::parse(text_of(facts)); }
+
+Description facts_of(const RunFacts& facts) {
+  Description all{{"grit", grit_facts()}, {"plugins", Description::object()}, {"description", facts.description}};
+  for (const auto& used : facts.plugins) all["plugins"][used.kind + " " + used.name] = build_of(used);
+  return as_written(all);
+}
+
+/// What differs, a line each, up to a few.
+std::string lines(const Description& now, const Description& then) {
+  constexpr std::size_t most = 8, longest = 60;
+  std::string text;
+  std::size_t count = 0;
+  for (const auto& change : Description::diff(then, now)) {
+    if (++count > most) continue;
+    const std::string pointer = change.at("path");
+    const Description::json_pointer at(pointer);
+    const auto value = [&](const Description& of) {
+      const std::string text = of.contains(at) ? of.at(at).dump() : "nothing";
+      return text.size() > longest ? text.substr(0, longest) + " …" : text;
+    };
+    text += fmt::format("\n  {}: found {}, allowed {}", pointer, value(now), value(then));
+  }
+  if (count > most) text += fmt::format("\n  and {} more", count - most);
+  return text;
+}
+
+std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+}  // namespace
+
+std::string differences(const Description& now, const Description& then) {
+  const auto without = [](Description description) {
+    if (const auto output = description.find("output"); output != description.end() && output->is_object())
+      output->erase("checkpoint_every");
+    return description;
+  };
+  return lines(without(as_written(now)), without(as_written(then)));
+}
+
+void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint) {
+  const auto part = beside(path);
+  try {
+    hdf5::File file(part, hdf5::Mode::replace);
+    file.set_attribute("format", format);
+    file.set_attribute("stage", checkpoint.stage);
+    file.set_attribute("time", checkpoint.time);
+    file.set_attribute("step", checkpoint.step);
+    file.write_checked("facts", bytes_of(text_of(facts_of(facts))));
+    file.write_checked("memory", checkpoint.memory);
+    file.close();
+    sync_to_disk(part);
+  } catch (const FileError&) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);  // what a full disk has taken of it is of no use
+    throw;
+  }
+  publish(path);
+}
+
+Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts) {
+  Checkpoint checkpoint;
+  Description then;
+  try {
+    const hdf5::File file(path, hdf5::Mode::read);
+    if (const auto found = file.number<std::uint64_t>("format"); found != format)
+      throw FileError(fmt::format("{}: found format {}, allowed {}", path.string(), found, format));
+    checkpoint = {file.text("stage"), file.number<double>("time"), file.number<std::uint64_t>("step"), {}};
+    const auto text = file.dataset("facts").read_bytes();
+    then = Description::parse(reinterpret_cast<const char*>(text.data()),
+                              reinterpret_cast<const char*>(text.data()) + text.size());
+    for (const char* key : {"grit", "plugins", "description"})
+      if (!then.contains(key)) throw FileError(path.string() + ": says nothing of \"" + key + '"');
+    checkpoint.memory = file.dataset("memory").read_bytes();
+  } catch (const FileError& error) {
+    throw FileError(std::string(error.what()) + "\n  it is no whole checkpoint of this grit; begin anew (--overwrite)");
+  } catch (const Description::exception&) {
+    throw FileError(path.string() + ": what it says of its run is no JSON\n  it is damaged; begin anew (--overwrite)");
+  }
+  const Description now = facts_of(facts);
+  if (const auto other = lines(now.at("grit"), then.at("grit")); !other.empty())
+    throw FileError(path.string() + ": was written by another grit, so that a run would not go on to the same bits:" +
+                    other + "\n  " + advice);
+  if (const auto other = differences(now.at("description"), then.at("description")); !other.empty())
+    throw Error(path.string() + ": is of another description:" + other + "\n  " + advice);
+  if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
+    throw PluginError(path.string() + ": plugins were built otherwise when it was written:" + other + "\n  " + advice);
+  return checkpoint;
+}
+
+}  // namespace grit

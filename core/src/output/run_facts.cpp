@@ -1,0 +1,36 @@
+#include "output/run_facts.hpp"
+
+#include "plugins/build_facts.hpp"
+
+namespace grit {
+namespace {
+
+Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
+
+}  // namespace
+
+Description grit_facts() {
+  const auto& build = build_facts();
+  return {{"version", build.version},       {"revision", build.revision}, {"compiler", build.compiler},
+          {"build_type", build.build_type}, {"arch", build.arch},         {"instruction_set", build.instruction_set}};
+}
+
+Description plugin_facts(const PluginUsed& used) {
+  const auto& tag = used.tag;
+  return {{"kind", used.kind},
+          {"name", used.name},
+          {"version", used.version},
+          {"file", used.file.string()},
+          {"build",
+           {{"sdk_version", tag.sdk_version},
+            {"compiler", tag.compiler},
+            {"library_abi", tag.library_abi},
+            {"instruction_set", tag.instruction_set},
+            {"row", layout(tag.row)},
+            {"contact_row", layout(tag.contact_row)},
+            {"body_sum", layout(tag.body_sum)},
+            {"pair_batch", layout(tag.pair_batch)},
+            {"wall_batch", layout(tag.wall_batch)}}}};
+}
+
+}  // namespace grit

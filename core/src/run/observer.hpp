@@ -1,0 +1,57 @@
+// A probe of the description at work.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "run/component_memory.hpp"
+#include "run/recorder.hpp"
+#include "run/schedule.hpp"
+
+namespace grit {
+
+/// Samples when its schedule says, once a step at most, and in the stages that it watches.
+class Observer {
+ public:
+  Observer(const std::string& name, const ProbeDescription& description, const World& world)
+      : name_(name), description_(&description), schedule_(description.cadence) {
+    description.probe->prepare(world);
+    for (const Channel& channel : description.probe->channels()) {
+      std::size_t size = 1;
+      for (const std::size_t n : channel.shape) size *= n;
+      values_.emplace_back(size);
+    }
+  }
+  ProbeGroup group() const { return {name_, description_->probe->channels()}; }
+  bool watches(const std::string& stage) const {
+    return description_->stages.empty() ||
+           std::find(description_->stages.begin(), description_->stages.end(), stage) != description_->stages.end();
+  }
+  Schedule& schedule() { return schedule_; }
+  void sample(std::size_t index, const World& world, Recorder& recorder) {
+    if (last_step_ == world.step()) return;
+    last_step_ = world.step();
+    std::vector<std::span<double>> out(values_.begin(), values_.end());
+    description_->probe->sample(world, out);
+    const std::vector<std::span<const double>> in(values_.begin(), values_.end());
+    recorder.sample(index, world, in);
+  }
+  bool in_frames() const { return description_->frames; }
+  void remember(Memory& memory) {
+    memory(schedule_, last_step_);
+    remember_by_itself("probe \"" + name_ + '"', *description_->probe, memory);
+  }
+  FieldGroup fields(const World& world) const { return {name_, description_->probe->fields(world)}; }
+
+ private:
+  std::string name_;
+  const ProbeDescription* description_;
+  Schedule schedule_;
+  std::vector<std::vector<double>> values_;
+  std::uint64_t last_step_ = ~0ull;
+};
+
+}  // namespace grit

@@ -1,0 +1,68 @@
+// When something that happens again and again is due.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "grit/memory.hpp"
+#include "run/simulation.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+/// Counts from the begin of a stage.
+class Schedule {
+ public:
+  explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
+  void restart(const Simulation& now) {
+    first_time_ = now.time(), first_step_ = now.step(), first_left_ = now.share_left();
+    count_ = 0, level_ = 0, began_ = true, due_ = false;
+  }
+  /// Decides about this step, and goes on to the next time. To be asked once a step, before forces, which may change
+  /// the time step and let bodies leave: then it is due at the same steps, whoever else looks.
+  void ask(const Simulation& now) {
+    const bool by_time = due_by_time(now), by_mass = due_by_mass(now), by_displacement = due_by_displacement(now);
+    due_ = by_time || by_mass || by_displacement || due_by_steps(now);
+    if (by_time) ++count_;
+    if (by_mass) count_ = static_cast<std::uint64_t>(shares(now)) + 1;  // one step may take several at once
+    if (by_displacement) level_ += std::trunc(beyond(now)), began_ = false;
+  }
+  bool is_due() const { return due_; }
+  void remember(Memory& memory) { memory(first_time_, first_left_, level_, first_step_, count_, began_, due_); }
+  bool never() const { return cadence_.never(); }
+
+ private:
+  // Counted, not summed up, so that the instants do not drift.
+  bool due_by_time(const Simulation& now) const {
+    return cadence_.every_time &&
+           now.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * now.dt();
+  }
+  bool due_by_steps(const Simulation& now) const {
+    return cadence_.every_steps > 0 &&
+           (now.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
+  }
+  bool due_by_mass(const Simulation& now) const {
+    return cadence_.every_left && shares(now) >= static_cast<double>(count_);
+  }
+  bool due_by_displacement(const Simulation& now) const {
+    return cadence_.every_displacement && (began_ || std::abs(beyond(now)) >= 1);
+  }
+
+  /// Whole and part shares of the mass that have left since the stage began; a hair more, for rounding.
+  double shares(const Simulation& now) const { return (now.share_left() - first_left_) / *cadence_.every_left + 1e-9; }
+  /// Displacements since the last time, in its direction; a hair more, for rounding.
+  double beyond(const Simulation& now) const {
+    const auto& [wall, axis, value] = *cadence_.every_displacement;
+    const auto found = std::ranges::find(now.walls(), wall, &WallView::name);
+    const double gone = found->stage_position[axis[0] - 'x'] / value - level_;
+    return gone + std::copysign(1e-9, gone);
+  }
+
+  Cadence cadence_;
+  double first_time_ = 0, first_left_ = 0, level_ = 0;
+  std::uint64_t first_step_ = 0, count_ = 0;
+  bool began_ = true, due_ = false;
+};
+
+}  // namespace grit

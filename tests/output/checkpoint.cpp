@@ -1,0 +1,126 @@
+// checkpoint.h5: that nothing but what was written comes back.
+#include "output/checkpoint.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "folder.hpp"
+#include "grit/error.hpp"
+#include "output/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class CheckpointFile : public testing::Test {
+ protected:
+  CheckpointFile() {
+    std::ofstream(folder_ / "strain.so") << "a plugin";
+    facts_.description = {{"title", "sand"}, {"walls", {{"lid", {{"pressure", 1e5}}}}}, {"low", -1.0 / 0.0}};
+    facts_.plugins = {{"probe", "strain", "1.0.0", folder_ / "strain.so", build_tag()}};
+    checkpoint_ = {"shear", 0.25, 1000, {}};
+    for (int i = 0; i < 3'000'000; ++i) checkpoint_.memory.push_back(static_cast<std::byte>(i * i % 251));
+    write_checkpoint(path_, facts_, checkpoint_);
+  }
+  template <class Kind>
+  std::string refusal() const {
+    return error_of<Kind>([this] { read_checkpoint(path_, facts_); });
+  }
+  /// One with other facts, as another build would have written it.
+  void rewrite(const std::string& facts, std::uint64_t format = 1) const {
+    hdf5::File file(path_, hdf5::Mode::replace);
+    file.set_attribute("format", format);
+    file.set_attribute("stage", "shear");
+    file.set_attribute("time", 0.25);
+    file.set_attribute("step", std::uint64_t{1000});
+    file.write_checked("facts", std::as_bytes(std::span(facts)));
+    file.write_checked("memory", checkpoint_.memory);
+    file.close();
+  }
+  std::string facts_text() const {
+    const auto bytes = hdf5::File(path_, hdf5::Mode::read).dataset("facts").read_bytes();
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+
+  Folder folder_;
+  std::filesystem::path path_ = folder_ / "checkpoint.h5";
+  RunFacts facts_;
+  Checkpoint checkpoint_;
+};
+
+TEST_F(CheckpointFile, GivesBackWhatWasWritten) {
+  const Checkpoint back = read_checkpoint(path_, facts_);
+  EXPECT_EQ(back.stage, "shear");
+  EXPECT_EQ(back.time, 0.25);
+  EXPECT_EQ(back.step, 1000u);
+  EXPECT_TRUE(back.memory == checkpoint_.memory);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "checkpoint.h5.part"));
+  facts_.description["output"]["checkpoint_every"] = 5;
+  EXPECT_NO_THROW(read_checkpoint(path_, facts_)) << "how often it is written is of no consequence";
+}
+
+TEST_F(CheckpointFile, IsReplacedByAWholeOneOnly) {
+  std::filesystem::create_directory(folder_ / "checkpoint.h5.part");  // so that it cannot be written
+  checkpoint_.step = 2000;
+  EXPECT_NE(error_of<FileError>([this] { write_checkpoint(path_, facts_, checkpoint_); }), "");
+  EXPECT_EQ(read_checkpoint(path_, facts_).step, 1000u);
+}
+
+TEST_F(CheckpointFile, OfAnotherDescriptionIsRefused) {
+  facts_.description["walls"]["lid"]["pressure"] = 2e5;
+  facts_.description["seed"] = 3;
+  EXPECT_THAT(refusal<Error>(),
+              AllOf(HasSubstr("checkpoint.h5: is of another description"),
+                    HasSubstr("\n  /walls/lid/pressure: found 200000.0, allowed 100000.0"),
+                    HasSubstr("\n  /seed: found 3, allowed nothing"), HasSubstr("begin anew (--overwrite)")));
+}
+
+TEST_F(CheckpointFile, OfAnotherBuildOfAPluginIsRefused) {
+  std::ofstream(folder_ / "strain.so", std::ios::app) << ", built again";
+  EXPECT_THAT(refusal<PluginError>(),
+              AllOf(HasSubstr("plugins were built otherwise"), HasSubstr("/probe strain/build/checksum: found ")));
+  facts_.plugins[0].version = "1.1.0";
+  EXPECT_THAT(refusal<PluginError>(), HasSubstr("/probe strain/version: found \"1.1.0\", allowed \"1.0.0\""));
+  facts_.plugins.clear();
+  EXPECT_THAT(refusal<PluginError>(), HasSubstr("/probe strain: found nothing, allowed {"));
+}
+
+TEST_F(CheckpointFile, OfAnotherGritIsRefused) {
+  std::string facts = facts_text();
+  const auto at = facts.find("\"compiler\":\"") + 12;
+  facts[at] = facts[at] == 'x' ? 'y' : 'x';
+  rewrite(facts);
+  EXPECT_THAT(refusal<FileError>(),
+              AllOf(HasSubstr("checkpoint.h5: was written by another grit"), HasSubstr("/compiler: found ")));
+  rewrite(facts_text(), 2);
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 2, allowed 1"));
+  rewrite("{");
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("is no JSON"));
+}
+
+TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
+  const auto size = std::filesystem::file_size(path_);
+  for (const double place : {0.3, 0.6, 0.9}) {  // in the memory: it is nearly all of the file
+    std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
+    const auto at = static_cast<std::streamoff>(place * static_cast<double>(size));
+    file.seekg(at);
+    const char byte = static_cast<char>(file.get() ^ 1);
+    file.seekp(at);
+    file.put(byte);
+    file.close();
+    EXPECT_THAT(refusal<FileError>(), AllOf(HasSubstr("checkpoint.h5/memory"), HasSubstr("no whole checkpoint")));
+    write_checkpoint(path_, facts_, checkpoint_);
+  }
+  std::filesystem::resize_file(path_, size / 2);
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("no whole checkpoint"));
+  std::ofstream(path_) << "not a checkpoint";
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("no whole checkpoint"));
+  std::filesystem::remove(path_);
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5"));
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,203 @@
+// Runs that are interrupted or killed and go on: --resume.
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "output/read_frames.hpp"
+#include "output/read_results.hpp"
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// Grains that fall into a box, about a second; probes that remember.
+constexpr auto falling = R"({
+  "title": "grains that fall",
+  "contacts": {"type": "linear-rolling"},
+  "materials": {"sand": {"density": 2600, "contact_modulus": "10 MPa"}},
+  "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
+    "type": "cloud", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "20 mm"], "count": 60,
+    "sizes": {"type": "uniform", "smallest": "2 mm", "largest": "2.5 mm"}}}},
+  "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "30 mm"], "open": ["z_high"], "material": "sand"}},
+  "engines": {"gravity": {"type": "gravity"}},
+  "stages": [
+    {"name": "fall", "until": {"type": "steps", "value": 40000}, "limit": "10 h"},
+    {"name": "on", "until": {"type": "steps", "value": 40000}, "limit": "10 h"}],
+  "probes": {
+    "packing": {"type": "packing", "every_steps": 500},
+    "energy": {"type": "energy", "every_steps": 700},
+    "force-chains": {"type": "force-chains", "every_steps": 1100}},
+  "output": {"frames": {"every_steps": 9000}, "checkpoint_every": 0, "summary": ["energy/friction"],
+             "picture": {"x": "packing/time", "y": ["packing/coordination_number"], "color": "speed"}}
+}
+)";
+
+class Resume : public testing::Test {
+ protected:
+  Resume() { folder.write("fall.json", falling); }
+  static std::vector<std::string> run(const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"run", "fall.json", "--no-report", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
+  json run_json(const std::string& results) const { return json::parse(text_of(folder / (results + "/run.json"))); }
+
+  /// Stops a run in its first stage.
+  void interrupt(const std::string& out, std::vector<std::string> more = {}) const {
+    Program program(grit_with(run(out, std::move(more))), folder.path());
+    ASSERT_TRUE(program.wait_for("1/2 fall"));
+    program.interrupt();
+    const auto outcome = program.finish();
+    ASSERT_EQ(outcome.status, 130) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("'grit run --resume " + out + "' goes on"));
+  }
+  /// Kills a run once it has written another checkpoint than the one that is there.
+  void kill(const std::string& out, std::vector<std::string> more = {}) const {
+    const auto path = folder / (out + "/checkpoint.h5");
+    const auto written = [&] {
+      struct stat file {};
+      return ::stat(path.c_str(), &file) == 0 ? std::pair(file.st_ino, file.st_mtim.tv_nsec) : std::pair<ino_t, long>();
+    };
+    const auto before = written();
+    more.insert(more.end(), {"--set", "/output/checkpoint_every=0.05", "--quiet"});
+    Program program(grit_with(run(out, std::move(more))), folder.path());
+    while (written() == before || written() == std::pair<ino_t, long>()) std::this_thread::yield();
+    program.interrupt(SIGKILL);
+    ASSERT_EQ(program.finish().status, -SIGKILL);
+  }
+  /// Series, frames and grains, to the last bit.
+  void expect_same_results(const std::string& a, const std::string& b) const {
+    const auto names = channel_names(folder / a);
+    ASSERT_EQ(names, channel_names(folder / b));
+    ASSERT_GT(names.size(), 20u);
+    const auto same = [](const std::vector<double>& x, const std::vector<double>& y) {
+      return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
+    };
+    for (const auto& name : names) {
+      const auto x = read_channel(folder / a, name), y = read_channel(folder / b, name);
+      EXPECT_GT(x.samples, 50u);
+      EXPECT_TRUE(same(x.values, y.values)) << name << ": " << x.samples << " and " << y.samples << " samples";
+    }
+    const auto frames = frame_files(folder / a), others = frame_files(folder / b);
+    ASSERT_EQ(frames.size(), others.size());
+    ASSERT_GT(frames.size(), 8u);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const Frame x = read_frame(frames[i]), y = read_frame(others[i]);
+      EXPECT_EQ(x.step, y.step);
+      EXPECT_EQ(x.id, y.id);
+      EXPECT_TRUE(same(x.position, y.position) && same(x.velocity, y.velocity) &&
+                  same(x.normal_force, y.normal_force) && x.body_a == y.body_a)
+          << frames[i];
+    }
+    for (const char* file : {"/packing.txt", "/frames.xdmf"})
+      EXPECT_EQ(text_of(folder / (a + file)), text_of(folder / (b + file))) << file;
+    const auto first = run_json(a), second = run_json(b);
+    for (const char* key : {"status", "steps", "time", "rebuilds", "contacts_per_body", "bodies"})
+      EXPECT_EQ(first.at(key), second.at(key)) << key;
+    ASSERT_EQ(first.at("stages").size(), second.at("stages").size());
+    for (std::size_t i = 0; i < first.at("stages").size(); ++i)
+      for (const char* key : {"name", "reached", "step"})
+        EXPECT_EQ(first.at("stages").at(i).at(key), second.at("stages").at(i).at(key));
+  }
+
+  OwnFolder folder;
+};
+
+TEST_F(Resume, GivesTheSameAsARunThatWasNeverStopped) {
+  const auto whole = grit(run("whole"));
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "whole/checkpoint.h5"));
+
+  interrupt("part");
+  EXPECT_EQ(run_json("part").at("status"), "interrupted");
+  EXPECT_TRUE(std::filesystem::exists(folder / "part/checkpoint.h5"));
+  const auto rest = grit({"run", "part", "--resume", "--no-report", "--threads", "2"});
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_THAT(rest.err, AllOf(HasSubstr("goes on from step "), HasSubstr("stage \"fall\"")));
+  EXPECT_THAT(rest.out, HasSubstr(whole.out.substr(0, whole.out.find('\n')))) << "largest value of all";
+  EXPECT_EQ(run_json("part").at("resumed"), 1);
+  expect_same_results("whole", "part");
+
+  const auto again = grit(run("part", {"--resume"}));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(again.out, "part: done already\n");
+}
+
+TEST_F(Resume, GoesOnWithWhatAKilledRunLeft) {
+  ASSERT_EQ(grit(run("whole")).status, 0);
+  kill("killed");
+  EXPECT_EQ(run_json("killed").at("status"), "running");
+  kill("killed", {"--resume"});
+  kill("killed", {"--resume", "--threads", "2"});
+  const auto rest = grit(run("killed", {"--resume"}));
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_EQ(run_json("killed").at("resumed"), 3);
+  expect_same_results("whole", "killed");
+}
+
+TEST_F(Resume, BeginsAtTheBeginningWithoutACheckpoint) {
+  const auto outcome = grit(run("new", {"--resume", "--set", "/stages/0/until/value=10"}));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("no checkpoint in new: the run begins at the beginning"));
+  EXPECT_EQ(run_json("new").at("resumed"), 0);
+}
+
+TEST_F(Resume, RefusesWhatIsOfAnotherRun) {
+  interrupt("part");
+  const auto before = text_of(folder / "part/run.json");
+  const auto other = grit(run("part", {"--resume", "--set", "/seed=7"}));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, AllOf(HasSubstr("part: holds a run of another description:\n  /seed: found 7, allowed 1"),
+                               HasSubstr("'grit run --resume part'"), HasSubstr("--overwrite")));
+  // A plugin that has been built again.
+  std::filesystem::create_directories(folder / "mine/probes");
+  std::filesystem::copy(GRIT_PLUGIN_DIR "/probes/energy.so", folder / "mine/probes");
+  std::ofstream(folder / "mine/probes/energy.so", std::ios::app) << "built again";
+  const auto plugin = grit(run("part", {"--resume", "--plugin-path", "mine"}));
+  EXPECT_EQ(plugin.status, 3);
+  EXPECT_THAT(plugin.err, AllOf(HasSubstr("plugins were built otherwise"), HasSubstr("/probe energy/build/checksum")));
+  // Half of a checkpoint.
+  const auto checkpoint = folder / "part/checkpoint.h5";
+  std::filesystem::copy(checkpoint, folder / "whole.h5");
+  std::filesystem::resize_file(checkpoint, std::filesystem::file_size(checkpoint) / 2);
+  const auto half = grit({"run", "part", "--resume"});
+  EXPECT_EQ(half.status, 5);
+  EXPECT_THAT(half.err, AllOf(HasSubstr("part/checkpoint.h5"), HasSubstr("no whole checkpoint")));
+  EXPECT_EQ(text_of(folder / "part/run.json"), before) << "nothing was touched";
+  std::filesystem::rename(folder / "whole.h5", checkpoint);
+  EXPECT_EQ(grit({"run", "part", "--resume", "--no-report"}).status, 0);
+}
+
+TEST_F(Resume, TellsWhatMakesNoSense) {
+  const auto both = grit(run("part", {"--resume", "--overwrite"}));
+  EXPECT_EQ(both.status, 1);
+  EXPECT_THAT(both.err, HasSubstr("--resume goes on with results, --overwrite replaces them"));
+  std::filesystem::create_directory(folder / "empty");
+  EXPECT_THAT(grit({"run", "empty"}).err, HasSubstr("empty is a folder; give a description, or go on with its run"));
+  EXPECT_EQ(grit({"run", "empty"}).status, 1);
+  EXPECT_EQ(grit({"run", "empty", "--resume", "--out", "x"}).status, 1);
+  EXPECT_EQ(grit({"run", "empty", "--resume"}).status, 5);
+}
+
+TEST_F(Resume, KeepsTheCheckpointWhereAGuardTrips) {
+  const auto outcome =
+      grit(run("failed", {"--set", "/output/checkpoint_every=1e-6", "--set", "/guards={\"travel\": 1e-3}"}));
+  EXPECT_EQ(outcome.status, 4) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "failed/checkpoint.h5"));
+  const auto again = grit({"run", "failed", "--resume", "--no-report"});
+  EXPECT_EQ(again.status, 4);
+  EXPECT_THAT(again.err, HasSubstr("/guards/travel"));
+}
+
+}  // namespace
+}  // namespace grit

@@ -1,0 +1,335 @@
+// A run that was stopped anywhere and goes on says, to the last bit, what one says that was never stopped.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "support/clump.hpp"
+#include "support/packing.hpp"
+#include "support/tape.hpp"
+
+namespace grit::test {
+namespace {
+
+using testing::HasSubstr;
+
+const Description sand{{"contact_modulus", 1e6}, {"density", 2600}};
+const double spacing = 1e-3;
+
+Description steps(int n) { return {{"type", "steps"}, {"value", n}}; }
+Description stage(const char* name, const Description& until) {
+  return {{"name", name}, {"until", until}, {"limit", 10}};
+}
+void report(Description& d, int every) {
+  d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
+  d["output"]["frames"] = {{"every_steps", 10 * every}};
+  d["probes"]["packing"] = {{"type", "packing"}, {"every_steps", every}};
+  d["probes"]["force-chains"] = {{"type", "force-chains"}, {"every_steps", 3 * every}};
+}
+
+/// 1728 grains, seven chunks of them, in a cell that is sheared by stretching; the mean flow changes with the stage.
+Description cell() {
+  Description d = description("linear-rolling", sand, jumble({12, 12, 12}, spacing, 0.02, 6));
+  d["domain"] = {{"low", {0, 0, 0}},
+                 {"high", {12 * spacing, 12 * spacing, 12 * spacing}},
+                 {"periodic", {true, true, true}},
+                 {"strain_rate", {-20, -20, 15}}};
+  d["stages"] = {stage("fast", steps(150)), stage("slow", steps(160))};
+  report(d, 11);
+  return d;
+}
+
+Description box(const std::string& law, const std::array<int, 3>& sides, std::uint64_t seed) {
+  const Vec3 low = Vec3::Zero(), high = spacing * Vec3(sides[0], sides[1], sides[2]);
+  Description d = description(law, sand, jumble(sides, spacing, 0.02, seed));
+  const char* const names[3][2] = {{"left", "right"}, {"front", "back"}, {"bottom", "lid"}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false})
+      d["walls"][names[axis][up ? 0 : 1]] = side(axis, up ? low[axis] : high[axis], low, high, up);
+  d["walls"]["lid"]["motion"]["servo"] = {{"axis", "z"}, {"pressure", 1e4}, {"max_velocity", 0.5}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.3}};
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  report(d, 13);
+  return d;
+}
+
+/// A lid that presses more and more, then a bottom that slides, with the ledger of energies.
+Description servo(const std::string& law = "linear-rolling") {
+  Description d = box(law, {10, 8, 9}, 5);
+  d["stages"] = {stage("press", steps(170)), stage("slide", {{"type", "time"}, {"value", 0.2e-3}})};
+  d["stages"][0]["ramps"] = {{{"pointer", "/walls/lid/motion/servo/pressure"},
+                              {"from", 1e4},
+                              {"to", 2e4},
+                              {"duration", 1e-3},
+                              {"increments", 50}}};
+  d["stages"][1]["until"]["value"] = 1e-3;
+  d["stages"][1]["change"]["walls"]["bottom"]["motion"]["velocity"] = {0.3, 0, 0};
+  d["probes"]["energy"] = {{"type", "energy"}, {"every_steps", 10}};
+  d["probes"]["walls"] = {{"type", "walls"}, {"every_time", 2e-5}};
+  return d;
+}
+/// Springs whose stiffness, and with it the time step, follows the overlaps.
+Description stiffening() {
+  Description d = servo("hertz-mindlin");
+  d["materials"]["grain"] = {{"density", 2600}, {"young_modulus", 1e7}, {"poisson_ratio", 0.2}, {"restitution", 0.5}};
+  return d;
+}
+/// A lid that lies on the grains freely, and a side that turns.
+Description loose() {
+  Description d = box("linear-frictional", {7, 6, 6}, 8);
+  d["walls"]["lid"]["motion"] = {{"free", {{"axes", "z"}, {"mass", 1e-3}, {"load", {0, 0, -0.01}}}}};
+  d["walls"]["left"]["motion"] = {{"spin", {0, 0.5, 0}}, {"velocity", {0.01, 0, 0}}, {"ramp_time", 1e-3}};
+  d["stages"] = {stage("fall", steps(230)),
+                 stage("rest", {{"type", "any"}, {"of", {steps(350), {{"type", "kinetic-energy"}, {"below", 1e-9}}}}})};
+  return d;
+}
+
+/// Clumps in a cell that repeats, fall on a floor; others follow.
+Description clumps() {
+  Description d = description("linear-rolling", sand, jumble({6, 6, 5}, 1.2 * spacing, 0.05, 9));
+  make_clumps(d, boomerang());
+  const double side = 6 * 1.2 * spacing;
+  d["domain"] = {{"low", {0, 0, -0.01}}, {"high", {side, side, 0.05}}, {"periodic", {true, true, false}}};
+  d["walls"]["floor"] = plane({0, 0, -0.5e-3}, Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0.5, 0, -9.81}}};
+  d["bodies"]["late"] = d["bodies"]["grains"];
+  d["bodies"]["late"]["stage"] = "more";
+  d["bodies"]["late"]["grains"] = {{"type", "cloud"},
+                                   {"low", {0, 0, 0.02}},
+                                   {"high", {side, side, 0.03}},
+                                   {"count", 20},
+                                   {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 1.2e-3}}}};
+  d["stages"] = {stage("first", steps(140)), stage("more", steps(150))};
+  report(d, 17);
+  d["probes"]["rotations"] = {{"type", "rotations"}, {"every_steps", 35}};
+  return d;
+}
+
+/// Grains run out of a slot, others come from above twice, what stays comes to rest.
+Description silo() {
+  const Vec3 low = Vec3::Zero(), high = spacing * Vec3(10, 5, 7);
+  Description d = description("linear-rolling", sand, jumble({10, 5, 7}, spacing, 0.3, 4));
+  for (int axis : {0, 1})
+    for (const bool up : {true, false})
+      d["walls"][std::string(1, "xy"[axis]) + (up ? "_low" : "_high")] =
+          side(axis, up ? low[axis] : high[axis], low - Vec3(0, 0, 1), high + Vec3(0, 0, 1), up);
+  for (const bool left : {true, false})
+    d["walls"][left ? "floor_left" : "floor_right"] =
+        side(2, 0, left ? low : Vec3(8 * spacing, 0, 0), left ? Vec3(3 * spacing, high.y(), 0) : high, true);
+  d["domain"] = {{"low", {-0.01, -0.01, -0.002}}, {"high", {0.03, 0.03, 0.05}}, {"open_sides", {"-z"}}};
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
+  for (const char* when : {"second", "third"}) {
+    d["bodies"][when] = d["bodies"]["grains"];
+    d["bodies"][when]["stage"] = when;
+    d["bodies"][when]["grains"] = {{"type", "cloud"},
+                                   {"low", {0, 0, 0.012}},
+                                   {"high", {high.x(), high.y(), 0.02}},
+                                   {"count", 40},
+                                   {"sizes", {{"type", "uniform"}, {"smallest", 0.8e-3}, {"largest", 1e-3}}}};
+    d["bodies"][when]["velocity"] = {0, 0, -0.5};
+  }
+  d["stages"] = {
+      stage("first", {{"type", "left"}, {"share", 0.02}}), stage("second", steps(400)),
+      stage("third", {{"type", "any"}, {"of", {steps(900), {{"type", "unbalanced-force"}, {"below", 0.01}}}}})};
+  report(d, 50);
+  d["probes"]["flow"] = {{"type", "flow"}, {"every_steps", 25}, {"window", 2e-3}, {"pattern", {{"depth_axis", "y"}}}};
+  d["probes"]["left"] = {{"type", "packing"}, {"every_left", 0.01}};
+  return d;
+}
+
+/// A box of grains sheared by its bottom, looked at by every probe, several of which remember what they saw.
+Description every_probe() {
+  Description d = box("linear-rolling", {9, 6, 7}, 12);
+  d["walls"]["bottom"]["motion"]["velocity"] = {0.4, 0, 0};
+  d["stages"] = {stage("shear", steps(130)), stage("shear on", steps(130))};
+  d["specimen"] = {{"low", {"left", "front", "bottom"}}, {"high", {"right", "back", "lid"}}};
+  const Description layer{{"wall", "bottom"}, {"driven_by", "lid"}, {"every_steps", 9}};
+  for (const char* type : {"interface", "slip"}) d["probes"][type] = layer, d["probes"][type]["type"] = type;
+  d["probes"]["wall-profile"] = {
+      {"type", "wall-profile"}, {"walls", {"left"}}, {"width", 6 * spacing}, {"every_steps", 9}};
+  d["probes"]["spectrum"] = {{"type", "spectrum"}, {"wall", "lid"}, {"interval", 1e-5},
+                             {"points", 8},        {"windows", 3},  {"every_steps", 1}};
+  d["probes"]["formula"] = {{"type", "formula"}, {"every_displacement", {{"wall", "bottom"}, {"value", 1e-5}}}};
+  d["probes"]["formula"]["curves"]["pressure"] = {{"formula", "lid_pressure"}, {"unit", "Pa"}};
+  for (const char* type : {"coarse-graining", "displacements", "energy", "rotations", "strain", "strain-pictures",
+                           "stress", "void-ratio", "walls"})
+    d["probes"][type] = {{"type", type}, {"every_steps", 40}};
+  d["probes"]["strain-pictures"]["pixels_per_diameter"] = 10;
+  return d;
+}
+
+/// The place at which two recordings part; empty where they are the same.
+std::string parting(const Taped& a, const Taped& b) {
+  const auto& x = a.tape.entries;
+  const auto& y = b.tape.entries;
+  for (std::size_t i = 0; i < std::max(x.size(), y.size()); ++i) {
+    if (i >= x.size()) return "more: " + y[i].what + " at step " + std::to_string(y[i].step);
+    if (i >= y.size()) return "less: " + x[i].what + " at step " + std::to_string(x[i].step);
+    if (!(x[i] == y[i]))
+      return x[i].what + " at step " + std::to_string(x[i].step) + ", " + y[i].what + " at step " +
+             std::to_string(y[i].step);
+  }
+  return same_bits(*a.world, *b.world) ? "" : "the worlds";
+}
+
+/// The same run, stopped at each of these steps or up to seven later, by one thread and by three in turn.
+void expect_same_when_stopped(const Description& d, const Taped& whole, const std::vector<std::uint64_t>& stops) {
+  std::optional<Checkpoint> from;
+  std::vector<Tape::Entry> before;
+  unsigned threads = 3;
+  for (const std::uint64_t at : stops) {
+    Taped part(
+        d, threads, [&](const World& now) { return now.step() >= at; }, from ? &*from : nullptr, std::move(before));
+    ASSERT_EQ(part.tape.summary.status, "interrupted") << at;
+    ASSERT_FALSE(part.tape.checkpoints.empty());
+    from = part.tape.checkpoints.back(), before = std::move(part.tape.entries);
+    ASSERT_LE(from->step, at + 8);
+    threads = 4 - threads;
+  }
+  const Taped rest(d, threads, {}, from ? &*from : nullptr, std::move(before));
+  ASSERT_EQ(rest.tape.summary.status, "done") << rest.tape.summary.message;
+  EXPECT_EQ(parting(whole, rest), "") << testing::PrintToString(stops);
+  EXPECT_EQ(rest.tape.summary.steps, whole.tape.summary.steps);
+  EXPECT_EQ(rest.tape.summary.rebuilds, whole.tape.summary.rebuilds);
+  EXPECT_EQ(rest.tape.summary.contacts_per_body, whole.tape.summary.contacts_per_body);
+}
+
+struct Case {
+  std::string name;
+  Description (*description)();
+};
+void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+
+class Resume : public testing::TestWithParam<Case> {
+ protected:
+  Description d_ = GetParam().description();
+  Taped whole_{d_, 1};
+};
+
+TEST_P(Resume, AnywhereGivesTheSameBits) {
+  const RunSummary& summary = whole_.tape.summary;
+  ASSERT_EQ(summary.status, "done") << summary.message;
+  ASSERT_GT(summary.rebuilds, 2u);
+  const std::uint64_t end = summary.steps;
+  // Also one step apart: where nothing but a search, or the begin of a stage, lies between.
+  expect_same_when_stopped(d_, whole_, {end / 2});
+  expect_same_when_stopped(d_, whole_, {1, end / 3, end / 3 + 20, 4 * end / 5});
+}
+
+/// Checkpoints by the clock change nothing, and each is as good as another.
+TEST_P(Resume, ByTheClockChangesNothing) {
+  const Taped often(d_, 2, {}, nullptr, {}, 1e-9);
+  EXPECT_EQ(parting(whole_, often), "");
+  const auto& checkpoints = often.tape.checkpoints;
+  ASSERT_FALSE(checkpoints.empty());
+  EXPECT_EQ(checkpoints.front().step, 0u);
+  for (const std::size_t which : {std::size_t{0}, checkpoints.size() / 2, checkpoints.size() - 1}) {
+    const Taped rest(d_, 3, {}, &checkpoints[which], often.tape.entries);
+    EXPECT_EQ(parting(whole_, rest), "") << "from step " << checkpoints[which].step;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Resume,
+                         testing::Values(Case{"cell", cell}, Case{"servo", [] { return servo(); }},
+                                         Case{"stiffening", stiffening}, Case{"loose_walls", loose},
+                                         Case{"clumps", clumps}, Case{"silo", silo}, Case{"every_probe", every_probe}),
+                         [](const auto& info) { return info.param.name; });
+
+/// At the steps around a search, where lists are new or worn out.
+TEST(Checkpoint, JustBeforeAndAfterASearch) {
+  Description d = cell();
+  d["probes"]["packing"]["every_steps"] = 1;  // which lets the run stop at any step
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> searches;
+  const Taped whole(d, 1, [&](const World& now) {
+    const auto& clock = static_cast<const Simulation&>(now).clock();
+    if (searches.empty() || searches.back().second != clock.rebuilds) searches.emplace_back(clock.step, clock.rebuilds);
+    return false;
+  });
+  ASSERT_GT(searches.size(), 3u);
+  const std::uint64_t at = searches[2].first;
+  for (const std::uint64_t stop : {at - 2, at - 1, at}) expect_same_when_stopped(d, whole, {stop});
+  expect_same_when_stopped(d, whole, {at - 2, at - 1, at, at + 1});
+}
+
+TEST(Checkpoint, KeepsWhatAnInterruptedRunAddsOutOfTheNextOne) {
+  const Description d = servo();
+  const Taped part(d, 1, [](const World& now) { return now.step() >= 60; });
+  const Checkpoint& last = part.tape.checkpoints.back();
+  EXPECT_EQ(part.tape.entries.back().what, "frame");
+  EXPECT_EQ(part.tape.entries.back().step, last.step) << "the run shows where it stopped";
+  EXPECT_EQ(last.stage, "press");
+}
+
+TEST(Checkpoint, IsThereWhereAStageWaitsForRest) {
+  const Description d = silo();
+  const Taped whole(d, 1);
+  ASSERT_EQ(whole.tape.summary.stage, "third");
+  std::uint64_t third = 0;
+  for (const auto& entry : whole.tape.entries)
+    if (entry.what.starts_with("end of")) third = entry.step == whole.tape.summary.steps ? third : entry.step;
+  ASSERT_GT(whole.world->departures().size(), 5u);
+  expect_same_when_stopped(d, whole, {third + 30, third + 210});
+}
+
+TEST(Checkpoint, OfAnotherSceneIsRefused) {
+  const Taped part(servo(), 1, [](const World& now) { return now.step() >= 20; });
+  const auto error_of = [&](const Description& d, Checkpoint checkpoint) -> std::string {
+    try {
+      Taped(d, 1, {}, &checkpoint);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Checkpoint good = part.tape.checkpoints.back();
+  EXPECT_THAT(error_of(cell(), good), HasSubstr("continue with the description that wrote it"));
+  Checkpoint half = good;
+  half.memory.resize(half.memory.size() / 2);
+  EXPECT_THAT(error_of(servo(), half), HasSubstr("more is to be remembered than was saved"));
+  Checkpoint longer = good;
+  longer.memory.emplace_back();
+  EXPECT_THAT(error_of(servo(), longer), HasSubstr("more in it than the run remembers"));
+}
+
+/// A force that grows with the number of times that it acted, an engine's own memory.
+class Drumbeat final : public Engine {
+ public:
+  explicit Drumbeat(bool saves) : saves_(saves) {}
+  void declare(Parameters&) override {}
+  Phase phase() const override { return Phase::forces; }
+  void forces(const World&, std::span<Row> force, std::span<Row>) const override {
+    ++beats_;
+    for (Row& one : force) one.x += 1e-6 * std::sin(beats_);
+  }
+  void remember(Memory& memory) override {
+    if (saves_) memory(beats_);
+  }
+
+ private:
+  bool saves_;
+  mutable double beats_ = 0;
+};
+
+TEST(Checkpoint, KeepsWhatEnginesRemember) {
+  const auto drum = [](const char* name, bool saves) {
+    PluginInfo info;
+    info.kind = "engine", info.name = name, info.version = "1.0.0", info.doc = "pushes all bodies along x";
+    info.make_engine = saves ? []() -> Engine* { return new Drumbeat(true); }
+                             : []() -> Engine* { return new Drumbeat(false); };
+    return info;
+  };
+  static const PluginInfo remembers = drum("drum", true), forgets = drum("careless-drum", false);
+  installed().add(remembers), installed().add(forgets);
+  for (const bool careless : {false, true}) {
+    Description d = cell();
+    d["engines"]["drum"] = {{"type", careless ? "careless-drum" : "drum"}};
+    const Taped whole(d, 1), part(d, 1, [](const World&now) { return now.step() >= 60; });
+    const Taped rest(d, 1, {}, &part.tape.checkpoints.back(), part.tape.entries);
+    EXPECT_EQ(parting(whole, rest).empty(), !careless);
+  }
+}
+
+}  // namespace
+}  // namespace grit::test

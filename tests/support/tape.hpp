@@ -1,0 +1,100 @@
+// All that a run reports, kept in memory bit by bit; the checkpoints that it saves; and runs that go on from them.
+#pragma once
+
+#include <atomic>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/driver.hpp"
+#include "support/notes.hpp"
+
+namespace grit::test {
+
+struct Tape final : Recorder {
+  struct Entry {
+    std::string what;
+    std::uint64_t step = 0;
+    double time = 0;
+    std::vector<double> values;
+    /// Also where a value is not a number.
+    bool operator==(const Entry& other) const {
+      return what == other.what && step == other.step && time == other.time && values.size() == other.values.size() &&
+             (values.empty() || std::memcmp(values.data(), other.values.data(), values.size() * sizeof(double)) == 0);
+    }
+  };
+  std::vector<Entry> entries;
+  std::vector<Checkpoint> checkpoints;
+  std::function<void(const World&)> look = [](const World&) {};  ///< at every sample
+  RunSummary summary;
+
+  void begin(const World&, std::span<const ProbeGroup> probes) override {
+    groups_.assign(probes.begin(), probes.end());
+  }
+  void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override {
+    Entry& entry = note(groups_.at(probe).name, world);
+    for (const auto& channel : values) entry.values.insert(entry.values.end(), channel.begin(), channel.end());
+    look(world);
+  }
+  void frame(const World& world, std::span<const FieldGroup> fields) override {
+    Entry& entry = note("frame", world);
+    const auto add = [&](auto begin, auto end) { entry.values.insert(entry.values.end(), begin, end); };
+    for (const auto rows : {world.positions(), world.velocities(), world.spins(), world.forces(), world.moments()})
+      for (const Row& row : rows) entry.values.insert(entry.values.end(), {row.x, row.y, row.z, row.w});
+    for (const std::uint32_t id : world.ids()) entry.values.push_back(id);
+    for (const Contact& contact : world.contacts()) {
+      entry.values.insert(entry.values.end(), {double(contact.a), double(contact.b), double(contact.feature)});
+      for (const Vec3* v : {&contact.force, &contact.moment, &contact.branch}) add(v->begin(), v->end());
+    }
+    for (const FieldGroup& group : fields)
+      for (const Field& field : group.fields) add(field.values.begin(), field.values.end());
+  }
+  void stage_ended(const World& world, const std::string& what) override { note("end of " + what, world); }
+  void remember(Memory& memory) override {
+    std::uint64_t count = entries.size();
+    memory(count);
+    entries.resize(count);
+  }
+  void checkpoint(const Checkpoint& one) override { checkpoints.push_back(one); }
+  void finish(const World&, const RunSummary& how) override { summary = how; }
+
+ private:
+  Entry& note(const std::string& what, const World& world) {
+    return entries.emplace_back(Entry{what, world.step(), world.time(), {}});
+  }
+  std::vector<ProbeGroup> groups_;
+};
+
+/// A run on tape. `tape` is what was recorded before the checkpoint, and maybe after.
+struct Taped {
+  Scene scene;
+  Tape tape;
+  std::unique_ptr<Simulation> world;
+
+  /// `stop` is asked at every sample and, every eighth step, between two steps.
+  Taped(const Description& plain, unsigned threads, std::function<bool(const World&)> stop = {},
+        const Checkpoint* resume = nullptr, std::vector<Tape::Entry> before = {}, double checkpoint_every = 0)
+      : scene(scene_of(plain)) {
+    const SceneDescription& start = *scene.description;
+    world = std::make_unique<Simulation>(start, make_bodies(start, requested_state(start)), threads);
+    tape.entries = std::move(before);
+    std::atomic<bool> stops = false;
+    const auto look = [&](const World& now) {
+      if (stop && stop(now)) stops = true;
+    };
+    tape.look = look;
+    RunControl control;
+    control.interrupted = &stops;
+    control.progress = [&](const Progress&) { look(*world); };
+    control.progress_every = 0;
+    control.resume = resume;
+    control.checkpoint_every = checkpoint_every;
+    grit::run(scene, *world, tape, control);
+    tape.look = {};
+  }
+};
+
+}  // namespace grit::test
