@@ -19,7 +19,10 @@ class CheckpointFile : public testing::Test {
  protected:
   CheckpointFile() {
     std::ofstream(folder_ / "strain.so") << "a plugin";
-    facts_.description = {{"title", "sand"}, {"walls", {{"lid", {{"pressure", 1e5}}}}}, {"low", -1.0 / 0.0}};
+    facts_.description = {{"title", "sand"},
+                          {"walls", {{"lid", {{"pressure", 1e5}}}}},
+                          {"low", -1.0 / 0.0},
+                          {"output", {{"checkpoint_every", 600}}}};
     facts_.plugins = {{"probe", "strain", "1.0.0", folder_ / "strain.so", build_tag()}};
     checkpoint_ = {"shear", 0.25, 1000, {}};
     for (int i = 0; i < 3'000'000; ++i) checkpoint_.memory.push_back(static_cast<std::byte>(i * i % 251));

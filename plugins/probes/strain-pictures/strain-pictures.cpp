@@ -292,7 +292,7 @@ std::vector<Field> StrainPictures::fields(const World& world) {
 void StrainPictures::remember(Memory& memory) {
   Image start = start_.full;  // what is made of it is made again
   memory(began_, stage_, step_, view_, start.width, start.height, start.grey, walls_.wall, walls_.driver, subsets_);
-  if (memory.restoring()) start_ = start.grey.empty() ? FilteredImage() : FilteredImage(std::move(start));
+  if (memory.restoring()) start_ = start.grey.empty() ? ReferenceImage() : ReferenceImage(std::move(start));
 }
 
 }  // namespace grit
