@@ -15,6 +15,7 @@
 #include <ctime>
 #include <map>
 #include <string_view>
+#include <vector>
 
 #include "app/command.hpp"
 
@@ -33,7 +34,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t most_sessions = 64, longest_header = 16 << 10;
 // However long a folder takes to be read then: the end of a run does not wait for more.
 constexpr unsigned most_seconds_for_the_end = 20;
-constexpr auto answer_within = 25s, reader_gone_after = 60s, last_words_within = 3s;
+constexpr auto answer_within = 25s, asks_within = 10s, reader_gone_after = 60s, last_words_within = 8s;
 
 auto into(error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
 
@@ -92,9 +93,9 @@ class PageServer {
     }
     ::alarm(most_seconds_for_the_end);
     progress_.clear(), ended_ = true;
-    if (!readers_.empty()) page_.refresh();
+    if (is_looked_at()) page_.refresh();
     news_.cancel();
-    if (readers_.empty()) io_.stop();
+    if (!is_looked_at()) io_.stop();
     asio::steady_timer patience(io_, last_words_within);
     co_await patience.async_wait(asio::use_awaitable);
     io_.stop();
@@ -105,8 +106,9 @@ class PageServer {
     asio::steady_timer timer(io_);
     for (;;) {
       const std::clock_t began = std::clock();  // of the processor: to wait for one is no work
-      std::erase_if(readers_,
-                    [now = Clock::now()](const auto& reader) { return now - reader.second > reader_gone_after; });
+      const auto now = Clock::now();
+      std::erase_if(readers_, [now](const auto& reader) { return now - reader.second > reader_gone_after; });
+      std::erase_if(opened_, [now](Clock::time_point then) { return now - then > asks_within; });
       if (!readers_.empty() && !ended_) {
         page_.refresh();
         news_.cancel();
@@ -143,8 +145,10 @@ class PageServer {
     error_code ignored;
     stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
     --sessions_;
-    if (ended_ && readers_.empty()) io_.stop();
+    if (ended_ && !is_looked_at()) io_.stop();
   }
+
+  bool is_looked_at() const { return !readers_.empty() || !opened_.empty(); }
 
   static std::string_view text(beast::string_view view) { return {view.data(), view.size()}; }
 
@@ -169,6 +173,7 @@ class PageServer {
     }
     if (target == "/") {
       page_.refresh();
+      if (opened_.size() < most_sessions) opened_.push_back(Clock::now());
       co_return say(http::status::ok, html, page_.html());
     }
     if (!target.starts_with("/new?")) co_return say(http::status::not_found, plain, "there is nothing here but /\n");
@@ -184,6 +189,7 @@ class PageServer {
 
   /// Waits for something that the reader does not know.
   asio::awaitable<Description> news_for(std::size_t since, const std::string reader) {
+    if (!opened_.empty() && !readers_.contains(reader)) opened_.erase(opened_.begin());
     if (readers_.size() < most_sessions) readers_[reader] = Clock::now();
     const std::string progress = progress_;
     const auto until = Clock::now() + answer_within;
@@ -203,6 +209,7 @@ class PageServer {
   LivePage& page_;
   asio::steady_timer news_{io_, Clock::time_point::max()};  ///< cancelled to wake those who wait
   std::map<std::string, Clock::time_point> readers_;        ///< pages that are open, and when they asked last
+  std::vector<Clock::time_point> opened_;                   ///< when pages were sent that have not asked yet
   std::string progress_;
   bool ended_ = false;
   std::size_t sessions_ = 0;
