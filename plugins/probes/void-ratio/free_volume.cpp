@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace grit {
 
@@ -139,6 +140,7 @@ class Carver {
   double solid_share(const Box& box, const Cut& cut) const {
     if (cut.solid) return 1;
     if (cut.walls.empty()) return 0;
+    if (each_along_an_axis(cut) && all_planes(box, cut)) return by_planes(box, cut);
     const std::vector<Box> halves = box.halves();
     std::vector<Cut> cuts;
     double by_halves = 0;
@@ -169,6 +171,18 @@ class Carver {
       open *= share_below(box.size, normal, distance);
     }
     return 1 - open;
+  }
+
+  /// Whether shares behind planes are exact: one plane, or planes square to axes of their own.
+  static bool each_along_an_axis(const Cut& cut) {
+    if (cut.walls.size() == 1) return true;
+    constexpr double square = 1e-12;
+    std::array<bool, 3> taken{};
+    return std::ranges::all_of(cut.walls, [&](const Near& near) {
+      Eigen::Index axis = 0;
+      return near.clearance.normal.cwiseAbs().maxCoeff(&axis) >= 1 - square &&
+             !std::exchange(taken[static_cast<std::size_t>(axis)], true);
+    });
   }
 
   /// Whether walls are planes all over the box: of a flat wall a face is convex, so that its corners tell.
