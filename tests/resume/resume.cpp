@@ -146,7 +146,8 @@ TEST_F(Resume, GoesOnWithWhatAKilledRunLeft) {
 }
 
 TEST_F(Resume, BeginsAtTheBeginningWithoutACheckpoint) {
-  const auto outcome = grit(run("new", {"--resume", "--set", "/stages/0/until/value=10"}));
+  const auto outcome =
+      grit(run("new", {"--resume", "--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("no checkpoint in new: the run begins at the beginning"));
   EXPECT_EQ(run_json("new").at("resumed"), 0);
