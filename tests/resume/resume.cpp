@@ -184,6 +184,7 @@ TEST_F(Resume, TellsWhatMakesNoSense) {
   EXPECT_EQ(both.status, 1);
   EXPECT_THAT(both.err, HasSubstr("--resume goes on with results, --overwrite replaces them"));
   std::filesystem::create_directory(folder / "empty");
+  std::ofstream(folder / "empty/run.json") << "{}";
   EXPECT_THAT(grit({"run", "empty"}).err, HasSubstr("empty is a folder; give a description, or go on with its run"));
   EXPECT_EQ(grit({"run", "empty"}).status, 1);
   EXPECT_EQ(grit({"run", "empty", "--resume", "--out", "x"}).status, 1);

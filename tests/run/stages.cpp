@@ -410,9 +410,10 @@ TEST(Reports, AnInterruptedRunEndsAtOnceAndWhole) {
   const Done done = run(d, {.interrupted = &interrupted});
   EXPECT_EQ(done.summary().status, "interrupted");
   EXPECT_EQ(done.summary().message, "");
-  EXPECT_EQ(done.summary().steps, 120u);
-  EXPECT_EQ(done.notes.steps_of("stop").back(), 120u);
-  EXPECT_THAT(done.notes.frames, ElementsAre(0, 120));
+  // Asked during a step, it ends with the next: it can go on only from between two steps.
+  EXPECT_EQ(done.summary().steps, 121u);
+  EXPECT_EQ(done.notes.steps_of("stop").back(), 121u);
+  EXPECT_THAT(done.notes.frames, ElementsAre(0, 121));
   EXPECT_THAT(done.notes.ended, testing::IsEmpty()) << "the stage did not end";
   ASSERT_EQ(done.world->contacts().size(), 1u);
   EXPECT_NEAR(done.world->contacts()[0].overlap, radius - done.world->positions()[0].z, 1e-18)

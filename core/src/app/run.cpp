@@ -46,7 +46,8 @@ struct Job {
 /// A description's file, or with --resume the folder of a run, which has its description.
 Job job_of(const std::string& word, const Options& options) {
   Job job;
-  if (std::filesystem::is_directory(word)) {
+  if (options.has("resume") ? std::filesystem::is_directory(word)
+                            : std::filesystem::exists(std::filesystem::path(word) / "run.json")) {
     if (!options.has("resume"))
       throw UsageError(word + " is a folder; give a description, or go on with its run: --resume");
     if (options.has("out")) throw UsageError(word + " is a folder, where its run goes on; leave out --out");
