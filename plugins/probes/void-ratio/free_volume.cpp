@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/container/small_vector.hpp>
+#include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <utility>
 
@@ -18,6 +20,8 @@ struct Near {
   Clearance clearance;
 };
 
+using Walls = boost::container::small_vector<Near, 4>;
+
 class Carver {
  public:
   Carver(const World& world, const AveragingCells& cells, double error)
@@ -28,7 +32,7 @@ class Carver {
     Parts all{{0, 0, 0}, {}};
     for (int k = 0; k < 3; ++k) all.end[index(k)] = cells_.along(k).strips();
     const Box box = box_of(all);
-    std::vector<Near> walls;
+    Walls walls;
     for (std::size_t w = 0; w < world_.walls().size(); ++w) {
       // Whatever has its surface outside of this is no wall of the region.
       const double reach = 2 * box.half_diagonal();
@@ -44,8 +48,8 @@ class Carver {
     double half_diagonal() const { return 0.5 * size.norm(); }
     double volume() const { return size.prod(); }
     /// Halves of all sides that are more than half as long as the longest, two to eight boxes.
-    std::vector<Box> halves() const {
-      std::vector<Box> found{*this};
+    auto halves() const {
+      boost::container::static_vector<Box, 8> found{*this};
       for (int k = 0; k < 3; ++k) {
         if (size[k] <= 0.5 * size.maxCoeff()) continue;
         const std::size_t before = found.size();
@@ -66,7 +70,7 @@ class Carver {
   /// The walls that may cut a box, unless one has all of it behind.
   struct Cut {
     bool solid = false;
-    std::vector<Near> walls;
+    Walls walls;
   };
   static std::size_t index(int k) { return static_cast<std::size_t>(k); }
 
@@ -80,7 +84,7 @@ class Carver {
   }
 
   /// Of walls that are known from the middle of a box, those that may cut it.
-  static Cut cut_by(const Box& box, const std::vector<Near>& walls) {
+  static Cut cut_by(const Box& box, const Walls& walls) {
     Cut cut;
     const double reach = box.half_diagonal();
     for (const Near& near : walls) {
@@ -92,10 +96,10 @@ class Carver {
   }
 
   /// The walls of a box as seen from the middle of one inside of it.
-  Cut cut_by(const Box& inner, const Box& box, const std::vector<Near>& walls) const {
+  Cut cut_by(const Box& inner, const Box& box, const Walls& walls) const {
     constexpr double rounding = 1e-9;
     const double moved = (inner.middle - box.middle).norm();
-    std::vector<Near> seen;
+    Walls seen;
     for (const Near& near : walls) {
       // The shorter the reach the cheaper the answer; behind a face its distance may be longer than it seems.
       const double far = (1 + rounding) * (near.reach + moved),
@@ -141,8 +145,8 @@ class Carver {
     if (cut.solid) return 1;
     if (cut.walls.empty()) return 0;
     if (each_along_an_axis(cut) && all_planes(box, cut)) return by_planes(box, cut);
-    const std::vector<Box> halves = box.halves();
-    std::vector<Cut> cuts;
+    const auto halves = box.halves();
+    boost::container::static_vector<Cut, 8> cuts;
     double by_halves = 0;
     for (const Box& half : halves) {
       cuts.push_back(cut_by(half, box, cut.walls));
@@ -213,7 +217,7 @@ class Carver {
 
   // Sides of boxes, over the error; of flat walls, which have no grooves to be missed, and how little halves may
   // differ.
-  static constexpr double coarsest = 250, finest = 32, widest = 4000, flattest = 1e-3;
+  static constexpr double coarsest = 250, finest = 32, flattest = 1e-3;
 
   const World& world_;
   const AveragingCells& cells_;
