@@ -159,6 +159,18 @@ TEST(FreeVolume, IsExactBeforeFlatWalls) {
   EXPECT_NEAR(free_volume(tilted, tilted.whole, {4, 4, 4}, 1e-3), 32, 1e-9);
 }
 
+TEST(FreeVolume, FollowsFlatWallsThatShareACell) {
+  FakeWorld valley = cubic(4), slot = cubic(4);
+  add_plane(valley, {2, 0, 1}, {1, 0, 1});
+  add_plane(valley, {2, 0, 1}, {-1, 0, 1});  // free where z - 1 > |x - 2|
+  add_plane(slot, {0, 0, 1}, {0, 0, 1});
+  add_plane(slot, {0, 0, 3}, {0, 0, -1});
+  for (FakeWorld* world : {&valley, &slot}) {
+    for (WallView& wall : world->wall) wall.flat = true;
+    EXPECT_NEAR(free_volume(*world, world->whole, {1, 1, 1}, 1e-3), 32, 32e-3);
+  }
+}
+
 TEST(FreeVolume, TakesNothingForASheetWithTwoSides) {
   FakeWorld world = cubic(4);
   add_wall(world, [](const Vec3& x) { return Clearance{std::abs(x.z() - 1.3), Vec3(0, 0, x.z() < 1.3 ? 1 : -1)}; });
