@@ -10,8 +10,10 @@ Units are SI, names those of docs/results.md. Nothing is kept open: a run that g
 """
 
 import difflib
+import fcntl
 import json
 import pathlib
+import struct
 import time
 from collections.abc import Mapping, Sequence
 
@@ -43,7 +45,8 @@ def open(folder):
     return Run(folder)
 
 
-# A run flushes its series every second, which takes it some milliseconds; in between its file rests. Seconds.
+# A run flushes its series every second, which takes it some milliseconds; in between its file rests. Seconds. The system's ticks, by which
+# files are stamped, are finer than that.
 _REST, _PATIENCE = 0.02, 5
 
 
@@ -55,21 +58,31 @@ def _stamp(path):
     return state.st_mtime_ns, state.st_size
 
 
+def _is_being_written(path):
+    """Whether a run has its mark on the file: a lock that readers ask for and never take."""
+    with path.open("rb") as file:
+        lock = struct.pack("hhqqi0q", fcntl.F_RDLCK, 0, 0, 0, 0)  # struct flock: type, whence, start, length, process
+        try:
+            return struct.unpack("hhqqi0q", fcntl.fcntl(file, fcntl.F_OFD_GETLK, lock))[0] != fcntl.F_UNLCK
+        except OSError:  # of a file system without locks
+            return False
+
+
 def _read(path, act):
     """What `act` makes of an open file to which nobody has written meanwhile."""
     until = time.monotonic() + _PATIENCE
     while True:
         before, slip = _stamp(path), None
-        rested = not 0 <= time.time_ns() - before[0] < _REST * 1e9
+        rested = not 0 <= time.time_ns() - before[0] < _REST * 1e9 and not _is_being_written(path)
         try:
             with h5py.File(path, "r") as file:
                 found = act(file)
         except (OSError, RuntimeError, KeyError) as error:
             slip = error
-        if rested and _stamp(path) == before:
+        if rested and not _is_being_written(path) and _stamp(path) == before:
             break
         if time.monotonic() > until:
-            raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again")
+            raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again, or look whether its run is halted")
         time.sleep(_REST)
     if isinstance(slip, KeyError):
         raise slip

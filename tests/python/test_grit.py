@@ -4,10 +4,13 @@
 usage: test_grit.py GRIT     exit status 77 where there is no h5py
 """
 
+import fcntl
 import json
+import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -180,6 +183,20 @@ class Results(unittest.TestCase):
 
         with unittest.mock.patch("grit._stamp", mend):
             self.assertEqual(grit.open(target).series["packing/time"].tobytes(), self.run_.series["packing/time"].tobytes())
+
+    def test_a_file_that_bears_the_mark_of_its_writer_is_not_believed(self):
+        target = self.copy()
+        whole, series, run = (target / "series.h5").read_bytes(), target / "series.h5", grit.open(target)
+        with series.open("r+b") as writer, unittest.mock.patch("grit._PATIENCE", 0):
+            fcntl.fcntl(writer, fcntl.F_OFD_SETLK, struct.pack("hhqqi0q", fcntl.F_WRLCK, 0, 0, 0, 0))
+            os.utime(series, (0, 0))  # it has rested for long, as where a writer got no processor
+            for cut in (0, 100, 300, len(whole) // 2, len(whole)):
+                writer.truncate(cut)
+                os.utime(series, (0, 0))
+                with self.assertRaisesRegex(grit.ResultsError, "series.h5: has been written to for 0 s; try again"):
+                    run.series["packing/time"]
+        series.write_bytes(whole)
+        self.assertEqual(run.series["packing/time"].tobytes(), self.run_.series["packing/time"].tobytes())
 
     def test_fields_of_probes_and_vectors_of_walls(self):
         target = self.copy()

@@ -1,6 +1,10 @@
 // The page of a run that goes on: what is new is given, and given once.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
+#include <future>
+
+#include "output/writing_mark.hpp"
 #include "report/live_page.hpp"
 #include "results.hpp"
 
@@ -8,6 +12,7 @@ namespace grit {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -105,6 +110,60 @@ TEST(LivePage, ShowsWhatCanBeReadOfAFolderInPieces) {
   const json news = page.news(nothing);
   EXPECT_THAT(std::string(news.at("head")), HasSubstr("What could not be read"));
   EXPECT_EQ(news.at("report").at("runs").at(0).at("grains").at("frames").size(), 2u);
+}
+
+TEST(LivePage, StaysAsItIsWhileTheSeriesAreBeingWritten) {
+  const Folder folder;
+  SmallRun(folder / "run").write();
+  const auto series = folder / "run/series.h5";
+  const std::string whole = text_of(series);
+  // An hour ago: what was written just now has to rest.
+  const auto write = [&](const std::string& bytes) {
+    set_file(series, bytes);
+    std::filesystem::last_write_time(series, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  };
+  write(whole);
+  LivePage page(folder / "run", "1", {}, std::chrono::milliseconds(0));
+  ASSERT_TRUE(page.refresh());
+  const auto known = page.since();
+  const std::string html = page.html();
+  {
+    const WritingMark mark(series, WritingMark::Absent::leave);
+    write(whole.substr(0, whole.size() / 2));
+    EXPECT_FALSE(page.refresh());
+    EXPECT_EQ(page.html(), html);
+    EXPECT_EQ(page.since(), known);
+  }
+  // As a writer that was killed leaves it.
+  EXPECT_TRUE(page.refresh());
+  EXPECT_THAT(page.html(), AllOf(HasSubstr("What could not be read"), HasSubstr("series.h5: cannot read")));
+  write(whole);
+  EXPECT_TRUE(page.refresh());
+  EXPECT_THAT(page.html(), Not(HasSubstr("What could not be read")));
+}
+
+// run.json is a pipe here: while it is read, something else changes for certain.
+TEST(LivePage, TellsWhatCannotBeReadInAFolderThatChangesOnlyIfItLasts) {
+  const Folder folder;
+  SmallRun(folder / "run").write();
+  const auto json = folder / "run/run.json";
+  const std::string whole = text_of(json);
+  std::filesystem::remove(json);
+  ASSERT_EQ(::mkfifo(json.c_str(), 0600), 0);
+  set_file(folder / "run/frames/000007.h5", "not HDF5");
+  LivePage page(folder / "run", "1");
+  const auto told = [&](std::size_t look) {
+    const auto changes = std::async(std::launch::async, [&, look] {
+      std::ofstream reader_waits(json);
+      set_file(folder / ("run/frames/00001" + std::to_string(look) + ".h5"), "not HDF5 either");
+      reader_waits << whole;
+    });
+    return page.refresh();
+  };
+  for (std::size_t look = 0; look < 3; ++look) EXPECT_FALSE(told(look));
+  EXPECT_TRUE(told(3));
+  EXPECT_THAT(page.html(), HasSubstr("000007.h5: cannot read"));
+  EXPECT_TRUE(told(4)) << "and again, as it lasts";
 }
 
 }  // namespace

@@ -77,14 +77,15 @@ class Resume : public testing::Test {
   }
   /// Series, frames and grains, to the last bit.
   void expect_same_results(const std::string& a, const std::string& b) const {
-    const auto names = channel_names(folder / a);
-    ASSERT_EQ(names, channel_names(folder / b));
+    const SeriesFile first_series(folder / a), other_series(folder / b);
+    const auto names = first_series.channels();
+    ASSERT_EQ(names, other_series.channels());
     ASSERT_GT(names.size(), 20u);
     const auto same = [](const std::vector<double>& x, const std::vector<double>& y) {
       return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(double)) == 0;
     };
     for (const auto& name : names) {
-      const auto x = read_channel(folder / a, name), y = read_channel(folder / b, name);
+      const auto x = first_series.channel(name), y = other_series.channel(name);
       EXPECT_GT(x.samples, 50u);
       EXPECT_TRUE(same(x.values, y.values)) << name << ": " << x.samples << " and " << y.samples << " samples";
     }

@@ -15,6 +15,8 @@ static_assert(std::same_as<hid_t, std::int64_t> && std::same_as<herr_t, int>);
 
 // 2 · 128 chunks of an index fit one node: it is not split, and so not rewritten in parts, for half a million samples.
 constexpr unsigned chunk_index_half = 128;
+// By which a copy in memory would grow.
+constexpr std::size_t copy_increment = std::size_t{1} << 16;
 // That share a checksum.
 constexpr std::size_t checked_bytes = std::size_t{1} << 20;
 
@@ -107,15 +109,17 @@ hid_t open_file(const std::filesystem::path& path, Mode mode) {
   H5AC_cache_config_t cache{};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
   H5Pget_mdc_config(access.id(), &cache);
-  cache.evictions_enabled = mode == Mode::read;
+  cache.evictions_enabled = mode == Mode::read || mode == Mode::copy;
   if (!cache.evictions_enabled) {
     cache.incr_mode = H5C_incr__off;
     cache.flash_incr_mode = H5C_flash_incr__off;
     cache.decr_mode = H5C_decr__off;
   }
   checked(H5Pset_mdc_config(access.id(), &cache), where, "prepare to open");
+  if (mode == Mode::copy) checked(H5Pset_fapl_core(access.id(), copy_increment, false), where, "prepare to open");
   switch (mode) {
     case Mode::read:
+    case Mode::copy:
       return checked(H5Fopen(where.c_str(), H5F_ACC_RDONLY, access.id()), where, "read");
     case Mode::change: {
       Handle file = owned(H5Fopen(where.c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, where, "change");

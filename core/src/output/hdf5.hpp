@@ -163,7 +163,12 @@ class Group : public Object {
   Dataset create_growing(const std::string& name, const Shape& row, std::size_t rows_per_chunk, Number type);
 };
 
-enum class Mode { read, change, replace };
+enum class Mode {
+  read,
+  copy,  ///< reads a copy of the whole file as it is now, and does not look at the file again
+  change,
+  replace
+};
 
 /// An open file. Not locked, so that others may read a file that is being written; in the oldest format, which has
 /// neither checksums nor a mark "open for writing" that a killed writer would leave behind. Nothing of what is written

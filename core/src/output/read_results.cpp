@@ -1,11 +1,13 @@
 #include "output/read_results.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
 
+#include <cstdint>
 #include <fstream>
+#include <thread>
 
-#include "grit/error.hpp"
-#include "output/hdf5.hpp"
+#include "output/writing_mark.hpp"
 
 namespace grit {
 namespace {
@@ -14,24 +16,62 @@ std::string listed(const std::vector<std::string>& names) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-hdf5::File series_of(const std::filesystem::path& folder) {
-  const auto path = folder / "series.h5";
-  if (!std::filesystem::exists(path)) throw FileError(path.string() + ": there is no such file");
-  return {path, hdf5::Mode::read};
+/// What differs if something was written in between. Times of files are as fine as the system's ticks, up to 10 ms: so
+/// it counts for a file that has rested for longer.
+struct Stamp {
+  ino_t inode;
+  off_t size;
+  std::int64_t changed_ns;
+  bool operator==(const Stamp&) const = default;
+};
+
+constexpr std::int64_t rest_ns = 20'000'000;
+constexpr std::chrono::milliseconds between_looks{10};
+
+Stamp stamp_of(const std::filesystem::path& path) {
+  struct stat state {};
+  if (::stat(path.c_str(), &state) != 0) throw FileError(path.string() + ": there is no such file");
+  return {state.st_ino, state.st_size, state.st_mtim.tv_sec * 1'000'000'000 + state.st_mtim.tv_nsec};
+}
+
+bool has_rested(const Stamp& stamp) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto age = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - stamp.changed_ns;
+  return age < 0 || age >= rest_ns;  // below zero by another machine's clock
+}
+
+/// The file as it was when nobody was writing to it: in the midst of that it fits together for nobody.
+hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    const Stamp before = stamp_of(path);
+    const auto has_stayed = [&] { return !is_being_written(path) && stamp_of(path) == before; };
+    if (has_rested(before) && !is_being_written(path)) try {
+        hdf5::File copy(path, hdf5::Mode::copy);
+        if (has_stayed()) return copy;
+      } catch (const FileError&) {
+        if (has_stayed()) throw;
+      }
+    if (std::chrono::steady_clock::now() >= until)
+      throw BeingWritten(fmt::format("{}: has been written to for {} s; try again, or look whether its run is halted",
+                                     path.string(), static_cast<double>(patience.count()) / 1000));
+    std::this_thread::sleep_for(between_looks);
+  }
 }
 
 }  // namespace
 
-SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name) {
-  const auto path = folder / "series.h5";
-  const hdf5::File file = series_of(folder);
+SeriesFile::SeriesFile(const std::filesystem::path& folder, std::chrono::milliseconds patience)
+    : file_(settled(folder / "series.h5", patience)) {}
+
+SampledChannel SeriesFile::channel(const std::string& name) const {
   const auto slash = name.find('/');
   const std::string probe = name.substr(0, slash), channel = slash == std::string::npos ? "" : name.substr(slash + 1);
-  if (!file.has(probe))
-    throw FileError(path.string() + ": there is no probe \"" + probe + "\" but " + listed(file.names()));
-  const auto group = file.group(probe);
+  if (!file_.has(probe))
+    throw FileError(file_.where() + ": there is no probe \"" + probe + "\" but " + listed(file_.names()));
+  const auto group = file_.group(probe);
   if (channel.empty() || !group.has(channel))
-    throw FileError(path.string() + ": probe \"" + probe + "\" has no channel \"" + channel + "\" but " +
+    throw FileError(file_.where() + ": probe \"" + probe + "\" has no channel \"" + channel + "\" but " +
                     listed(group.names()));
   const auto dataset = group.dataset(channel);
   const auto text = [&](const char* attribute, const char* otherwise) {
@@ -41,12 +81,15 @@ SampledChannel read_channel(const std::filesystem::path& folder, const std::stri
           dataset.words("components"), dataset.rows(),        dataset.read<double>()};
 }
 
-std::vector<std::string> channel_names(const std::filesystem::path& folder) {
-  const hdf5::File file = series_of(folder);
+std::vector<std::string> SeriesFile::channels() const {
   std::vector<std::string> names;
-  for (const auto& probe : file.names())
-    for (const auto& channel : file.group(probe).names()) names.push_back(probe + '/' + channel);
+  for (const auto& probe : file_.names())
+    for (const auto& channel : file_.group(probe).names()) names.push_back(probe + '/' + channel);
   return names;
+}
+
+SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name) {
+  return SeriesFile(folder).channel(name);
 }
 
 std::optional<Description> read_run_json(const std::filesystem::path& folder) {

@@ -42,24 +42,40 @@ hdf5::Dataset reopened(const hdf5::Group& group, const Channel& channel, std::si
   return dataset;
 }
 
+/// While a file is being written; also a failed one is not for longer.
+class Marked {
+ public:
+  explicit Marked(const WritingMark& mark) : mark_(mark) { mark_.set(); }
+  ~Marked() { mark_.clear(); }
+  Marked(const Marked&) = delete;
+  Marked& operator=(const Marked&) = delete;
+
+ private:
+  const WritingMark& mark_;
+};
+
 }  // namespace
 
 Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing)
-    : file_(path, hdf5::Mode::replace), flushing_(flushing) {
+    : mark_(path, WritingMark::Absent::make), file_(path, hdf5::Mode::replace), flushing_(flushing) {
   for (const auto& probe : probes) tables_.push_back(create(probe));
   file_.flush();
+  mark_.clear();
 }
 
 Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes,
                std::span<const std::uint64_t> kept, Flushing flushing)
-    : file_(path, hdf5::Mode::change), flushing_(flushing) {
+    : mark_(path, WritingMark::Absent::leave), file_(path, hdf5::Mode::change), flushing_(flushing) {
   if (kept.size() != probes.size())
     throw FileError(path.string() + ": a run with " + std::to_string(kept.size()) +
                     " probes, but the description has " + std::to_string(probes.size()) +
                     ": resume with the description that the run began with");
   for (std::size_t i = 0; i < probes.size(); ++i) tables_.push_back(reopen(probes[i], kept[i]));
   file_.flush();
+  mark_.clear();
 }
+
+Series::~Series() { mark_.set(); }
 
 Series::Table Series::create(const ProbeGroup& probe) {
   auto group = file_.create_group(probe.name);
@@ -99,7 +115,7 @@ void Series::append(std::size_t probe, double time, std::uint64_t step,
   if (waiting_ >= flushing_.numbers || std::chrono::steady_clock::now() - flushed_ >= flushing_.interval) flush();
 }
 
-void Series::flush() {
+void Series::write() {
   const auto drain = [](hdf5::Dataset& dataset, auto& waiting) {
     if (!waiting.empty()) dataset.append(std::span(std::as_const(waiting)));
     waiting.clear();
@@ -109,9 +125,14 @@ void Series::flush() {
     drain(table.step, table.waiting_steps);
     for (auto& column : table.columns) drain(column.dataset, column.waiting);
   }
-  file_.flush();
   waiting_ = 0;
   flushed_ = std::chrono::steady_clock::now();
+}
+
+void Series::flush() {
+  const Marked marked(mark_);
+  write();
+  file_.flush();
 }
 
 std::vector<std::uint64_t> Series::samples() const {
@@ -121,7 +142,8 @@ std::vector<std::uint64_t> Series::samples() const {
 }
 
 void Series::close() {
-  flush();
+  const Marked marked(mark_);
+  write();
   file_.close();
 }
 

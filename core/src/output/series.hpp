@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "output/hdf5.hpp"
+#include "output/writing_mark.hpp"
 #include "run/recorder.hpp"
 
 namespace grit {
@@ -19,16 +20,18 @@ struct Flushing {
 };
 
 /// One group a probe with `time` [s], `step` and one dataset a channel: first dimension the samples, then the channel's
-/// shape; attributes `units` (UDUNITS) and `long_name`. What was flushed stays readable if the process is killed. If
-/// that happens within a flush that opens a new chunk (2048 numbers), the samples of this chunk may be counted but not
-/// readable: 7 of 600 writers killed while they did nothing but flush left such a tail. Going on mends it. All
-/// functions throw FileError.
+/// shape; attributes `units` (UDUNITS) and `long_name`. While the file is being written, and fits together for nobody,
+/// it bears a WritingMark. What was flushed stays readable if the process is killed. If that happens within a flush
+/// that opens a new chunk (2048 numbers), the samples of this chunk may be counted but not readable: 7 of 600 writers
+/// killed while they did nothing but flush left such a tail. Going on mends it. All functions throw FileError.
 class Series {
  public:
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing = {});
   /// Goes on with a file: of each probe so many samples are kept, later ones are forgotten.
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::span<const std::uint64_t> kept,
          Flushing flushing = {});
+  /// Closes a file that was not closed, whatever comes of it.
+  ~Series();
 
   /// One sample of the probe with this place in the list; one span a channel.
   void append(std::size_t probe, double time, std::uint64_t step, std::span<const std::span<const double>> values);
@@ -52,7 +55,9 @@ class Series {
 
   Table create(const ProbeGroup& probe);
   Table reopen(const ProbeGroup& probe, std::uint64_t samples);
+  void write();
 
+  WritingMark mark_;  ///< before the file, which is opened and closed under it
   hdf5::File file_;
   std::vector<Table> tables_;
   Flushing flushing_;

@@ -2,10 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <chrono>
-#include <thread>
-
-#include "grit/error.hpp"
 #include "output/read_frames.hpp"
 
 namespace grit {
@@ -20,58 +16,45 @@ std::string stamp_of_file(const path& file) {
   return fmt::format("{} {} ", size, changed.time_since_epoch().count());
 }
 
-/// Another one, if something was written in between.
+/// Another one, if something was written in between. Frames are counted as well: two may come within a tick of the
+/// clock.
 std::string stamp_of(const path& folder) {
-  return stamp_of_file(folder / "run.json") + stamp_of_file(folder / "series.h5") + stamp_of_file(folder / "frames");
+  return stamp_of_file(folder / "run.json") + stamp_of_file(folder / "series.h5") + stamp_of_file(folder / "frames") +
+         std::to_string(frame_files(folder).size());
 }
 
-/// Whether nobody has written to a file for a while.
-bool rests(const path& file) {
-  using namespace std::chrono_literals;
-  std::error_code none;
-  const auto changed = std::filesystem::last_write_time(file, none);
-  return none || std::filesystem::file_time_type::clock::now() - changed > 20ms;
-}
-
-using Clock = std::chrono::steady_clock;
-
-// A flush of the series takes some milliseconds, in which their file fits together for nobody: what was read counts if
-// the file rested before and is the same after. Where it never rests so long, what is there has to do, until next time.
-constexpr auto patience = std::chrono::seconds(1);
-constexpr auto between_attempts = std::chrono::milliseconds(25);
+// So often in a row may something be unreadable in a folder that has changed while it was read, and not be told.
+constexpr int most_slips = 3;
 
 }  // namespace
 
-LivePage::LivePage(path folder, std::string run, const GrainLimits& limits)
+LivePage::LivePage(path folder, std::string run, const GrainLimits& limits, std::chrono::milliseconds patience)
     : folder_(std::move(folder)),
       run_(std::move(run)),
       limits_(limits),
+      patience_(patience),
       content_(empty_content(folder_.filename().string(), "The run is being prepared.")) {
   content_.json["live"] = {{"since", since()}, {"run", run_}};
 }
 
 bool LivePage::refresh() {
-  if (stamp_of(folder_) == stamp_ || !std::filesystem::exists(folder_ / "run.json")) return false;
-  const path series = folder_ / "series.h5";
-  const auto until = Clock::now() + patience;
-  for (bool first = true; first || Clock::now() < until; first = false) {
-    if (!first) std::this_thread::sleep_for(between_attempts);
-    while (!rests(series) && Clock::now() < until) std::this_thread::sleep_for(between_attempts);
-    const std::string before = stamp_of(folder_), series_before = stamp_of_file(series);
-    DataElements data = data_.next();
-    try {
-      ReportContent content = report_content(std::span(&folder_, 1), limits_, data);
-      if (stamp_of_file(series) != series_before && Clock::now() < until) continue;
-      content_ = std::move(content);
-    } catch (const std::exception&) {  // of files that are being replaced
-      continue;
-    }
-    stamp_ = before;
-    data_ = std::move(data);
-    content_.json["live"] = {{"since", since()}, {"run", run_}};
-    return true;
+  const std::string before = stamp_of(folder_);
+  if (before == stamp_ || !std::filesystem::exists(folder_ / "run.json")) return false;
+  DataElements data = data_.next();
+  ReportContent content;
+  try {
+    content = report_content(std::span(&folder_, 1), limits_, data, patience_);
+  } catch (const std::exception&) {  // of files that are being replaced
+    return false;
   }
-  return false;
+  if (content.unsettled) return false;
+  if (content.problems.empty()) slips_ = 0;
+  else if (stamp_of(folder_) != before && ++slips_ <= most_slips) return false;
+  stamp_ = before;
+  content_ = std::move(content);
+  data_ = std::move(data);
+  content_.json["live"] = {{"since", since()}, {"run", run_}};
+  return true;
 }
 
 std::string LivePage::html() const { return report_html(content_, data_, Reach::server); }

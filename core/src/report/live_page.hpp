@@ -1,6 +1,7 @@
 // The page of a run that goes on: first whole, then what is new again and again.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 
@@ -12,9 +13,12 @@ namespace grit {
 class LivePage {
  public:
   /// `run` tells runs apart that are shown one after the other at one place.
-  LivePage(std::filesystem::path folder, std::string run, const GrainLimits& limits = {.bytes = 24u << 20});
+  LivePage(std::filesystem::path folder, std::string run, const GrainLimits& limits = {.bytes = 24u << 20},
+           std::chrono::milliseconds patience = std::chrono::seconds(1));
 
-  /// Reads the folder if its files have changed. Returns whether they had.
+  /// Reads the folder if its files have changed. Returns whether there is news. What was being written all the time, or
+  /// could not be read in a folder that changed meanwhile, leaves the page as it is until the next time; if the latter
+  /// lasts, it is told.
   bool refresh();
   /// The whole page; it asks `new?since=…` beside it for more.
   std::string html() const;
@@ -31,6 +35,8 @@ class LivePage {
   std::filesystem::path folder_;
   std::string run_, stamp_;
   GrainLimits limits_;
+  std::chrono::milliseconds patience_;
+  int slips_ = 0;
   DataElements data_;
   ReportContent content_;
 };

@@ -277,9 +277,9 @@ void tell_apart(std::vector<RunResults>& runs) {
 }  // namespace
 
 ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
-                             DataElements& data) {
+                             DataElements& data, std::chrono::milliseconds patience) {
   std::vector<RunResults> runs;
-  for (const auto& folder : folders) runs.push_back(read_results(folder));
+  for (const auto& folder : folders) runs.push_back(read_results(folder, patience));
   tell_apart(runs);
   GrainLimits share = limits;
   share.bytes /= std::max<std::size_t>(1, runs.size());
@@ -291,6 +291,7 @@ ReportContent report_content(std::span<const std::filesystem::path> folders, con
     one["grains"] = grain_frames(run.frames, share, data, run.problems);
     diameters.push_back(one["grains"].is_null() ? 0 : one["grains"]["mean_diameter"].get<double>());
     content.problems.insert(content.problems.end(), run.problems.begin(), run.problems.end());
+    content.unsettled = content.unsettled || run.unsettled;
     content.json["runs"].push_back(std::move(one));
   }
   add_readable_units(content.json["runs"]);

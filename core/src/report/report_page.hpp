@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grit/description.hpp"
+#include "output/read_results.hpp"
 #include "report/grain_frames.hpp"
 
 namespace grit {
@@ -17,11 +18,12 @@ struct ReportContent {
   std::string head;  ///< HTML: what ran, how far to trust it, what could not be read
   Description json;  ///< what curves and grains are drawn from; its numbers of data elements are those of `data`
   std::vector<std::string> problems;  ///< what could not be read; the page says so too
+  bool unsettled = false;             ///< some of it because a run was writing to it whenever it was looked at
 };
 
 /// Head, curves over each other, grains. Throws FileError for a folder that holds nothing of a run.
 ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
-                             DataElements& data);
+                             DataElements& data, std::chrono::milliseconds patience = reader_patience);
 
 /// Of a run that has left nothing yet.
 ReportContent empty_content(const std::string& title, const std::string& words);

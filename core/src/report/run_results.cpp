@@ -8,21 +8,15 @@
 namespace grit {
 namespace {
 
-std::vector<ProbeSeries> read_probes(const std::filesystem::path& folder, std::vector<std::string>& problems) {
+std::vector<ProbeSeries> read_probes(const SeriesFile& series, std::vector<std::string>& problems) {
   std::vector<ProbeSeries> probes;
-  std::vector<std::string> names;
-  try {
-    names = channel_names(folder);
-  } catch (const FileError& error) {
-    problems.emplace_back(error.what());
-  }
-  for (const std::string& full : names) {
+  for (const std::string& full : series.channels()) {
     const auto slash = full.find('/');
     const std::string probe = full.substr(0, slash), channel = full.substr(slash + 1);
     if (channel == "step") continue;
     if (probes.empty() || probes.back().name != probe) probes.push_back({probe, {}});
     try {
-      probes.back().channels.push_back({channel, read_channel(folder, full)});
+      probes.back().channels.push_back({channel, series.channel(full)});
     } catch (const std::exception& error) {
       problems.emplace_back(error.what());
     }
@@ -51,7 +45,7 @@ std::string RunResults::title() const {
   return title.is_string() && !title.get_ref<const std::string&>().empty() ? title.get<std::string>() : name;
 }
 
-RunResults read_results(const std::filesystem::path& folder) {
+RunResults read_results(const std::filesystem::path& folder, std::chrono::milliseconds patience) {
   RunResults results;
   results.folder = folder;
   std::error_code none;
@@ -68,7 +62,12 @@ RunResults read_results(const std::filesystem::path& folder) {
   else
     results.problems.push_back((folder / "run.json").string() +
                                (has_json ? ": is not the JSON of a run" : ": there is no such file"));
-  results.probes = read_probes(folder, results.problems);
+  try {
+    results.probes = read_probes(SeriesFile(folder, patience), results.problems);
+  } catch (const FileError& error) {
+    results.problems.emplace_back(error.what());
+    results.unsettled = dynamic_cast<const BeingWritten*>(&error) != nullptr;
+  }
   return results;
 }
 

@@ -30,6 +30,7 @@ struct RunResults {
   std::vector<ProbeSeries> probes;            ///< "test" first
   std::vector<std::filesystem::path> frames;  ///< not opened yet
   std::vector<std::string> problems;          ///< what could not be read, and why; one sentence each
+  bool unsettled = false;                     ///< series.h5 was being written to whenever it was looked at
 
   /// What is at a JSON pointer of run.json; null where there is nothing.
   const Description& at(const std::string& pointer) const;
@@ -37,6 +38,6 @@ struct RunResults {
 };
 
 /// What cannot be read is among the problems. Throws FileError where nothing in the folder is of a run.
-RunResults read_results(const std::filesystem::path& folder);
+RunResults read_results(const std::filesystem::path& folder, std::chrono::milliseconds patience = reader_patience);
 
 }  // namespace grit

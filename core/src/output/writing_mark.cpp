@@ -1,0 +1,45 @@
+#include "output/writing_mark.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace grit {
+namespace {
+
+/// Of the whole file, held by who opened it and not by the process: else closing any other descriptor would end it.
+struct flock whole_file(short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+void put(int file, short type) {
+  const auto lock = whole_file(type);
+  static_cast<void>(::fcntl(file, F_OFD_SETLK, &lock));
+}
+
+}  // namespace
+
+WritingMark::WritingMark(const std::filesystem::path& file, Absent absent)
+    : file_(::open(file.c_str(), O_RDWR | O_CLOEXEC | (absent == Absent::make ? O_CREAT : 0), 0666)) {
+  set();
+}
+
+WritingMark::~WritingMark() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void WritingMark::set() const { put(file_, F_WRLCK); }
+void WritingMark::clear() const { put(file_, F_UNLCK); }
+
+bool is_being_written(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  auto lock = whole_file(F_RDLCK);
+  const bool told = ::fcntl(file, F_OFD_GETLK, &lock) == 0;
+  ::close(file);
+  return told && lock.l_type != F_UNLCK;
+}
+
+}  // namespace grit
