@@ -52,10 +52,21 @@ class Resume : public testing::Test {
   Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
   json run_json(const std::string& results) const { return json::parse(text_of(folder / (results + "/run.json"))); }
 
+  /// Waits for what a run is to do, which is the one program that a test has at a time. Fails where that ends first.
+  template <class Condition>
+  static void wait_until(Condition holds, const std::string& what) {
+    siginfo_t ended{};
+    while (!holds() && ended.si_pid == 0) {
+      ASSERT_EQ(::waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT), 0);
+      std::this_thread::yield();
+    }
+    ASSERT_TRUE(holds()) << "the run has ended without " << what << "; does it still take long enough?";
+  }
   /// Stops a run in its first stage.
   void interrupt(const std::string& out, std::vector<std::string> more = {}) const {
     Program program(grit_with(run(out, std::move(more))), folder.path());
-    while (!std::filesystem::exists(folder / (out + "/frames/000001.h5"))) std::this_thread::yield();
+    const auto second = folder / (out + "/frames/000001.h5");
+    ASSERT_NO_FATAL_FAILURE(wait_until([&] { return std::filesystem::exists(second); }, "a second frame"));
     program.interrupt();
     const auto outcome = program.finish();
     ASSERT_EQ(outcome.status, 130) << outcome.err;
@@ -71,7 +82,8 @@ class Resume : public testing::Test {
     const auto before = written();
     more.insert(more.end(), {"--set", "/output/checkpoint_every=0.05", "--quiet"});
     Program program(grit_with(run(out, std::move(more))), folder.path());
-    while (written() == before || written() == std::pair<ino_t, long>()) std::this_thread::yield();
+    const auto anew = [&] { return written() != before && written() != std::pair<ino_t, long>(); };
+    ASSERT_NO_FATAL_FAILURE(wait_until(anew, "another checkpoint"));
     program.interrupt(SIGKILL);
     ASSERT_EQ(program.finish().status, -SIGKILL);
   }
