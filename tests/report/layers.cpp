@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "report/pictures.hpp"
+#include "report/report_page.hpp"
 #include "results.hpp"
 
 namespace grit {
@@ -64,6 +65,13 @@ std::optional<std::string> drawn(const std::filesystem::path& folder) {
   return layers_picture(run);
 }
 
+/// What the page is told: frame and stage.
+nlohmann::json on_the_page(const std::filesystem::path& folder) {
+  return json_of(report_page(std::span(&folder, 1)).html).at("runs").at(0).at("grains").at("layers");
+}
+
+nlohmann::json begin(std::size_t frame, const char* stage) { return {{"frame", frame}, {"stage", stage}}; }
+
 TEST(Layers, AreOfTheStartOfTheLastStage) {
   const Folder folder;
   write(folder / "run", {{"fill", {4, 3, 2, 1}}, {"shear", {1, 2, 3, 11}}, {"shear", {5, 5, 5, 5}}});
@@ -71,6 +79,7 @@ TEST(Layers, AreOfTheStartOfTheLastStage) {
   ASSERT_TRUE(svg);
   EXPECT_THAT(classes(*svg), ElementsAre("c0", "c1", "c2", "c9")) << "of ten, from 1 to 11";
   EXPECT_THAT(*svg, HasSubstr("layers by z when shear began"));
+  EXPECT_EQ(on_the_page(folder / "run"), begin(1, "shear"));
 }
 
 TEST(Layers, AreOfTheStageInWhichGrainsBeginToLeave) {
@@ -78,9 +87,20 @@ TEST(Layers, AreOfTheStageInWhichGrainsBeginToLeave) {
   write(folder / "run",
         {{"fill", {1, 2, {}, 11}}, {"out", {1, 2, 6, 11}}, {"out", {{}, 2, 6, 11}}, {"more", {{}, 1, 1, 1}}});
   EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c1", "c5", "c9"));
+  EXPECT_EQ(on_the_page(folder / "run"), begin(1, "out"));
   // The first frame of that stage has lost one already, and what comes later has no layer.
   write(folder / "other", {{"fill", {1, 2, 11}}, {"out", {{}, 2, 11}}, {"out", {{}, 2, 11, 7}}});
-  EXPECT_THAT(classes(drawn(folder / "other").value()), ElementsAre("c1", "c9", "n"));
+  const std::string svg = drawn(folder / "other").value();
+  EXPECT_THAT(classes(svg), ElementsAre("c1", "c9", "n"));
+  EXPECT_THAT(svg, HasSubstr("layers by z when out began"));
+  EXPECT_EQ(on_the_page(folder / "other"), begin(0, "out"));
+}
+
+TEST(Layers, AreDrawnWithoutAFrameThatIsDamaged) {
+  const Folder folder;
+  write(folder / "run", {{"fill", {1, 2}}, {"shear", {1, 3, 11}}, {"shear", {5, 5, 5}}, {"shear", {5, 5, 5}}});
+  std::ofstream(folder / "run/frames/000002.h5") << "no frame";
+  EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c0", "c2", "c9"));
 }
 
 TEST(Layers, AreNotDrawnOfTheFrameTheyAreOf) {

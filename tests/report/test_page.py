@@ -223,12 +223,6 @@ class Page(unittest.TestCase):
         self.assertEqual(set(layers) & {1, 10}, {1, 10})
         by_id, shown = dict(zip(ids, layers)), self.browser.evaluate(f"[[...{GRAINS}.now.id], [...{GRAINS}.shownPlaces]]")
         numpy.testing.assert_allclose(shown[1], [(by_id[one] - 1) / 9 for one in shown[0]], atol=1e-6)
-        # Where grains leave, the layers are of the stage in which the first one does.
-        origin = lambda counts, stages: self.browser.evaluate(f"""(() => {{ const json = {{bodies: {counts}.map((count) => ({{count}})),
-            frames: {stages}.map((stage, set) => ({{stage, set}}))}}; return Object.getOwnPropertyDescriptor(GrainView.prototype, 'origin').get.call({{json}}); }})()""")
-        self.assertEqual(origin([9, 9, 9, 8, 7], ["fill", "fill", "out", "out", "more"]), {"stage": "out", "number": 2})
-        self.assertEqual(origin([9, 9, 8, 7], ["fill", "fill", "out", "out"]), {"stage": "out", "number": 1})
-        self.assertEqual(origin([9, 9, 9], ["fill", "shear", "shear"]), {"stage": "shear", "number": 1})
 
     def test_a_graphics_processor_and_none_draw_the_same(self):
         for view, zoom, most in (("xz", 1, 0.6), ("yz", 1, 0.6), ("xy", 1, 0.6), ("xz", 12, 0.15)):  # so near that points would be too large

@@ -10,6 +10,7 @@
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
 #include "report/cell_maps.hpp"
+#include "report/layers.hpp"
 
 namespace grit {
 namespace {
@@ -194,6 +195,7 @@ class Writer {
     add_contacts(frame, json);
     add_walls(frame, json);
     frames_.push_back(std::move(json));
+    instants_.push_back({frame.stage, frame.bodies() + unplaced});
   }
 
   std::size_t frames() const { return frames_.size(); }
@@ -201,6 +203,7 @@ class Writer {
     Description bodies = Description::array(), walls = Description::array();
     for (const Set& set : sets_) bodies.push_back(Description{{"count", set.id.size()}, {"data", set.data}});
     for (const Wall& wall : walls_) walls.push_back(Description{{"name", wall.name}, {"data", wall.data}});
+    const LayersBegin layers = where_layers_begin(instants_);
     Description json = {
         {"low", extent_.low},
         {"high", extent_.high},
@@ -209,6 +212,7 @@ class Writer {
         {"clumps", clumps_},
         {"bodies", bodies},
         {"walls", walls},
+        {"layers", {{"frame", layers.frame}, {"stage", layers.stage}}},
         {"frames", frames_}};
     for (const auto& [stage, extent] : extent_.stages) {
       Description ranges = {{"speed", extent.speed}}, limits = {{"speed", extent.speed_limit}};
@@ -318,6 +322,7 @@ class Writer {
   std::vector<Wall> walls_;
   bool clumps_ = false;
   Description frames_ = Description::array();
+  std::vector<StageAndCount> instants_;
 };
 
 }  // namespace

@@ -39,6 +39,8 @@ struct GrainLimits {
 ///     chains         byte planes of uint16: low and high half of the body's place, branch x, y, z (of 2 · reach, about
 ///                    32768), force (of strongest), all contacts after one another; contacts: how many
 ///     walls          [[place in walls, x, y, z]]: displacement of each wall [m]
+///   layers         {frame, stage}: the place of the frame by whose heights layers are told, and the stage that begins
+///                  there
 ///   maps           what CellMaps makes of the probes' fields
 ///   reach          m
 ///   left_out       frames that were not taken

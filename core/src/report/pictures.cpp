@@ -17,6 +17,7 @@
 #include "output/scale.hpp"
 #include "report/cell_maps.hpp"
 #include "report/facts.hpp"
+#include "report/layers.hpp"
 
 namespace grit {
 namespace {
@@ -91,22 +92,6 @@ std::optional<Frame> last_frame(RunResults& run) {
 }
 
 std::string view_wanted(const RunResults& run) { return text_or(run.at("/description/output/picture/view"), "xz"); }
-
-/// The frame in which the stage began where grains begin to leave, else the last stage; the page has the same.
-std::size_t where_layers_begin(const std::vector<std::filesystem::path>& frames) {
-  std::vector<std::string> stages;
-  for (const auto& file : frames) stages.push_back(stage_of_frame(file));
-  std::size_t leaving = frames.size() - 1;
-  bool leave = false;
-  for (std::size_t i = 1, before = bodies_in_frame(frames[0]); i < frames.size() && !leave; ++i) {
-    const std::size_t now = bodies_in_frame(frames[i]);
-    if ((leave = now < before)) leaving = i;
-    before = now;
-  }
-  const auto first = static_cast<std::size_t>(std::ranges::find(stages, stages[leaving]) - stages.begin());
-  // Where a stage's first frame has lost grains already, the one before is nearer to how it began.
-  return leave && leaving == first ? first - 1 : first;
-}
 
 /// The grains of a frame as the description's picture sees them.
 Picture view_of(const RunResults& run, const Frame& frame, const std::string& color, std::span<const int> layers) {
@@ -208,7 +193,17 @@ std::optional<std::string> grains_picture(RunResults& run) {
 std::optional<std::string> layers_picture(RunResults& run) {
   const auto frame = last_frame(run);
   if (!frame) return std::nullopt;
-  const std::size_t first = where_layers_begin(run.frames);
+  std::vector<StageAndCount> instants;
+  std::erase_if(run.frames, [&](const std::filesystem::path& file) {
+    try {
+      instants.push_back({stage_of_frame(file), bodies_in_frame(file)});
+      return false;
+    } catch (const FileError& error) {
+      run.problems.emplace_back(error.what());
+      return true;
+    }
+  });
+  const auto [first, stage] = where_layers_begin(instants);
   if (first + 1 == run.frames.size()) return std::nullopt;
   const Frame start = read_frame(run.frames[first]);
   const auto up = static_cast<std::size_t>(view_wanted(run)[1] - 'x');
@@ -229,7 +224,7 @@ std::optional<std::string> layers_picture(RunResults& run) {
     layers.push_back(found == layer_of.end() ? 0 : found->second);
   }
   Picture picture = view_of(run, *frame, "layer", layers);
-  picture.facts += fmt::format("  ·  layers by {} when {} began", "xyz"[up], start.stage);
+  picture.facts += fmt::format("  ·  layers by {} when {} began", "xyz"[up], stage);
   return draw(picture);
 }
 

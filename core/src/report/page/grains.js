@@ -12,7 +12,7 @@ const colourings = {
   speed: { label: "speed", unit: "m/s", table: "sequential", limit: (of) => of.limits.speed,
     value: (of, view, frame) => (i) => (frame.speed[i] / 65535) * of.ranges.speed },
   radius: { label: "radius", unit: "m", table: "sequential", between: true, value: (of, view, frame) => (i) => frame.radius[i] },
-  layers: { label: "layer", unit: "1", table: "sequential", note: (view, seen) => `by ${letter(view.up)} when ${seen.origin.stage} began`,
+  layers: { label: "layer", unit: "1", table: "sequential", note: (view, seen) => `by ${letter(view.up)} when ${seen.json.layers.stage} began`,
     value: (of, view, frame, seen) => (i) => seen.layers.get(frame.id[i]) ?? -1 },
   clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (of, view, frame) => (i) => frame.clump?.[i] ?? -1 },
 };
@@ -208,18 +208,9 @@ class GrainView {
     return this.colouring.value(this.json.stages[frame.stage], this.view, frame, this);
   }
 
-  /** The frame that layers are of: the first of the stage in which grains begin to leave, else of the last stage. */
-  get origin() {
-    const { frames, bodies } = this.json, count = (frame) => bodies[frame.set].count;
-    const leaving = frames.findIndex((frame, i) => i > 0 && count(frame) < count(frames[i - 1]));
-    const { stage } = frames[leaving < 0 ? frames.length - 1 : leaving];
-    // Where a stage's first frame has lost grains already, the one before is nearer to how it began.
-    const first = frames.findIndex((frame) => frame.stage === stage);
-    return { stage, number: leaving === first ? first - 1 : first };
-  }
   /** By its id the layer of each grain, from 1: of equal height, along the view's upward axis. */
   async findLayers() {
-    const { number } = this.origin, { up } = this.view, key = `${this.state.run} ${number} ${up}`;
+    const { frame: number } = this.json.layers, { up } = this.view, key = `${this.state.run} ${number} ${up}`;
     if (this.layersOf === key) return;
     const start = await this.frames.frame(number), list = [start.x, start.y, start.z][up];
     const [low, high] = rangeOf([list]), layers = new Map();
