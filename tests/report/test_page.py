@@ -199,6 +199,7 @@ class Page(unittest.TestCase):
     def test_runs_lie_over_each_other(self):
         self.open("both.html")
         self.assertEqual(self.browser.evaluate("document.querySelector('figure.chart').chart.series.map((one) => one.label)"), ["one", "two"])
+        self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('header td:not(.name) small')).display"), "block", "a note is no part of its number")
         self.assertTrue(self.browser.evaluate("[...document.querySelector('[name=run]').options].map((one) => one.text).join() === 'one,two'"))
         first = self.saved("figure.grains", "PNG")[1]
         self.browser.evaluate("(() => { const choice = document.querySelector('[name=run]'); choice.value = 1; choice.dispatchEvent(new Event('change')); })()")
@@ -300,6 +301,45 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.evaluate("document.querySelector('.more').getAttribute('aria-expanded')"), "true")
         self.browser.evaluate("document.querySelector('.more').click()")
         self.assertEqual(len(self.browser.evaluate(shown)), 1)
+
+    def test_what_is_farther_down_is_drawn_as_well(self):
+        # So that it is there when the page is printed.
+        self.browser.open(self.folder / "lists/report.html")
+        charts = "[...document.querySelectorAll('figure.chart')]"
+        self.browser.wait(f"{charts}.every(({{dataset}}) => dataset.drawn)")
+        self.assertTrue(self.browser.evaluate(f"{charts}.at(-1).getBoundingClientRect().top > innerHeight + 400"), "else it would have been seen")
+
+    def test_playing_is_not_doubled(self):
+        # Stopped and started again between two frames: who played before does so no longer.
+        ended_at, last = self.browser.evaluate(f"""(async () => {{ const {{player}} = {GRAINS};
+            await player.go(0);
+            const first = player.start();
+            player.stop();
+            const second = player.start();
+            await first;
+            const {{number}} = player;
+            await second;
+            return [number, player.number]; }})()""")
+        self.assertEqual(last, len(list((self.folder / "one/frames").iterdir())) - 1)
+        self.assertLess(ended_at, last)
+
+    def test_times_are_written_as_people_do(self):
+        for seconds, largest, written in ((0, 0, "0 s"), (0.06, 0.06, "60 ms"), (-0.5, -0.5, "−500 ms"), (2.5e-5, 2.5e-5, "25 µs"), (0.06, 3, "0.06 s"), (1234.5, 1234.5, "1235 s")):
+            self.assertEqual(self.browser.evaluate(f"writtenTime({seconds}, {largest})"), written)
+
+    def test_the_grain_under_a_finger_is_told(self):
+        self.go(5)
+        for colour, told in (("layers", r"layer \d+$"), ("rotation", r"rotation −?[\d.]+°$"), ("speed", "speed .* [mµn]?m/s$")):
+            self.browser.evaluate(f"{GRAINS}.change({{colour: '{colour}', cut: 0}})")
+            self.browser.wait(f"{GRAINS}.shownOf?.includes(' {colour} ')")
+            said = self.browser.evaluate(f"""(() => {{ const view = {GRAINS}, {{stage, layout, now, frames}} = view, i = view.seen().at(-1);
+                const {{left, top}} = stage.getBoundingClientRect(), place = {{pointerType: 'touch', pointerId: 1, bubbles: true,
+                    clientX: left + layout.across(frames.metres(0, now.x[i])), clientY: top + layout.down(frames.metres(2, now.z[i]))}};
+                stage.setPointerCapture = () => null;
+                stage.dispatchEvent(new PointerEvent('pointerdown', place));
+                stage.dispatchEvent(new PointerEvent('pointerup', place));
+                return view.under.lastChild?.textContent; }})()""")
+            self.assertRegex(said, told)
 
     def test_axes_go_from_tick_to_tick(self):
         # With zero where it is near, no tick more for noise about one, and something where nothing changes.

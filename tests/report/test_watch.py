@@ -316,6 +316,21 @@ class InABrowser(unittest.TestCase):
             self.assertEqual(self.browser.evaluate(f"{GRAINS}.frames.count"), len(list((self.folder / "failing/frames").glob("*.h5"))))
             self.assertEqual([one for one in self.browser.complaints() if "ERR_CONNECTION_REFUSED" not in one], [], "but that it is gone")
 
+    def test_frames_that_are_taken_back_are_taken_back(self):
+        # As by a run that goes on from a checkpoint before its first frame.
+        drawn = "document.querySelector('figure.grains')?.grains.painted"
+        with WatchedRun(self.folder, "back") as run:
+            self.browser.open(run.address)
+            self.browser.wait(drawn)
+            left = self.browser.evaluate("""(async () => {
+                const grains = document.getElementById('grains'), maps = document.getElementById('maps');
+                report.runs[0].grains = null;
+                await Follower.prototype.showFrames(grains, maps);
+                return [grains.children.length, maps.children.length]; })()""")
+            self.assertEqual(left, [0, 0])
+            self.browser.wait(drawn)  # there is news
+            self.assertEqual(self.browser.complaints(), [])
+
     def test_it_asks_for_nothing_else(self):
         with WatchedRun(self.folder, "asking") as run:
             self.browser.open(run.address)

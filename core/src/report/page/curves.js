@@ -59,6 +59,8 @@ function pointsToDraw(y, pixels) {
   return places;
 }
 
+const whenIdle = (act) => (window.requestIdleCallback ?? ((run) => setTimeout(run, 100)))(act);
+
 /** A value with its unit. */
 const told = (value, { shown_unit }) => readable(value) + ofUnit(shown_unit);
 
@@ -89,6 +91,12 @@ class Chart {
       observer.disconnect();
       this.draw();
     }, { rootMargin: "400px" }).observe(this.figure);
+  }
+
+  /** Unseen as well, so that a printed page has it; but not of a run that goes on, where all that is drawn is drawn again and again. */
+  drawSoon() {
+    if (report.live || this.view) return;
+    whenIdle(() => !this.drawing && this.figure.isConnected && !this.figure.hidden && this.draw());
   }
 
   get abscissa() {
@@ -385,6 +393,7 @@ class ProbeCharts {
     this.unfolded = unfolded;
     const rest = [...this.grid.children].filter(({ chart }) => !this.shown.includes(chart.name)), many = rest.length > 2 && rest.length < this.grid.children.length;
     for (const figure of rest) figure.hidden = many && !unfolded;
+    for (const { chart } of this.grid.children) chart.drawSoon();
     this.more.hidden = !many;
     this.more.textContent = unfolded ? "fewer" : `${rest.length} more`;
     this.more.setAttribute("aria-expanded", unfolded);

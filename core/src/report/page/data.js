@@ -66,6 +66,12 @@ function readable(value) {
   return text.replace("-", "−");
 }
 
+/** Seconds with the prefix that reads best for times up to `largest`. */
+function writtenTime(seconds, largest = seconds) {
+  const size = Math.abs(largest), [factor, unit] = size >= 1 || size === 0 ? [1, "s"] : size >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
+  return `${readable(seconds * factor)} ${unit}`;
+}
+
 /** A unit of UDUNITS as people write it: "kg m⁻³", "°". */
 function writtenUnit(unit) {
   if (/^deg(ree)?s?$/.test(unit)) return "°";

@@ -96,6 +96,7 @@ class GrainView {
     stage.addEventListener("pointerdown", (event) => {
       stage.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
+      this.pick(event); // a finger points only by touching
     });
     stage.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
@@ -261,6 +262,7 @@ class GrainView {
 
   async show(frame) {
     this.now = frame;
+    if (this.stage.clientWidth === 0) return; // it is out of the page, or the page has no width
     if (this.state.colour === "layers") {
       await this.findLayers();
       if (this.now !== frame) return;
@@ -280,7 +282,7 @@ class GrainView {
     this.shownSegments = segments;
     this.painter.setSegments(segments);
     this.paint();
-    this.stage.setAttribute("aria-label", `${frame.count} grains at ${frame.time} s, coloured by ${this.colouring.label}`);
+    this.stage.setAttribute("aria-label", `${frame.count} grains at ${writtenTime(frame.time)}, coloured by ${this.colouring.label}`);
     this.stage.dataset.frame = frame.number;
     const { leftOut } = this.runs[this.state.run], { unplaced } = this.json.frames[frame.number];
     this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, so that the page stays light` : "",
@@ -364,7 +366,7 @@ class GrainView {
     if (found < 0) return this.under.replaceChildren();
     const { colouring } = this, value = this.valueOf(now)(found), [size, unit] = prefixed("m", now.radius[found]);
     const [scale, shown] = prefixed(colouring.unit, Math.abs(value));
-    const rest = ["radius", "clump"].includes(this.state.colour) || (this.state.colour === "layers" && value < 0) ? [] : [make("span", {}, `${colouring.label} ${readable(value * scale)} ${shown}`)];
+    const rest = ["radius", "clump"].includes(this.state.colour) || (this.state.colour === "layers" && value < 0) ? [] : [make("span", {}, `${colouring.label} ${readable(value * scale)}${ofUnit(shown)}`)];
     this.under.replaceChildren(make("span", {}, `grain ${now.id[found]}`), make("span", {}, `radius ${readable(now.radius[found] * size)} ${unit}`), ...rest);
   }
 
@@ -391,7 +393,7 @@ class GrainView {
     const { now, colouring } = this, lists = [now.x, now.y, now.z], value = this.valueOf(now);
     const lines = [`id,x [m],y [m],z [m],radius [m],${withUnit(colouring.label, colouring.unit)}`];
     for (let i = 0; i < now.count; ++i)
-      lines.push([now.id[i], ...lists.map((list, axis) => this.frames.metres(axis, list[i]).toPrecision(6)), now.radius[i].toPrecision(6), value(i).toPrecision(5)].join(","));
+      lines.push([now.id[i], ...lists.map((list, axis) => this.frames.metres(axis, list[i]).toPrecision(6)), now.radius[i].toPrecision(6), colouring.unit === "1" ? value(i) : value(i).toPrecision(5)].join(","));
     save(`${this.fileName}.csv`, lines.join("\n") + "\n", "text/csv");
   }
 }

@@ -30,7 +30,7 @@ class TimeChoice {
     this.known = Promise.all(channels.map(({ channel }) => numbersOf(channel.data))).then((lists) => {
       this.span = rangeOf(lists);
       const [low, high] = this.span;
-      this.slider.value = this.chosen === null ? 1000 : (1000 * (this.chosen - low)) / (high - low);
+      this.slider.value = this.chosen === null || high === low ? 1000 : (1000 * (this.chosen - low)) / (high - low);
       this.tell();
     });
   }
@@ -45,8 +45,7 @@ class TimeChoice {
     return [...(this.kept ?? [1 / 3, 2 / 3].map((part) => this.at(part))), this.now];
   }
   inWords(seconds) {
-    const largest = Math.max(Math.abs(this.span[1]), Math.abs(this.span[0])), [size, unit] = largest >= 1 || largest === 0 ? [1, "s"] : largest >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
-    return `${readable(seconds * size)} ${unit}`;
+    return writtenTime(seconds, Math.max(...this.span.map(Math.abs)));
   }
   tell() {
     this.shown.textContent = this.inWords(this.now);

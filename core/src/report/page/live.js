@@ -81,8 +81,10 @@ class Follower {
     if (open.length > 0) for (const part of section.querySelectorAll("details.probe")) part.open = open.includes(part.charts.name);
   }
   async showFrames(grains, maps) {
-    const player = grains.querySelector("figure.grains")?.grains.player;
-    return player ? player.refresh(runsWithGrains()) : showFrames(grains, maps);
+    const player = grains.querySelector("figure.grains")?.grains.player, runs = runsWithGrains();
+    if (player && runs.length > 0) return player.refresh(runs);
+    grains.replaceChildren(), maps.replaceChildren(); // a run that goes on may have taken its frames back
+    return showFrames(grains, maps);
   }
 }
 

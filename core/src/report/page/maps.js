@@ -168,7 +168,7 @@ class MapView {
     const { label, field, now } = this, values = now.cells.list(this.place(field, this.state.component));
     const [low, high] = rangeOf([values]);
     const told = (value) => readable(value * field.factor) + ofUnit(field.shown_unit);
-    this.stage.setAttribute("aria-label", `${label} of ${values.length} cells of ${this.map.probe} at ${now.time} s, from ${told(low)} to ${told(high)}`);
+    this.stage.setAttribute("aria-label", `${label} of ${values.length} cells of ${this.map.probe} at ${writtenTime(now.time)}, from ${told(low)} to ${told(high)}`);
     this.stage.dataset.frame = now.number;
   }
   paint(pen, look) {

@@ -60,10 +60,9 @@ class Player {
     if (number === this.number) return;
     this.number = number;
     const { time, stage } = this.frames[number];
-    const [size, unit] = time === 0 || time >= 1 ? [1, "s"] : time >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
     for (const { slider, clock } of this.strips) {
       slider.value = number;
-      clock.textContent = `${+(time * size).toPrecision(4)} ${unit} · ${stage} · ${number + 1}/${this.count}`;
+      clock.textContent = `${writtenTime(time)} · ${stage} · ${number + 1}/${this.count}`;
       slider.setAttribute("aria-valuetext", clock.textContent);
     }
     await Promise.all(this.viewers.map((viewer) => viewer.turn(number)));
@@ -76,20 +75,20 @@ class Player {
     return this.playing ? this.stop() : this.start();
   }
   stop() {
-    this.playing = false;
+    this.playing = null;
     for (const { play } of this.strips) play.textContent = "▶";
   }
   async start() {
     if (this.count < 2) return;
-    this.playing = true;
+    const playing = (this.playing = {}); // another one, when it is stopped and started meanwhile
     for (const { play } of this.strips) play.textContent = "❚❚";
     if (this.number === this.count - 1) await this.go(0);
     const pace = Math.min(200, Math.max(40, 6000 / this.count)); // ms: a run lasts some seconds
-    while (this.playing && this.number < this.count - 1) {
+    while (this.playing === playing && this.number < this.count - 1) {
       const next = performance.now() + pace;
       await this.go(this.number + 1);
       await new Promise((done) => setTimeout(done, Math.max(0, next - performance.now())));
     }
-    this.stop();
+    if (this.playing === playing) this.stop();
   }
 }
