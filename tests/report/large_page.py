@@ -10,10 +10,12 @@ import sys
 import tempfile
 import time
 
-import h5py
-import numpy
+from browser import GRAINS, Browser, find_chromium, h5py_or_skip, skip
 
-from browser import GRAINS, Browser, find_chromium
+h5py = h5py_or_skip()
+import numpy  # which comes with it
+
+CHROMIUM = find_chromium()
 
 
 def write_frames(folder, grains, frames):
@@ -39,34 +41,41 @@ def write_frames(folder, grains, frames):
             file.create_group("walls")
 
 
-def measure(grit, grains, frames):
-    with tempfile.TemporaryDirectory(prefix="grit-large-") as place:
-        folder = pathlib.Path(place) / "large"
-        write_frames(folder, grains, frames)
+def make_page(grit, folder):
+    began = time.monotonic()
+    subprocess.run([grit, "report", str(folder)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    page = folder / "report.html"
+    print(f"made in {time.monotonic() - began:.1f} s, {page.stat().st_size / 1e6:.1f} MB")
+    return page
+
+
+def measure(page):
+    with Browser(CHROMIUM, timeout=120) as browser:
         began = time.monotonic()
-        subprocess.run([grit, "report", str(folder)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        page = folder / "report.html"
-        print(f"made in {time.monotonic() - began:.1f} s, {page.stat().st_size / 1e6:.1f} MB")
-        with Browser(find_chromium(), timeout=120) as browser:
-            began = time.monotonic()
-            browser.open(page)
-            browser.wait(f"{GRAINS}?.painted")
-            print(f"open, grains drawn: {time.monotonic() - began:.1f} s")
-            unpack, move, fine, play = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, mean = async (count, act) => {{
-                    const began = performance.now();
-                    for (let i = 0; i < count; ++i) await act(i);
-                    return (performance.now() - began) / count; }};
-                const unpack = await mean(5, (i) => view.frames.read(i));
-                const move = await mean(10, (i) => view.change({{pan: [1e-4 * i, 0]}}));
-                const fine = await mean(3, () => view.paint(true));
-                const play = await mean(view.frames.count, (i) => view.player.go(i));
-                return [unpack, move, fine, play]; }})()""")
-            print(f"a frame: {unpack:.0f} ms to unpack, {1000 / move:.0f} a second while dragged, {1000 / play:.0f} while played as fast as can be, {fine:.0f} ms "
-                  f"when it rests, by {browser.evaluate(f'{GRAINS}.painter.constructor.name')}; heap {browser.evaluate('performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
-            print("console:", browser.complaints() or "silent")
+        browser.open(page)
+        browser.wait(f"{GRAINS}?.painted")
+        print(f"open, grains drawn: {time.monotonic() - began:.1f} s")
+        unpack, move, fine, play = browser.evaluate(f"""(async () => {{ const view = {GRAINS}, mean = async (count, act) => {{
+                const began = performance.now();
+                for (let i = 0; i < count; ++i) await act(i);
+                return (performance.now() - began) / count; }};
+            const unpack = await mean(5, (i) => view.frames.read(i));
+            const move = await mean(10, (i) => view.change({{pan: [1e-4 * i, 0]}}));
+            const fine = await mean(3, () => view.paint(true));
+            const play = await mean(view.frames.count, (i) => view.player.go(i));
+            return [unpack, move, fine, play]; }})()""")
+        print(f"a frame: {unpack:.0f} ms to unpack, {1000 / move:.1f} a second while dragged, {1000 / play:.1f} while played as fast as can be, {fine:.0f} ms "
+              f"when it rests, by {browser.evaluate(f'{GRAINS}.painter.constructor.name')}; heap {browser.evaluate('performance.memory.usedJSHeapSize') / 1e6:.0f} MB")
+        print("console:", browser.complaints() or "silent")
 
 
 if __name__ == "__main__":
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    measure(sys.argv[1], *(int(word) for word in (sys.argv[2:] + ["200000", "20"][len(sys.argv) - 2:])))
+    if CHROMIUM is None:
+        skip("there is no Chromium to open the page with (Debian: chromium)")
+    grains, frames = (int(word) for word in (sys.argv[2:] + ["200000", "20"][len(sys.argv) - 2:]))
+    with tempfile.TemporaryDirectory(prefix="grit-large-") as place:
+        folder = pathlib.Path(place) / "large"
+        write_frames(folder, grains, frames)
+        measure(make_page(sys.argv[1], folder))
