@@ -123,7 +123,8 @@ std::span<const WallView> Simulation::walls() const {
 
 std::optional<Clearance> Simulation::clearance(std::size_t wall, const Vec3& point, double reach) const {
   const Sphere sphere{point, reach, 0};
-  std::vector<Touch> touches;
+  thread_local std::vector<Touch> touches;  // asked so often that to ask for memory each time took longer
+  touches.clear();
   walls_.geometry(wall).touch(walls_.pose(wall), {&sphere, 1}, touches);
   // The sphere is pressed in by its radius less the distance of its centre, by more where that is behind.
   const auto deepest = std::ranges::max_element(touches, {}, &Touch::overlap);

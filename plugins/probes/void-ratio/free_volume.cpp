@@ -1,5 +1,5 @@
-// Boxes are halved, along edges of cells first, until each is no longer cut by a wall or the wall's tangent plane cuts
-// it as the planes of its halves do.
+// Where walls are flat, along the axes, they are cut out. Elsewhere boxes are halved, along edges of cells first, until
+// each is no longer cut by a wall or the wall's tangent plane cuts it as the planes of its halves do.
 #include "free_volume.hpp"
 
 #include <algorithm>
@@ -8,6 +8,8 @@
 #include <boost/container/static_vector.hpp>
 #include <cmath>
 #include <utility>
+
+#include "free_boxes.hpp"
 
 namespace grit {
 
@@ -35,10 +37,10 @@ class Carver {
     Walls walls;
     for (std::size_t w = 0; w < world_.walls().size(); ++w) {
       // Whatever has its surface outside of this is no wall of the region.
-      const double reach = 2 * box.half_diagonal();
-      if (const auto found = world_.clearance(w, box.middle, reach)) walls.push_back({w, reach, *found});
+      reach_ = 2 * box.half_diagonal();
+      if (const auto found = world_.clearance(w, box.middle, reach_)) walls.push_back({w, reach_, *found});
     }
-    split(all, cut_by(box, walls));
+    split(all, cut_by(box, walls), walls.size() + 1);
     return std::move(free_);
   }
 
@@ -112,8 +114,13 @@ class Carver {
     return cut_by(inner, seen);
   }
 
-  void split(const Parts& parts, const Cut& cut) {
+  /// `tried`: so many walls were too many, or of the wrong kind, to be cut out.
+  void split(const Parts& parts, const Cut& cut, std::size_t tried) {
     if (cut.solid) return;
+    if (!cut.walls.empty() && cut.walls.size() < tried && all_flat(cut)) {
+      if (cut_out(parts, cut)) return;
+      tried = cut.walls.size();
+    }
     const Box box = box_of(parts);
     int longest = -1;
     for (int k = 0; k < 3; ++k)
@@ -127,9 +134,35 @@ class Carver {
       Parts lower = parts, upper = parts;
       lower.end[index(longest)] = upper.begin[index(longest)] =
           parts.begin[index(longest)] + (parts.end[index(longest)] - parts.begin[index(longest)]) / 2;
-      split(lower, cut_by(box_of(lower), box, cut.walls));
-      split(upper, cut_by(box_of(upper), box, cut.walls));
+      split(lower, cut_by(box_of(lower), box, cut.walls), tried);
+      split(upper, cut_by(box_of(upper), box, cut.walls), tried);
     }
+  }
+
+  bool all_flat(const Cut& cut) const {
+    return std::ranges::all_of(cut.walls, [this](const Near& near) { return world_.walls()[near.wall].flat; });
+  }
+
+  /// Whether flat walls leave boxes free.
+  bool cut_out(const Parts& parts, const Cut& cut) {
+    std::vector<std::size_t> walls;
+    for (const Near& near : cut.walls) walls.push_back(near.wall);
+    const Box box = box_of(parts);
+    const auto boxes = free_boxes(world_, {box.middle - 0.5 * box.size, box.middle + 0.5 * box.size}, walls, reach_);
+    if (!boxes) return false;
+    for (const Region& free : *boxes) add(free);
+    return true;
+  }
+  void add(const Region& free) {
+    Parts met;
+    for (int k = 0; k < 3; ++k)
+      met.begin[index(k)] = cells_.along(k).strip(free.low[k]),
+      met.end[index(k)] = cells_.along(k).strip(free.high[k]) + 1;
+    for_each(met, [&](std::size_t part, const Box& own) {
+      const Vec3 low = free.low.cwiseMax(own.middle - 0.5 * own.size),
+                 high = free.high.cwiseMin(own.middle + 0.5 * own.size);
+      free_[part] += (high - low).cwiseMax(0.0).prod();
+    });
   }
 
   template <class Visit>
@@ -222,6 +255,7 @@ class Carver {
   const World& world_;
   const AveragingCells& cells_;
   double error_;
+  double reach_ = 0;  ///< that shows all walls of the region [m]
   std::vector<double> free_;
 };
 
