@@ -68,6 +68,7 @@ std::vector<CoarseFields> coarse_fields(const World& world, const PointGrid& gri
     const Vec3 zero = Vec3::Zero();
     spread(fields, centre, zero, zero, [&](CoarseFields& field, const Vec3& off) {
       const double weight = mass * kernel(off.norm());
+      if (weight == 0) return;
       field.density += weight, field.momentum += weight * velocity;
       field.kinetic += weight * velocity * velocity.transpose();
     });
@@ -82,8 +83,9 @@ std::vector<CoarseFields> coarse_fields(const World& world, const PointGrid& gri
     const Branch branch = branch_of(world, contact);
     const Vec3& way = branch.way;
     const Mat3 load = contact.force * way.transpose();
+    const Lucy::Line line(way);
     spread(fields, branch.start, way.cwiseMin(0.0), way.cwiseMax(0.0), [&](CoarseFields& field, const Vec3& off) {
-      field.contact += kernel.along(off, way) * load;
+      if (const double share = kernel.along(off, line); share != 0) field.contact += share * load;
       if (contact.with_wall) field.wall_force -= kernel((off - way).norm()) * contact.force;
     });
   }

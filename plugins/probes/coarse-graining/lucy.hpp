@@ -23,26 +23,37 @@ class Lucy {
     return q < 1 ? scale_ * (1 + 3 * q) * (1 - q) * (1 - q) * (1 - q) : 0;
   }
 
+  /// The way from 0 to `way` [m].
+  struct Line {
+    explicit Line(const Vec3& way) : length(way.norm()), direction(length > 0 ? Vec3(way / length) : Vec3::Zero()) {}
+    double length;
+    Vec3 direction;  ///< zero where there is no way to go
+  };
   /// ∫ φ(|point − s way|) ds over 0 < s < 1, exact up to round-off, which counts c / |way| times [1/m³].
-  double along(const Vec3& point, const Vec3& way) const {
-    const double length = way.norm();
-    if (length == 0) return (*this)(point.norm());
-    const Vec3 direction = way / length;
-    const double nearest = point.dot(direction);  // where the line passes the point, along it
-    const double off2 = (point - nearest * direction).squaredNorm(), inside2 = cutoff_ * cutoff_ - off2;
+  double along(const Vec3& point, const Line& line) const {
+    if (line.length == 0) return (*this)(point.norm());
+    const double nearest = point.dot(line.direction);  // where the line passes the point, along it
+    const double off2 = (point - nearest * line.direction).squaredNorm(), inside2 = cutoff_ * cutoff_ - off2;
     if (!(inside2 > 0)) return 0;
     const double half = std::sqrt(inside2);
-    const double from = std::max(-nearest, -half), to = std::min(length - nearest, half);
-    return to > from ? (integral(to, off2) - integral(from, off2)) / length : 0;
+    const double from = std::max(-nearest, -half), to = std::min(line.length - nearest, half);
+    return to > from ? integral(from, to, off2) / line.length : 0;
   }
+  double along(const Vec3& point, const Vec3& way) const { return along(point, Line(way)); }
 
  private:
-  /// Of φ over 0 … u along a line that passes the middle at the distance √off2, all in m.
-  double integral(double u, double off2) const {
-    const double r2 = off2 + u * u, r = std::sqrt(r2), off = std::sqrt(off2), c2 = cutoff_ * cutoff_;
-    const double second = u * (off2 + u * u / 3), fourth = u * (off2 * off2 + u * u * (2 * off2 / 3 + u * u / 5));
-    const double third = u * r * (2 * r2 + 3 * off2) / 8 + (off > 0 ? 3 * off2 * off2 / 8 * std::asinh(u / off) : 0);
-    return scale_ * (u - 6 * second / c2 + 8 * third / (c2 * cutoff_) - 3 * fourth / (c2 * c2));
+  /// Of φ from one place to another along a line that passes the middle at the distance √off2, all in m.
+  double integral(double from, double to, double off2) const {
+    const double c2 = cutoff_ * cutoff_, r_from = std::sqrt(off2 + from * from), r_to = std::sqrt(off2 + to * to);
+    const auto polynomial = [&](double u, double r) {
+      const double u2 = u * u, r2 = off2 + u2;
+      const double second = u * (off2 + u2 / 3), fourth = u * (off2 * off2 + u2 * (2 * off2 / 3 + u2 / 5));
+      return u - 6 * second / c2 + u * r * (2 * r2 + 3 * off2) / (c2 * cutoff_) - 3 * fourth / (c2 * c2);
+    };
+    // The difference of asinh(u / off) by one logarithm of (u + r) / off, which below 0 is off / (r − u).
+    const auto end = [off2](double u, double r) { return u < 0 ? off2 / (r - u) : u + r; };
+    const double turn = off2 > 1e-32 * c2 ? 3 * off2 * off2 * std::log(end(to, r_to) / end(from, r_from)) : 0;
+    return scale_ * (polynomial(to, r_to) - polynomial(from, r_from) + turn / (c2 * cutoff_));
   }
 
   double cutoff_, scale_;
