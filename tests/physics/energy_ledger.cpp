@@ -108,6 +108,30 @@ TEST(EnergyLedger, RollingResistanceTakesWhatIsLeft) {
   verify("closure error over the energy of a ball that rolls to rest", now.closure_error / start, 0, 5e-3, 1.0);
 }
 
+// Nothing is reckoned before somebody asks, and from then on all of it, on the same way.
+TEST(EnergyLedger, OneThatBeginsLateIsTheRestOfAnEarlyOne) {
+  Description d = grains("linear-rolling", {{"friction_angle", 0.2}, {"rolling_limit", 0.01}},
+                         {{{0, 0, 0.9999 * radius}, radius, {0.3, 0, 0}}});
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {1, 0, -1000}}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.1}};
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["floor"]["motion"]["velocity"] = {0, 0, 1e-3};
+  d["time_step"]["safety"] = 0.1;
+  Kept early(d);
+  Trial late(d, 1, BodyState::energy);
+  early.step(500), late.step(500);
+  const EnergyLedger before = early.world().energies();
+  EXPECT_EQ(late.world().energies().dissipated(), 0);
+  early.step(500), late.step(500);
+  const EnergyLedger whole = early.world().energies(), rest = late.world().energies();
+  EXPECT_EQ(early.position(0), late.position(0));
+  for (const auto member : {&EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::local_damping,
+                            &EnergyLedger::gravitational, &EnergyLedger::walls}) {
+    EXPECT_NE(rest.*member, 0);
+    EXPECT_NEAR(rest.*member, whole.*member - before.*member, 1e-12 * std::abs(whole.*member));
+  }
+}
+
 TEST(EnergyLedger, AWallsWorkIsStored) {
   Description d = grains("linear-frictional", {{"friction_angle", 0}}, {{{0, 0, radius}, radius}});
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());

@@ -35,8 +35,8 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
   const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
-  Quad fastest{}, poison{};
-  double damped_energy = 0, fallen = 0, fastest_carried = 0;
+  Quad fastest{}, poison{}, damped_energy{}, momentum{};
+  double fastest_carried = 0;
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
@@ -51,16 +51,21 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
+    double mass = 0, inertia = 0;
+    if constexpr (Energies) {  // one division for both: it is what a ledger costs most
+      const double inverse = 1 / (inverse_mass * inverse_inertia);
+      mass = inverse * inverse_inertia, inertia = inverse * inverse_mass;
+    }
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
       if constexpr (Energies)
-        damped_energy += product(push - pushed, v + 0.5 * pushed) / inverse_mass +
-                         product(twist - twisted, w + 0.5 * twisted) / inverse_inertia;
+        damped_energy +=
+            (push - pushed) * (v + 0.5 * pushed) * mass + (twist - twisted) * (w + 0.5 * twisted) * inertia;
       push = pushed, twist = twisted;
     }
     v += push, w += twist;
     x += v * drift;
-    if constexpr (Energies) fallen += step.drift * product(quad(settings.gravity), v) / inverse_mass;
+    if constexpr (Energies) momentum += v * mass;
     store(x, bodies.position[i]), store(v, bodies.velocity[i]), store(w, bodies.spin[i]);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;
@@ -72,7 +77,7 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
   const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
   return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
-          damped_energy, fallen};
+          product(damped_energy, quad(Vec3::Ones())), step.drift * product(momentum, quad(settings.gravity))};
 }
 
 }  // namespace

@@ -32,6 +32,9 @@ constexpr std::uint64_t energy_check_every = 500;
 // Of so many chunks one is timed: a look at the clock takes some 30 ns, a chunk some 20 µs.
 constexpr std::uint64_t timed_every = 8;
 
+/// Until somebody has asked for the ledger it is nobody's, and costs nothing.
+bool is_kept(const EnergyFlows& ledger, const Bodies& bodies) { return bodies.energies() && ledger.begun; }
+
 bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high == b.high; }
 
 }  // namespace
@@ -322,7 +325,7 @@ void Simulation::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& lap
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
   std::fill(sum + first, sum + last, BodySum{});
   own.losses = {};
-  Losses* const losses = bodies_.energies() ? &own.losses : nullptr;
+  Losses* const losses = is_kept(flows_, bodies_) ? &own.losses : nullptr;
   own.overlap = pairs_.evaluate(chunk, instant(again), sum, losses);
   laps(own.seconds[pair_contacts]);
   if (surfaces_.empty()) return;
@@ -351,7 +354,7 @@ void Simulation::take_loads() {
   }
   clock_.overlap = 0;
   for (const Chunk& chunk : chunk_) clock_.overlap = std::max(clock_.overlap, chunk.overlap);
-  if (bodies_.energies())
+  if (is_kept(flows_, bodies_))
     for (const Chunk& chunk : chunk_) {
       flows_.lost.friction += chunk.losses.friction, flows_.lost.rolling += chunk.losses.rolling;
       flows_.lost.viscosity += chunk.losses.viscosity;
@@ -388,7 +391,7 @@ MotionStep Simulation::next_motion() const {
           .centre = clock_.cell.strain_rate.isZero(0.0) ? Vec3::Zero() : centre(),
           .period = period + dt * growth,
           .period_growth = growth,
-          .energies = bodies_.energies()};
+          .energies = is_kept(flows_, bodies_)};
 }
 
 template <class Work>
