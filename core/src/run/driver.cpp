@@ -76,6 +76,9 @@ class Run {
   /// Returns false if it was interrupted.
   bool go_through_stage() {
     const StageDescription& stage = scene_.description->stages[stage_];
+    watching_.clear();
+    for (Observer& observer : observers_)
+      if (observer.watches(stage.name)) watching_.push_back(&observer);
     wall_start_ = last_report_ = std::chrono::steady_clock::now();
     last_report_steps_ = simulation_.step();
     begun_at_ = control_.progress ? progress(stage.until, simulation_, start_).value_or(0) : 0;
@@ -161,14 +164,12 @@ class Run {
   bool is_time_to_count() const { return simulation_.step() % contacts_counted_every == 0; }
   void ask_who_looks() {
     frames_.ask(simulation_);
-    for (Observer& observer : observers_) observer.schedule().ask(simulation_);
+    for (Observer* observer : watching_) observer->schedule().ask(simulation_);
   }
   /// Whether somebody may ask for the forces of this instant.
   bool is_looked_at(const StageDescription& stage) {
     return too_late(stage) || is_time_to_count() || frames_.is_due() ||
-           std::any_of(observers_.begin(), observers_.end(), [&](Observer& observer) {
-             return observer.watches(simulation_.stage()) && observer.schedule().is_due();
-           });
+           std::ranges::any_of(watching_, [](Observer* observer) { return observer->schedule().is_due(); });
   }
 
   void step_on() {
@@ -281,7 +282,8 @@ class Run {
   const RunControl& control_;
   Schedule frames_;
   std::deque<Observer> observers_;
-  std::size_t stage_ = 0;  // the one that runs
+  std::vector<Observer*> watching_;  // those that look at the stage that runs
+  std::size_t stage_ = 0;            // the one that runs
   StageStart start_;
   std::size_t ramped_ = 0;
   std::uint64_t last_frame_ = ~0ull, last_report_steps_ = 0, contact_samples_ = 0;

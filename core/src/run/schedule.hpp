@@ -54,8 +54,11 @@ class Schedule {
   /// Displacements since the last time, in its direction; a hair more, for rounding.
   double beyond(const Simulation& now) const {
     const auto& [wall, axis, value] = *cadence_.every_displacement;
-    const auto found = std::ranges::find(now.walls(), wall, &WallView::name);
-    const double gone = found->stage_position[axis[0] - 'x'] / value - level_;
+    const Walls& walls = now.wall_states();  // asked at each step, for which views of all walls would be made
+    std::size_t w = 0;
+    while (walls.name(w) != wall) ++w;
+    const WallState& state = walls.states()[w];
+    const double gone = (state.pose.shift - state.stage_start)[axis[0] - 'x'] / value - level_;
     return gone + std::copysign(1e-9, gone);
   }
 

@@ -164,11 +164,11 @@ void StrainPictures::look(const World& world) {
     if (sliding) walls_ = sliding->now(world);
     view_ = view(world);
     start_ = view_ ? ReferenceImage(picture(world, *view_)) : ReferenceImage();
-  } else if (step_ == world.step()) {
-    return;
+    subsets_ = view_ ? found(start_.full) : std::vector<Subset>();
+  } else if (step_ != world.step()) {
+    subsets_ = view_ ? found(picture(world, *view_)) : std::vector<Subset>();
   }
   step_ = world.step();
-  subsets_ = view_ ? found(picture(world, *view_)) : std::vector<Subset>();
 }
 
 std::vector<StrainPictures::Subset> StrainPictures::found(Image now) const {
