@@ -6,6 +6,7 @@
 #include <random>
 
 #include "contracts/probe.hpp"
+#include "free_boxes.hpp"
 #include "free_volume.hpp"
 
 namespace grit {
@@ -248,6 +249,18 @@ TEST(FreeVolume, FollowsFlatWallsThatShareACell) {
     for (WallView& wall : world->wall) wall.flat = true;
     EXPECT_NEAR(free_volume(*world, world->whole, {1, 1, 1}, 1e-3), 32, 32e-3);
   }
+}
+
+TEST(FreeBoxes, AreNoneBeforeWallsThatStandAskewWhichIsSoonSeen) {
+  FakeWorld world = cubic(4);
+  int asked = 0;
+  for (const double slope : {1.0, -1.0})
+    add_wall(world, [&asked, surface = flat_surface({2, 0, 1}, Vec3(slope, 0, 1).normalized())](const Vec3& x) {
+      return ++asked, surface(x);
+    });
+  for (WallView& wall : world.wall) wall.flat = true;
+  EXPECT_FALSE(free_boxes(world, world.whole, {0, 1}, 10));
+  EXPECT_LT(asked, 50);
 }
 
 TEST(FreeVolume, TakesNothingForASheetWithTwoSides) {
