@@ -1,3 +1,4 @@
+// A box is cut along a face of a wall that is not all of the wall in the box, until there is none.
 #include "free_boxes.hpp"
 
 #include <algorithm>

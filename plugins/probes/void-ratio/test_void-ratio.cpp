@@ -266,7 +266,10 @@ TEST(FreeBoxes, AreNoneBeforeWallsThatStandAskewWhichIsSoonSeen) {
 TEST(FreeVolume, TakesNothingForASheetWithTwoSides) {
   FakeWorld world = cubic(4);
   add_wall(world, [](const Vec3& x) { return Clearance{std::abs(x.z() - 1.3), Vec3(0, 0, x.z() < 1.3 ? 1 : -1)}; });
-  EXPECT_DOUBLE_EQ(free_volume(world, world.whole, {4, 4, 4}, 1e-3), 64);
+  for (const bool flat : {false, true}) {
+    world.wall.back().flat = flat;
+    EXPECT_DOUBLE_EQ(free_volume(world, world.whole, {4, 4, 4}, 1e-3), 64);
+  }
 }
 
 TEST(FreeVolume, FollowsGroovesAsCloselyAsItSays) {
