@@ -13,6 +13,9 @@ RATIOS = {
 }
 
 
+MISSES = '**misses**'
+
+
 def verdict(figure, promised, wanted, at_most=False):
     """In words, how a figure stands to its bounds; those of a ratio of costs are upper ones."""
     if promised is None:
@@ -20,7 +23,7 @@ def verdict(figure, promised, wanted, at_most=False):
     holds = (lambda bound: figure <= bound) if at_most else (lambda bound: figure >= bound)
     if wanted is not None and holds(wanted):
         return 'as wanted'
-    return 'holds' if holds(promised) else '**misses**'
+    return 'holds' if holds(promised) else MISSES
 
 
 def in_words(promised, wanted, at_most=False):

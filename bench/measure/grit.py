@@ -27,6 +27,8 @@ class Window(NamedTuple):
 
     def seconds_per_contact(self):
         """Of one contact in one step."""
+        if not self.contacts_per_grain:
+            raise Complaint('nothing touches in the stage that is timed; let the stages before take longer')
         return self.seconds / self.steps / (0.5 * self.contacts_per_grain * self.grains)
 
 
@@ -39,7 +41,12 @@ def program(path=None):
 
 
 def version(path):
-    return subprocess.run([path, '--version'], capture_output=True, text=True, check=True).stdout.strip()
+    done = subprocess.run([path, '--version'], capture_output=True, text=True)
+    if done.returncode != 0 or not done.stdout.startswith('grit '):
+        said = (done.stderr or done.stdout).strip() or 'nothing'
+        raise Complaint(f'{path}: is no grit that runs here: exit status {done.returncode} of --version, and it said: '
+                        f'{said}; build it anew, or name another (--grit FILE)')
+    return done.stdout.strip()
 
 
 def command(path, scene, folder, threads, settings):
@@ -49,38 +56,57 @@ def command(path, scene, folder, threads, settings):
     return [str(word) for word in words]
 
 
-def run(path, scene, folder, threads, settings=None):
-    """Runs a scene, pinned to as many cores as it has threads; all threads that there are, unless given."""
+class Done(NamedTuple):
+    output: str
+    others: float
+    facts: dict
+
+
+def _fresh(folder):
+    """Makes the folder, without what an earlier run said."""
     Path(folder).mkdir(parents=True, exist_ok=True)
+    file = Path(folder) / 'run.json'
+    file.unlink(missing_ok=True)
+    return file
+
+
+def _facts(path, file):
+    if not file.is_file():
+        raise Complaint(f'{path}: ended well, but wrote no {file}; is it grit?')
+    return json.loads(file.read_text(encoding='utf-8'))
+
+
+def run(path, scene, folder, threads, settings=None, environment=None, friends=()):
+    """Runs a scene, pinned to as many cores as it has threads; all threads that there are, unless given."""
+    file = _fresh(folder)
     threads = threads or len(os.sched_getaffinity(0))
-    return machine.run(command(path, scene, folder, threads, settings), threads, ROOT)
+    done = machine.run(command(path, scene, folder, threads, settings), threads, ROOT, environment, friends=friends)
+    return Done(done.output, done.others, _facts(path, file))
 
 
-def window(path, scene, folder, threads, settings=None):
+def window(path, scene, folder, threads, settings=None, **more):
     """Runs a scene whose last stage is "timed" and comes after another, which warms up."""
-    done = run(path, scene, folder, threads, settings)
-    facts = json.loads((Path(folder) / 'run.json').read_text(encoding='utf-8'))
-    before, timed = facts['stages'][-2:]
+    done = run(path, scene, folder, threads, settings, **more)
+    before, timed = done.facts['stages'][-2:]
     if timed['name'] != 'timed':
         raise Complaint(f'{scene}: its last stage is "{timed["name"]}"; name it "timed"')
     # Where a scene has its contacts summed up, those of the end count: they may change while it warms up.
     contacts = re.search(r'^packing/coordination_number: .*final (\S+)', done.output, re.M)
-    return Window(facts['bodies'], timed['step'] - before['step'], timed['wall_s'] - before['wall_s'],
-                  float(contacts.group(1)) if contacts else facts['contacts_per_body'], done.others, facts)
+    return Window(done.facts['bodies'], timed['step'] - before['step'], timed['wall_s'] - before['wall_s'],
+                  float(contacts.group(1)) if contacts else done.facts['contacts_per_body'], done.others, done.facts)
 
 
-def stepping(path, scene, folder, threads, settings=None):
-    """Seconds of all stages of a scene, and how many cores other processes kept busy meanwhile."""
+def all_stages(path, scene, folder, threads, settings=None):
+    """Seconds of all stages of a scene, probes and output too, and how many cores others kept busy meanwhile."""
     done = run(path, scene, folder, threads, settings)
-    return json.loads((Path(folder) / 'run.json').read_text(encoding='utf-8'))['wall_s'], done.others
+    # Not the run's own wall_s, which has neither probes nor output in it.
+    return done.facts['stages'][-1]['wall_s'], done.others
 
 
 def _started(path, scene, folder, threads, settings):
     """A run that is watched while it goes on."""
-    Path(folder).mkdir(parents=True, exist_ok=True)
-    (Path(folder) / 'run.json').unlink(missing_ok=True)
-    words = machine.pinned(command(path, scene, folder, threads, settings), threads)
-    return subprocess.Popen(words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    return machine.started(command(path, scene, folder, threads, settings), threads, ROOT,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
 
 def _ended(process):
@@ -90,29 +116,31 @@ def _ended(process):
 
 
 def peak_memory(path, scene, folder, threads, settings=None):
-    """The most memory that the process ever had in hand [bytes]."""
-    process = _started(path, scene, folder, threads, settings)
-    peak = 0
-    while process.poll() is None:
-        # Not getrusage(): that begins with what this process had when it forked.
-        try:
-            status = Path(f'/proc/{process.pid}/status').read_text(encoding='ascii')
-        except OSError:
-            break
-        peak = max([peak] + [1024 * int(line.split()[1]) for line in status.splitlines() if line.startswith('VmHWM')])
-        time.sleep(0.002)
-    _ended(process)
-    return peak
+    """The most memory that the process ever had in hand [bytes], what others took, and what run.json says."""
+    file, watch, peak = _fresh(folder), machine.Watch(), 0
+    with _started(path, scene, folder, threads, settings) as process:
+        while process.poll() is None:
+            # Not getrusage(): that begins with what this process had when it forked.
+            try:
+                status = Path(f'/proc/{process.pid}/status').read_text(encoding='ascii')
+            except OSError:
+                break
+            peak = max([peak] + [1024 * int(line.split()[1]) for line in status.splitlines()
+                                 if line.startswith('VmHWM')])
+            time.sleep(0.002)
+        _ended(process)
+    return peak, watch.others(), _facts(path, file)
 
 
 def seconds_to_first_stage(path, scene, folder, threads, settings=None):
-    """From the start of the process to the end of its first stage, as run.json comes to say it."""
-    begin = time.perf_counter()
-    process = _started(path, scene, folder, threads, settings)
-    file, seconds = Path(folder) / 'run.json', None
-    while seconds is None and process.poll() is None:
-        if file.is_file() and json.loads(file.read_text(encoding='utf-8'))['stages']:
-            seconds = time.perf_counter() - begin
-        time.sleep(0.002)
-    _ended(process)
-    return seconds or time.perf_counter() - begin
+    """From the start of the process to the end of its first stage, as run.json comes to say it; what others took."""
+    file, watch, seconds = _fresh(folder), machine.Watch(), None
+    with _started(path, scene, folder, threads, settings) as process:
+        while seconds is None and process.poll() is None:
+            if file.is_file() and json.loads(file.read_text(encoding='utf-8'))['stages']:
+                seconds = watch.seconds()
+            time.sleep(0.002)
+        _ended(process)
+    if not _facts(path, file)['stages']:
+        raise Complaint(f'{path}: ended before its first stage did')
+    return seconds or watch.seconds(), watch.others()

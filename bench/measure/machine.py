@@ -1,4 +1,5 @@
 """The machine that figures are taken on, and processes that are timed there."""
+import contextlib
 import datetime
 import os
 import platform
@@ -48,7 +49,7 @@ def cores(threads):
     mine = sorted(os.sched_getaffinity(0))
     if threads > len(mine):
         raise Complaint(f'{threads} threads were asked for, but this process may use {len(mine)} cores; '
-                        'ask for fewer (--threads)')
+                        'ask for fewer, or let it use more (taskset, cgroups)')
     return mine[:threads]
 
 
@@ -63,6 +64,31 @@ def _own_busy():
     return times.user + times.system + times.children_user + times.children_system
 
 
+def _busy_of(pid):
+    """CPU time of a process that goes on [s]."""
+    # After the name, which may have spaces: state is field 3, user and system time 14 and 15.
+    words = Path(f'/proc/{pid}/stat').read_text(encoding='ascii', errors='replace').rpartition(')')[2].split()
+    return (int(words[11]) + int(words[12])) / os.sysconf('SC_CLK_TCK')
+
+
+class Watch:
+    """How long something takes, and how many cores all others keep busy meanwhile: neither this process, nor those that
+    it has waited for, nor `friends`, by their ids, which must outlive it."""
+
+    def __init__(self, friends=()):
+        self.friends = friends
+        self.begin, self.busy, self.own = time.perf_counter(), _all_busy(), self._ours()
+
+    def _ours(self):
+        return _own_busy() + sum(map(_busy_of, self.friends))
+
+    def seconds(self):
+        return time.perf_counter() - self.begin
+
+    def others(self):
+        return max(0.0, (_all_busy() - self.busy) - (self._ours() - self.own)) / self.seconds()
+
+
 def pinned(command, threads):
     taskset = shutil.which('taskset')
     if taskset is None:
@@ -70,24 +96,62 @@ def pinned(command, threads):
     return [taskset, '-c', ','.join(map(str, cores(threads))), *map(str, command)]
 
 
-def run(command, threads, folder, environment=None, timeout=1800):
-    """Runs a command pinned to as many cores as it has threads. Raises CalledProcessError if it fails."""
+@contextlib.contextmanager
+def started(command, threads, folder, environment=None, **streams):
+    """A command that goes on, pinned to as many cores as it has threads; when the block ends, so does all it began."""
     environment = os.environ | {'OMP_NUM_THREADS': '1'} | (environment or {})
-    start, busy, own = time.perf_counter(), _all_busy(), _own_busy()
     # A session of its own, so that what it started ends with it.
-    process = subprocess.Popen(pinned(command, threads), cwd=folder, env=environment, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, errors='replace', start_new_session=True)
+    process = subprocess.Popen(pinned(command, threads), cwd=folder, env=environment, text=True, errors='replace',
+                               start_new_session=True, **streams)
     try:
-        output, _ = process.communicate(timeout=timeout)
-    except BaseException:
-        os.killpg(process.pid, signal.SIGKILL)
+        yield process
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        raise
-    seconds = time.perf_counter() - start
-    others = max(0.0, (_all_busy() - busy) - (_own_busy() - own)) / seconds
+
+
+class OutOfTime(Complaint):
+    """A run did not end within its time."""
+
+
+_deadline = None
+
+
+def end_within(seconds):
+    """From now on all runs together may take so long."""
+    global _deadline
+    _deadline = time.monotonic() + seconds
+
+
+def time_left():
+    return float('inf') if _deadline is None else _deadline - time.monotonic()
+
+
+def run(command, threads, folder, environment=None, timeout=1800, friends=()):
+    """Runs a command pinned to as many cores as it has threads. Raises CalledProcessError if it fails."""
+    timeout = min(timeout, time_left())
+    if timeout <= 0:
+        raise OutOfTime('there is no time left')
+    watch = Watch(friends)
+    with started(command, threads, folder, environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
+        try:
+            output, _ = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            raise OutOfTime(f'did not end within {timeout:.0f} s, and was stopped: '
+                            + ' '.join(map(str, command))) from None
+    seconds, others = watch.seconds(), watch.others()
     if process.returncode != 0:
         raise subprocess.CalledProcessError(process.returncode, command, output)
     return Run(output, seconds, others)
+
+
+def reason(error):
+    """What a Complaint or a CalledProcessError says, with the last words of the command that failed."""
+    if isinstance(error, Complaint):
+        return str(error)
+    said = (error.output or error.stderr or '').splitlines()[-20:]
+    return '\n'.join([f'exit status {error.returncode} of: ' + ' '.join(map(str, error.cmd)), *said])
 
 
 def say(line):
@@ -102,12 +166,8 @@ def main(work):
         signal.signal(stop, signal.default_int_handler)
     try:
         sys.exit(work())
-    except Complaint as complaint:
-        say(f'{name}: {complaint}')
-        sys.exit(2)
-    except subprocess.CalledProcessError as error:
-        say(f'{name}: exit status {error.returncode} of: ' + ' '.join(map(str, error.cmd)))
-        say('\n'.join((error.output or '').splitlines()[-20:]))
-        sys.exit(1)
+    except (Complaint, subprocess.CalledProcessError) as error:
+        say(f'{name}: {reason(error)}')
+        sys.exit(2 if isinstance(error, Complaint) else 1)
     except KeyboardInterrupt:
         sys.exit(130)

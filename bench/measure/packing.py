@@ -2,6 +2,7 @@
 import hashlib
 import json
 import math
+import os
 import re
 from pathlib import Path
 from typing import NamedTuple
@@ -10,7 +11,8 @@ from . import grit
 from .machine import Complaint, say
 
 ROOT = Path(__file__).resolve().parents[2]
-STORE = ROOT / 'results' / 'bench'
+# Where packings and runs are kept.
+STORE = Path(os.environ.get('GRIT_BENCH_STORE') or ROOT / 'results' / 'bench').resolve()
 PACK, PRESS = (ROOT / 'bench' / 'scenes' / name for name in ('pack.json', 'press.json'))
 PRESSURE = 150e3  # Pa
 
@@ -93,7 +95,7 @@ def made(program, name, count, sizes, void_ratio, seed=1):
     recipe = json.dumps([PACK.read_text(), PRESS.read_text(), PRESSURE, count, sizes, void_ratio, seed], sort_keys=True)
     folder = STORE / f'{name}-{count}-seed{seed}-{hashlib.sha256(recipe.encode()).hexdigest()[:8]}'
     if not folder.is_dir():
-        say(f'making {folder.relative_to(ROOT)} …')
+        say(f'making {folder} …')
         # A cloud with 70 % of the volume empty lets grains be placed at once.
         side = (_solids(sizes, count) / 0.3) ** (1 / 3)
         part = folder.with_name(folder.name + '.part')
@@ -152,7 +154,7 @@ def _pressure(done):
 def _run_once(program, scene, folder, settings):
     """The packing that a scene ends with; the folder gets its name when all is done, so that none is half made."""
     if not folder.is_dir():
-        say(f'making {folder.relative_to(ROOT)} …')
+        say(f'making {folder} …')
         part = folder.with_name(folder.name + '.part')
         grit.run(program, scene, part, threads=None, settings=settings)
         part.rename(folder)
@@ -182,7 +184,7 @@ def repeated(packing, times):
     folder = STORE / f'repeated-{count}-{packing.digest}-{nx}x{ny}x{nz}'
     path = folder / 'packing.txt'
     if not path.is_file():
-        say(f'making {folder.relative_to(ROOT)} …')
+        say(f'making {folder} …')
         folder.mkdir(parents=True, exist_ok=True)
         a, b, c = packing.cell.sides()
         rows = list(packing.rows())
@@ -209,8 +211,9 @@ def wide(program, grains):
     return made(program, 'wide', grains, WIDE, 0.4)
 
 
-def filled(program, scene):
-    """The grains of bench/scenes/SCENE.json, as SCENE-fill.json leaves them."""
+def filled(program, scene, settings=None):
+    """The grains of bench/scenes/SCENE.json, as SCENE-fill.json leaves them, but for `settings`."""
+    settings = settings or {}
     own, fill = PACK.with_name(f'{scene}.json'), PACK.with_name(f'{scene}-fill.json')
-    digest = hashlib.sha256((fill.read_text() + own.read_text()).encode()).hexdigest()[:8]
-    return _run_once(program, fill, STORE / f'{scene}-{digest}', {})
+    digest = hashlib.sha256((fill.read_text() + own.read_text() + (json.dumps(settings) if settings else '')).encode()).hexdigest()[:8]
+    return _run_once(program, fill, STORE / f'{scene}-{digest}', settings)

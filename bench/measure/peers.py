@@ -8,10 +8,10 @@ from pathlib import Path
 
 from . import grit, machine
 from .machine import Complaint
+from .packing import STORE
 
 ROOT = Path(__file__).resolve().parents[2]
 INPUTS = ROOT / 'bench' / 'peers'
-STORE = ROOT / 'results' / 'bench'
 PROGRAMS = {'yade': 'yade', 'liggghts': 'liggghts', 'lammps': 'lmp'}
 CODES = ('grit', *PROGRAMS)
 
