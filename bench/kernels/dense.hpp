@@ -54,11 +54,14 @@ class Dense {
     contacts();
   }
 
-  void search() {
+  void search() { find(), rebuild(); }
+  /// Neighbours, and nothing done with them.
+  void find() {
     skins_.lay_on(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0);
     search_.build(bodies_, cell_, skins_);
-    pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_);
   }
+  /// Files the contacts of what was found.
+  void rebuild() { pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_); }
   void contacts() {
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) {
       const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
@@ -66,6 +69,10 @@ class Dense {
                 BodySum{});
       pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data(), nullptr);
     }
+  }
+  /// What contacts across chunks do to their second bodies, alone.
+  void gather() {
+    for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) pairs_.gather(chunk, sum_.data());
   }
   /// All of the arithmetic, but nothing comes to move: else the grains would fly apart.
   void motion() {
@@ -83,6 +90,13 @@ class Dense {
 
   std::size_t count() const { return bodies_.count(); }
   std::size_t touching() const { return pairs_.touching_count(); }
+  /// Share of contacts between bodies of different chunks, which write a row.
+  double across() const {
+    std::size_t across = 0;
+    for (std::size_t c = 0; c < pairs_.candidates(); ++c)
+      if (pairs_.touches(c) && pairs_.a(c) / chunk_bodies != pairs_.b(c) / chunk_bodies) ++across;
+    return static_cast<double>(across) / static_cast<double>(touching());
+  }
 
  private:
   Scene scene_;

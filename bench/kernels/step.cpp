@@ -22,25 +22,49 @@ void rate(benchmark::State& state, const char* what, std::size_t each) {
   state.counters[what] = benchmark::Counter(static_cast<double>(each), benchmark::Counter::kIsIterationInvariantRate);
 }
 
+/// How many contacts a grain has, and which share of them is between chunks.
+void describe(benchmark::State& state, const Dense& grains) {
+  state.counters["contacts_per_grain"] =
+      2 * static_cast<double>(grains.touching()) / static_cast<double>(grains.count());
+  state.counters["across_share"] = grains.across();
+}
+
 void contacts(benchmark::State& state, const std::string& law) {
   Dense& grains = dense(state, law);
   for (auto _ : state) grains.contacts();
   rate(state, "contacts_per_s", grains.touching());
-  state.counters["contacts_per_grain"] =
-      2 * static_cast<double>(grains.touching()) / static_cast<double>(grains.count());
+  describe(state, grains);
 }
 
 void motion(benchmark::State& state) {
   Dense& grains = dense(state, laws[0]);
   for (auto _ : state) grains.motion();
   rate(state, "grains_per_s", grains.count());
-  state.counters["contacts_per_grain"] =
-      2 * static_cast<double>(grains.touching()) / static_cast<double>(grains.count());
+  describe(state, grains);
+}
+
+void gather(benchmark::State& state) {
+  Dense& grains = dense(state, laws[0]);
+  for (auto _ : state) grains.gather();
+  rate(state, "grains_per_s", grains.count());
+  describe(state, grains);
 }
 
 void search(benchmark::State& state) {
   Dense& grains = dense(state, laws[0]);
   for (auto _ : state) grains.search();
+  rate(state, "grains_per_s", grains.count());
+}
+
+/// Without finding them: each is a search whose first half is not timed.
+void rebuild(benchmark::State& state) {
+  Dense& grains = dense(state, laws[0]);
+  for (auto _ : state) {
+    state.PauseTiming();
+    grains.find();
+    state.ResumeTiming();
+    grains.rebuild();
+  }
   rate(state, "grains_per_s", grains.count());
 }
 
@@ -51,7 +75,9 @@ void search(benchmark::State& state) {
         ->Arg(10000)
         ->Arg(125000);
   benchmark::RegisterBenchmark("motion", motion)->Arg(216)->Arg(10000)->Arg(125000);
+  benchmark::RegisterBenchmark("gather", gather)->Arg(10000)->Arg(125000);
   benchmark::RegisterBenchmark("search", search)->Arg(10000)->Arg(125000);
+  benchmark::RegisterBenchmark("rebuild", rebuild)->Arg(10000)->Arg(125000);
   return true;
 }();
 

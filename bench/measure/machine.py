@@ -101,14 +101,13 @@ def started(command, threads, folder, environment=None, **streams):
     """A command that goes on, pinned to as many cores as it has threads; when the block ends, so does all it began."""
     environment = os.environ | {'OMP_NUM_THREADS': '1'} | (environment or {})
     # A session of its own, so that what it started ends with it.
-    process = subprocess.Popen(pinned(command, threads), cwd=folder, env=environment, text=True, errors='replace',
-                               start_new_session=True, **streams)
-    try:
-        yield process
-    finally:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
+    with subprocess.Popen(pinned(command, threads), cwd=folder, env=environment, text=True, errors='replace',
+                          start_new_session=True, **streams) as process:
+        try:
+            yield process
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
 
 
 class OutOfTime(Complaint):

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 from pathlib import Path
+from typing import NamedTuple, Optional
 
 from . import grit, machine
 from .machine import Complaint
@@ -53,8 +54,18 @@ def installed(code):
     return code == 'grit' or shutil.which(PROGRAMS[code]) is not None
 
 
+class Timed(NamedTuple):
+    speed: float     # particle-steps per second
+    contacts: float  # a grain
+    others: float    # cores that other processes kept busy meanwhile
+    of_critical: Optional[float] = None  # the time step over the critical one, where the code knows it
+    reached: str = ''                    # of what the machine allows, in words
+
+
 class Box:
     """One packing, ready for every code."""
+
+    shares = None  # of what the machine allows, if that is known
 
     def __init__(self, packing, program):
         self.packing, self.program = packing, program
@@ -62,15 +73,18 @@ class Box:
         self._data = self._rows = None
 
     def run(self, code, law, threads, warm, steps):
-        """Particle-steps per second, contacts per grain, and the cores that other processes kept busy meanwhile."""
+        """What the code reached: Timed."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        return getattr(self, '_' + code)(law, threads, warm, steps)
+        return Timed(*getattr(self, '_' + code)(law, threads, warm, steps))
 
     def _grit(self, law, threads, warm, steps):
         settings = self.packing.settings() | {'/stages/0/until/value': warm, '/stages/1/until/value': steps}
         window = grit.window(self.program, ROOT / 'bench' / 'scenes' / SCENES[law], self.folder / 'grit', threads,
                              settings)
-        return window.particle_steps_per_second(), window.contacts_per_grain, window.others
+        critical = window.facts['critical_time_step_s']
+        return (window.particle_steps_per_second(), window.contacts_per_grain, window.others,
+                critical and window.facts['time_step_s'] / critical,
+                self.shares.of(LAWS[law]['grit'], threads, window) if self.shares else '')
 
     def _yade(self, law, threads, warm, steps):
         given = {'grains': str(self._plain()), 'sides': self.packing.cell.sides(), 'law': law, 'density': 2600.0,

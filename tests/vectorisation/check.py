@@ -8,31 +8,29 @@ xmm …   the widest registers of every loop over SIMD lanes: those of x86-64-v2
 """
 
 import re
-import subprocess
 import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
+from measure.disassembly import ARITHMETIC, REGISTER, functions  # noqa: E402
 
 RATIO = 10  # measured with g++ 12 and AVX2: 19 and more in the lanes, 0.4 and less in the twins
-ARITHMETIC = re.compile(r"v?(?:add|sub|mul|div|sqrt|min|max|fn?m(?:add|sub)\d{3})([ps])[sd]$")
-REGISTER = re.compile(r"%([xyz]mm)\d")
 TWIN = re.compile(r"pair_loop<[^<>]*, \d+u, (?:double|float),")
 
 
 def loops(objdump, plugin):
     """Name of each pair_loop → counts of packed and scalar arithmetic, the calls in it, and its widest registers."""
-    listing = subprocess.run([objdump, "-d", "-C", "--no-show-raw-insn", plugin], capture_output=True, text=True, check=True)
-    found, current = {}, None
-    for line in listing.stdout.splitlines():
-        if line.endswith(">:"):
-            name = line.split("<", 1)[1]
-            start = {"p": 0, "s": 0, "calls": [], "widest": ""}
-            current = found.setdefault(name, start) if "detail::pair_loop<" in name else None
-        elif current is not None and (code := line.split("\t")[1:]):
-            word = code[0].split()[0]
-            current["widest"] = max([current["widest"], *REGISTER.findall(code[0])])
+    found = {}
+    for name, instructions in functions(objdump, plugin, "detail::pair_loop<").items():
+        counts = found[name] = {"p": 0, "s": 0, "calls": [], "widest": ""}
+        for code in instructions:
+            word = code.split()[0]
+            counts["widest"] = max([counts["widest"], *REGISTER.findall(code)])
             if match := ARITHMETIC.match(word):
-                current[match[1]] += 1
+                counts[match[2]] += 1
             elif word.startswith("call"):
-                current["calls"].append(code[0])
+                counts["calls"].append(code)
     return found
 
 

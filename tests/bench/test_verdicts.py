@@ -1,0 +1,327 @@
+"""usage: test_verdicts.py ROOT [what unittest takes]
+
+What the scripts of bench/ conclude, on figures that are given: a stand-in for grit, and peers that answer as told.
+"""
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+from unittest import mock
+
+sys.dont_write_bytecode = True
+ROOT = Path(sys.argv[1]).resolve()
+BENCH = ROOT / 'bench'
+sys.path.insert(0, str(BENCH))
+_store = tempfile.TemporaryDirectory()
+os.environ['GRIT_BENCH_STORE'] = _store.name
+from measure import bounds, disassembly, grit, limits, machine, packing, peers  # noqa: E402
+
+STORE = Path(_store.name)
+
+
+def script(name):
+    loader = importlib.machinery.SourceFileLoader('bench_' + name, str(BENCH / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
+    loader.exec_module(module)
+    return module
+
+
+def quiet():
+    """No other process took anything."""
+    return mock.patch.object(machine, '_all_busy', lambda: 0.0)
+
+
+def busy():
+    """Others took all cores, and more."""
+    return mock.patch.object(machine, '_all_busy', lambda: 1000 * time.perf_counter())
+
+
+class Given(unittest.TestCase):
+    def setUp(self):
+        self.place = Path(tempfile.mkdtemp(dir=STORE))
+        self.fake = self.place / 'bin' / 'grit'
+        self.fake.parent.mkdir()
+        shutil.copy(Path(__file__).with_name('fake_grit.py'), self.fake)
+
+    def told(self, **scenes):
+        """What the stand-in is to say, until the test ends."""
+        patch = mock.patch.dict(os.environ, {'FAKE_GRIT': json.dumps(scenes)})
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def call(self, module, *words):
+        """Exit status, standard output and error of a script."""
+        out, errors = io.StringIO(), io.StringIO()
+        before = [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
+        try:
+            with mock.patch.object(sys, 'argv', [str(module.__file__ or BENCH), *map(str, words)]), \
+                    mock.patch.object(machine, '_deadline', None), \
+                    contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors), \
+                    self.assertRaises(SystemExit) as ended:
+                machine.main(module.main)
+        finally:
+            for one, handler in zip((signal.SIGINT, signal.SIGTERM), before):
+                signal.signal(one, handler)
+        return ended.exception.code, out.getvalue(), errors.getvalue()
+
+
+class Rows(Given):
+    def rows(self, *words):
+        return self.call(script('rows'), '--grit', self.fake, '--rounds', 1, *words)
+
+    def test_the_row_of_probes_times_all_stages(self):
+        self.told(**{'quick': {'end': 10.0}, 'quick-every-probe': {'end': 12.0}})
+        with quiet():
+            status, out, errors = self.rows('probes')
+        self.assertIn('1.2 times as long', out, errors)
+        self.assertIn('10.0 and 12.0 s', out)
+        self.assertIn(bounds.MISSES, out)
+        self.assertEqual(status, 1)
+
+    def test_a_bound_that_holds(self):
+        self.told(**{'quick': {'end': 10.0}, 'quick-every-probe': {'end': 10.1}})
+        with quiet():
+            status, out, _ = self.rows('probes')
+        self.assertIn('| holds |', out)
+        self.assertEqual(status, 0)
+
+    def test_no_verdict_beside_others(self):
+        self.told(**{'quick': {'end': 10.0}, 'quick-every-probe': {'end': 12.0}})
+        with busy():
+            status, out, _ = self.rows('probes')
+        self.assertIn('1.2 times as long !', out)
+        self.assertNotIn(bounds.MISSES, out)
+        self.assertEqual(status, 0)
+
+    def test_rounds_that_were_disturbed_do_not_count(self):
+        bench = script('rows').Bench(mock.Mock(rounds=3), self.fake, None)
+        figures, others = iter([1.0, 9.0, 3.0]), iter([0.0, 0.5, 0.0])
+
+        def one():
+            bench.beside(next(others))
+            return next(figures)
+        with contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual(bench.rounds(one), [2.0])
+        self.assertFalse(bench.disturbed)
+
+    def test_memory_is_taken_over_two_searches(self):
+        self.told(**{'dense-box': {'rebuilds': 1}})
+        status, out, errors = self.rows('--short', 'memory')
+        self.assertIn('1 search(es)', errors)
+        self.assertEqual(status, 1)
+        self.told(**{'dense-box': {'rebuilds': 2}})
+        status, out, errors = self.rows('--short', 'memory')
+        self.assertIn('; 2 searches', out, errors)
+        self.assertEqual(status, 0)
+
+    def test_start_and_memory_are_marked_when_disturbed(self):
+        for disturbance, mark in ((busy, ' !'), (quiet, '')):
+            with disturbance():
+                _, out, errors = self.rows('--short', 'start', 'memory')
+            for unit in ('s', 'B'):
+                self.assertRegex(out, rf'\| [-+.e0-9]+ {unit}{mark} \|', errors)
+
+    def test_a_row_that_fails_leaves_the_others_their_figures(self):
+        self.told(**{'drum': {'fails': 'a grain was lost'}})
+        written = self.place / 'rows.json'
+        with quiet():
+            status, out, errors = self.rows('--short', 'threads', 'drum', 'size', '--json', written)
+        self.assertIn('a grain was lost', errors)
+        self.assertIn('2 threads against 1', out)
+        self.assertIn('1 000 000 grains against 50 000', out)
+        self.assertEqual([one['row'] for one in json.loads(written.read_text())['rows']], ['threads', 'size'])
+        self.assertEqual(status, 1)
+
+    def test_a_run_that_is_stopped_tells_what_it_has(self):
+        module = script('rows')
+        module.ROWS['size'] = mock.Mock(side_effect=KeyboardInterrupt, __doc__='stopped by hand')
+        with quiet():
+            status, out, errors = self.call(module, '--grit', self.fake, '--short', 'threads', 'size')
+        self.assertIn('2 threads against 1', out, errors)
+        self.assertEqual(status, 130)
+
+    def test_growth_is_drawn(self):
+        rows, picture = self.place / 'growth.json', self.place / 'growth.svg'
+        status, out, errors = self.rows('--short', 'growth', '--json', rows)
+        self.assertEqual(status, 0, errors)
+        status, _, errors = self.call(script('growth'), rows, '--out', picture)
+        self.assertEqual(status, 0, errors)
+        self.assertEqual(picture.read_text().count('<polyline points'), picture.read_text().count('#ccc') + 2)
+        self.assertEqual(picture.read_text().count('r="6"'), 8)
+
+
+class Check(Given):
+    COMMIT = 'c0ffee' + 34 * '0'
+
+    def check(self, *words):
+        module = script('check')
+        module.settings_of = lambda build: []
+        module.build = lambda folder, jobs: self.fake
+        module.resolved = lambda name: self.COMMIT if name in ('HEAD~1', 'c0ffee') else ''
+        return self.call(module, '--rounds', 1, '--grains', 8, *words)
+
+    def test_speed_is_held_against_the_bound(self):
+        for seconds, status in ((1.04, 0), (1.07, 1)):
+            self.told(**{'present': {'end': 1 + seconds}, 'earlier': {'revision': 'c0ffee'}})
+            with quiet():
+                found, out, errors = self.check('--reference-grit', self.fake)
+            self.assertIn(f'{1 / seconds:.3f}', out, errors)
+            self.assertEqual(found, status)
+
+    def test_a_program_of_another_commit_is_refused(self):
+        self.told(**{'earlier': {'revision': 'bad'}})
+        status, _, errors = self.check('--reference-grit', self.fake)
+        self.assertIn('says that it is of "bad", not of c0ffee000000', errors)
+        self.assertEqual(status, 2)
+
+    def test_what_is_no_grit_is_refused(self):
+        status, _, errors = self.check('--reference-grit', '/bin/true')
+        self.assertIn('/true: is no grit that runs here', errors)
+        self.assertEqual(status, 2)
+
+    def test_no_verdict_beside_others(self):
+        self.told(**{'earlier': {'revision': 'c0ffee'}})
+        with busy():
+            status, _, errors = self.check('--reference-grit', self.fake)
+        self.assertIn('there is no verdict', errors)
+        self.assertEqual(status, 2)
+
+
+class Compare(Given):
+    def compare(self, speeds, *words, others=0.0):
+        """`speeds` in particle-steps/s by code, or what is raised."""
+        def run(box, code, law, threads, warm, steps):
+            if isinstance(speeds[code], BaseException):
+                raise speeds[code]
+            return peers.Timed(speeds[code], 4.0, others, 0.8 if code == 'grit' else None)
+        path = self.place / 'box.txt'
+        path.write_text('# cell 0 0 0 to 1 1 1, m\n' + 10000 * '0.5 0.5 0.5 0.1\n')
+        with mock.patch.object(peers.Box, 'run', run), mock.patch.object(peers, 'installed', lambda code: True), \
+                mock.patch.object(peers, 'versions', lambda codes, program: {}):
+            return self.call(script('compare'), '--grit', self.fake, '--codes', ','.join(speeds), '--laws', 'rolling',
+                             '--threads', 1, '--packing', path, '--rounds', 1, *words)
+
+    def test_a_miss_is_an_exit_status(self):
+        for ratio, status, verdict in ((6.5, 0, 'as wanted'), (5, 0, 'holds'), (4, 1, bounds.MISSES)):
+            found, out, errors = self.compare({'grit': ratio * 1e6, 'lammps': 1e6})
+            self.assertIn(f'| {ratio:.2f} | ≥ 4.5, wanted 6 | {verdict} |', out, errors)
+            self.assertEqual(found, status)
+
+    def test_the_step_is_told_over_the_critical_one(self):
+        _, out, _ = self.compare({'grit': 1e7})
+        self.assertIn('| 4.00 | 0.80 | 10.00 |', out)
+
+    def test_no_verdict_beside_others(self):
+        status, out, _ = self.compare({'grit': 4e6, 'lammps': 1e6}, others=0.5)
+        self.assertIn('1.00 !', out)
+        self.assertNotIn(bounds.MISSES, out)
+        self.assertEqual(status, 0)
+
+    def test_a_code_that_fails_leaves_the_others_their_figures(self):
+        written = self.place / 'rows.json'
+        lost = subprocess.CalledProcessError(3, ['lmp'], 'ERROR: Lost atoms')
+        status, out, errors = self.compare({'grit': 4e6, 'lammps': lost}, '--json', written)
+        self.assertIn('Lost atoms', errors)
+        self.assertIn('| 4.00 |', out)
+        self.assertEqual([row['code'] for row in json.loads(written.read_text())['rows']], ['grit'])
+        self.assertEqual(status, 1)
+
+    def test_a_run_that_is_stopped_tells_what_it_has(self):
+        written = self.place / 'rows.json'
+        status, out, _ = self.compare({'grit': 4e6, 'lammps': KeyboardInterrupt()}, '--json', written)
+        self.assertIn('| 4.00 |', out)
+        self.assertEqual([row['code'] for row in json.loads(written.read_text())['rows']], ['grit'])
+        self.assertEqual(status, 130)
+
+    def test_quick_ends_within_its_time(self):
+        module = script('compare')
+        module.QUICK = 0
+        with mock.patch.object(peers, 'installed', lambda code: True):
+            path = self.place / 'box.txt'
+            path.write_text('# cell 0 0 0 to 1 1 1, m\n0.5 0.5 0.5 0.1\n')
+            status, _, errors = self.call(module, '--quick', '--grit', self.fake, '--codes', 'grit', '--packing', path)
+        self.assertIn('0 s are over', errors)
+        self.assertEqual(status, 1)
+
+
+class Measuring(Given):
+    def test_what_an_earlier_run_said_does_not_count(self):
+        folder = self.place / 'run'
+        scene = BENCH / 'scenes' / 'dense-box.json'
+        grit.window(self.fake, scene, folder, 1)
+        self.told(**{'*': {'silent': True}})
+        with self.assertRaisesRegex(machine.Complaint, 'wrote no .*run.json'):
+            grit.window(self.fake, scene, folder, 1)
+
+    def test_a_run_that_hangs_is_stopped(self):
+        with self.assertRaisesRegex(machine.OutOfTime, 'did not end within 0 s, and was stopped: sleep 60'):
+            machine.run(['sleep', 60], 1, '/', timeout=0.2)
+
+    def test_ctrl_c_after_the_last_word_is_one_interrupt(self):
+        communicate = subprocess.Popen.communicate
+
+        def interrupted(process, *words, **more):
+            communicate(process, *words, **more)
+            raise KeyboardInterrupt
+        with mock.patch.object(subprocess.Popen, 'communicate', interrupted), self.assertRaises(KeyboardInterrupt) as seen:
+            machine.run(['true'], 1, '/')
+        self.assertIsNone(seen.exception.__context__)
+
+    def test_a_neighbour_that_is_meant_is_not_among_others(self):
+        with subprocess.Popen([sys.executable, '-c', 'while True: pass']) as neighbour:
+            try:
+                with mock.patch.object(machine, '_all_busy', lambda: machine._busy_of(neighbour.pid)), \
+                        mock.patch.object(machine, '_own_busy', lambda: 0.0):
+                    plain, friendly = machine.Watch(), machine.Watch([neighbour.pid])
+                    begin = machine._busy_of(neighbour.pid)
+                    while machine._busy_of(neighbour.pid) < begin + 0.1:
+                        pass
+                    # The neighbour's clock may tick between two looks at it.
+                    self.assertLess(friendly.others() * friendly.seconds(), 0.03)
+                    self.assertGreater(plain.others() * plain.seconds(), 0.09)
+            finally:
+                neighbour.kill()
+
+    def test_flops_are_counted_by_lane(self):
+        loop = ['vmulpd %zmm1,%zmm2,%zmm3', 'vfmadd213pd %ymm1,%ymm2,%ymm3', 'vaddsd %xmm1,%xmm2,%xmm3',
+                'vmaxps (%rax),%zmm1,%zmm2', 'vmovapd %zmm1,%zmm2', 'call 1230']
+        self.assertEqual(disassembly.flops(loop, 8), (8 + 2 * 4 + 1 + 16) / 8)
+
+    def test_the_machine_stands_beside_the_table(self):
+        self.assertIn('no ' + str(self.fake.parent / 'bench_kernels'), limits.measured(self.fake)[1])
+        kernels = self.fake.parent / 'bench_kernels'
+        kernels.write_text('#!/bin/sh\nfor word; do case $word in --benchmark_out=*) cat > "${word#*=}" <<END\n' + json.dumps(
+            {'benchmarks': [{'name': 'machine/triad/629145600', 'bytes_per_s': 2e10},
+                            {'name': 'machine/triad/4194304', 'bytes_per_s': 9e10},
+                            {'name': 'machine/multiply-add', 'flops_per_s': 5e10},
+                            {'name': 'contacts/linear-rolling/10000', 'across_share': 0.25}]})
+            + '\nEND\nesac; done\n')
+        kernels.chmod(0o755)
+        with quiet():
+            allowed, line = limits.measured(self.fake)
+        self.assertEqual(line, '20 GB/s of memory, 90 GB/s of caches, 50 Gflop/s')
+        # 2 contacts a grain: by hand, arithmetic 2 * 300 + 90 + 8 * 0.5, bytes 2 * 248.125 + 292.
+        window = grit.Window(1000, 10, 1e-3, 4.0, 0.0, {'model': {'bytes': 1}})
+        bytes_each = 2 * (8.125 + 96 + 0.25 * 128 + 0.5 * 224) + 256 + 0.5 * 72
+        expected = 1e7 / min(5e10 / 694, 9e10 / bytes_each)
+        self.assertEqual(allowed.share('linear-rolling', 300, window), f'{expected:.0%} of caches or arithmetic')
+
+    def test_every_geometry_has_a_kernel(self):
+        kernels = (BENCH / 'kernels' / 'geometry.cpp').read_text()
+        shapes = [path.parent.name for path in (ROOT / 'plugins' / 'geometry').glob('*/*.cpp')
+                  if path.stem == path.parent.name.replace('-', '_') or path.stem == path.parent.name]
+        self.assertGreater(len(shapes), 6)
+        self.assertEqual([shape for shape in shapes if f'{{"type", "{shape}"}}' not in kernels], [])
+
+
+unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
