@@ -28,6 +28,15 @@ struct LawSetup {
 inline std::ostream& operator<<(std::ostream& out, const LawSetup& setup) { return out << setup.name; }
 inline std::string setup_name(const testing::TestParamInfo<LawSetup>& info) { return info.param.name; }
 
+/// The same with a parameter that is nothing, of all materials or of the first alone.
+inline LawValues without(LawValues values, const std::string& name, bool everywhere = true) {
+  for (std::size_t m = 0; m < (everywhere ? values.materials.size() : 1); ++m) values.materials[m][name] = 0.0;
+  for (auto& [pair, overrides] : values.interfaces)
+    if (everywhere || (pair.first == 0 && pair.second == 0))
+      if (const auto own = overrides.find(name); own != overrides.end()) own->second = 0.0;
+  return values;
+}
+
 class ContactLawContract : public testing::TestWithParam<LawSetup> {
  protected:
   static constexpr double dt_ = 1e-5;
@@ -482,6 +491,62 @@ TEST_P(ContactLawContract, NeverAttracts) {
       EXPECT_GE(pairs.row(0).force.w, 0);
       EXPECT_GE(vec(pairs.row(0).force).dot(branch(pairs, 0)), -1e-13 * vec(pairs.row(0).force).norm());
     }
+  }
+}
+
+/// Parameters of materials and interfaces that take a spring away where they are nothing.
+inline std::vector<std::string> switches(const LawValues& values) {
+  const Stiffness on = make_law(values)->stiffness({1, 0.7, 1, 1, 0.02}, 0, 0);
+  Parameters parameters;
+  std::unique_ptr<ContactLaw>(grit_plugin()->make_contact())->declare_material("any", parameters);
+  std::vector<std::string> names;
+  for (const Parameter& p : parameters.entries()) {
+    if (!std::holds_alternative<double*>(p.target()) || !p.allows(0)) continue;
+    const Stiffness off = make_law(without(values, p.name()))->stiffness({1, 0.7, 1, 1, 0.02}, 0, 0);
+    if ((on.shear > 0 && off.shear == 0) || (on.rolling > 0 && off.rolling == 0) ||
+        (on.twisting > 0 && off.twisting == 0))
+      names.push_back(p.name());
+  }
+  return names;
+}
+
+/// A spring that was taken away for a while has let go, whether the others of its law go on or not.
+TEST_P(ContactLawContract, SpringsThatWereOffComeBackUnloaded) {
+  const Stiffness k = law_->stiffness({1, 0.7, 1, 1, 0.02}, 0, 0);
+  const std::vector<std::string> names = switches(GetParam().values);
+  EXPECT_EQ(names.empty(), k.shear == 0 && k.rolling == 0 && k.twisting == 0);
+  for (const std::string& name : names)
+    for (const bool everywhere : {true, false})
+      for (const auto evaluate : {&Pairs::evaluate, &Pairs::evaluate_reference}) {
+        const auto off = make_law(without(GetParam().values, name, everywhere));
+        Pairs pairs = two(0.02);
+        slip(pairs, 1e-3), roll(pairs, 1e-3), twist(pairs, 1e-3);
+        pairs.change(*off), (pairs.*evaluate)();
+        const ContactRow without_it = pairs.row(0);
+        const double stored = off->energy(size(pairs, 0.02), 0, 0, pairs.state(0)).total();
+        pairs.change(*law_), (pairs.*evaluate)();
+        const ContactRow& now = pairs.row(0);
+        const double eps = 1e-12 * without_it.force.w;
+        EXPECT_LE((vec(now.force) - vec(without_it.force)).norm(), eps) << name;
+        EXPECT_LE((vec(now.moment) - vec(without_it.moment)).norm(), eps) << name;
+        EXPECT_NEAR(law_->energy(size(pairs, 0.02), 0, 0, pairs.state(0)).total(), stored, 1e-12 * stored) << name;
+      }
+}
+
+TEST_P(ContactLawContract, SpringsOnWallsThatWereOffComeBackUnloaded) {
+  for (const std::string& name : switches(GetParam().values)) {
+    const auto off = make_law(without(GetParam().values, name));
+    WallPair wall(*law_, {.radius = 0.8, .spin = {30, -20, 40}}, dt_);
+    wall.touch.overlap = 0.01;
+    wall.evaluate();
+    set(wall.spin, Vec3::Zero());
+    wall.evaluate();
+    wall.change(*off), wall.evaluate();
+    const ContactRow without_it = wall.row;
+    wall.change(*law_), wall.evaluate();
+    const double eps = 1e-12 * without_it.force.w;
+    EXPECT_LE((vec(wall.row.force) - vec(without_it.force)).norm(), eps) << name;
+    EXPECT_LE((vec(wall.row.moment) - vec(without_it.moment)).norm(), eps) << name;
   }
 }
 

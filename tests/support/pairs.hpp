@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "grit/contact/contact_law.hpp"
@@ -21,7 +22,7 @@ struct Ball {
 /// As the kernel lays them out: padding pairs a body with one that is far away, whose index is the number of bodies.
 class Pairs {
  public:
-  explicit Pairs(const ContactLaw& law, double dt) : law_(law), fields_(law.state()), dt(dt) { close(); }
+  explicit Pairs(const ContactLaw& law, double dt) : law_(&law), fields_(law.state()), dt(dt) { close(); }
 
   std::uint32_t add(const Ball& ball) {
     open();
@@ -41,6 +42,17 @@ class Pairs {
     }
     a_[used_] = a, b_[used_] = b, image_[used_] = image;
     return used_++;
+  }
+  /// Goes on with another law, whose leading fields they remember if it has them too.
+  void change(const ContactLaw& law) {
+    const std::size_t before = fields_.size();
+    law_ = &law, fields_ = law.state();
+    const std::vector<double> all =
+        std::exchange(state_, std::vector<double>(touching_.size() * fields_.size() * block_size, 0.0));
+    for (std::size_t block = 0; block < touching_.size(); ++block)
+      std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(block * before * block_size),
+                  std::min(before, fields_.size()) * block_size,
+                  state_.begin() + static_cast<std::ptrdiff_t>(block * fields_.size() * block_size));
   }
   /// Leaves the next place to padding.
   void skip() { pair(0, pad_); }
@@ -137,11 +149,11 @@ class Pairs {
                     .sum = sum_.data(),
                     .largest_overlap = std::numeric_limits<double>::quiet_NaN(),
                     .losses = nullptr};
-    (law_.*evaluate)(batch);
+    (law_->*evaluate)(batch);
     largest_overlap_ = batch.largest_overlap;
   }
 
-  const ContactLaw& law_;
+  const ContactLaw* law_;
   std::vector<StateField> fields_;
   std::vector<Row> position_, velocity_, spin_;
   std::vector<std::uint8_t> material_, image_, touching_;
@@ -167,7 +179,7 @@ inline void set(Row& row, const Vec3& v) { row = {v.x(), v.y(), v.z(), row.w}; }
 /// One sphere on a wall at rest or in motion: the wall's outer normal as seen from the sphere, and where it is.
 class WallPair {
  public:
-  WallPair(const ContactLaw& law, const Ball& ball, double dt) : law_(law), dt_(dt), state_(law.state().size()) {
+  WallPair(const ContactLaw& law, const Ball& ball, double dt) : law_(&law), dt_(dt), state_(law.state().size()) {
     position = {ball.position.x(), ball.position.y(), ball.position.z(), ball.radius};
     velocity = {ball.velocity.x(), ball.velocity.y(), ball.velocity.z(), 1 / ball.mass};
     spin = {ball.spin.x(), ball.spin.y(), ball.spin.z(), 1 / (0.4 * ball.mass * ball.radius * ball.radius)};
@@ -188,8 +200,10 @@ class WallPair {
                     .sum = &sum,
                     .largest_overlap = 0,
                     .losses = nullptr};
-    law_.evaluate_walls(batch);
+    law_->evaluate_walls(batch);
   }
+  /// Goes on with another law, whose leading fields it remembers if it has them too.
+  void change(const ContactLaw& law) { law_ = &law, state_.resize(law.state().size(), 0.0); }
   void clear() { state_.assign(state_.size(), 0.0); }
   std::vector<double>& state() { return state_; }
 
@@ -207,7 +221,7 @@ class WallPair {
   BodySum sum;
 
  private:
-  const ContactLaw& law_;
+  const ContactLaw* law_;
   double dt_;
   std::vector<double> state_;
 };

@@ -93,6 +93,8 @@ struct HertzMindlin {
     pair.damping = 2 * std::sqrt(5.0 / 6) * damping_of_restitution(restitution);
     pair.rolling = 0.5 * (a.rolling_stiffness + b.rolling_stiffness);
     pair.rolling_limit = interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit));
+    // A spring without stiffness holds nothing, of what it was loaded with before neither.
+    if (pair.rolling == 0) pair.rolling_limit = 0;
     pair.curved = wall ? 0 : 1;
     return pair;
   }
@@ -122,6 +124,8 @@ struct HertzMindlin {
       const Vec<L> stored{state.shear_x, state.shear_y, state.shear_z};
       response.shear = shortened(stretched(at, kept * stored, ks, at.velocity), pair.friction * response.normal_force);
       state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
+    } else {
+      state.shear_x = state.shear_y = state.shear_z = L(0.0);
     }
     if constexpr ((Features & with_rolling) != 0) {
       const Vec<L> stored{state.rolling_x, state.rolling_y, state.rolling_z};

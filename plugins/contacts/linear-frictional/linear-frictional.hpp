@@ -76,6 +76,8 @@ struct LinearFrictional {
     pair.modulus_a = a.contact_modulus, pair.modulus_b = stiff_b.contact_modulus;
     pair.shear_ratio = 0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness);
     pair.friction = std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)));
+    // A spring without stiffness holds nothing, of what it was loaded with before neither.
+    if (pair.shear_ratio == 0) pair.friction = 0;
     pair.damping = damping_of_restitution(interface.restitution.value_or(std::min(a.restitution, b.restitution)));
     pair.shear_damping = settings.shear_damping ? pair.damping : 0;
     return pair;

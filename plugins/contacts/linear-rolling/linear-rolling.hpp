@@ -110,6 +110,10 @@ struct LinearRolling {
     pair.rolling_limit = interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit));
     pair.twisting = mean(a.twisting_stiffness, stiff_b.twisting_stiffness);
     pair.twisting_limit = interface.twisting_limit.value_or(std::min(a.twisting_limit, b.twisting_limit));
+    // A spring without stiffness holds nothing, of what it was loaded with before neither.
+    if (pair.shear_ratio == 0) pair.friction = 0;
+    if (pair.shear_ratio * pair.rolling == 0) pair.rolling_limit = 0;
+    if (pair.shear_ratio * pair.twisting == 0) pair.twisting_limit = 0;
     pair.smaller_radius = settings.limit_radius == "smaller" ? 1 : 0;
     return pair;
   }
@@ -134,6 +138,8 @@ struct LinearRolling {
             stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, pair.rolling * angular, at.spin);
         response.moment = shortened(rolling, pair.rolling_limit * arm);
         state.rolling_x = response.moment.x, state.rolling_y = response.moment.y, state.rolling_z = response.moment.z;
+      } else {
+        state.rolling_x = state.rolling_y = state.rolling_z = L(0.0);
       }
       if constexpr ((Features & with_twisting) != 0) {
         state.twisting = twisted(at, state.twisting, pair.twisting * angular, pair.twisting_limit * arm);

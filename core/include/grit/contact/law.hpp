@@ -25,7 +25,8 @@
 //   };
 //
 // evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
-// called for lanes that do not touch; their results are discarded, so that they only must not trap.
+// called for lanes that do not touch; their results are discarded, so that they only must not trap. Of a feature that
+// is off it leaves zeros in memory that a later field's feature keeps: it may come on again in another stage.
 // A law that says single_precision is offered in lanes of floats too: what a divisor is kept above is L(tiny<L>) there,
 // how near is as good as equal beyond_rounding<L>, and of State a number is rounded to 24 bits at every step.
 // It is asked again at an instant that it has seen, with the memory that it left, dt = 0 and a turn that turns nothing,
