@@ -8,10 +8,13 @@
 namespace grit {
 namespace {
 
+constexpr std::uint32_t nowhere = ~0u;
+
 /// A touching pair before the rebuild, filed by its lower body as it is now.
 struct Former {
-  std::uint32_t other;
-  bool swapped;
+  std::uint32_t other = 0;                       ///< the higher body
+  std::uint32_t from : 31 = 0, swapped : 1 = 0;  ///< its place then; whether a and b have changed roles since
+  std::uint32_t to = nowhere;                    ///< its place now
 };
 
 /// Rows that are asked for beforehand: some 100 ns, as long as memory takes.
@@ -27,46 +30,48 @@ void make_room(Array& array, std::size_t count) {
   array.resize(count);
 }
 
+template <class Array>
+void give_back(Array& array) {
+  Array().swap(array);
+}
+
 }  // namespace
 
 void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic,
                            std::span<const StateField> fields, std::span<const std::uint32_t> order, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
-  constexpr std::uint32_t gone = ~0u;
-  std::vector<std::uint32_t> now(std::max(bodies_, count), order.empty() ? 0 : gone);
+  // What is made anew in the end makes room for what lives until then.
+  give_back(row_), give_back(inbox_);
+  std::vector<std::uint32_t> now(std::max(bodies_, count), order.empty() ? 0 : nowhere);
   if (order.empty()) std::iota(now.begin(), now.end(), 0u);
   else
     for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
   bodies_ = count;
 
-  // Old memories by their lower body.
-  std::vector<std::uint32_t> memory_start(count + 1, 0);
-  const auto each_memory = [&](auto&& use) {
+  std::vector<std::uint32_t> former_start(count + 1, 0);  // by lower body
+  const auto each_former = [&](auto&& use) {
     for (std::size_t block = 0; block < touching_.size(); ++block)
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1) {
         const auto slot = static_cast<std::uint32_t>(block * block_size + std::countr_zero(mask));
         const std::uint32_t p = now[a_[slot]], q = now[b_[slot]];
-        if (p != gone && q != gone) use(std::min(p, q), Former{std::max(p, q), p > q}, slot);
+        if (p != nowhere && q != nowhere) use(std::min(p, q), Former{std::max(p, q), slot, p > q, nowhere});
       }
   };
-  each_memory([&](std::uint32_t lower, const Former&, std::size_t) { ++memory_start[lower + 1]; });
-  std::partial_sum(memory_start.begin(), memory_start.end(), memory_start.begin());
-  std::vector<Former> memories(memory_start.back());
-  LargeArray<double> remembered(memories.size() * field_count);
-  auto next = memory_start;
-  each_memory([&](std::uint32_t lower, const Former& memory, std::size_t slot) {
-    const std::size_t m = next[lower]++;
-    memories[m] = memory;
-    for (std::size_t f = 0; f < field_count; ++f)
-      remembered[m * field_count + f] = state_[slot / block_size * field_count + f].lane[slot % block_size];
-  });
+  each_former([&](std::uint32_t lower, const Former&) { ++former_start[lower + 1]; });
+  std::partial_sum(former_start.begin(), former_start.end(), former_start.begin());
+  std::vector<Former> formers(former_start.back());
+  // While they are filed, each lower body's start goes to where the next one's is.
+  each_former([&](std::uint32_t lower, const Former& former) { formers[former_start[lower]++] = former; });
+  std::move_backward(former_start.begin(), former_start.end() - 1, former_start.end());
+  former_start.front() = 0;
+  give_back(now);
 
   // Candidates, chunk by chunk: those within the chunk first, of either sort the nearest first.
   const std::size_t chunk_count = chunks_of(count);
   found_.resize(chunk_count), within_.resize(chunk_count);
   team.each(chunk_count, [&](std::size_t chunk) {
-    auto& found = found_[chunk];
+    static thread_local std::vector<Candidate> found;
     found.clear();
     const std::size_t first = chunk * chunk_bodies, last = std::min(count, first + chunk_bodies);
     for (std::size_t i = first; i < last; ++i) search.neighbours(bodies, static_cast<std::uint32_t>(i), found);
@@ -75,6 +80,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         std::stable_partition(found.begin(), found.end(), [=](const Candidate& c) { return c.b < last; });
     std::stable_sort(found.begin(), across, nearer), std::stable_sort(across, found.end(), nearer);
     within_[chunk] = static_cast<std::size_t>(across - found.begin());
+    found_[chunk].assign(found.begin(), found.end());
   });
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
@@ -92,16 +98,8 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   // Padding pairs a body with the one that is far away.
   const auto pad = static_cast<std::uint32_t>(count);
   make_room(a_, slots), make_room(b_, slots), make_room(near_, slots), make_room(image_, periodic ? slots : 0);
-  make_room(row_, slots - first_cross_), make_room(state_, std::size_t{blocks} * field_count);
   touching_.assign(blocks, 0), asleep_until_.resize(blocks);
   team.each(chunk_count, [&](std::size_t chunk) {
-    for (const Blocks own : {chunks_[chunk].within, chunks_[chunk].across})
-      std::fill(state_.begin() + static_cast<std::ptrdiff_t>(own.first * field_count),
-                state_.begin() + static_cast<std::ptrdiff_t>(own.last * field_count), StateLine{});
-    const auto row_of = [&](std::uint32_t block) {
-      return row_.begin() + static_cast<std::ptrdiff_t>(block * block_size - first_cross_);
-    };
-    std::fill(row_of(chunks_[chunk].across.first), row_of(chunks_[chunk].across.last), ContactRow{});
     const auto pad_to = [&](std::size_t slot, std::uint32_t block) {
       for (; slot < std::size_t{block} * block_size; ++slot) {
         a_[slot] = static_cast<std::uint32_t>(chunk * chunk_bodies), b_[slot] = pad, near_[slot] = 0;
@@ -122,20 +120,46 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         if (c.touching()) own.near = static_cast<std::uint32_t>(slot / block_size + 1);
       }
       if (periodic) image_[slot] = c.image;
-      for (std::uint32_t m = memory_start[c.a]; m < memory_start[c.a + 1]; ++m) {
-        const Former& memory = memories[m];
-        if (memory.other != c.b) continue;
+      for (std::uint32_t m = former_start[c.a]; m < former_start[c.a + 1]; ++m) {
+        if (formers[m].other != c.b) continue;
         touching_[slot / block_size] |= static_cast<std::uint8_t>(1u << (slot % block_size));
-        for (std::size_t f = 0; f < field_count; ++f)
-          state_[slot / block_size * field_count + f].lane[slot % block_size] =
-              remembered[m * field_count + f] * (memory.swapped ? fields_[f].swap : 1.0);
+        formers[m].to = static_cast<std::uint32_t>(slot);
       }
       ++slot;
     }
     const bool none_across = found_[chunk].size() == within_[chunk];
-    std::vector<Candidate>().swap(found_[chunk]);
+    give_back(found_[chunk]);
     pad_to(slot, none_across ? chunks_[chunk].within.last : chunks_[chunk].across.last);
   });
+
+  // Memories change places where they are, field after field, so that no more than one lies beside them meanwhile. All
+  // that come to a chunk's blocks are those of its bodies.
+  const std::size_t lines = std::size_t{blocks} * field_count;
+  // Room that is not used takes no memory, and as long as there is enough of it nothing is copied.
+  if (state_.capacity() < lines) state_.reserve(lines + lines / 2);
+  state_.resize(std::max(state_.size(), lines));
+  const auto number = [&](std::size_t slot, std::size_t f) -> double& {
+    return state_[slot / block_size * field_count + f].lane[slot % block_size];
+  };
+  LargeArray<double> field(field_count > 0 ? formers.size() : 0);
+  for (std::size_t f = 0; f < field_count + 1; ++f)
+    team.each(chunk_count, [&](std::size_t chunk) {
+      const std::size_t first = former_start[chunk * chunk_bodies];
+      const std::size_t last = former_start[std::min(count, (chunk + 1) * chunk_bodies)];
+      if (f > 0) {
+        for (const Blocks own : {chunks_[chunk].within, chunks_[chunk].across})
+          for (std::size_t block = own.first; block < own.last; ++block) state_[block * field_count + f - 1] = {};
+        for (std::size_t m = first; m < last; ++m)
+          if (formers[m].to != nowhere) number(formers[m].to, f - 1) = field[m];
+      }
+      if (f == field_count) return;
+      for (std::size_t m = first; m < last; ++m)
+        field[m] = number(formers[m].from, f) * (formers[m].swapped ? fields_[f].swap : 1.0);
+    });
+  state_.resize(lines);
+  give_back(field), give_back(formers);
+
+  row_.resize(slots - first_cross_);
   make_inbox(count);
   find_reached();
 }
@@ -285,7 +309,7 @@ std::vector<double> ContactTable::state(std::size_t c) const {
 
 std::size_t ContactTable::memory() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
-  return bytes(a_, b_, image_, touching_, asleep_until_, state_, row_, inbox_, near_);
+  return bytes(a_, b_, image_, touching_, asleep_until_, row_, inbox_, near_) + state_.size() * sizeof(StateLine);
 }
 
 void ContactTable::remember(Memory& memory) {
