@@ -148,6 +148,22 @@ TEST(NeighbourSearch, MissesNoPairOfFastGrainsBetweenMovingWalls) {
   expect_no_missed_pair(d, 600);
 }
 
+TEST(NeighbourSearch, MissesNoPairWhereAWallBeginsToTurn) {
+  // Nobody else moves before it is hit: whether a search is due, the wall alone says.
+  auto grains = loose({6, 6, 6}, 0);
+  const Vec3 clear(2.1e-3, 8e-4, 8e-4);
+  std::erase_if(grains,
+                [&](const Grain& g) { return ((g.position - block).cwiseAbs().array() < clear.array()).all(); });
+  Description d = description_of(grains);
+  d["walls"]["blade"] = {{"type", "box"},
+                         {"low", vector(block - Vec3(1.5e-3, 2e-4, 2e-4))},
+                         {"high", vector(block + Vec3(1.5e-3, 2e-4, 2e-4))},
+                         {"inside", false},
+                         {"material", "grain"},
+                         {"motion", {{"spin", {0, 3000, 0}}}}};
+  expect_no_missed_pair(d, 600);
+}
+
 TEST(NeighbourSearch, MissesNoPairWhereFastGrainsMeetSlowOnes) {
   auto grains = loose({9, 9, 9}, 1e-3);
   for (Grain& g : grains)

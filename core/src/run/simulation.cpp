@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -31,6 +32,15 @@ constexpr double overlap_growth = 1.2, least_stepped_overlap = 1e-3;
 constexpr std::uint64_t energy_check_every = 500;
 // Of so many chunks one is timed: a look at the clock takes some 30 ns, a chunk some 20 µs.
 constexpr std::uint64_t timed_every = 8;
+constexpr double not_asked = -1;  // for how far bodies reach from a wall that does not spin
+
+/// How far the furthest body is from there [m].
+double furthest_from(const Vec3& place, const Bodies& bodies) {
+  double furthest = 0;
+  for (std::size_t i = 0; i < bodies.count(); ++i)
+    furthest = std::max(furthest, (xyz(bodies.position[i]) - place).norm());
+  return furthest;
+}
 
 /// Until somebody has asked for the ledger it is nobody's, and costs nothing.
 bool is_kept(const EnergyFlows& ledger, const Bodies& bodies) { return bodies.energies() && ledger.begun; }
@@ -117,7 +127,7 @@ void Simulation::take_settings(const SceneDescription& scene) {
     else force_engines_.push_back(engine.engine.get());
   }
   loads_.resize(walls_.size());
-  surfaces_.resize(walls_.size()), arms_.resize(walls_.size());
+  surfaces_.resize(walls_.size()), arms_.resize(walls_.size(), not_asked);
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallDescription& wall = scene.walls.at(walls_.name(w));
     // Candidates stay what they are, unless a wall has become another.
@@ -242,11 +252,10 @@ void Simulation::search() {
   readiness_.build(pairs_.reached());
   wall_contacts_.rebuild(bodies_, surfaces_, clock_.skins, fields_, order);
   reference_ = bodies_.position, reference_cell_ = clock_.cell;
-  for (std::size_t w = 0; w < walls_.size(); ++w) {
-    arms_[w] = 0;
-    for (std::size_t i = 0; i < bodies_.count(); ++i)
-      arms_[w] = std::max(arms_[w], (xyz(bodies_.position[i]) - walls_.reference(w)).norm() + stock_.largest_radius);
-  }
+  for (std::size_t w = 0; w < walls_.size(); ++w)
+    arms_[w] = walls_.states()[w].spin.isZero(0.0)
+                   ? not_asked
+                   : furthest_from(walls_.reference(w), bodies_) + stock_.largest_radius;
   ++clock_.rebuilds;
   search_now_ = false;
   newcomers_.clear();
@@ -472,10 +481,12 @@ void Simulation::step_on() {
     move(chunk, sum, next);
   };
   pass([&](std::size_t chunk, Laps& laps) {
-    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all.
+    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all, so that the first
+    // would lie before them: that is a number, but no place in the array.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
     const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
-    BodySum* const own = here.data() - first;
+    const std::uintptr_t of_body_0 = reinterpret_cast<std::uintptr_t>(here.data()) - first * sizeof(BodySum);
+    BodySum* const own = reinterpret_cast<BodySum*>(of_body_0);
     evaluate(chunk, again, own, laps);
     chunk_[chunk].moved = readiness_.evaluated(chunk);
     if (chunk_[chunk].moved) gather_and_move(chunk, own);
@@ -550,8 +561,12 @@ void Simulation::end_step() {
   double wall_speed = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_.states()[w];
-    const double arm = arms_[w] + furthest + clock_.strain_travel + clock_.skins.walls_gone();
-    const double turning = wall.spin.norm() * arm, speed = wall.velocity.norm() + turning;
+    double turning = 0;
+    if (!wall.spin.isZero(0.0)) {
+      if (arms_[w] == not_asked) arms_[w] = furthest_from(walls_.reference(w), bodies_) + stock_.largest_radius;
+      turning = wall.spin.norm() * (arms_[w] + furthest + clock_.strain_travel + clock_.skins.walls_gone());
+    }
+    const double speed = wall.velocity.norm() + turning;
     // A flat wall may slide along itself as fast as it likes.
     const Vec3 normal = wall.pose.turn * walls_.geometry(w).normal();
     const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
