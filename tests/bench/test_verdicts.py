@@ -230,7 +230,7 @@ class Compare(Given):
     def test_a_code_that_fails_leaves_the_others_their_figures(self):
         written = self.place / 'rows.json'
         lost = subprocess.CalledProcessError(3, ['lmp'], 'ERROR: Lost atoms')
-        status, out, errors = self.compare({'grit': 4e6, 'lammps': lost}, '--json', written)
+        status, out, errors = self.compare({'lammps': lost, 'grit': 4e6}, '--json', written)
         self.assertIn('Lost atoms', errors)
         self.assertIn('| 4.00 |', out)
         self.assertEqual([row['code'] for row in json.loads(written.read_text())['rows']], ['grit'])
