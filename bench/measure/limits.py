@@ -141,7 +141,10 @@ def measured(program):
                                 '--benchmark_min_time=0.2', f'--benchmark_out={out}'], 1, folder)
             limits = of_kernels(read(out))
         except (subprocess.CalledProcessError, OSError, ValueError, KeyError) as error:
-            reason = machine.reason(error) if isinstance(error, subprocess.CalledProcessError) else repr(error)
+            if isinstance(error, KeyError):
+                reason = f'measures no {error}; build it anew (--target bench_kernels)'
+            else:
+                reason = machine.reason(error) if isinstance(error, subprocess.CalledProcessError) else repr(error)
             return None, f'not measured: {kernels}: {reason}'
     limits = limits._replace(disturbed=done.others > DISTURBED)
     return limits, limits.line()
