@@ -90,22 +90,53 @@ TEST(Guards, WallThatPassesThroughBodies) {
 }
 
 TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {
-  Description d = description("hertz-mindlin", {{"young_modulus", 1e8}, {"poisson_ratio", 0.2}},
-                              {{{0, 0, 0}, 1e-3, {0.2, 0, 0}}, {{2.0001e-3, 0, 0}, 1e-3, {-0.2, 0, 0}}});
+  Description d =
+      description("hertz-mindlin", {{"young_modulus", 1e8}, {"poisson_ratio", 0.2}}, {{{0, 0, 1e-3}, 1e-3}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["lid"] = plane({0, 0, 2e-3}, -Vec3::UnitZ());
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -2e-3};
   Trial t(d);
   const double first = t.world().dt();
   double overlap = 0, least = first;
-  while (t.world().step() < 2000 && !(overlap > 0 && t.world().contacts().empty())) {
+  while (t.world().step() < 2000 && t.world().time() < 6e-3) {
     t.step();
     for (const Contact& c : t.world().contacts()) overlap = std::max(overlap, c.overlap);
     least = std::min(least, t.world().dt());
   }
   ASSERT_GT(overlap, 5e-6);
-  // k grows as the root of the overlap; the pair's own limit is 2 / sqrt(2 k / m).
+  ASSERT_EQ(t.world().clock().rebuilds, 1u);
+  // k grows as the root of the overlap; the limit of a ball between plates is 2 / sqrt(2 k / m).
   const double mass = 2600 * 4 / 3 * std::numbers::pi * 1e-9, modulus = 1e8 / (1 - 0.04) / 2;
-  const double k = 2 * modulus * std::sqrt(0.5e-3 * overlap);
+  const double k = 2 * modulus * std::sqrt(1e-3 * overlap);
   EXPECT_LE(least, 0.8 * 2 / std::sqrt(2 * k / mass) * 1.05) << "a fifth more overlap is 5 % of the step";
   EXPECT_LT(least, 0.8 * first);
+}
+
+TEST(TimeStep, IsShortEnoughForAnImpactBeforeItBegins) {
+  // A wall strikes one that rests, two meet, and one falls.
+  const Description solid{{"young_modulus", 1e8}, {"poisson_ratio", 0.2}, {"friction_angle", 0}};
+  const Description lid = plane({0, 0, 2.3e-3}, -Vec3::UnitZ()), floor = plane(Vec3::Zero(), Vec3::UnitZ());
+  Description struck = description("hertz-mindlin", solid, {{{0, 0, 1e-3}, 1e-3}});
+  struck["walls"]["lid"] = lid, struck["walls"]["lid"]["motion"]["velocity"] = {0, 0, -0.2};
+  const Description meeting =
+      description("hertz-mindlin", solid, {{{0, 0, 0}, 1e-3, {0.2, 0, 0}}, {{2.3e-3, 0, 0}, 1e-3, {-0.2, 0, 0}}});
+  Description falling = description("hertz-mindlin", solid, {{{0, 0, 9e-3}, 1e-3}});
+  falling["walls"]["floor"] = floor, falling["engines"]["gravity"] = {{"type", "gravity"}};
+  for (const Description& d : {struck, meeting, falling}) {
+    Trial t(d);
+    double before = 0, overlap = 0;
+    while (t.world().step() < 5000 && !(overlap > 0 && t.world().contacts().empty())) {
+      t.step();
+      if (overlap == 0) before = t.world().dt();
+      for (const Contact& c : t.world().contacts()) overlap = std::max(overlap, c.overlap);
+    }
+    ASSERT_GT(overlap, 5e-6);
+    // Two alike that go as deep.
+    const double mass = 2600 * 4 / 3 * std::numbers::pi * 1e-9, modulus = 1e8 / (1 - 0.04) / 2;
+    const double k = 2 * modulus * std::sqrt(0.5e-3 * overlap);
+    EXPECT_LE(before, 0.8 * 2 / std::sqrt(2 * k / mass) * 1.05);
+    EXPECT_GE(before, 0.8 * 2 / std::sqrt(2 * k / mass) * 0.8) << "not shorter than it need be";
+  }
 }
 
 TEST(Guards, LeaveTheForcesOfWhereTheRunStopped) {

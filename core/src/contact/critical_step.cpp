@@ -215,7 +215,8 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   });
   own.demand = {};
   for (std::size_t i = first; i < last; ++i) {
-    const Stiffness k = at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]);
+    const PairSize alike = size_of(i, i, at.overlap * bodies.position[i].w);
+    const Stiffness k = at.law.stiffness(alike, bodies.material[i], bodies.material[i]);
     const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
     Vec3 across = Vec3::UnitX();
     if (in_clump && !bodies.clumps.of_body[i].place.isZero())

@@ -14,7 +14,7 @@ namespace grit {
 /// Q_a + Q_b, with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I) (the element bound
 /// of Irons and Treharne, doi 10.1002/eqe.4290010107; Gershgorin's rows give the same without rotations). Dashpots add
 /// up in their directions: the damping rate is at most the largest over the bodies of |Σ c (1/m_a + 1/m_b) n n|. Pairs
-/// nearer than `near` count as touching, and every body has at least one contact with its like.
+/// nearer than `near` count as touching, and every body has at least one contact with its like, `overlap` deep.
 ///
 /// Contacts form and part where bodies move, so that chunks are looked at anew when their bodies have gone far enough,
 /// each by itself.
@@ -32,7 +32,8 @@ class CriticalStep {
     const ContactLaw& law;
     const ImageShift* shifts;
     const Skins& skins;
-    double near;  ///< m
+    double near;     ///< m
+    double overlap;  ///< that a body is reckoned to have with one of its like at least, over its radius
   };
   /// Looks at all chunks.
   Demand find(const Instant& at, Team& team);

@@ -108,6 +108,7 @@ class Run {
       step_bodies();
       report(stage);
     }
+    simulation_.end_stage();
     const std::string what = reached();
     recorder_.stage_ended(simulation_, what);
     if (stage.expect.void_ratio) {

@@ -28,8 +28,9 @@ constexpr double stepped_way = 0.03, as_good_as_touching = 0.015;
 constexpr std::uint64_t reorder_every = 8;
 // The time step is raised only when it could be so much larger, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
-// Springs that stiffen with overlap, as Hertz's do: the time step is set anew whenever the largest has grown so much.
-constexpr double overlap_growth = 1.2, least_stepped_overlap = 1e-3;
+// Springs that stiffen with overlap, as Hertz's do: the time step is set anew whenever the largest has grown so much,
+// or something moves so fast that an impact would go as much deeper.
+constexpr double overlap_growth = 1.2, shallowest = 1e-6;
 constexpr std::uint64_t energy_check_every = 500;
 // Of so many chunks one is timed: a look at the clock takes some 30 ns, a chunk some 20 µs.
 constexpr std::uint64_t timed_every = 8;
@@ -74,6 +75,8 @@ void Simulation::begin_stage(const std::string& name, const SceneDescription& sc
   admit();
 }
 
+void Simulation::end_stage() { check_energy(); }
+
 void Simulation::change(const SceneDescription& scene) {
   walls_.change(scene);
   apply(scene);
@@ -108,10 +111,10 @@ void Simulation::apply(const SceneDescription& scene) {
       if (clock_.cell.periodic[k]) clock_.period_before[k] -= clock_.last_time_step * change_of_rate[k] * period[k];
   }
   tell_walls_of_specimen();
-  energy_ = {.stored_at_start = std::numeric_limits<double>::quiet_NaN()};
+  energy_ = {};
   flows_.complete = flows_.complete && all_work_is_kept();
   time_step_now_ = true;
-  stiffens_ = law_stiffens();
+  soft_until_ = overlap_of_soft_springs();
   net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
 }
 
@@ -271,12 +274,13 @@ CriticalStep::Instant Simulation::near_contacts() const {
           .law = *law_,
           .shifts = shifts_.data(),
           .skins = clock_.skins,
-          .near = as_good_as_touching * stock_.mean_diameter};
+          .near = as_good_as_touching * stock_.mean_diameter,
+          .overlap = springs_stiffen() ? clock_.stepped_overlap : 0};
 }
 
 void Simulation::set_time_step() {
   time_step_now_ = false;
-  clock_.stepped_overlap = std::max(clock_.overlap, least_stepped_overlap);
+  expect_overlap();
   choose_time_step(critical_.find(near_contacts(), team_));
 }
 
@@ -382,9 +386,9 @@ void Simulation::find_forces() {
     net_step_ = clump_step_ = ~0ull;  // engines may have asked for forces, without their own
   }
   take_loads();
-  if (look && springs_stiffen(clock_.overlap)) set_time_step();
+  if (look && stiffer_than_stepped(clock_.overlap)) set_time_step();
   else if (walls_.demand().more_than(clock_.wall_demand)) choose_time_step(clock_.contact_demand);
-  if (clock_.step % energy_check_every == 0) check_energy();
+  if (energy_check_is_due()) check_energy();
 }
 
 MotionStep Simulation::next_motion() const {
@@ -435,37 +439,81 @@ void Simulation::advance() {
 bool Simulation::in_one_pass() const {
   const bool free_walls = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& wall) { return wall.free; });
   return growth_rate_ == 0 && force_engines_.empty() && bodies_.clumps.none() && !free_walls &&
-         clock_.step % energy_check_every != 0 && !springs_may_stiffen();
+         !energy_check_is_due() && !springs_may_stiffen();
 }
+
+bool Simulation::energy_check_is_due() const { return energy_.begins || clock_.step % energy_check_every == 0; }
 
 /// Asked before forces, whoever wants them, so that the time step does not depend on that.
 bool Simulation::springs_may_stiffen() const {
-  return springs_stiffen(clock_.overlap + clock_.last_approach / stock_.smallest_radius);
+  return stiffer_than_stepped(clock_.overlap + clock_.last_approach / stock_.smallest_radius);
 }
 
-bool Simulation::springs_stiffen(double overlap) const {
-  return stiffens_ && overlap > overlap_growth * clock_.stepped_overlap;
+bool Simulation::stiffer_than_stepped(double overlap) const {
+  return springs_stiffen() &&
+         (overlap > overlap_growth * clock_.stepped_overlap || closing_speed() > clock_.stepped_speed);
 }
 
-bool Simulation::law_stiffens() const {
-  const auto stiffness = [this](std::size_t a, std::size_t b, bool wall, double overlap) {
-    const double r = stock_.smallest_radius, per_mass = 1 / (stock_.solid_density * r * r * r);
-    return law_
-        ->stiffness({.radius_a = r,
-                     .radius_b = r,
-                     .inverse_mass_a = per_mass,
-                     .inverse_mass_b = wall ? 0 : per_mass,
-                     .overlap = overlap * r,
-                     .wall = wall},
-                    a, b)
-        .normal;
-  };
+double Simulation::closing_speed() const {
+  return clock_.last_time_step > 0 ? clock_.last_approach / clock_.last_time_step : 0;
+}
+
+/// The largest overlap now, or the one that the fastest impact will reach. Bodies that begin or come with a velocity
+/// have not made a step with it yet.
+void Simulation::expect_overlap() {
+  if (!springs_stiffen()) return;
+  const Vec3 rate = clock_.cell.strain_rate, middle = rate.isZero(0.0) ? Vec3::Zero() : centre();
+  double fastest = 0;
+  for (std::size_t i = 0; i < bodies_.count(); ++i)
+    fastest = std::max(fastest,
+                       (xyz(bodies_.velocity[i]) - rate.cwiseProduct(xyz(bodies_.position[i]) - middle)).squaredNorm());
+  fastest = std::sqrt(fastest);
+  const double speed = std::max({2 * fastest, fastest + clock_.wall_speed, closing_speed()});
+  const double deepest = std::min(1.0, scene_->guards.overlap);
+  double overlap = std::max(clock_.overlap, soft_until_);
+  while (overlap < deepest && speed_of_impact(overlap) < speed) overlap *= overlap_growth;
+  clock_.stepped_overlap = overlap;
+  clock_.stepped_speed =
+      overlap < deepest ? speed_of_impact(overlap_growth * overlap) : std::numeric_limits<double>::infinity();
+}
+
+/// ½ m* v² = 4/15 k δ², which is Hertz's; the ratio of overlap and radius is that of all sizes then.
+double Simulation::speed_of_impact(double overlap) const {
+  const double r = stock_.smallest_radius, mass = stock_.heaviest * r * r * r;
+  double least = std::numeric_limits<double>::infinity();
   for (std::size_t a = 0; a < material_names_.size(); ++a)
     for (std::size_t b = 0; b < material_names_.size(); ++b)
-      for (const bool wall : {false, true})
-        for (double overlap = 1e-6; overlap < 1; overlap *= 4)
-          if (stiffness(a, b, wall, overlap) != stiffness(a, b, wall, 0)) return true;
-  return false;
+      for (const bool wall : {false, true}) {
+        const double stiffness = stiffness_of_smallest(a, b, wall, overlap), moved = wall ? mass : 0.5 * mass;
+        least = std::min(least, overlap * r * std::sqrt(8.0 / 15 * stiffness / moved));
+      }
+  return least;
+}
+
+double Simulation::stiffness_of_smallest(std::size_t a, std::size_t b, bool wall, double overlap) const {
+  const double r = stock_.smallest_radius, per_mass = 1 / (stock_.heaviest * r * r * r);
+  return law_
+      ->stiffness({.radius_a = r,
+                   .radius_b = r,
+                   .inverse_mass_a = per_mass,
+                   .inverse_mass_b = wall ? 0 : per_mass,
+                   .overlap = overlap * r,
+                   .wall = wall},
+                  a, b)
+      .normal;
+}
+
+double Simulation::overlap_of_soft_springs() const {
+  double soft = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < material_names_.size(); ++a)
+    for (std::size_t b = 0; b < material_names_.size(); ++b)
+      for (const bool wall : {false, true}) {
+        const double at_rest = stiffness_of_smallest(a, b, wall, 0);
+        for (double overlap = shallowest; overlap < std::min(1.0, soft); overlap *= overlap_growth)
+          if (stiffness_of_smallest(a, b, wall, overlap) != at_rest)
+            soft = std::max(shallowest, overlap / overlap_growth);
+      }
+  return soft;
 }
 
 void Simulation::step_on() {

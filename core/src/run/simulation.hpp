@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -43,18 +44,21 @@ struct Clock {
                              ///< search, at most [m]
   double wall_speed = 0;     ///< of the fastest point of a wall near bodies, at most, in the last step [m/s]
   double last_approach = 0;  ///< by how much the last step let bodies come closer at most, m
-  double overlap = 0, stepped_overlap = 0;  ///< largest one over a radius: now, and when the time step was set
+  double overlap = 0;        ///< largest one over a radius
+  double stepped_overlap = 0;  ///< the one that the time step was set for; only where springs stiffen
+  double stepped_speed = 0;    ///< at which something may come closer before it must be set anew [m/s]; the same
 
   void remember(Memory& memory);
 };
 
 /// Energies and work, for the guard against energy from nowhere.
 struct EnergyBook {
+  bool begins = true;          ///< at the next forces
   double stored_at_start = 0;  ///< J, kinetic, elastic and gravitational, when the present settings began
   double work = 0;             ///< J, done by walls since then, but for half of the last step
   double largest = 0;          ///< J, largest kinetic and elastic energy since then
 
-  void remember(Memory& memory) { memory(stored_at_start, work, largest); }
+  void remember(Memory& memory) { memory(begins, stored_at_start, work, largest); }
 };
 
 /// What has gone in and out since a component first asked [J].
@@ -78,10 +82,11 @@ struct Stock {
   double mass = 0, diameters = 0, solids = 0;      ///< of grains, summed up: kg, m, m³
   double mean_diameter = 0, solid_density = 0;     ///< that follow: m, kg/m³
   double largest_radius = 0, smallest_radius = 0;  ///< of spheres, m
+  double heaviest = 0;                             ///< of all that a sphere moves, its mass over its radius³, kg/m³
   bool one_material = true;
 
   void remember(Memory& memory) {
-    memory(grains, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius,
+    memory(grains, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius, heaviest,
            one_material);
   }
 };
@@ -95,6 +100,8 @@ class Simulation final : public World {
   /// the bodies in that appear in it. Throws NumericsError where they cannot: no room, or deeper in others or in walls
   /// than they may; then they are not there.
   void begin_stage(const std::string& name, const SceneDescription& scene);
+  /// Has guards look that look but now and then, at forces of this instant. Throws NumericsError if one trips.
+  void end_stage();
   /// Changes settings within a stage.
   void change(const SceneDescription& scene);
   /// Saves all that there is, between two steps.
@@ -191,10 +198,21 @@ class Simulation final : public World {
   /// What the chunks found, for walls and guards.
   void take_loads();
   bool in_one_pass() const;
-  /// Whether springs at this overlap are so much stiffer than when the time step was set that it must be set anew.
-  bool springs_stiffen(double overlap) const;
+  bool springs_stiffen() const { return std::isfinite(soft_until_); }
+  /// Whether springs at this overlap, or after an impact at the present speeds, are so much stiffer than those that the
+  /// time step was set for that it must be set anew.
+  bool stiffer_than_stepped(double overlap) const;
   bool springs_may_stiffen() const;
-  bool law_stiffens() const;
+  /// What to set the time step for.
+  void expect_overlap();
+  /// At which two surfaces came closer in the last step, at most [m/s].
+  double closing_speed() const;
+  /// The least speed [m/s] whose impact goes so deep, in radii.
+  double speed_of_impact(double overlap) const;
+  /// Of two like bodies of the smallest radius, or of one and a wall, normal, at this overlap in radii [N/m].
+  double stiffness_of_smallest(std::size_t a, std::size_t b, bool wall, double overlap) const;
+  /// In radii; infinite where springs do not stiffen.
+  double overlap_of_soft_springs() const;
   MotionStep next_motion() const;
   /// All that comes after the motion of bodies.
   void end_step();
@@ -224,6 +242,7 @@ class Simulation final : public World {
   void check_overlap(double largest) const;
   void check_periods() const;
   void check_energy();
+  bool energy_check_is_due() const;
   ElasticEnergy elastic_energy() const;
   /// At time(), by the forces that act there.
   double kinetic_energy() const;
@@ -290,7 +309,7 @@ class Simulation final : public World {
   double body_steps_ = 0;
   double passes_ = 0;  // s, in which the threads shared chunks
   bool periodic_ = false, search_now_ = true, time_step_now_ = true;
-  bool stiffens_ = true;  // springs of the law, with overlap
+  double soft_until_ = 0;  // overlap, in radii, up to which springs do not stiffen
 
   // What probes ask for, worked out at most once an instant.
   mutable std::vector<Row> net_force_, net_moment_;

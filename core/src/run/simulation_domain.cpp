@@ -25,6 +25,8 @@ void Simulation::take_stock(std::size_t first, std::size_t first_clump) {
     const double r = bodies_.position[i].w;
     stock_.largest_radius = std::max(stock_.largest_radius, r);
     stock_.smallest_radius = stock_.smallest_radius == 0 ? r : std::min(stock_.smallest_radius, r);
+    if (const double per_mass = bodies_.velocity[i].w; per_mass > 0)
+      stock_.heaviest = std::max(stock_.heaviest, 1 / (per_mass * r * r * r));
     stock_.one_material = stock_.one_material && bodies_.material[i] == 0;
     if (bodies_.clumps.clump_of(i) != no_clump) continue;
     ++stock_.grains;
@@ -78,7 +80,7 @@ void Simulation::admit() {
   bodies_.append(bodies);
   take_stock(first, first_clump);
   if (settings_.flat) flatten(*settings_.flat);
-  stiffens_ = law_stiffens();
+  soft_until_ = overlap_of_soft_springs();
   search_now_ = true;
   try {
     find_forces();
@@ -89,7 +91,7 @@ void Simulation::admit() {
     } else {  // they were turned away, and what is there shall be whole
       bodies_ = bodies_before, stock_ = stock_before;
       sum_.resize(bodies_.count() + 1), chunk_.resize(chunks_of(bodies_.count()));
-      stiffens_ = law_stiffens();
+      soft_until_ = overlap_of_soft_springs();
       newcomers_.clear();
     }
     throw;

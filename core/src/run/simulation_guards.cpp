@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "grit/error.hpp"
 #include "run/number.hpp"
@@ -44,6 +45,7 @@ double Simulation::gravitational() const {
 }
 
 void Simulation::check_energy() {
+  const bool begins = std::exchange(energy_.begins, false);
   // What growth puts in is not reckoned at each step.
   bool kept = all_work_is_kept() && growth_rate_ == 0;
   // There is no potential along a periodic axis.
@@ -51,8 +53,8 @@ void Simulation::check_energy() {
   if (!kept) return;
   const double energy = kinetic_energy() + elastic_energy().total(), stored = energy + gravitational();
   const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
-  if (std::isnan(energy_.stored_at_start)) {
-    energy_ = {.stored_at_start = stored, .work = -last_half, .largest = energy};
+  if (begins) {
+    energy_ = {.begins = false, .stored_at_start = stored, .work = -last_half, .largest = energy};
     return;
   }
   energy_.largest = std::max(energy_.largest, energy);

@@ -13,7 +13,8 @@ inline constexpr bool plain_numbers<Departure> = true;
 
 void Clock::remember(Memory& memory) {
   memory(time, step, time_step, last_time_step, critical_time_step, contact_demand, wall_demand, forces_step);
-  memory(cell, period_before, rebuilds, skins, strain_travel, wall_speed, last_approach, overlap, stepped_overlap);
+  memory(cell, period_before, rebuilds, skins, strain_travel, wall_speed, last_approach, overlap, stepped_overlap,
+         stepped_speed);
 }
 
 void Simulation::save(Memory& memory) {
@@ -38,7 +39,7 @@ void Simulation::restore(const SceneDescription& scene, Memory& memory) {
 void Simulation::remember(Memory& memory) {
   memory(stage_, clock_, energy_, flows_, bodies_, pairs_, wall_contacts_, critical_);
   memory(reference_, reference_cell_, shifts_, arms_, departures_, stock_, mass_left_);
-  memory(search_now_, time_step_now_, stiffens_, grown_);
+  memory(search_now_, time_step_now_, soft_until_, grown_);
   memory(body_steps_, passes_);
   for (PhaseTime& phase : phases_) memory(phase.seconds);
   chunk_.resize(chunks_of(bodies_.count()));

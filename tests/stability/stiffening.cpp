@@ -1,0 +1,125 @@
+// Springs that stiffen as they are pressed, at the step that grit chooses by itself: what presses feels Hertz's force
+// all the way, and what hits, falls or is poured gains nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support/packing.hpp"
+
+namespace grit::test {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double radius = 1e-3, density = 2500, poisson = 0.3;
+const double mass = density * 4 / 3 * pi * radius * radius * radius;
+
+Description glass(double young, double restitution) {
+  return {{"density", density},
+          {"young_modulus", young},
+          {"poisson_ratio", poisson},
+          {"friction_angle", 0},
+          {"restitution", restitution}};
+}
+
+/// Hertz's, of a sphere and a wall of one material [N].
+double hertz(double young, double r, double overlap) {
+  return 4.0 / 3 * young / (2 * (1 - poisson * poisson)) * std::sqrt(r) * std::pow(std::max(overlap, 0.0), 1.5);
+}
+
+/// A ball between a floor and a lid that comes down; both are small.
+Description press(double young, double speed) {
+  const Vec3 low = Vec3::Constant(-2 * radius), high = Vec3::Constant(2 * radius);
+  Description d = description("hertz-mindlin", glass(young, 1), {{{0, 0, radius}, radius}});
+  d["walls"]["floor"] = side(2, 0, low, high, true), d["walls"]["lid"] = side(2, 2 * radius, low, high, false);
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -speed};
+  return d;
+}
+
+/// So slow that the ball hardly swings between the two [m/s].
+double slow(double young, double deepest) {
+  const double period = 2 * pi / std::sqrt(3 * hertz(young, radius, deepest) / deepest / mass);
+  return 2 * deepest / (3000 * period);
+}
+
+/// Presses until the ball is so deep in both walls: the largest error of their forces on the way, over Hertz's.
+double error_of_pressing(const Description& d, double young, double deepest) {
+  const double speed = slow(young, deepest), least = 0.02 * hertz(young, radius, deepest);
+  Trial t(d);
+  double error = 0;
+  while (t.world().time() * speed < 2 * deepest) {
+    t.step();
+    const double force = hertz(young, radius, 0.5 * speed * t.world().time());
+    for (const WallView& wall : t.world().walls())
+      if (wall.name == "floor" || wall.name == "lid")
+        error = std::max(error, std::abs(wall.force.norm() - force) / std::max(force, least));
+  }
+  EXPECT_GT(t.world().step(), 5000u);
+  return error;
+}
+
+TEST(Stiffening, WhatIsPressedPushesBackAsHertzSays) {
+  for (const double young : {1e7, 70e9})
+    for (const double deepest : {2e-4, 1e-3, 1e-2})
+      EXPECT_LT(error_of_pressing(press(young, slow(young, deepest * radius)), young, deepest * radius), 0.01)
+          << young << ' ' << deepest;
+}
+
+TEST(Stiffening, AnotherThatIsPressedHarderHidesNothing) {
+  constexpr double young = 1e9, deepest = 2e-3 * radius, large = 10 * radius, squeezed = 5e-3 * large;
+  Description d = press(young, slow(young, deepest));
+  d["bodies"]["grains"]["grains"]["grains"].push_back(
+      {{"position", {5 * large, 0, large - squeezed}}, {"radius", large}});
+  const Vec3 low(4 * large, -large, 0), high(6 * large, large, 0);
+  d["walls"]["low"] = side(2, 0, low, high, true);
+  d["walls"]["high"] = side(2, 2 * (large - squeezed), low, high, false);
+  EXPECT_LT(error_of_pressing(d, young, deepest), 0.01);
+}
+
+TEST(Stiffening, WhatFallsComesBackNoHigher) {
+  for (const double restitution : {1.0, 0.9, 0.5})
+    for (const double height : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
+      Description d = description("hertz-mindlin", glass(1e9, restitution), {{{0, 0, radius + height}, radius}});
+      d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+      d["engines"]["gravity"] = {{"type", "gravity"}};
+      Trial t(d);
+      // To the top of its first jump.
+      bool touched = false;
+      while (!touched || t.velocity(0).z() > 0) t.step(), touched = touched || t.position(0).z() < radius;
+      const double rise = (t.position(0).z() - radius) / height;
+      EXPECT_LT(rise, restitution * restitution + 0.1) << restitution << ' ' << height;
+    }
+}
+
+/// Closure of the ledger of some grains that fall into a box and come to rest, over what fell.
+double closure_of_a_pour(double young, double restitution) {
+  Description m = glass(young, restitution);
+  m["friction_angle"] = 0.4, m["poisson_ratio"] = 0.25;
+  std::vector<Grain> grains = jumble({3, 3, 5}, 3.3e-3, 0.1, 3);
+  for (Grain& g : grains) g.radius *= 0.8;
+  Description d = description("hertz-mindlin", m, grains);
+  const Vec3 low = Vec3::Zero(), high(10e-3, 10e-3, 60e-3);
+  const char* const names[3][2] = {{"left", "right"}, {"front", "back"}, {"floor", "lid"}};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false})
+      d["walls"][names[axis][up ? 0 : 1]] = side(axis, up ? low[axis] : high[axis], low, high, up);
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  while (t.world().time() < 0.1) t.step();
+  const EnergyLedger now = t.world().energies();
+  EXPECT_GT(now.viscosity, 0.02 * -now.gravitational);
+  EXPECT_GT(t.world().pair_count(), 30u);
+  return std::abs(now.closure_error / now.gravitational);
+}
+
+TEST(Stiffening, WhatIsPouredGainsNothing) {
+  for (const double young : {1e8, 1e9})
+    for (const double restitution : {0.6, 0.9})
+      EXPECT_LT(closure_of_a_pour(young, restitution), 0.03) << young << ' ' << restitution;
+}
+
+}  // namespace
+}  // namespace grit::test
