@@ -8,14 +8,14 @@ REGISTER = re.compile(r'%([xyz]mm)\d')
 BYTES = {'xmm': 16, 'ymm': 32, 'zmm': 64}
 
 
-def functions(objdump, file, name):
-    """Whole name → instructions, each as text, of the functions that have `name` in theirs."""
+def functions(objdump, file, *names):
+    """Whole name → instructions, each as text, of the functions that have one of `names` in theirs."""
     listing = subprocess.run([objdump, '-d', '-C', '--no-show-raw-insn', file], capture_output=True, text=True, check=True)
     found, current = {}, None
     for line in listing.stdout.splitlines():
         if line.endswith('>:'):
             whole = line.split('<', 1)[1]
-            current = found.setdefault(whole, []) if name in whole else None
+            current = found.setdefault(whole, []) if any(name in whole for name in names) else None
         elif current is not None and (code := line.split('\t')[1:]):
             current.append(code[0])
     return found

@@ -1,4 +1,4 @@
-"""Reads the disassembly of a contact plugin and proves that its loop over pairs works on packed numbers.
+"""Reads the disassembly of a contact plugin and proves that its loops over pairs and over walls work on packed numbers.
 
 usage: check.py OBJDUMP PLUGIN.so lanes|scalar|xmm|ymm|zmm
 
@@ -20,9 +20,9 @@ TWIN = re.compile(r"pair_loop<[^<>]*, \d+u, (?:double|float),")
 
 
 def loops(objdump, plugin):
-    """Name of each pair_loop → counts of packed and scalar arithmetic, the calls in it, and its widest registers."""
+    """Name of each loop → counts of packed and scalar arithmetic, the calls in it, and its widest registers."""
     found = {}
-    for name, instructions in functions(objdump, plugin, "detail::pair_loop<").items():
+    for name, instructions in functions(objdump, plugin, "detail::pair_loop<", "detail::wall_loop<").items():
         counts = found[name] = {"p": 0, "s": 0, "calls": [], "widest": ""}
         for code in instructions:
             word = code.split()[0]
@@ -45,8 +45,9 @@ def main(objdump, plugin, which):
     found = loops(objdump, plugin)
     twins = {name for name in found if TWIN.search(name)}
     chosen = sorted(twins if which == "scalar" else found.keys() - twins)
-    if not chosen:
-        return f"{plugin}: no loop over pairs found ({which})"
+    for kind in {"pair"} if which == "scalar" else {"pair", "wall"}:
+        if not any(f"{kind}_loop<" in name for name in chosen):
+            return f"{plugin}: no {kind}_loop found ({which})"
     if which.endswith("mm"):
         return "\n".join(f"{name[:100]}: uses {found[name]['widest']}" for name in chosen if found[name]["widest"] != which) or None
     if which == "scalar":

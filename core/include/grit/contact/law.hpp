@@ -441,14 +441,16 @@ template <std::size_t count, class Use>
   if constexpr (count > 4 && count % 4 != 0) use(count - 4);
 }
 
-/// The loop over touches of walls. Few, so that their memory may lie contact by contact.
+/// The loop over touches of walls. Few, so that their memory may lie contact by contact. Not inlined, as pair_loop.
 template <class Law, unsigned Features, class L>
-[[gnu::flatten]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
-                                std::size_t materials) {
+[[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
+                                               std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
+  const L place([](std::size_t k) { return k; });
   L most(0.0);
+  Loss<L> lost{L(0.0), L(0.0), L(0.0)};
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
     // Lanes past the end repeat the last touch and are not stored.
@@ -481,7 +483,7 @@ template <class Law, unsigned Features, class L>
 
     const auto memory = [&](std::size_t k) { return batch.state + (first + std::min(k, used - 1)) * fields; };
     State state{};
-    for_fours<fields>([&](std::size_t f) {
+    for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
       const RowLanes<L> row = load_fours<L>([&](std::size_t k) { return memory(k) + f; });
       member<L>(state, f) = row.x, member<L>(state, f + 1) = row.y;
       member<L>(state, f + 2) = row.z, member<L>(state, f + 3) = row.w;
@@ -498,16 +500,16 @@ template <class Law, unsigned Features, class L>
     const State before_step = state;
     const Response<L> response = Law::template evaluate<Features>(at, pair, state);
     if (batch.losses != nullptr) {
-      const Loss<L> lost = losses_of<Law, Features>(at, pair, before_step, state, response);
-      for (std::size_t k = 0; k < used; ++k) {
-        batch.losses->friction += lane(lost.friction, k), batch.losses->rolling += lane(lost.rolling, k);
-        batch.losses->viscosity += lane(lost.viscosity, k);
-      }
+      const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
+      const auto counts = place < L(static_cast<double>(used));
+      lost.friction = lost.friction + select(counts, own.friction, L(0.0));
+      lost.rolling = lost.rolling + select(counts, own.rolling, L(0.0));
+      lost.viscosity = lost.viscosity + select(counts, own.viscosity, L(0.0));
     }
 
     const Vec<L> force = response.normal_force * normal + response.shear;
     const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
-    for_fours<fields>([&](std::size_t f) {
+    for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
       store_rows(member<L>(state, f), member<L>(state, f + 1), member<L>(state, f + 2), member<L>(state, f + 3),
                  [&](std::size_t k, const Quad& numbers) {
                    if (k < used) std::memcpy(memory(k) + f, &numbers, sizeof numbers);
@@ -530,6 +532,7 @@ template <class Law, unsigned Features, class L>
     most = max(most, at.overlap / pa.w);
   }
   batch.largest_overlap = largest(most);
+  if (batch.losses != nullptr) add_lanes(lost, *batch.losses);
 }
 
 }  // namespace detail
