@@ -166,7 +166,7 @@ TEST_F(Studies, GiveAdvice) {
   };
   const auto fine = advise({"--set", "/time_step/safety=0.01", "--tolerance", "1%"});
   ASSERT_EQ(fine.status, 0) << fine.err;
-  EXPECT_THAT(fine.out, AllOf(HasSubstr("safety: 0.01 here"), HasSubstr("→ 0.1: 10.00 times cheaper"),
+  EXPECT_THAT(fine.out, AllOf(HasSubstr("safety: 0.01 here"), HasSubstr("→ 0.1: 10.00 ± 0.00 times cheaper"),
                               HasSubstr(" --set '/time_step/safety=0.1'\n"), HasSubstr("too much"), HasSubstr(chart)));
   const auto coarse = advise({"--set", "/time_step/safety=0.8", "--tolerance", "0.01"});
   EXPECT_THAT(coarse.out,
@@ -180,6 +180,11 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
   EXPECT_EQ(advise({"--tolerance", "5"}).status, 1) << "500 %";
   EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);
+  charted["advice"] = false;
+  folder.write("sand.json", charted.dump());
+  const auto sand = grit({"advise", "two.json", "--study", "sand.json"});
+  EXPECT_EQ(sand.status, 1);
+  EXPECT_THAT(sand.err, HasSubstr("its settings are what is modelled, not how"));
   charted.erase("title");
   folder.write("half.json", charted.dump());
   for (const char* no_chart : {"two.json", "half.json", "none.json", "results"}) {

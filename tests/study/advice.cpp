@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "grit/error.hpp"
@@ -18,6 +19,7 @@ json effect(const char* setting, const char* level, double cost, double error, d
   return {{"setting", setting},
           {"level", level},
           {"cost", cost},
+          {"cost_standard_error", 0.0},
           {"figures",
            {{"peak", {{"error", error}, {"standard_error", standard_error}}},
             {"small", {{"error", 0.1 * error}, {"standard_error", 0.0}}}}}};
@@ -60,7 +62,7 @@ TEST_F(AdviceOf, ATolerancePicksTheCheapestLevelWithin) {
   EXPECT_EQ(narrow[1].best, nullptr);
   EXPECT_EQ(advice(0.05)[0].best->level, "2");
   EXPECT_EQ(advice(0.2)[0].best->level, "4");
-  EXPECT_EQ(advice(0.05)[0].best->figure, "peak");
+  EXPECT_EQ(advice(0.05)[0].best->decisive(0.05)->figure, "peak");
 }
 
 TEST_F(AdviceOf, ErrorsOfSettingsTakenTogetherAddUpToNoMoreThanTheTolerance) {
@@ -100,14 +102,81 @@ TEST_F(AdviceOf, LevelsThatFailedAreToldAndNeverTaken) {
   EXPECT_THAT(own[0].found, HasSubstr("4 here, with which the study's scene failed"));
 }
 
+TEST_F(AdviceOf, SettingsThatStayCountInTheSum) {
+  // The rate changes 2 % already: with the 3 % of the size it would be 5 %.
+  const auto some = advice(0.04, "/2");
+  EXPECT_EQ(some[1].best->level, "big");
+  EXPECT_FALSE(some[1].taken);
+  const Evidence all = together(some);
+  ASSERT_EQ(all.findings.size(), 2u);
+  EXPECT_NEAR(all.findings[0].error, 0.02, 1e-15);
+  EXPECT_DOUBLE_EQ(all.cost, 1);
+  const auto both = advice(0.06, "/2");
+  EXPECT_TRUE(both[1].taken);
+  EXPECT_NEAR(together(both).findings[0].error, 0.05, 1e-15);
+  EXPECT_NEAR(together(both).findings[0].standard_error, std::sqrt(2e-6), 1e-15);
+  EXPECT_DOUBLE_EQ(together(both).cost, 0.5);
+}
+
+TEST_F(AdviceOf, EachFigureHasItsOwnSum) {
+  for (const char* figure : {"peak", "small"}) {
+    chart["effects"][1]["figures"][figure]["error"] = figure == std::string("peak") ? 0.0 : 0.03;
+    chart["effects"][2]["figures"][figure]["error"] = figure == std::string("peak") ? 0.03 : 0.0;
+  }
+  const auto some = advice(0.04);
+  EXPECT_TRUE(some[0].taken && some[1].taken) << "each changes another figure by 3 %";
+}
+
+TEST_F(AdviceOf, EvidenceThatScattersByMoreThanTheToleranceIsNone) {
+  chart["effects"][0]["figures"]["peak"] = {{"error", 0.017}, {"standard_error", 0.111}};
+  EXPECT_EQ(advice(0.03)[0].best->level, "2");
+  EXPECT_EQ(advice(0.03)[0].cheaper[0]->confidence(0.03), Confidence::untold);
+  for (auto& effect : chart["effects"])
+    for (auto& figure : effect["figures"]) figure["standard_error"] = nullptr;
+  EXPECT_EQ(advice(0.03)[0].best, nullptr) << "one sample tells nothing";
+}
+
+TEST_F(AdviceOf, ASavingWithinTheScatterOfTimesIsNone) {
+  chart["effects"][1]["cost"] = 0.86;
+  EXPECT_EQ(advice(0.05)[0].best->level, "2");
+  for (const json& error : {json(0.08), json()}) {
+    chart["effects"][1]["cost_standard_error"] = error;
+    const auto some = advice(0.05);
+    EXPECT_EQ(some[0].best, nullptr);
+    ASSERT_EQ(some[0].cheaper.size(), 2u) << "it is told all the same";
+    EXPECT_FALSE(saves(*some[0].cheaper[1], *some[0].now));
+  }
+  // Both scatter where the description does not have the finest.
+  chart["effects"][0]["cost"] = 0.7, chart["effects"][0]["cost_standard_error"] = 0.05;
+  chart["effects"][1]["cost_standard_error"] = 0.07;
+  EXPECT_EQ(advice(0.2, "/2")[0].best, nullptr);
+  EXPECT_EQ(advice(0.2, "/1")[0].best->level, "4");
+}
+
+TEST_F(AdviceOf, AStudyMaySayThatItAdvisesNothing) {
+  advice(0.1);
+  EXPECT_TRUE(study.advice);
+  chart["advice"] = false;
+  advice(0.1);
+  EXPECT_FALSE(study.advice);
+}
+
+TEST_F(AdviceOf, TheFigureThatIsLeastSureDecides) {
+  chart["effects"][0]["figures"]["small"]["standard_error"] = 0.2;
+  const auto some = advice(0.1);
+  EXPECT_EQ(some[0].best->level, "2");
+  EXPECT_EQ(some[0].cheaper[0]->confidence(0.1), Confidence::untold);
+  EXPECT_EQ(some[0].cheaper[0]->decisive(0.1)->figure, "small");
+  EXPECT_EQ(some[0].cheaper[1]->decisive(0.1)->figure, "peak") << "as sure as the other, and more";
+}
+
 TEST(Confidences, ComeFromErrorAndScatter) {
-  const auto of = [](double error, double standard_error) {
-    return confidence({"", {}, 1, error, standard_error, "peak"}, 0.1);
-  };
-  EXPECT_EQ(of(0.05, 0.02), Confidence::certain);
-  EXPECT_EQ(of(0.05, 0.03), Confidence::likely);
-  EXPECT_EQ(of(0.15, 0.08), Confidence::untold);
-  EXPECT_EQ(of(0.15, 0.07), Confidence::impossible);
+  EXPECT_EQ(confidence(0.05, 0.02, 0.1), Confidence::certain);
+  EXPECT_EQ(confidence(0.05, 0.03, 0.1), Confidence::likely);
+  EXPECT_EQ(confidence(0.05, 0.12, 0.1), Confidence::untold);
+  EXPECT_EQ(confidence(0.05, std::nan(""), 0.1), Confidence::untold);
+  EXPECT_EQ(confidence(0.15, 0.08, 0.1), Confidence::untold);
+  EXPECT_EQ(confidence(0.15, 0.07, 0.1), Confidence::impossible);
 }
 
 TEST(ChartFiles, OthersAreRefused) {

@@ -86,7 +86,7 @@ TEST_F(Charts, CheapestKeepsEveryFigureWithinTheTolerance) {
   EXPECT_EQ(chart(value_figure, R"(, "tolerance": 0.2)").cheapest, 1u);
   const Chart strict = chart(value_figure, R"(, "tolerance": 0.01)");
   EXPECT_EQ(strict.cheapest, 3u);
-  EXPECT_THAT(verdict(strict), HasSubstr("Nothing cheaper than the finest"));
+  EXPECT_THAT(verdict(strict), HasSubstr("Nothing cheaper than the finest settings was found"));
   // The second figure does not hold where the first does.
   const auto two =
       R"({"end": {"type": "last", "of": "test/y"}, "small": {"type": "last", "of": "test/y", "scale": 0.1}})";
@@ -103,6 +103,21 @@ TEST_F(Charts, VerdictSaysWhatItCannotBeSureOf) {
   EXPECT_THAT(verdict(chart(value_figure, R"(, "tolerance": 0.9)")), Not(HasSubstr("more seeds would tell")));
 }
 
+TEST_F(Charts, CertaintyIsOfEveryFigureNotOfTheFurthest) {
+  // The usual's x ends at 1.1 in both samples, surely 10 % off; its y is right on average, but scatters.
+  make_all();
+  const auto two = R"({"far": {"type": "last", "of": "test/x"}, "end": {"type": "last", "of": "test/y"}})";
+  for (const auto& [seed, y] : {std::pair("1", 0.6), std::pair("2", 1.4)})
+    make_series(folder / ("runs/usual/seed-" + std::string(seed)), {0, 1.1}, {0, y});
+  const Chart all = chart(two, R"(, "tolerance": 0.5)");
+  EXPECT_EQ(all.cheapest, 0u);
+  EXPECT_EQ(all.variants[0].worst, "far");
+  EXPECT_THAT(verdict(all), HasSubstr("not certain of end; more seeds would tell"));
+  const Chart strict = chart(two, R"(, "tolerance": 0.12)");
+  EXPECT_NE(strict.cheapest, 0u) << "the end scatters by more than that";
+  EXPECT_THAT(verdict(chart(two, R"(, "tolerance": 0.05)")), HasSubstr("Of some it cannot be told"));
+}
+
 TEST_F(Charts, CurvesAreComparedWhereBothAre) {
   for (const auto& [variant, offset] :
        {std::pair("usual", 0.5), std::pair("rate=slow", 0.0), std::pair("size=1", 0.0), std::pair("finest", 0.0)})
@@ -116,6 +131,46 @@ TEST_F(Charts, CurvesAreComparedWhereBothAre) {
   const Chart all = chart(R"({"curve": {"type": "curve", "of": "test/y", "against": "test/x"}})");
   EXPECT_NEAR(all.variants[0].deviations.at("curve").error, 0.5 / 8, 1e-14);
   EXPECT_NEAR(all.variants[0].deviations.at("curve").scatter, 0, 1e-14);
+}
+
+TEST_F(Charts, ACurveThatStopsBeforeItsReferenceIsAFailureOfThatRun) {
+  make_all();
+  // All but the usual go to 1; it ends at a tenth, and there it is exact.
+  make_series(folder / "runs/usual/seed-2", {0, 0.1}, {0, 0.1});
+  make_series(folder / "runs/size=1/seed-1", {0, 0.95}, {0, 1});
+  const auto curve = R"({"curve": {"type": "curve", "of": "test/y", "against": "test/x"}})";
+  const Chart all = chart(curve);
+  EXPECT_FALSE(all.variants[0].complete());
+  EXPECT_EQ(all.variants[0].samples[1].message, "test/y is of abscissae from 0 to 0.1, its reference from 0 to 1");
+  EXPECT_TRUE(all.variants[1].complete());
+  EXPECT_TRUE(all.variants[2].complete()) << "what lacks less than a tenth is compared where both are";
+  EXPECT_NE(all.cheapest, 0u);
+  // Nor may a sample of the finest stop early, and all others be compared with its beginning.
+  make_series(folder / "runs/finest/seed-2", {0, 0.1}, {0, 0.1});
+  EXPECT_TRUE(chart(curve).reference.empty());
+  // A reference from elsewhere has to be reached as well.
+  folder.write("lab.csv", "x,y\n0,0\n2,2\n");
+  const Chart lab = chart(R"({"c": {"type": "curve", "of": "test/y", "against": "test/x",
+    "curve": {"file": "lab.csv", "x": "x", "y": "y"}}})");
+  EXPECT_EQ(lab.variants[1].samples[0].message, "test/y is of abscissae from 0 to 1, its reference from 0 to 2");
+}
+
+TEST_F(Charts, CostsHaveTheirScatterToo) {
+  make_all();
+  make_run_json(folder / "runs/usual/seed-1", 0.8), make_run_json(folder / "runs/usual/seed-2", 1.2);
+  const Chart all = chart();
+  EXPECT_NEAR(all.variants[0].cost_scatter, std::sqrt(0.08), 1e-15);
+  EXPECT_EQ(all.variants[1].cost_scatter, 0);
+  // 0.8 and 1.2 beside 3 and 3: the ratio is 1/3, off by 0.2 / 3 each way.
+  EXPECT_DOUBLE_EQ(all.effects[0].cost, 1.0 / 3);
+  EXPECT_NEAR(all.effects[0].cost_error, std::sqrt(0.08 / 2) / 3, 1e-15);
+  EXPECT_NEAR(to_json(all)["effects"][0]["cost_standard_error"], std::sqrt(0.04) / 3, 1e-15);
+  EXPECT_THAT(chart_page(all), HasSubstr("<td>1 <small>± 0.28</small></td>"));
+  // Seeds that cost more in both alike say nothing against the ratio.
+  make_run_json(folder / "runs/rate=slow/seed-1", 2.4), make_run_json(folder / "runs/rate=slow/seed-2", 3.6);
+  EXPECT_NEAR(chart().effects[0].cost_error, 0, 1e-15);
+  seeds = "[1]";
+  EXPECT_TRUE(std::isnan(chart().effects[0].cost_error));
 }
 
 TEST_F(Charts, ReferenceMayComeFromElsewhere) {
@@ -222,6 +277,7 @@ TEST_F(Charts, TableHasOneRowAVariantAndFigure) {
   const std::string csv = to_csv(chart());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(csv, HasSubstr("\"rate=slow\",\"slow\",\"2\",\"end\",1.1,"));
+  EXPECT_THAT(csv, HasSubstr("core_seconds,core_seconds_scatter,steps"));
 }
 
 }  // namespace

@@ -96,6 +96,9 @@ TEST(Studies, AFigureIsOfAChannelAndHasTheReferenceOfItsKind) {
   EXPECT_EQ(figure(R"({"type": "curve", "of": "test/y", "against": "test/x"})"), "");
   EXPECT_THAT(figure(R"({"type": "last", "of": "y"})"), HasSubstr("/figures/f/of: found \"y\""));
   EXPECT_THAT(figure(R"({"type": "curve", "of": "test/y", "value": 1})"), HasSubstr("/figures/f/value"));
+  EXPECT_THAT(figure(R"({"type": "last", "of": "test/y", "value": 0})"),
+              HasSubstr("/figures/f/value: found 0 without a scale"));
+  EXPECT_EQ(figure(R"({"type": "last", "of": "test/y", "value": 0, "scale": 2})"), "");
   EXPECT_THAT(figure(R"({"type": "largest", "of": "test/y"})"), HasSubstr("unknown figure \"largest\""));
 }
 

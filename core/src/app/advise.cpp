@@ -41,7 +41,8 @@ std::vector<ChartedStudy> shipped_studies(const std::string& scenario, const std
   std::ranges::sort(files);
   std::vector<ChartedStudy> studies;
   for (const auto& file : files)
-    if (!scenario.empty() && read_charted_study(file, {}).scenario == scenario)
+    if (const auto study = read_charted_study(file, {});
+        !scenario.empty() && study.scenario == scenario && study.advice)
       studies.push_back(read_charted_study(file, figures));
   if (studies.empty())
     throw UsageError(fmt::format("{}; name a chart.json with --study, of your own or one of these: {}",
@@ -57,19 +58,30 @@ std::string with_scatter(double error, double standard_error) {
                      std::isnan(standard_error) ? "?" : fmt::format("{:.1f} %", 100 * standard_error));
 }
 
-std::string changes(const Evidence& one) {
-  if (one.figure.empty()) return "is the finest that was tried";
-  return fmt::format("changes {} by {}", one.figure, with_scatter(one.error, one.standard_error));
+/// "1.16 ± 0.07 times cheaper"
+std::string saving(const Evidence& one, const Evidence& now) {
+  const double ratio = now.cost / one.cost;
+  const double error = ratio * std::hypot(one.cost_error / one.cost, now.cost_error / now.cost);
+  if (std::isnan(error)) return fmt::format("{:.2f} ± ? times cheaper (the chart has no scatter of times)", ratio);
+  return fmt::format("{:.2f} ± {:.2f} times cheaper{}", ratio, error,
+                     saves(one, now) ? "" : ", which is within what times scatter");
+}
+
+/// Of the figure that decides.
+std::string changes(const Evidence& one, double tolerance) {
+  const Finding* finding = one.decisive(tolerance);
+  if (finding == nullptr) return "is the finest that was tried";
+  return fmt::format("changes {} by {}", finding->figure, with_scatter(finding->error, finding->standard_error));
 }
 
 std::string why(const Evidence& one, double tolerance) {
-  switch (confidence(one, tolerance)) {
+  switch (one.confidence(tolerance)) {
     case Confidence::certain:
       return "certain";
     case Confidence::likely:
       return "likely: the samples scatter by more than the tolerance leaves";
     case Confidence::untold:
-      return "cannot be told: no more than the samples scatter; a study with more seeds would tell";
+      return "cannot be told: the samples scatter by more than the tolerance; a study with more seeds would tell";
     case Confidence::impossible:
       return "too much";
   }
@@ -81,37 +93,37 @@ void print(const ChartedStudy& study, const std::string& file, std::vector<std::
            const std::vector<Advice>& advices) {
   std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant)\n\n", file, 100 * tolerance,
                            study.title, study.file.string(), study.samples);
-  double cost = 1, error = 0, variance = 0;
-  std::vector<std::string> beyond;
+  std::vector<std::string> beyond, unknown;
   for (const Advice& advice : advices) {
     if (advice.now == nullptr) {
       std::cout << fmt::format("  {}: {}\n", advice.setting, advice.found);
+      unknown.push_back(advice.setting);
       continue;
     }
-    std::cout << fmt::format("  {}: {} here; {}\n", advice.setting, advice.now->level, changes(*advice.now));
-    if (confidence(*advice.now, tolerance) == Confidence::impossible) beyond.push_back(advice.setting);
+    std::cout << fmt::format("  {}: {} here; {}\n", advice.setting, advice.now->level, changes(*advice.now, tolerance));
+    if (advice.now->confidence(tolerance) == Confidence::impossible) beyond.push_back(advice.setting);
     if (advice.cheaper.empty()) std::cout << "      nothing cheaper was tried\n";
     for (const Evidence* one : advice.cheaper)
-      std::cout << (one->known ? fmt::format("    {} {}: {:.2f} times cheaper, {}, {}\n",
-                                             one == advice.best && advice.taken ? "→" : " ", one->level,
-                                             advice.now->cost / one->cost, changes(*one), why(*one, tolerance))
+      std::cout << (one->known ? fmt::format("    {} {}: {}, {}, {}\n", one == advice.best && advice.taken ? "→" : " ",
+                                             one->level, saving(*one, *advice.now), changes(*one, tolerance),
+                                             why(*one, tolerance))
                                : fmt::format("      {}: runs of the study failed with it\n", one->level));
-    if (!advice.taken) continue;
-    cost *= advice.now->cost / advice.best->cost, error += advice.best->error;
-    variance += advice.best->standard_error * advice.best->standard_error;
-    given.insert(given.end(), advice.best->sets.begin(), advice.best->sets.end());
+    if (advice.taken) given.insert(given.end(), advice.best->sets.begin(), advice.best->sets.end());
   }
   std::cout << '\n';
   if (!beyond.empty())
     std::cout << fmt::format("beyond the tolerance as it is: {}; a finer value costs more\n", fmt::join(beyond, ", "));
-  if (std::ranges::none_of(advices, &Advice::taken)) {
-    std::cout << "nothing that the study tried may be relaxed\n";
-    return;
-  }
-  std::cout << fmt::format(
-      "together about {:.1f} times cheaper; what they change adds up to {} at most, if settings do not act on each "
-      "other\n  grit run {}",
-      cost, with_scatter(error, std::sqrt(variance)), file);
+  const Evidence all = together(advices);
+  const bool any = std::ranges::any_of(advices, &Advice::taken);
+  if (any) std::cout << fmt::format("together about {:.1f} times cheaper\n", 1 / all.cost);
+  else std::cout << "nothing that the study tried may be relaxed\n";
+  if (const Finding* sum = all.decisive(tolerance))
+    std::cout << fmt::format(
+        "what all settings change, those that stay included, adds up to {} ({}), if they do not act on each other{}\n",
+        with_scatter(sum->error, sum->standard_error), sum->figure,
+        unknown.empty() ? "" : fmt::format("; not counted: {}", fmt::join(unknown, ", ")));
+  if (!any) return;
+  std::cout << "  grit run " << file;
   for (const auto& set : given) std::cout << " --set '" << set << '\'';
   std::cout << '\n';
 }
@@ -140,7 +152,13 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
     return resolved(*load_scene(file, all, *registry).description) == now;
   };
   std::vector<ChartedStudy> studies;
-  for (const auto& chart : options.list("study")) studies.push_back(read_charted_study(chart, options.list("figure")));
+  for (const auto& chart : options.list("study")) {
+    studies.push_back(read_charted_study(chart, options.list("figure")));
+    if (!studies.back().advice)
+      throw UsageError(chart +
+                       ": its settings are what is modelled, not how (\"advice\": false), so that nothing may be "
+                       "relaxed by it; name another study");
+  }
   if (studies.empty()) studies = shipped_studies(scenario_type(Document::load(file)), options.list("figure"));
   for (const ChartedStudy& study : studies) {
     if (&study != &studies.front()) std::cout << '\n';

@@ -13,16 +13,15 @@
 namespace grit {
 namespace {
 
-/// The figure with the largest error among those that count.
-void put_largest(Evidence& evidence, const Description& deviations, const std::vector<std::string>& figures) {
-  for (const auto& [name, one] : deviations.items()) {
-    if (!figures.empty() && std::ranges::find(figures, name) == figures.end()) continue;
-    const double error = one.at("error").get<double>();
-    if (!evidence.figure.empty() && error <= evidence.error) continue;
-    evidence.figure = name, evidence.error = error;
-    evidence.standard_error =
-        one.at("standard_error").is_number() ? one.at("standard_error").get<double>() : std::nan("");
-  }
+double number_or_nan(const Description& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
+
+/// Of the figures that count.
+std::vector<Finding> findings_of(const Description& deviations, const std::vector<std::string>& figures) {
+  std::vector<Finding> all;
+  for (const auto& [name, one] : deviations.items())
+    if (figures.empty() || std::ranges::find(figures, name) != figures.end())
+      all.push_back({name, number_or_nan(one.at("error")), number_or_nan(one.at("standard_error"))});
+  return all;
 }
 
 /// Throws Description::exception if the chart lacks something.
@@ -37,6 +36,7 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
   ChartedStudy study{file,
                      json.at("title").get<std::string>(),
                      json.at("scenario").get<std::string>(),
+                     json.value("advice", true),
                      json.at("samples").get<std::size_t>(),
                      {}};
   for (const auto& [name, setting] : json.at("settings").items()) {
@@ -51,7 +51,8 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
       });
       if (effect != json.at("effects").end()) {
         evidence.cost = effect->at("cost").get<double>();
-        put_largest(evidence, effect->at("figures"), figures);
+        evidence.cost_error = number_or_nan(effect->value("cost_standard_error", Description()));
+        evidence.findings = findings_of(effect->at("figures"), figures);
       } else {
         evidence.known = &level == &all.back();
       }
@@ -73,11 +74,40 @@ ChartedStudy read_charted_study(const std::filesystem::path& file, const std::ve
   }
 }
 
-Confidence confidence(const Evidence& evidence, double tolerance) {
-  if (evidence.figure.empty() || evidence.error + 2 * evidence.standard_error <= tolerance) return Confidence::certain;
-  if (evidence.error <= tolerance) return Confidence::likely;
-  return evidence.error <= 2 * evidence.standard_error || std::isnan(evidence.standard_error) ? Confidence::untold
-                                                                                              : Confidence::impossible;
+Confidence Evidence::confidence(double tolerance) const {
+  Confidence worst = Confidence::certain;
+  for (const Finding& one : findings)
+    worst = std::max(worst, grit::confidence(one.error, one.standard_error, tolerance));
+  return worst;
+}
+
+const Finding* Evidence::decisive(double tolerance) const {
+  const Finding* found = nullptr;
+  for (const Finding& one : findings) {
+    if (grit::confidence(one.error, one.standard_error, tolerance) != confidence(tolerance)) continue;
+    if (found == nullptr || one.error > found->error) found = &one;
+  }
+  return found;
+}
+
+bool saves(const Evidence& level, const Evidence& than) {
+  return level.cost + 2 * std::hypot(level.cost_error, than.cost_error) < than.cost;
+}
+
+Evidence together(const std::vector<Advice>& advices) {
+  Evidence all;
+  std::map<std::string, Finding> sums;
+  for (const Advice& advice : advices) {
+    if (advice.now == nullptr) continue;
+    all.cost *= advice.then()->cost / advice.now->cost;
+    for (const Finding& one : advice.then()->findings) {
+      Finding& sum = sums[one.figure];
+      sum.figure = one.figure, sum.error += one.error;
+      sum.standard_error = std::hypot(sum.standard_error, one.standard_error);
+    }
+  }
+  for (const auto& [name, sum] : sums) all.findings.push_back(sum);
+  return all;
 }
 
 std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
@@ -107,8 +137,7 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
       if (!level.known && &level < advice.now) advice.cheaper.push_back(&level);
       if (!level.known || !(level.cost < advice.now->cost)) continue;
       advice.cheaper.push_back(&level);
-      const Confidence sure = confidence(level, tolerance);
-      if (sure != Confidence::certain && sure != Confidence::likely) continue;
+      if (!saves(level, *advice.now) || level.confidence(tolerance) > Confidence::likely) continue;
       if (advice.best == nullptr || level.cost < advice.best->cost) advice.best = &level;
     }
   }
@@ -116,13 +145,14 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
   for (Advice& advice : all)
     if (advice.best != nullptr) wanted.push_back(&advice);
   const auto worth = [](const Advice* a) {
-    return std::log(a->now->cost / a->best->cost) / std::max(a->best->error, 1e-12);
+    double largest = 1e-12;
+    for (const Finding& one : a->best->findings) largest = std::max(largest, one.error);
+    return std::log(a->now->cost / a->best->cost) / largest;
   };
   std::ranges::sort(wanted, std::greater(), worth);
-  double sum = 0;
   for (Advice* advice : wanted) {
-    if (sum + advice->best->error > tolerance) continue;
-    advice->taken = true, sum += advice->best->error;
+    advice->taken = true;
+    advice->taken = together(all).confidence(tolerance) <= Confidence::likely;
   }
   return all;
 }

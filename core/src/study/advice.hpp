@@ -7,22 +7,35 @@
 #include <string>
 #include <vector>
 
+#include "study/confidence.hpp"
+
 namespace grit {
 
-/// What a level of a setting was found to do, the finest level as the reference. Shares of the figures' scales.
+/// What a figure was found to change by. Shares of the figure's scale; NaN is the standard error of a single sample.
+struct Finding {
+  std::string figure;
+  double error = 0, standard_error = 0;
+};
+
+/// What a level of a setting was found to do, the finest level as the reference.
 struct Evidence {
   std::string level;
-  std::vector<std::string> sets;  ///< "/pointer=value"
-  double cost = 1;                ///< over that of the finest level
-  double error = 0, standard_error = 0;
-  std::string figure;  ///< in which the error is the largest; empty for the finest
-  bool known = true;   ///< false if runs of it, or of the finest level, failed
+  std::vector<std::string> sets;       ///< "/pointer=value"
+  double cost = 1, cost_error = 0;     ///< over that of the finest level, and its standard error
+  std::vector<Finding> findings = {};  ///< of each figure that counts; none for the finest
+  bool known = true;                   ///< false if runs of it, or of the finest level, failed
+
+  /// Of the figure that is least sure.
+  Confidence confidence(double tolerance) const;
+  /// That figure, of several the one that changes most; nothing for the finest.
+  const Finding* decisive(double tolerance) const;
 };
 
 /// A chart.json, as far as advice needs it.
 struct ChartedStudy {
   std::filesystem::path file;
   std::string title, scenario;
+  bool advice = true;  ///< whether its settings are of the method, not of what is modelled
   std::size_t samples = 0;
   std::map<std::string, std::vector<Evidence>> settings;  ///< from the cheapest level to the finest
 };
@@ -30,14 +43,7 @@ struct ChartedStudy {
 /// `figures`: those that count; none: all. Throws FileError, and Error if a figure is unknown.
 ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures);
 
-enum class Confidence {
-  certain,     ///< twice the standard error more would still be within the tolerance
-  likely,      ///< the error is within the tolerance, the scatter is not
-  untold,      ///< the error is no larger than the scatter, which is beyond the tolerance
-  impossible,  ///< the error is beyond the tolerance
-};
-Confidence confidence(const Evidence& evidence, double tolerance);
-
+/// One setting.
 struct Advice {
   std::string setting;
   std::string found;               ///< why there is no level; empty if there is one
@@ -45,11 +51,22 @@ struct Advice {
   const Evidence* best = nullptr;  ///< the cheapest within the tolerance that is cheaper than that, certain or likely
   std::vector<const Evidence*> cheaper;  ///< all that are cheaper than now, or are coarser and failed
   bool taken = false;                    ///< part of what is advised together
+
+  /// What the setting has once the advice is taken.
+  const Evidence* then() const { return taken ? best : now; }
 };
 
-/// `same(sets)`: whether the description stays the same with these. Settings are taken together as long as their errors
-/// add up to no more than the tolerance, those first that save the most for their error.
+/// Whether a level costs less than another by more than their times scatter.
+bool saves(const Evidence& level, const Evidence& than);
+
+/// `same(sets)`: whether the description stays the same with these. Settings are taken together as long as the
+/// tolerance holds for what all of them change, those that stay as they are included; those first that save the most
+/// for their error.
 std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
                            const std::function<bool(const std::vector<std::string>&)>& same);
+
+/// What all settings of a description change once the advice is taken, if they do not act on each other: errors of a
+/// figure add up. The cost is over what it is without the advice.
+Evidence together(const std::vector<Advice>& advices);
 
 }  // namespace grit

@@ -15,6 +15,8 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 /// Places at which curves are compared.
 constexpr std::size_t places = 200;
+/// Of its reference's abscissae, that a curve has to have.
+constexpr double least_reach = 0.9;
 
 Sample read_sample(const StudyDescription& study, double seed, const std::filesystem::path& folder) {
   Sample sample;
@@ -26,6 +28,9 @@ Sample read_sample(const StudyDescription& study, double seed, const std::filesy
   const auto number = [&](const char* key) { return entry(key).is_number() ? entry(key).get<double>() : 0.0; };
   if (const auto status = text("status"); status == "done" || status == "failed") sample.status = status;
   sample.message = text("message");
+  if (const auto revision = run->value(Description::json_pointer("/grit/revision"), Description());
+      revision.is_string())
+    sample.revision = revision.get<std::string>();
   sample.core_seconds = number("cpu_s"), sample.steps = number("steps");
   sample.particle_steps_per_second = number("particle_steps_per_s"), sample.bodies = number("bodies");
   if (sample.status != "done") return sample;
@@ -85,6 +90,10 @@ std::vector<const Figure*> figures_of(const VariantResult& result, const std::st
   return all;
 }
 
+Error nothing_shared(const std::string& name) {
+  return Error("/figures/" + name + ": the curve and its reference have no abscissa in common; mind the units");
+}
+
 /// Where both can be compared: what all curves have; nothing for values. Throws Error if curves share nothing.
 std::vector<double> shared_places(const std::vector<const Figure*>& a, const std::vector<const Figure*>& b,
                                   const std::string& name) {
@@ -94,8 +103,7 @@ std::vector<double> shared_places(const std::vector<const Figure*>& a, const std
       if (figure->x.empty()) return {};
       low = std::max(low, figure->x.front()), high = std::min(high, figure->x.back());
     }
-  if (!(low <= high))
-    throw Error("/figures/" + name + ": the curve and its reference have no abscissa in common; mind the units");
+  if (!(low <= high)) throw nothing_shared(name);
   std::vector<double> x(places);
   for (std::size_t k = 0; k < places; ++k)
     x[k] = std::clamp(low + (high - low) * static_cast<double>(k) / (places - 1), low, high);
@@ -118,6 +126,76 @@ Deviation deviation(const std::vector<const Figure*>& from, const std::vector<co
           .error = root_mean_square(difference.mean) / scale,
           .standard_error = std::sqrt(mean_of(difference.variance) / static_cast<double>(from.size())) / scale,
           .scatter = std::sqrt(mean_of(own.variance)) / scale};
+}
+
+/// Abscissae from one to another.
+struct Range {
+  double from = 0, to = 0;
+};
+
+/// Where the reference of a curve is; of several samples on average. Nothing if there is none.
+std::optional<Range> reference_range(const Chart& chart, const std::string& name) {
+  const FigureDescription& figure = chart.study.figures.at(name);
+  if (figure.curve) {
+    const Figure curve = read_reference(*figure.curve);
+    return Range{curve.x.front(), curve.x.back()};
+  }
+  if (!all_done(chart.finest())) return std::nullopt;
+  const auto finest = figures_of(chart.finest(), name);
+  Range mean;
+  for (const Figure* one : finest) mean.from += one->x.front(), mean.to += one->x.back();
+  const auto count = static_cast<double>(finest.size());
+  return Range{mean.from / count, mean.to / count};
+}
+
+/// A curve that ends before its reference does is compared where that is easy only: such a run did not get far enough.
+void find_short_curves(Chart& chart) {
+  std::map<std::string, Range> ranges;
+  for (const auto& [name, figure] : chart.study.figures) {
+    if (!figure.is_curve()) continue;
+    if (!figure.curve && all_done(chart.finest())) {
+      const auto finest = figures_of(chart.finest(), name);
+      shared_places(finest, finest, name);
+    }
+    if (const auto range = reference_range(chart, name)) ranges[name] = *range;
+  }
+  for (VariantResult& result : chart.variants)
+    for (Sample& sample : result.samples)
+      for (const auto& [name, range] : ranges) {
+        if (sample.status != "done") continue;
+        const Figure& own = sample.figures.at(name);
+        const double reach = std::min(own.x.back(), range.to) - std::max(own.x.front(), range.from);
+        if (reach < 0) throw nothing_shared(name);
+        if (reach >= least_reach * (range.to - range.from)) continue;
+        sample.status = "failed";
+        sample.message =
+            fmt::format("{} is of abscissae from {:g} to {:g}, its reference from {:g} to {:g}",
+                        chart.study.figures.at(name).of, own.x.front(), own.x.back(), range.from, range.to);
+      }
+}
+
+/// Means over the samples that are done.
+void find_costs(VariantResult& result) {
+  std::vector<double> costs;
+  for (const Sample& sample : result.samples) {
+    if (sample.status != "done") continue;
+    costs.push_back(sample.core_seconds), result.steps += sample.steps;
+    result.particle_steps_per_second += sample.particle_steps_per_second;
+  }
+  if (costs.empty()) return;
+  const Sampled cost = sampled({costs});
+  result.core_seconds = cost.mean.front(), result.cost_scatter = std::sqrt(cost.variance.front());
+  result.steps /= static_cast<double>(costs.size());
+  result.particle_steps_per_second /= static_cast<double>(costs.size());
+}
+
+/// The standard error of the ratio of two variants' mean costs, seed by seed.
+double cost_ratio_error(const VariantResult& own, const VariantResult& other) {
+  const double ratio = own.core_seconds / other.core_seconds;
+  std::vector<double> residuals;
+  for (std::size_t s = 0; s < own.samples.size(); ++s)
+    residuals.push_back(own.samples[s].core_seconds - ratio * other.samples[s].core_seconds);
+  return std::sqrt(sampled({residuals}).variance.front() / static_cast<double>(residuals.size())) / other.core_seconds;
 }
 
 /// The reference of each figure, and what its errors are divided by.
@@ -173,7 +251,8 @@ void find_effects(Chart& chart) {
     for (std::size_t level = 0; level < setting.finest_level(); ++level) {
       const auto own = with(k, level);
       if (!all_done(*own) || !all_done(*finest)) continue;
-      Effect effect{name, setting.label(level), own->core_seconds / finest->core_seconds, {}};
+      Effect effect{
+          name, setting.label(level), own->core_seconds / finest->core_seconds, cost_ratio_error(*own, *finest), {}};
       for (const auto& [figure, scale] : chart.scale)
         effect.deviations[figure] = deviation(figures_of(*own, figure), figures_of(*finest, figure), scale, figure);
       chart.effects.push_back(std::move(effect));
@@ -193,7 +272,7 @@ void find_front(Chart& chart) {
   }
   for (std::size_t i = 0; i < chart.variants.size(); ++i) {
     const VariantResult& one = chart.variants[i];
-    if (!one.complete() || one.of_worst().error > chart.study.tolerance) continue;
+    if (!one.complete() || one.confidence(chart.study.tolerance) > Confidence::likely) continue;
     if (!chart.cheapest || one.core_seconds < chart.variants[*chart.cheapest].core_seconds) chart.cheapest = i;
   }
 }
@@ -218,6 +297,13 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
+Confidence VariantResult::confidence(double tolerance) const {
+  Confidence worst = Confidence::certain;
+  for (const auto& [name, one] : deviations)
+    worst = std::max(worst, grit::confidence(one.error, one.standard_error, tolerance));
+  return worst;
+}
+
 Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
   Chart chart;
   chart.study = std::move(study);
@@ -225,17 +311,14 @@ Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
   for (Variant& variant : variants(chart.study)) {
     VariantResult& result = chart.variants.emplace_back();
     result.variant = std::move(variant);
-    double done = 0;
     for (const double seed : chart.study.seeds.values) {
       const Sample& sample =
           result.samples.emplace_back(read_sample(chart.study, seed, folder / folder_of(result.variant, seed)));
-      if (sample.status != "done") continue;
-      ++done, result.core_seconds += sample.core_seconds, result.steps += sample.steps;
-      result.particle_steps_per_second += sample.particle_steps_per_second;
+      if (!sample.revision.empty()) chart.revisions.insert(sample.revision);
     }
-    for (double* sum : {&result.core_seconds, &result.steps, &result.particle_steps_per_second})
-      *sum /= std::max(1.0, done);
   }
+  find_short_curves(chart);
+  for (VariantResult& result : chart.variants) find_costs(result);
   find_references(chart);
   find_deviations(chart);
   find_effects(chart);
@@ -249,7 +332,9 @@ Description to_json(const Chart& chart) {
       {"scene", std::filesystem::proximate(chart.study.scene).string()},
       {"scenario", chart.scenario},
       {"tolerance", chart.study.tolerance},
+      {"advice", chart.study.advice},
       {"samples", chart.study.seeds.values.size()},
+      {"revisions", chart.revisions},
       {"settings", Description::object()},
       {"figures", Description::object()},
       {"variants", Description::array()},
@@ -285,6 +370,7 @@ Description to_json(const Chart& chart) {
     json["variants"].push_back({{"name", one.variant.name},
                                 {"levels", levels},
                                 {"core_seconds", one.core_seconds},
+                                {"core_seconds_scatter", or_null(one.cost_scatter)},
                                 {"steps", one.steps},
                                 {"particle_steps_per_s", one.particle_steps_per_second},
                                 {"worst_figure", one.worst},
@@ -296,6 +382,7 @@ Description to_json(const Chart& chart) {
     json["effects"].push_back({{"setting", effect.setting},
                                {"level", effect.level},
                                {"cost", effect.cost},
+                               {"cost_standard_error", or_null(effect.cost_error)},
                                {"figures", to_json(effect.deviations)}});
   return json;
 }
@@ -303,7 +390,9 @@ Description to_json(const Chart& chart) {
 std::string to_csv(const Chart& chart) {
   std::string text = "variant";
   for (const auto& [name, setting] : chart.study.settings) text += ',' + quoted(name);
-  text += ",figure,mean,error,standard_error,scatter,core_seconds,steps,particle_steps_per_s,samples_done,samples\n";
+  text +=
+      ",figure,mean,error,standard_error,scatter,core_seconds,core_seconds_scatter,steps,particle_steps_per_s,samples_"
+      "done,samples\n";
   for (const VariantResult& one : chart.variants) {
     std::string head = quoted(one.variant.name);
     std::size_t k = 0;
@@ -313,8 +402,8 @@ std::string to_csv(const Chart& chart) {
     for (const auto& [name, figure] : chart.study.figures) {
       const auto found = one.deviations.find(name);
       const Deviation figures = found == one.deviations.end() ? Deviation() : found->second;
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted(name), figures.mean, figures.error,
-                          figures.standard_error, figures.scatter, one.core_seconds, one.steps,
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted(name), figures.mean, figures.error,
+                          figures.standard_error, figures.scatter, one.core_seconds, one.cost_scatter, one.steps,
                           one.particle_steps_per_second, done, one.samples.size());
     }
   }

@@ -5,10 +5,12 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "grit/description.hpp"
+#include "study/confidence.hpp"
 #include "study/description.hpp"
 #include "study/figures.hpp"
 #include "study/variants.hpp"
@@ -18,8 +20,10 @@ namespace grit {
 /// One run: a variant with a seed.
 struct Sample {
   double seed = 0;
-  std::string status;   ///< "done", "failed" or "missing"; "failed" too if it did not get to where a figure is taken
-  std::string message;  ///< why it failed
+  std::string status;  ///< "done", "failed" or "missing"; "failed" too if it did not get to where a figure is taken, or
+                       ///< where a curve's reference goes
+  std::string message;   ///< why it failed
+  std::string revision;  ///< of the grit that ran it
   double core_seconds = 0, steps = 0, particle_steps_per_second = 0, bodies = 0;
   std::map<std::string, Figure> figures;
 };
@@ -38,29 +42,33 @@ struct VariantResult {
   Variant variant;
   std::vector<Sample> samples;
   double core_seconds = 0, steps = 0, particle_steps_per_second = 0;  ///< means of the samples that are done
-  std::map<std::string, Deviation> deviations;                        ///< by figure; empty if a sample failed
-  std::string worst;                                                  ///< figure with the largest error
-  bool on_front = false;                                              ///< no other is both cheaper and nearer
+  double cost_scatter = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of core_seconds between them
+  std::map<std::string, Deviation> deviations;                     ///< by figure; empty if a sample failed
+  std::string worst;                                               ///< figure with the largest error
+  bool on_front = false;                                           ///< no other is both cheaper and nearer
 
   bool complete() const { return !deviations.empty(); }
+  /// Of the figure that is least sure.
+  Confidence confidence(double tolerance) const;
   const Deviation& of_worst() const { return deviations.at(worst); }
 };
 
 /// What one setting does alone, the others as usual: a level beside the finest.
 struct Effect {
   std::string setting, level;
-  double cost = 0;                              ///< over that of the finest level
+  double cost = 0, cost_error = 0;              ///< over that of the finest level, and its standard error
   std::map<std::string, Deviation> deviations;  ///< by figure, with the finest level as the reference
 };
 
 struct Chart {
   StudyDescription study;
   std::string scenario;                 ///< of the scene; empty if it has none
+  std::set<std::string> revisions;      ///< of the grit that made the runs
   std::vector<VariantResult> variants;  ///< the finest last
   std::map<std::string, Figure> reference;
   std::map<std::string, double> scale;  ///< what errors are divided by
   std::vector<Effect> effects;
-  std::optional<std::size_t> cheapest;  ///< variant of least cost within the tolerance
+  std::optional<std::size_t> cheapest;  ///< variant of least cost within the tolerance, certain or likely
 
   const VariantResult& finest() const { return variants.back(); }
 };

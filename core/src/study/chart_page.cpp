@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "output/page.hpp"
 #include "output/svg.hpp"
@@ -11,6 +12,9 @@
 
 namespace grit {
 namespace {
+
+/// Two digits; "?" where it cannot be told.
+std::string or_unknown(double value) { return std::isfinite(value) ? fmt::format("{:.2g}", value) : "?"; }
 
 std::string variants_table(const Chart& chart) {
   std::string html =
@@ -29,7 +33,8 @@ std::string variants_table(const Chart& chart) {
         chart.cheapest == i ? " class=\"best\"" : "", colour_of(chart, one), i + 1, escaped(one.variant.name),
         one.on_front ? " <b title=\"none is both cheaper and nearer\">◂</b>" : "");
     html += one.core_seconds > 0
-                ? fmt::format("<td>{:.1f}</td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>", one.core_seconds,
+                ? fmt::format("<td>{:.3g} <small>± {}</small></td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>",
+                              one.core_seconds, or_unknown(one.cost_scatter),
                               chart.finest().core_seconds > 0
                                   ? times(chart.finest().core_seconds / one.core_seconds) + " times"
                                   : "?",
@@ -67,9 +72,11 @@ std::string effects_part(const Chart& chart) {
   for (const Effect& effect : chart.effects) {
     const auto& setting = chart.study.settings.at(effect.setting);
     html += fmt::format(
-        "<tr><td class=\"name\">{}{}</td><td class=\"name\">{} <small>(finest {})</small></td><td>{}</td>",
+        "<tr><td class=\"name\">{}{}</td><td class=\"name\">{} <small>(finest {})</small></td><td>{} <small>± "
+        "{}</small></td>",
         escaped(effect.setting), setting.about.empty() ? "" : "<br><small>" + escaped(setting.about) + "</small>",
-        escaped(effect.level), escaped(setting.label(setting.finest_level())), times(effect.cost));
+        escaped(effect.level), escaped(setting.label(setting.finest_level())), times(effect.cost),
+        or_unknown(effect.cost_error));
     for (const auto& [name, figure] : chart.study.figures) {
       const auto found = effect.deviations.find(name);
       if (found == effect.deviations.end()) {
@@ -116,8 +123,10 @@ std::string chart_page(const Chart& chart) {
   const std::string title = chart.study.title.empty() ? "speed against accuracy" : chart.study.title;
   std::string html = page_begin(title, sheet) + "<h1>" + escaped(title) + "</h1>\n";
   html += fmt::format(
-      "<p>{}, {} samples of each variant; errors ± their standard error, from the scatter between samples.</p>\n",
-      escaped(std::filesystem::proximate(chart.study.scene).string()), chart.study.seeds.values.size());
+      "<p>{}, {} samples of each variant; errors ± their standard error, core-seconds ± their standard "
+      "deviation, both from the scatter between samples. By grit {}.</p>\n",
+      escaped(std::filesystem::proximate(chart.study.scene).string()), chart.study.seeds.values.size(),
+      escaped(fmt::format("{}", fmt::join(chart.revisions, ", "))));
   html += "<p class=\"verdict\">" + escaped(verdict(chart)) + "</p>\n";
   if (!chart.reference.empty()) {
     html += "<div class=\"first\">" + error_chart(chart, "") + "</div>\n";

@@ -2,7 +2,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "study/chart.hpp"
 
 namespace grit {
 
@@ -15,7 +18,11 @@ std::string percent(double share) {
 std::string times(double ratio) { return fmt::format("{:.{}f}", ratio, ratio >= 10 ? 0 : ratio >= 3 ? 1 : 2); }
 
 std::string cost_text(double seconds) {
-  return seconds < 600     ? fmt::format("{:.{}f} s", seconds, seconds < 10 ? 1 : 0)
+  return seconds < 0.1     ? fmt::format("{:.2g} s", seconds)
+         : seconds < 600   ? fmt::format("{:.{}f} s", seconds,
+                                       seconds < 1    ? 2
+                                         : seconds < 10 ? 1
+                                                        : 0)
          : seconds < 36000 ? fmt::format("{:.0f} min", seconds / 60)
                            : fmt::format("{:.1f} h", seconds / 3600);
 }
@@ -29,10 +36,16 @@ std::string verdict(const Chart& chart) {
   std::string text;
   if (!untold.empty())
     text = fmt::format("The finest settings have no result, so that nothing is known of {}. ", fmt::join(untold, ", "));
-  if (!chart.cheapest) return text + "No variant keeps all figures within " + tolerance + ".";
+  const bool scattered = std::ranges::any_of(chart.variants, [&](const VariantResult& one) {
+    return one.complete() && &one != &chart.finest() && one.confidence(chart.study.tolerance) == Confidence::untold;
+  });
+  const std::string more =
+      scattered ? " Of some it cannot be told: samples scatter by more than that; more seeds would tell." : "";
+  if (!chart.cheapest) return text + "No variant was found to keep all figures within " + tolerance + "." + more;
   const VariantResult& best = chart.variants[*chart.cheapest];
   if (&best == &chart.finest())
-    return text + "Nothing cheaper than the finest settings keeps all figures within " + tolerance + ".";
+    return text + "Nothing cheaper than the finest settings was found to keep all figures within " + tolerance + "." +
+           more;
   const Deviation& worst = best.of_worst();
   text +=
       fmt::format("Cheapest within {}: {}, {} of one core", tolerance, best.variant.name, cost_text(best.core_seconds));
@@ -40,8 +53,13 @@ std::string verdict(const Chart& chart) {
     text += ", " + times(chart.finest().core_seconds / best.core_seconds) + " times cheaper than the finest";
   text += fmt::format("; its largest error is {} ± {} ({}).", percent(worst.error), percent(worst.standard_error),
                       best.worst);
-  if (!(worst.error + 2 * worst.standard_error <= chart.study.tolerance))
-    text += " Samples scatter so much that this is not certain; more seeds would tell.";
+  std::vector<std::string> doubtful;
+  for (const auto& [name, one] : best.deviations)
+    if (confidence(one.error, one.standard_error, chart.study.tolerance) != Confidence::certain)
+      doubtful.push_back(name);
+  if (!doubtful.empty())
+    text += fmt::format(" Samples scatter so much that this is not certain of {}; more seeds would tell.",
+                        fmt::join(doubtful, ", "));
   return text;
 }
 

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "study/chart.hpp"
-
 namespace grit {
+
+struct Chart;
 
 /// "2.1 %"; "?" where it cannot be told.
 std::string percent(double share);

@@ -43,6 +43,8 @@ void FigureDescription::declare(Parameters& p) {
   p.check([this](const Complain& complain) {
     check_channel(of, "of", complain), check_channel(against, "against", complain);
     if (value && is_curve()) complain("value", "one value for a curve", "a reference curve, or neither");
+    if (value == 0.0 && !scale)
+      complain("value", "0 without a scale", "a scale as well, to which errors can be put in relation");
     if (curve && !is_curve()) complain("curve", "a curve for one value", "a reference value, or neither");
   });
 }
@@ -118,6 +120,8 @@ void StudyDescription::declare(Parameters& p) {
   p.add("seeds", seeds).doc("samples: their scatter is the floor below which accuracy buys nothing");
   p.add("figures", figures).required().doc("what counts, by name");
   p.add("tolerance", tolerance).above(0).doc("error that is good enough");
+  p.add("advice", advice)
+      .doc("whether 'grit advise' may go by it; false where settings are what the sand is, not how it is computed");
   p.check(
       [this](const Complain& complain) {
         if (!set.is_object()) complain("set", describe_value(set), "an object of values by JSON pointer");

@@ -91,6 +91,7 @@ struct StudyDescription {
   SeedsDescription seeds;
   std::map<std::string, FigureDescription> figures;
   double tolerance = 0.05;
+  bool advice = true;  ///< whether descriptions may be advised by it
 
   void declare(Parameters& p);
 };

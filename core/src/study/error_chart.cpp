@@ -84,8 +84,8 @@ class ErrorChart {
     svg.line({left, bottom}, {right, bottom}, "class=\"frame\"");
     svg.line({left, top}, {left, bottom}, "class=\"frame\"");
     svg.line({left, y(chart_.study.tolerance)}, {right, y(chart_.study.tolerance)}, "class=\"wish\"");
-    svg.text({left + 6, y(chart_.study.tolerance) - 6}, "tolerance " + percent(chart_.study.tolerance),
-             "class=\"small\"");
+    svg.text({right - 6, y(chart_.study.tolerance) - 6}, "tolerance " + percent(chart_.study.tolerance),
+             "class=\"small e\"");
     svg.text({left - 50, top - 14}, title(), "class=\"axis\"");
     svg.text({(left + right) / 2, bottom + 40}, "core-seconds of one run", "class=\"axis m\"");
     front(svg, x, y);
