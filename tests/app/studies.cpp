@@ -149,13 +149,83 @@ TEST_F(Studies, AreInterruptedAndGoOn) {
   EXPECT_THAT(grit({"chart", "long.json", "--dry"}).out, HasSubstr("8 of 8 runs are missing"));
 }
 
+TEST_F(Studies, GoOnWithRunsThatWereInterrupted) {
+  auto changed = json::parse(study);
+  changed["set"]["/stages/0/until"]["value"] = "2 ms";
+  changed["settings"] = {{"safety", {{"pointers", {"/time_step/safety"}}, {"values", {0.8, 0.0005}}}}};
+  changed["seeds"]["values"] = {1};
+  folder.write("study.json", changed.dump());
+  // As the study runs it, which asks its runs to stop when it is asked itself.
+  const std::string finest = "results/study/runs/finest/seed-1";
+  Program program(
+      grit_with({"run", "two.json", "--out", finest, "--no-report", "--set", "/seed=1", "--set",
+                 "/time_step/safety=0.0005", "--set", R"(/stages/0/until={"type": "time", "value": "2 ms"})"}),
+      folder.path());
+  ASSERT_TRUE(program.wait_for("part"));
+  program.interrupt();
+  ASSERT_EQ(program.finish().status, 130);
+  const auto run = [&] { return json::parse(text_of(folder / (finest + "/run.json"))); };
+  ASSERT_EQ(run().at("status"), "interrupted");
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("2 of 2 runs to do"));
+  EXPECT_EQ(run().at("status"), "done");
+  EXPECT_EQ(run().at("resumed"), 1);
+}
+
+TEST_F(Studies, RunAgainWhatAnotherBuildOfAPluginMade) {
+  ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
+  const std::string path = "results/study/runs/usual/seed-1/run.json";
+  const auto original = nlohmann::ordered_json::parse(text_of(folder / path));
+  const auto missing_with = [&](auto change) {
+    auto run = original;
+    change(run);
+    folder.write(path, run.dump());
+    return grit({"chart", "study.json", "--dry"}).out;
+  };
+  EXPECT_THAT(missing_with([](auto&) {}), HasSubstr("0 of 8 runs are missing"));
+  EXPECT_THAT(missing_with([](auto& run) {
+                for (auto& plugin : run["plugins"])
+                  if (plugin["kind"] == "contact") plugin["build"]["checksum"] = 1;
+              }),
+              HasSubstr("1 of 8 runs are missing"));
+  EXPECT_THAT(missing_with([](auto& run) {
+                for (auto& plugin : run["plugins"]) plugin["file"] = "elsewhere";
+              }),
+              HasSubstr("0 of 8 runs are missing"));
+  EXPECT_THAT(missing_with([](auto& run) { run.erase("plugins"); }), HasSubstr("1 of 8 runs are missing"));
+}
+
+TEST_F(Studies, AreDrawnAgainOfRunsByAnOlderGrit) {
+  ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
+  const std::string path = "results/study/runs/usual/seed-1/run.json";
+  auto run = nlohmann::ordered_json::parse(text_of(folder / path));
+  run["grit"]["revision"] = "older", run["description"]["guards"].erase("travel");
+  folder.write(path, run.dump());
+  std::filesystem::remove(folder / "results/study/chart.json");
+  EXPECT_THAT(grit({"chart", "study.json", "--dry"}).out, HasSubstr("1 of 8 runs are missing"));
+  const auto drawn = grit({"chart", "study.json", "--draw"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(chart().at("revisions").size(), 2u);
+  EXPECT_EQ(nlohmann::ordered_json::parse(text_of(folder / path)).at("grit").at("revision"), "older");
+  run["description"]["time_step"]["safety"] = 0.7;
+  folder.write(path, run.dump());
+  const auto other = grit({"chart", "study.json", "--draw"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, AllOf(HasSubstr("usual/seed-1: holds a run of another description"),
+                               HasSubstr("/time_step/safety"), HasSubstr("without --draw")));
+}
+
 TEST_F(Studies, GiveAdvice) {
   ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
   const std::string chart = "results/study/chart.json";
   // Such short runs cost nothing but noise.
   auto charted = this->chart();
   for (auto& effect : charted["effects"])
-    effect["cost"] = effect["setting"] == "damping" ? 1.0 : effect["level"] == "0.8" ? 0.01 : 0.1;
+    effect["cost"] = effect["setting"] == "damping" ? 1.0
+                     : effect["level"] == "0.8"     ? 0.01
+                                                    : 0.1,
+    effect["cost_standard_error"] = 0.0;
   folder.write(chart, charted.dump());
   const std::vector<std::string> same_run = {"--set", R"(/stages/0/until={"type": "time", "value": "20 us"})"};
   const auto advise = [&](std::vector<std::string> more) {

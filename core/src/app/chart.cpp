@@ -12,10 +12,13 @@
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
+#include "app/run_setup.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
+#include "output/checkpoint.hpp"
 #include "output/read_results.hpp"
+#include "output/run_facts.hpp"
 #include "plugins/build_facts.hpp"
 #include "study/batch.hpp"
 #include "study/chart.hpp"
@@ -37,13 +40,56 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Whether a folder has what this program would make of this description; a failure of its numerics counts.
-bool is_there(const std::filesystem::path& folder, const Description& description) {
+/// What has been done of a run.
+enum class Progressed {
+  nothing,  ///< or by another description, another grit or another build of a plugin
+  begun,    ///< interrupted, and it can go on
+  ended,    ///< a failure of its numerics counts
+};
+
+/// By kind, name and the bytes of the file, wherever that lies.
+std::set<std::string> builds(const Description& plugins) {
+  std::set<std::string> all;
+  for (const auto& plugin : plugins)
+    all.insert(plugin.value("kind", "") + ' ' + plugin.value("name", "") + ' ' +
+               plugin.value(Description::json_pointer("/build/checksum"), Description()).dump());
+  return all;
+}
+
+/// What a folder has of what this program would make of this description with these plugins.
+Progressed progressed(const std::filesystem::path& folder, const Description& description,
+                      const std::vector<PluginUsed>& plugins) {
   const auto run = read_run_json(folder);
-  if (!run) return false;
+  if (!run) return Progressed::nothing;
   const auto says = [&](const char* pointer) { return run->value(Description::json_pointer(pointer), Description()); };
-  return (says("/status") == "done" || says("/status") == "failed") && says("/description") == description &&
-         says("/grit/revision") == build_facts().revision;
+  Description used = Description::array();
+  for (const PluginUsed& one : plugins) used.push_back(plugin_facts(one));
+  if (says("/description") != description || says("/grit/revision") != build_facts().revision ||
+      !says("/plugins").is_array() || builds(says("/plugins")) != builds(used))
+    return Progressed::nothing;
+  if (says("/status") == "done" || says("/status") == "failed") return Progressed::ended;
+  return says("/status") == "interrupted" && std::filesystem::exists(folder / "checkpoint.h5") ? Progressed::begun
+                                                                                               : Progressed::nothing;
+}
+
+/// Whether a description has all that an older one has; what the older one lacks it did not know.
+bool has_all_of(const Description& now, const Description& then) {
+  if (now.is_object() && then.is_object()) {
+    for (const auto& [key, value] : then.items())
+      if (!now.contains(key) || !has_all_of(now.at(key), value)) return false;
+    return true;
+  }
+  if (now.is_array() && then.is_array()) return std::ranges::equal(now, then, has_all_of);
+  return now == then;
+}
+
+/// For a chart of runs that are there, of whatever revision. Throws Error if one is of another description.
+void expect_same(const std::filesystem::path& folder, const Description& description) {
+  const auto run = read_run_json(folder);
+  if (!run || !run->contains("description") || has_all_of(description, run->at("description"))) return;
+  throw Error(folder.string() +
+              ": holds a run of another description:" + differences(description, run->at("description")) +
+              "\n  remove it, or run it again: the same command without --draw");
 }
 
 /// What a sample of a variant runs. Throws DescriptionError, which names the study and the variant where a value of
@@ -77,7 +123,8 @@ void check_figures(const StudyDescription& study, const std::filesystem::path& f
   if (!problems.empty()) throw DescriptionError(std::move(problems));
 }
 
-/// The runs that are missing; counts all. Throws DescriptionError if one of them could not be run or has no figures.
+/// The runs that are missing; counts all. With --draw none, but those that are there have to be of the study. Throws
+/// DescriptionError if one of them could not be run or has no figures.
 std::vector<Run> missing_runs(const StudyDescription& study, const std::filesystem::path& file,
                               const std::filesystem::path& out, const Options& options, const Registry& registry,
                               std::size_t& all) {
@@ -96,7 +143,13 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
       const auto scene = scene_of(study, file, variant, sets, registry);
       check_figures(study, file, *scene);
       // As run.json has it, whose numbers went through text.
-      if (is_there(folder, Description::parse(resolved(*scene).dump()))) continue;
+      const auto description = Description::parse(resolved(*scene).dump());
+      if (options.has("draw")) {
+        expect_same(folder, description);
+        continue;
+      }
+      const Progressed so_far = progressed(folder, description, plugins_used(*scene, registry));
+      if (so_far == Progressed::ended) continue;
       Run run{variant.name + ", seed " + std::to_string(static_cast<long long>(seed)), folder, {}};
       run.job.log = folder / "log.txt";
       run.job.words = {boost::dll::program_location().string(),
@@ -104,7 +157,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                        study.scene,
                        "--out",
                        folder.string(),
-                       "--overwrite",
+                       so_far == Progressed::begun ? "--resume" : "--overwrite",
                        "--quiet",
                        "--no-report",
                        "--threads",
@@ -180,8 +233,8 @@ void print(const Chart& chart) {
   for (const VariantResult& one : chart.variants) {
     std::cout << "  " << one.variant.name << ": ";
     if (one.complete()) {
-      std::cout << fmt::format("{:.1f} core-seconds, largest error {:.2f} % ± {:.2f} ({})\n", one.core_seconds,
-                               100 * one.of_worst().error, 100 * one.of_worst().standard_error, one.worst);
+      std::cout << fmt::format("{} of one core, largest error {} ± {} ({})\n", cost_text(one.core_seconds),
+                               percent(one.of_worst().error), percent(one.of_worst().standard_error), one.worst);
       continue;
     }
     const auto failed = std::ranges::find_if(one.samples, [](const Sample& s) { return s.status != "done"; });
@@ -202,7 +255,8 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   options.add()("out", po::value<std::string>()->value_name("DIR"), "folder of runs and chart; default: results/NAME")(
       "jobs", po::value<unsigned>()->default_value(cores)->value_name("N"), "runs at once")(
       "threads", po::value<unsigned>()->default_value(1)->value_name("N"), "threads of each run")(
-      "dry", "lists the runs and stops")("quiet,q", "no progress, only what came of it");
+      "dry", "lists the runs and stops")("draw", "draws the chart of the runs that are there, by whatever grit")(
+      "quiet,q", "no progress, only what came of it");
   if (!options.read(words)) return ExitStatus::done;
   const std::filesystem::path file = options.only_word("study");
   for (const char* name : {"jobs", "threads"})
@@ -219,7 +273,7 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
     std::cout << runs.size() << " of " << all << " runs are missing in " << out.string() << '\n';
     return ExitStatus::done;
   }
-  if (!options.has("quiet"))
+  if (!options.has("quiet") && !options.has("draw"))
     std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
               << " runs to do, results in " << out.string() << std::endl;
   const auto& interrupted = catch_interrupts();

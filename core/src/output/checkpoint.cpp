@@ -2,10 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <boost/crc.hpp>
-#include <fstream>
-#include <iterator>
-
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/hdf5.hpp"
@@ -17,15 +13,10 @@ namespace {
 constexpr std::uint64_t format = 1;
 constexpr const char* advice = "go on with what began the run, or begin anew (--overwrite)";
 
-/// Plugins by the bytes of their files, since two builds may say the same of themselves.
+/// Wherever its file lies.
 Description build_of(const PluginUsed& used) {
   Description facts = plugin_facts(used);
   facts.erase("file");
-  std::ifstream file(used.file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  boost::crc_32_type sum;
-  sum.process_bytes(bytes.data(), bytes.size());
-  facts["build"]["checksum"] = sum.checksum();
   return facts;
 }
 

@@ -1,11 +1,24 @@
 #include "output/run_facts.hpp"
 
+#include <boost/crc.hpp>
+#include <fstream>
+#include <iterator>
+
 #include "plugins/build_facts.hpp"
 
 namespace grit {
 namespace {
 
 Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
+
+/// Of the bytes of a file, since two builds may say the same of themselves; of none for what is built in.
+std::uint32_t checksum(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  boost::crc_32_type sum;
+  sum.process_bytes(bytes.data(), bytes.size());
+  return sum.checksum();
+}
 
 }  // namespace
 
@@ -26,6 +39,7 @@ Description plugin_facts(const PluginUsed& used) {
             {"compiler", tag.compiler},
             {"library_abi", tag.library_abi},
             {"instruction_set", tag.instruction_set},
+            {"checksum", checksum(used.file)},
             {"row", layout(tag.row)},
             {"contact_row", layout(tag.contact_row)},
             {"body_sum", layout(tag.body_sum)},

@@ -28,7 +28,7 @@ struct RunFacts {
 
 /// This grit: version, revision, compiler and so on.
 Description grit_facts();
-/// Of a plugin: kind, name, version, file, and how it was built.
+/// Of a plugin: kind, name, version, file, and how it was built, with a checksum of the file.
 Description plugin_facts(const PluginUsed& used);
 
 }  // namespace grit
