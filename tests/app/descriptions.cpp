@@ -74,6 +74,18 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
                   HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
                   HasSubstr("  /probes/idle: it never looks")));
   EXPECT_THAT(idle, testing::Not(HasSubstr("/engines/hold")));
+  const std::string turning = R"(/probes/turns={"type": "rotations", "every_time": "3 s"})";
+  const std::string smooth = "/materials/sand/friction_angle=0", law = "/contacts/type=linear-frictional";
+  EXPECT_THAT(check({turning, smooth}),
+              AllOf(HasSubstr("  /probes/turns: it looks at rotations, and without friction nothing turns a sphere"),
+                    HasSubstr("  /probes/turns/every_time: 3 s is longer than its stages take, 1 s at most")));
+  EXPECT_THAT(check({turning, "/probes/turns/every_time=0.9 s"}), testing::Not(HasSubstr("without effect")));
+  EXPECT_THAT(check({law, smooth, "/contacts/shear_damping=true"}),
+              HasSubstr("  /contacts/shear_damping: without friction there is no shear force to damp"));
+  EXPECT_THAT(check({law, "/contacts/shear_damping=true"}), testing::Not(HasSubstr("without effect")));
+  EXPECT_THAT(check({"/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0"}),
+              HasSubstr("  /materials/sand/rolling_stiffness: rolling_limit is 0, so that no moment comes of it"));
+  EXPECT_THAT(check({"/materials/sand/rolling_limit=0"}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})",
                      R"(/stages/0/change={"engines": {"damping": {"coefficient": 0.3}}})"}),
               testing::Not(HasSubstr("without effect")))

@@ -95,7 +95,7 @@ void check_one(const std::string& file, const Options& options, const Registry& 
             << " h (" << duration_text(cost(known)) << ')';
   if (most > 0) std::cout << ", and at most " << cost(most) / 3600 << " h for stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
-  const auto idle = without_effect(description, simulation);
+  const auto idle = without_effect(scene, simulation);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';
 }

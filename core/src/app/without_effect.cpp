@@ -1,5 +1,7 @@
 #include "app/without_effect.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 
 namespace grit {
@@ -19,9 +21,45 @@ bool is_changed(const SceneDescription& scene, const std::string& section, const
   });
 }
 
+/// Whether a parameter of contacts is 0 for all materials and interfaces, and stays so.
+bool is_zero(const SceneDescription& scene, const Description& values, const std::string& key) {
+  bool found = false;
+  for (const char* section : {"materials", "interfaces"})
+    for (const auto& [name, one] : values.at(section).items()) {
+      if (is_changed(scene, section, name)) return false;
+      if (!one.contains(key) || one.at(key).is_null()) continue;
+      if (one.at(key) != 0.0) return false;
+      found = true;
+    }
+  return found;
+}
+
+/// Longest time that the stages can take in which a probe looks.
+double time_of_stages(const SceneDescription& scene, const std::vector<std::string>& names) {
+  double sum = 0;
+  for (const StageDescription& stage : scene.stages) {
+    if (!names.empty() && std::ranges::find(names, stage.name) == names.end()) continue;
+    const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
+    sum += time != nullptr ? std::min(time->value, stage.limit) : stage.limit;
+  }
+  return sum;
+}
+
+/// Whether nothing could turn a sphere that does not turn, but contacts: no engine, no wall that spins, no clump.
+bool only_contacts_turn(const SceneDescription& scene) {
+  return std::ranges::none_of(scene.engines,
+                              [](const auto& one) { return one.second.engine->phase() == Phase::forces; }) &&
+         std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
+         std::ranges::all_of(scene.walls, [&](const auto& one) {
+           return one.second.motion.spin.isZero(0.0) && !one.second.motion.free &&
+                  !is_changed(scene, "walls", one.first);
+         });
+}
+
 }  // namespace
 
-std::vector<std::string> without_effect(const SceneDescription& scene, const Simulation& world) {
+std::vector<std::string> without_effect(const Scene& described, const Simulation& world) {
+  const SceneDescription& scene = *described.description;
   std::vector<std::string> lines;
   const auto say = [&](const std::string& pointer, const std::string& why) { lines.push_back(pointer + ": " + why); };
 
@@ -36,13 +74,30 @@ std::vector<std::string> without_effect(const SceneDescription& scene, const Sim
                             return is_changed(scene, "engines", engine.first);
                           });
   const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); });
+  const Description values = resolved(scene);
+  const bool smooth = is_zero(scene, values, "friction_angle");
   if (never_turn && !spun) {
     if (scene.output.picture && scene.output.picture->color == "rotation")
       say("/output/picture/color", "rotations are held, so that all are 0; another colour would show something");
     for (const auto& [name, probe] : scene.probes)
       if (probe.probe->needs().has(BodyState::rotation))
         say("/probes/" + name, "it looks at rotations, which are held: all are 0");
+  } else if (smooth && !spun && only_contacts_turn(scene)) {
+    for (const auto& [name, probe] : scene.probes)
+      if (probe.probe->needs().has(BodyState::rotation))
+        say("/probes/" + name, "it looks at rotations, and without friction nothing turns a sphere: all are 0");
   }
+  const Description& written = described.document.json();
+  for (const std::string kind : {"rolling", "twisting"}) {
+    if (!is_zero(scene, values, kind + "_limit")) continue;
+    for (const auto& [name, material] : values.at("materials").items()) {
+      const std::string pointer = "/materials/" + pointer_token(name) + '/' + kind + "_stiffness";
+      if (written.contains(Description::json_pointer(pointer)) && material.at(kind + "_stiffness") != 0.0)
+        say(pointer, kind + "_limit is 0, so that no moment comes of it");
+    }
+  }
+  if (smooth && values.at("contacts").value("shear_damping", false))
+    say("/contacts/shear_damping", "without friction there is no shear force to damp");
 
   const bool random = std::ranges::any_of(
       scene.bodies, [](const auto& group) { return std::holds_alternative<CloudGrains>(group.second.grains.value()); });
@@ -72,6 +127,10 @@ std::vector<std::string> without_effect(const SceneDescription& scene, const Sim
     if (probe.cadence.never())
       say("/probes/" + name,
           "it never looks: it has none of every_time, every_steps, every_displacement and every_left");
+    else if (const double most = time_of_stages(scene, probe.stages); probe.cadence.every_time > most)
+      say("/probes/" + name + "/every_time",
+          fmt::format("{:g} s is longer than its stages take, {:g} s at most: it looks where they begin and end only",
+                      *probe.cadence.every_time, most));
   return lines;
 }
 

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "input/scene.hpp"
 #include "run/simulation.hpp"
-#include "scene/description.hpp"
 
 namespace grit {
 
 /// One line each, with the pointer of the part and why; `world` is the scene at its start.
-std::vector<std::string> without_effect(const SceneDescription& scene, const Simulation& world);
+std::vector<std::string> without_effect(const Scene& described, const Simulation& world);
 
 }  // namespace grit
