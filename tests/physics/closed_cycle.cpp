@@ -7,6 +7,7 @@
 
 #include "grit/plugin.hpp"
 #include "support/scene.hpp"
+#include "support/verified.hpp"
 
 namespace grit::test {
 namespace {
@@ -88,7 +89,8 @@ TEST(ClosedCycle, ThereAndBackLeavesNothing) {
         400, law);
     ASSERT_GT(course.most, 1e-3) << law;
     // Round-off of places of 3 mm against ways of 1 µm.
-    EXPECT_LT(course.left, 1e-12 * course.most) << law;
+    verify(std::string("shear force left there and back, over the largest, ") + law, course.left / course.most, 0,
+           1e-12, 1);
   }
 }
 
@@ -102,8 +104,9 @@ TEST(ClosedCycle, PressingShearingEasingShearingBackDoesNotRatchet) {
   const Course once = lead(square, 400),
                ten = lead([&](std::uint32_t id, double s) { return square(id, 10 * s); }, 4000);
   ASSERT_GT(once.most, 1e-3);
-  EXPECT_LT(once.left, 1e-9 * once.most);
-  EXPECT_LT(ten.left, 2e-8 * ten.most) << "ten rounds, ten times the round-off";
+  verify("shear force left by pressing, shearing, easing, shearing back, over the largest", once.left / once.most, 0,
+         1e-9, 1);
+  verify("the same ten times", ten.left / ten.most, 0, 2e-8, 1);  // ten times the round-off
 }
 
 TEST(ClosedCycle, PairThatTurnsAsOneStoresNothing) {
@@ -114,7 +117,8 @@ TEST(ClosedCycle, PairThatTurnsAsOneStoresNothing) {
       },
       1000);
   // Against the spring of one radius of slip. The chord of a step is shorter than its arc by (2 π/1000)²/24.
-  EXPECT_LT(course.most, 1e-4 * modulus * radius_a * radius_a);
+  verify("shear force in a pair that turns as one, over that of a radius of slip",
+         course.most / (modulus * radius_a * radius_a), 0, 1e-4, 1);
 }
 
 TEST(ClosedCycle, StoredForceTurnsWithThePairAndComesBack) {
@@ -129,7 +133,7 @@ TEST(ClosedCycle, StoredForceTurnsWithThePairAndComesBack) {
   const Course coarse = lead(way, 8000);
   ASSERT_GT(whole.most, 1e-3);
   // The chord of a step is shorter than its arc: in all 2 π · 3 mm · (2 π/8000)²/24, beside 0.6 µm of shear.
-  EXPECT_LT(whole.left, 2e-3 * whole.most);
+  verify("shear force left after a turn of a sheared pair, over the largest", whole.left / whole.most, 0, 2e-3, 1);
   EXPECT_LT(whole.left, 0.3 * coarse.left) << "of second order in the step";
 }
 

@@ -65,7 +65,8 @@ TEST(EnergyLedger, ADashpotTakesWhatRestitutionSays) {
     while (hit.velocity(0).x() > 0 || !hit.world().contacts().empty());
     const EnergyLedger now = hit.world().energies();
     const double start = 2 * kinetic_at(speed);
-    verify("share of the energy that the dashpot takes at restitution 0.5, " + law, now.viscosity / start, 0.75, 5e-3);
+    verify("share of the energy that the dashpot takes at restitution 0.5, " + law, now.viscosity / start, 0.75,
+           law == "hertz-mindlin" ? 1e-4 : 1e-3);
     verify("closure error over the energy of a damped collision, " + law, now.closure_error / start, 0, 1e-5, 1.0);
     EXPECT_EQ(now.friction, 0);
   }
@@ -141,7 +142,7 @@ TEST(EnergyLedger, AWallsWorkIsStored) {
   while (press.world().wall_states().states()[1].pose.shift.z() > -1e-5) press.step(100);
   const EnergyLedger now = press.world().energies();
   EXPECT_GT(now.elastic_normal, 0);
-  verify("energy stored over the work of a wall that presses a grain", now.elastic_normal / now.walls, 1, 1e-3);
+  verify("energy stored over the work of a wall that presses a grain", now.elastic_normal / now.walls, 1, 2e-6);
   EXPECT_LE(std::abs(now.closure_error), 1e-6 * now.walls);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 namespace grit::test {
 
@@ -14,7 +15,7 @@ namespace grit::test {
 inline void verify(const std::string& what, double found, double known, double allowed, double scale) {
   EXPECT_NEAR(found, known, allowed * std::abs(scale)) << what;
   char figures[128];
-  std::snprintf(figures, sizeof figures, "%.9g %.9g %.1e %.0e", known, found, (found - known) / std::abs(scale),
+  std::snprintf(figures, sizeof figures, "%.9g %.9g %.1e %.2g", known, found, (found - known) / std::abs(scale),
                 allowed);
   testing::Test::RecordProperty("verified: " + what, figures);
 }
@@ -22,5 +23,19 @@ inline void verify(const std::string& what, double found, double known, double a
 inline void verify(const std::string& what, double found, double known, double allowed) {
   verify(what, found, known, allowed, known);
 }
+
+/// The largest of many errors, as one figure: `what` says over what they are.
+class Errors {
+ public:
+  explicit Errors(std::string what) : what_(std::move(what)) {}
+  void add(double error) {
+    if (!std::isnan(largest_) && !(std::abs(error) <= std::abs(largest_))) largest_ = error;
+  }
+  void verify(double allowed) const { grit::test::verify(what_, largest_, 0, allowed, 1); }
+
+ private:
+  std::string what_;
+  double largest_ = 0;
+};
 
 }  // namespace grit::test
