@@ -7,6 +7,8 @@
 
 #include "grit/contact/restitution.hpp"
 #include "support/growth.hpp"
+#include "support/mapped.hpp"
+#include "support/packing.hpp"
 
 namespace grit::test {
 namespace {
@@ -33,6 +35,15 @@ Description pressed(double restitution, bool rough) {
   return d;
 }
 
+/// What is found, what is predicted and what grit says, over the step of the undamped spring.
+void map_step(const std::string& name, double restitution, const Description& d, double predicted) {
+  const auto& map = "longest stable step, over 2 √(m/k) of one spring|restitution";
+  const double spring = 2 * std::sqrt(mass / stiffness);
+  map_point(map, name, restitution, found_limit(d, predicted) / spring);
+  map_point(map, "predicted, " + name, restitution, predicted / spring);
+  map_point(map, "critical step, " + name, restitution, critical(d) / spring);
+}
+
 TEST(TimeStep, SphereBetweenPlatesStartsToGrowWhereItIsSaidTo) {
   for (const double e : {1.0, 0.8, 0.5, 0.2, 0.05}) {
     SCOPED_TRACE("restitution " + std::to_string(e));
@@ -41,6 +52,7 @@ TEST(TimeStep, SphereBetweenPlatesStartsToGrowWhereItIsSaidTo) {
     const double limit = limit_of(2 * stiffness / mass, 2 * dashpot / mass);
     expect_limit(pressed(e, false), limit);
     EXPECT_NEAR(critical(pressed(e, false)) / limit, 1, 1e-12);
+    map_step("a sphere between plates", e, pressed(e, false), limit);
     EXPECT_LE(critical(pressed(e, true)), limit);
   }
 }
@@ -72,6 +84,7 @@ TEST(TimeStep, LatticeStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
       const double limit = limit_of((4 + 8 * shear_ratio) * stiffness / mass, 4 * dashpot / mass);
       const Description d = lattice(law, e);
       expect_limit(d, limit);
+      map_step("lattice, " + law, e, d, limit);
       EXPECT_LE(critical(d), limit);
       EXPECT_GE(critical(d), 0.5 * limit) << "not shorter than it need be";
     }
@@ -86,8 +99,67 @@ TEST(TimeStep, LatticeDampedInShearStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     const double along = 2 * ratio * std::sqrt(stiffness * mass / 2), across = 2 * ratio * std::sqrt(shear * mass / 7);
     const double limit = limit_of((4 + 8 * shear_ratio) * stiffness / mass, (4 * along + 8 * across) / mass);
     expect_limit(d, limit);
+    map_step("lattice, damped in shear", e, d, limit);
     EXPECT_LE(critical(d), limit);
     EXPECT_GE(critical(d), 0.5 * limit) << "not shorter than it need be";
+  }
+}
+
+TEST(TimeStep, BallThatResistsRollingStartsToGrowWhereItsRockingSays) {
+  const auto& map = "longest stable step of a ball between plates, over 2 √(m/k) of one spring|rolling stiffness";
+  for (const double rolling : {1.0, 3.0, 10.0}) {
+    SCOPED_TRACE(rolling);
+    Description m = material(1);
+    m["rolling_stiffness"] = rolling, m["rolling_limit"] = 100;
+    const double turning = trembling * squeeze * std::sqrt(stiffness / mass);
+    Description d = description("linear-rolling", m, {{Vec3::Zero(), radius, Vec3::Zero(), {0, turning, 0}}});
+    d["walls"]["low"] = plane({0, 0, -(1 - squeeze) * radius}, Vec3::UnitZ());
+    d["walls"]["high"] = plane({0, 0, (1 - squeeze) * radius}, -Vec3::UnitZ());
+    // About its centre: two springs in shear at arms of a radius, two in rolling of K_r = β K_s r².
+    const double limit = 2 / std::sqrt(5 * shear_ratio * (1 + rolling) * stiffness / mass);
+    expect_limit(d, limit);
+    EXPECT_LE(critical(d), limit);
+    EXPECT_GE(critical(d), 0.9 * limit) << "not shorter than it need be";
+    const double spring = 2 * std::sqrt(mass / stiffness);
+    map_point(map, "found", rolling, found_limit(d, limit) / spring);
+    map_point(map, "predicted", rolling, limit / spring),
+        map_point(map, "critical step", rolling, critical(d) / spring);
+  }
+}
+
+/// Grains that came to rest without friction in a periodic cell that presses them, rough and trembling from now on.
+Description packed(double friction) {
+  auto grains = jumble({4, 4, 4}, 1e-3, 0, 9);
+  constexpr double closer = 0.92, side = 4e-3 * closer;
+  for (Grain& g : grains) g.position *= closer;
+  Description m = material(1);
+  const auto cell = [&](const std::vector<Grain>& list, double tangent) {
+    m["friction_angle"] = std::atan(tangent);
+    Description d = description("linear-frictional", m, list);
+    d["domain"] = {{"low", {0, 0, 0}}, {"high", {side, side, side}}, {"periodic", {true, true, true}}};
+    d["guards"] = {{"overlap", 1}, {"travel", 1}, {"energy", 1e9}};
+    return d;
+  };
+  Description loose = cell(grains, 0);
+  loose["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
+  Trial t(loose);
+  while (unrest(t.world()).unbalanced_force > 1e-11 && t.world().step() < 200000) t.step(100);
+  EXPECT_LT(unrest(t.world()).unbalanced_force, 1e-11);
+  EXPECT_GT(t.world().pair_count(), 2 * grains.size()) << "dense";
+  Random random(2);
+  const auto about = [&] { return 1e-12 * (2 * random.uniform() - 1); };
+  for (std::uint32_t i = 0; i < grains.size(); ++i)
+    grains[i].position = t.position(i), grains[i].velocity = {about(), about(), about()};
+  return cell(grains, friction);
+}
+
+TEST(TimeStep, DensePackingStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
+  for (const double friction : {0.0, 10.0}) {
+    const Description d = packed(friction);
+    const double said = critical(d), found = found_limit(d, 1.2 * said);
+    EXPECT_LE(said, found);
+    EXPECT_GE(said, 0.5 * found) << "not shorter than it need be";
+    EXPECT_LT(growth(d, 0.99 * said, 4000), 1e3);
   }
 }
 

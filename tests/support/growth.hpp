@@ -16,11 +16,14 @@ inline Description at_step(Description d, double dt) {
   return d;
 }
 
-/// The largest speed of a body after so many steps, over the one at the start; it ends at a growth of 1e6.
+/// The largest speed of a body or of its surface as it turns, after so many steps, over the one at the start; it ends
+/// at a growth of 1e6.
 inline double growth(Trial& t, int steps) {
   const auto fastest = [&] {
     double fastest = 0;
     for (const Row& v : t.world().velocities()) fastest = std::max(fastest, xyz(v).norm());
+    for (std::size_t i = 0; i < t.world().spins().size(); ++i)
+      fastest = std::max(fastest, xyz(t.world().spins()[i]).norm() * t.world().positions()[i].w);
     return fastest;
   };
   const double before = fastest();
