@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "support/scene.hpp"
+#include "support/verified.hpp"
 
 namespace grit::test {
 namespace {
@@ -74,9 +75,9 @@ TEST(Collision, LastsHalfAPeriodOfTheSpring) {
   const Spring spring;
   const Hit hit = collide(pair("linear-rolling", smooth(), 0, spring.duration / 400));
   // Leap-frog's frequency is too high by (ω dt)²/24 = 2.57e-6; where the last step ends adds a part of third order.
-  EXPECT_NEAR(hit.duration / spring.duration - 1, 0, 3e-6);
-  EXPECT_NEAR(hit.overlap, speed / spring.frequency, 1e-5 * hit.overlap);
-  EXPECT_NEAR(hit.force, speed * std::sqrt(spring.stiffness * spring.reduced_mass), 1e-5 * hit.force);
+  verify("duration of a linear collision [s]", hit.duration, spring.duration, 3e-6);
+  verify("overlap of a linear collision [m]", hit.overlap, speed / spring.frequency, 1e-5);
+  verify("force of a linear collision [N]", hit.force, speed * std::sqrt(spring.stiffness * spring.reduced_mass), 1e-5);
 }
 
 TEST(Collision, ErrorIsOfSecondOrderInTheStep) {
@@ -90,8 +91,8 @@ TEST(Collision, ErrorIsOfSecondOrderInTheStep) {
     places.push_back(overlap(t) - speed / spring.frequency * std::sin(phase));
     speeds.push_back(closing_speed(t) - speed * std::cos(phase));
   }
-  EXPECT_NEAR(order(steps, places), 2, 0.003);
-  EXPECT_NEAR(order(steps, speeds), 2, 0.003);
+  verify("order of the error of places in the time step", order(steps, places), 2, 0.0015);
+  verify("order of the error of speeds in the time step", order(steps, speeds), 2, 0.0015);
 }
 
 TEST(Collision, EnergyComesBackButForThePartingStep) {

@@ -200,8 +200,8 @@ TEST(PackingStress, IsTheSameInSinglePrecision) {
   };
   const Mat3 exact = at_rest("double"), rounded = at_rest("single");
   verify("mean stress after 10 000 steps in single precision against double, Pa", rounded.trace() / 3,
-         exact.trace() / 3, 1e-3);
-  EXPECT_LT((rounded - exact).norm(), 1e-3 * exact.norm());
+         exact.trace() / 3, 5e-6);
+  EXPECT_LT((rounded - exact).norm(), 1e-4 * exact.norm());
   EXPECT_GT((rounded - exact).norm(), 0) << "the arithmetic was double";
 }
 
