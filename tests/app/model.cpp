@@ -18,7 +18,9 @@ class ModelOfARun : public testing::Test {
  protected:
   ModelOfARun() { folder.write("two.json", two_grains); }
   json of(std::vector<std::string> settings) {
-    std::vector<std::string> words{"run", "two.json", "--out", "results", "--overwrite"};
+    // One step, as memory is that of grains which touch.
+    std::vector<std::string> words{
+        "run", "two.json", "--out", "results", "--overwrite", "--set", "/stages/0/until/value=1"};
     for (const auto& one : settings) words.insert(words.end(), {"--set", one});
     const auto outcome = grit_in(folder.path(), words);
     EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -190,6 +190,36 @@ double closure_of_a_packing(double share_of_critical, double modulus) {
   return std::abs(now.closure_error) / (now.walls + now.dissipated());
 }
 
+TEST(EnergyLedger, WhatASpringHeldGoesWithTheSettingThatSwitchesItOff) {
+  for (const std::string law : {"linear-rolling", "linear-frictional", "hertz-mindlin"})
+    for (const std::string off :
+         {"shear_to_normal_stiffness", "friction_angle", "rolling_stiffness", "rolling_limit"}) {
+      SCOPED_TRACE(law + ", " + off);
+      const bool rolls = law != "linear-frictional", hertz = law == "hertz-mindlin";
+      if ((!rolls && off.starts_with("rolling")) || (hertz && off == "shear_to_normal_stiffness")) continue;
+      Description d = grains(law, {{"friction_angle", 0.5}},
+                             {{Vec3::Zero(), radius}, {{1.99 * radius, 0, 0}, radius, {0, 1e-3, 0}, {0, 0, 3}}});
+      auto& grain = d["materials"]["grain"];
+      if (rolls) grain["rolling_stiffness"] = 0.7, grain["rolling_limit"] = 0.4;
+      // Another pair keeps the feature on.
+      d["materials"]["other"] = grain;
+      d["stages"].push_back({{"name", "without"},
+                             {"change", {{"materials", {{"grain", {{off, 0}}}}}}},
+                             {"until", {{"type", "steps"}, {"value", 1}}},
+                             {"limit", 1}});
+      Kept pair(d);
+      pair.step(10);
+      const EnergyLedger before = pair.world().energies();
+      ASSERT_GT(off.starts_with("rolling") ? before.elastic_rolling : before.elastic_shear, 0);
+      pair.world().begin_stage("without", *pair.scene().stages.at(1).start);
+      pair.world().find_forces();
+      const EnergyLedger now = pair.world().energies();
+      EXPECT_LT(now.settings, 0);
+      EXPECT_NEAR(now.friction + now.rolling, before.friction + before.rolling, 1e-12 * before.elastic());
+      EXPECT_NEAR(now.closure_error, before.closure_error, 1e-12 * before.elastic());
+    }
+}
+
 TEST(EnergyLedger, OfAPackingClosesBetterWithShorterSteps) {
   const double coarse = closure_of_a_packing(0.8, 1e7), fine = closure_of_a_packing(0.1, 1e7);
   verify("closure error of a packing pressed at 0.1 of the critical step, over work and dissipation", fine, 0, 0.01,

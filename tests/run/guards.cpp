@@ -172,6 +172,24 @@ TEST(Guards, EnergyFromNowhere) {
   EXPECT_EQ(complaint(d, 3000), "");
 }
 
+TEST(Guards, EnergyFromNowhereInAStageThatIsSoonOver) {
+  // As above; over before any look but that at its end.
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
+                              {{{0, 0, 1.0001e-3}, 1e-3, {0, 0, -0.1}}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
+  Trial unstable(d);
+  EXPECT_NO_THROW(unstable.step(30));
+  EXPECT_GT(unstable.world().velocities()[0].z, 0.11);
+  EXPECT_THROW(unstable.world().end_stage(), NumericsError);
+  d["time_step"]["value"] = 0.05 * dt;
+  Trial stable(d);
+  stable.step(60);
+  EXPECT_NO_THROW(stable.world().end_stage());
+}
+
 TEST(Guards, NotANumber) {
   static const PluginInfo poison = [] {
     PluginInfo info;

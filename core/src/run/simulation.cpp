@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -22,7 +23,8 @@ namespace {
 // 0.03 was best or within 3 % of it at 10 000 and 50 000 grains.
 constexpr double least_skin = 0.03, most_skin = 0.4, steps_of_skin = 100;
 // The time step is set anew for bodies that have gone so far, in mean diameters; pairs nearer than the other touch. Two
-// bodies may close more than that unseen; docs/definitions.md says how much the step lags, and what it would cost not to.
+// bodies may close more than that unseen; docs/definitions.md says how much the step lags, and what it would cost not
+// to.
 constexpr double stepped_way = 0.03, as_good_as_touching = 0.015;
 // A search after which bodies are put in spatial order again.
 constexpr std::uint64_t reorder_every = 8;
@@ -31,7 +33,11 @@ constexpr double raise_when = 1.1;
 // Springs that stiffen with overlap, as Hertz's do: the time step is set anew whenever the largest has grown so much,
 // or something moves so fast that an impact would go as much deeper.
 constexpr double overlap_growth = 1.2, shallowest = 1e-6;
-constexpr std::uint64_t energy_check_every = 500;
+// Of the overlap that an impact would reach, as much as a packing of grains with many contacts each may be pressed to
+// at the step that is set for two: 20 k_s/m of a cubic packing with friction, against 7 k_s/m of a pair.
+constexpr double as_stiff_as_impact = 0.15;
+// And, that its largest energy is known, at 64, 128 and 256 steps of settings.
+constexpr std::uint64_t energy_check_every = 500, first_energy_check = 64;
 // Of so many chunks one is timed: a look at the clock takes some 30 ns, a chunk some 20 µs.
 constexpr std::uint64_t timed_every = 8;
 constexpr double not_asked = -1;  // for how far bodies reach from a wall that does not spin
@@ -442,7 +448,11 @@ bool Simulation::in_one_pass() const {
          !energy_check_is_due() && !springs_may_stiffen();
 }
 
-bool Simulation::energy_check_is_due() const { return energy_.begins || clock_.step % energy_check_every == 0; }
+bool Simulation::energy_check_is_due() const {
+  const std::uint64_t since = clock_.step - energy_.first;
+  return energy_.begins || clock_.step % energy_check_every == 0 ||
+         (since >= first_energy_check && since < energy_check_every && std::has_single_bit(since));
+}
 
 /// Asked before forces, whoever wants them, so that the time step does not depend on that.
 bool Simulation::springs_may_stiffen() const {
@@ -450,8 +460,8 @@ bool Simulation::springs_may_stiffen() const {
 }
 
 bool Simulation::stiffer_than_stepped(double overlap) const {
-  return springs_stiffen() &&
-         (overlap > overlap_growth * clock_.stepped_overlap || closing_speed() > clock_.stepped_speed);
+  const double pressed = std::max(clock_.pressed_overlap, as_stiff_as_impact * clock_.stepped_overlap);
+  return springs_stiffen() && (overlap > overlap_growth * pressed || closing_speed() > clock_.stepped_speed);
 }
 
 double Simulation::closing_speed() const {
@@ -468,9 +478,9 @@ void Simulation::expect_overlap() {
     fastest = std::max(fastest,
                        (xyz(bodies_.velocity[i]) - rate.cwiseProduct(xyz(bodies_.position[i]) - middle)).squaredNorm());
   fastest = std::sqrt(fastest);
-  const double speed = std::max({2 * fastest, fastest + clock_.wall_speed, closing_speed()});
+  const double speed = std::max({2 * fastest, fastest + clock_.wall_closing, closing_speed()});
   const double deepest = std::min(1.0, scene_->guards.overlap);
-  double overlap = std::max(clock_.overlap, soft_until_);
+  double overlap = clock_.pressed_overlap = std::max(clock_.overlap, soft_until_);
   while (overlap < deepest && speed_of_impact(overlap) < speed) overlap *= overlap_growth;
   clock_.stepped_overlap = overlap;
   clock_.stepped_speed =
@@ -530,8 +540,8 @@ void Simulation::step_on() {
     move(chunk, sum, next);
   };
   pass([&](std::size_t chunk, Laps& laps) {
-    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all, so that the first
-    // would lie before them: that is a number, but no place in the array.
+    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all: what the pointer
+    // would be for body 0 lies before the array and is never read, which no machine that grit runs on minds.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
     const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
     const std::uintptr_t of_body_0 = reinterpret_cast<std::uintptr_t>(here.data()) - first * sizeof(BodySum);
@@ -607,7 +617,7 @@ void Simulation::end_step() {
     clock_.skins.go(chunk, dt * chunk_[chunk].motion.largest_speed, 0.5 * strained);
     furthest = std::max(furthest, clock_.skins.gone(chunk));
   }
-  double wall_speed = 0;
+  double wall_speed = 0, wall_closing = 0;
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const WallState& wall = walls_.states()[w];
     double turning = 0;
@@ -624,11 +634,11 @@ void Simulation::end_step() {
           "wall \"" + walls_.name(w) + "\" moves " + number(dt * closing / stock_.smallest_radius) +
               " of the smallest radius in one step, more than /guards/travel " + number(scene_->guards.travel),
           "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step smaller");
-    wall_speed = std::max(wall_speed, speed);
+    wall_speed = std::max(wall_speed, speed), wall_closing = std::max(wall_closing, closing);
   }
-  clock_.wall_speed = wall_speed;
+  clock_.wall_speed = wall_speed, clock_.wall_closing = wall_closing;
   clock_.skins.walls_go(dt * wall_speed);
-  clock_.last_approach = dt * std::max(2 * fastest, fastest + wall_speed) + strained;
+  clock_.last_approach = dt * std::max(2 * fastest, fastest + wall_closing) + strained;
 
   if (!finite || dt * fastest > scene_->guards.travel * stock_.smallest_radius) {
     for (std::size_t i = 0; i < bodies_.count(); ++i) {

@@ -43,8 +43,11 @@ struct Clock {
   double strain_travel = 0;  ///< what the mean flow of the cell, and growth, brought two surfaces closer since the last
                              ///< search, at most [m]
   double wall_speed = 0;     ///< of the fastest point of a wall near bodies, at most, in the last step [m/s]
+  double wall_closing = 0;   ///< the same, but for flat walls that slide along themselves
   double last_approach = 0;  ///< by how much the last step let bodies come closer at most, m
   double overlap = 0;        ///< largest one over a radius
+  double pressed_overlap =
+      0;  ///< the one of contacts there were when the time step was set; only where springs stiffen
   double stepped_overlap = 0;  ///< the one that the time step was set for; only where springs stiffen
   double stepped_speed = 0;    ///< at which something may come closer before it must be set anew [m/s]; the same
 
@@ -54,11 +57,12 @@ struct Clock {
 /// Energies and work, for the guard against energy from nowhere.
 struct EnergyBook {
   bool begins = true;          ///< at the next forces
+  std::uint64_t first = 0;     ///< step at which it began
   double stored_at_start = 0;  ///< J, kinetic, elastic and gravitational, when the present settings began
   double work = 0;             ///< J, done by walls since then, but for half of the last step
   double largest = 0;          ///< J, largest kinetic and elastic energy since then
 
-  void remember(Memory& memory) { memory(begins, stored_at_start, work, largest); }
+  void remember(Memory& memory) { memory(begins, first, stored_at_start, work, largest); }
 };
 
 /// What has gone in and out since a component first asked [J].

@@ -50,11 +50,14 @@ void Simulation::check_energy() {
   bool kept = all_work_is_kept() && growth_rate_ == 0;
   // There is no potential along a periodic axis.
   for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
-  if (!kept) return;
+  if (!kept) {  // nor would what is not a number ever be too much
+    if (begins) energy_.stored_at_start = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
   const double energy = kinetic_energy() + elastic_energy().total(), stored = energy + gravitational();
   const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
   if (begins) {
-    energy_ = {.begins = false, .stored_at_start = stored, .work = -last_half, .largest = energy};
+    energy_ = {.begins = false, .first = clock_.step, .stored_at_start = stored, .work = -last_half, .largest = energy};
     return;
   }
   energy_.largest = std::max(energy_.largest, energy);

@@ -13,8 +13,8 @@ inline constexpr bool plain_numbers<Departure> = true;
 
 void Clock::remember(Memory& memory) {
   memory(time, step, time_step, last_time_step, critical_time_step, contact_demand, wall_demand, forces_step);
-  memory(cell, period_before, rebuilds, skins, strain_travel, wall_speed, last_approach, overlap, stepped_overlap,
-         stepped_speed);
+  memory(cell, period_before, rebuilds, skins, strain_travel, wall_speed, wall_closing, last_approach);
+  memory(overlap, pressed_overlap, stepped_overlap, stepped_speed);
 }
 
 void Simulation::save(Memory& memory) {

@@ -145,24 +145,26 @@ struct HertzMindlin {
     const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
     const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
     const L kept = min(L(1.0), contact_radius / max(before.contact_radius, L(tiny<L>)));
-    const auto lost = [&](const Vec<L>& stored, const Vec<L>& now, const L& stiffness_per_ks, const Vec<L>& rate) {
+    // What a spring held when it was switched off is booked with that.
+    const auto lost = [&](const L& limit, const Vec<L>& stored, const Vec<L>& now, const L& stiffness_per_ks,
+                          const Vec<L>& rate) {
       const L stiffness = stiffness_per_ks * ks;
       const L stiffness_before = stiffness_per_ks * L(8.0) * pair.shear_modulus * before.contact_radius;
       const Vec<L> left = kept * stored;
       const L given = L(0.5) * (dot(stored, stored) / max(stiffness_before, L(tiny<L>)) -
                                 dot(left, left) / max(stiffness, L(tiny<L>)));
-      return select(before.contact_radius > L(0.0), given, L(0.0)) +
-             slip_work(at.turn(left), stretched(at, left, stiffness, rate), now, stiffness);
+      const L slipped = slip_work(at.turn(left), stretched(at, left, stiffness, rate), now, stiffness);
+      return select(limit > L(0.0), select(before.contact_radius > L(0.0), given, L(0.0)) + slipped, L(0.0));
     };
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
     if constexpr ((Features & with_damping) != 0)
       loss.viscosity = dashpot_work(at, response.normal_force, L(2.0 / 3) * kn * at.overlap);
     if constexpr ((Features & with_shear) != 0)
-      loss.friction = lost({before.shear_x, before.shear_y, before.shear_z},
+      loss.friction = lost(pair.friction, {before.shear_x, before.shear_y, before.shear_z},
                            {after.shear_x, after.shear_y, after.shear_z}, L(1.0), at.velocity);
     if constexpr ((Features & with_rolling) != 0)
       loss.rolling =
-          lost({before.rolling_x, before.rolling_y, before.rolling_z},
+          lost(pair.rolling_limit, {before.rolling_x, before.rolling_y, before.rolling_z},
                {after.rolling_x, after.rolling_y, after.rolling_z}, pair.rolling * at.radius_a * at.radius_b, at.spin);
     return loss;
   }

@@ -122,7 +122,9 @@ struct LinearFrictional {
     if constexpr ((Features & with_shear) != 0) {
       const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
       const Vec<L> spring{after.shear_x, after.shear_y, after.shear_z};
-      loss.friction = slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity), spring, ks);
+      // What a spring held when it was switched off is booked with that.
+      loss.friction = select(pair.friction > L(0.0),
+                             slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity), spring, ks), L(0.0));
       loss.viscosity = loss.viscosity - at.dt * dot(response.shear - spring, at.velocity);
     }
     return loss;

@@ -156,19 +156,23 @@ struct LinearRolling {
     const L angular = ks * at.radius_a * at.radius_b;
     const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
-    loss.friction = slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity),
-                              Vec<L>{after.shear_x, after.shear_y, after.shear_z}, ks);
+    // What a spring held when it was switched off is booked with that.
+    const auto where_on = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
+    loss.friction = where_on(pair.friction, slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity),
+                                                      Vec<L>{after.shear_x, after.shear_y, after.shear_z}, ks));
     if constexpr ((Features & with_rolling) != 0) {
       const Vec<L> rolling{before.rolling_x, before.rolling_y, before.rolling_z};
       const L stiffness = pair.rolling * angular;
-      loss.rolling = slip_work(at.turn(rolling), stretched(at, rolling, stiffness, at.spin),
-                               Vec<L>{after.rolling_x, after.rolling_y, after.rolling_z}, stiffness);
+      loss.rolling =
+          where_on(pair.rolling_limit, slip_work(at.turn(rolling), stretched(at, rolling, stiffness, at.spin),
+                                                 Vec<L>{after.rolling_x, after.rolling_y, after.rolling_z}, stiffness));
     }
     if constexpr ((Features & with_twisting) != 0) {
       const L stiffness = pair.twisting * angular;
       const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);
-      loss.rolling = loss.rolling + L(0.5) * (before.twisting + after.twisting) * (trial - after.twisting) /
-                                        max(stiffness, L(tiny<L>));
+      loss.rolling =
+          loss.rolling + where_on(pair.twisting_limit, L(0.5) * (before.twisting + after.twisting) *
+                                                           (trial - after.twisting) / max(stiffness, L(tiny<L>)));
     }
     return loss;
   }

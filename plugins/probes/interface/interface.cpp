@@ -1,7 +1,9 @@
 #include "interface.hpp"
 
+#include <algorithm>
 #include <limits>
 
+#include "../specimen.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -10,6 +12,14 @@ namespace {
 
 double ratio(double above, double below) {
   return below == 0 ? std::numeric_limits<double>::quiet_NaN() : above / below;
+}
+
+/// Of the wall, where the specimen is: a wall may reach beyond it, so that there is sand above it all the way [m²].
+double covered_area(const WallView& wall, const World& world, int across) {
+  const Region specimen = specimen_box(world);
+  Vec3 size = specimen.high - specimen.low;
+  size[across] = 1;
+  return wall.area > 0 ? std::min(wall.area, size.prod()) : size.prod();
 }
 
 }  // namespace
@@ -23,8 +33,11 @@ std::vector<Channel> Interface::channels() const {
        {}},
       {"rotation", "rad", "omega: mean rotation of the layer in the stage" + forward, {}},
       {"bodies", "1", "number of bodies in the layer", {}},
-      {"shear_traction", "Pa", "t: force on the wall along " + layer.axis + " over its area; 0 where it has none", {}},
-      {"couple_traction", "N m-1", "m: couple on the wall about the specimen's face, over its area" + forward, {}},
+      {"shear_traction",
+       "Pa",
+       "t: force on the wall along " + layer.axis + " over its area below or above the specimen",
+       {}},
+      {"couple_traction", "N m-1", "m: couple on the wall about the specimen's face, over the same area" + forward, {}},
       {"rotation_ratio", "1", "A = omega d50 / u; NaN before the layer slips", {}},
       {"slip_ratio", "1", "B = u over the displacement of " + layer.driven_by + "; NaN before that moves", {}},
       {"traction_ratio", "1", "C = t d50 / m; NaN without a couple", {}}};
@@ -59,7 +72,8 @@ void Interface::sample(const World& world, std::span<const std::span<double>> va
   }
 
   values[0][0] = slip.mean, values[1][0] = turned, values[2][0] = slip.bodies;
-  values[3][0] = wall.area > 0 ? force / wall.area : 0, values[4][0] = wall.area > 0 ? couple / wall.area : 0;
+  const double area = covered_area(wall, world, across);
+  values[3][0] = ratio(force, area), values[4][0] = ratio(couple, area);
   values[5][0] = ratio(turned * d50, slip.mean);
   values[6][0] = ratio(slip.mean, layer.driven(world));
   values[7][0] = ratio(force * d50, couple);

@@ -72,12 +72,16 @@ TEST(Interface, AddsUpWhatContactsExertOnTheWall) {
   Interface probe = made();
   probe.prepare(world);
   const double couple = 0.4 + 0.6 - 0.02 * 5;
-  EXPECT_NEAR(channel_value(probe, world, "shear_traction"), 8.0 / 2, 1e-14);
-  EXPECT_NEAR(channel_value(probe, world, "couple_traction"), couple / 2, 1e-14);
+  // The specimen covers half of the wall, 1 m² of 2 m²; then all of it.
+  EXPECT_NEAR(channel_value(probe, world, "shear_traction"), 8, 1e-14);
+  EXPECT_NEAR(channel_value(probe, world, "couple_traction"), couple, 1e-14);
+  world.wall[0].area = 0.5;
+  EXPECT_NEAR(channel_value(probe, world, "shear_traction"), 8 / 0.5, 1e-13);
+  EXPECT_NEAR(channel_value(probe, world, "couple_traction"), couple / 0.5, 1e-13);
   EXPECT_NEAR(channel_value(probe, world, "traction_ratio"), 8 * 0.2 / couple, 1e-13);
   // arm.
-  world.wall[0].area = 0;
-  EXPECT_EQ(channel_value(probe, world, "shear_traction"), 0);
+  world.wall[0].area = 0;  // endless
+  EXPECT_NEAR(channel_value(probe, world, "shear_traction"), 8, 1e-14);
   EXPECT_NEAR(channel_value(probe, world, "traction_ratio"), 8 * 0.2 / couple, 1e-13);
 }
 
