@@ -54,7 +54,12 @@ def state(folder):
         return None
 
 
-def table(name, folder, run, rows, note):
+def lacks(series, row):
+    """The first channel of a row that a run did not record, or None."""
+    return next((row[key] for key in ('of', 'against', 'before') if key in row and row[key] not in series), None)
+
+
+def table(name, folder, run, rows, note, older):
     yield f'## {name}\n'
     yield (f"{run['bodies']:,} bodies, {run['steps']:,} steps, {run['wall_s']:.0f} s on {run['threads']} "
            f"thread{'s' if run['threads'] > 1 else ''}, {run['particle_steps_per_s'] / 1e6:.1f} M particle-steps/s.\n")
@@ -63,7 +68,11 @@ def table(name, folder, run, rows, note):
     with h5py.File(folder / 'series.h5') as series:
         for row in rows:
             reference, allowed = row['reference'], row['allowed']
-            if row['of'] not in series:
+            if channel := lacks(series, row):
+                if not older:
+                    sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
+                             f'{folder / "series.h5"} lacks; correct it, run {name} again, or name it under "older" if its '
+                             'run is from before there was that channel')
                 yield f"| {row['figure']} | {reference:g} ± {allowed:g} | not recorded | | |"
                 continue
             figure = found(series, row)
@@ -105,7 +114,7 @@ def main():
             missing.append(f"| {name} | {estimate(given.grit, ROOT / 'sims' / f'{name}.json')} | {stopped} |")
         else:
             lines += table(name, folder, run, [row for row in reference['figures'] if row['description'] == name],
-                           reference['notes'].get(name))
+                           reference['notes'].get(name), name in reference['older'])
     if missing:
         lines += ['## Not run to their ends', '| description | by `grit check` | |', '| --- | --- | --- |', *missing]
     (ROOT / 'docs' / 'reproduction.md').write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')

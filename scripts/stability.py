@@ -60,7 +60,7 @@ def picture(title, series):
     """Curves over logarithmic axes; those that are predicted are dashed and have no marks."""
     y_title, x_title = title.split('|')
     points = [p for curve in series.values() for p in curve if p[1] > 0]
-    own = [p for name, curve in series.items() if not name.startswith('predicted') or name == 'predicted bound'
+    own = [p for name, curve in series.items() if not name.startswith('predicted') or name.startswith('predicted bound')
            for p in curve if p[1] > 0]
     low_x, high_x = min(p[0] for p in points) / 1.15, max(p[0] for p in points) * 1.15
     low_y, high_y = min(p[1] for p in own) / 2, max(p[1] for p in own) * 2

@@ -130,7 +130,8 @@ def read(path):
 
 
 def measured(program):
-    """(limits, how the table's head says it); no limits where the kernels are not built beside the program."""
+    """(limits, how the table's head says it); no limits where the kernels are not built beside the program, or fail, or
+    have no time left."""
     kernels = Path(program).parent / 'bench_kernels'
     if not kernels.is_file():
         return None, f'not measured: no {kernels} (scripts/install-deps.sh installs Google Benchmark)'
@@ -140,11 +141,12 @@ def measured(program):
             done = machine.run([kernels, '--benchmark_filter=^machine/|^contacts/linear-rolling/10000$',
                                 '--benchmark_min_time=0.2', f'--benchmark_out={out}'], 1, folder)
             limits = of_kernels(read(out))
-        except (subprocess.CalledProcessError, OSError, ValueError, KeyError) as error:
+        except (subprocess.CalledProcessError, machine.OutOfTime, OSError, ValueError, KeyError) as error:
             if isinstance(error, KeyError):
                 reason = f'measures no {error}; build it anew (--target bench_kernels)'
             else:
-                reason = machine.reason(error) if isinstance(error, subprocess.CalledProcessError) else repr(error)
+                told = isinstance(error, (subprocess.CalledProcessError, machine.OutOfTime))
+                reason = machine.reason(error) if told else repr(error)
             return None, f'not measured: {kernels}: {reason}'
     limits = limits._replace(disturbed=done.others > DISTURBED)
     return limits, limits.line()

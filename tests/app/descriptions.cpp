@@ -80,6 +80,12 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
               AllOf(HasSubstr("  /probes/turns: it looks at rotations, and without friction nothing turns a sphere"),
                     HasSubstr("  /probes/turns/every_time: 3 s is longer than its stages take, 1 s at most")));
   EXPECT_THAT(check({turning, "/probes/turns/every_time=0.9 s"}), testing::Not(HasSubstr("without effect")));
+  const std::string late = R"(/bodies/late={"type": "sphere", "material": "sand", "stage": "part", "grains":
+      {"type": "list", "grains": [{"position": [0, "5 mm", 0], "radius": "1 mm"}]}})";
+  const std::string spinning = "/bodies/late/grains/grains/0/spin=[0, 0, 1]";
+  EXPECT_THAT(check({turning, smooth, late}), HasSubstr("nothing turns a sphere"));
+  EXPECT_THAT(check({turning, smooth, late, spinning}), testing::Not(HasSubstr("nothing turns a sphere")))
+      << "it comes with a spin";
   EXPECT_THAT(check({law, smooth, "/contacts/shear_damping=true"}),
               HasSubstr("  /contacts/shear_damping: without friction there is no shear force to damp"));
   EXPECT_THAT(check({law, "/contacts/shear_damping=true"}), testing::Not(HasSubstr("without effect")));

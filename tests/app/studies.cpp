@@ -1,6 +1,7 @@
 // Speed against accuracy: `chart` runs a study, `advise` applies it.
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 
 #include "scenes.hpp"
@@ -122,6 +123,9 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   EXPECT_EQ(grit({"chart"}).status, 1);
   EXPECT_EQ(grit({"chart", "study.json", "--jobs", "0"}).status, 1);
+  const auto both = grit({"chart", "study.json", "--dry", "--draw"});
+  EXPECT_EQ(both.status, 1);
+  EXPECT_THAT(both.err, HasSubstr("--draw does none: give one of them"));
 }
 
 TEST_F(Studies, SayWhichChannelThereIs) {
@@ -171,6 +175,45 @@ TEST_F(Studies, GoOnWithRunsThatWereInterrupted) {
   EXPECT_THAT(outcome.err, HasSubstr("2 of 2 runs to do"));
   EXPECT_EQ(run().at("status"), "done");
   EXPECT_EQ(run().at("resumed"), 1);
+}
+
+TEST_F(Studies, GoOnWithRunsThatWereKilled) {
+  auto changed = json::parse(study);
+  changed["set"]["/stages/0/until"]["value"] = "2 ms";
+  changed["set"]["/output/checkpoint_every"] = "20 ms";
+  changed["settings"] = {{"safety", {{"pointers", {"/time_step/safety"}}, {"values", {0.8, 0.0002}}}}};
+  changed["seeds"]["values"] = {1};
+  folder.write("study.json", changed.dump());
+  const std::string finest = "results/study/runs/finest/seed-1";
+  const auto run = [&] { return json::parse(text_of(folder / (finest + "/run.json"))); };
+  const auto kill_one = [&] {
+    Program program(
+        grit_with({"run", "two.json", "--out", finest, "--overwrite", "--no-report", "--threads", "1", "--set",
+                   "/seed=1", "--set", "/time_step/safety=0.0002", "--set", "/output/checkpoint_every=20 ms", "--set",
+                   R"(/stages/0/until={"type": "time", "value": "2 ms"})"}),
+        folder.path());
+    ASSERT_TRUE(program.wait_for("part"));
+    const auto given_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!std::filesystem::exists(folder / (finest + "/checkpoint.h5")))
+      ASSERT_LT(std::chrono::steady_clock::now(), given_up);
+    program.interrupt(SIGKILL);
+    ASSERT_EQ(program.finish().status, -SIGKILL);
+    ASSERT_EQ(run().at("status"), "running");
+  };
+  kill_one();
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("2 of 2 runs to do"));
+  EXPECT_EQ(run().at("status"), "done");
+  EXPECT_EQ(run().at("resumed"), 1);
+  // From what is no checkpoint of this build it begins anew.
+  kill_one();
+  folder.write(finest + "/checkpoint.h5", "half of one");
+  const auto anew = grit({"chart", "study.json"});
+  EXPECT_EQ(anew.status, 0) << anew.err;
+  EXPECT_THAT(anew.err, HasSubstr("1 of 2 runs to do"));
+  EXPECT_EQ(run().at("status"), "done");
+  EXPECT_EQ(run().value("resumed", 0), 0);
 }
 
 TEST_F(Studies, RunAgainWhatAnotherBuildOfAPluginMade) {

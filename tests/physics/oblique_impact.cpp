@@ -102,6 +102,7 @@ TEST(ObliqueImpact, OppositeSpinsRollOnEachOtherAsChungAndOoisSeventhTestSays) {
     while ((t.position(1) - t.position(0)).norm() < 2 * radius);
     for (const std::uint32_t id : {0, 1}) {
       tangential.add(t.velocity(id).x() / speed);
+      EXPECT_EQ(t.spin(id).y(), id == 0 ? spin : -spin);
       turning.add(t.spin(id).y() / (id == 0 ? spin : -spin) - 1);
     }
   }

@@ -138,7 +138,7 @@ TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
           EXPECT_LT(sum / count, 1.01 * restitution * restitution) << "in the mean of all parts of a step";
           if (fast == 1)
             map_point(map, law, restitution, most),
-                map_point(map, "predicted bound", restitution, bound(0, restitution, turn));
+                map_point(map, "predicted bound, " + law, restitution, bound(0, restitution, turn));
         }
       }
 }

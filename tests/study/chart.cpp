@@ -155,6 +155,27 @@ TEST_F(Charts, ACurveThatStopsBeforeItsReferenceIsAFailureOfThatRun) {
   EXPECT_EQ(lab.variants[1].samples[0].message, "test/y is of abscissae from 0 to 1, its reference from 0 to 2");
 }
 
+TEST_F(Charts, ACurveThatEndsBeforeItsReferenceBeginsFailsThatRunOnly) {
+  make_all();
+  make_series(folder / "runs/usual/seed-2", {0, 0.1}, {0, 0.1});
+  folder.write("lab.csv", "x,y\n0.5,1\n1,2\n");
+  const auto lab = R"({"c": {"type": "curve", "of": "test/y", "against": "test/x",
+    "curve": {"file": "lab.csv", "x": "x", "y": "y"}}})";
+  const Chart all = chart(lab);
+  EXPECT_EQ(all.variants[0].samples[0].status, "done");
+  EXPECT_EQ(all.variants[0].samples[1].status, "failed");
+  EXPECT_EQ(all.variants[0].samples[1].message, "test/y is of abscissae from 0 to 0.1, its reference from 0.5 to 1");
+  EXPECT_TRUE(all.variants[1].complete());
+  // None gets there: it is the reference that is wrong.
+  folder.write("lab.csv", "x,y\n500,1\n1000,2\n");
+  try {
+    chart(lab);
+    FAIL() << "in thousandths of the runs' unit";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/figures/c: the curve and its reference have no abscissa in common"));
+  }
+}
+
 TEST_F(Charts, CostsHaveTheirScatterToo) {
   make_all();
   make_run_json(folder / "runs/usual/seed-1", 0.8), make_run_json(folder / "runs/usual/seed-2", 1.2);

@@ -29,13 +29,19 @@ class Errors {
  public:
   explicit Errors(std::string what) : what_(std::move(what)) {}
   void add(double error) {
+    ++count_;
     if (!std::isnan(largest_) && !(std::abs(error) <= std::abs(largest_))) largest_ = error;
   }
-  void verify(double allowed) const { grit::test::verify(what_, largest_, 0, allowed, 1); }
+  /// Of none at all nothing is verified.
+  void verify(double allowed) const {
+    EXPECT_GT(count_, 0) << what_;
+    grit::test::verify(what_, largest_, 0, allowed, 1);
+  }
 
  private:
   std::string what_;
   double largest_ = 0;
+  int count_ = 0;
 };
 
 }  // namespace grit::test

@@ -43,7 +43,7 @@ std::string text_of(const std::filesystem::path& path) {
 /// What has been done of a run.
 enum class Progressed {
   nothing,  ///< or by another description, another grit or another build of a plugin
-  begun,    ///< interrupted, and it can go on
+  begun,    ///< interrupted or killed, and it can go on
   ended,    ///< a failure of its numerics counts
 };
 
@@ -54,6 +54,18 @@ std::set<std::string> builds(const Description& plugins) {
     all.insert(plugin.value("kind", "") + ' ' + plugin.value("name", "") + ' ' +
                plugin.value(Description::json_pointer("/build/checksum"), Description()).dump());
   return all;
+}
+
+/// Whether a run of these facts, however it was stopped, left a whole checkpoint that this build goes on from.
+bool can_go_on(const std::filesystem::path& folder, const RunFacts& facts) {
+  const auto path = folder / "checkpoint.h5";
+  if (!std::filesystem::exists(path)) return false;
+  try {
+    read_checkpoint(path, facts);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 /// What a folder has of what this program would make of this description with these plugins.
@@ -68,8 +80,10 @@ Progressed progressed(const std::filesystem::path& folder, const Description& de
       !says("/plugins").is_array() || builds(says("/plugins")) != builds(used))
     return Progressed::nothing;
   if (says("/status") == "done" || says("/status") == "failed") return Progressed::ended;
-  return says("/status") == "interrupted" && std::filesystem::exists(folder / "checkpoint.h5") ? Progressed::begun
-                                                                                               : Progressed::nothing;
+  // Of a run that was killed run.json still says that it runs.
+  const bool stopped = says("/status") == "interrupted" || says("/status") == "running";
+  return stopped && can_go_on(folder, {.description = description, .plugins = plugins}) ? Progressed::begun
+                                                                                        : Progressed::nothing;
 }
 
 /// Whether a description has all that an older one has; what the older one lacks it did not know.
@@ -259,6 +273,8 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
       "quiet,q", "no progress, only what came of it");
   if (!options.read(words)) return ExitStatus::done;
   const std::filesystem::path file = options.only_word("study");
+  if (options.has("dry") && options.has("draw"))
+    throw UsageError("--dry lists the runs that are to do, --draw does none: give one of them");
   for (const char* name : {"jobs", "threads"})
     if (const unsigned n = options.get<unsigned>(name); n < 1 || n > 1024)
       throw UsageError(std::string("--") + name + " takes a number from 1 to 1024, not " + std::to_string(n));

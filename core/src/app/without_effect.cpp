@@ -45,6 +45,13 @@ double time_of_stages(const SceneDescription& scene, const std::vector<std::stri
   return sum;
 }
 
+/// Whether a grain that a stage brings spins when it comes.
+bool comes_spinning(const BodiesDescription& group) {
+  const auto* placed = std::get_if<PlacedGrains>(&group.grains.value());
+  return !group.stage.empty() && placed != nullptr &&
+         std::ranges::any_of(placed->grains, [](const PlacedGrain& one) { return !one.spin.isZero(0.0); });
+}
+
 /// Whether nothing could turn a sphere that does not turn, but contacts: no engine, no wall that spins, no clump.
 bool only_contacts_turn(const SceneDescription& scene) {
   return std::ranges::none_of(scene.engines,
@@ -73,7 +80,8 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
   const bool never_turn = all.hold_rotation && std::ranges::none_of(scene.engines, [&](const auto& engine) {
                             return is_changed(scene, "engines", engine.first);
                           });
-  const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); });
+  const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
+                    std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
   const Description values = resolved(scene);
   const bool smooth = is_zero(scene, values, "friction_angle");
   if (never_turn && !spun) {

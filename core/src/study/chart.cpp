@@ -149,6 +149,7 @@ std::optional<Range> reference_range(const Chart& chart, const std::string& name
 }
 
 /// A curve that ends before its reference does is compared where that is easy only: such a run did not get far enough.
+/// Throws Error where no run shares an abscissa with the reference.
 void find_short_curves(Chart& chart) {
   std::map<std::string, Range> ranges;
   for (const auto& [name, figure] : chart.study.figures) {
@@ -159,19 +160,23 @@ void find_short_curves(Chart& chart) {
     }
     if (const auto range = reference_range(chart, name)) ranges[name] = *range;
   }
+  std::map<std::string, bool> shared;  // whether any run that is done has an abscissa of the figure's reference
   for (VariantResult& result : chart.variants)
-    for (Sample& sample : result.samples)
+    for (Sample& sample : result.samples) {
+      if (sample.status != "done") continue;
       for (const auto& [name, range] : ranges) {
-        if (sample.status != "done") continue;
         const Figure& own = sample.figures.at(name);
         const double reach = std::min(own.x.back(), range.to) - std::max(own.x.front(), range.from);
-        if (reach < 0) throw nothing_shared(name);
-        if (reach >= least_reach * (range.to - range.from)) continue;
+        shared[name] |= reach >= 0;
+        if (reach >= least_reach * (range.to - range.from) || sample.status == "failed") continue;
         sample.status = "failed";
         sample.message =
             fmt::format("{} is of abscissae from {:g} to {:g}, its reference from {:g} to {:g}",
                         chart.study.figures.at(name).of, own.x.front(), own.x.back(), range.from, range.to);
       }
+    }
+  for (const auto& [name, by_any] : shared)
+    if (!by_any) throw nothing_shared(name);
 }
 
 /// Means over the samples that are done.
