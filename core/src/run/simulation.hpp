@@ -46,8 +46,8 @@ struct Clock {
   double wall_closing = 0;   ///< the same, but for flat walls that slide along themselves
   double last_approach = 0;  ///< by how much the last step let bodies come closer at most, m
   double overlap = 0;        ///< largest one over a radius
-  double pressed_overlap =
-      0;  ///< the one of contacts there were when the time step was set; only where springs stiffen
+  double pressed_overlap = 0;  ///< the largest when the time step was set, or until which springs are soft; only where
+                               ///< springs stiffen
   double stepped_overlap = 0;  ///< the one that the time step was set for; only where springs stiffen
   double stepped_speed = 0;    ///< at which something may come closer before it must be set anew [m/s]; the same
 

@@ -1,6 +1,8 @@
 // How a run finds out that it has failed, and says so.
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -9,6 +11,12 @@
 #include "run/simulation.hpp"
 
 namespace grit {
+namespace {
+
+// Energies are looked at so often, and at 64, 128 and 256 steps of settings, that the largest is known.
+constexpr std::uint64_t energy_check_every = 500, first_energy_check = 64;
+
+}  // namespace
 
 void Simulation::check_overlap(double largest) const {
   if (largest <= scene_->guards.overlap) return;
@@ -42,6 +50,12 @@ double Simulation::gravitational() const {
     if (bodies_.clumps.clump_of(i) == no_clump)
       energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
   return energy;
+}
+
+bool Simulation::energy_check_is_due() const {
+  const std::uint64_t since = clock_.step - energy_.first;
+  return energy_.begins || clock_.step % energy_check_every == 0 ||
+         (since >= first_energy_check && since < energy_check_every && std::has_single_bit(since));
 }
 
 void Simulation::check_energy() {
