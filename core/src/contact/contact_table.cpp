@@ -80,7 +80,9 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         std::stable_partition(found.begin(), found.end(), [=](const Candidate& c) { return c.b < last; });
     std::stable_sort(found.begin(), across, nearer), std::stable_sort(across, found.end(), nearer);
     within_[chunk] = static_cast<std::size_t>(across - found.begin());
-    found_[chunk].assign(found.begin(), found.end());
+    found_[chunk].reserve(found.size());
+    for (const Candidate& c : found)
+      found_[chunk].push_back({c.b, c.gap, static_cast<std::uint8_t>(c.a - first), c.image});
   });
   chunks_.resize(chunk_count);
   std::uint32_t blocks = 0;
@@ -112,15 +114,16 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
         pad_to(slot, chunks_[chunk].within.last);
         slot = std::size_t{chunks_[chunk].across.first} * block_size;
       }
-      const Candidate& c = found_[chunk][n];
-      a_[slot] = c.a, b_[slot] = c.b, near_[slot] = c.touching();
+      const Found& c = found_[chunk][n];
+      const auto a = static_cast<std::uint32_t>(chunk * chunk_bodies + c.a);
+      a_[slot] = a, b_[slot] = c.b, near_[slot] = c.touching();
       if (slot % block_size == 0) {
         asleep_until_[slot / block_size] = c.gap;
         Blocks& own = n < within_[chunk] ? chunks_[chunk].within : chunks_[chunk].across;
         if (c.touching()) own.near = static_cast<std::uint32_t>(slot / block_size + 1);
       }
       if (periodic) image_[slot] = c.image;
-      for (std::uint32_t m = former_start[c.a]; m < former_start[c.a + 1]; ++m) {
+      for (std::uint32_t m = former_start[a]; m < former_start[a + 1]; ++m) {
         if (formers[m].other != c.b) continue;
         touching_[slot / block_size] |= static_cast<std::uint8_t>(1u << (slot % block_size));
         formers[m].to = static_cast<std::uint32_t>(slot);

@@ -125,6 +125,15 @@ class ContactTable {
   struct Letter {
     std::uint32_t row, body;
   };
+  /// A candidate among those of its chunk: as few bytes as it takes, for all of them wait at once for their places.
+  struct Found {
+    std::uint32_t b;
+    float gap;
+    std::uint8_t a;  ///< by its place in the chunk
+    std::uint8_t image;
+    bool touching() const { return gap == 0; }
+  };
+  static_assert(chunk_bodies <= 256);
   /// By how much two bodies of a chunk, or one of it and one of another, can have come closer since the search at most,
   /// summed up step by step [m].
   static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.walked(chunk); }
@@ -153,7 +162,7 @@ class ContactTable {
   LargeArray<Letter> inbox_;       // by the chunk of b, those that touched when the table was built first; then by b
   LargeArray<std::uint8_t> near_;  // of each candidate: touched when the table was built
   std::vector<std::vector<std::uint32_t>> reached_;  // by chunk
-  std::vector<std::vector<Candidate>> found_;        // by chunk
+  std::vector<std::vector<Found>> found_;            // by chunk
   std::vector<std::size_t> within_;                  // by chunk: how many of them are within it
 };
 

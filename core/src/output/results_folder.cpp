@@ -17,7 +17,8 @@
 namespace grit {
 namespace {
 
-std::vector<Row> grains_by_id(const World& world) {
+/// The grains in the order of their ids; of a large packing not even positions are copied.
+void write_grains(const std::filesystem::path& path, const World& world, const std::string& comment) {
   std::vector<std::uint32_t> order(world.ids().size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
@@ -27,12 +28,11 @@ std::vector<Row> grains_by_id(const World& world) {
     const double period = cell.high[axis] - cell.low[axis];
     return cell.periodic[axis] ? x - period * std::floor((x - cell.low[axis]) / period) : x;
   };
-  std::vector<Row> grains;
-  for (const auto body : order) {
-    const Row& x = world.positions()[body];
-    grains.push_back({inside(x.x, 0), inside(x.y, 1), inside(x.z, 2), x.w});
-  }
-  return grains;
+  const auto grain = [&](std::size_t i) -> Row {
+    const Row& x = world.positions()[order[i]];
+    return {inside(x.x, 0), inside(x.y, 1), inside(x.z, 2), x.w};
+  };
+  write_packing(path, order.size(), grain, comment);
 }
 
 /// What another description needs besides the grains: the cell, if it repeats.
@@ -125,7 +125,7 @@ void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
 void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (series_) series_->close();
   if (summary.status != "failed")
-    write_packing(options_.folder / "packing.txt", grains_by_id(world), comment_on(world, options_.title));
+    write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
   if (summary.status != "done") return;

@@ -99,7 +99,8 @@ std::vector<Row> read_packing(const std::filesystem::path& path) {
   return grains;
 }
 
-void write_packing(const std::filesystem::path& path, std::span<const Row> grains, const std::string& comment) {
+void write_packing(const std::filesystem::path& path, std::size_t grains, const std::function<Row(std::size_t)>& grain,
+                   const std::string& comment) {
   const std::filesystem::path part = path.string() + ".part";
   errno = 0;
   std::ofstream file(part, std::ios::binary);
@@ -110,11 +111,12 @@ void write_packing(const std::filesystem::path& path, std::span<const Row> grain
   for (std::string line; std::getline(lines, line);) text += "# " + line + '\n';
   text += "# x y z radius, m\n";
   constexpr std::size_t piece = 1 << 20;
-  for (const auto& grain : grains) {
-    append(text, grain.x), text += ' ';
-    append(text, grain.y), text += ' ';
-    append(text, grain.z), text += ' ';
-    append(text, grain.w), text += '\n';
+  for (std::size_t i = 0; i < grains; ++i) {
+    const Row one = grain(i);
+    append(text, one.x), text += ' ';
+    append(text, one.y), text += ' ';
+    append(text, one.z), text += ' ';
+    append(text, one.w), text += '\n';
     if (text.size() >= piece) file.write(text.data(), static_cast<std::streamsize>(text.size())), text.clear();
   }
   file.write(text.data(), static_cast<std::streamsize>(text.size()));
