@@ -42,7 +42,7 @@ class Plot:
                     [(x, value) for x in (self.low[0], self.high[0])]
                 self.line(ends, '#ccc')
                 x, y = self.place(*ends[0])
-                self.text(x if axis == 0 else x - 8, y + 22 if axis == 0 else y + 6, f'{value:g}', 16,
+                self.text(x if axis == 0 else x - 8, y + 22 if axis == 0 else y + 6, f'{value:,.12g}'.replace(',', ' '), 16,
                           'middle' if axis == 0 else 'end')
         self.text(self.WIDTH / 2, self.HEIGHT - 18, self.along, anchor='middle')
         x, y = 28, self.HEIGHT / 2
