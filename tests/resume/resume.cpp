@@ -211,7 +211,26 @@ TEST_F(Resume, KeepsTheCheckpointWhereAGuardTrips) {
   EXPECT_TRUE(std::filesystem::exists(folder / "failed/checkpoint.h5"));
   const auto again = grit({"run", "failed", "--resume", "--no-report"});
   EXPECT_EQ(again.status, 4);
-  EXPECT_THAT(again.err, HasSubstr("/guards/travel"));
+  EXPECT_THAT(again.err,
+              AllOf(HasSubstr("/guards/travel"), HasSubstr("its last checkpoint is kept: with other /guards")));
+}
+
+TEST_F(Resume, GoesOnWithOtherGuards) {
+  const auto whole = [&](const char* name, const std::string& guards, bool resume) {
+    auto words = run(name, {"--set", "/output/checkpoint_every=1e-6", "--set", "/guards=" + guards});
+    if (resume) words.push_back("--resume");
+    return grit(words);
+  };
+  EXPECT_EQ(whole("stopped", "{\"travel\": 1e-3}", false).status, 4);
+  const auto on = whole("stopped", "{\"travel\": 0.05}", true);
+  EXPECT_EQ(on.status, 0) << on.err;
+  EXPECT_THAT(on.err, HasSubstr("goes on from step"));
+  EXPECT_EQ(whole("never", "{\"travel\": 0.05}", false).status, 0);
+  expect_same_results("stopped", "never");
+  // A run that is done has kept to the guards that it had, not to others.
+  const auto done = whole("stopped", "{\"travel\": 0.04}", true);
+  EXPECT_EQ(done.status, 2);
+  EXPECT_THAT(done.err, HasSubstr("/guards/travel: found 0.04, allowed 0.05"));
 }
 
 }  // namespace

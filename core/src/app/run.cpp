@@ -134,11 +134,14 @@ std::optional<Checkpoint> resumed(const std::filesystem::path& folder, const Run
 bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
   const auto run = read_run_json(folder);
   if (!run) return false;
-  if (const auto other = differences(facts.description, run->value("description", Description())); !other.empty())
+  const bool done = run->value("status", "") == "done";
+  const Description then = run->value("description", Description::object());
+  const auto other = done ? differences(facts.description, then) : differences_on_the_way(facts.description, then);
+  if (!other.empty())
     throw Error(folder.string() + ": holds a run of another description:" + other +
                 "\n  go on with the description that it began with ('grit run --resume " + folder.string() +
                 "'), choose another folder (--out DIR) or replace it (--overwrite)");
-  return run->value("status", "") == "done";
+  return done;
 }
 
 ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
@@ -224,7 +227,11 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     return ExitStatus::interrupted;
   }
   if (!options.has("no-report")) make_report(folder);
-  if (summary.status == "failed") throw NumericsError(summary.message);
+  if (summary.status == "failed")
+    throw NumericsError(summary.message +
+                        (std::filesystem::exists(folder / "checkpoint.h5")
+                             ? "\n  its last checkpoint is kept: with other /guards --resume goes on from there"
+                             : ""));
   return ExitStatus::done;
 }
 

@@ -65,6 +65,14 @@ std::string differences(const Description& now, const Description& then) {
   return lines(without(as_written(now)), without(as_written(then)));
 }
 
+std::string differences_on_the_way(const Description& now, const Description& then) {
+  const auto without = [](Description description) {
+    description.erase("guards");
+    return description;
+  };
+  return differences(without(now), without(then));
+}
+
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint) {
   const auto part = beside(path);
   try {
@@ -108,7 +116,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
   if (const auto other = lines(now.at("grit"), then.at("grit")); !other.empty())
     throw FileError(path.string() + ": was written by another grit, so that a run would not go on to the same bits:" +
                     other + "\n  " + advice);
-  if (const auto other = differences(now.at("description"), then.at("description")); !other.empty())
+  if (const auto other = differences_on_the_way(now.at("description"), then.at("description")); !other.empty())
     throw Error(path.string() + ": is of another description:" + other + "\n  " + advice);
   if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
     throw PluginError(path.string() + ": plugins were built otherwise when it was written:" + other + "\n  " + advice);

@@ -15,11 +15,14 @@ namespace grit {
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint);
 
 /// Throws FileError for a file that is not a whole checkpoint, or one of another build of grit; PluginError where
-/// plugins were built otherwise; Error where the description is another one. /output/checkpoint_every may differ.
+/// plugins were built otherwise; Error where a run of the description would not go on from it.
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts);
 
 /// Pointers at which two descriptions differ, each with what was found and what is allowed; empty if they are of the
-/// same run.
+/// same run. /output/checkpoint_every may differ.
 std::string differences(const Description& now, const Description& then);
+/// The same, empty if a run of the one can go on from where a run of the other was: /guards may differ too, which
+/// change nothing but where a run ends.
+std::string differences_on_the_way(const Description& now, const Description& then);
 
 }  // namespace grit
