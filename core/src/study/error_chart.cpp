@@ -94,7 +94,7 @@ class ErrorChart {
   }
 
  private:
-  static constexpr double width = 720, height = 400, left = 62, right = 706, top = 34, bottom = 342;
+  static constexpr double width = 720, height = 400, left = 62, right = 690, top = 34, bottom = 342;
 
   static double finite(double value) { return std::isfinite(value) ? value : 0; }
   const Deviation& of(const VariantResult& one) const {
