@@ -35,7 +35,8 @@ TEST_F(Runs, LeaveResults) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("two.json: two grains\n2 bodies, 1 thread, results in results/two\n"),
                                  HasSubstr("stage \"part\" ended")));
   EXPECT_THAT(outcome.out, AllOf(StartsWith("packing/kinetic_energy: peak "), HasSubstr("200 steps of 2 bodies in "),
-                                 HasSubstr("particle-steps/s"), EndsWith("results: results/two\nreport: results/two/report.html\n")));
+                                 HasSubstr("particle-steps/s"),
+                                 EndsWith("results: results/two\nreport: results/two/report.html\n")));
   const auto run = run_json("results/two");
   EXPECT_EQ(run.at("status"), "done");
   EXPECT_EQ(run.at("steps"), 200);
@@ -172,6 +173,10 @@ TEST_P(Interrupted, RunsAreSaved) {
   EXPECT_THAT(text_of(folder / "results/two/series.h5"), StartsWith(hdf5_signature));
   EXPECT_TRUE(exists("results/two/frames/000000.h5"));
   EXPECT_TRUE(exists("results/two/packing.txt"));
+  EXPECT_THAT(outcome.out, HasSubstr("report: results/two/report.html"));
+  EXPECT_THAT(text_of(folder / "results/two/report.html"),
+              AllOf(HasSubstr(">interrupted</span>"), HasSubstr("Interrupted in stage "), HasSubstr("(1 of 1), "),
+                    HasSubstr("'grit run --resume results/two' goes on.")));
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "results"))
     EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
 }

@@ -62,6 +62,28 @@ TEST(Facts, SayHowFarToTrustARun) {
   EXPECT_FALSE(fact(facts, "largest overlap").doubtful);
 }
 
+TEST(Facts, SayHowToHaveTheEnergiesOfARunThatKeepsNone) {
+  const Description json = {{"status", "done"}, {"description", {{"probes", Description::object()}}}};
+  const Fact none = fact(trust_facts(run_with(json, {}), 0), "energy closure");
+  EXPECT_EQ(none.value, "not kept");
+  EXPECT_THAT(none.note, testing::HasSubstr(R"(--set '/probes/energy={"type": "energy", "every_steps": 1000}')"));
+  EXPECT_FALSE(none.doubtful);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(fact(trust_facts(run_with(json, {{"closure_share", {nan, nan}}}), 0), "energy closure").value, "unknown");
+}
+
+TEST(Facts, SayWhereARunWasInterrupted) {
+  Description json = {{"status", "interrupted"},
+                      {"stage", "shear"},
+                      {"time", 0.0475},
+                      {"stages", {{{"time", 0.02}}, {{"time", 0.045}}}},
+                      {"description", {{"stages", {{{"name", "fill"}}, {{"name", "settle"}}, {{"name", "shear"}}}}}}};
+  EXPECT_EQ(where_interrupted(run_with(json, {})), "Interrupted in stage shear (3 of 3), 2.5 ms after it began.");
+  json["status"] = "done";
+  EXPECT_EQ(where_interrupted(run_with(json, {})), "");
+  EXPECT_EQ(where_interrupted(run_with({{"status", "interrupted"}}, {})), "");
+}
+
 TEST(Facts, TrustIsOfTheLastStageAndNotOfItsPreparation) {
   const std::vector<std::pair<std::string, std::vector<double>>> series{{"time", {0.1, 0.2, 0.3, 0.4}},
                                                                         {"inertial_number", {0.4, 0.3, 1e-4, 2e-4}}};

@@ -219,14 +219,12 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' ' << share(summary.phases[i].seconds);
   std::cout << ")\nresults: " << folder.string() << '\n';
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
-  // Who interrupts wants to be gone: a page takes time with many grains.
-  if (summary.status == "interrupted") {
+  // Said before the page is made, which takes time with many grains: who cannot wait presses Ctrl-C again.
+  if (summary.status == "interrupted")
     std::cerr << "interrupted; what was reached is saved in " << folder.string() << "; 'grit run --resume "
-              << folder.string() << "' goes on, 'grit report " << folder.string() << "' makes a page of it"
-              << std::endl;
-    return ExitStatus::interrupted;
-  }
+              << folder.string() << "' goes on" << std::endl;
   if (!options.has("no-report")) make_report(folder);
+  if (summary.status == "interrupted") return ExitStatus::interrupted;
   if (summary.status == "failed")
     throw NumericsError(summary.message +
                         (std::filesystem::exists(folder / "checkpoint.h5")

@@ -62,6 +62,23 @@ std::string three_digits(double value) {
   return grouped(static_cast<std::uint64_t>(step * std::round(value / step)));
 }
 
+bool has_channel(const RunResults& run, const std::string& channel) {
+  return std::ranges::any_of(run.probes, [&](const ProbeSeries& probe) { return probe.channel(channel) != nullptr; });
+}
+
+/// How far what went in and what came out differ; where that is not known, why.
+std::optional<Fact> closure_fact(const RunResults& run) {
+  if (const auto closure = largest(run, "closure_share"))
+    return Fact{"energy closure", fmt::format("{:.2g} %", 100 * std::abs(*closure)),
+                "of all energy turned over, in the last stage", std::abs(*closure) > 0.01};
+  if (has_channel(run, "closure_share"))
+    return Fact{"energy closure", "unknown",
+                "not told in the last stage, or something takes part whose work is not kept", false};
+  if (!run.at("/description").is_object() || !has_ended_a_stage(run)) return std::nullopt;
+  return Fact{"energy closure", "not kept",
+              R"(--set '/probes/energy={"type": "energy", "every_steps": 1000}' keeps a ledger)", false};
+}
+
 bool has_engine(const RunResults& run, const std::string& type) {
   return std::ranges::any_of(run.at("/description/engines"), [&](const Description& engine) {
     return engine.is_object() && engine.contains("type") && engine["type"] == type;
@@ -82,6 +99,15 @@ std::optional<double> least_modulus(const RunResults& run) {
 std::string status_of(const RunResults& run) {
   const Description& status = run.at("/status");
   return status.is_string() ? status.get<std::string>() : "unknown";
+}
+
+std::string where_interrupted(const RunResults& run) {
+  if (status_of(run) != "interrupted") return "";
+  const Description &stage = run.at("/stage"), &all = run.at("/description/stages"), &ended = run.at("/stages");
+  const auto time = number(run, "/time");
+  if (!stage.is_string() || !all.is_array() || !ended.is_array() || !time) return "";
+  return fmt::format("Interrupted in stage {} ({} of {}), {} after it began.", stage.get<std::string>(),
+                     std::min(ended.size() + 1, all.size()), all.size(), time_text(*time - last_stage_began(run)));
 }
 
 std::vector<Fact> cost_facts(const RunResults& run) {
@@ -115,9 +141,7 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
     facts.push_back(
         {"time step", time_text(*dt), share > 0 ? fmt::format("{:.2g} of the critical one", share) : "", share > 1});
   }
-  if (const auto closure = largest(run, "closure_share"))
-    facts.push_back({"energy closure", fmt::format("{:.2g} %", 100 * std::abs(*closure)),
-                     "of all energy turned over, in the last stage", std::abs(*closure) > 0.01});
+  if (auto closure = closure_fact(run)) facts.push_back(std::move(*closure));
   const bool flows = has_engine(run, "gravity");
   if (const auto inertial = largest(run, "inertial_number"); inertial && *inertial > 0)
     facts.push_back({"inertial number", fmt::format("{:.2g}", *inertial),

@@ -19,7 +19,7 @@ std::vector<Fact> cost_facts(const RunResults& run);
 
 /// Estimates of error, of the channels that series.h5 has:
 ///   time step         over the critical one; doubtful above 1
-///   energy closure    closure_share, largest in size; doubtful above 1 %
+///   energy closure    closure_share, largest in size; doubtful above 1 %; where no ledger is kept, how to have one
 ///   inertial number   inertial_number, largest; doubtful above 1e-3 without gravity, under which grains are to flow
 ///   stiffness level   least contact modulus of a material over the largest mean_stress
 ///   largest overlap   largest_overlap over the mean diameter [m], if that is above 0; doubtful above 5 %
@@ -27,5 +27,8 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter);
 
 /// The status as a word: "done", "failed", …; "unknown" without run.json.
 std::string status_of(const RunResults& run);
+
+/// In which of its stages a run was stopped, and how long after that began; empty of one that was not interrupted.
+std::string where_interrupted(const RunResults& run);
 
 }  // namespace grit

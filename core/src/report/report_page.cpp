@@ -148,7 +148,9 @@ std::string details(const RunResults& run) {
 }
 
 std::string message_of(const RunResults& run) {
-  const std::string message = text_at(run, "/message");
+  std::string message = text_at(run, "/message");
+  if (const std::string where = where_interrupted(run); message.empty() && !where.empty())
+    message = where + " 'grit run --resume " + run.folder.string() + "' goes on.";
   return message.empty() ? "" : "<p class=\"message\">" + escaped(message) + "</p>\n";
 }
 
