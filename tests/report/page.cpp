@@ -138,6 +138,29 @@ TEST(ReportPage, LeavesOutGrainsThatAreNowhere) {
   EXPECT_THAT(planes_of(page.html, last.at("data")), SizeIs(2 * (3 + 1 + 3)));
 }
 
+TEST(ReportPage, LooksWhereTheGrainsAreThoughOneIsFarAway) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  for (int i = 0; i < 40; ++i)
+    run.world.add({0.1 * i, 0, 2}, 0.1), run.world.id.back() = static_cast<std::uint32_t>(10 + i);
+  run.world.rotation.resize(43, {0, 0, 0});
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  results.frame(run.world, {});
+  run.world.position[1].z = 20;
+  results.frame(run.world, {});
+  run.world.position[1].z = 2e6;
+  results.frame(run.world, {});
+  results.finish(run.world, {});
+  const auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains"), &frames = grains.at("frames");
+  EXPECT_FALSE(frames.at(0).contains("strays"));
+  EXPECT_EQ(frames.at(1).at("strays"), 1);
+  EXPECT_EQ(frames.at(1).at("high").at(2), 3) << "where the others are";
+  EXPECT_EQ(frames.at(2).at("unplaced"), 1) << "the others would share one of 65 536 places";
+  EXPECT_EQ(grains.at("high").at(2), 20);
+}
+
 TEST(ReportPage, KnowsWhereTheNumbersOfAListAre) {
   const Folder folder;
   SmallRun run(folder / "run");

@@ -11,6 +11,7 @@
 #include "output/read_frames.hpp"
 #include "report/cell_maps.hpp"
 #include "report/layers.hpp"
+#include "report/strays.hpp"
 
 namespace grit {
 namespace {
@@ -121,11 +122,18 @@ struct Extent : Box {
   }
 };
 
-/// Takes out of a frame the bodies that are nowhere, as those of a run that has failed; returns how many.
+double mean_diameter(const Frame& frame) {
+  const double radii = std::accumulate(frame.radius.begin(), frame.radius.end(), 0.0);
+  return frame.bodies() > 0 ? 2 * radii / static_cast<double>(frame.bodies()) : 0;
+}
+
+/// Takes out of a frame the bodies that are nowhere, or all but there, as those of a run that has failed; returns how
+/// many.
 std::size_t drop_unplaced(Frame& frame) {
+  const Fences fences(frame.position, mean_diameter(frame), far_to_keep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < frame.bodies(); ++i)
-    if (std::isfinite(length(frame.position, i))) kept.push_back(i);
+    if (fences.hold(frame.position, i)) kept.push_back(i);
   const std::size_t dropped = frame.bodies() - kept.size();
   if (dropped == 0) return 0;
   const auto keep = [&]<class T>(std::vector<T>& rows, std::size_t width) {
@@ -188,9 +196,7 @@ class Writer {
     const std::size_t set = set_of(frame);
     Description json = {{"time", frame.time}, {"step", frame.step}, {"stage", frame.stage}, {"set", set}};
     if (unplaced > 0) json["unplaced"] = unplaced;
-    Box box;
-    box.add(frame.position);
-    if (frame.bodies() > 0) json["low"] = box.low, json["high"] = box.high;
+    add_box(frame, json);
     add_bodies(frame, set, json);
     add_contacts(frame, json);
     add_walls(frame, json);
@@ -236,6 +242,18 @@ class Writer {
     std::size_t data;
     std::vector<float> corners;  ///< less its displacement then
   };
+
+  /// Where the grains are, but for those that are far from all others.
+  void add_box(const Frame& frame, Description& json) const {
+    const Fences fences(frame.position, mean_diameter(frame), far_to_see);
+    std::vector<double> seen;
+    for (std::size_t i = 0; i < frame.bodies(); ++i)
+      if (fences.hold(frame.position, i)) seen.insert(seen.end(), &frame.position[3 * i], &frame.position[3 * i] + 3);
+    Box box;
+    box.add(seen);
+    if (!seen.empty()) json["low"] = box.low, json["high"] = box.high;
+    if (const std::size_t strays = frame.bodies() - seen.size() / 3; strays > 0) json["strays"] = strays;
+  }
 
   std::size_t set_of(const Frame& frame) {
     const auto found = std::ranges::find(sets_, frame.id, &Set::id);

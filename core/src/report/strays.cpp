@@ -1,0 +1,35 @@
+#include "report/strays.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grit {
+
+Fences::Fences(const std::vector<double>& positions, double diameter, const Far& far) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<double> places;
+    for (std::size_t i = axis; i < positions.size(); i += 3)
+      if (std::isfinite(positions[i])) places.push_back(positions[i]);
+    double lower = 0, upper = 0;
+    if (!places.empty()) {
+      const auto last = static_cast<double>(places.size() - 1);
+      const auto first = places.begin() + std::lround(0.25 * last), third = places.begin() + std::lround(0.75 * last);
+      std::nth_element(places.begin(), first, places.end());
+      lower = *first;
+      std::nth_element(first, third, places.end());  // which moves that one
+      upper = *third;
+    }
+    const double beyond = far.widths * (upper - lower) + far.diameters * diameter;
+    low_[axis] = lower - beyond, high_[axis] = upper + beyond;
+  }
+}
+
+bool Fences::hold(const std::vector<double>& positions, std::size_t body) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double at = positions[3 * body + axis];
+    if (!(at >= low_[axis] && at <= high_[axis])) return false;
+  }
+  return true;
+}
+
+}  // namespace grit
