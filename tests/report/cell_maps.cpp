@@ -64,7 +64,7 @@ TEST(CellMaps, HasOneScaleForAStage) {
   EXPECT_EQ(fields.at(0).at("ranges").at("shear"), json::parse("[[1000, 2400]]"));
   EXPECT_EQ(fields.at(0).at("signed"), json::parse("[false]"));
   EXPECT_EQ(fields.at(1).at("ranges").at("shear").at(1), json({-1, 1}));
-  EXPECT_EQ(fields.at(1).at("signed"), json({false, true})) << "E_zz is positive throughout";
+  EXPECT_EQ(fields.at(1).at("signed"), json({true, true})) << "E_zz too, though it is positive throughout";
 }
 
 TEST(CellMaps, HasABoxForAStage) {
@@ -102,6 +102,21 @@ TEST(CellMaps, HasRoomForSomeFramesOnly) {
   const json map = made_of(maps).at(0);
   EXPECT_THAT(map.at("frames"), SizeIs(1));
   EXPECT_EQ(map.at("left_out"), 1);
+}
+
+TEST(CellMaps, HasNoMapOfBookkeeping) {
+  DataElements data;
+  CellMaps maps(data, 1 << 20);
+  FieldGroup group = two_cells(1000, 0.5);
+  group.fields.insert(group.fields.begin() + 2, {"bodies", "1", "whose centres lay in it", 1, {7, 8}});
+  FieldGroup counted{"counted", {group.fields[0], group.fields[1], group.fields[2]}};
+  maps.add(0, "shear", {group, counted});
+  const json all = made_of(maps);
+  ASSERT_THAT(all, SizeIs(1)) << "of the other one nothing is left";
+  ASSERT_THAT(all.at(0).at("fields"), SizeIs(2));
+  EXPECT_EQ(all.at(0).at("fields").at(0).at("name"), "density");
+  EXPECT_GT(all.at(0).at("fields").at(0).at("rank"), all.at(0).at("fields").at(1).at("rank")) << "strain tells more";
+  EXPECT_THAT(numbers_of<float>(data.html(), all.at(0).at("frames").at(0).at("data")), SizeIs(2 * (6 + 1 + 2)));
 }
 
 TEST(CellMaps, AreNothingWithoutCells) {

@@ -10,8 +10,7 @@
 namespace grit {
 namespace {
 
-constexpr double share_shown = 0.98;    // of the cells of a frame, in the middle: the rest is drawn as the scale's ends
-constexpr double share_of_sign = 0.05;  // of the larger side, by which values on the other side of zero count
+constexpr double share_shown = 0.98;  // of the cells of a frame, in the middle: the rest is drawn as the scale's ends
 
 /// One component of all rows.
 std::vector<float> column(const Field& field, std::size_t component) {
@@ -23,23 +22,15 @@ std::vector<float> column(const Field& field, std::size_t component) {
 
 }  // namespace
 
-std::vector<std::string> components_of(const Field& field) {
-  if (field.components.size() == field.width) return field.components;
-  if (field.width == 1) return {};
-  if (field.width == 3) return {"x", "y", "z"};
-  if (field.width == 9) return {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
-  std::vector<std::string> numbers;
-  for (std::size_t i = 1; i <= field.width; ++i) numbers.push_back(std::to_string(i));
-  return numbers;
-}
-
 CellMaps::Map& CellMaps::map_of(const FieldGroup& group) {
   const auto known = std::ranges::find(maps_, group.name, &Map::probe);
   if (known != maps_.end()) return *known;
   Map map{group.name, {}, Description::array(), 0, {}};
   for (const Field& field : group.fields) {
-    if (field.name == "centre" || field.name == "size") continue;
-    map.fields.push_back({field.name, field.unit, field.doc, components_of(field), field.width, {}});
+    if (field.name == "centre" || field.name == "size" || is_bookkeeping(field)) continue;
+    map.fields.push_back(
+        {field.name, field.unit, field.doc, components_of(field), field.width, {}, telling_rank(field), {}});
+    for (std::size_t k = 0; k < field.width; ++k) map.fields.back().parted.push_back(is_signed(field, k));
   }
   return maps_.emplace_back(std::move(map));
 }
@@ -91,12 +82,12 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
 Description CellMaps::result() const {
   Description all = Description::array();
   for (const Map& map : maps_) {
-    if (map.boxes.empty()) continue;  // no cell in any frame
+    if (map.boxes.empty() || map.fields.empty()) continue;  // no cell in any frame, or nothing to see of them
     Description fields = Description::array(), boxes = Description::object();
     for (const auto& [stage, box] : map.boxes) boxes[stage] = {{"low", box.low}, {"high", box.high}};
     for (const MapField& field : map.fields) {
       std::vector<Range> whole(field.width, {0, 0});
-      Description ranges = Description::object(), parted = Description::array();
+      Description ranges = Description::object();
       for (const auto& [stage, components] : field.ranges) {
         Description& list = ranges[stage] = Description::array();
         for (std::size_t k = 0; k < components.size(); ++k) {
@@ -106,10 +97,7 @@ Description CellMaps::result() const {
         }
       }
       double largest = 0;
-      for (const auto& [low, high] : whole) {
-        largest = std::max({largest, -low, high});
-        parted.push_back(std::min(-low, high) > share_of_sign * std::max(-low, high));
-      }
+      for (const auto& [low, high] : whole) largest = std::max({largest, -low, high});
       const ReadableUnit shown = readable(field.unit, largest);
       fields.push_back(Description{{"name", field.name},
                                    {"label", spelled(field.name)},
@@ -118,7 +106,8 @@ Description CellMaps::result() const {
                                    {"factor", shown.factor},
                                    {"about", field.doc},
                                    {"components", field.components},
-                                   {"signed", parted},
+                                   {"signed", field.parted},
+                                   {"rank", field.rank},
                                    {"ranges", ranges}});
     }
     all.push_back(Description{{"probe", map.probe},

@@ -11,12 +11,10 @@
 
 #include "grit/description.hpp"
 #include "output/read_frames.hpp"
+#include "report/map_fields.hpp"
 #include "report/packed.hpp"
 
 namespace grit {
-
-/// What the numbers of a row are: the field's own words, or x, y, z of three, xx … of nine; none of one number.
-std::vector<std::string> components_of(const Field& field);
 
 /// Takes frames one after another. Of a probe the page knows what fields the first of its frames had.
 class CellMaps {
@@ -30,10 +28,10 @@ class CellMaps {
 
   /// [{probe, boxes, fields, frames}], a probe each:
   ///   boxes    by stage {low, high}: corners of the box of all cells of its frames [m]
-  ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, ranges}], of what cells hold:
-  ///   signed
-  ///            says of each component whether zero parts its values; ranges has for each stage [[low, high] a
-  ///            component] that 98 of 100 cells of each of its frames lie within, null where there is no number
+  ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, rank, ranges}], of what cells hold,
+  ///            bookkeeping apart: signed says of each component whether zero parts its values, rank which field is
+  ///            looked at first (see map_fields); ranges has for each stage [[low, high] a component] that 98 of 100
+  ///            cells of each of its frames lie within, null where there is no number
   ///   frames   [{frame, cells, data}]: of those frames that have it, float32: of all cells x, y and z of the centre,
   ///            then of the size [m], then component after component of the fields
   ///   left_out frames that had no room
@@ -52,6 +50,8 @@ class CellMaps {
     std::vector<std::string> components;
     std::size_t width;
     std::map<std::string, std::vector<std::optional<Range>>> ranges;  ///< by stage, a component each
+    int rank;
+    std::vector<bool> parted;  ///< by zero, a component each
   };
   struct Map {
     std::string probe;
