@@ -49,6 +49,7 @@ TEST(ReportPage, HasTheCurvesToTheLastBit) {
   EXPECT_EQ(ratio.at("about"), "shear over normal");
   EXPECT_EQ(ratio.at("width"), 1);
   EXPECT_EQ(ratio.at("samples"), 5);
+  EXPECT_EQ(ratio.at("filled"), true);
   const auto values = numbers_of<double>(page.html, ratio.at("data"));
   ASSERT_EQ(values.size(), run.ratio.size());
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_TRUE(same_bits(values[i], run.ratio[i])) << i;
@@ -170,14 +171,16 @@ TEST(ReportPage, KnowsWhereTheNumbersOfAListAre) {
                                          {"force", "N", "by direction", {2}, "direction"},
                                          {"strain", "1", "whole", {2}, "", {"xx", "xz"}}}}};
   results.begin(run.world, probes);
-  const double at[] = {90, 270}, force[] = {1, 2};
-  const std::span<const double> values[] = {at, force, force};
+  const double at[] = {90, 270}, force[] = {1, 2}, none[] = {INFINITY, std::numeric_limits<double>::quiet_NaN()};
+  const std::span<const double> values[] = {at, force, none};
   results.sample(0, run.world, values);
   results.finish(run.world, {});
   const json shown = json_of(page_of(folder / "run").html).at("runs").at(0);
   EXPECT_EQ(channel_of(shown, "chains", "force").at("coordinate"), "direction");
   EXPECT_EQ(channel_of(shown, "chains", "direction").at("coordinate"), "");
   EXPECT_EQ(channel_of(shown, "chains", "strain").at("components"), json({"xx", "xz"}));
+  EXPECT_EQ(channel_of(shown, "chains", "force").at("filled"), true);
+  EXPECT_EQ(channel_of(shown, "chains", "strain").at("filled"), false) << "it has no number that can be drawn";
 }
 
 TEST(ReportPage, HasTheContactsAboveTheMean) {

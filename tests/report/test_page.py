@@ -27,7 +27,9 @@ SCENE = {
     "output": {"frames": {"every_time": "10 ms"},
                "picture": {"x": "packing/time", "y": ["packing/coordination_number"], "color": "rotation", "view": "xz"}},
 }
-LISTS = {"forces": {"type": "force-chains", "every_time": "2 ms"}, "moved": {"type": "displacements", "every_time": "2 ms"}}
+LISTS = {"listening": {"type": "spectrum", "region_low": [0, 0, 0], "region_high": ["8 mm", "6 mm", "12 mm"], "interval": "0.2 ms", "points": 64, "every_time": "0.2 ms"},
+         "forces": {"type": "force-chains", "every_time": "2 ms"}, "moved": {"type": "displacements", "every_time": "2 ms"}}
+SVG = "{http://www.w3.org/2000/svg}"
 DRAWN = "document.querySelector('figure.grains')?.grains.shownPlaces && document.querySelector('figure.chart[data-drawn]')"
 
 
@@ -188,6 +190,38 @@ class Page(unittest.TestCase):
         self.assertEqual(lines[0], "id,x [m],y [m],z [m],radius [m],rotation [°]")
         self.assertEqual(len(lines), 41)
 
+    def size_of_png(self):
+        return self.browser.evaluate("createImageBitmap(save.last.blob).then(({width, height}) => [width, height])")
+
+    def test_files_are_the_same_whatever_the_page_is_read_in(self):
+        """As wide as print needs, on white, in any window and by day and night."""
+        def files():
+            self.open("one/report.html")
+            self.go(5)
+            everything = {}
+            for figure in ("figure.chart", "figure.grains", "figure.map"):
+                everything[figure] = self.saved(figure, "PNG")[1], bytes(self.saved(figure, "SVG")[1]).decode()
+                self.saved(figure, "PNG")
+                self.assertGreaterEqual(self.size_of_png()[0], 1800, figure)
+                self.assertEqual(self.browser.evaluate("""createImageBitmap(save.last.blob).then((image) => {
+                    const canvas = new OffscreenCanvas(image.width, image.height).getContext('2d');
+                    canvas.drawImage(image, 0, 0);
+                    return Array.from(canvas.getImageData(1, 1, 1, 1).data); })"""), [255, 255, 255, 255], figure)
+                self.assertNotIn("#17181a", everything[figure][1])
+                self.assertIn("#fff", everything[figure][1])
+            return everything
+        by_day = files()
+        self.browser.resize(400, 800)
+        self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        try:
+            by_night = files()
+        finally:
+            self.browser.resize(1400, 1000)
+            self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+        for figure, (png, svg) in by_day.items():
+            self.assertTrue(svg == by_night[figure][1], f"the SVG of {figure}")
+            self.assertTrue(png == by_night[figure][0], f"the PNG of {figure}")
+
     def test_every_view_and_colour_is_drawn(self):
         seen = set()
         for view in ("xz", "yz", "xy"):
@@ -207,6 +241,115 @@ class Page(unittest.TestCase):
         name, second = self.saved("figure.grains", "PNG")
         self.assertTrue(name.startswith("two-"))
         self.assertNotEqual(first, second)
+
+    def test_runs_of_different_tests_lie_over_each_other_where_they_can(self):
+        formulas = lambda **curves: {"test": {"type": "formula", "every_time": "2 ms", "curves": {name: {"formula": formula} for name, formula in curves.items()}}}
+        picture = lambda x: {"output": {"picture": {"x": f"test/{x}", "y": ["test/shared"]}}}
+        run(self.folder, "push", probes=formulas(way="2 * time", ratio="time / 3", shared="time", never="(time - time) / 0"), **picture("way"))
+        run(self.folder, "pour", probes=formulas(share="5 * time", rate="7 * time", shared="-time", never="1 / 0"), **picture("share"))
+        subprocess.run([GRIT, "report", "push", "pour", "--out", "unlike.html"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        self.browser.open(self.folder / "unlike.html")
+        charts = "[...document.querySelectorAll('figure.chart')].map(({chart}) => chart)"
+        self.browser.evaluate(f"Promise.all({charts}.map((chart) => chart.draw()))")
+        shown = self.browser.evaluate(f"{charts}.map((chart) => [chart.name, chart.abscissa.name, chart.series.map(({{label}}) => label), chart.figure.querySelector('.about').textContent])")
+        self.assertEqual({name: (x, runs) for name, x, runs, _ in shown},
+                         {"shared": ("way", ["push"]), "ratio": ("way", ["push"]), "rate": ("share", ["pour"]), "share": ("time", ["pour"])})
+        self.assertEqual({name: about for name, _, _, about in shown}["shared"], "time; not against way: pour", "the doc of a formula is the formula")
+        self.browser.evaluate("(() => { const choice = document.querySelector('.against select'); choice.value = 'time'; choice.dispatchEvent(new Event('change')); })()")
+        shown = self.browser.evaluate(f"Promise.all({charts}.map((chart) => chart.draw().then(() => [chart.name, chart.series.map(({{run, y}}) => [run.name, y.at(-1)])])))")
+        last = dict(shown)["shared"]
+        self.assertEqual([name for name, _ in last], ["push", "pour"])
+        self.assertTrue(last[0][1] > 0 > last[1][1])
+        self.assertNotIn("never", dict(shown), "no run can fill it")
+
+    def test_what_is_not_finite_is_a_gap(self):
+        run(self.folder, "broken", probes={"test": {"type": "formula", "every_time": "1 ms", "curves": {
+            "late": {"formula": "time < 0.02 ? 1 / 0 : time < 0.03 ? time : time < 0.04 ? (time - time) / 0 : -time"}}}}, output={})
+        self.browser.open(self.folder / "broken/report.html")
+        chart = "document.querySelector('figure.chart').chart"
+        self.browser.evaluate(f"{chart}.draw()")
+        with h5py.File(self.folder / "broken/series.h5") as series:
+            values = series["test/late"][()]
+        self.assertTrue(numpy.isinf(values).any() and numpy.isnan(values).any())
+        drawn = self.browser.evaluate(f"{chart}.view.data('curves').map(({{y}}) => y === null ? 'gap' : y)")
+        self.assertEqual(drawn, [float(value) if numpy.isfinite(value) else "gap" for value in values])
+        root = xml.etree.ElementTree.fromstring(self.browser.evaluate(f"{chart}.view.toSVG()"))
+        line = next(group for group in root.iter(f"{SVG}g") if group.get("class", "").startswith("mark-line")).find(f"{SVG}path")
+        self.assertEqual(line.get("d").count("M"), 2, "two pieces")
+        self.assertNotRegex(line.get("d"), "NaN|Infinity")
+        self.browser.evaluate(f"{chart}.show([0])")
+        self.assertRegex(self.browser.evaluate("document.querySelector('.values').textContent"), "late –$")
+        self.assertEqual(self.browser.evaluate(f"{chart}.view.data('near').length"), 0)
+        finite = int(numpy.argmax(numpy.isfinite(values)))
+        self.browser.evaluate(f"{chart}.show([{finite}])")
+        self.assertEqual(self.browser.evaluate(f"{chart}.view.data('near').length"), 1)
+
+    def test_a_direction_without_a_number_is_a_gap(self):
+        self.browser.open(self.folder / "lists/report.html")
+        self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
+        points = self.browser.evaluate("""(() => { const {chart} = [...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'force_by_direction');
+            return chart.outline({shownX: [10, 30, 50], shownY: Float64Array.of(1, Infinity, NaN), s: '0'}).map(({x}) => x === null); })()""")
+        self.assertEqual(points, [False] * 5 + [True] * 10 + [False])
+
+    def test_spectra_go_by_powers_of_ten(self):
+        self.browser.open(self.folder / "lists/report.html")
+        self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
+        chart = "[...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'pressure_density').chart"
+        self.browser.wait(f"{chart}.group.choice.span")
+        self.browser.evaluate(f"{chart}.draw()")
+        self.assertEqual(self.browser.evaluate(f"['x', 'y'].map((axis) => {chart}.view.scale(axis).type)"), ["log", "log"])
+        with h5py.File(self.folder / "lists/series.h5") as series:
+            frequency, density = series["listening/frequency"][-1], series["listening/pressure_density"][-1]
+        self.assertEqual(frequency[0], 0)
+        low, high = self.browser.evaluate(f"{chart}.xDomain")
+        self.assertEqual((low, high), (frequency[1], frequency[-1]), "zero has no place there")
+        low, high = self.browser.evaluate(f"{chart}.yDomain.map(Math.log10)")
+        numpy.testing.assert_allclose([low % 1, high % 1], 0, atol=1e-9)
+        self.assertGreaterEqual(10**high, density[1:].max() * (1 - 1e-9))
+        last = self.browser.evaluate(f"{chart}.series.at(-1).s")
+        drawn = self.browser.evaluate(f"{chart}.view.data('curves').filter(({{s}}) => s === '{last}').map(({{x}}) => x === null ? 'gap' : x)")
+        self.assertEqual(drawn, ["gap", *frequency[1:]])
+        words = [text.text for text in xml.etree.ElementTree.fromstring(self.browser.evaluate(f"{chart}.view.toSVG()")).findall(f".//{SVG}g[@class='mark-text role-axis-label']/{SVG}text")]
+        self.assertTrue(any(word.startswith("10") for word in words), words)
+        linear = self.browser.evaluate("[...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'profile').chart.byPowers")
+        self.assertFalse(linear)
+
+    def test_ticks_of_powers(self):
+        for domain, count, wanted in (([1e-3, 1e3], 8, [1e-3, 1e-2, 0.1, 1, 10, 100, 1000]), ([1e-9, 1e9], 5, [1e-8, 1e-4, 1, 1e4, 1e8]), ([30, 400], 5, [50, 100, 200])):
+            numpy.testing.assert_allclose(self.browser.evaluate(f"powersWithin({domain}, {count})"), wanted, rtol=1e-12)
+        self.assertEqual(self.browser.evaluate("[0.01, 500, 1e5, 2e-7, 1e-12].map(atPower)"), ["0.01", "500", "10⁵", "2·10⁻⁷", "10⁻¹²"])
+
+    def test_legends_never_overlap(self):
+        names = [f"{'a-rather-long-name-of-a-run-' * (1 + i % 4)}{i}" for i in range(9)]
+        for name in names:
+            (self.folder / name).symlink_to(self.folder / "two")
+        subprocess.run([GRIT, "report", *names, "--out", "many.html"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        for width in (1400, 390):
+            self.browser.resize(width, 1000)
+            try:
+                self.open("many.html")
+                boxes, below, bottom = self.browser.evaluate("""(() => { const plot = document.querySelector('figure.chart .plot'), box = (one) => { const {left, right, top, bottom} = one.getBoundingClientRect(); return [left, right, top, bottom]; };
+                    return [[...plot.querySelectorAll('.legend-names text')].map(box), Math.max(...[...plot.querySelectorAll('.role-axis-title text')].map((one) => box(one)[3])), box(plot.querySelector('svg'))]; })()""")
+            finally:
+                self.browser.resize(1400, 1000)
+            self.assertEqual(len(boxes), len(names))
+            for i, (left, right, top, end) in enumerate(boxes):
+                self.assertTrue(bottom[0] <= left < right <= bottom[1] and below <= top < end <= bottom[3], f"entry {i} at {width}: {boxes[i]} in {bottom} below {below}")
+                for other in boxes[:i]:
+                    self.assertTrue(right <= other[0] or other[1] <= left or end <= other[2] + 1 or other[3] <= top + 1, f"entry {i} at {width}")
+
+    def test_one_grain_far_away_leaves_the_others_in_sight(self):
+        bodies = {**SCENE["bodies"], "lost": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [{"position": ["4 mm", "3 mm", "500 mm"], "radius": "0.5 mm"}]}}}
+        run(self.folder, "lost", bodies=bodies)
+        self.browser.open(self.folder / "lost/report.html")
+        self.browser.wait(f"{GRAINS}?.painted")
+        self.assertEqual(self.browser.evaluate(f"{GRAINS}.now.count"), 41)
+        extent = self.browser.evaluate(f"{GRAINS}.extent()")
+        self.assertLess(extent["high"][2], 0.0125)
+        self.assertIn("far from all others, and out of sight at first: 1", self.browser.evaluate(f"{GRAINS}.about.textContent"))
+        self.browser.evaluate(f"{GRAINS}.change({{colour: 'layers'}})")
+        self.browser.wait(f"{GRAINS}.layers && {GRAINS}.now === {GRAINS}.painted")
+        self.assertGreater(len(set(self.browser.evaluate(f"[...{GRAINS}.layers.values()]"))), 7, "layers are of the others")
 
     def test_layers_are_those_of_the_start_of_a_stage(self):
         self.go(5)
@@ -402,12 +545,65 @@ class Page(unittest.TestCase):
         self.assertIn(f"coordination number {float(format(wanted[place['i']], '.4g')):g}", told)
         name, svg = self.saved("figure.map", "SVG")
         self.assertEqual(name, f"one-packing-{field}-005.svg")
-        self.assertGreaterEqual(len(xml.etree.ElementTree.fromstring(bytes(svg).decode()).findall(".//{http://www.w3.org/2000/svg}rect")), len(cells) + 64)
+        self.assertEqual(len(xml.etree.ElementTree.fromstring(bytes(svg).decode()).findall(f".//{SVG}image")), 2, "cells that meet, and what their colours mean")
         lines = bytes(self.saved("figure.map", "CSV")[1]).decode().splitlines()
         self.assertEqual(len(lines), len(cells) + 1)
         self.assertTrue(lines[0].startswith("x [m],y [m],z [m],size x [m],size y [m],size z [m]," + field))
         numpy.testing.assert_allclose([float(line.split(",")[2]) for line in lines[1:]], cells[:, 2], rtol=1e-6)
         numpy.testing.assert_allclose([float(line.split(",")[6]) for line in lines[1:]], wanted, rtol=1e-6)
+
+    def test_maps_have_axes_walls_and_no_seams(self):
+        self.browser.evaluate(f"{MAP}.takeField('packing/void_ratio')")
+        self.go(5)
+        root = xml.etree.ElementTree.fromstring(bytes(self.saved("figure.map", "SVG")[1]).decode())
+        words = [text.text for text in root.findall(f".//{SVG}text")]
+        for wanted in ("x [mm]", "z [mm]", "void ratio", "0", "2", "8"):
+            self.assertIn(wanted, words)
+        # The box's sides at 0 and 8 mm and its floor, where the axes say that they are.
+        layout = f"{MAP}.arranged(fileSize, views.xz)"
+        across = self.browser.evaluate(f"(() => {{ const layout = {layout}; return [layout.across(0), layout.across(8e-3), layout.down(0)]; }})()")
+        walls = [[float(line.get(name)) for name in ("x1", "y1", "x2", "y2")] for line in root.findall(f".//{SVG}g/{SVG}line")]
+        for x in across[:2]:
+            self.assertTrue(any(abs(x1 - x) < 0.01 and abs(x2 - x) < 0.01 and abs(y1 - y2) > 20 for x1, y1, x2, y2 in walls), "a side")
+        self.assertTrue(any(abs(y1 - across[2]) < 0.01 and abs(y2 - across[2]) < 0.01 for _, y1, _, y2 in walls), "the floor")
+        # Along a line of pixels through the cells there is nothing but their colours.
+        seen, expected = self.browser.evaluate(f"""(async () => {{ const map = {MAP}, layout = {layout}, {{cells}} = map.now, {{frame}} = layout;
+            const {{owner, width, height}} = map.paint(new CanvasPen(make('canvas').getContext('2d')), filesLook(), layout, filePixels);
+            const values = cells.list(map.place(map.field, 0)), row = Math.floor((layout.down(cells.centre[2][map.shown[0]]) - frame.top) * filePixels);
+            const list = Array.from({{length: width}}, (_, column) => owner[row * width + column]), first = list.findIndex((k) => k >= 0), last = list.findLastIndex((k) => k >= 0);
+            return [list.slice(first, last + 1), map.shown.filter((i) => Math.abs(cells.centre[2][i] - cells.centre[2][map.shown[0]]) < 0.4 * cells.size[2][i]).length]; }})()""")
+        self.assertNotIn(-1, seen)
+        self.assertEqual(len(set(seen)), expected, "all cells of a row")
+
+    def test_cells_that_have_moved_apart_meet(self):
+        """Of two by two cells, ten pixels wide, in rows that gape and overlap; and one that is by itself."""
+        owner = self.browser.evaluate("""(() => { const {x, y} = {x: [10, 22, 11, 20, 60], y: [10, 10, 21, 21, 10]}, half = x.map(() => 5);
+            return [...cellsByPixel({x, y, w: half, h: half}, 70, 30)]; })()""")
+        image = numpy.array(owner).reshape(30, 70)
+        self.assertEqual(list(image[10, 4:28]), [-1] + [0] * 11 + [1] * 11 + [-1])
+        self.assertNotIn(-1, image[6:25, 7:24], "whatever cells have moved apart, and where four of them have")
+        self.assertEqual(list(image[21, 6:25]), [2] * 10 + [3] * 9, "half of an overlap for each")
+        self.assertEqual(set(image[10, 27:55]), {-1}, "what is far from others stays so")
+        self.assertEqual(list(image[10, 55:66]), [4] * 10 + [-1])
+
+    def test_a_colour_scale_is_of_the_field_and_not_of_its_values(self):
+        for number in (1, 5):
+            self.go(number)
+            for field, component, table in (("void_ratio", 0, "sequential"), ("stress", 0, "sequential"), ("stress", 2, "diverging"), ("stress", 8, "sequential")):
+                self.browser.evaluate(f"(() => {{ {MAP}.takeField('packing/{field}'); {MAP}.state.component = {component}; }})()")
+                for values in ([1, 2], [-2, 3]):
+                    self.browser.evaluate(f"Object.values({MAP}.field.ranges).forEach((ranges) => (ranges[{component}] = {values}))")
+                    self.browser.evaluate(f"{MAP}.turn({number})")
+                    self.assertEqual(self.browser.evaluate(f"{MAP}.colours.table === colourTables.{table}"), True, f"{field} {component} of {values}")
+                low, high, kind = self.browser.evaluate(f"(({{low, high, table}}) => [low, high, Object.keys(colourTables).find((name) => colourTables[name] === table)])({MAP}.colours)")
+                self.assertEqual(kind, table, field)
+                if table == "diverging":
+                    self.assertEqual(low, -high)
+
+    def test_the_most_telling_map_is_the_first(self):
+        self.assertEqual(self.browser.evaluate("[...document.querySelector('[name=field]').options].map(({value}) => value)"),
+                         ["packing/void_ratio", "packing/stress", "packing/coordination_number"])
+        self.assertEqual(self.browser.evaluate(f"{MAP}.state.field"), "packing/void_ratio")
 
     def list_chart(self, probe, name):
         """Of a chart of lists its kind and its series as [label, x, y]."""
@@ -419,7 +615,7 @@ class Page(unittest.TestCase):
     def test_profiles_and_directions_are_those_of_the_series(self):
         self.browser.open(self.folder / "lists/report.html")
         self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
-        self.browser.wait("[...document.querySelectorAll('.times .clock')].filter((clock) => clock.textContent).length === 2")
+        self.browser.wait("[...document.querySelectorAll('.times .clock')].filter((clock) => clock.textContent).length === 3")
         numbers = lambda row: [float(value) for value in row]
         with h5py.File(self.folder / "lists/series.h5") as series:
             for probe, name, at, kind in (("moved", "profile", "place", "ListChart"), ("moved", "fluctuation", "place", "ListChart"),
@@ -484,7 +680,7 @@ class Page(unittest.TestCase):
             self.open("one/report.html")
             self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"), 400)
             self.assertEqual(self.browser.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(23, 24, 26)")
-            self.assertIn("#17181a", bytes(self.saved("figure.chart", "SVG")[1]).decode())
+            self.assertIn("#17181a", self.browser.evaluate("document.querySelector('figure.chart').chart.view.background()"))
         finally:
             self.browser.resize(1400, 1000)
             self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])

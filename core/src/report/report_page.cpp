@@ -187,8 +187,9 @@ std::string problems_part(const std::vector<std::string>& problems) {
 
 Description channel_json(const ProbeSeries::Channel& channel, DataElements& data) {
   double largest = 0;
+  bool filled = false;
   for (const double value : channel.sampled.values)
-    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value)), filled = true;
   return {{"name", channel.name},
           {"label", spelled(channel.name)},
           {"unit", channel.sampled.unit},
@@ -198,6 +199,7 @@ Description channel_json(const ProbeSeries::Channel& channel, DataElements& data
           {"coordinate", channel.sampled.coordinate},
           {"components", channel.sampled.components},
           {"samples", channel.sampled.samples},
+          {"filled", filled},
           {"data", data.add_numbers<double>(channel.sampled.values)}};
 }
 

@@ -2,11 +2,13 @@
 "use strict";
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
-function theme() {
-  const style = getComputedStyle(document.documentElement);
+function lookOf(style) {
   const of = (name) => style.getPropertyValue(`--${name}`).trim();
   return { ink: of("ink"), soft: of("soft"), paper: of("paper"), line: of("line"), frame: of("frame") };
 }
+const theme = () => lookOf(getComputedStyle(document.documentElement));
+/** Files go into papers, which are white, whatever the page is read in. */
+const filesLook = () => lookOf([...document.styleSheets[0].cssRules].find(({ selectorText }) => selectorText === ":root").style);
 
 const seriesColour = (place) => report.colours.series[place % report.colours.series.length];
 

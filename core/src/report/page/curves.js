@@ -5,7 +5,8 @@ const componentNames = ({ width, components }) =>
   components.length === width ? components : width === 3 ? ["x", "y", "z"] : width === 9 ? ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] : Array.from({ length: width }, (_, i) => String(i + 1));
 
 // Pixels about the lines, the same for all charts, so that their axes stand below each other.
-const around = { left: 58, right: 20, top: 34, bottom: 44 }, plotHeight = 180, ticksUp = 5;
+const around = { left: 58, right: 20, top: 34, bottom: 44 }, plotHeight = 180;
+const mostPowers = 10; // of ten, along an axis
 const widestForLines = 9; // numbers a sample; more are a list, of which some samples are drawn
 
 /** Smallest and largest finite number. */
@@ -32,10 +33,11 @@ function settled([low, high]) {
   const room = 0.03 * (high - low), step = niceStep((high - low) / ticksUp);
   return [Math.floor((low + room) / step + 1e-9) * step, Math.ceil((high - room) / step - 1e-9) * step];
 }
-/** 1, 2 or 5 times a power of ten, about as large as a number; as axes have their ticks. */
-function niceStep(rough) {
-  const power = 10 ** Math.floor(Math.log10(rough)), lead = rough / power;
-  return power * (lead < Math.SQRT2 ? 1 : lead < Math.sqrt(10) ? 2 : lead < Math.sqrt(50) ? 5 : 10);
+/** Whole powers of ten about the numbers above zero, at most so many. */
+function settledPowers(lists, most) {
+  const [low, high] = rangeOf(lists.map((list) => list.filter((value) => value > 0)));
+  const last = Math.ceil(Math.log10(high) - 1e-9), first = Math.max(last - most, Math.min(last - 1, Math.floor(Math.log10(low) + 1e-9)));
+  return low > 0 ? [+`1e${first}`, +`1e${last}`] : [0.1, 1];
 }
 
 /** Places of the points that a line of `pixels` needs: of each piece its lowest and highest. */
@@ -62,7 +64,10 @@ function pointsToDraw(y, pixels) {
 const whenIdle = (act) => (window.requestIdleCallback ?? ((run) => setTimeout(run, 100)))(act);
 
 /** A value with its unit. */
-const told = (value, { shown_unit }) => readable(value) + ofUnit(shown_unit);
+const told = (value, { shown_unit }) => readable(value) + (Number.isFinite(value) ? ofUnit(shown_unit) : "");
+/** Vega draws nothing where there is no number, and would draw an infinite one. */
+const drawable = (value) => (Number.isFinite(value) ? value : null);
+const pageFont = () => getComputedStyle(document.body).fontFamily;
 
 /** One channel of one probe over an abscissa, of all runs that have it. */
 class Chart {
@@ -73,8 +78,9 @@ class Chart {
     this.plot = make("div", { className: "plot" });
     this.values = make("output", { className: "values" });
     const tool = (text, title, act) => make("button", { type: "button", title, onclick: () => act.call(this) }, text);
+    this.about = make("span", { className: "about" }, this.channel.about);
     this.figure = make("figure", { className: "chart", tabIndex: 0 }, this.plot,
-      make("figcaption", {}, this.values, make("span", { className: "about" }, this.channel.about),
+      make("figcaption", {}, this.values, this.about,
         make("span", { className: "tools" }, tool("SVG", "Save as SVG", this.saveSvg), tool("PNG", "Save as PNG", this.savePng),
           tool("CSV", "Save the numbers, in SI", this.saveCsv))));
     this.figure.chart = this;
@@ -100,18 +106,25 @@ class Chart {
   }
 
   get abscissa() {
-    return this.group.abscissa();
+    return this.group.abscissaOf(this.name);
+  }
+  /** Whether its axes go by powers of ten. */
+  get byPowers() {
+    return false;
   }
 
-  /** [{run, label, x, y, colour, dashed}], x and y as in series.h5. */
+  /** [{run, label, x, y, colour, dashed}], x and y as in series.h5, of each run that has both, in the same units; `without` names the others. */
   async load() {
-    const series = [];
+    const series = [], { abscissa } = this, without = [];
     for (const { run, place, channel, probe } of this.group.channelsNamed(this.name)) {
-      const all = await numbersOf(channel.data);
       const parts = componentNames(channel);
       const many = report.runs.length > 1;
-      const against = probe.channels.find((one) => one.name === this.abscissa.name);
-      if (!against && this.group.channelsNamed(this.abscissa.name).length > 0) continue; // this run has not got it
+      const against = probe.channels.find((one) => one.name === abscissa.name && one.unit === abscissa.unit);
+      if (channel.unit !== this.channel.unit || (!against && abscissa.data !== undefined)) {
+        without.push(run.name);
+        continue;
+      }
+      const all = await numbersOf(channel.data);
       const x = against ? await numbersOf(against.data) : Float64Array.from({ length: all.length / channel.width }, (_, i) => i);
       parts.forEach((part, k) => {
         const y = channel.width === 1 ? all : Float64Array.from({ length: all.length / channel.width }, (_, i) => all[i * channel.width + k]);
@@ -119,7 +132,7 @@ class Chart {
         series.push({ run, label, x, y, colour: many && channel.width === 1 ? place : series.length });
       });
     }
-    return [...series, ...(await this.references(series))];
+    return Object.assign([...series, ...(await this.references(series))], { without });
   }
   /** What the descriptions have this channel compared with: curves over this abscissa, and values all along it. */
   async references(series) {
@@ -144,9 +157,11 @@ class Chart {
       one.shownX = shown(one.x, abscissa.factor);
       one.shownY = shown(one.y, channel.factor);
     }
+    this.series.forEach((one, place) => (one.s = String(place)));
     this.settle();
+    this.about.textContent = channel.about + (series.without?.length > 0 ? `; not against ${abscissa.label}: ${series.without.join(", ")}` : "");
     this.view?.finalize();
-    this.view = new vega.View(vega.parse(this.spec()), { renderer: "svg", container: this.plot, hover: false });
+    this.view = new vega.View(vega.parse(this.spec(this.width, theme())), { renderer: "svg", container: this.plot, hover: false });
     this.view.run();
     this.plot.setAttribute("role", "img"); // the library has given it another one
     this.plot.setAttribute("aria-label", this.inWords());
@@ -155,6 +170,12 @@ class Chart {
 
   /** What the axes reach. */
   settle() {
+    if (this.byPowers) {
+      const [low, high] = rangeOf(this.series.map((one) => one.shownX.filter((value) => value > 0)));
+      this.xDomain = low > 0 && high > low ? [low, high] : [0.1, 1];
+      this.yDomain = settledPowers(this.series.map((one) => one.shownY), mostPowers);
+      return;
+    }
     this.xDomain = rangeOf(this.series.map((one) => one.shownX));
     if (this.xDomain[0] === this.xDomain[1]) this.xDomain = [this.xDomain[0] - 0.5, this.xDomain[1] + 0.5];
     this.yDomain = settled(rangeOf(this.series.map((one) => one.shownY)));
@@ -165,9 +186,14 @@ class Chart {
     const each = this.series.map(({ label, shownX, shownY }) => `${label} ${between(shownY, this.channel)} over ${between(shownX, this.abscissa)}`);
     return `${this.channel.label} against ${this.abscissa.label}: ${each.join("; ")}`;
   }
-  /** Where a point of a series is drawn. */
+  /** Where a point of a series is drawn; what is null there, is not. */
   pointOf({ shownX, shownY }, i) {
-    return { x: shownX[i], y: shownY[i] };
+    const there = (value) => (this.byPowers && !(value > 0) ? null : drawable(value));
+    return { x: there(shownX[i]), y: there(shownY[i]) };
+  }
+  /** How far along an axis a value is, from 0 to 1. */
+  along(value, [low, high]) {
+    return this.byPowers ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
   }
 
   /** With what its group has read anew. */
@@ -179,67 +205,63 @@ class Chart {
     this.show(places?.length === this.series.length ? places : null);
   }
 
-  spec() {
-    const look = theme();
-    const values = [];
-    for (const { label, shownX, shownY } of this.series)
-      for (const i of pointsToDraw(shownY, 800)) values.push({ x: shownX[i], y: shownY[i], s: label });
-    const font = getComputedStyle(document.body).fontFamily;
+  /** For Vega, of so many pixels between its axes. */
+  spec(width, look) {
+    const values = [], font = pageFont();
+    for (const one of this.series) for (const i of pointsToDraw(one.shownY, 800)) values.push({ ...this.pointOf(one, i), s: one.s });
     const axis = { domain: false, ticks: false, gridColor: look.line, labelColor: look.soft, titleColor: look.ink, labelFont: font,
       titleFont: font, labelFontSize: 11.5, titleFontSize: 12.5, titleFontWeight: 400, grid: true, labelOverlap: true,
       encode: { labels: { update: { text: { signal: "replace(replace(datum.label, /,/g, '\u202f'), '-', '−')" } } } }, labelPadding: 6, titlePadding: 8, zindex: 0 };
     const at = (field) => ({ scale: field, field });
-    const visible = "isValid(datum.x) && isValid(datum.y)";
-    const legends = this.series.length < 2 ? [] : [{ stroke: "colour", strokeDash: "dash", orient: "bottom", direction: "horizontal", symbolType: "stroke", symbolStrokeWidth: 3,
-      columns: this.legendColumns, offset: 6, labelColor: look.ink, labelFont: font, labelFontSize: 11.5, labelLimit: 220, rowPadding: 3 }];
+    const visible = "isValid(datum.x) && isValid(datum.y)", keys = this.series.map(({ s }) => s);
+    const places = this.series.length < 2 ? [] : legendPlaces(this.series, width), legend = legendParts(places, around.bottom + 6, look, font);
+    const scaleOf = (name, range, domain) => ({ name, type: this.byPowers ? "log" : "linear", range, domain, nice: false, ...(this.byPowers ? {} : { zero: false }) });
     return {
-      width: this.width, height: plotHeight, padding: { ...around, bottom: around.bottom + this.legendHeight }, autosize: "none",
+      width, height: plotHeight, padding: { ...around, bottom: around.bottom + legendHeight(places) }, autosize: "none",
       background: look.paper,
-      title: { text: titled(this.channel.label, this.channel.shown_unit), anchor: "start", frame: "group", dx: -around.left, color: look.ink, font, fontSize: 13.5, fontWeight: 600, offset: 8 },
-      data: [{ name: "curves", values }, { name: "near", values: [] }],
+      data: [{ name: "curves", values }, { name: "near", values: [] }, legend.data],
       scales: [
-        { name: "x", type: "linear", range: "width", domain: this.xDomain, nice: false, zero: false },
-        { name: "y", type: "linear", range: "height", domain: this.yDomain, nice: false, zero: false },
-        { name: "colour", type: "ordinal", domain: this.series.map((one) => one.label), range: this.series.map((one) => this.colour(one)) },
-        { name: "dash", type: "ordinal", domain: this.series.map((one) => one.label), range: this.series.map((one) => this.dash(one)) },
+        scaleOf("x", "width", this.xDomain),
+        scaleOf("y", "height", this.yDomain),
+        { name: "colour", type: "ordinal", domain: keys, range: this.series.map((one) => this.colour(one, look)) },
+        { name: "dash", type: "ordinal", domain: keys, range: this.series.map((one) => this.dash(one)) },
       ],
       axes: [
-        { ...axis, scale: "x", orient: "bottom", title: titled(this.abscissa.label, this.abscissa.shown_unit), tickCount: { signal: "max(2, floor(width / 80))" } },
-        { ...axis, scale: "y", orient: "left", tickCount: ticksUp },
+        { ...axis, scale: "x", orient: "bottom", title: titled(this.abscissa.label, this.abscissa.shown_unit), ...this.ticks(this.xDomain, ticksAcross(width)) },
+        { ...axis, scale: "y", orient: "left", ...this.ticks(this.yDomain, ticksUp) },
       ],
-      legends,
       marks: [
-        { type: "rule", encode: { update: { x: { value: 0 }, x2: { field: { group: "width" } }, y: { scale: "y", value: 0 }, stroke: { value: look.frame },
-          opacity: { signal: "inrange(0, domain('y')) ? 1 : 0" } } } },
-        { type: "group", from: { facet: { name: "one", data: "curves", groupby: "s" } },
+        { type: "text", name: "title", interactive: false, encode: { update: { x: { value: 2 - around.left }, y: { value: -16 }, text: { value: titled(this.channel.label, this.channel.shown_unit) },
+          fill: { value: look.ink }, font: { value: font }, fontSize: { value: 13.5 }, fontWeight: { value: 600 } } } },
+        ...(this.byPowers ? [] : [{ type: "rule", encode: { update: { x: { value: 0 }, x2: { field: { group: "width" } }, y: { scale: "y", value: 0 }, stroke: { value: look.frame },
+          opacity: { signal: "inrange(0, domain('y')) ? 1 : 0" } } } }]),
+        { type: "group", encode: { update: { width: { signal: "width" }, height: { signal: "height" }, clip: { value: this.byPowers } } }, from: { facet: { name: "one", data: "curves", groupby: "s" } },
           marks: [{ type: "line", interactive: false, from: { data: "one" }, encode: { update: { x: at("x"), y: at("y"), defined: { signal: visible },
             stroke: { scale: "colour", field: "s" }, strokeDash: { scale: "dash", field: "s" }, strokeWidth: { value: 2 }, strokeJoin: { value: "round" }, strokeCap: { value: "round" } } } }] },
         { type: "rule", interactive: false, from: { data: "near" }, encode: { update: { x: at("x"), y: { value: 0 }, y2: { field: { group: "height" } },
           stroke: { value: look.frame }, strokeDash: { value: [3, 3] }, opacity: { signal: "datum.k === 0 ? 1 : 0" } } } },
         { type: "symbol", interactive: false, from: { data: "near" }, encode: { update: { x: at("x"), y: at("y"), size: { value: 60 },
           fill: { scale: "colour", field: "s" }, stroke: { value: look.paper }, strokeWidth: { value: 1.5 } } } },
+        ...legend.marks,
       ],
     };
+  }
+  /** Of an axis. */
+  ticks(domain, count) {
+    if (!this.byPowers) return { tickCount: count };
+    const values = powersWithin(domain, count), words = Object.fromEntries(values.map((value) => [value, atPower(value)]));
+    return { values, encode: { labels: { update: { text: { signal: `(${JSON.stringify(words)})[datum.value]` } } } } };
   }
 
   /** Where colours come again, and for what is measured, lines are broken. */
   dash({ colour, reference }) {
     return reference ? [[2, 4], [8, 3, 2, 3]][colour % 2] : colour < report.colours.series.length ? [1, 0] : [7, 4];
   }
-  colour({ colour, reference }) {
-    return reference ? theme().soft : seriesColour(colour);
+  colour({ colour, reference }, look = theme()) {
+    return reference ? look.soft : seriesColour(colour);
   }
   get width() {
     return Math.max(160, this.plot.clientWidth - around.left - around.right);
-  }
-  get legendColumns() {
-    const pen = document.createElement("canvas").getContext("2d");
-    pen.font = `11.5px ${getComputedStyle(document.body).fontFamily}`;
-    const longest = Math.min(220, Math.max(...this.series.map((one) => pen.measureText(one.label).width)));
-    return Math.max(1, Math.floor(this.width / (longest + 28)));
-  }
-  get legendHeight() {
-    return this.series.length < 2 ? 0 : 6 + 15 * Math.ceil(this.series.length / this.legendColumns);
   }
   /** A legend may need more rows then: the chart is drawn anew. */
   fit() {
@@ -256,16 +278,14 @@ class Chart {
     const area = this.area();
     const x = (event.clientX - area.left) / area.width, y = (area.bottom - event.clientY) / area.height;
     if (x < -0.02 || x > 1.02 || y < -0.1 || y > 1.1) return this.show(null);
-    const [y0, y1] = this.view.scale("y").domain();
-    this.show(this.series.map((one) => this.nearest(one, x, y, area, y0, y1)));
+    this.show(this.series.map((one) => this.nearest(one, x, y, area)));
   }
 
   /** The point nearest to a place in the area; across counts ten times as much as up and down. */
-  nearest({ shownX, shownY }, x, y, area, y0, y1) {
-    const [x0, x1] = this.xDomain;
+  nearest({ shownX, shownY }, x, y, area) {
     let best = -1, least = Infinity;
     for (let i = 0; i < shownX.length; ++i) {
-      const dx = ((shownX[i] - x0) / (x1 - x0) - x) * area.width, dy = 0.1 * ((shownY[i] - y0) / (y1 - y0) - y) * area.height;
+      const dx = (this.along(shownX[i], this.xDomain) - x) * area.width, dy = 0.1 * (this.along(shownY[i], this.yDomain) - y) * area.height;
       const distance = dx * dx + dy * dy;
       if (distance < least) (least = distance), (best = i);
     }
@@ -275,11 +295,11 @@ class Chart {
   /** Marks a point of each series, and writes its values; null: none. */
   show(places) {
     this.places = places;
-    const points = (places ?? []).flatMap((i, k) => (i < 0 ? [] : [{ ...this.pointOf(this.series[k], i), s: this.series[k].label, k, i }]));
-    this.view?.data("near", points).runAsync();
+    const points = (places ?? []).flatMap((i, k) => (i < 0 ? [] : [{ ...this.pointOf(this.series[k], i), s: this.series[k].s, k, i }]));
+    this.view?.data("near", points.filter(({ x, y }) => x !== null && y !== null)).runAsync();
     this.values.replaceChildren(...(points.length === 0 ? [] : [`${this.abscissa.label} ${told(this.series[points[0].k].shownX[points[0].i], this.abscissa)}`]),
-      ...points.map(({ s, k, i }) => make("span", {}, make("span", { className: "key", style: `background:${this.colour(this.series[k])}` }),
-        `${s} ${told(this.series[k].shownY[i], this.channel)}`)));
+      ...points.map(({ k, i }) => make("span", {}, make("span", { className: "key", style: `background:${this.colour(this.series[k])}` }),
+        `${this.series[k].label} ${told(this.series[k].shownY[i], this.channel)}`)));
   }
 
   /** The sample whose abscissa is nearest; of those that are as near, the one as far along. */
@@ -308,11 +328,15 @@ class Chart {
   get fileName() {
     return `${report.runs.map((run) => run.name).join("-")}-${this.group.name}-${this.name}`;
   }
+  /** What goes into files. */
+  fileView() {
+    return new vega.View(vega.parse(this.spec(fileSize.width - around.left - around.right, filesLook())), { renderer: "none" });
+  }
   async saveSvg() {
-    save(`${this.fileName}.svg`, await this.view.toSVG(), "image/svg+xml");
+    save(`${this.fileName}.svg`, await this.fileView().toSVG(), "image/svg+xml");
   }
   async savePng() {
-    const canvas = await this.view.toCanvas(2);
+    const canvas = await this.fileView().toCanvas(filePixels);
     canvas.toBlob((blob) => save(`${this.fileName}.png`, blob));
   }
   saveCsv() {
@@ -330,18 +354,18 @@ class ProbeCharts {
   constructor(name) {
     this.name = name;
     this.read();
-    const { x } = report.runs[0].picture ?? {};
-    this.against = x?.startsWith(`${name}/`) && this.scalars().includes(x.slice(name.length + 1)) ? x.slice(name.length + 1) : "time";
+    this.against = this.abscissas.find((one) => this.scalars().includes(one)) ?? "time";
   }
   /** What the report has of this probe now. */
   read() {
     const { name } = this;
     this.probes = report.runs.map((run, place) => ({ run, place, probe: run.probes.find((one) => one.name === name) })).filter(({ probe }) => probe);
     this.names = [...new Set(this.probes.flatMap(({ probe }) => probe.channels.map((channel) => channel.name)))];
-    const { y } = report.runs[0].picture ?? {};
-    this.shown = (y ?? []).filter((one) => one.startsWith(`${name}/`)).map((one) => one.slice(name.length + 1));
+    const here = (names) => [...new Set(names)].filter((one) => one?.startsWith(`${name}/`)).map((one) => one.slice(name.length + 1));
+    this.abscissas = here(report.runs.map(({ picture }) => picture?.x));
+    this.shown = here(report.runs.flatMap(({ picture }) => picture?.y ?? []));
     const rank = (one) => (this.shown.includes(one) ? this.shown.indexOf(one) : this.shown.length);
-    const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.samples > 0);
+    const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.filled);
     this.ordered = this.names.filter((one) => one !== "time" && sampled(one) && !this.isCoordinate(one)).sort((a, b) => rank(a) - rank(b));
     this.choice?.read(this.channelsNamed("time"));
   }
@@ -360,8 +384,8 @@ class ProbeCharts {
   }
   chart(name) {
     if (!this.isList(name)) return new Chart(this, name);
-    const angle = /^(rad|deg)/.test(this.coordinateOf(this.channelsNamed(name)[0].channel)?.unit ?? "");
-    return angle ? new PolarChart(this, name) : new ListChart(this, name);
+    const unit = this.coordinateOf(this.channelsNamed(name)[0].channel)?.unit ?? "";
+    return new (/^(rad|deg)/.test(unit) ? PolarChart : unit === "Hz" ? SpectrumChart : ListChart)(this, name);
   }
   channelsNamed(name) {
     return this.probes.map((one) => ({ ...one, channel: one.probe.channels.find((channel) => channel.name === name) })).filter(({ channel }) => channel);
@@ -369,8 +393,10 @@ class ProbeCharts {
   scalars() {
     return this.names.filter((name) => this.channelsNamed(name).every(({ channel }) => channel.width === 1));
   }
-  abscissa() {
-    return this.channelsNamed(this.against)[0]?.channel ?? { name: "sample", label: "sample", unit: "1", shown_unit: "1", factor: 1 };
+  /** Of a channel's chart: the one that is chosen, where a run has both; else what a description's picture has, or time. */
+  abscissaOf(name) {
+    const runs = this.channelsNamed(name).map(({ probe }) => probe.channels), named = (wanted) => runs.map((channels) => channels.find((one) => one.name === wanted && one.filled)).find(Boolean);
+    return [this.against, ...this.abscissas, "time"].filter((one) => one !== name).map(named).find(Boolean) ?? { name: "sample", label: "sample", unit: "1", shown_unit: "1", factor: 1 };
   }
   fill(parent) {
     const choice = make("select", { onchange: () => this.turn(choice.value) },

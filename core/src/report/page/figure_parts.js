@@ -1,4 +1,4 @@
-// What figures in metres share: ways to look, units that read well, a bar of length, a scale of colours.
+// What figures in metres share: ways to look, units that read well, a bar of length, a scale of colours, the size of files.
 "use strict";
 
 // Axis to the right, upwards, along the line of sight with its sign away from the reader; as in picture.svg.
@@ -16,21 +16,33 @@ function prefixed(unit, largest) {
   const [size, prefix] = prefixes.find(([one]) => largest >= one) ?? prefixes.at(-1);
   return [1 / size, prefix + unit];
 }
-/** 1, 2 or 5 times a power of ten, at most `most`. */
-function niceBelow(most) {
-  const power = 10 ** Math.floor(Math.log10(most));
-  return [5, 2, 1].map((lead) => lead * power).find((one) => one <= most * 1.0001) ?? power;
+
+// Files are as large whatever the screen is: as wide as a column of text, in pixels that are enough to print it.
+const fileSize = { width: 600, tallest: 700 }, filePixels = 3; // CSS pixels, and pixels of a PNG for each of them
+
+/** The room that figures have on the screen. */
+const sizeOf = (stage) => ({ width: stage.clientWidth, tallest: Math.min(900, Math.max(300, 0.78 * innerHeight)) });
+function fitStage(stage, { height }) {
+  if (stage.style.height !== `${height}px`) stage.style.height = `${height}px`;
 }
 
-/** Where metres go on a stage, so that a box fills it; `zoom` and `pan` [m] go closer. Sets the stage's height. */
+/** A canvas of a file, `draw`n with the pen of one pixel a CSS pixel. */
+function fileCanvas({ width, height }, draw) {
+  const canvas = make("canvas", { width: filePixels * width, height: filePixels * height }), context = canvas.getContext("2d");
+  context.fillStyle = filesLook().paper;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.setTransform(filePixels, 0, 0, filePixels, 0, 0);
+  draw(new CanvasPen(context), context);
+  return canvas;
+}
+
+/** Where metres go on a stage, so that a box fills it; `zoom` and `pan` [m] go closer. */
 class Layout {
-  constructor(stage, view, low, high, zoom = 1, pan = [0, 0]) {
-    const margin = (this.margin = { left: 14, right: 92, top: 14, bottom: 44 });
+  constructor({ width, tallest }, margin, view, low, high, zoom = 1, pan = [0, 0]) {
+    Object.assign(this, { width, margin });
     const across = Math.max(high[view.right] - low[view.right], 1e-9), upward = Math.max(high[view.up] - low[view.up], 1e-9);
-    this.width = stage.clientWidth;
-    const inner = Math.max(80, this.width - margin.left - margin.right);
-    this.height = Math.round(Math.min(Math.max((inner * upward) / across + margin.top + margin.bottom, 240), Math.max(300, 0.78 * innerHeight), 900));
-    if (stage.style.height !== `${this.height}px`) stage.style.height = `${this.height}px`;
+    const inner = Math.max(80, width - margin.left - margin.right);
+    this.height = Math.round(Math.min(Math.max((inner * upward) / across + margin.top + margin.bottom, 240), tallest));
     this.metresPerPixel = Math.max(across / inner, upward / (this.height - margin.top - margin.bottom)) / zoom;
     this.centre = [
       (low[view.right] + high[view.right]) / 2 + pan[0] + (this.metresPerPixel * (margin.right - margin.left)) / 2,
@@ -44,14 +56,37 @@ class Layout {
   down(metres) {
     return this.height / 2 - (metres - this.centre[1]) / this.metresPerPixel;
   }
+  metresAcross(pixels) {
+    return this.centre[0] + (pixels - this.width / 2) * this.metresPerPixel;
+  }
+  metresUp(pixels) {
+    return this.centre[1] - (pixels - this.height / 2) * this.metresPerPixel;
+  }
   /** Metres to the right and upwards at a place on the screen. */
   metresAt(stage, { clientX, clientY }) {
     const { left, top } = stage.getBoundingClientRect();
-    return [this.centre[0] + (clientX - left - this.width / 2) * this.metresPerPixel, this.centre[1] - (clientY - top - this.height / 2) * this.metresPerPixel];
+    return [this.metresAcross(clientX - left), this.metresUp(clientY - top)];
   }
 }
 
-/** Where grains and maps are drawn: left of what colours mean. */
+/** Where the plane at a depth cuts triangles: from and to, to the right and upwards [m]. */
+function cutBy(view, corners, depth) {
+  const lines = [];
+  for (let t = 0; t + 8 < corners.length; t += 9) {
+    const points = [];
+    for (let k = 0; k < 3; ++k) {
+      const a = t + 3 * k, b = t + 3 * ((k + 1) % 3);
+      const before = corners[a + view.depth] - depth, after = corners[b + view.depth] - depth;
+      if (before < 0 === after < 0) continue;
+      const share = before / (before - after), between = (axis) => corners[a + axis] + share * (corners[b + axis] - corners[a + axis]);
+      points.push([between(view.right), between(view.up)]);
+    }
+    if (points.length === 2) lines.push(points);
+  }
+  return lines;
+}
+
+/** Where grains are drawn: left of what colours mean. */
 const panel = ({ width, height, margin }) => [0, 0, Math.max(0, width - margin.right + 8), height];
 
 /** A bar that says how long things are, at the lower left. */
@@ -62,18 +97,23 @@ function drawLengthBar(pen, look, { width, height, metresPerPixel, margin }) {
   pen.text(margin.left + long / metresPerPixel + 8, y + 4, `${+(long * factor).toPrecision(3)} ${unit}`, look.ink);
 }
 
-/** What colours mean, at the upper right; numbers are times `factor`, in `unit`. */
-function drawColourScale(pen, look, { width, height, low, high, table, label, unit, factor, note }) {
-  const tall = Math.min(240, height - 110), left = width - 66, top = 46, pieces = 64;
+/** What colours mean: a bar with its upper end at `left`, `top`; numbers are times `factor`. */
+function drawColourBar(pen, look, { left, top, tall, low, high, table, factor }) {
+  const bar = make("canvas", { width: 1, height: table.length }), context = bar.getContext("2d");
+  table.forEach((colour, i) => ((context.fillStyle = rgb(colour)), context.fillRect(0, table.length - 1 - i, 1, 1)));
+  pen.image(bar, left, top, 13, tall);
+  const step = niceStep(((high - low) * factor) / 4);
+  for (const value of multiples(step, low * factor, high * factor)) {
+    const at = top + tall * (1 - (value / factor - low) / (high - low));
+    pen.line(left + 13, at, left + 17, at, look.frame, 1);
+    pen.text(left + 20, at + 4, atTick(value, step), look.ink, "start", 11.5);
+  }
+}
+/** The same at the upper right, with what it is of. */
+function drawColourScale(pen, look, { width, height, label, unit, note, ...scale }) {
+  const tall = Math.min(240, height - 110), top = 46;
   pen.text(width - 2, 20, label, look.ink, "end", 12.5);
   if (unit !== "1") pen.text(width - 2, 35, `[${writtenUnit(unit)}]`, look.soft, "end", 11.5);
-  for (let i = 0; i < pieces; ++i) pen.box(left, top + (tall * (pieces - 1 - i)) / pieces, 13, tall / pieces + 0.6, rgb(table[Math.round((i / (pieces - 1)) * 255)]));
-  const step = niceBelow((high - low) / 3), shown = step * factor;
-  const words = (value) => (shown >= 1e5 || shown < 1e-5 ? value.toExponential(1) : value.toFixed(Math.max(0, -Math.floor(Math.log10(shown) + 1e-9)))).replace("-", "−");
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
-    const at = top + tall * (1 - (k * step - low) / (high - low));
-    pen.line(left + 13, at, left + 17, at, look.frame, 1);
-    pen.text(left + 20, at + 4, words(k * shown || 0), look.ink, "start", 11.5);
-  }
+  drawColourBar(pen, look, { left: width - 66, top, tall, ...scale });
   if (note) pen.text(width - 2, top + tall + 18, note, look.soft, "end", 11);
 }

@@ -166,10 +166,18 @@ class CanvasPen {
     this.context.fillStyle = fill;
     this.context.fillRect(x, y, width, height);
   }
-  text(x, y, words, colour, anchor = "start", size = 12) {
+  text(x, y, words, colour, anchor = "start", size = 12, upwards = false, weight = 400) {
     const c = this.context;
-    c.fillStyle = colour, c.font = `${size}px ${this.font}`, c.textAlign = anchor === "middle" ? "center" : anchor;
-    c.fillText(words, x, y);
+    c.fillStyle = colour, c.font = `${weight} ${size}px ${this.font}`, c.textAlign = anchor === "middle" ? "center" : anchor;
+    c.save(), c.translate(x, y);
+    if (upwards) c.rotate(-Math.PI / 2);
+    c.fillText(words, 0, 0);
+    c.restore();
+  }
+  /** A canvas, each of its pixels as it is. */
+  image(canvas, x, y, width, height) {
+    this.context.imageSmoothingEnabled = false;
+    this.context.drawImage(canvas, x, y, width, height);
   }
   /** What `draw` does is seen within a box alone. */
   within(box, draw) {
@@ -198,9 +206,14 @@ class SvgPen {
     const n = SvgPen.number;
     this.parts.push(`<rect x="${n(x)}" y="${n(y)}" width="${n(width)}" height="${n(height)}" fill="${fill}"/>`);
   }
-  text(x, y, words, colour, anchor = "start", size = 12) {
-    const safe = words.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
-    this.parts.push(`<text x="${SvgPen.number(x)}" y="${SvgPen.number(y)}" fill="${colour}" text-anchor="${anchor}" font-size="${size}">${safe}</text>`);
+  text(x, y, words, colour, anchor = "start", size = 12, upwards = false, weight = 400) {
+    const safe = words.replaceAll("&", "&amp;").replaceAll("<", "&lt;"), at = `${SvgPen.number(x)} ${SvgPen.number(y)}`;
+    this.parts.push(`<text transform="translate(${at})${upwards ? " rotate(-90)" : ""}" fill="${colour}" text-anchor="${anchor}" font-size="${size}" font-weight="${weight}">${safe}</text>`);
+  }
+  /** A canvas, each of its pixels as it is. */
+  image(canvas, x, y, width, height) {
+    const n = SvgPen.number;
+    this.parts.push(`<image x="${n(x)}" y="${n(y)}" width="${n(width)}" height="${n(height)}" preserveAspectRatio="none" style="image-rendering:pixelated" href="${canvas.toDataURL()}"/>`);
   }
   /** What `draw` does is seen within a box alone. */
   within([x, y, width, height], draw) {

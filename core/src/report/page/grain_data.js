@@ -14,6 +14,13 @@ class GrainFrames {
   get count() {
     return this.json.frames.length;
   }
+  /** Corners of the box in which the grains of a stage are, but for those far from all others; a cloud that falls is taller than what it becomes. */
+  extent(stage) {
+    const same = this.json.frames.filter((frame) => frame.stage === stage && frame.low);
+    if (same.length === 0) return null;
+    const over = (key, of) => [0, 1, 2].map((axis) => of(...same.map((frame) => frame[key][axis])));
+    return { low: over("low", Math.min), high: over("high", Math.max) };
+  }
   has(range) {
     return Object.values(this.json.stages).every(({ ranges }) => ranges[range] !== undefined);
   }
@@ -88,4 +95,11 @@ class GrainFrames {
     const { low, high } = this.json;
     return low[axis] + (number / 65535) * (high[axis] - low[axis]);
   }
+}
+
+const framesKnown = new WeakMap();
+/** Grains and maps look at the same ones. */
+function framesOf(grains) {
+  if (!framesKnown.has(grains)) framesKnown.set(grains, new GrainFrames(grains));
+  return framesKnown.get(grains);
 }

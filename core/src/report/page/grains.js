@@ -31,7 +31,7 @@ class GrainView {
   }
   /** More frames of the same runs; one of them is turned to then. */
   refresh(runs) {
-    this.runs = runs.map((run) => ({ name: run.name, frames: new GrainFrames(run.grains), leftOut: run.grains.left_out }));
+    this.runs = runs.map((run) => ({ name: run.name, frames: framesOf(run.grains), leftOut: run.grains.left_out, picture: run.picture ?? {} }));
     this.now = this.layersOf = this.shownOf = null;
   }
   get frames() {
@@ -54,10 +54,7 @@ class GrainView {
     const labelled = (words, control) => make("label", {}, `${words} `, control);
     const tool = (text, title, act) => make("button", { type: "button", title, onclick: act }, text);
     this.runChoice = choice("run", this.runs.map((run, i) => [i, run.name]), (value) => this.player.takeRun(+value));
-    const { view } = report.runs[0].picture ?? {};
-    if (view in views) this.state.view = view;
-    this.viewChoice = choice("view", Object.entries(views).map(([name, one]) => [name, one.label]), (value) => this.change({ view: value, zoom: 1, pan: [0, 0] }));
-    this.viewChoice.value = this.state.view;
+    this.viewChoice = choice("view", Object.entries(views).map(([name, one]) => [name, one.label]), (value) => ((this.viewChosen = true), this.change({ view: value, zoom: 1, pan: [0, 0] })));
     this.colourPlace = make("span");
     this.cut = make("input", { type: "range", name: "cut", min: 0, max: 100, value: 0, title: "how much is cut away in front", oninput: () => this.change({ cut: this.cut.value / 100 }) });
     this.chains = make("input", { type: "checkbox", name: "chains", onchange: () => this.change({ chains: this.chains.checked }) });
@@ -122,14 +119,16 @@ class GrainView {
     this.now = null;
     const { json } = this;
     const there = Object.entries(colourings).filter(([, one]) => !one.needs || (one.needs === "clumps" ? json.clumps : this.frames.has(one.needs)));
-    const wanted = report.runs[0].picture?.color;
-    if (!this.chosen) this.state.colour = wanted ?? "rotation";
+    const { color, view } = this.runs[run].picture; // of its description, until the reader has chosen
+    if (!this.chosen) this.state.colour = color ?? "rotation";
+    if (!this.viewChosen) this.state.view = view in views ? view : "xz";
+    this.viewChoice.value = this.state.view;
     if (!there.some(([name]) => name === this.state.colour)) this.state.colour = "speed";
     this.colourChoice = make("select", { name: "colour", onchange: () => ((this.chosen = true), this.change({ colour: this.colourChoice.value })) },
       ...there.map(([name, one]) => make("option", { value: name, selected: name === this.state.colour }, one.label)));
     this.colourPlace.replaceChildren(this.colourChoice);
     // Through the middle of what is deep enough to have one: fronts are along walls.
-    const deep = json.high[this.view.depth] - json.low[this.view.depth] > 3 * json.mean_diameter;
+    const { low, high } = json.frames.at(-1).low ? json.frames.at(-1) : json, deep = high[this.view.depth] - low[this.view.depth] > 3 * json.mean_diameter;
     this.cut.value = deep ? 33 : 0;
     this.state.cut = this.cut.value / 100;
   }
@@ -160,23 +159,19 @@ class GrainView {
     return this.change({ zoom, pan });
   }
 
-  /** Corners of the box of all centres in the frames of this stage: a cloud that falls is taller than what it becomes. */
+  /** Corners of the box of the centres that are not far from all others, in the frames of this stage. */
   extent() {
-    const { json, now } = this, same = json.frames.filter((frame) => frame.stage === now.stage && frame.low);
-    if (same.length === 0) return json;
-    const over = (key, of) => [0, 1, 2].map((axis) => of(...same.map((frame) => frame[key][axis])));
-    return { low: over("low", Math.min), high: over("high", Math.max) };
+    return this.frames.extent(this.now.stage) ?? this.json;
   }
-  /** Where metres are on the stage. */
-  arrange() {
+  /** Where metres are on a stage of this size. */
+  arranged(size) {
     const { json, view } = this, radius = 0.75 * json.mean_diameter, extent = this.extent();
     const low = extent.low.map((v) => v - radius), high = extent.high.map((v) => v + radius);
-    this.layout = new Layout(this.stage, view, low, high, this.state.zoom, this.state.pan);
+    const layout = new Layout(size, { left: 14, right: 92, top: 14, bottom: 44 }, view, low, high, this.state.zoom, this.state.pan);
     // Depth grows away from the reader.
     const ends = [view.away * low[view.depth], view.away * high[view.depth]].sort((a, b) => a - b);
     const cut = this.state.cut > 0 ? ends[0] + this.state.cut * (ends[1] - ends[0]) : -Infinity;
-    Object.assign(this.layout, { near: ends[0], far: ends[1], cut: Math.max(cut, ends[0] - 1e-9 - (ends[1] - ends[0])) });
-    return this.layout;
+    return Object.assign(layout, { near: ends[0], far: ends[1], cut: Math.max(cut, ends[0] - 1e-9 - (ends[1] - ends[0])) });
   }
 
   /** What colours mean: {low, high} of the value, and the table. */
@@ -213,51 +208,38 @@ class GrainView {
   async findLayers() {
     const { frame: number } = this.json.layers, { up } = this.view, key = `${this.state.run} ${number} ${up}`;
     if (this.layersOf === key) return;
-    const start = await this.frames.frame(number), list = [start.x, start.y, start.z][up];
-    const [low, high] = rangeOf([list]), layers = new Map();
-    for (let i = 0; i < start.count; ++i) layers.set(start.id[i], 1 + Math.min(layerCount - 1, Math.floor((layerCount * (list[i] - low)) / (high - low || 1))));
+    const start = await this.frames.frame(number), list = [start.x, start.y, start.z][up], layers = new Map();
+    const box = this.json.frames[number], [low, high] = box.low ? [box.low[up], box.high[up]] : [0, 1]; // of those that are not far from all others
+    for (let i = 0; i < start.count; ++i) {
+      const share = (this.frames.metres(up, list[i]) - low) / (high - low || 1);
+      layers.set(start.id[i], 1 + Math.max(0, Math.min(layerCount - 1, Math.floor(layerCount * share))));
+    }
     this.layers = layers, this.layersOf = key;
   }
 
-  /** Chains and walls as segments in the plane of the view. */
-  async segments(frame) {
-    const { view, state, json } = this, { cut, near, far } = this.layout;
+  /** Chains and walls as segments in the plane of the view; their widths in pixels, of which CSS has one for `ratio`. */
+  async segments(frame, layout, ratio) {
+    const { view, state, json } = this, { cut, near, far } = layout;
     const from = [], to = [], width = [], alpha = [];
     const put = (a, b, w, shade) => (from.push(...a), to.push(...b), width.push(w), alpha.push(shade));
     if (state.chains) {
       const chains = await this.frames.chains(frame.number), lists = [frame.x, frame.y, frame.z];
       const slab = Math.max(4 * json.mean_diameter, 0.25 * (far - near)), first = Math.max(near, cut);
-      const strongest = json.frames[frame.number].strongest || 1, grain = json.mean_diameter / this.layout.metresPerPixel;
+      const strongest = json.frames[frame.number].strongest || 1, grain = json.mean_diameter / layout.metresPerPixel;
       for (let i = 0; i < chains.count; ++i) {
         const at = [0, 1, 2].map((axis) => this.frames.metres(axis, lists[axis][chains.body[i]]));
         const depth = view.away * (at[view.depth] + chains.branch[view.depth][i] / 2);
         if (depth < first || depth > first + slab) continue;
         const force = chains.force[i] / strongest;
         put([at[view.right], at[view.up]], [at[view.right] + chains.branch[view.right][i], at[view.up] + chains.branch[view.up][i]],
-          Math.max(0.3, 0.3 * grain * force) * devicePixelRatio, 0.9 - 0.6 * ((depth - first) / slab));
+          Math.max(0.3, 0.3 * grain * force) * ratio, 0.9 - 0.6 * ((depth - first) / slab));
       }
     }
     if (state.walls) {
       const middle = (view.away * (near + far)) / 2;
-      for (const { corners } of await this.frames.walls(frame.number)) for (const [a, b] of this.cutWall(corners, middle)) put(a, b, devicePixelRatio, 1);
+      for (const { corners } of await this.frames.walls(frame.number)) for (const [a, b] of cutBy(view, corners, middle)) put(a, b, ratio, 1);
     }
     return { from: Float32Array.from(from), to: Float32Array.from(to), width: Float32Array.from(width), alpha: Float32Array.from(alpha) };
-  }
-  /** Where the plane at a depth cuts triangles. */
-  cutWall(corners, depth) {
-    const { view } = this, lines = [];
-    for (let t = 0; t + 8 < corners.length; t += 9) {
-      const points = [];
-      for (let k = 0; k < 3; ++k) {
-        const a = t + 3 * k, b = t + 3 * ((k + 1) % 3);
-        const before = corners[a + view.depth] - depth, after = corners[b + view.depth] - depth;
-        if (before < 0 === after < 0) continue;
-        const share = before / (before - after), between = (axis) => corners[a + axis] + share * (corners[b + axis] - corners[a + axis]);
-        points.push([between(view.right), between(view.up)]);
-      }
-      if (points.length === 2) lines.push(points);
-    }
-    return lines;
   }
 
   async show(frame) {
@@ -267,8 +249,9 @@ class GrainView {
       await this.findLayers();
       if (this.now !== frame) return;
     }
-    this.arrange();
-    const segments = await this.segments(frame);
+    this.layout = this.arranged(sizeOf(this.stage));
+    fitStage(this.stage, this.layout);
+    const segments = await this.segments(frame, this.layout, devicePixelRatio);
     if (this.now !== frame) return;
     const { state } = this, key = `${state.run} ${frame.number} ${state.colour} ${state.view}`;
     if (this.shownOf !== key) { // else looked at from nearer or farther
@@ -284,67 +267,70 @@ class GrainView {
     this.paint();
     this.stage.setAttribute("aria-label", `${frame.count} grains at ${writtenTime(frame.time)}, coloured by ${this.colouring.label}`);
     this.stage.dataset.frame = frame.number;
-    const { leftOut } = this.runs[this.state.run], { unplaced } = this.json.frames[frame.number];
+    const { leftOut } = this.runs[this.state.run], { unplaced, strays } = this.json.frames[frame.number];
     this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, so that the page stays light` : "",
-      unplaced > 0 ? `bodies that are nowhere are left out: ${unplaced}` : ""].filter(Boolean).join("; ");
+      strays > 0 ? `far from all others, and out of sight at first: ${strays}` : "",
+      unplaced > 0 ? `bodies that are nowhere, or still farther, are left out: ${unplaced}` : ""].filter(Boolean).join("; ");
     this.painted = frame;
   }
   redraw() {
     if (this.now) this.show(this.now);
   }
 
+  whatToDraw(layout, look, ratio) {
+    const { json, view } = this, axes = new Float32Array(9);
+    axes[3 * view.right] = 1, axes[3 * view.up + 1] = 1, axes[3 * view.depth + 2] = view.away;
+    return {
+      low: json.low, span: json.high.map((high, i) => high - json.low[i]), axes, view, look, fade: this.state.chains ? 0.72 : 0,
+      window: [...layout.centre, 2 / (layout.width * layout.metresPerPixel), 2 / (layout.height * layout.metresPerPixel)],
+      depth: [layout.cut, layout.near, Math.max(layout.far - layout.near, 1e-12)], metresPerPixel: (0.5 * layout.metresPerPixel) / ratio,
+      panelWidth: Math.round(panel(layout)[2] * ratio),
+    };
+  }
   /** What takes long to draw is drawn fine only when it is left alone, or must be. */
   paint(fine = false) {
-    const { layout, view } = this, look = theme();
+    const { layout } = this, look = theme();
     for (const canvas of [this.canvas, this.overlay]) {
       const width = Math.round(layout.width * devicePixelRatio), height = Math.round(layout.height * devicePixelRatio);
       if (canvas.width !== width) canvas.width = width;
       if (canvas.height !== height) canvas.height = height;
     }
-    const { json } = this, axes = new Float32Array(9);
-    axes[3 * view.right] = 1, axes[3 * view.up + 1] = 1, axes[3 * view.depth + 2] = view.away;
-    const coarse = this.painter.draw({
-      low: json.low, span: json.high.map((high, i) => high - json.low[i]), axes, view, look, fine, fade: this.state.chains ? 0.72 : 0,
-      window: [...layout.centre, 2 / (layout.width * layout.metresPerPixel), 2 / (layout.height * layout.metresPerPixel)],
-      depth: [layout.cut, layout.near, Math.max(layout.far - layout.near, 1e-12)], metresPerPixel: (0.5 * layout.metresPerPixel) / devicePixelRatio,
-      panelWidth: Math.round(panel(layout)[2] * devicePixelRatio),
-    });
+    const coarse = this.painter.draw({ ...this.whatToDraw(layout, look, devicePixelRatio), fine });
     clearTimeout(this.refining);
     if (coarse) this.refining = setTimeout(() => this.paint(true), stillAfter);
     const context = this.overlay.getContext("2d");
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
     context.clearRect(0, 0, layout.width, layout.height);
-    const pen = new CanvasPen(context);
-    this.annotate(pen, look);
+    this.annotate(new CanvasPen(context), look, layout);
   }
 
   /** Indices of the grains that are seen, the farthest first. */
-  seen() {
-    const { view, now, layout } = this, list = [now.x, now.y, now.z][view.depth];
+  seen(layout = this.layout) {
+    const { view, now } = this, list = [now.x, now.y, now.z][view.depth];
     const depth = (i) => view.away * this.frames.metres(view.depth, list[i]);
     const all = [];
     for (let i = 0; i < now.count; ++i) if (depth(i) >= layout.cut) all.push(i);
     return all.sort((a, b) => depth(b) - depth(a));
   }
-  drawGrains(pen, look) {
-    const { view, now, layout } = this, lists = [now.x, now.y, now.z];
+  drawGrains(pen, look, layout, { from, to, width, alpha }) {
+    const { view, now } = this, lists = [now.x, now.y, now.z];
     const fade = this.state.chains ? 0.72 : 0, paper = parsed(look.paper);
     const mixed = (colour) => rgb(colour.map((c, k) => Math.round(c + fade * (paper[k] - c))));
     const fills = this.colours.table.map(mixed), rims = this.colours.table.map((colour) => mixed(colour.map((c) => c * 0.55))), grey = mixed([180, 180, 176]);
-    for (const i of this.seen()) {
+    for (const i of this.seen(layout)) {
       const place = this.shownPlaces[i], k = Math.round(place * 255);
-      pen.disc(this.layout.across(this.frames.metres(view.right, lists[view.right][i])), this.layout.down(this.frames.metres(view.up, lists[view.up][i])),
+      pen.disc(layout.across(this.frames.metres(view.right, lists[view.right][i])), layout.down(this.frames.metres(view.up, lists[view.up][i])),
         Math.max(0.5, now.radius[i] / layout.metresPerPixel), place < 0 ? grey : fills[k], place < 0 ? "#666" : rims[k]);
     }
-    const { from, to, width, alpha } = this.shownSegments;
     for (let i = 0; i < width.length; ++i)
-      pen.line(this.layout.across(from[2 * i]), this.layout.down(from[2 * i + 1]), this.layout.across(to[2 * i]), this.layout.down(to[2 * i + 1]), look.ink, (2 * width[i]) / devicePixelRatio, alpha[i]);
+      pen.line(layout.across(from[2 * i]), layout.down(from[2 * i + 1]), layout.across(to[2 * i]), layout.down(to[2 * i + 1]), look.ink, 2 * width[i], alpha[i]);
   }
 
   /** Scale bar, axes, and what colours mean. */
-  annotate(pen, look) {
-    const { layout, view, colours, colouring } = this, { width, height, margin } = layout;
+  annotate(pen, look, layout) {
+    const { view, colours, colouring } = this, { width, height, margin } = layout;
     drawLengthBar(pen, look, layout);
+    pen.box(width - margin.right - 58, height - 26, 62, 20, look.paper);
     pen.text(width - margin.right, height - 12, `${letter(view.right)} →  ${letter(view.up)} ↑`, look.soft, "end");
     if (this.state.colour === "clump") return;
     const [factor, unit] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
@@ -375,19 +361,24 @@ class GrainView {
   get fileName() {
     return `${this.runs[this.state.run].name}-grains-${String(this.now.number).padStart(3, "0")}`;
   }
-  saveSvg() {
-    const look = theme(), pen = new SvgPen(this.layout.width, this.layout.height, look.paper);
-    pen.within(panel(this.layout), () => this.drawGrains(pen, look));
-    this.annotate(pen, look);
-    save(`${this.fileName}.svg`, pen.finish(), "image/svg+xml");
+  async saveSvg() {
+    const { fileName } = this, look = filesLook(), layout = this.arranged(fileSize), pen = new SvgPen(layout.width, layout.height, look.paper);
+    const segments = await this.segments(this.now, layout, 1);
+    pen.within(panel(layout), () => this.drawGrains(pen, look, layout, segments));
+    this.annotate(pen, look, layout);
+    save(`${fileName}.svg`, pen.finish(), "image/svg+xml");
   }
-  savePng() {
-    this.paint(true); // what WebGL drew is gone after a frame
-    const all = make("canvas", { width: this.canvas.width, height: this.canvas.height }), context = all.getContext("2d");
-    context.fillStyle = theme().paper;
-    context.fillRect(0, 0, all.width, all.height);
-    for (const layer of [this.canvas, this.overlay]) context.drawImage(layer, 0, 0);
-    all.toBlob((blob) => save(`${this.fileName}.png`, blob));
+  async savePng() {
+    const { fileName, now, shownPlaces, colours } = this, look = filesLook(), layout = this.arranged(fileSize), what = this.whatToDraw(layout, look, filePixels);
+    const painter = new PixelPainter(make("canvas", { width: filePixels * layout.width, height: filePixels * layout.height }));
+    painter.setBodies(now), painter.setPlaces(shownPlaces), painter.setColours(colours.table);
+    painter.setSegments(await this.segments(now, layout, filePixels));
+    painter.draw({ ...what, fine: true });
+    const all = fileCanvas(layout, (pen) => {
+      pen.image(painter.canvas, 0, 0, layout.width, layout.height);
+      this.annotate(pen, look, layout);
+    });
+    all.toBlob((blob) => save(`${fileName}.png`, blob));
   }
   saveCsv() {
     const { now, colouring } = this, lists = [now.x, now.y, now.z], value = this.valueOf(now);

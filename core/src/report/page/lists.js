@@ -72,6 +72,7 @@ class ListChart extends Chart {
     const { choice } = this.group, series = [], many = report.runs.length > 1;
     await choice.known;
     for (const { run, place, channel, probe } of this.group.channelsNamed(this.name)) {
+      if (channel.unit !== this.channel.unit) continue;
       const { width } = channel, all = await numbersOf(channel.data), samples = all.length / width;
       const named = (name) => probe.channels.find((one) => one.name === name), time = named("time"), where = named(this.abscissa.name);
       const instants = time ? await numbersOf(time.data) : Float64Array.from({ length: samples }, (_, i) => i), places = where && (await numbersOf(where.data));
@@ -84,6 +85,13 @@ class ListChart extends Chart {
       }
     }
     return series;
+  }
+}
+
+/** A list by frequency: powers of ten along both axes, as what is there spans many. */
+class SpectrumChart extends ListChart {
+  get byPowers() {
+    return true;
   }
 }
 
@@ -102,17 +110,18 @@ class PolarChart extends ListChart {
     return { x: radius * Math.cos((angle / this.half) * Math.PI), y: radius * Math.sin((angle / this.half) * Math.PI) };
   }
   pointOf({ shownX, shownY }, i) {
-    return this.at(shownX[i], Math.max(0, shownY[i]));
+    return Number.isFinite(shownY[i]) ? this.at(shownX[i], Math.max(0, shownY[i])) : { x: null, y: null };
   }
   /** Steps round the middle: each number stands for the directions about it. */
-  outline({ shownX, shownY, label }) {
+  outline({ shownX, shownY, s }) {
     const wide = shownX.length > 1 ? Math.abs(shownX[1] - shownX[0]) / 2 : this.half, points = [];
-    shownX.forEach((angle, i) => [-1, -0.5, 0, 0.5, 1].forEach((part) => points.push({ ...this.at(angle + part * wide, Math.max(0, shownY[i]) || 0), s: label })));
+    shownX.forEach((angle, i) => [-1, -0.5, 0, 0.5, 1].forEach((part) =>
+      points.push({ ...(Number.isFinite(shownY[i]) ? this.at(angle + part * wide, Math.max(0, shownY[i])) : { x: null, y: null }), s })));
     return [...points, points[0]];
   }
 
-  spec() {
-    const look = theme(), spec = super.spec(), { half, reach, step } = this, font = getComputedStyle(document.body).fontFamily;
+  spec(width, look) {
+    const spec = super.spec(width, look), { half, reach, step } = this, font = pageFont(), size = this.size(width);
     const rings = Array.from({ length: Math.round(reach / step) }, (_, k) => (k + 1) * step);
     const grid = rings.flatMap((radius) => Array.from({ length: 121 }, (_, i) => ({ ...this.at((i / 60) * half, radius), g: String(radius) })));
     for (let k = 0; k < 6; ++k) for (const end of [k, k + 6]) grid.push({ ...this.at((end / 6) * half, reach), g: `spoke ${k}` });
@@ -120,24 +129,25 @@ class PolarChart extends ListChart {
     const radii = rings.map((radius) => ({ ...this.at(half * 5 / 12, radius), t: readable(radius) }));
     const at = (field) => ({ scale: field, field });
     const lines = (data, by, stroke) => ({ type: "group", from: { facet: { name: `${data} one`, data, groupby: by } },
-      marks: [{ type: "line", interactive: false, from: { data: `${data} one` }, encode: { update: { x: at("x"), y: at("y"), strokeJoin: { value: "round" }, ...stroke } } }] });
+      marks: [{ type: "line", interactive: false, from: { data: `${data} one` }, encode: { update: { x: at("x"), y: at("y"), defined: { signal: "isValid(datum.x)" }, strokeJoin: { value: "round" }, ...stroke } } }] });
     const words = (data, colour) => ({ type: "text", interactive: false, from: { data }, encode: { update: { x: at("x"), y: at("y"), text: { field: "t" },
       fill: { value: colour }, font: { value: font }, fontSize: { value: 11.5 }, baseline: { value: "middle" }, align: { value: "center" } } } });
-    return { ...spec, height: this.size, padding: { ...around, bottom: 12 + this.legendHeight }, axes: [],
+    const places = this.series.length < 2 ? [] : legendPlaces(this.series, width), legend = legendParts(places, 12, look, font), near = spec.marks.find(({ type }) => type === "symbol"), title = spec.marks.find(({ name }) => name === "title");
+    return { ...spec, height: size, padding: { ...around, bottom: 12 + legendHeight(places) }, axes: [],
       data: [{ name: "grid", values: grid }, { name: "names", values: names }, { name: "radii", values: radii },
-        { name: "curves", values: this.series.flatMap((one) => this.outline(one)) }, { name: "near", values: [] }],
-      scales: spec.scales.map((scale) => (["x", "y"].includes(scale.name) ? { ...scale, nice: false, domain: this.domain(scale.name) } : scale)),
-      marks: [lines("grid", "g", { stroke: { value: look.line } }), words("names", look.soft),
+        { name: "curves", values: this.series.flatMap((one) => this.outline(one)) }, { name: "near", values: [] }, legend.data],
+      scales: spec.scales.map((scale) => (["x", "y"].includes(scale.name) ? { ...scale, nice: false, domain: this.domain(scale.name, width) } : scale)),
+      marks: [title, lines("grid", "g", { stroke: { value: look.line } }), words("names", look.soft),
         lines("curves", "s", { stroke: { scale: "colour", field: "s" }, strokeDash: { scale: "dash", field: "s" }, strokeWidth: { value: 2 } }),
-        words("radii", look.soft), spec.marks.at(-1)] };
+        words("radii", look.soft), near, ...legend.marks] };
   }
   /** A circle stays one, whatever the width. */
-  domain(axis) {
-    const half = 1.2 * this.reach * (axis === "x" ? this.width / this.size : 1);
+  domain(axis, width) {
+    const half = 1.2 * this.reach * (axis === "x" ? width / this.size(width) : 1);
     return [-half, half];
   }
-  get size() {
-    return Math.min(this.width, plotHeight + 80);
+  size(width) {
+    return Math.min(width, plotHeight + 80);
   }
 
   point(event) {

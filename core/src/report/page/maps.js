@@ -1,6 +1,8 @@
 // Maps: what probes say of cells, a colour each, for the frame that is shown.
 "use strict";
 
+const mapMargin = { left: 62, right: 78, top: 46, bottom: 46 }; // px, about the frame
+
 class MapView {
   constructor(section, runs, player) {
     this.section = section;
@@ -14,7 +16,7 @@ class MapView {
   }
 
   readRuns(runs) {
-    this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames }));
+    this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames, grains: framesOf(run.grains) }));
   }
   /** More frames of the same runs, and maybe more maps; a frame is turned to then. */
   refresh(runs) {
@@ -59,22 +61,29 @@ class MapView {
     this.cells.clear();
     this.now = null;
     if (this.section.hidden) return;
-    const names = this.run.maps.flatMap(({ probe, fields }) => fields.map(({ name, label }) => [`${probe}/${name}`, `${probe}: ${label}`]));
+    const names = this.run.maps.flatMap(({ probe, fields }) => fields.map(({ name, label, rank }) => [`${probe}/${name}`, `${probe}: ${label}`, rank]))
+      .sort((a, b) => a[2] - b[2]).map(([value, label]) => [value, label]);
     if (!names.some(([name]) => name === this.state.field)) this.state.field = names[0][0];
     offer(this.fieldChoice, names);
     this.takeField(this.state.field);
   }
   takeField(name) {
-    this.fieldChoice.value = this.state.field = name;
+    if (this.componentOf !== name) this.state.component = -1;
+    this.fieldChoice.value = this.state.field = this.componentOf = name;
     this.now = null; // of another probe, maybe
-    const { components } = this.field;
-    if (this.state.component >= Math.max(1, components.length)) this.state.component = 0;
+    const { components, unit } = this.field;
+    // Of strains the shear is looked at first.
+    const shear = unit === "1" ? components.findIndex((one) => one.length === 2 && one[0] !== one[1]) : -1;
+    if (this.state.component < 0 || this.state.component >= Math.max(1, components.length)) this.state.component = Math.max(0, shear);
     this.componentLabel.hidden = components.length < 2;
     offer(this.componentChoice, components.map((label, place) => [String(place), label]));
     this.componentChoice.value = this.state.component;
     const { left_out } = this.map;
-    this.about.textContent = this.field.about + (left_out > 0 ? `; ${left_out} frames have no map, so that the page stays light` : "");
+    this.about.textContent = `${this.field.about}; 98 of 100 cells lie within the colours of their stage` + (left_out > 0 ? `; ${left_out} frames have no map, so that the page stays light` : "");
     if (this.number !== undefined) this.turn(this.number);
+  }
+  get frames() {
+    return this.run.grains;
   }
   get map() {
     const probe = this.state.field.slice(0, this.state.field.lastIndexOf("/"));
@@ -114,10 +123,10 @@ class MapView {
   async turn(number) {
     this.number = number;
     if (this.section.hidden) return;
-    const { map } = this, found = map.frames.findLast(({ frame }) => frame <= number);
-    const cells = found ? await this.read(found) : null;
+    const { map, frames } = this, found = map.frames.findLast(({ frame }) => frame <= number);
+    const [cells, walls] = found ? await Promise.all([this.read(found), frames.walls(found.frame)]) : [];
     if (this.number !== number || this.map !== map) return; // overtaken
-    this.now = found ? { ...this.run.frames[found.frame], number: found.frame, cells } : null;
+    this.now = found ? { ...this.run.frames[found.frame], number: found.frame, cells, walls } : null;
     this.draw();
   }
 
@@ -135,7 +144,7 @@ class MapView {
     return all;
   }
 
-  /** Fixed over a stage; about zero where values lie on both of its sides. */
+  /** Fixed over a stage; about zero where that parts what the field is of, whatever its values are. */
   scale() {
     const { field, state } = this, [low, high] = field.ranges[this.now.stage]?.[state.component] ?? [0, 1];
     if (field.signed[state.component]) {
@@ -145,10 +154,24 @@ class MapView {
     return high > low ? { low, high, table: colourTables.sequential } : { low: low - 0.5 * (Math.abs(low) || 1), high: low + 0.5 * (Math.abs(low) || 1), table: colourTables.sequential };
   }
 
+  /** Where metres are on a stage of this size: all cells, and the grains about them as far as half their box is wide. */
+  arranged(size, view) {
+    const { stage } = this.now, { boxes } = this.map, cells = boxes[stage] ?? Object.values(boxes)[0], grains = this.frames.extent(stage) ?? cells;
+    const radius = 0.75 * this.frames.json.mean_diameter, most = cells.low.map((low, axis) => (cells.high[axis] - low) / 2);
+    const low = cells.low.map((one, axis) => Math.max(Math.min(one, grains.low[axis] - radius), one - most[axis]));
+    const high = cells.high.map((one, axis) => Math.min(Math.max(one, grains.high[axis] + radius), one + most[axis]));
+    const room = 0.03 * Math.max(high[view.right] - low[view.right], high[view.up] - low[view.up]); // for walls
+    const layout = new Layout(size, mapMargin, view, low.map((one) => one - room), high.map((one) => one + room));
+    const [left, right] = [low[view.right] - room, high[view.right] + room].map((at) => Math.round(layout.across(at)));
+    const [bottom, top] = [low[view.up] - room, high[view.up] + room].map((at) => Math.round(layout.down(at)));
+    return Object.assign(layout, { frame: { left, right, top, bottom } });
+  }
+
   draw() {
     if (this.section.hidden || !this.run || this.stage.clientWidth === 0) return;
+    const context = this.canvas.getContext("2d");
     if (!this.now) {
-      this.canvas.getContext("2d").clearRect(0, 0, this.canvas.width, this.canvas.height);
+      context.clearRect(0, 0, this.canvas.width, this.canvas.height);
       return;
     }
     if (!this.state.view) { // along the axis that has the fewest layers
@@ -158,43 +181,55 @@ class MapView {
     this.viewChoice.value = this.state.view;
     const view = views[this.state.view];
     this.sliceLabel.hidden = this.layers(view.depth) < 2;
-    const { boxes } = this.map, box = boxes[this.now.stage] ?? Object.values(boxes)[0];
-    this.layout = new Layout(this.stage, view, box.low, box.high);
+    this.layout = this.arranged(sizeOf(this.stage), view);
+    fitStage(this.stage, this.layout);
     const { width, height } = this.layout;
     this.canvas.width = Math.round(width * devicePixelRatio), this.canvas.height = Math.round(height * devicePixelRatio);
-    const context = this.canvas.getContext("2d");
     context.setTransform(devicePixelRatio, 0, 0, devicePixelRatio, 0, 0);
-    this.paint(new CanvasPen(context), theme());
+    this.under.replaceChildren();
+    this.colours = this.scale();
+    this.shown = this.seen(view);
+    this.byPixel = this.paint(new CanvasPen(context), theme(), this.layout, devicePixelRatio);
     const { label, field, now } = this, values = now.cells.list(this.place(field, this.state.component));
     const [low, high] = rangeOf([values]);
-    const told = (value) => readable(value * field.factor) + ofUnit(field.shown_unit);
-    this.stage.setAttribute("aria-label", `${label} of ${values.length} cells of ${this.map.probe} at ${writtenTime(now.time)}, from ${told(low)} to ${told(high)}`);
+    const [from, to] = [low, high].map((value) => told(value * field.factor, field));
+    this.stage.setAttribute("aria-label", `${label} of ${values.length} cells of ${this.map.probe} at ${writtenTime(now.time)}, from ${from} to ${to}`);
     this.stage.dataset.frame = now.number;
   }
-  paint(pen, look) {
-    const { layout, field, state } = this, { cells } = this.now, view = views[state.view], scale = (this.colours = this.scale());
-    const values = cells.list(this.place(field, state.component)), sharp = (pixels) => Math.round(pixels * devicePixelRatio) / devicePixelRatio;
-    let unknown = false;
-    for (const i of (this.shown = this.seen(view))) {
-      const [x, y] = [view.right, view.up].map((axis) => cells.centre[axis][i]), [w, h] = [view.right, view.up].map((axis) => cells.size[axis][i] / 2);
-      const left = sharp(layout.across(x - w)), top = sharp(layout.down(y + h)), place = (values[i] - scale.low) / (scale.high - scale.low);
-      const known = Number.isFinite(values[i]);
-      unknown ||= !known;
-      pen.box(left, top, sharp(layout.across(x + w)) - left, sharp(layout.down(y - h)) - top, known ? rgb(scale.table[Math.round(255 * Math.min(1, Math.max(0, place)))]) : look.line);
-    }
-    drawLengthBar(pen, look, layout);
-    const [size, unit] = prefixed("m", Math.abs(this.plane)), slice = this.sliceLabel.hidden ? "" : `${letter(view.depth)} = ${readable(this.plane * size)} ${unit}    `;
-    pen.text(layout.width - layout.margin.right, layout.height - 12, `${slice}${letter(view.right)} →  ${letter(view.up)} ↑`, look.soft, "end");
-    drawColourScale(pen, look, { ...layout, ...scale, label: this.label, unit: field.shown_unit, factor: field.factor, note: unknown ? "grey: none" : "" });
+  /** Returns {owner, width, height}: which of the cells shown has which pixel of the frame, of which CSS has one for `ratio`. */
+  paint(pen, look, layout, ratio) {
+    const { field, state, colours, shown, now } = this, { cells } = now, view = views[state.view], { left, right, top, bottom } = layout.frame;
+    const values = cells.list(this.place(field, state.component)), list = (of) => Float64Array.from(shown, of), size = (axis, i) => Math.max(0.5, (0.5 * cells.size[axis][i] * ratio) / layout.metresPerPixel);
+    const width = Math.max(1, Math.round((right - left) * ratio)), height = Math.max(1, Math.round((bottom - top) * ratio));
+    const owner = cellsByPixel({
+      x: list((i) => (layout.across(cells.centre[view.right][i]) - left) * ratio), y: list((i) => (layout.down(cells.centre[view.up][i]) - top) * ratio),
+      w: list((i) => size(view.right, i)), h: list((i) => size(view.up, i)),
+    }, width, height);
+    const grey = parsed(look.line), place = (value) => Math.round(255 * Math.min(1, Math.max(0, (value - colours.low) / (colours.high - colours.low))));
+    const colourOf = (k) => (Number.isFinite(values[shown[k]]) ? colours.table[place(values[shown[k]])] : grey);
+    pen.within([left, top, right - left, bottom - top], () => {
+      pen.image(imageOfCells(owner, width, height, colourOf), left, top, right - left, bottom - top);
+      for (const { corners } of now.walls) for (const [a, b] of cutBy(view, corners, this.plane))
+        pen.line(layout.across(a[0]), layout.down(a[1]), layout.across(b[0]), layout.down(b[1]), look.ink, 1.5);
+    });
+    drawAxes(pen, look, layout, view, layout.frame);
+    const [scale, unit] = prefixed("m", Math.abs(this.plane)), slice = this.layers(view.depth) < 2 ? "" : `  ·  ${letter(view.depth)} = ${readable(this.plane * scale)} ${unit}`;
+    pen.text(left, top - 26, titled(this.label, field.shown_unit), look.ink, "start", 13.5, false, 600);
+    pen.text(left, top - 9, `${writtenTime(now.time)}${slice}`, look.soft, "start", 11.5);
+    drawColourBar(pen, look, { left: right + 16, top, tall: Math.min(320, bottom - top), ...colours, factor: field.factor });
+    if (shown.some((i) => !Number.isFinite(values[i]))) pen.text(right + 16, Math.min(top + 320, bottom) + 17, "grey: none", look.soft, "start", 11);
+    return { owner, width, height };
   }
 
   pick(event) {
     if (!this.layout || !this.now) return;
-    const { field, state } = this, { cells } = this.now, view = views[state.view], at = this.layout.metresAt(this.stage, event), axes = [view.right, view.up];
-    const i = this.shown.findLast((one) => axes.every((axis, k) => Math.abs(at[k] - cells.centre[axis][one]) <= cells.size[axis][one] / 2));
+    const { field, state, layout } = this, { cells } = this.now, view = views[state.view], axes = [view.right, view.up];
+    const { owner, width, height } = this.byPixel, { left, top } = this.stage.getBoundingClientRect();
+    const column = Math.floor((event.clientX - left - layout.frame.left) * devicePixelRatio), row = Math.floor((event.clientY - top - layout.frame.top) * devicePixelRatio);
+    const i = column >= 0 && column < width && row >= 0 && row < height ? this.shown[owner[row * width + column]] : undefined;
     if (i === undefined) return this.under.replaceChildren();
     const value = cells.list(this.place(field, state.component))[i], [size, unit] = prefixed("m", Math.max(...axes.map((axis) => Math.abs(cells.centre[axis][i]))));
-    this.under.replaceChildren(make("span", {}, `${this.label} ${readable(value * field.factor)}${ofUnit(field.shown_unit)}`),
+    this.under.replaceChildren(make("span", {}, `${this.label} ${told(value * field.factor, field)}`),
       ...axes.map((axis) => make("span", {}, `${letter(axis)} ${readable(cells.centre[axis][i] * size)} ${unit}`)));
   }
 
@@ -204,16 +239,13 @@ class MapView {
     return `${this.run.name}-${this.state.field.replace("/", "-")}-${String(this.now.number).padStart(3, "0")}`;
   }
   saveSvg() {
-    const look = theme(), pen = new SvgPen(this.layout.width, this.layout.height, look.paper);
-    this.paint(pen, look);
+    const look = filesLook(), layout = this.arranged(fileSize, views[this.state.view]), pen = new SvgPen(layout.width, layout.height, look.paper);
+    this.paint(pen, look, layout, filePixels);
     save(`${this.fileName}.svg`, pen.finish(), "image/svg+xml");
   }
   savePng() {
-    const all = make("canvas", { width: this.canvas.width, height: this.canvas.height }), context = all.getContext("2d");
-    context.fillStyle = theme().paper;
-    context.fillRect(0, 0, all.width, all.height);
-    context.drawImage(this.canvas, 0, 0);
-    all.toBlob((blob) => save(`${this.fileName}.png`, blob));
+    const { fileName } = this, layout = this.arranged(fileSize, views[this.state.view]);
+    fileCanvas(layout, (pen) => this.paint(pen, filesLook(), layout, filePixels)).toBlob((blob) => save(`${fileName}.png`, blob));
   }
   saveCsv() {
     const { field } = this, { cells } = this.now, names = field.components.length > 1 ? field.components.map((one) => `${field.name} ${one}`) : [field.name];
