@@ -98,6 +98,68 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
       << "a stage switches it on";
 }
 
+TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto check = [&](std::vector<std::string> sets) {
+    std::vector<std::string> words{"check", "two.json"};
+    for (const auto& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string domain = R"(/domain={"low": ["-5 mm", "-5 mm", "-5 mm"], "high": ["5 mm", "5 mm", "5 mm"]})";
+  const auto lid = [](const std::string& height) {
+    return R"(/walls/lid={"type": "plane", "point": [0, 0, ")" + height +
+           R"("], "normal": [0, 0, -1], "material": "sand"})";
+  };
+  const auto told = HasSubstr("  /walls/lid: it stands still outside the domain");
+  EXPECT_THAT(check({domain, lid("20 mm")}), told);
+  EXPECT_THAT(check({domain, lid("7 mm")}), testing::Not(told)) << "a grain that just leaves would touch it";
+  EXPECT_THAT(check({lid("20 mm")}), testing::Not(told)) << "nothing keeps grains below";
+  EXPECT_THAT(check({domain, lid("20 mm"), "/walls/lid/motion/velocity=[0, 0, -1]"}), testing::Not(told)) << "it comes";
+  EXPECT_THAT(
+      check({domain, lid("20 mm"), R"(/stages/0/change={"walls": {"lid": {"motion": {"velocity": [0, 0, -1]}}}})"}),
+      testing::Not(told))
+      << "it comes in a stage";
+}
+
+TEST(Descriptions, CheckSaysWhereADepthIsMoreThanShows) {
+  const auto column = [](const std::string& depth, int count) {
+    const auto outcome =
+        grit_in(GRIT_SOURCE_DIR,
+                {"check", "sims/column/quick.json", "--set", "/domain/high/1=" + depth, "--set",
+                 "/bodies/sand/grains/high/1=" + depth, "--set", "/bodies/sand/grains/count=" + std::to_string(count)});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  EXPECT_THAT(
+      column("20 mm", 3000),
+      HasSubstr("  /domain/high/1: 20 mm deep; by \"A column under gravity: what the settings cost and what they "
+                "change\" 6 mm changes "));
+  EXPECT_THAT(column("10 mm", 1500), testing::Not(HasSubstr("samples scatter"))) << "less than twice as much";
+
+  const OwnFolder folder;
+  auto many = json::parse(two_grains);
+  many["domain"] = {{"low", {0, 0, 0}}, {"high", {0.1, 0.1, 0.1}}, {"periodic", {false, true, false}}};
+  many["bodies"]["grains"]["grains"] = {{"type", "cloud"},
+                                        {"low", {0, 0, 0}},
+                                        {"high", {0.1, 0.1, 0.1}},
+                                        {"count", 40000},
+                                        {"sizes", {{"type", "uniform"}, {"smallest", "0.9 mm"}, {"largest", "1 mm"}}}};
+  folder.write("many.json", many.dump());
+  const auto check = [&](const std::string& set) {
+    return grit_in(folder.path(), {"check", "many.json", "--set", set}).out;
+  };
+  // 2.5 contacts a grain; 1/√40 000 is 0.5 %.
+  EXPECT_THAT(check("/seed=2"), HasSubstr("  /domain/high/1: the cell repeats along y, and with 0.1 m there are some "
+                                          "100000 contacts, whose means scatter between samples by about 1/√contacts, "
+                                          "0.32 %; 0.04 m would give 0.5 % for 0.4 of the cost"));
+  EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
+  EXPECT_THAT(check("/domain/periodic=[true, true, false]"), testing::Not(HasSubstr("1/√contacts")))
+      << "which of the two is its depth?";
+}
+
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

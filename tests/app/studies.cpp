@@ -55,6 +55,8 @@ TEST_F(Studies, AreRunChartedAndNotRunAgain) {
   const auto error = [&](int variant) {
     return all.at("variants")[variant].at("figures").at("energy").at("error").get<double>();
   };
+  EXPECT_EQ(all.at("parts"),
+            json({"bodies grains: sphere", "contacts linear-rolling", "engine damping: local-damping", "stage part"}));
   EXPECT_EQ(all.at("variants")[3].at("name"), "finest");
   EXPECT_EQ(error(3), 0);
   EXPECT_GT(error(0), error(2)) << "a longer step is further off";
@@ -308,6 +310,29 @@ TEST_F(Studies, GiveAdvice) {
   const auto none = grit({"advise", "two.json"});
   EXPECT_EQ(none.status, 1);
   EXPECT_THAT(none.err, AllOf(HasSubstr("no scenario"), HasSubstr("--study")));
+}
+
+TEST_F(Studies, AdviseOnScenesOfTheSamePartsWhereThereIsNoScenario) {
+  for (const auto& [scene, title] :
+       {std::pair("column", "A column under gravity"), std::pair("oedometer", "Oedometric compr")}) {
+    const std::string file = std::string(GRIT_SOURCE_DIR) + "/sims/" + scene + "/quick.json";
+    const auto own = grit({"advise", file});
+    EXPECT_EQ(own.status, 0) << own.err;
+    EXPECT_THAT(own.out, HasSubstr(std::string(", by ") + title));
+    folder.write("mine.json",
+                 json{{"extends", file}, {"materials", {{"sand", {{"friction_angle", "30 deg"}}}}}}.dump());
+    EXPECT_THAT(grit({"advise", "mine.json"}).out, HasSubstr(title));
+  }
+  const json lid = {{"type", "plane"}, {"point", {0, 0, 0.1}}, {"normal", {0, 0, -1}}, {"material", "sand"}};
+  folder.write("other.json", json{{"extends", std::string(GRIT_SOURCE_DIR) + "/sims/column/quick.json"},
+                                  {"walls", {{"left", nullptr}, {"lid", lid}}},
+                                  {"probes", nullptr},
+                                  {"output", nullptr}}
+                                 .dump());
+  const auto other = grit({"advise", "other.json"});
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.err, AllOf(HasSubstr("no scenario"), HasSubstr("(the nearest is of \"A column under gravity"),
+                               HasSubstr(": here is no \"wall left: plane\", there is no \"wall lid: plane\")")));
 }
 
 }  // namespace

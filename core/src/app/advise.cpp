@@ -1,18 +1,19 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 
 #include "app/options.hpp"
+#include "app/shipped_studies.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
-#include "plugins/loader.hpp"
 #include "study/advice.hpp"
+#include "study/parts.hpp"
 
 namespace grit {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// "2%", "2 %" or 0.02; at most all.
 double share_of(const std::string& text) {
@@ -31,22 +32,42 @@ double share_of(const std::string& text) {
   return value;
 }
 
-/// The charts that came with grit, for scenes of one scenario. Throws UsageError if there is none.
-std::vector<ChartedStudy> shipped_studies(const std::string& scenario, const std::vector<std::string>& figures) {
-  const fs::path folder = library_directory() / "studies";
-  std::vector<std::string> files;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".json") files.push_back(entry.path().string());
-  std::ranges::sort(files);
+std::vector<std::string> lacks(const std::vector<std::string>& these, const std::vector<std::string>& those) {
+  std::vector<std::string> missing;
+  std::ranges::set_difference(those, these, std::back_inserter(missing));
+  return missing;
+}
+
+/// What tells a description from the scene of the study that is most like it.
+std::string nearest_scene(const std::vector<ChartedStudy>& studies, const std::vector<std::string>& parts) {
+  const ChartedStudy* nearest = nullptr;
+  const auto apart = [&](const ChartedStudy& one) {
+    return lacks(parts, one.parts).size() + lacks(one.parts, parts).size();
+  };
+  for (const ChartedStudy& one : studies)
+    if (one.advice && !one.parts.empty() && (nearest == nullptr || apart(one) < apart(*nearest))) nearest = &one;
+  if (nearest == nullptr) return "";
+  std::vector<std::string> differences;
+  for (const auto& part : lacks(parts, nearest->parts)) differences.push_back("here is no \"" + part + '"');
+  for (const auto& part : lacks(nearest->parts, parts)) differences.push_back("there is no \"" + part + '"');
+  return fmt::format(" (the nearest is of \"{}\": {})", nearest->title, fmt::join(differences, ", "));
+}
+
+/// The studies that came with grit for scenes like this. Throws UsageError if there is none.
+std::vector<ChartedStudy> studies_like(const std::string& scenario, const std::vector<std::string>& parts,
+                                       const std::vector<std::string>& figures) {
+  const auto all = shipped_studies();
   std::vector<ChartedStudy> studies;
-  for (const auto& file : files)
-    if (const auto study = read_charted_study(file, {});
-        !scenario.empty() && study.scenario == scenario && study.advice)
-      studies.push_back(read_charted_study(file, figures));
+  std::vector<std::string> files;
+  for (const ChartedStudy& study : all) {
+    files.push_back(study.file.string());
+    if (is_of(study, scenario, parts)) studies.push_back(read_charted_study(study.file, figures));
+  }
   if (studies.empty())
     throw UsageError(fmt::format("{}; name a chart.json with --study, of your own or one of these: {}",
-                                 scenario.empty() ? "the description has no scenario, by which a study could be found"
+                                 scenario.empty() ? "the description has no scenario, and no study that came with this "
+                                                    "grit has a scene of the same parts" +
+                                                        nearest_scene(all, parts)
                                                   : "no study of scenario \"" + scenario + "\" came with this grit",
                                  fmt::join(files, ", ")));
   return studies;
@@ -136,9 +157,9 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
   options.add()("tolerance", po::value<std::string>()->default_value("5%")->value_name("SHARE"),
                 "error that is good enough, e.g. 2% or 0.02")(
       "study", po::value<std::vector<std::string>>()->composing()->value_name("CHART"),
-      "chart.json of a study; may be given again; default: those that came with grit for the same scenario")(
-      "figure", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
-      "figure that counts; may be given again; default: all of the study");
+      "chart.json of a study; may be given again; default: those that came with grit for the same scenario, or for a "
+      "scene of the same parts")("figure", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+                                 "figure that counts; may be given again; default: all of the study");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   const std::string file = options.only_word("description");
@@ -159,7 +180,8 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
                        ": its settings are what is modelled, not how (\"advice\": false), so that nothing may be "
                        "relaxed by it; name another study");
   }
-  if (studies.empty()) studies = shipped_studies(scenario_type(Document::load(file)), options.list("figure"));
+  if (studies.empty())
+    studies = studies_like(scenario_type(Document::load(file)), parts_of(now), options.list("figure"));
   for (const ChartedStudy& study : studies) {
     if (&study != &studies.front()) std::cout << '\n';
     print(study, file, sets, tolerance, advise(study, tolerance, same));

@@ -7,6 +7,7 @@
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
+#include "app/too_deep.hpp"
 #include "app/without_effect.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
@@ -95,7 +96,15 @@ void check_one(const std::string& file, const Options& options, const Registry& 
             << " h (" << duration_text(cost(known)) << ')';
   if (most > 0) std::cout << ", and at most " << cost(most) / 3600 << " h for stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
-  const auto idle = without_effect(scene, simulation);
+  auto idle = without_effect(scene, simulation);
+  const auto sets = options.list("set");
+  const Description now = resolved(description);
+  const auto same = [&](const std::vector<std::string>& more) {
+    auto all = sets;
+    all.insert(all.end(), more.begin(), more.end());
+    return resolved(*load_scene(file, all, registry).description) == now;
+  };
+  if (auto line = too_deep(scene, simulation, scenario_type(Document::load(file)), same)) idle.push_back(*line);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';
 }

@@ -34,6 +34,38 @@ bool is_zero(const SceneDescription& scene, const Description& values, const std
   return found;
 }
 
+/// Whether no grain that stays in the domain ever comes near a wall that stands still. Spheres that cover the domain
+/// stand for all places.
+bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std::size_t wall,
+                     const std::string& name) {
+  const DomainDescription& domain = scene.domain;
+  const MotionDescription& motion = scene.walls.at(name).motion;
+  const bool deforms = !domain.strain_rate.isZero(0.0) || std::ranges::any_of(scene.stages, [](const auto& stage) {
+    return stage.change.contains("domain") || stage.growth ||
+           std::ranges::any_of(stage.ramps, [](const auto& ramp) { return ramp.pointer.starts_with("/domain/"); });
+  });
+  if (!domain.low || !domain.high || deforms || !domain.open_sides.empty() ||
+      std::ranges::any_of(scene.bodies, [](const auto& group) { return !group.second.stage.empty(); }))
+    return false;
+  if (!motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.servo || motion.follow || motion.free ||
+      is_changed(scene, "walls", name))
+    return false;
+  const auto bodies = world.positions();
+  if (bodies.empty()) return false;
+  constexpr int cells = 16;
+  const Vec3 low = *domain.low, step = (*domain.high - low) / double{cells};
+  // Who is outside is found at a search; what is a little beyond by then is less than a diameter away.
+  const double largest = std::ranges::max_element(bodies, {}, &Row::w)->w, reach = 0.5 * step.norm() + 3 * largest;
+  const Walls& walls = world.wall_states();
+  for (int x = 0; x < cells; ++x)
+    for (int y = 0; y < cells; ++y)
+      for (int z = 0; z < cells; ++z)
+        if (walls.geometry(wall).near(walls.pose(wall), low + step.cwiseProduct(Vec3(x + 0.5, y + 0.5, z + 0.5)),
+                                      reach))
+          return false;
+  return true;
+}
+
 /// Longest time that the stages can take in which a probe looks.
 double time_of_stages(const SceneDescription& scene, const std::vector<std::string>& names) {
   double sum = 0;
@@ -131,6 +163,10 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
     });
     if (!used && !later) say("/materials/" + name, "no body and no wall is of it");
   }
+  const auto walls = world.walls();
+  for (std::size_t wall = 0; wall < walls.size(); ++wall)
+    if (const std::string& name = walls[wall].name; is_out_of_reach(scene, world, wall, name))
+      say("/walls/" + name, "it stands still outside the domain, further off than any grain that stays inside reaches");
   for (const auto& [name, probe] : scene.probes)
     if (probe.cadence.never())
       say("/probes/" + name,

@@ -36,6 +36,7 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
   ChartedStudy study{file,
                      json.at("title").get<std::string>(),
                      json.at("scenario").get<std::string>(),
+                     json.value("parts", std::vector<std::string>()),
                      json.value("advice", true),
                      json.at("samples").get<std::size_t>(),
                      {}};

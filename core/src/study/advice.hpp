@@ -35,7 +35,8 @@ struct Evidence {
 struct ChartedStudy {
   std::filesystem::path file;
   std::string title, scenario;
-  bool advice = true;  ///< whether its settings are of the method, not of what is modelled
+  std::vector<std::string> parts;  ///< of its scene, as parts_of() says them
+  bool advice = true;              ///< whether its settings are of the method, not of what is modelled
   std::size_t samples = 0;
   std::map<std::string, std::vector<Evidence>> settings;  ///< from the cheapest level to the finest
 };

@@ -8,6 +8,7 @@
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "output/read_results.hpp"
+#include "study/parts.hpp"
 
 namespace grit {
 namespace {
@@ -317,9 +318,11 @@ Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
     VariantResult& result = chart.variants.emplace_back();
     result.variant = std::move(variant);
     for (const double seed : chart.study.seeds.values) {
-      const Sample& sample =
-          result.samples.emplace_back(read_sample(chart.study, seed, folder / folder_of(result.variant, seed)));
+      const auto own = folder / folder_of(result.variant, seed);
+      const Sample& sample = result.samples.emplace_back(read_sample(chart.study, seed, own));
       if (!sample.revision.empty()) chart.revisions.insert(sample.revision);
+      if (const auto run = chart.parts.empty() ? read_run_json(own) : std::nullopt; run && run->contains("description"))
+        chart.parts = parts_of(run->at("description"));
     }
   }
   find_short_curves(chart);
@@ -336,6 +339,7 @@ Description to_json(const Chart& chart) {
       {"title", chart.study.title},
       {"scene", std::filesystem::proximate(chart.study.scene).string()},
       {"scenario", chart.scenario},
+      {"parts", chart.parts},
       {"tolerance", chart.study.tolerance},
       {"advice", chart.study.advice},
       {"samples", chart.study.seeds.values.size()},

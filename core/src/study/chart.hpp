@@ -63,6 +63,7 @@ struct Effect {
 struct Chart {
   StudyDescription study;
   std::string scenario;                 ///< of the scene; empty if it has none
+  std::vector<std::string> parts;       ///< of the scene, as parts_of() says them; none without a run
   std::set<std::string> revisions;      ///< of the grit that made the runs
   std::vector<VariantResult> variants;  ///< the finest last
   std::map<std::string, Figure> reference;

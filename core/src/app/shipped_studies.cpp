@@ -1,0 +1,28 @@
+#include "app/shipped_studies.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "plugins/loader.hpp"
+
+namespace grit {
+
+std::vector<ChartedStudy> shipped_studies(const std::vector<std::string>& figures) {
+  namespace fs = std::filesystem;
+  const fs::path folder = library_directory() / "studies";
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::vector<ChartedStudy> studies;
+  for (const auto& file : files) studies.push_back(read_charted_study(file, figures));
+  return studies;
+}
+
+bool is_of(const ChartedStudy& study, const std::string& scenario, const std::vector<std::string>& parts) {
+  if (!study.advice || study.scenario != scenario) return false;
+  return !scenario.empty() || study.parts == parts;
+}
+
+}  // namespace grit

@@ -1,0 +1,17 @@
+// The charts of studies that came with grit.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "study/advice.hpp"
+
+namespace grit {
+
+/// All of them, by name. `figures`: those that count; none: all.
+std::vector<ChartedStudy> shipped_studies(const std::vector<std::string>& figures = {});
+/// Whether a study is one of method, of scenes like this: of the same scenario, or of the same parts (parts_of()) where
+/// there is none.
+bool is_of(const ChartedStudy& study, const std::string& scenario, const std::vector<std::string>& parts);
+
+}  // namespace grit
