@@ -211,5 +211,52 @@ TEST(Lattice, FaceCentredPackingIsAsStrongAsThorntonSays) {
     }
 }
 
+TEST(Lattice, SixSpheresBetweenWallsAreAsStrongAsThorntonSays) {
+  // A cell of the face-centred packing between smooth walls: one above, four in the plane, one below. The lids come
+  // closer and the sides give way so that contacts across keep their overlap and slide; those in the plane open. Each
+  // lid bears four contacts, each side what four of them press towards it.
+  constexpr double squeeze = 1e-5, sunk = squeeze * diameter;
+  for (const Law* law : {&linear_rolling, &linear_frictional})
+    for (const double angle : {5.0, 18.0, 30.0}) {
+      const double friction = std::tan(angle * std::numbers::pi / 180);
+      const double half = 0.5 * diameter * (1 - squeeze), high = root2 * half;
+      std::vector<Grain> grains;
+      for (const double sign : {-1.0, 1.0}) {
+        grains.push_back({{0, 0, sign * high}, radius});
+        for (const double other : {-1.0, 1.0}) grains.push_back({{sign * half, other * half, 0}, radius});
+      }
+      Description d = description(law->name, law->material, grains);
+      d["materials"]["grain"]["density"] = density, d["materials"]["grain"]["friction_angle"] = std::atan(friction);
+      d["materials"]["smooth"] = law->material;
+      d["materials"]["smooth"]["friction_angle"] = 0;
+      if (law == &linear_rolling)
+        d["materials"]["grain"]["rolling_limit"] = d["materials"]["smooth"]["rolling_limit"] = 0;
+      // So slow that what still swings moves faster, or local damping would brake the way.
+      constexpr double speed = 1e-6;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {-1.0, 1.0}) {
+          const double place = (axis == 2 ? high : half) + radius - (axis == 2 ? 2 * root2 : root2) * sunk;
+          const std::string name = std::string(sign > 0 ? "high_" : "low_") + "xyz"[axis];
+          d["walls"][name] = plane(sign * place * Vec3::Unit(axis), -sign * Vec3::Unit(axis), "smooth");
+          d["walls"][name]["motion"]["velocity"] =
+              vector(sign * speed * (axis == 2 ? -1 : 1 / root2) * Vec3::Unit(axis));
+        }
+      d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
+      d["time_step"]["safety"] = 0.2;
+      Trial t(d);
+      double lids = 0, sides = 0;
+      while (t.world().time() < 0.03) t.step();
+      for (int i = 0; i < 2000; ++i) {
+        t.step();
+        for (const WallView& wall : t.world().walls())
+          (wall.name.ends_with("z") ? lids : sides) += wall.force.norm() / (wall.name.ends_with("z") ? 2 : 4);
+      }
+      EXPECT_EQ(t.world().pair_count(), 8u);
+      verify(
+          "force on a lid over that on a side, " + std::string(law->name) + ", φ = " + std::to_string(int(angle)) + "°",
+          lids / sides, root2 * (1 + friction) / (1 - friction), 1e-3);
+    }
+}
+
 }  // namespace
 }  // namespace grit::test
