@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
-#include <utility>
 
 #include "support/mapped.hpp"
 #include "support/packing.hpp"
+#include "support/touching.hpp"
 
 namespace grit::test {
 namespace {
@@ -24,24 +23,6 @@ Description shot(double travel, bool past = false) {
   d["time_step"] = {{"value", dt}};
   d["guards"] = {{"overlap", 1e9}, {"travel", 0.2}, {"energy", 10}};
   return d;
-}
-
-using Touching = std::set<std::pair<std::uint32_t, std::uint32_t>>;
-
-Touching found(const Simulation& world) {
-  Touching pairs;
-  for (std::size_t c = 0; c < world.candidate_count(); ++c)
-    if (world.pairs().touches(c)) pairs.emplace(world.pairs().a(c), world.pairs().b(c));
-  return pairs;
-}
-/// By trying all.
-Touching there(const Simulation& world) {
-  Touching pairs;
-  const auto x = world.positions();
-  for (std::uint32_t a = 0; a < x.size(); ++a)
-    for (std::uint32_t b = a + 1; b < x.size(); ++b)
-      if ((xyz(x[b]) - xyz(x[a])).squaredNorm() < (x[a].w + x[b].w) * (x[a].w + x[b].w)) pairs.emplace(a, b);
-  return pairs;
 }
 
 TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {

@@ -1,0 +1,29 @@
+// Which bodies touch: as the search has it, and by trying all.
+#pragma once
+
+#include <set>
+#include <utility>
+
+#include "support/scene.hpp"
+
+namespace grit::test {
+
+using Touching = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+inline Touching found(const Simulation& world) {
+  Touching pairs;
+  for (std::size_t c = 0; c < world.candidate_count(); ++c)
+    if (world.pairs().touches(c)) pairs.emplace(world.pairs().a(c), world.pairs().b(c));
+  return pairs;
+}
+/// Not across periodic sides.
+inline Touching there(const Simulation& world) {
+  Touching pairs;
+  const auto x = world.positions();
+  for (std::uint32_t a = 0; a < x.size(); ++a)
+    for (std::uint32_t b = a + 1; b < x.size(); ++b)
+      if ((xyz(x[b]) - xyz(x[a])).squaredNorm() < (x[a].w + x[b].w) * (x[a].w + x[b].w)) pairs.emplace(a, b);
+  return pairs;
+}
+
+}  // namespace grit::test
