@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes docs/validation.md: every figure with a known answer, as the tests of physics and of clumps of a build find it,
-and what takes longer than a test (scripts/beverloo.py).
+and what takes longer than a test (scripts/beverloo.py, scripts/planted.py).
 
   validate.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, and nothing is written
 """
@@ -35,6 +35,6 @@ def rows(tests):
 
 PROGRAMS = ('test_physics', 'test_clumps')
 table = ''.join(row for program in PROGRAMS for row in rows(reported.tests(program, 'docs/validation.md')))
-longer = (reported.ROOT / 'docs' / 'beverloo.md').read_text(encoding='utf-8')
+longer = '\n'.join((reported.ROOT / 'docs' / page).read_text(encoding='utf-8') for page in ('beverloo.md', 'planted.md'))
 (reported.ROOT / 'docs' / 'validation.md').write_text(HEAD + table + '\n' + longer, encoding='utf-8')
 print(f'docs/validation.md: {table.count(chr(10))} figures')

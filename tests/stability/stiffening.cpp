@@ -121,5 +121,68 @@ TEST(Stiffening, WhatIsPouredGainsNothing) {
       EXPECT_LT(closure_of_a_pour(young, restitution), 0.03) << young << ' ' << restitution;
 }
 
+/// What a packing does when all its walls have come in.
+struct Pressed {
+  double force;    ///< on a wall [N]
+  double closure;  ///< error of the ledger over the work of walls
+  double unrest;   ///< kinetic over elastic energy
+};
+
+/// A cubic packing of a hundred and twenty-five grains that its walls press from first touch on. Beside it one rattles
+/// between two plates that soon still it: what it hits with at first sets the step, and nobody goes far enough later to
+/// have it looked at. `safety` is 0 for the usual one.
+Pressed pressed_packing(double safety) {
+  constexpr double young = 1e8, deepest = 1e-3 * radius, inwards = 2e-5, rattling = 0.0066, gap = 1e-6;
+  constexpr int sides = 5;
+  Description m = glass(young, 1);
+  m["friction_angle"] = 0.4;
+  Random random(7);
+  const auto about = [&](double size) { return size * (2 * random.uniform() - 1); };
+  std::vector<Grain> grains;
+  for (int x = 0; x < sides; ++x)
+    for (int y = 0; y < sides; ++y)
+      for (int z = 0; z < sides; ++z)
+        grains.push_back({radius * Vec3(2 * x + 1, 2 * y + 1, 2 * z + 1), radius + about(0.05 * deepest)});
+  Description d = description("hertz-mindlin", m, grains);
+  d["materials"]["dead"] = glass(young, 0.1);
+  const Vec3 low = Vec3::Zero(), high = Vec3::Constant(2 * sides * radius), apart = 30 * radius * Vec3::UnitX();
+  d["bodies"]["lone"] = d["bodies"]["grains"];
+  d["bodies"]["lone"]["material"] = "dead";
+  d["bodies"]["lone"]["grains"]["grains"] =
+      Description::array({{{"position", vector(apart + Vec3(radius, radius, radius + gap))},
+                           {"radius", radius},
+                           {"velocity", {0, 0, rattling}}}});
+  const Vec3 wide = apart + Vec3::Constant(2 * radius);
+  d["walls"]["below"] = side(2, 0, apart, wide, true, "dead");
+  d["walls"]["above"] = side(2, 2 * radius + 2 * gap, apart, wide, false, "dead");
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {true, false}) {
+      Description& wall = d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]];
+      wall = side(axis, up ? low[axis] : high[axis], low, high, up);
+      wall["motion"]["velocity"] = vector((up ? inwards : -inwards) * Vec3::Unit(axis));
+    }
+  if (safety > 0) d["time_step"]["safety"] = safety;
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  // Half the walls' way for each of the contacts along an axis.
+  while (inwards * t.world().time() < 0.5 * sides * deepest) t.step();
+  const EnergyLedger now = t.world().energies();
+  double force = 0;
+  for (const WallView& wall : t.world().walls())
+    if (wall.name.starts_with("low_") || wall.name.starts_with("high_")) force += wall.force.norm() / 6;
+  return {force, std::abs(now.closure_error / now.walls), now.kinetic / now.elastic()};
+}
+
+// A packing asks for a shorter step than two grains do that are pressed as deep: 20 k_s/m against 7.
+TEST(Stiffening, PackingThatIsPressedPushesBackAsAtATenthOfTheStep) {
+  const Pressed usual = pressed_packing(0), fine = pressed_packing(0.08);
+  for (const Pressed& one : {usual, fine}) {
+    EXPECT_LT(one.closure, 1e-4);
+    EXPECT_LT(one.unrest, 1e-4);
+  }
+  EXPECT_NEAR(usual.force / fine.force, 1, 1e-3);
+  EXPECT_GT(usual.force, 25 * 0.5 * hertz(1e8, radius, 0.5e-3 * radius)) << "pressed";
+}
+
 }  // namespace
 }  // namespace grit::test

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes docs/planted.md: which tests of
+physics turn red.
+
+  planted.py [--only PART] [BUILD]      BUILD is build unless given; exit status 1 if a plant leaves all tests green, or
+                                        if tests are red without one; with --only the rows of one of the PARTS below are made anew
+
+While it runs, a library of the build is exchanged for its copy, which has all errors and takes the one that the environment names.
+Five minutes on one core. What was exchanged when it was killed is put back when it begins again.
+"""
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+ROOT = Path(__file__).resolve().parents[1]
+LAWS = ROOT / 'plugins' / 'contacts'
+# All tests that are left take seconds; an error may keep a ball rolling for ever.
+PATIENCE = 60                                            # s of the processor's time
+SLOW = ('Silo.*', 'DirectShear.*', 'InterfaceShear.*', 'Triaxial.*', 'GroovedVoidRatio.*', 'PackingStress.*')
+OF_WALLS = ('*Seams.*', 'Faceted*.*', 'FacetingError.*')
+LATE = '(L(0.5) * ks * at.dt) * at.tangential(at.velocity)'
+
+# (what, text of the source, what stands in its place: $ is the text itself)
+FRICTION = 'std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)))'
+ROLLING_LIMIT = 'interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit))'
+
+
+def twice(what, text, factor='2'):
+    """At pairs and at walls, each alone."""
+    return [(f'{what} of pairs', text, f'(wall ? 1 : {factor}) * ($)'), (f'{what} of walls', text, f'(wall ? {factor} : 1) * ($)')]
+
+
+PARTS = {
+    'linear-frictional': (LAWS / 'linear-frictional', 'linear-frictional.hpp', [
+        *twice('shear stiffness × 2', '0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness)'),
+        *twice('friction + 1 %', FRICTION, '1.01'),
+        ('dashpot × 2', 'dashpot(pair.damping, kn, inverse_mass)', 'L(2.0) * $'),
+        ('dashpot in shear × 2', 'dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass)', 'L(2.0) * $'),
+        ('velocity of shear half a step late', 'response.shear = spring;', f'response.shear = spring + {LATE};'),
+    ]),
+    'linear-rolling': (LAWS / 'linear-rolling', 'linear-rolling.hpp', [
+        *twice('shear stiffness × 2', 'mean(a.shear_to_normal_stiffness, stiff_b.shear_to_normal_stiffness)'),
+        *twice('friction + 1 %', FRICTION, '1.01'),
+        ('velocity of shear half a step late',
+         'state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;',
+         f'$ response.shear = response.shear + {LATE};'),
+        ('rolling moment of the wrong sign',
+         'stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, pair.rolling * angular, at.spin)',
+         'stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, -(pair.rolling * angular), at.spin)'),
+        *twice('rolling stiffness × 2', 'mean(a.rolling_stiffness, stiff_b.rolling_stiffness)'),
+        *twice('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
+        ('twisting moment of the wrong sign', 'twisted(at, state.twisting, pair.twisting * angular, pair.twisting_limit * arm)',
+         'twisted(at, state.twisting, -(pair.twisting * angular), pair.twisting_limit * arm)'),
+        *twice('twisting stiffness × 2', 'mean(a.twisting_stiffness, stiff_b.twisting_stiffness)'),
+        *twice('twisting limit + 1 %', 'interface.twisting_limit.value_or(std::min(a.twisting_limit, b.twisting_limit))', '1.01'),
+    ]),
+    'hertz-mindlin': (LAWS / 'hertz-mindlin', 'hertz-mindlin.hpp', [
+        *twice('normal stiffness + 1 %', '1 / (plane_compliance(a) + plane_compliance(b))', '1.01'),
+        *twice('shear stiffness × 2', '1 / (shear_compliance(a) + shear_compliance(b))'),
+        *twice('friction + 1 %', FRICTION, '1.01'),
+        ('dashpot × 2', 'dashpot(L(0.5) * pair.damping, kn, at.inverse_mass_a + at.inverse_mass_b)', 'L(2.0) * $'),
+        ('springs keep their force as the contact is unloaded', 'contact_radius / max(state.contact_radius, L(tiny<L>))', 'L(1.0)'),
+        ('velocity of shear half a step late',
+         'state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;',
+         f'$ response.shear = response.shear + {LATE};'),
+        ('rolling moment of the wrong sign', 'stretched(at, kept * stored, stiffness, at.spin)',
+         'stretched(at, kept * stored, -stiffness, at.spin)'),
+        *twice('rolling stiffness × 2', '0.5 * (a.rolling_stiffness + b.rolling_stiffness)'),
+        *twice('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
+    ]),
+    'walls': (ROOT / 'core' / 'src' / 'contact', 'wall_contacts.cpp', [
+        ('an edge that two faces share counts twice', 'std::abs(along - (radius - deeper.overlap)) <= on_plane * radius', 'false'),
+    ]),
+}
+CHOICE = '''#include <cstdlib>
+namespace {
+const int planted_error = std::getenv("VARIABLE") != nullptr ? std::atoi(std::getenv("VARIABLE")) : 0;
+}
+'''
+HEAD = '''## Planted errors
+Written by `scripts/planted.py`. Do not edit. Each error was planted alone in a copy of the law, or of the kernel; beside it stand the tests of
+[tests/physics](../tests/physics) that turned red. Those that run whole specimens are left out, and those of surfaces where a law errs.
+
+| in | error | tests that turned red |
+| --- | --- | --- |
+'''
+
+
+def variable(part):
+    """By which a copy is told the number of its error."""
+    return 'GRIT_PLANTED_' + part.upper().replace('-', '_')
+
+
+def with_errors(text, part):
+    """A source with all errors of a part, each behind its number."""
+    places = {}
+    for number, (_, old, new) in enumerate(PARTS[part][2], 1):
+        places.setdefault(old, []).append((number, new.replace('$', old)))
+    for old, news in places.items():
+        if text.count(old) != 1:
+            sys.exit(f'planted.py: stands {text.count(old)} times in the source, not once: {old}')
+        if old.endswith(';'):
+            changed = ''.join(f'if (planted_error == {number}) {{ {new} }} else ' for number, new in news) + f'{{ {old} }}'
+        else:
+            changed = '(' + ''.join(f'planted_error == {number} ? ({new}) : ' for number, new in news) + f'({old}))'
+        text = text.replace(old, changed)
+    return CHOICE.replace('VARIABLE', variable(part)) + text.replace('#pragma once\n', '')
+
+
+def command_of(build, words):
+    """The shell command by which the build makes what the words are in."""
+    for line in subprocess.run(['ninja', '-C', build, '-t', 'commands', 'grit', 'grit_plugins'], check=True, capture_output=True,
+                               text=True).stdout.splitlines():
+        if all(word in line for word in words):
+            return line
+    sys.exit(f'planted.py: {build} has no command with {words}')
+
+
+def library_of(build, part):
+    return build / 'lib' / 'grit' / ('libgrit.so' if part == 'walls' else f'contacts/{part}.so')
+
+
+def built(build, part, folder):
+    """The library of the build that a part is in, and its copy with errors."""
+    room, source, _ = PARTS[part]
+    changed = with_errors((room / source).read_text(encoding='utf-8'), part)
+    library = library_of(build, part)
+    unit = room / (source if part == 'walls' else f'{part}.cpp')
+    (folder / unit.name).write_bytes(unit.read_bytes())
+    (folder / source).write_text(changed, encoding='utf-8')
+    compile_one = command_of(build, [f' -c {unit}'])
+    made = re.search(r' -o (\S+\.o) ', compile_one).group(1)
+    link = command_of(build, ['-shared', f' -o {library.relative_to(build)} '])
+    subprocess.run(compile_one.replace(f' -c {unit}', f' -c {folder / unit.name}').replace(f' -o {made} ', f' -o {folder}/planted.o ')
+                   .replace(f'-MF {made}.d', f'-MF {folder}/planted.d'), shell=True, check=True, cwd=build)
+    subprocess.run(link.replace(f' {made} ', f' {folder}/planted.o ').replace(f' -o {library.relative_to(build)} ', f' -o {folder}/planted.so '),
+                   shell=True, check=True, cwd=build)
+    return library, folder / 'planted.so'
+
+
+def red(program, folder, left_out, errors):
+    """Names of the tests that fail, or that do not end, with an error planted; those of one suite of values as one."""
+    tests = []
+    patience = lambda: resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE))  # noqa: E731
+    while True:
+        done = subprocess.run([program, '--gtest_filter=-' + ':'.join(left_out)], cwd=folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL, preexec_fn=patience, env={**os.environ, **errors})
+        lines = done.stdout.decode(errors='replace').splitlines()
+        tests += [match.group(1) for match in map(re.compile(r'\[  FAILED  \] ([^\s,]+).* ms\)$').match, lines) if match]
+        if done.returncode in (0, 1):
+            break
+        # It crashed or had to be ended; the others are still to come.
+        begun = [line.split()[-1] for line in lines if line.startswith('[ RUN ')]
+        tests.append(begun[-1])
+        left_out = (*left_out, *begun)
+    return sorted({re.sub(r'^\w+/(?=\w+\.)', '', re.sub(r'/\w+$', '', name)) for name in tests})
+
+
+def tried(build, part):
+    """Rows of the page: (part, error, tests)."""
+    program, left_out = build / 'tests' / 'test_physics', SLOW if part == 'walls' else SLOW + OF_WALLS
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        library, planted = built(build, part, folder)
+        kept = library.with_suffix('.unplanted')
+        os.replace(library, kept)
+        try:
+            shutil.copy(planted, library)
+            healthy = red(program, folder, left_out, {})
+            if healthy:
+                sys.exit(f'planted.py: {part}: red without an error: {", ".join(healthy)}')
+            for number, (what, _, _) in enumerate(PARTS[part][2], 1):
+                tests = red(program, folder, left_out, {variable(part): str(number)})
+                print(f'{part}: {what}: {", ".join(tests) or "nothing turned red"}', flush=True)
+                yield part, what, tests
+        finally:
+            os.replace(kept, library)
+
+
+def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was exchanged is put back
+    words = sys.argv[1:]
+    parts = list(PARTS)
+    if words[:1] == ['--only']:
+        parts, words = [words[1]], words[2:]
+        if parts[0] not in PARTS:
+            sys.exit(f'planted.py: --only takes one of {", ".join(PARTS)}')
+    build = Path(words[0] if words else ROOT / 'build').resolve()
+    if not (build / 'tests' / 'test_physics').is_file():
+        sys.exit(f'{build}/tests/test_physics: no such program; build it (cmake --build --preset release)')
+    for part in parts:
+        library = library_of(build, part)
+        if library.with_suffix('.unplanted').is_file():
+            os.replace(library.with_suffix('.unplanted'), library)
+    page = ROOT / 'docs' / 'planted.md'
+    green = False
+    for part in parts:
+        found = list(tried(build, part))
+        green |= not all(tests for _, _, tests in found)
+        lines = page.read_text(encoding='utf-8').splitlines(True) if page.is_file() else []
+        rows = {other: [line for line in lines if line.startswith(f'| {other} |')] for other in PARTS}
+        rows[part] = [f'| {part} | {what} | {", ".join(tests) or "none"} |\n' for _, what, tests in found]
+        page.write_text(HEAD + ''.join(line for other in PARTS for line in rows[other]), encoding='utf-8')
+    return 1 if green else 0
+
+
+sys.exit(main())
