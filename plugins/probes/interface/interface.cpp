@@ -45,12 +45,9 @@ std::vector<Channel> Interface::channels() const {
 
 /// Mean of the layer since the first sample of the stage [rad].
 double Interface::rotation(const World& world, const Vec3& about) {
-  if (world.stage() != stage_) stage_ = world.stage(), turned_before_.clear();
+  turned_.begin(world);
   double sum = 0, bodies = 0;
-  layer.for_bodies(world, [&](std::size_t i) {
-    const double turned = world.rotations()[i].dot(about);
-    sum += turned - turned_before_.try_emplace(world.ids()[i], turned).first->second, ++bodies;
-  });
+  layer.for_bodies(world, [&](std::size_t i) { sum += turned_(world, i, world.rotations()[i].dot(about)), ++bodies; });
   return bodies > 0 ? sum / bodies : 0;
 }
 

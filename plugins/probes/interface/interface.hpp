@@ -1,12 +1,11 @@
 // What a wall does to the bodies next to it, as boundary conditions of a micropolar continuum. See README.md.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
+#include "../turned_in_stage.hpp"
 #include "../wall_layer.hpp"
 #include "grit/probe.hpp"
 
@@ -21,13 +20,12 @@ class Interface final : public Probe {
   void prepare(const World& world) override { layer.prepare(world, "probe interface"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
-  void remember(Memory& memory) override { memory(stage_, turned_before_); }
+  void remember(Memory& memory) override { memory(turned_); }
 
  private:
   double rotation(const World& world, const Vec3& about);
 
-  std::string stage_;
-  std::unordered_map<std::uint32_t, double> turned_before_;  ///< rad, by id, at the first sample of the stage
+  TurnedInStage turned_;
 };
 
 }  // namespace grit

@@ -22,27 +22,29 @@ std::vector<Channel> Rotations::channels() const {
   std::vector<Channel> channels{
       {"place", "m", "of each value of the profile, along " + profile.across, each},
       {"profile", "rad",
-       "cumulative rotation at each place, by the line that fits the bodies around it" + sign + "; NaN without any",
+       "rotation in the stage at each place, by the line that fits the bodies around it" + sign + "; NaN without any",
        each, "place"},
-      {"mean", "rad", "mean cumulative rotation of all bodies" + sign + "; 0 without any", {}},
+      {"mean", "rad", "mean rotation of all bodies in the stage" + sign + "; 0 without any", {}},
       {"mean_magnitude",
        "rad",
-       "mean magnitude of the bodies' cumulative rotations about " + about + "; 0 without any",
+       "mean magnitude of the bodies' rotations about " + about + " in the stage; 0 without any",
        {}}};
   std::ranges::copy(zone_channels("profile"), std::back_inserter(channels));
   return channels;
 }
 
 void Rotations::sample(const World& world, std::span<const std::span<double>> values) {
-  const auto turned = [&](std::size_t i) { return world.rotations()[i][about[0] - 'x']; };
+  const int axis = about[0] - 'x';
+  turned_.begin(world);
+  std::vector<double> turned(world.rotations().size());
+  for (std::size_t i = 0; i < turned.size(); ++i) turned[i] = turned_(world, i, world.rotations()[i][axis]);
   const auto nodes = profile.nodes(world);
-  const auto lines = profile.fit(world, turned);
+  const auto lines = profile.fit(world, [&](std::size_t i) { return turned[i]; });
   for (std::size_t k = 0; k < lines.value.size(); ++k) values[0][k] = nodes.at(k), values[1][k] = lines.value[k];
-  const std::size_t bodies = world.rotations().size();
   double sum = 0, magnitudes = 0;
-  for (std::size_t i = 0; i < bodies; ++i)
-    if (std::isfinite(turned(i))) sum += turned(i), magnitudes += std::abs(turned(i));
-  const double count = std::max<double>(1, static_cast<double>(bodies));
+  for (const double one : turned)
+    if (std::isfinite(one)) sum += one, magnitudes += std::abs(one);
+  const double count = std::max<double>(1, static_cast<double>(turned.size()));
   values[2][0] = sum / count, values[3][0] = magnitudes / count;
   fill_zone(shear_zone(nodes, lines.value), world, values.subspan(4));
 }

@@ -1,4 +1,4 @@
-// How far bodies have turned, and the shear zone that shows. See README.md.
+// How far bodies have turned in a stage, and the shear zone that shows. See README.md.
 #pragma once
 
 #include <span>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "../profile.hpp"
+#include "../turned_in_stage.hpp"
 #include "grit/probe.hpp"
 
 namespace grit {
@@ -20,6 +21,10 @@ class Rotations final : public Probe {
   void prepare(const World& world) override { profile.prepare(world, "probe rotations"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
+  void remember(Memory& memory) override { memory(turned_); }
+
+ private:
+  TurnedInStage turned_;
 };
 
 }  // namespace grit
