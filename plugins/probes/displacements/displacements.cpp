@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include "../specimen.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -12,6 +13,17 @@ namespace grit {
 void Displacements::declare(Parameters& p) {
   p.add("along", along).one_of({"x", "y", "z"}).doc("component whose profile is taken");
   profile.declare(p);
+  p.add("strips", strips)
+      .at_least(0)
+      .at_most(1000)
+      .doc("of equal width, side by side, that have a profile of the gradient each; 0: none");
+  p.add("strips_along", strips_along).one_of({"x", "y", "z"}).doc("axis along which strips are side by side");
+  p.check(
+      [this](const Complain& complain) {
+        if (strips > 0 && strips_along == profile.across)
+          complain("strips_along", strips_along, "another axis than across, along which the profiles go");
+      },
+      {"strips", "strips_along", "across"});
 }
 
 std::vector<Channel> Displacements::channels() const {
@@ -30,51 +42,88 @@ std::vector<Channel> Displacements::channels() const {
            std::string("NaN without any"),
        each, "place"}};
   std::ranges::copy(zone_channels("gradient"), std::back_inserter(channels));
+  for (std::int64_t strip = 1; strip <= strips; ++strip)
+    channels.push_back({"gradient_strip_" + std::to_string(strip), "1",
+                        "the same as gradient, of the bodies in strip " + std::to_string(strip) + " of " +
+                            std::to_string(strips) + " along " + strips_along + "; NaN where bodies are too few",
+                        each, "place"});
   return channels;
 }
 
-std::vector<Vec3> Displacements::fluctuations(const World& world) const {
+Displacements::Profiles Displacements::profiles(const World& world) const {
+  const auto of = [&](int axis) {
+    return profile.fit(world, [&](std::size_t i) { return world.displacements()[i][axis]; });
+  };
+  return {of(0), of(1), of(2)};
+}
+
+std::vector<Vec3> Displacements::fluctuations(const World& world, const Profiles& mean) const {
   const auto nodes = profile.nodes(world);
   const double last = static_cast<double>(profile.places - 1), unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<Vec3> left(world.displacements().begin(), world.displacements().end());
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto mean = profile.fit(world, [&](std::size_t i) { return world.displacements()[i][axis]; }).value;
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      const double x = xyz(world.positions()[i])[profile.across[0] - 'x'];
-      const double place = std::min(std::max((x - nodes.first) / nodes.step, 0.0), last);
-      if (!std::isfinite(x) || !std::isfinite(place)) {
-        left[i][axis] = unknown;
-        continue;
-      }
-      const auto k = static_cast<std::size_t>(std::min(std::floor(place), last - 1));
-      const double part = place - static_cast<double>(k);
-      left[i][axis] -= part == 0 ? mean[k] : (1 - part) * mean[k] + part * mean[k + 1];
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const double x = xyz(world.positions()[i])[profile.across[0] - 'x'];
+    const double place = std::min(std::max((x - nodes.first) / nodes.step, 0.0), last);
+    if (!std::isfinite(x) || !std::isfinite(place)) {
+      left[i].setConstant(unknown);
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(std::min(std::floor(place), last - 1));
+    const double part = place - static_cast<double>(k);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<double>& at = mean[static_cast<std::size_t>(axis)].value;
+      left[i][axis] -= part == 0 ? at[k] : (1 - part) * at[k] + part * at[k + 1];
     }
   }
   return left;
 }
 
+void Displacements::fill_strips(const World& world, std::span<const std::span<double>> values) const {
+  const Region box = specimen_box(world);
+  const int side = strips_along[0] - 'x', axis = along[0] - 'x';
+  const double width = (box.high[side] - box.low[side]) / static_cast<double>(strips);
+  for (std::size_t strip = 0; strip < values.size(); ++strip) {
+    const auto of_strip = [&](std::size_t i) {
+      const double across = (xyz(world.positions()[i])[side] - box.low[side]) / width;
+      // What lies beyond the outermost ones is theirs.
+      const double place = std::clamp(std::floor(across), 0.0, static_cast<double>(strips - 1));
+      return place == static_cast<double>(strip) ? world.displacements()[i][axis]
+                                                 : std::numeric_limits<double>::quiet_NaN();
+    };
+    std::ranges::copy(profile.fit(world, of_strip).slope, values[strip].begin());
+  }
+}
+
 void Displacements::sample(const World& world, std::span<const std::span<double>> values) {
   const auto nodes = profile.nodes(world);
-  const int axis = along[0] - 'x';
-  const auto lines = profile.fit(world, [&](std::size_t i) { return world.displacements()[i][axis]; });
-  const auto left = fluctuations(world);
+  const Profiles mean = profiles(world);
+  const Profile::Lines& lines = mean[static_cast<std::size_t>(along[0] - 'x')];
+  const auto left = fluctuations(world, mean);
   const auto squares = profile.fit(world, [&](std::size_t i) { return left[i].squaredNorm(); }).value;
   for (std::size_t k = 0; k < lines.value.size(); ++k) {
     values[0][k] = nodes.at(k), values[1][k] = lines.value[k], values[2][k] = lines.slope[k];
     values[3][k] = std::sqrt(squares[k] < 0 ? 0 : squares[k]);
   }
-  fill_zone(shear_zone(nodes, lines.slope), world, values.subspan(4));
+  fill_zone(shear_zone(nodes, lines.slope), world, values.subspan(4, 4));
+  fill_strips(world, values.subspan(8));
 }
 
 std::vector<Field> Displacements::fields(const World& world) {
-  std::vector<Field> fields{
-      {"id", "1", "of each body", 1, {}},
-      {"fluctuation", "m", "its displacement less the profile; NaN where that is unknown", 3, {}}};
-  const auto left = fluctuations(world);
+  const auto left = fluctuations(world, profiles(world));
+  std::vector<Field> fields{{"id", "1", "of each body", 1, {}},
+                            {"centre", "m", "of each body, where it is now", 3, {}},
+                            {"size", "m", "its diameter, along all axes", 3, {}},
+                            {"fluctuation",
+                             "m",
+                             "its displacement less the profile, positive along the axis; NaN where that is unknown",
+                             3,
+                             {}}};
   for (std::size_t i = 0; i < left.size(); ++i) {
+    const Row& body = world.positions()[i];
     fields[0].values.push_back(world.ids()[i]);
-    fields[1].values.insert(fields[1].values.end(), left[i].begin(), left[i].end());
+    fields[1].values.insert(fields[1].values.end(), {body.x, body.y, body.z});
+    fields[2].values.insert(fields[2].values.end(), 3, 2 * body.w);
+    fields[3].values.insert(fields[3].values.end(), left[i].begin(), left[i].end());
   }
   return fields;
 }

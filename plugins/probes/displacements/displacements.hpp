@@ -1,6 +1,8 @@
 // How far bodies have gone in a stage, the mean of it and what is left. See README.md.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +16,8 @@ class Displacements final : public Probe {
  public:
   std::string along = "x";
   Profile profile;
+  std::int64_t strips = 0;
+  std::string strips_along = "x";
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::displacement; }
@@ -23,8 +27,12 @@ class Displacements final : public Probe {
   std::vector<Field> fields(const World& world) override;
 
  private:
-  /// Of each body, less the profile, which is linear between places; NaN where that is unknown.
-  std::vector<Vec3> fluctuations(const World& world) const;
+  using Profiles = std::array<Profile::Lines, 3>;
+  Profiles profiles(const World& world) const;
+  /// Of each body, less the profiles, which are linear between places; NaN where those are unknown.
+  std::vector<Vec3> fluctuations(const World& world, const Profiles& mean) const;
+  /// Slopes at all places of each strip.
+  void fill_strips(const World& world, std::span<const std::span<double>> values) const;
 };
 
 }  // namespace grit

@@ -44,8 +44,59 @@ TEST(Displacements, FluctuationsAreWhatTheMeanLeaves) {
   const auto left = channel_values(probe, world, "fluctuation");
   for (std::size_t k = 3; k < 8; ++k) EXPECT_NEAR(left[k], 0.1, 1e-4) << k;
   const auto fields = probe.fields(world);
-  EXPECT_NEAR(std::abs(fields.at(1).values.at(3 * 500 + 1)), 0.1, 1e-4);
-  EXPECT_NEAR(fields.at(1).values.at(3 * 500), 0, 1e-12);
+  const auto& fluctuation = fields.at(3).values;
+  EXPECT_NEAR(std::abs(fluctuation.at(3 * 500 + 1)), 0.1, 1e-4);
+  EXPECT_NEAR(fluctuation.at(3 * 500), 0, 1e-12);
+}
+
+// What frames take for a map: a tile as large as the body, where it is.
+TEST(Displacements, FluctuationsAreAMapOfBodies) {
+  const FakeWorld world = column([](double z) { return Vec3(z, 0, 0); });
+  Displacements probe;
+  probe.prepare(world);
+  const auto fields = probe.fields(world);
+  ASSERT_EQ(fields.at(1).name, "centre");
+  ASSERT_EQ(fields.at(2).name, "size");
+  EXPECT_EQ(fields.at(3).name, "fluctuation");
+  for (const std::size_t body : {0u, 500u, 999u}) {
+    EXPECT_EQ(fields[0].values[body], world.id[body]);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(fields[2].values[3 * body + k], 0.01);
+    EXPECT_EQ(fields[1].values[3 * body + 2], world.position[body].z);
+  }
+}
+
+// Two columns, of which one shears the other way and stands beyond the last strip, where it counts.
+TEST(Displacements, StripsHaveGradientsOfTheirOwn) {
+  FakeWorld world;
+  for (int k = 0; k < 1000; ++k)
+    for (const double x : {0.1, 1.3}) {
+      const double z = (k + 0.5) / 1000;
+      world.add({x, 0.5, z}, 0.005);
+      world.displacement.push_back({x < 0.5 ? 0.3 * z : -0.7 * z, 0, 0});
+    }
+  world.whole = {Vec3::Zero(), Vec3::Ones()};
+  Displacements probe;
+  probe.profile.places = 11, probe.strips = 3;
+  probe.prepare(world);
+  const auto first = channel_values(probe, world, "gradient_strip_1"),
+             none = channel_values(probe, world, "gradient_strip_2"),
+             last = channel_values(probe, world, "gradient_strip_3"), all = channel_values(probe, world, "gradient");
+  for (std::size_t k = 0; k < 11; ++k) {
+    EXPECT_NEAR(first[k], 0.3, 1e-10) << k;
+    EXPECT_TRUE(std::isnan(none[k])) << k;
+    EXPECT_NEAR(last[k], -0.7, 1e-10) << k;
+    EXPECT_NEAR(all[k], -0.2, 1e-10) << k;
+  }
+  EXPECT_THROW(channel_values(probe, world, "gradient_strip_4"), Error);
+}
+
+TEST(Displacements, StripsLieAcrossTheirProfiles) {
+  Displacements probe;
+  probe.strips = 4, probe.strips_along = "z";
+  EXPECT_EQ(complaints(probe),
+            "strips_along: found z, allowed: another axis than across, along which the profiles go\n");
+  probe.strips = 0;
+  EXPECT_EQ(complaints(probe), "");
 }
 
 // u = tanh((z − c) / w) shears by sech² ((z − c) / w), whose inflections are where tanh² = 1/3.
@@ -73,7 +124,12 @@ TEST(Displacements, ZoneAtASideBeginsThere) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Displacements, ProbeContract,
-                         testing::Values(ProbeCase{"lattice", [] { return std::make_shared<Displacements>(); },
+                         testing::Values(ProbeCase{"lattice",
+                                                   [] {
+                                                     auto probe = std::make_shared<Displacements>();
+                                                     probe->strips = 3;
+                                                     return probe;
+                                                   },
                                                    [] {
                                                      FakeWorld world = lattice_world(6, 4, 8);
                                                      for (const Row& x : world.position)
