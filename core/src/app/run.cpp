@@ -8,6 +8,7 @@
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
+#include "app/wall_shapes.hpp"
 #include "app/watch.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
@@ -21,19 +22,6 @@
 
 namespace grit {
 namespace {
-
-/// As they begin, and as stages change them.
-std::vector<WallShape> wall_shapes(const Scene& scene) {
-  std::vector<WallShape> shapes;
-  for (const auto& [name, wall] : scene.description->walls) {
-    const std::vector<Vec3> first = wall.geometry->triangles();
-    shapes.push_back({name, first});
-    for (std::size_t i = 0; i < scene.stages.size(); ++i)
-      if (auto now = scene.stages[i].start->walls.at(name).geometry->triangles(); now != first)
-        shapes.push_back({name, std::move(now), scene.description->stages[i].name});
-  }
-  return shapes;
-}
 
 /// A description that was read, and where its results go.
 struct Job {

@@ -1,0 +1,93 @@
+#include "app/wall_shapes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "scene/make_bodies.hpp"
+
+namespace grit {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The axis across which an endless plane lies; -1 of other shapes.
+int endless_across(const Geometry& geometry) {
+  const Bounds bounds = geometry.bounds();
+  int across = -1, endless = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::isfinite(bounds.low[axis]) && bounds.low[axis] == bounds.high[axis]) across = axis;
+    else if (std::isinf(bounds.low[axis]) && std::isinf(bounds.high[axis])) ++endless;
+  }
+  return endless == 2 && geometry.triangles().empty() ? across : -1;
+}
+
+/// How far endless planes are drawn.
+Bounds drawn_box(const SceneDescription& scene) {
+  Bounds box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (const auto& [name, wall] : scene.walls) {
+    const Geometry& geometry = *wall.geometry;
+    for (const Vec3& corner : geometry.triangles())
+      box.low = box.low.cwiseMin(corner), box.high = box.high.cwiseMax(corner);
+    if (const int across = endless_across(geometry); across >= 0) {
+      const double place = geometry.bounds().low[across];
+      box.low[across] = std::min(box.low[across], place), box.high[across] = std::max(box.high[across], place);
+    }
+  }
+  const auto reaches_nowhere = [&](int axis) { return !(box.low[axis] < box.high[axis]); };
+  for (int axis = 0; axis < 3; ++axis)
+    if (const auto& low = scene.domain.low, &high = scene.domain.high;
+        reaches_nowhere(axis) && low && high && std::isfinite((*high - *low)[axis]))
+      box.low[axis] = (*low)[axis], box.high[axis] = (*high)[axis];
+  if (!reaches_nowhere(0) && !reaches_nowhere(1) && !reaches_nowhere(2)) return box;
+  const Bodies bodies = make_bodies(scene, {});
+  Bounds grains{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const Vec3 centre = xyz(bodies.position[i]), radius = Vec3::Constant(bodies.position[i].w);
+    grains.low = grains.low.cwiseMin(centre - radius), grains.high = grains.high.cwiseMax(centre + radius);
+  }
+  const double room = (grains.high - grains.low).maxCoeff();
+  for (int axis = 0; axis < 3; ++axis)
+    if (reaches_nowhere(axis)) box.low[axis] = grains.low[axis] - room, box.high[axis] = grains.high[axis] + room;
+  return box;
+}
+
+/// Two triangles, counter-clockwise as the bodies see them.
+std::vector<Vec3> rectangle(const Geometry& plane, int across, const Bounds& box) {
+  const int u = (across + 1) % 3, v = (across + 2) % 3;
+  const auto corner = [&](bool far_u, bool far_v) {
+    Vec3 at;
+    at[across] = plane.bounds().low[across];
+    at[u] = (far_u ? box.high : box.low)[u], at[v] = (far_v ? box.high : box.low)[v];
+    return at;
+  };
+  Vec3 a = corner(false, false), b = corner(true, false), c = corner(true, true), d = corner(false, true);
+  if (plane.normal()[across] < 0) std::swap(b, d);
+  if (!(a.allFinite() && c.allFinite())) return {};
+  return {a, b, c, a, c, d};
+}
+
+}  // namespace
+
+std::vector<WallShape> wall_shapes(const Scene& scene) {
+  const SceneDescription& start = *scene.description;
+  const bool has_endless =
+      std::ranges::any_of(start.walls, [](const auto& wall) { return endless_across(*wall.second.geometry) >= 0; });
+  const Bounds box = has_endless ? drawn_box(start) : Bounds{Vec3::Zero(), Vec3::Zero()};
+  const auto triangles = [&](const Geometry& geometry) {
+    const int across = endless_across(geometry);
+    return across >= 0 && has_endless ? rectangle(geometry, across, box) : geometry.triangles();
+  };
+  std::vector<WallShape> shapes;
+  for (const auto& [name, wall] : start.walls) {
+    const std::vector<Vec3> first = triangles(*wall.geometry);
+    shapes.push_back({name, first});
+    for (std::size_t i = 0; i < scene.stages.size(); ++i)
+      if (auto now = triangles(*scene.stages[i].start->walls.at(name).geometry); now != first)
+        shapes.push_back({name, std::move(now), start.stages[i].name});
+  }
+  return shapes;
+}
+
+}  // namespace grit
