@@ -91,6 +91,7 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   summary.particle_steps_per_second = 40;
   summary.rebuilds = 3;
   summary.phases = {{"contact forces", 1.5}};
+  summary.probes = {{"packing", 4, 0.25}};
   results.finish(world, summary);
   run = json::parse(text_of(folder / "run/run.json"));
   EXPECT_EQ(run.at("status"), "done");
@@ -102,6 +103,7 @@ TEST(ResultsFolder, HoldsAWholeRun) {
   EXPECT_EQ(run.at("particle_steps_per_s"), 40);
   EXPECT_EQ(run.at("rebuilds"), 3);
   EXPECT_EQ(run.at("phases_s").at("contact forces"), 1.5);
+  EXPECT_EQ(run.at("probes").at("packing"), Description({{"samples", 4}, {"seconds", 0.25}}));
 
   const std::vector<Row> grains = read_packing(folder / "run/packing.txt");
   ASSERT_EQ(grains.size(), 2u);

@@ -117,6 +117,8 @@ class Resume : public testing::Test {
     const auto first = run_json(a), second = run_json(b);
     for (const char* key : {"status", "steps", "time", "rebuilds", "contacts_per_body", "bodies"})
       EXPECT_EQ(first.at(key), second.at(key)) << key;
+    for (const char* probe : {"packing", "energy", "force-chains"})
+      EXPECT_EQ(first.at("probes").at(probe).at("samples"), second.at("probes").at(probe).at("samples")) << probe;
     ASSERT_EQ(first.at("stages").size(), second.at("stages").size());
     for (std::size_t i = 0; i < first.at("stages").size(); ++i)
       for (const char* key : {"name", "reached", "step"})

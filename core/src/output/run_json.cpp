@@ -73,6 +73,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"rebuilds", nullptr},
            {"model", nullptr},
            {"phases_s", Description::object()},
+           {"probes", Description::object()},
            {"stages", Description::array()},
            {"plugins", Description::array()},
            {"description", facts.description}};
@@ -138,6 +139,8 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
                     {"local_damping", model.local_damping},
                     {"bytes", model.bytes}};
   for (const auto& phase : summary.phases) json_["phases_s"][phase.name] = phase.seconds;
+  for (const auto& [name, samples, seconds] : summary.probes)
+    json_["probes"][name] = {{"samples", samples}, {"seconds", seconds}};
   json_["host"]["load_average_at_end"] = load_average();
   json_["ended"] = now();
   write();

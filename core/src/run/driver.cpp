@@ -275,6 +275,7 @@ class Run {
     summary.model = simulation_.model();
     summary.phases = simulation_.phases();
     summary.phases.insert(summary.phases.end(), phases_.begin(), phases_.end());
+    for (const Observer& observer : observers_) summary.probes.push_back(observer.cost());
   }
 
   const Scene& scene_;

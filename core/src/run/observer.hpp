@@ -10,6 +10,7 @@
 #include "run/component_memory.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
+#include "run/stopwatch.hpp"
 
 namespace grit {
 
@@ -35,13 +36,18 @@ class Observer {
     if (last_step_ == world.step()) return;
     last_step_ = world.step();
     std::vector<std::span<double>> out(values_.begin(), values_.end());
-    description_->probe->sample(world, out);
+    ++samples_;
+    {
+      const Stopwatch watch(seconds_);
+      description_->probe->sample(world, out);
+    }
     const std::vector<std::span<const double>> in(values_.begin(), values_.end());
     recorder.sample(index, world, in);
   }
+  ProbeTime cost() const { return {name_, samples_, seconds_}; }
   bool in_frames() const { return description_->frames; }
   void remember(Memory& memory) {
-    memory(schedule_, last_step_);
+    memory(schedule_, last_step_, samples_, seconds_);
     remember_by_itself("probe \"" + name_ + '"', *description_->probe, memory);
   }
   FieldGroup fields(const World& world) const { return {name_, description_->probe->fields(world)}; }
@@ -51,7 +57,8 @@ class Observer {
   const ProbeDescription* description_;
   Schedule schedule_;
   std::vector<std::vector<double>> values_;
-  std::uint64_t last_step_ = ~0ull;
+  std::uint64_t last_step_ = ~0ull, samples_ = 0;
+  double seconds_ = 0;
 };
 
 }  // namespace grit

@@ -31,6 +31,13 @@ struct PhaseTime {
   double seconds = 0;
 };
 
+/// What the samples of a probe cost.
+struct ProbeTime {
+  std::string name;
+  std::uint64_t samples = 0;
+  double seconds = 0;  ///< of all of them together, without writing them
+};
+
 /// What was stored and computed; the rest was left out, because nothing asked for it.
 struct Model {
   std::size_t lanes = 1;                   ///< pairs that the contact law's loop takes at once
@@ -57,6 +64,7 @@ struct RunSummary {
   std::size_t rebuilds = 0;  ///< of the neighbour lists
   unsigned threads = 1;
   std::vector<PhaseTime> phases;
+  std::vector<ProbeTime> probes;
   Model model;
 };
 
