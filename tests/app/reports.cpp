@@ -91,6 +91,36 @@ TEST_F(Reports, DrawPicturesWithoutABrowser) {
   EXPECT_FALSE(exists("results/two/report.html"));
 }
 
+TEST_F(Reports, LayCurvesOfSeveralFoldersOverEachOther) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  ASSERT_EQ(grit({"run", "two.json", "--no-report", "--out", "results/stiff", "--set",
+                  "/materials/sand/contact_modulus=\"200 MPa\""})
+                .status,
+            0);
+  const auto outcome = grit({"report", "--png", "results/two", "results/stiff"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("picture: results/stiff/curves.png\n"),
+                                 HasSubstr("picture: results/two/curves-overlaid.png\n")));
+  EXPECT_THAT(text("results/two/curves-overlaid.svg"), AllOf(HasSubstr(">two<"), HasSubstr(">stiff<")));
+  EXPECT_THAT(text("results/two/curves.svg"), Not(HasSubstr(">two<")));
+  EXPECT_FALSE(exists("results/stiff/curves-overlaid.svg"));
+}
+
+// An endless plane has no triangles of its own: the floor of most tests.
+TEST_F(Reports, DrawPlanesWithoutAnExtent) {
+  const auto drawn = [&](const std::string& wall) {
+    EXPECT_EQ(grit({"run", "two.json", "--no-report", "--overwrite", "--set", "/walls/floor=" + wall}).status, 0);
+    EXPECT_EQ(grit({"report", "--png", "results/two"}).status, 0);
+    return text("results/two/grains.svg");
+  };
+  const std::string line = "class=\"wall\"";
+  EXPECT_THAT(drawn(R"({"type": "plane", "point": [0, 0, "-1.5 mm"], "normal": [0, 0, 1], "material": "sand"})"),
+              HasSubstr(line));
+  EXPECT_THAT(drawn(R"({"type": "plane", "point": [0, 0, "-1.5 mm"], "normal": [0, 1, 1], "material": "sand"})"),
+              Not(HasSubstr(line)))
+      << "that is across no axis";
+}
+
 TEST_F(Reports, SayThatTheConverterIsMissing) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   const auto outcome = shell(folder.path(), "PATH=/nowhere \"" GRIT_BINARY "\" report --png results/two");

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <boost/property_tree/xml_parser.hpp>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "grit/error.hpp"
 #include "output/grain_view.hpp"
 #include "output/scale.hpp"
+#include "svg_elements.hpp"
 
 namespace grit {
 namespace {
@@ -32,6 +32,41 @@ TEST(Scale, TicksAreMultiplesOfOneTwoOrFive) {
   EXPECT_THAT(ticks(-0.3, 0.71, 5), Pointwise(DoubleNear(1e-12), std::vector{-0.2, 0.0, 0.2, 0.4, 0.6}));
   EXPECT_THAT(ticks(3, 3, 5), ElementsAre(3));
 }
+
+// Ranges of all sizes, aligned with steps and not, about zero and far from it.
+TEST(Scale, AxesHaveFourToEightTicks) {
+  for (double span = 1e-6; span < 1e6; span *= 1.07)
+    for (const double from : {0.0, -0.37, 0.93, -1.0, 5.77})
+      for (const AxisEnds ends : {AxisEnds::kept, AxisEnds::whole_steps}) {
+        const double low = from * span, high = low + span;
+        const AxisTicks axis = axis_ticks(low, high, ends);
+        ASSERT_GE(axis.marks.size(), 4u) << low << ' ' << high;
+        ASSERT_LE(axis.marks.size(), 8u) << low << ' ' << high;
+        const double lead = axis.step / std::pow(10, std::floor(std::log10(axis.step) + 1e-9));
+        EXPECT_TRUE(std::abs(lead - 1) < 1e-9 || std::abs(lead - 2) < 1e-9 || std::abs(lead - 5) < 1e-9) << axis.step;
+        for (std::size_t i = 0; i < axis.marks.size(); ++i) {
+          EXPECT_NEAR(axis.marks[i] / axis.step, std::round(axis.marks[i] / axis.step), 1e-6);
+          if (i > 0) EXPECT_NEAR(axis.marks[i] - axis.marks[i - 1], axis.step, 1e-6 * axis.step);
+        }
+        EXPECT_LE(axis.low, low + 1e-8 * span);
+        EXPECT_GE(axis.high, high - 1e-8 * span);
+        EXPECT_GE(axis.marks.front(), axis.low - 1e-8 * span);
+        EXPECT_LE(axis.marks.back(), axis.high + 1e-8 * span);
+        if (ends == AxisEnds::kept) continue;
+        EXPECT_EQ(axis.marks.front(), axis.low);
+        EXPECT_NEAR(axis.marks.back(), axis.high, 1e-9 * span);
+      }
+}
+
+TEST(Scale, AxesAreAsFineAsNumbersFit) {
+  EXPECT_DOUBLE_EQ(axis_ticks(0, 3, AxisEnds::kept).step, 0.5);
+  EXPECT_DOUBLE_EQ(axis_ticks(0, 7, AxisEnds::kept).step, 1);
+  EXPECT_DOUBLE_EQ(axis_ticks(0, 7, AxisEnds::kept, [](const AxisTicks& axis) { return axis.step >= 2; }).step, 2);
+  EXPECT_EQ(axis_ticks(0, 7, AxisEnds::kept, [](const AxisTicks&) { return false; }).marks.size(), 4u) << "0 2 4 6";
+}
+
+// A range as wide as the rounding of its ends has no steps to count.
+TEST(Scale, AxesEndWhereNumbersDo) { EXPECT_LE(axis_ticks(1e10, 1e10 + 4e-6, AxisEnds::whole_steps).marks.size(), 8u); }
 
 TEST(Scale, LabelsAreShort) {
   EXPECT_EQ(tick_label(0.6000000001, 0.2), "0.6");
@@ -57,26 +92,7 @@ TEST(Scale, UnitsAreReadable) {
   EXPECT_EQ(readable("kg m-3", 0.02).unit, "kg m-3");
 }
 
-boost::property_tree::ptree parsed(const std::string& svg) {
-  std::istringstream text(svg);
-  boost::property_tree::ptree tree;
-  read_xml(text, tree);
-  return tree;
-}
-
-/// Elements of a name, with the given word in their class if there is one.
-std::vector<boost::property_tree::ptree> elements(const boost::property_tree::ptree& tree, const std::string& name,
-                                                  const std::string& word = {}) {
-  std::vector<boost::property_tree::ptree> found;
-  for (const auto& [tag, child] : tree) {
-    const auto classes = ' ' + child.get<std::string>("<xmlattr>.class", "") + ' ';
-    if (tag == name && (word.empty() || classes.find(' ' + word + ' ') != std::string::npos)) found.push_back(child);
-    for (auto& deeper : elements(child, name, word)) found.push_back(std::move(deeper));
-  }
-  return found;
-}
-
-std::vector<double> ys_of(const boost::property_tree::ptree& polyline) {
+std::vector<double> ys_of(const SvgElement& polyline) {
   std::istringstream points(polyline.get<std::string>("<xmlattr>.points"));
   std::vector<double> ys;
   double x, y;
@@ -109,6 +125,83 @@ TEST(Picture, HasACurveARunAndMarksThePeak) {
   EXPECT_THAT(draw(picture), testing::AllOf(HasSubstr("shear displacement [mm]"), HasSubstr("dilation [µm]")));
 }
 
+TEST(Picture, HasTicksOnBothAxesThatDoNotTouch) {
+  for (const std::size_t panels : {1u, 2u, 3u, 6u}) {
+    Picture picture{.title = "", .facts = "", .panels = {}, .grains = {}};
+    for (std::size_t i = 0; i < panels; ++i)
+      picture.panels.push_back({{"strain"}, {"force", "N"}, {{"", {0, 1.7e-3, 3.1e-3}, {0, 1234, 987}}}});
+    const auto svg = parsed(draw(picture));
+    // Numbers below the axes come row by row of each panel: those of one panel rise.
+    std::size_t ticks = 0;
+    double last = -1, row = -1;
+    for (const auto& text : elements(svg, "text", "m")) {
+      if (text_of(text, "class") != "m") continue;
+      const double x = number_of(text, "x"), y = number_of(text, "y");
+      if (y != row || x < last) last = -1;
+      if (last >= 0) EXPECT_GT(x - last, 6 * static_cast<double>(text.data().size())) << text.data();
+      ++ticks, last = x, row = y;
+    }
+    EXPECT_GE(ticks, 4 * panels) << panels;
+    EXPECT_LE(ticks, 8 * panels) << panels;
+    const std::size_t across = elements(svg, "text", "e").size();
+    EXPECT_GE(across, 4 * panels) << panels;
+    EXPECT_LE(across, 8 * panels) << panels;
+  }
+}
+
+TEST(Picture, ShowsReferencesBesideRuns) {
+  Picture picture{.title = "", .facts = "", .panels = {}, .grains = {}};
+  const Curve run{.name = "dense", .x = {0, 1, 2}, .y = {0, 0.8, 0.6}},
+      value{.name = "peak of the thesis", .x = {0, 2}, .y = {0.9, 0.9}, .reference = true},
+      measured{.name = "measured", .x = {0, 1}, .y = {0, 0.7}, .reference = true};
+  picture.panels.push_back({{"u", "m"}, {"ratio"}, {run, value, measured}});
+  const auto svg = parsed(draw(picture));
+  ASSERT_EQ(elements(svg, "polyline", "r0").size(), 1u);
+  EXPECT_EQ(elements(svg, "polyline", "r1").size(), 1u);
+  EXPECT_EQ(elements(svg, "polyline", "k0").size(), 1u);
+  const auto level = ys_of(elements(svg, "polyline", "r0")[0]), curve = ys_of(elements(svg, "polyline", "k0")[0]);
+  EXPECT_EQ(level[0], level[1]);
+  EXPECT_NEAR((curve[0] - level[0]) / (curve[0] - curve[1]), 0.9 / 0.8, 1e-3) << "on the same axis";
+  EXPECT_THAT(words_of(svg), testing::IsSupersetOf({"dense", "peak of the thesis", "measured"}));
+  EXPECT_EQ(elements(svg, "text", "peak").size(), 1u) << "of the run alone";
+  EXPECT_THAT(svg.get<std::string>("svg.style"), HasSubstr(".r0{stroke:#666;stroke-dasharray:2 4}"));
+  EXPECT_EQ(
+      elements(svg, "line", "r0").size() + elements(svg, "line", "r1").size() + elements(svg, "line", "k0").size(), 3u)
+      << "in the legend";
+}
+
+TEST(Picture, WrapsALegendOfManyNames) {
+  Picture picture{.title = "", .facts = "", .panels = {}, .grains = {}};
+  picture.panels.push_back({{"x"}, {"y"}, {}});
+  for (int i = 0; i < 12; ++i)
+    picture.panels[0].curves.push_back(
+        {.name = "a run of a long name, number " + std::to_string(i), .x = {0, 1}, .y = {0, 1}});
+  const auto svg = parsed(draw(picture));
+  double lowest = 0, top = 1e9;
+  for (const auto& text : elements(svg, "text")) {
+    if (!text.data().starts_with("a run of")) continue;
+    lowest = std::max(lowest, number_of(text, "y"));
+    EXPECT_LT(number_of(text, "x") + 6 * static_cast<double>(text.data().size()), 900) << text.data();
+  }
+  for (const auto& line : elements(svg, "line", "grid")) top = std::min(top, number_of(line, "y1"));
+  EXPECT_GT(lowest, 110) << "in several rows";
+  EXPECT_LT(lowest, top) << "above the curves";
+}
+
+TEST(Picture, DrawsLinksOverFaintGrains) {
+  GrainView view;
+  view.discs = {{0, 0, 0.5, nan}, {1, 0, 0.5, nan}};
+  EXPECT_EQ(elements(parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view})), "g", "faint").size(), 0u);
+  view.links = {{0, 0, 1, 0, 1}, {1, 0, 1, 0.2, 0.5}};
+  const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view}));
+  EXPECT_EQ(elements(svg, "g", "faint").size(), 1u);
+  const auto links = elements(svg, "line", "link"), discs = elements(svg, "circle");
+  ASSERT_EQ(links.size(), 2u);
+  EXPECT_NEAR(number_of(links[0], "x1"), number_of(discs[0], "cx"), 0.02);
+  EXPECT_NEAR(number_of(links[0], "x2"), number_of(discs[1], "cx"), 0.02);
+  EXPECT_NEAR(number_of(links[0], "stroke-width"), 2 * number_of(links[1], "stroke-width"), 0.02);
+}
+
 TEST(Picture, DrawsGrainsToScaleAndRedForPositive) {
   GrainView view;
   view.value = {"rotation", "rad"};
@@ -130,6 +223,17 @@ TEST(Picture, DrawsGrainsToScaleAndRedForPositive) {
   EXPECT_EQ(elements(svg, "line", "wall").size(), 1u) << "once each, and none without length";
   const auto style = svg.get<std::string>("svg.style");
   EXPECT_THAT(style, testing::AllOf(HasSubstr(".c20{fill:#a01228}"), HasSubstr(".c0{fill:#144e8c}"))) << "red, blue";
+}
+
+TEST(Picture, GoesFromDarkToBrightWhereNothingIsNegative) {
+  GrainView view;
+  view.value = {"speed", "m/s"}, view.symmetric = false;
+  for (int i = 0; i < 100; ++i) view.discs.push_back({1.0 * i, 0, 0.5, 1.0 * i});
+  const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view}));
+  EXPECT_EQ(text_of(elements(svg, "circle").front(), "class"), "c0");
+  EXPECT_EQ(text_of(elements(svg, "circle").back(), "class"), "c20");
+  EXPECT_THAT(svg.get<std::string>("svg.style"),
+              testing::AllOf(HasSubstr(".c0{fill:#440154}"), HasSubstr(".c20{fill:#fde725}")));
 }
 
 TEST(Picture, LeavesNoRoomForWallsThatAreFarAway) {

@@ -81,6 +81,35 @@ class Page(unittest.TestCase):
         return self.browser.evaluate("save.last.name"), self.browser.evaluate(
             "save.last.blob.arrayBuffer().then((b) => Array.from(new Uint8Array(b)))")
 
+    def test_linear_chains_are_lines_of_their_own(self):
+        # A column of five that press on each other, of which three bear more than the mean, and two that hardly touch.
+        grains = [{"position": ["4 mm", "3 mm", f"{0.5 + 0.99 * k} mm"], "radius": "0.5 mm"} for k in range(5)]
+        grains += [{"position": [f"{x} mm", "1 mm", "8 mm"], "radius": "0.5 mm"} for x in (1, 1.999)]
+        run(self.folder, "column", bodies={"grains": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": grains}}},
+            stages=[{"name": "stand", "until": {"type": "steps", "value": 2}, "limit": "1 s"}], output={},
+            probes={"packing": {"type": "packing", "every_steps": 1}, "forces": {"type": "force-chains", "every_steps": 1}})
+        subprocess.run([GRIT, "report", "column"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        self.open("column/report.html")
+        lines = f"""(async (name, on) => {{
+            const view = {GRAINS};
+            await view.change({{walls: false, cut: 0}});
+            if (view[name].checked !== on) view[name].click();
+            await view.show(view.now);
+            const {{from, to}} = view.shownSegments;
+            return Array.from(from, (x, i) => [x, to[i]]);
+        }})"""
+        shown = lambda name, on: self.browser.evaluate(f"{lines}('{name}', {str(on).lower()})")
+        self.assertEqual(shown("chains", False), [])
+        self.assertEqual(len(shown("chains", True)), 2 * 4)
+        linear = shown("linear", True)
+        self.assertEqual(len(linear), 2 * 2)
+        heights = sorted(round(1e3 * z, 1) for pair in linear[1::2] for z in pair)
+        for height, expected in zip(heights, (1.5, 2.5, 2.5, 3.5)):
+            self.assertAlmostEqual(height, expected, delta=0.1)
+        self.assertEqual(len(shown("linear", False)), 2 * 4)
+        self.open("one/report.html")
+        self.assertTrue(self.browser.evaluate(f"{GRAINS}.linearLabel.hidden"))
+
     def test_every_curve_is_that_of_the_series(self):
         evaluate = self.browser.evaluate
         evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")

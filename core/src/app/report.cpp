@@ -6,6 +6,7 @@
 #include "app/options.hpp"
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
+#include "report/curve_pictures.hpp"
 #include "report/pictures.hpp"
 #include "report/report_page.hpp"
 #include "study/batch.hpp"
@@ -28,20 +29,32 @@ void convert(const std::filesystem::path& svg, const std::filesystem::path& png)
   std::filesystem::remove(log);
 }
 
-void make_pictures(const std::filesystem::path& folder) {
-  RunResults run = read_results(folder);
-  std::vector<NamedPicture> pictures;
-  if (auto curves = curves_picture(run)) pictures.push_back({"curves", std::move(*curves)});
-  if (auto grains = grains_picture(run)) pictures.push_back({"grains", std::move(*grains)});
-  if (auto layers = layers_picture(run)) pictures.push_back({"layers", std::move(*layers)});
-  std::ranges::move(map_pictures(run), std::back_inserter(pictures));
+void write_pictures(const std::filesystem::path& folder, const std::vector<NamedPicture>& pictures) {
   for (const auto& [name, picture] : pictures) {
     const auto svg = folder / (name + ".svg"), png = folder / (name + ".png");
     write_atomically(svg, picture);
     convert(svg, png);
     std::cout << "picture: " << png.string() << '\n';
   }
-  for (const std::string& problem : run.problems) std::cerr << "grit: left out: " << problem << '\n';
+}
+
+void make_pictures(const std::vector<std::filesystem::path>& folders) {
+  std::vector<RunResults> runs;
+  for (const auto& folder : folders) runs.push_back(read_results(folder));
+  tell_apart(runs);
+  for (RunResults& run : runs) {
+    std::vector<NamedPicture> pictures;
+    if (auto curves = curves_picture(std::span(&run, 1))) pictures.push_back({"curves", std::move(*curves)});
+    std::ranges::move(profile_pictures(run), std::back_inserter(pictures));
+    if (auto grains = grains_picture(run)) pictures.push_back({"grains", std::move(*grains)});
+    if (auto layers = layers_picture(run)) pictures.push_back({"layers", std::move(*layers)});
+    if (auto chains = chains_picture(run)) pictures.push_back({"linear-chains", std::move(*chains)});
+    std::ranges::move(map_pictures(run), std::back_inserter(pictures));
+    write_pictures(run.folder, pictures);
+    for (const std::string& problem : run.problems) std::cerr << "grit: left out: " << problem << '\n';
+  }
+  if (runs.size() < 2) return;
+  if (auto curves = curves_picture(runs)) write_pictures(folders.front(), {{"curves-overlaid", std::move(*curves)}});
 }
 
 void make_page(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
@@ -59,14 +72,14 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   options.add()("out", po::value<std::string>()->value_name("FILE"),
                 "the page; default: report.html in the first folder")(
       "png",
-      "instead of a page, pictures in each folder, as curves.png, grains.png, layers.png and map-PROBE-FIELD.png, and "
-      "the same as SVG");
+      "instead of a page, pictures in each folder, as curves.png, profiles-PROBE.png, grains.png, layers.png, "
+      "linear-chains.png and map-PROBE-FIELD.png, and the same as SVG; of several folders curves-overlaid.png in the "
+      "first");
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");
   const std::vector<std::filesystem::path> folders(options.words().begin(), options.words().end());
-  if (options.has("png"))
-    for (const auto& folder : folders) make_pictures(folder);
+  if (options.has("png")) make_pictures(folders);
   else
     make_page(folders, options.has("out") ? std::filesystem::path(options.get<std::string>("out"))
                                           : folders.front() / "report.html");

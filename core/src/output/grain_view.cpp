@@ -74,6 +74,12 @@ void cut(std::span<const Vec3> triangles, const Sight& look, double depth, std::
 
 }  // namespace
 
+std::vector<Segment> cut_walls(std::span<const std::vector<Vec3>> walls, const std::string& view, double depth) {
+  std::vector<Segment> segments;
+  for (const auto& wall : walls) cut(wall, sight(view), depth, segments);
+  return segments;
+}
+
 GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> walls, const std::string& view,
                      const std::string& color) {
   const auto look = sight(view);
@@ -104,7 +110,7 @@ GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> 
   if (rows.empty()) {
     middle = 0.5 * (seen.specimen.low[look.depth] + seen.specimen.high[look.depth]);
   }
-  for (const auto& wall : walls) cut(wall, look, middle, shown.walls);
+  shown.walls = cut_walls(walls, view, middle);
   return shown;
 }
 

@@ -38,4 +38,7 @@ GrainView grain_view(const SeenBodies& bodies, std::span<const std::vector<Vec3>
 GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
                      const std::string& color);
 
+/// Where a plane across the line of sight cuts walls, `depth` along the third axis [m]. Throws Error for another view.
+std::vector<Segment> cut_walls(std::span<const std::vector<Vec3>> walls, const std::string& view, double depth);
+
 }  // namespace grit

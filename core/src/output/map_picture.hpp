@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "output/picture.hpp"
+
 namespace grit {
 
 /// A cell of a map: its middle, what it fills [m], and a value of each panel, in SI; not finite: grey.
@@ -12,18 +14,24 @@ struct MapCell {
   std::vector<double> values;
 };
 
+struct MapPanel {
+  std::string label;
+  bool about_zero = false;  ///< blue–white–red, zero being white, else from dark to bright
+};
+
 struct MapPicture {
   std::string title;
   std::string facts;  ///< one line
   std::string horizontal = "x", vertical = "z";
   std::vector<MapCell> cells;
-  std::vector<std::string> labels;  ///< of the panels
-  std::string unit;                 ///< of all values
+  std::vector<Segment> walls;
+  std::vector<MapPanel> panels;
+  std::string unit;  ///< of all values
 };
 
-/// The picture as SVG, 900 px wide: a panel a value, below each other, each with the scale of its colours. It shows 98
-/// of 100 cells, the middle ones; blue–white–red about zero where they lie on both sides of it, else from dark to
-/// bright.
+/// The picture as SVG, 900 px wide: a panel a value, below each other, each with its axes and the scale of its colours.
+/// It tells 98 of 100 cells apart, the middle ones. Cells meet: what is less than three quarters of a cell between two
+/// is coloured as the nearest one. Of walls what is near the cells is seen.
 std::string draw(const MapPicture& picture);
 
 }  // namespace grit

@@ -22,6 +22,9 @@ constexpr double percentile = 0.98;
 
 // Okabe and Ito's colours that stand out on white, told apart by all readers.
 constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#a8518a", "#7a6a00", "#555555"};
+/// Of references.
+constexpr std::array<const char*, 4> dashes{"2 4", "8 3 2 3", "6 4", "12 3"};
+constexpr double letter = 6.6;  // about how wide one is, px
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -37,11 +40,11 @@ struct Range {
 
 int classes_of(const GrainView& view) { return view.layers > 0 ? view.layers : classes; }
 
-/// The colour of class i: blue–white–red, or its half from white to blue; of layers from dark to bright.
+/// The colour of class i: blue–white–red about zero, else from dark to bright.
 std::string class_colour(int i, const GrainView& view) {
   const double place = static_cast<double>(i) / std::max(1, classes_of(view) - 1);
-  if (view.layers > 0) return colour_at(sequential_colours, place);
-  return colour_at(diverging_colours, view.symmetric ? place : 0.5 - 0.5 * place);
+  return view.layers == 0 && view.symmetric ? colour_at(diverging_colours, place)
+                                            : colour_at(sequential_colours, place);
 }
 
 std::string style(const Picture& picture) {
@@ -54,32 +57,64 @@ std::string style(const Picture& picture) {
       ".grid{stroke:#e6e6e3;stroke-width:1}.frame{stroke:#8a8a86;stroke-width:1}\n"
       ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:round}\n"
       ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.scale{stroke:#222;stroke-width:2}\n"
+      ".link{stroke:#1c1c1c;stroke-linecap:round}.faint{opacity:.3}\n"
       ".grains{stroke:#4a4a4a;stroke-opacity:.55}.n{fill:#c9c9c5}\n";
   for (std::size_t i = 0; i < palette.size(); ++i)
     sheet += fmt::format(".k{0}{{stroke:{1}}}.f{0}{{fill:{1}}}\n", i, palette[i]);
+  for (std::size_t i = 0; i < dashes.size(); ++i)
+    sheet += fmt::format(".r{}{{stroke:#666;stroke-dasharray:{}}}\n", i, dashes[i]);
   if (picture.grains)
     for (int i = 0; i < classes_of(*picture.grains); ++i)
       sheet += fmt::format(".c{}{{fill:{}}}", i, class_colour(i, *picture.grains));
   return sheet + '\n';
 }
 
-/// Names of curves in the order of their first appearance; their places choose their colours.
-std::vector<std::string> names_of(const std::vector<Panel>& panels) {
-  std::vector<std::string> names;
-  for (const auto& panel : panels)
-    for (const auto& curve : panel.curves)
-      if (std::ranges::find(names, curve.name) == names.end()) names.push_back(curve.name);
-  return names;
-}
+/// Names of curves, and of references, in the order of their first appearance; their places choose how they are drawn.
+struct Names {
+  std::vector<std::string> curves, references;
 
-std::size_t colour_of(const std::vector<std::string>& names, const std::string& name) {
-  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin()) % palette.size();
+  explicit Names(const std::vector<Panel>& panels) {
+    for (const auto& panel : panels)
+      for (const auto& curve : panel.curves) {
+        auto& names = curve.reference ? references : curves;
+        if (std::ranges::find(names, curve.name) == names.end()) names.push_back(curve.name);
+      }
+  }
+  static std::size_t place(const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  }
+  std::size_t colour_of(const std::string& name) const { return place(curves, name) % palette.size(); }
+  /// The class of a line.
+  std::string style_of(const std::string& name, bool reference) const {
+    return reference ? fmt::format("r{}", place(references, name) % dashes.size())
+                     : fmt::format("k{}", colour_of(name));
+  }
+  bool tell_apart() const { return curves.size() > 1 || !references.empty(); }
+};
+
+/// The legend's entries, row by row; draws them where there is something to draw on. Returns how high it is.
+double legend(Svg* svg, const Names& names, double top) {
+  if (!names.tell_apart()) return 0;
+  constexpr double sample = 26, row = 20;
+  double x = margin, y = top;
+  const auto entry = [&](const std::string& name, bool reference) {
+    if (name.empty()) return;
+    const double wide = sample + 7 + letter * static_cast<double>(name.size());
+    if (x > margin && x + wide > margin + inner) x = margin, y += row;
+    if (svg) {
+      svg->line({x, y}, {x + sample, y}, fmt::format("class=\"curve {}\"", names.style_of(name, reference)));
+      svg->text({x + sample + 7, y + 4}, name);
+    }
+    x += wide + 22;
+  };
+  for (const auto& name : names.curves) entry(name, false);
+  for (const auto& name : names.references) entry(name, true);
+  return y - top + row;
 }
 
 class PanelDrawing {
  public:
-  PanelDrawing(Svg& svg, const Panel& panel, const std::vector<std::string>& names, Point corner, double wide,
-               double high)
+  PanelDrawing(Svg& svg, const Panel& panel, const Names& names, Point corner, double wide, double high)
       : svg_(svg), panel_(panel), names_(names) {
     left_ = corner.x + 46, right_ = corner.x + wide - 12, top_ = corner.y + 26, bottom_ = corner.y + high - 44;
     for (const auto& curve : panel.curves)
@@ -97,24 +132,24 @@ class PanelDrawing {
   }
 
   void draw() {
-    const auto x_ticks = ticks(x_.low, x_.high, std::max(2, static_cast<int>((right_ - left_) / 75)));
-    const auto y_ticks = ticks(y_.low, y_.high, 5);
-    const auto step_of = [](const std::vector<double>& marks) { return marks.size() > 1 ? marks[1] - marks[0] : 1.0; };
-    for (const double mark : y_ticks) {
+    for (const double mark : y_ticks_.marks) {
       svg_.line({left_, down(mark)}, {right_, down(mark)}, "class=\"grid\"");
-      svg_.text({left_ - 7, down(mark) + 4}, tick_label(mark, step_of(y_ticks)), "class=\"e\"");
+      svg_.text({left_ - 7, down(mark) + 4}, tick_label(mark, y_ticks_.step), "class=\"e\"");
     }
-    for (const double mark : x_ticks) {
+    for (const double mark : x_ticks_.marks) {
       svg_.line({across(mark), top_}, {across(mark), bottom_}, "class=\"grid\"");
-      svg_.text({across(mark), bottom_ + 17}, tick_label(mark, step_of(x_ticks)), "class=\"m\"");
+      svg_.text({across(mark), bottom_ + 17}, tick_label(mark, x_ticks_.step), "class=\"m\"");
     }
     const double base = y_.low <= 0 && y_.high >= 0 ? down(0) : bottom_;
     svg_.line({left_, base}, {right_, base}, "class=\"frame\"");
     svg_.line({left_, top_}, {left_, bottom_}, "class=\"frame\"");
     svg_.text({left_ - 40, top_ - 12}, axis_title(panel_.y.label, y_unit_.unit), "class=\"axis\"");
     svg_.text({(left_ + right_) / 2, bottom_ + 37}, axis_title(panel_.x.label, x_unit_.unit), "class=\"axis m\"");
-    for (const auto& curve : panel_.curves) draw_curve(curve);
-    for (const auto& curve : panel_.curves) mark_peak(curve);
+    for (const bool reference : {true, false})  // curves above what they are seen against
+      for (const auto& curve : panel_.curves)
+        if (curve.reference == reference) draw_curve(curve);
+    for (const auto& curve : panel_.curves)
+      if (panel_.peaks && !curve.reference) mark_peak(curve);
   }
 
  private:
@@ -133,13 +168,21 @@ class PanelDrawing {
       const double room = y_.largest() > 0 ? 0.5 * y_.largest() : 1;
       y_ = {y_.low - room, y_.high + room};
     }
-    const double step = nice_step(y_.span(), 5);
-    y_ = {std::floor((y_.low + 0.03 * y_.span()) / step + 1e-9) * step,
-          std::ceil((y_.high + 0.04 * y_.span()) / step - 1e-9) * step};
+    // Room above for the number at a peak.
+    y_ticks_ = axis_ticks(y_.low + 0.03 * y_.span(), y_.high + 0.04 * y_.span(), AxisEnds::whole_steps);
+    y_ = {y_ticks_.low, y_ticks_.high};
+    const auto apart = [&](const AxisTicks& axis) {
+      std::size_t longest = 0;
+      for (const double mark : axis.marks) longest = std::max(longest, tick_label(mark, axis.step).size());
+      const double between = axis.step / (axis.high - axis.low) * (right_ - left_);
+      return letter * static_cast<double>(longest) + 8 < between;
+    };
+    x_ticks_ = axis_ticks(x_.low, x_.high, AxisEnds::kept, apart);
+    x_ = {x_ticks_.low, x_ticks_.high};
   }
 
   void draw_curve(const Curve& curve) {
-    const auto attributes = fmt::format("class=\"curve k{}\"", colour_of(names_, curve.name));
+    const auto attributes = fmt::format("class=\"curve {}\"", names_.style_of(curve.name, curve.reference));
     std::vector<Point> points;
     const auto finish = [&] {
       if (!points.empty()) svg_.polyline(points, attributes);
@@ -170,7 +213,7 @@ class PanelDrawing {
       }
     if (!found) return;
     const auto at = place(curve, peak);
-    const auto k = colour_of(names_, curve.name);
+    const auto k = names_.colour_of(curve.name);
     svg_.circle(at, 3, fmt::format("class=\"f{}\"", k));
     const char* anchor = at.x > right_ - 30 ? "e" : at.x < left_ + 30 ? "" : "m";
     const double aside = at.x < left_ + 30 ? 6 : 0;
@@ -181,9 +224,10 @@ class PanelDrawing {
 
   Svg& svg_;
   const Panel& panel_;
-  const std::vector<std::string>& names_;
+  const Names& names_;
   double left_, right_, top_, bottom_;
   Range x_, y_;
+  AxisTicks x_ticks_{}, y_ticks_{};
   ReadableUnit x_unit_, y_unit_;
 };
 
@@ -254,8 +298,8 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double t
   svg.open_group("clip-path=\"url(#view)\"");
   double mean = 0;
   for (const auto& disc : view.discs) mean += disc.radius / static_cast<double>(view.discs.size());
-  svg.open_group(
-      fmt::format("class=\"grains\" stroke-width=\"{:.2f}\"", std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
+  svg.open_group(fmt::format("class=\"grains{}\" stroke-width=\"{:.2f}\"", view.links.empty() ? "" : " faint",
+                             std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
   std::vector<std::string> names;
   for (int i = 0; i < classes_of(view); ++i) names.push_back(fmt::format("class=\"c{}\"", i));
   for (const auto& disc : view.discs) {
@@ -265,6 +309,10 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double t
                coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view))] : "class=\"n\"");
   }
   svg.close_group();
+  for (const Link& link : view.links)
+    svg.line(place(link.x1, link.y1), place(link.x2, link.y2),
+             fmt::format("class=\"link\" stroke-width=\"{:.2f}\"",
+                         std::max(0.8, 1.2 * mean * at.scale * std::clamp(link.weight, 0.0, 1.0))));
   std::set<std::array<long, 4>> drawn;  // an edge that two triangles share is one line
   for (const auto& wall : view.walls) {
     auto a = place(wall.x1, wall.y1), b = place(wall.x2, wall.y2);
@@ -318,9 +366,8 @@ std::string draw(const Picture& picture) {
   const auto count = picture.panels.size();
   const auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
   const auto rows = (count + columns - 1) / columns;
-  const auto names = names_of(picture.panels);
-  const bool legend = names.size() > 1;
-  const double panels_top = legend ? 118 : 92, panel_high = columns == 1 ? 300 : columns == 2 ? 280 : 250;
+  const Names names(picture.panels);
+  const double panels_top = 92 + legend(nullptr, names, 0), panel_high = columns == 1 ? 300 : columns == 2 ? 280 : 250;
   const double gap = 16, panel_wide = (inner - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
   const double grains_top = panels_top + panel_high * static_cast<double>(rows) + (count > 0 ? 30 : 8);
   const auto view = picture.grains ? layout(*picture.grains) : ViewLayout{};
@@ -330,14 +377,7 @@ std::string draw(const Picture& picture) {
   svg.rectangle({0, 0}, width, height, "fill=\"#fff\"");
   svg.text({margin, 44}, picture.title, "class=\"title\"");
   svg.text({margin, 66}, picture.facts, "class=\"facts\"");
-  if (legend) {
-    double x = margin;
-    for (const auto& name : names) {
-      svg.line({x, 92}, {x + 22, 92}, fmt::format("class=\"curve k{}\"", colour_of(names, name)));
-      svg.text({x + 29, 96}, name);
-      x += 52 + 7 * static_cast<double>(name.size());
-    }
-  }
+  legend(&svg, names, 88);
   for (std::size_t i = 0; i < count; ++i) {
     const Point corner{margin + static_cast<double>(i % columns) * (panel_wide + gap),
                        panels_top + static_cast<double>(i / columns) * panel_high};

@@ -8,8 +8,9 @@
 namespace grit {
 
 struct Curve {
-  std::string name;  ///< for the legend; one colour a name, in all panels
+  std::string name;  ///< for the legend; one colour, or way of breaking the line, a name, in all panels
   std::vector<double> x, y;
+  bool reference = false;  ///< what the others are seen against: grey and broken, without a mark
 };
 
 struct Axis {
@@ -17,10 +18,12 @@ struct Axis {
   std::string unit = "1";  ///< SI; shown with the prefix that reads best, radians as degrees
 };
 
-/// Curves that share two axes. Points that are not finite interrupt a curve; the value farthest from zero is marked.
+/// Curves that share two axes, of 4 to 8 ticks each. Points that are not finite interrupt a curve; the value farthest
+/// from zero is marked where `peaks` says so.
 struct Panel {
   Axis x, y;
   std::vector<Curve> curves;
+  bool peaks = true;
 };
 
 struct Disc {
@@ -32,14 +35,21 @@ struct Segment {
   double x1, y1, x2, y2;  ///< m
 };
 
+/// A line from grain to grain.
+struct Link {
+  double x1, y1, x2, y2;  ///< m
+  double weight;          ///< 0 to 1 of the widest
+};
+
 /// Grains seen along an axis.
 struct GrainView {
   std::string horizontal = "x", vertical = "z";
   std::vector<Disc> discs;  ///< back to front
   std::vector<Segment> walls;
+  std::vector<Link> links;  ///< above the grains, which are faint then
   Axis value;
   std::string note;       ///< beneath the colour bar: the sign convention
-  bool symmetric = true;  ///< blue–white–red about zero, else white–blue from zero
+  bool symmetric = true;  ///< blue–white–red about zero, else dark to bright from zero
   int layers = 0;         ///< above 0: values are 1, 2, … up to it, with a colour each
 };
 

@@ -36,6 +36,21 @@ void read_contacts(const hdf5::Group& group, Frame& frame) {
   frame.branch = column<double>(group, "branch", m, 3);
 }
 
+/// A probe's rows are of the frame's contacts, those of pairs or all, where their forces are the same.
+void read_chains(const hdf5::Group& probes, Frame& frame) {
+  for (const auto& probe : probes.names()) {
+    const auto tables = probes.group(probe);
+    if (!tables.has("chain") || !tables.has("normal_force")) continue;
+    const auto force = tables.dataset("normal_force").read<double>(), chain = tables.dataset("chain").read<double>();
+    if (chain.size() != force.size() || force.size() > frame.normal_force.size() ||
+        !std::equal(force.begin(), force.end(), frame.normal_force.begin()))
+      continue;
+    frame.chain.assign(frame.normal_force.size(), 0);
+    std::ranges::transform(chain, frame.chain.begin(), [](double one) { return static_cast<std::uint32_t>(one); });
+    return;
+  }
+}
+
 void read_walls(const hdf5::Group& group, Frame& frame) {
   for (const auto& name : group.names()) {
     const auto wall = group.dataset(name);
@@ -66,6 +81,7 @@ Frame read_frame(const std::filesystem::path& path) {
   read_bodies(file.group("bodies"), frame);
   read_contacts(file.group("contacts"), frame);
   read_walls(file.group("walls"), frame);
+  if (file.has("probes")) read_chains(file.group("probes"), frame);
   return frame;
 }
 

@@ -28,6 +28,8 @@ struct Frame {
   std::vector<std::int64_t> body_a;  ///< id of a contact's first body
   std::vector<double> normal_force;  ///< N, > 0 in compression
   std::vector<double> branch;        ///< from the first body's centre to the second's or to the wall [m]
+  /// The linear force chain, from 1, that each contact is a link of, 0 for none; empty where no probe tells.
+  std::vector<std::uint32_t> chain;
 
   struct Wall {
     std::string name;

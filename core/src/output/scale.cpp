@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace grit {
 namespace {
@@ -30,6 +31,24 @@ std::vector<double> ticks(double low, double high, int pieces) {
   std::vector<double> marks;
   for (auto i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) marks.push_back(i * step);
   return marks;
+}
+
+AxisTicks axis_ticks(double low, double high, AxisEnds ends, const std::function<bool(const AxisTicks&)>& fits) {
+  constexpr int fewest = 4, most = 8;
+  std::optional<AxisTicks> best;
+  for (double step = nice_step(high - low, 4 * most);; step = nice_step(2 * step, 1)) {
+    const double first = ends == AxisEnds::kept ? std::ceil(low / step - 1e-9) : std::floor(low / step + 1e-9),
+                 last = ends == AxisEnds::kept ? std::floor(high / step + 1e-9) : std::ceil(high / step - 1e-9);
+    const double count = last - first + 1;
+    if (count > most) continue;
+    if (count < fewest) break;
+    AxisTicks axis{low, high, step, {}};
+    if (ends == AxisEnds::whole_steps) axis.low = first * step, axis.high = last * step;
+    for (int i = 0; i < count; ++i) axis.marks.push_back((first + i) * step);
+    best = std::move(axis);
+    if (fits(*best)) break;
+  }
+  return best ? *best : axis_ticks(low, high, AxisEnds::whole_steps, fits);
 }
 
 std::string tick_label(double value, double step) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,18 @@ double nice_step(double span, int pieces);
 
 /// Multiples of a nice step within [low, high]; about `pieces` + 1 of them.
 std::vector<double> ticks(double low, double high, int pieces);
+
+/// An axis and the multiples of its step, 1, 2 or 5 × 10ⁿ, that are marked on it.
+struct AxisTicks {
+  double low, high, step;
+  std::vector<double> marks;
+};
+enum class AxisEnds { kept, whole_steps };
+/// An axis over [low, high], low < high, with 4 to 8 ticks: as fine as `fits`, or, where nothing fits, as coarse as
+/// four ticks are. It ends where it is told, or goes out to whole steps; it does where fewer than four lie within.
+AxisTicks axis_ticks(
+    double low, double high, AxisEnds ends,
+    const std::function<bool(const AxisTicks&)>& fits = [](const AxisTicks&) { return true; });
 
 /// A number for a tick of a scale with this step, with U+2212 for minus.
 std::string tick_label(double value, double step);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
@@ -298,8 +299,21 @@ class Writer {
     double mean = 0, strongest = 0;
     const auto strong = chain_contacts(frame, limits_.contacts, mean);
     for (const auto i : strong) strongest = std::max(strongest, frame.normal_force[i]);
+    json["strongest"] = strongest, json["mean_force"] = mean;
+    const auto [contacts, chains] = put_contacts(frame, strong, strongest);
+    json["contacts"] = contacts, json["chains"] = chains;
+    std::vector<std::uint32_t> linear;
+    for (std::uint32_t i = 0; i < frame.chain.size() && linear.size() < limits_.contacts; ++i)
+      if (frame.chain[i] > 0) linear.push_back(i);
+    if (linear.empty()) return;
+    const auto [links, lines] = put_contacts(frame, linear, strongest);
+    json["linear_contacts"] = links, json["linear_chains"] = lines;
+  }
+  /// How many of the contacts at these places of the frame have a body there, and the data element of all of them.
+  std::pair<std::size_t, std::size_t> put_contacts(const Frame& frame, const std::vector<std::uint32_t>& places,
+                                                   double strongest) {
     Numbers low, high, branch[3], force;
-    for (const auto i : strong) {
+    for (const auto i : places) {
       const auto found = std::ranges::lower_bound(frame.id, frame.body_a[i]);
       if (found == frame.id.end() || *found != frame.body_a[i]) continue;
       const auto place = static_cast<std::uint32_t>(found - frame.id.begin());
@@ -312,8 +326,7 @@ class Writer {
     Numbers all;
     for (const Numbers* part : {&low, &high, &branch[0], &branch[1], &branch[2], &force})
       all.insert(all.end(), part->begin(), part->end());
-    json["contacts"] = low.size(), json["strongest"] = strongest, json["mean_force"] = mean;
-    json["chains"] = data_.add(byte_planes(all));
+    return {low.size(), data_.add(byte_planes(all))};
   }
 
   void add_walls(const Frame& frame, Description& json) {

@@ -38,6 +38,7 @@ struct GrainLimits {
 ///     base           positions are less those of that frame, modulo 65536; itself: they are as they are
 ///     chains         byte planes of uint16: low and high half of the body's place, branch x, y, z (of 2 · reach, about
 ///                    32768), force (of strongest), all contacts after one another; contacts: how many
+///     linear_chains  the same of the links of linear force chains, linear_contacts: how many; not without any
 ///     walls          [[place in walls, x, y, z]]: displacement of each wall [m]
 ///   layers         {frame, stage}: the place of the frame by whose heights layers are told, and the stage that begins
 ///                  there

@@ -15,64 +15,14 @@
 #include "output/picture.hpp"
 #include "output/read_frames.hpp"
 #include "output/scale.hpp"
-#include "report/cell_maps.hpp"
-#include "report/facts.hpp"
 #include "report/layers.hpp"
+#include "report/map_fields.hpp"
 
 namespace grit {
 namespace {
 
-/// A channel with its probe.
-struct Named {
-  const ProbeSeries* probe = nullptr;
-  const ProbeSeries::Channel* channel = nullptr;
-};
-
-Named find(const RunResults& run, const std::string& name) {
-  const auto slash = name.find('/');
-  if (slash == std::string::npos) return {};
-  const auto probe = std::ranges::find(run.probes, name.substr(0, slash), &ProbeSeries::name);
-  if (probe == run.probes.end()) return {};
-  return {&*probe, probe->channel(name.substr(slash + 1))};
-}
-
 std::string text_or(const Description& found, const std::string& other) {
   return found.is_string() ? found.get<std::string>() : other;
-}
-
-std::vector<std::string> curves_wanted(const RunResults& run) {
-  std::vector<std::string> names;
-  for (const Description& name : run.at("/description/output/picture/y"))
-    if (name.is_string()) names.push_back(name.get<std::string>());
-  if (!names.empty() || run.probes.empty()) return names;
-  const ProbeSeries& probe = run.probes.front();  // "test" where there is one
-  for (const auto& channel : probe.channels)
-    if (channel.width() == 1 && channel.name != "time") names.push_back(probe.name + '/' + channel.name);
-  return names;
-}
-
-/// A point where both were sampled.
-Curve curve_of(const Named& x, const Named& y) {
-  const auto *x_time = x.probe->channel("time"), *y_time = y.probe->channel("time");
-  Curve curve;
-  if (!x_time || !y_time) return curve;
-  const auto &s = x_time->sampled.values, &t = y_time->sampled.values;
-  for (std::size_t i = 0, j = 0; i < std::min(s.size(), x.channel->sampled.values.size()) &&
-                                 j < std::min(t.size(), y.channel->sampled.values.size());) {
-    if (s[i] == t[j]) {
-      curve.x.push_back(x.channel->sampled.values[i++]);
-      curve.y.push_back(y.channel->sampled.values[j++]);
-    } else {
-      s[i] < t[j] ? ++i : ++j;
-    }
-  }
-  return curve;
-}
-
-std::string facts_line(const RunResults& run) {
-  std::vector<std::string> parts{status_of(run)};
-  for (const Fact& fact : cost_facts(run)) parts.push_back(fact.name + ' ' + fact.value);
-  return fmt::format("{}", fmt::join(parts, "  ·  "));
 }
 
 std::vector<Vec3> vectors(const std::vector<double>& numbers) {
@@ -93,6 +43,12 @@ std::optional<Frame> last_frame(RunResults& run) {
 
 std::string view_wanted(const RunResults& run) { return text_or(run.at("/description/output/picture/view"), "xz"); }
 
+std::vector<std::vector<Vec3>> walls_of(const Frame& frame) {
+  std::vector<std::vector<Vec3>> walls;
+  for (const auto& wall : frame.walls) walls.push_back(vectors(wall.corners));
+  return walls;
+}
+
 /// The grains of a frame as the description's picture sees them.
 Picture view_of(const RunResults& run, const Frame& frame, const std::string& color, std::span<const int> layers) {
   std::vector<Row> positions, velocities;
@@ -102,8 +58,6 @@ Picture view_of(const RunResults& run, const Frame& frame, const std::string& co
     velocities.push_back({v[0], v[1], v[2], 0});
   }
   const auto rotations = vectors(frame.rotation), displacements = vectors(frame.displacement);
-  std::vector<std::vector<Vec3>> walls;
-  for (const auto& wall : frame.walls) walls.push_back(vectors(wall.corners));
   const double diameters = 2 * std::accumulate(frame.radius.begin(), frame.radius.end(), 0.0);
   SeenBodies seen{positions, velocities, rotations, displacements,
                   positions.empty() ? 0 : diameters / static_cast<double>(positions.size())};
@@ -111,27 +65,10 @@ Picture view_of(const RunResults& run, const Frame& frame, const std::string& co
   return {run.title(),
           fmt::format("{} grains  ·  stage {}  ·  {:.4g} s", grouped(frame.bodies()), frame.stage, frame.time),
           {},
-          grain_view(seen, walls, view_wanted(run), color)};
+          grain_view(seen, walls_of(frame), view_wanted(run), color)};
 }
 
 }  // namespace
-
-std::optional<std::string> curves_picture(const RunResults& run) {
-  Picture picture{run.title(), facts_line(run), {}, {}};
-  const Named wanted_x = find(run, text_or(run.at("/description/output/picture/x"), ""));
-  for (const std::string& name : curves_wanted(run)) {
-    const Named y = find(run, name);
-    if (!y.channel || y.channel->width() != 1) continue;
-    const Named x =
-        wanted_x.channel && wanted_x.channel->width() == 1 ? wanted_x : Named{y.probe, y.probe->channel("time")};
-    if (!x.channel) continue;
-    picture.panels.push_back({{spelled(x.channel->name), x.channel->sampled.unit},
-                              {spelled(y.channel->name), y.channel->sampled.unit},
-                              {curve_of(x, y)}});
-  }
-  if (picture.panels.empty()) return std::nullopt;
-  return draw(picture);
-}
 
 std::vector<NamedPicture> map_pictures(RunResults& run) {
   std::vector<NamedPicture> pictures;
@@ -155,18 +92,22 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
     std::erase_if(cells,
                   [&](std::size_t cell) { return std::abs(by_depth(cell) - plane) > 0.49999 * at(size, cell, depth); });
     std::ranges::sort(cells);
+    const std::vector<Segment> walls = cut_walls(walls_of(*frame), view, plane);
     for (const Field& field : map.fields | std::views::drop(2)) {
+      if (is_bookkeeping(field)) continue;
       MapPicture picture{
           run.title(),
           fmt::format("{} of {}  ·  stage {}  ·  {:.4g} s", spelled(field.name), map.name, frame->stage, frame->time),
           view.substr(0, 1),
           view.substr(1, 1),
           {},
+          walls,
           {},
           field.unit};
-      for (const std::string& component : components_of(field))
-        picture.labels.push_back(spelled(field.name) + ' ' + component);
-      if (field.width == 1) picture.labels = {spelled(field.name)};
+      const std::vector<std::string> components = components_of(field);
+      for (std::size_t k = 0; k < field.width; ++k)
+        picture.panels.push_back(
+            {spelled(field.name) + (components.empty() ? "" : ' ' + components[k]), is_signed(field, k)});
       for (const std::size_t cell : cells) {
         const auto row = field.values.begin() + static_cast<std::ptrdiff_t>(field.width * cell);
         picture.cells.push_back({at(centre, cell, right),
@@ -188,6 +129,34 @@ std::optional<std::string> grains_picture(RunResults& run) {
   const bool kept =
       (wanted != "rotation" || !frame->rotation.empty()) && (wanted != "displacement" || !frame->displacement.empty());
   return draw(view_of(run, *frame, kept ? wanted : "speed", {}));
+}
+
+std::optional<std::string> chains_picture(RunResults& run) {
+  const auto frame = last_frame(run);
+  if (!frame || std::ranges::none_of(frame->chain, [](std::uint32_t chain) { return chain > 0; })) return std::nullopt;
+  Picture picture = view_of(run, *frame, "speed", {});
+  GrainView& view = *picture.grains;
+  for (Disc& disc : view.discs) disc.value = std::numeric_limits<double>::quiet_NaN();
+  const std::string axes = view_wanted(run);
+  const auto right = static_cast<std::size_t>(axes[0] - 'x'), up = static_cast<std::size_t>(axes[1] - 'x');
+  double strongest = 0;
+  std::uint32_t last = 0;
+  std::vector<Link> links;
+  for (std::size_t k = 0; k < frame->chain.size(); ++k) {
+    if (frame->chain[k] == 0) continue;
+    last = std::max(last, frame->chain[k]);
+    const auto body = std::ranges::lower_bound(frame->id, frame->body_a[k]);
+    if (body == frame->id.end() || *body != frame->body_a[k]) continue;
+    const double* start = &frame->position[3 * static_cast<std::size_t>(body - frame->id.begin())];
+    const double* way = &frame->branch[3 * k];
+    links.push_back({start[right], start[up], start[right] + way[right], start[up] + way[up], frame->normal_force[k]});
+    strongest = std::max(strongest, frame->normal_force[k]);
+  }
+  for (Link& link : links) link.weight /= strongest > 0 ? strongest : 1;
+  view.links = std::move(links);
+  picture.facts += fmt::format("  ·  {} linear chains, links as wide as their normal force, {:.3g} N at most",
+                               grouped(last), strongest);
+  return draw(picture);
 }
 
 std::optional<std::string> layers_picture(RunResults& run) {

@@ -11,9 +11,9 @@
 #include "output/scale.hpp"
 #include "output/svg.hpp"
 #include "report/facts.hpp"
+#include "report/references.hpp"
 #include "report/run_results.hpp"
 #include "study/chart_words.hpp"
-#include "study/figures.hpp"
 
 namespace grit {
 
@@ -225,19 +225,12 @@ void add_readable_units(Description& runs) {
 /// What the description has curves compared with: [{name, of, against, x, y}], x and y being data, or value.
 Description references_json(RunResults& run, DataElements& data) {
   Description all = Description::array();
-  for (const auto& [name, reference] : run.at("/description/output/references").items()) try {
-      Description json = {{"name", name}, {"of", reference.at("of")}, {"against", reference.value("against", "")}};
-      if (reference.contains("value") && reference.at("value").is_number()) {
-        json["value"] = reference.at("value");
-      } else {
-        const Description& curve = reference.at("curve");
-        const Figure read = read_reference({curve.at("file"), curve.at("x"), curve.at("y")});
-        json["x"] = data.add_numbers<double>(read.x), json["y"] = data.add_numbers<double>(read.y);
-      }
-      all.push_back(std::move(json));
-    } catch (const std::exception& error) {
-      run.problems.push_back("reference " + name + ": " + error.what());
-    }
+  for (const Reference& reference : references_of(run)) {
+    Description json = {{"name", reference.name}, {"of", reference.of}, {"against", reference.against}};
+    if (reference.value) json["value"] = *reference.value;
+    else json["x"] = data.add_numbers<double>(reference.x), json["y"] = data.add_numbers<double>(reference.y);
+    all.push_back(std::move(json));
+  }
   return all;
 }
 
@@ -264,18 +257,6 @@ std::string script_element(std::string_view script) {
   std::string html = "<script>\n";
   html += script;
   return html + "</script>\n";
-}
-
-/// Folders of one name are called by their ways, and the same folder given twice by its place.
-void tell_apart(std::vector<RunResults>& runs) {
-  const auto rename_alike = [&](auto name_of) {
-    std::vector<std::size_t> alike;
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      if (std::ranges::count(runs, runs[i].name, &RunResults::name) > 1) alike.push_back(i);
-    for (const std::size_t i : alike) runs[i].name = name_of(i);
-  };
-  rename_alike([&](std::size_t i) { return runs[i].folder.lexically_normal().string(); });
-  rename_alike([&](std::size_t i) { return runs[i].name + " (" + std::to_string(i + 1) + ")"; });
 }
 
 }  // namespace

@@ -71,4 +71,15 @@ RunResults read_results(const std::filesystem::path& folder, std::chrono::millis
   return results;
 }
 
+void tell_apart(std::vector<RunResults>& runs) {
+  const auto rename_alike = [&](auto name_of) {
+    std::vector<std::size_t> alike;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      if (std::ranges::count(runs, runs[i].name, &RunResults::name) > 1) alike.push_back(i);
+    for (const std::size_t i : alike) runs[i].name = name_of(i);
+  };
+  rename_alike([&](std::size_t i) { return runs[i].folder.lexically_normal().string(); });
+  rename_alike([&](std::size_t i) { return runs[i].name + " (" + std::to_string(i + 1) + ")"; });
+}
+
 }  // namespace grit

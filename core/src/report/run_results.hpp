@@ -40,4 +40,7 @@ struct RunResults {
 /// What cannot be read is among the problems. Throws FileError where nothing in the folder is of a run.
 RunResults read_results(const std::filesystem::path& folder, std::chrono::milliseconds patience = reader_patience);
 
+/// Folders of one name are called by their ways, and the same folder given twice by its place.
+void tell_apart(std::vector<RunResults>& runs);
+
 }  // namespace grit

@@ -68,10 +68,10 @@ class GrainFrames {
     return { number, time, step, stage, count, ...bodies, x: list(), y: list(), z: list(), speed: list(), rotation: vector("rotation"), displacement: vector("displacement") };
   }
 
-  /** The contacts shown of a frame: {count, body, branch [m] of all x, y, z, force [N]}. */
-  async chains(number) {
-    const { contacts, chains, strongest } = this.json.frames[number];
-    const all = await planesOf(chains);
+  /** The contacts shown of a frame, or the links of its linear chains: {count, body, branch [m] of all x, y, z, force [N]}. */
+  async chains(number, linear = false) {
+    const frame = this.json.frames[number], { strongest } = frame, contacts = (linear ? frame.linear_contacts : frame.contacts) ?? 0;
+    const all = contacts > 0 ? await planesOf(linear ? frame.linear_chains : frame.chains) : new Uint16Array();
     const part = (i) => all.subarray(contacts * i, contacts * (i + 1));
     const [low, high, bx, by, bz, force] = [0, 1, 2, 3, 4, 5].map(part);
     const metres = (list) => Float32Array.from(list, (q) => (q / 65535 * 2 - 1) * this.json.reach);

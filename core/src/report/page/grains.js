@@ -24,7 +24,7 @@ class GrainView {
   constructor(section, runs, player) {
     this.player = player;
     this.refresh(runs);
-    this.state = { run: 0, frame: 0, view: "xz", colour: "speed", cut: 0, chains: false, walls: true, zoom: 1, pan: [0, 0] };
+    this.state = { run: 0, frame: 0, view: "xz", colour: "speed", cut: 0, chains: false, linear: false, walls: true, zoom: 1, pan: [0, 0] };
     this.build(section);
     new ResizeObserver(() => this.redraw()).observe(this.stage);
     dark.addEventListener("change", () => this.redraw());
@@ -57,7 +57,10 @@ class GrainView {
     this.viewChoice = choice("view", Object.entries(views).map(([name, one]) => [name, one.label]), (value) => ((this.viewChosen = true), this.change({ view: value, zoom: 1, pan: [0, 0] })));
     this.colourPlace = make("span");
     this.cut = make("input", { type: "range", name: "cut", min: 0, max: 100, value: 0, title: "how much is cut away in front", oninput: () => this.change({ cut: this.cut.value / 100 }) });
-    this.chains = make("input", { type: "checkbox", name: "chains", onchange: () => this.change({ chains: this.chains.checked }) });
+    const showChains = () => this.change({ chains: this.chains.checked || this.linear.checked, linear: this.linear.checked });
+    this.chains = make("input", { type: "checkbox", name: "chains", onchange: showChains });
+    this.linear = make("input", { type: "checkbox", name: "linear", onchange: showChains });
+    this.linearLabel = make("label", { title: "grains in line that bear more than the mean; instead of all contacts above the mean" }, this.linear, " linear chains");
     this.walls = make("input", { type: "checkbox", name: "walls", checked: true, onchange: () => this.change({ walls: this.walls.checked }) });
     this.canvas = make("canvas", {});
     this.overlay = make("canvas", { className: "overlay" });
@@ -67,7 +70,7 @@ class GrainView {
     this.about = make("span", { className: "about" });
     section.append(make("h2", {}, "Grains"),
       make("div", { className: "controls" }, ...(this.runs.length > 1 ? [labelled("run", this.runChoice)] : []), labelled("seen from", this.viewChoice),
-        labelled("colour", this.colourPlace), labelled("cut away", this.cut), make("label", {}, this.chains, " force chains"), make("label", {}, this.walls, " walls")),
+        labelled("colour", this.colourPlace), labelled("cut away", this.cut), make("label", {}, this.chains, " force chains"), this.linearLabel, make("label", {}, this.walls, " walls")),
       make("figure", { className: "grains" }, this.stage, this.player.strip(),
         make("figcaption", {}, this.under, this.about, make("span", { className: "tools" }, tool("−", "Smaller", () => this.scale(1 / 1.4)), tool("+", "Larger", () => this.scale(1.4)),
           tool("fit", "All of it", () => this.change({ zoom: 1, pan: [0, 0] })), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
@@ -127,6 +130,7 @@ class GrainView {
     this.colourChoice = make("select", { name: "colour", onchange: () => ((this.chosen = true), this.change({ colour: this.colourChoice.value })) },
       ...there.map(([name, one]) => make("option", { value: name, selected: name === this.state.colour }, one.label)));
     this.colourPlace.replaceChildren(this.colourChoice);
+    this.linearLabel.hidden = !json.frames.some((frame) => frame.linear_contacts > 0);
     // Through the middle of what is deep enough to have one: fronts are along walls.
     const { low, high } = json.frames.at(-1).low ? json.frames.at(-1) : json, deep = high[this.view.depth] - low[this.view.depth] > 3 * json.mean_diameter;
     this.cut.value = deep ? 33 : 0;
@@ -223,7 +227,7 @@ class GrainView {
     const from = [], to = [], width = [], alpha = [];
     const put = (a, b, w, shade) => (from.push(...a), to.push(...b), width.push(w), alpha.push(shade));
     if (state.chains) {
-      const chains = await this.frames.chains(frame.number), lists = [frame.x, frame.y, frame.z];
+      const chains = await this.frames.chains(frame.number, state.linear), lists = [frame.x, frame.y, frame.z];
       const slab = Math.max(4 * json.mean_diameter, 0.25 * (far - near)), first = Math.max(near, cut);
       const strongest = json.frames[frame.number].strongest || 1, grain = json.mean_diameter / layout.metresPerPixel;
       for (let i = 0; i < chains.count; ++i) {

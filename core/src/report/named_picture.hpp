@@ -1,0 +1,13 @@
+// A picture and what its file is to be called.
+#pragma once
+
+#include <string>
+
+namespace grit {
+
+struct NamedPicture {
+  std::string name;  ///< for a file: "map-packing-void_ratio"
+  std::string svg;
+};
+
+}  // namespace grit

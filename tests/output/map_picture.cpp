@@ -1,0 +1,163 @@
+#include "output/map_picture.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include "svg_elements.hpp"
+
+namespace grit {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Cells of 1 mm side by side, of these values.
+MapPicture row_of(const std::vector<double>& values, bool about_zero) {
+  MapPicture picture;
+  picture.panels = {{"value", about_zero}};
+  picture.unit = "1";
+  for (std::size_t i = 0; i < values.size(); ++i)
+    picture.cells.push_back({1e-3 * static_cast<double>(i), 0, 1e-3, 1e-3, {values[i]}});
+  return picture;
+}
+
+/// Colours of the tiles, and where they are.
+struct Tile {
+  std::string colour;
+  double x, y, wide, high;
+};
+std::vector<Tile> tiles(const MapPicture& picture) {
+  std::vector<Tile> all;
+  for (const auto& group : elements(parsed(draw(picture)), "g", "cells"))
+    for (const auto& tile : elements(group, "rect"))
+      all.push_back({text_of(tile, "fill"), number_of(tile, "x"), number_of(tile, "y"), number_of(tile, "width"),
+                     number_of(tile, "height")});
+  return all;
+}
+std::set<std::string> colours(const MapPicture& picture) {
+  std::set<std::string> all;
+  for (const Tile& tile : tiles(picture)) all.insert(tile.colour);
+  return all;
+}
+
+constexpr const char *white = "#f6f6f4", *red = "#a01228", *blue = "#144e8c", *dark = "#440154", *bright = "#fde725";
+
+// Whether zero parts a field is the field's own: what an instant has of it changes nothing.
+TEST(MapPicture, HasThePaletteOfItsFieldWhateverTheNumbers) {
+  EXPECT_EQ(colours(row_of({-2, 0, 2}, true)), (std::set<std::string>{blue, white, red}));
+  EXPECT_EQ(colours(row_of({0, 2}, true)), (std::set<std::string>{white, red})) << "no negative number there";
+  EXPECT_EQ(colours(row_of({-2, 0}, true)), (std::set<std::string>{white, blue}));
+  EXPECT_EQ(colours(row_of({0, 0}, true)), (std::set<std::string>{white}));
+  EXPECT_EQ(colours(row_of({-2, 2}, false)), (std::set<std::string>{dark, bright})) << "numbers on both sides";
+  EXPECT_THAT(colours(row_of({7, 7, nan}, false)), testing::AllOf(Contains("#d4d4d0"), SizeIs(2)));
+}
+
+TEST(MapPicture, HasAxesWithUnitsAndWalls) {
+  MapPicture picture = row_of({1, 2, 3, 4}, false);
+  picture.cells.push_back({0, 2e-3, 1e-3, 1e-3, {5}});
+  const auto bare = parsed(draw(picture));
+  EXPECT_THAT(words_of(bare, "axis"), testing::UnorderedElementsAre("x [mm]", "z [mm]"));
+  EXPECT_GE(words_of(bare, "m").size(), 4u + 2);
+  EXPECT_EQ(elements(bare, "line", "wall").size(), 0u);
+  picture.walls = {{-0.5e-3, -0.5e-3, 3.5e-3, -0.5e-3}, {-1, -1, 1, -1}};
+  const auto svg = parsed(draw(picture));
+  const auto walls = elements(svg, "line", "wall");
+  ASSERT_GE(walls.size(), 1u);
+  const auto all = tiles(picture);
+  const auto lowest = std::ranges::max_element(all, {}, [](const Tile& tile) { return tile.y + tile.high; });
+  EXPECT_NEAR(number_of(walls[0], "y1"), lowest->y + lowest->high, 1.5) << "where the cells end";
+  // A tick is where its number says: 0 is the middle of the first cell, 3 that of the last.
+  const auto texts = elements(svg, "text", "m");
+  const auto place = [&](const std::string& number) {
+    for (const auto& text : texts)
+      if (text.data() == number && text_of(text, "class") == "m") return number_of(text, "x");
+    return nan;
+  };
+  const auto left = std::ranges::min_element(all, {}, &Tile::x);
+  EXPECT_NEAR(place("0"), left->x + 0.5 * left->wide, 1.5);
+  EXPECT_NEAR((place("3") - place("0")) / 3, left->wide, 1);
+}
+
+// From −3 to 14.4: steps of 5 leave three ticks within, steps of 2 nine.
+TEST(MapPicture, HasEnoughTicksWhereStepsFallBadly) {
+  MapPicture picture = row_of({1, 2}, false);
+  picture.cells[0].y = -2.5e-3, picture.cells[1].y = 13.9e-3;
+  std::size_t upwards = 0;
+  for (const auto& text : elements(parsed(draw(picture)), "text", "e")) upwards += text.data().size() <= 3;
+  EXPECT_GE(upwards, 8u);
+}
+
+/// By pixel, how many tiles cover it.
+std::vector<int> covered(const std::vector<Tile>& all, double left, double top, int wide, int high) {
+  std::vector<int> count(static_cast<std::size_t>(wide * high));
+  for (const Tile& tile : all)
+    for (int y = 0; y < tile.high; ++y)
+      for (int x = 0; x < tile.wide; ++x) {
+        const int column = static_cast<int>(tile.x - left) + x, row = static_cast<int>(tile.y - top) + y;
+        if (column >= 0 && column < wide && row >= 0 && row < high)
+          ++count[static_cast<std::size_t>(row * wide + column)];
+      }
+  return count;
+}
+
+// Cells that have moved with what they are of: rows slid over each other, rows and columns drawn apart.
+TEST(MapPicture, HasNoCracksBetweenCellsThatMoved) {
+  MapPicture picture;
+  picture.panels = {{"strain", true}};
+  for (int i = 0; i < 20; ++i)
+    for (int k = 0; k < 12; ++k) picture.cells.push_back({1.3 * i + 0.1 * k, 1.2 * k, 1, 1, {std::sin(i + 2.0 * k)}});
+  const auto all = tiles(picture);
+  for (const Tile& tile : all)
+    for (const double edge : {tile.x, tile.y, tile.wide, tile.high}) EXPECT_EQ(edge, std::round(edge));
+  double left = 1e9, right = 0, top = 1e9, bottom = 0;
+  for (const Tile& tile : all) {
+    left = std::min(left, tile.x), right = std::max(right, tile.x + tile.wide);
+    top = std::min(top, tile.y), bottom = std::max(bottom, tile.y + tile.high);
+  }
+  const int wide = static_cast<int>(right - left), high = static_cast<int>(bottom - top);
+  const auto count = covered(all, left, top, wide, high);
+  const double scale = wide / (1.3 * 19 + 0.1 * 11 + 1);
+  int seams = 0, twice = 0;
+  for (int row = 0; row < high; ++row)
+    for (int column = 0; column < wide; ++column) {
+      const int here = count[static_cast<std::size_t>(row * wide + column)];
+      twice += here > 1;
+      // Well within the sheared sheet, by the row of cells that is the nearest.
+      const double z = 1.2 * 11 + 0.5 - (row + 0.5) / scale, k = std::clamp(std::round(z / 1.2), 0.0, 11.0),
+                   x = (column + 0.5) / scale - 0.5 - 0.1 * k;
+      if (x > 0.5 && x < 1.3 * 19 - 0.5) seams += here == 0;
+    }
+  EXPECT_EQ(seams, 0);
+  EXPECT_EQ(twice, 0);
+}
+
+TEST(MapPicture, LeavesPlacesWithoutCellsFree) {
+  MapPicture picture = row_of({1, 2}, false);
+  picture.cells[1].x = 3e-3;  // two cells are missing between
+  const auto all = tiles(picture);
+  ASSERT_THAT(all, SizeIs(2));
+  EXPECT_NEAR(all[1].x - all[0].x, 3 * all[0].wide, 2);
+  picture.cells[1].x = 1.7e-3;  // a crack of 0.7 cells
+  const auto closed = tiles(picture);
+  ASSERT_THAT(closed, SizeIs(2));
+  EXPECT_EQ(closed[0].x + closed[0].wide, closed[1].x);
+}
+
+TEST(MapPicture, CopesWithNothing) {
+  MapPicture picture;
+  picture.panels = {{"value", false}};
+  EXPECT_THAT(draw(picture), testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(draw(row_of({nan, nan}, true)), testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(draw(row_of({1}, false)), testing::Not(HasSubstr("inf")));
+}
+
+}  // namespace
+}  // namespace grit

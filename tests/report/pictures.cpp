@@ -1,0 +1,234 @@
+// Curves, profiles, chains and maps of runs, without a browser.
+#include "report/pictures.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "output/svg_elements.hpp"
+#include "report/curve_pictures.hpp"
+#include "report/report_page.hpp"
+#include "results.hpp"
+
+namespace grit {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
+using testing::SizeIs;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Samples of a shear test whose stress ratio is `level` times its displacement, with these references.
+void write_test(const std::filesystem::path& folder, double level, const Description& references = {}) {
+  SmallRun run(folder);
+  run.options.facts.description["output"] = {{"picture", {{"x", "test/u"}, {"y", {"test/ratio"}}}}};
+  if (!references.is_null()) run.options.facts.description["output"]["references"] = references;
+  ResultsFolder results(run.options);
+  const std::vector<ProbeGroup> probes{{"test", {{"u", "m", "displacement", {}}, {"ratio", "1", "stress ratio", {}}}}};
+  results.begin(run.world, probes);
+  for (int i = 0; i < 5; ++i) {
+    run.world.now = i, run.world.steps = static_cast<std::uint64_t>(i);
+    const double u[] = {1e-3 * i}, ratio[] = {level * i};
+    const std::span<const double> all[] = {u, ratio};
+    results.sample(0, run.world, all);
+  }
+  results.finish(run.world, {});
+}
+
+std::vector<double> numbers_in(const std::string& text) {
+  std::vector<double> all;
+  std::istringstream stream(text);
+  for (double number; stream >> number; stream.ignore(1)) all.push_back(number);
+  return all;
+}
+
+TEST(CurvePictures, ShowTheReferencesOfTheDescription) {
+  const Folder folder;
+  std::ofstream(folder / "measured.csv") << "u,ratio\n0,0\n0.002,2\n";
+  write_test(folder / "run", 1,
+             {{"the peak", {{"of", "test/ratio"}, {"value", 3}}},
+              {"measured",
+               {{"of", "test/ratio"},
+                {"against", "test/u"},
+                {"curve", {{"file", (folder / "measured.csv").string()}, {"x", "u"}, {"y", "ratio"}}}}},
+              {"of another curve", {{"of", "test/other"}, {"value", 1}}},
+              {"lost", {{"of", "test/ratio"}, {"curve", {{"file", "nowhere.csv"}, {"x", "u"}, {"y", "ratio"}}}}}});
+  RunResults run = read_results(folder / "run");
+  const auto picture = curves_picture(std::span(&run, 1));
+  ASSERT_TRUE(picture.has_value());
+  const auto svg = parsed(*picture);
+  EXPECT_THAT(words_of(svg), IsSupersetOf({"the peak", "measured"}));
+  EXPECT_THAT(words_of(svg), Not(Contains("of another curve")));
+  const auto curve = elements(svg, "polyline", "k0");
+  ASSERT_THAT(curve, SizeIs(1));
+  ASSERT_THAT(elements(svg, "polyline", "r0"), SizeIs(1));
+  ASSERT_THAT(elements(svg, "polyline", "r1"), SizeIs(1));
+  // JSON sorts nothing here: the first of the two is "the peak", as the description has it, or "measured".
+  const auto of_run = numbers_in(text_of(curve[0], "points"));
+  bool level = false, measured = false;
+  for (const char* name : {"r0", "r1"}) {
+    const auto points = numbers_in(text_of(elements(svg, "polyline", name)[0], "points"));
+    ASSERT_THAT(points, SizeIs(4));
+    // From the run's first point to its last at the height of 3; from 0 to its place at u = 2 mm, where it is 2.
+    level =
+        level || (points[1] == points[3] && points[0] == of_run[0] && points[2] == of_run[8] && points[1] == of_run[7]);
+    measured = measured || (points[0] == of_run[0] && points[2] == of_run[4] && points[3] == of_run[5]);
+  }
+  EXPECT_TRUE(level);
+  EXPECT_TRUE(measured);
+  EXPECT_THAT(run.problems, ElementsAre(HasSubstr("reference lost: nowhere.csv: cannot be read")));
+}
+
+TEST(CurvePictures, LayRunsOverEachOther) {
+  const Folder folder;
+  write_test(folder / "dense", 1, {{"peak", {{"of", "test/ratio"}, {"value", 3}}}});
+  write_test(folder / "loose", 0.5, {{"peak", {{"of", "test/ratio"}, {"value", 1}}}});
+  write_test(folder / "again", 2);
+  std::vector<RunResults> runs{read_results(folder / "dense"), read_results(folder / "loose"),
+                               read_results(folder / "again")};
+  runs[2].probes[0].channels.clear();  // has none of it
+  tell_apart(runs);
+  const auto svg = parsed(*curves_picture(runs));
+  EXPECT_THAT(elements(svg, "polyline", "k0"), SizeIs(1));
+  EXPECT_THAT(elements(svg, "polyline", "k1"), SizeIs(1));
+  EXPECT_THAT(elements(svg, "polyline", "k2"), IsEmpty());
+  EXPECT_THAT(words_of(svg), IsSupersetOf({"dense", "loose", "peak", "loose, peak"}));
+  const auto dense = numbers_in(text_of(elements(svg, "polyline", "k0")[0], "points")),
+             loose = numbers_in(text_of(elements(svg, "polyline", "k1")[0], "points"));
+  ASSERT_THAT(dense, SizeIs(10));
+  ASSERT_THAT(loose, SizeIs(10));
+  EXPECT_EQ(dense[8], loose[8]) << "at the same displacement";
+  EXPECT_NEAR((dense[1] - dense[9]) / (loose[1] - loose[9]), 2, 0.01) << "on the same axis";
+}
+
+TEST(CurvePictures, OfOneRunHaveNoLegend) {
+  const Folder folder;
+  write_test(folder / "dense", 1);
+  RunResults run = read_results(folder / "dense");
+  EXPECT_THAT(words_of(parsed(*curves_picture(std::span(&run, 1)))), Not(Contains("dense")));
+}
+
+TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  const std::vector<ProbeGroup> probes{{"moved",
+                                        {{"place", "m", "where", {3}},
+                                         {"gradient", "1", "slope", {3}, "place"},
+                                         {"direction", "degree", "where to", {3}},
+                                         {"force", "N", "by direction", {3}, "direction"}}},
+                                       {"packing", {{"e", "1", "void ratio", {}}}}};
+  results.begin(run.world, probes);
+  for (int i = 0; i < 7; ++i) {
+    run.world.now = i, run.world.steps = static_cast<std::uint64_t>(i);
+    const double place[] = {0, 1e-3, 2e-3}, gradient[] = {0, 1.0 * i, nan}, direction[] = {0, 90, 180},
+                 force[] = {1, 2, 3}, e[] = {0.6};
+    const std::span<const double> moved[] = {place, gradient, direction, force}, packing[] = {e};
+    results.sample(0, run.world, moved), results.sample(1, run.world, packing);
+  }
+  results.finish(run.world, {});
+  const auto pictures = profile_pictures(read_results(folder / "run"));
+  ASSERT_THAT(pictures, SizeIs(1)) << "directions have no profile";
+  EXPECT_EQ(pictures[0].name, "profiles-moved");
+  const auto svg = parsed(pictures[0].svg);
+  EXPECT_THAT(words_of(svg), IsSupersetOf({"2 s", "4 s", "6 s", "place [mm]", "gradient"}));
+  std::vector<double> rises;
+  for (const char* name : {"k0", "k1", "k2"}) {
+    const auto lines = elements(svg, "polyline", name);
+    ASSERT_THAT(lines, SizeIs(1));
+    const auto points = numbers_in(text_of(lines[0], "points"));
+    ASSERT_THAT(points, SizeIs(4)) << "what is not a number is a gap";
+    rises.push_back(points[1] - points[3]);
+  }
+  EXPECT_NEAR(rises[1] / rises[0], 2, 0.01);
+  EXPECT_NEAR(rises[2] / rises[0], 3, 0.01);
+  EXPECT_THAT(elements(svg, "text", "peak"), IsEmpty());
+}
+
+/// The small run with a probe that tells of chains, its rows the contacts between grains with these forces.
+void write_chains(const std::filesystem::path& folder, const std::vector<double>& force) {
+  SmallRun run(folder);
+  for (const std::size_t k : {0u, 1u, 2u}) run.world.contact[k].normal_force = 4.0 - 2 * (k > 0);
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  const std::vector<FieldGroup> tables{{"chains",
+                                        {{"start", "m", "", 3, {0, 0, 1, 1, 0, 2}},
+                                         {"normal_force", "N", "", 1, force},
+                                         {"chain", "1", "", 1, {3, 0}}}}};
+  results.frame(run.world, tables);
+  results.finish(run.world, {});
+}
+
+TEST(LinearChainPictures, GoAlongTheLinksOfChains) {
+  const Folder folder;
+  write_chains(folder / "run", {4, 2});
+  RunResults run = read_results(folder / "run");
+  const auto picture = chains_picture(run);
+  ASSERT_TRUE(picture.has_value());
+  const auto svg = parsed(*picture);
+  const auto links = elements(svg, "line", "link");
+  ASSERT_THAT(links, SizeIs(1)) << "of the other contact no chain is told";
+  EXPECT_THAT(*picture, HasSubstr("3 linear chains"));
+  // From the grain at (0, 1) to (1, 2): up and to the right alike.
+  EXPECT_NEAR(number_of(links[0], "x2") - number_of(links[0], "x1"),
+              number_of(links[0], "y1") - number_of(links[0], "y2"), 0.05);
+  EXPECT_GT(number_of(links[0], "x2"), number_of(links[0], "x1"));
+}
+
+TEST(LinearChainPictures, AreOnThePage) {
+  const Folder folder;
+  write_chains(folder / "run", {4, 2});
+  const std::filesystem::path path = folder / "run";
+  const std::string html = report_page(std::span(&path, 1)).html;
+  const auto frame = json_of(html).at("runs").at(0).at("grains").at("frames").at(0);
+  ASSERT_EQ(frame.at("linear_contacts"), 1);
+  // Low and high half of the grain's place by id (of 2, 5, 7 the last), branch, force.
+  const auto numbers = planes_of(html, frame.at("linear_chains"));
+  ASSERT_THAT(numbers, SizeIs(6));
+  EXPECT_EQ(numbers[0], 2);
+  EXPECT_EQ(numbers[2], 65535) << "as far as contacts reach";
+  EXPECT_EQ(numbers[5], 65535) << "the strongest";
+}
+
+TEST(LinearChainPictures, AreNotOfRowsThatAreOtherContacts) {
+  const Folder folder;
+  write_chains(folder / "run", {4, 3});
+  RunResults run = read_results(folder / "run");
+  EXPECT_FALSE(chains_picture(run).has_value());
+}
+
+TEST(MapPictures, HaveWallsAxesAndTheirFieldsPalette) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.options.walls = {{"floor", {{-1, -1, 0}, {3, -1, 0}, {3, 2, 0}, {-1, -1, 0}, {3, 2, 0}, {-1, 2, 0}}}};
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  const std::vector<FieldGroup> tables{{"cells",
+                                        {{"centre", "m", "", 3, {0.5, 0, 0.5, 1.5, 0, 0.5}},
+                                         {"size", "m", "", 3, {1, 2, 1, 1, 2, 1}},
+                                         {"bodies", "1", "how many", 1, {1, 2}},
+                                         {"void_ratio", "1", "of the cell", 1, {-1, 1}},
+                                         {"rotation", "rad", "clockwise positive", 1, {1, 2}}}}};
+  results.frame(run.world, tables);
+  results.finish(run.world, {});
+  RunResults read = read_results(folder / "run");
+  const auto pictures = map_pictures(read);
+  ASSERT_THAT(pictures, SizeIs(2)) << "nobody looks at a map of counts";
+  for (const auto& [name, svg] : pictures) {
+    EXPECT_THAT(words_of(parsed(svg), "axis"), testing::UnorderedElementsAre("x [m]", "z [m]")) << name;
+    EXPECT_THAT(elements(parsed(svg), "line", "wall"), Not(IsEmpty())) << name;
+  }
+  EXPECT_EQ(pictures[0].name, "map-cells-rotation");
+  EXPECT_THAT(pictures[0].svg, HasSubstr("fill=\"#144e8c\"")) << "the scale goes on below zero";
+  EXPECT_EQ(pictures[1].name, "map-cells-void_ratio");
+  EXPECT_THAT(pictures[1].svg, testing::AllOf(HasSubstr("fill=\"#440154\""), Not(HasSubstr("fill=\"#144e8c\""))));
+}
+
+}  // namespace
+}  // namespace grit
