@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "engines/builtin.hpp"
 #include "input/scene.hpp"
@@ -111,6 +115,12 @@ TEST_P(QuickSims, RunAWhile) {
   run(scene, world, recorder, {});
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
   EXPECT_EQ(recorder.summary.steps, 50 * stages);
+  ASSERT_EQ(recorder.summary.probes.size(), scene.description->probes.size());
+  for (const auto& [name, samples, seconds] : recorder.summary.probes) {
+    EXPECT_EQ(scene.description->probes.count(name), 1u);
+    EXPECT_GE(samples, 1u) << name << " looks at the end of a stage at least";
+    EXPECT_GT(seconds, 0) << name;
+  }
 }
 
 std::vector<std::filesystem::path> quick_files() {
@@ -121,6 +131,53 @@ std::vector<std::filesystem::path> quick_files() {
 
 INSTANTIATE_TEST_SUITE_P(All, QuickSims, testing::ValuesIn(quick_files()),
                          [](const auto& info) { return Sims::name_of(info.param); });
+
+/// What a description has its curves compared with.
+Description references(const std::string& name) {
+  const Document document = load_document(sims_folder / (name + ".json"), {}, registry());
+  const Description::json_pointer place("/output/references");
+  return document.json().contains(place) ? document.json().at(place) : Description::object();
+}
+
+// What a curve is held against in docs/reproduction.json stands beside it in its description, and nothing else of the
+// curves that are held against something.
+TEST(References, AreThoseOfTheReproduction) {
+  std::ifstream stream(GRIT_SOURCE_DIR "/docs/reproduction.json");
+  const auto rows = nlohmann::json::parse(stream).at("figures");
+  ASSERT_GT(rows.size(), 100u);
+  const auto short_of = [](double value) {
+    std::ostringstream digits;
+    digits << std::setprecision(4) << value;
+    return digits.str();
+  };
+  std::map<std::string, std::multiset<std::pair<std::string, std::string>>> wanted;
+  for (const auto& row : rows) {
+    auto& of_description = wanted[row.at("description")];
+    // Where a curve is largest is no value of it, and the balance of forces is not of the reference.
+    if (row.at("how") == "where largest" || row.at("of") == "test/balance") continue;
+    of_description.emplace(row.at("of"), short_of(row.at("reference").get<double>() / row.value("scale", 1.0)));
+  }
+  for (const auto& [name, values] : wanted) {
+    std::multiset<std::pair<std::string, std::string>> named;
+    const Description all = references(name);
+    for (const auto& [words, reference] : all.items()) {
+      EXPECT_THAT(words, testing::HasSubstr("Grabowski_2024")) << name;
+      const std::string of = reference.at("of");
+      // The zone of a direct shear test is not in the table of the reproduction.
+      if (name.starts_with("direct-shear") && of == "rotations/zone_diameters") continue;
+      named.emplace(of, short_of(reference.at("value").get<double>()));
+    }
+    EXPECT_EQ(named, values) << name;
+  }
+}
+
+TEST(References, AreNotTakenOverByOtherPackings) {
+  EXPECT_EQ(references("direct-shear/quick").size(), 1u);
+  EXPECT_EQ(references("direct-shear/quick-every-probe").size(), 1u);
+  EXPECT_TRUE(references("direct-shear/quick-loose").empty());
+  EXPECT_FALSE(references("silo-quasistatic/full-very-rough").empty());
+  EXPECT_TRUE(references("silo-quasistatic/full-very-rough-loose").empty());
+}
 
 /// A small direct shear test with these probes as it is sheared; frames ask them for their fields too.
 std::unique_ptr<Simulation> sheared(const std::map<std::string, std::string>& probes) {

@@ -142,8 +142,9 @@ Description DirectShear::expand() const {
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {
       {"type", "packing"}, {"driven_by", "platen"}, {"driven_axis", "x"}, {"every_time", duration / 100}};
-  for (const char* type : {"force-chains", "rotations", "strain"})
+  for (const char* type : {"force-chains", "rotations", "displacements", "strain"})
     d["probes"][type] = {{"type", type}, {"every_time", duration / 100}, {"stages", {"shear"}}};
+  d["probes"]["displacements"]["strips"] = 5;
   d["output"] = {{"frames", {{"every_time", duration / frames_in_shear}}},
                  {"picture",
                   {{"x", "test/shear_displacement"},
