@@ -15,6 +15,8 @@ class DisplacementFit {
   void add(const Eigen::Vector2d& place, const Eigen::Vector2d& moved) {
     places_.push_back(place), moves_.push_back(moved);
   }
+  /// Forgets them, and keeps their room.
+  void clear() { places_.clear(), moves_.clear(); }
   int points() const { return static_cast<int>(places_.size()); }
   /// How far they have gone, in the mean; 0 without any.
   Eigen::Vector2d moved() const {

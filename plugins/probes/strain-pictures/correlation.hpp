@@ -65,6 +65,10 @@ class Correlation {
   Image sums_, squares_;  ///< of the coarse square whose lower left pixel it is, of grey values and of their squares
 };
 
+/// Whether the square around a pixel is of more than one grey: it is found in its own picture then. Where
+/// Correlation::has().
+bool has_pattern(const ReferenceImage& image, std::ptrdiff_t column, std::ptrdiff_t row, std::ptrdiff_t half);
+
 /// Squares in rows and columns, and where they were found.
 struct MatchGrid {
   std::ptrdiff_t columns = 0, rows = 0;

@@ -96,7 +96,7 @@ std::optional<StrainPictures::View> StrainPictures::view(const World& world) con
   View view;
   view.diameter = world.mean_diameter(), view.pixel = view.diameter / pixels_per_diameter;
   view.face = (look.away > 0 ? box.low : box.high)[look.depth];
-  const auto half = static_cast<std::ptrdiff_t>(std::lround(0.5 * subset * pixels_per_diameter));
+  const std::ptrdiff_t half = this->half();
   const auto margin = static_cast<std::ptrdiff_t>(std::ceil(search * pixels_per_diameter)) + half + 4;
   view.subsets.apart = std::max(1l, std::lround(step * pixels_per_diameter));
   // The same along both axes.
@@ -164,22 +164,39 @@ void StrainPictures::look(const World& world) {
     if (sliding) walls_ = sliding->now(world);
     view_ = view(world);
     start_ = view_ ? ReferenceImage(picture(world, *view_)) : ReferenceImage();
-    subsets_ = view_ ? found(start_.full) : std::vector<Subset>();
+    subsets_ = view_ ? subsets_of(unmoved()) : std::vector<Subset>();
   } else if (step_ != world.step()) {
-    subsets_ = view_ ? found(picture(world, *view_)) : std::vector<Subset>();
+    subsets_ = view_ ? subsets_of(found(picture(world, *view_))) : std::vector<Subset>();
   }
   step_ = world.step();
 }
 
-std::vector<StrainPictures::Subset> StrainPictures::found(Image now) const {
+std::ptrdiff_t StrainPictures::half() const {
+  return static_cast<std::ptrdiff_t>(std::lround(0.5 * subset * pixels_per_diameter));
+}
+
+MatchGrid StrainPictures::unmoved() const {
   const SquareGrid& grid = view_->subsets;
-  const auto half = static_cast<std::ptrdiff_t>(std::lround(0.5 * subset * pixels_per_diameter));
+  MatchGrid all{grid.columns, grid.rows, {}};
+  for (std::ptrdiff_t j = 0; j < grid.rows; ++j)
+    for (std::ptrdiff_t i = 0; i < grid.columns; ++i)
+      all.match.push_back(has_pattern(start_, grid.left + i * grid.apart, grid.bottom + j * grid.apart, half())
+                              ? std::optional(Match{.correlation = 1})
+                              : std::nullopt);
+  return all;
+}
+
+MatchGrid StrainPictures::found(Image now) const {
+  const SquareGrid& grid = view_->subsets;
   const auto apart = [&](double diameters) {
     return std::max(1l, std::lround(diameters * pixels_per_diameter / static_cast<double>(grid.apart)));
   };
-  const MatchGrid found =
-      matches(Correlation(start_, DeformedImage(std::move(now)), half), grid, apart(3),
-              static_cast<std::ptrdiff_t>(std::ceil(search * pixels_per_diameter)), least_correlation);
+  return matches(Correlation(start_, DeformedImage(std::move(now)), half()), grid, apart(3),
+                 static_cast<std::ptrdiff_t>(std::ceil(search * pixels_per_diameter)), least_correlation);
+}
+
+std::vector<StrainPictures::Subset> StrainPictures::subsets_of(const MatchGrid& found) const {
+  const SquareGrid& grid = view_->subsets;
   std::vector<Subset> all;
   for (std::ptrdiff_t j = 0; j < grid.rows; ++j)
     for (std::ptrdiff_t i = 0; i < grid.columns; ++i) {
@@ -194,9 +211,10 @@ std::vector<StrainPictures::Subset> StrainPictures::found(Image now) const {
   const auto reach =
       static_cast<std::ptrdiff_t>(0.5 * window * pixels_per_diameter / static_cast<double>(grid.apart) + 1e-9);
   const std::ptrdiff_t around = std::max<std::ptrdiff_t>(1, reach);
+  DisplacementFit fit;
   for (std::ptrdiff_t j = 0; j < grid.rows; ++j)
     for (std::ptrdiff_t i = 0; i < grid.columns; ++i) {
-      DisplacementFit fit;
+      fit.clear();
       for (std::ptrdiff_t b = std::max<std::ptrdiff_t>(0, j - around); b <= std::min(grid.rows - 1, j + around); ++b)
         for (std::ptrdiff_t a = std::max<std::ptrdiff_t>(0, i - around); a <= std::min(grid.columns - 1, i + around);
              ++a)

@@ -68,7 +68,11 @@ class StrainPictures final : public Probe {
   double pixels(const World& world) const;
   Image picture(const World& world, const View& view) const;
   void look(const World& world);
-  std::vector<Subset> found(Image now) const;
+  std::ptrdiff_t half() const;  ///< of a subset's side, pixels
+  /// Where subsets are that do not move: all that have something to see.
+  MatchGrid unmoved() const;
+  MatchGrid found(Image now) const;
+  std::vector<Subset> subsets_of(const MatchGrid& found) const;
 
   std::optional<Camera> camera_;
   // Kept from the first look of a stage on, and from the last one.
