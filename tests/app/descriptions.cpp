@@ -115,6 +115,8 @@ TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {
   };
   const auto told = HasSubstr("  /walls/lid: it stands still outside the domain");
   EXPECT_THAT(check({domain, lid("20 mm")}), told);
+  EXPECT_THAT(check({domain, lid("20 mm"), R"(/specimen={"high": ["", "", "lid"]})"}), testing::Not(told))
+      << "it bounds the specimen";
   EXPECT_THAT(check({domain, lid("7 mm")}), testing::Not(told)) << "a grain that just leaves would touch it";
   EXPECT_THAT(check({lid("20 mm")}), testing::Not(told)) << "nothing keeps grains below";
   EXPECT_THAT(check({domain, lid("20 mm"), "/walls/lid/motion/velocity=[0, 0, -1]"}), testing::Not(told)) << "it comes";

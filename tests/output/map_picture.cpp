@@ -157,6 +157,11 @@ TEST(MapPicture, CopesWithNothing) {
   EXPECT_THAT(draw(picture), testing::Not(HasSubstr("nan")));
   EXPECT_THAT(draw(row_of({nan, nan}, true)), testing::Not(HasSubstr("nan")));
   EXPECT_THAT(draw(row_of({1}, false)), testing::Not(HasSubstr("inf")));
+  MapPicture nowhere = row_of({1, 2}, false);
+  for (MapCell& cell : nowhere.cells) {
+    cell.x = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(draw(nowhere), AllOf(testing::Not(HasSubstr("nan")), testing::Not(HasSubstr("inf"))));
+  }
 }
 
 }  // namespace

@@ -66,7 +66,18 @@ TEST(Scale, AxesAreAsFineAsNumbersFit) {
 }
 
 // A range as wide as the rounding of its ends has no steps to count.
-TEST(Scale, AxesEndWhereNumbersDo) { EXPECT_LE(axis_ticks(1e10, 1e10 + 4e-6, AxisEnds::whole_steps).marks.size(), 8u); }
+TEST(Scale, AxesEndWhereNumbersDo) {
+  EXPECT_LE(axis_ticks(1e10, 1e10 + 4e-6, AxisEnds::whole_steps).marks.size(), 8u);
+  for (const AxisEnds ends : {AxisEnds::kept, AxisEnds::whole_steps}) {
+    for (const double low : {1.0, -3e-7, 0.0, std::numeric_limits<double>::quiet_NaN(), -INFINITY, -1e308})
+      for (const double high : {std::nextafter(low, 2), low, INFINITY, 1e308}) {
+        const AxisTicks axis = axis_ticks(low, high, ends);
+        EXPECT_GE(axis.marks.size(), 4u) << low << " … " << high;
+        EXPECT_LE(axis.marks.size(), 8u) << low << " … " << high;
+        EXPECT_LT(axis.low, axis.high);
+      }
+  }
+}
 
 TEST(Scale, LabelsAreShort) {
   EXPECT_EQ(tick_label(0.6000000001, 0.2), "0.6");

@@ -94,6 +94,21 @@ TEST(CellMaps, LeavesTheFarthestOfManyCellsToTheEndsOfTheScale) {
   EXPECT_NEAR(range.at(1).get<double>(), 990, 2);
 }
 
+TEST(CellMaps, LeavesEachProbeItsShareOfTheRoom) {
+  FieldGroup many = two_cells(1, 1), few = two_cells(1, 1);
+  many.name = "many";
+  for (Field& field : many.fields)
+    for (int doubled = 0; doubled < 2; ++doubled)
+      field.values.insert(field.values.end(), field.values.begin(), field.values.end());
+  DataElements data;
+  CellMaps maps(data, 1000);  // a frame has 72 bytes of the one, four times as many of the other
+  for (std::size_t frame = 0; frame < 5; ++frame) maps.add(frame, "shear", {many, few});
+  const json all = made_of(maps);
+  EXPECT_THAT(all.at(0).at("frames"), SizeIs(1));
+  EXPECT_EQ(all.at(0).at("left_out"), 4);
+  EXPECT_THAT(all.at(1).at("frames"), SizeIs(5));
+}
+
 TEST(CellMaps, HasRoomForSomeFramesOnly) {
   DataElements data;
   CellMaps maps(data, 100);  // a frame has 18 numbers of 4 bytes

@@ -213,8 +213,8 @@ TEST_F(Resume, KeepsTheCheckpointWhereAGuardTrips) {
   EXPECT_TRUE(std::filesystem::exists(folder / "failed/checkpoint.h5"));
   const auto again = grit({"run", "failed", "--resume", "--no-report"});
   EXPECT_EQ(again.status, 4);
-  EXPECT_THAT(again.err,
-              AllOf(HasSubstr("/guards/travel"), HasSubstr("its last checkpoint is kept: with other /guards")));
+  EXPECT_THAT(again.err, AllOf(HasSubstr("/guards/travel"),
+                               HasSubstr("its last checkpoint is kept: with another /guards/travel --resume")));
 }
 
 TEST_F(Resume, GoesOnWithOtherGuards) {
@@ -229,6 +229,11 @@ TEST_F(Resume, GoesOnWithOtherGuards) {
   EXPECT_THAT(on.err, HasSubstr("goes on from step"));
   EXPECT_EQ(whole("never", "{\"travel\": 0.05}", false).status, 0);
   expect_same_results("stopped", "never");
+  // That of overlap sets the step of springs that stiffen.
+  EXPECT_EQ(whole("other", "{\"travel\": 1e-3}", false).status, 4);
+  const auto overlap = whole("other", "{\"travel\": 0.05, \"overlap\": 0.4}", true);
+  EXPECT_EQ(overlap.status, 2);
+  EXPECT_THAT(overlap.err, AllOf(HasSubstr("/guards/overlap: found 0.4"), Not(HasSubstr("/guards/travel"))));
   // A run that is done has kept to the guards that it had, not to others.
   const auto done = whole("stopped", "{\"travel\": 0.04}", true);
   EXPECT_EQ(done.status, 2);

@@ -132,6 +132,14 @@ bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
   return done;
 }
 
+/// What may be done where a guard has stopped a run that changes nothing but where a run ends.
+std::string way_on(const std::string& message, const std::filesystem::path& folder) {
+  for (const std::string guard : {"/guards/travel", "/guards/energy"})
+    if (message.find(guard) != message.npos && std::filesystem::exists(folder / "checkpoint.h5"))
+      return "\n  its last checkpoint is kept: with another " + guard + " --resume goes on from there";
+  return "";
+}
+
 ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
                    const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
   const auto& [file, folder, scene, existing] = job;
@@ -213,11 +221,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
               << folder.string() << "' goes on" << std::endl;
   if (!options.has("no-report")) make_report(folder);
   if (summary.status == "interrupted") return ExitStatus::interrupted;
-  if (summary.status == "failed")
-    throw NumericsError(summary.message +
-                        (std::filesystem::exists(folder / "checkpoint.h5")
-                             ? "\n  its last checkpoint is kept: with other /guards --resume goes on from there"
-                             : ""));
+  if (summary.status == "failed") throw NumericsError(summary.message + way_on(summary.message, folder));
   return ExitStatus::done;
 }
 

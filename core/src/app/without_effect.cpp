@@ -164,8 +164,13 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
     if (!used && !later) say("/materials/" + name, "no body and no wall is of it");
   }
   const auto walls = world.walls();
+  Description others = values;
+  others.erase("walls");
+  const std::string elsewhere = others.dump();
   for (std::size_t wall = 0; wall < walls.size(); ++wall)
-    if (const std::string& name = walls[wall].name; is_out_of_reach(scene, world, wall, name))
+    // What bounds the specimen, or is asked for by a probe or a condition, is of use wherever it is.
+    if (const std::string& name = walls[wall].name;
+        elsewhere.find('"' + name + '"') == elsewhere.npos && is_out_of_reach(scene, world, wall, name))
       say("/walls/" + name, "it stands still outside the domain, further off than any grain that stays inside reaches");
   for (const auto& [name, probe] : scene.probes)
     if (probe.cadence.never())

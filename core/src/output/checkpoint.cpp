@@ -67,7 +67,8 @@ std::string differences(const Description& now, const Description& then) {
 
 std::string differences_on_the_way(const Description& now, const Description& then) {
   const auto without = [](Description description) {
-    description.erase("guards");
+    if (const auto guards = description.find("guards"); guards != description.end() && guards->is_object())
+      for (const char* of_the_end : {"travel", "energy"}) guards->erase(of_the_end);
     return description;
   };
   return differences(without(now), without(then));

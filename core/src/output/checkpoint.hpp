@@ -21,8 +21,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
 /// Pointers at which two descriptions differ, each with what was found and what is allowed; empty if they are of the
 /// same run. /output/checkpoint_every may differ.
 std::string differences(const Description& now, const Description& then);
-/// The same, empty if a run of the one can go on from where a run of the other was: /guards may differ too, which
-/// change nothing but where a run ends.
+/// The same, empty if a run of the one can go on from where a run of the other was: /guards/travel and /guards/energy
+/// may differ too, which change nothing but where a run ends. /guards/overlap also sets the step of springs that
+/// stiffen.
 std::string differences_on_the_way(const Description& now, const Description& then);
 
 }  // namespace grit

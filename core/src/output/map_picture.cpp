@@ -69,8 +69,9 @@ struct Range {
 Plot plot_of(const MapPicture& picture) {
   Range x, y;
   for (const MapCell& cell : picture.cells)
-    for (const double side : {-0.5, 0.5}) x.add(cell.x + side * cell.wide), y.add(cell.y + side * cell.high);
-  if (picture.cells.empty()) x = y = {0, 1};
+    if (std::isfinite(cell.x + cell.y + cell.wide + cell.high))
+      for (const double side : {-0.5, 0.5}) x.add(cell.x + side * cell.wide), y.add(cell.y + side * cell.high);
+  if (!std::isfinite(x.low)) x = y = {0, 1};
   const double reach = wall_reach * std::max(x.span(), y.span());
   const Range cells_x = x, cells_y = y;
   const auto near = [&](double a, double b, const Range& range) {

@@ -35,6 +35,11 @@ std::vector<double> ticks(double low, double high, int pieces) {
 
 AxisTicks axis_ticks(double low, double high, AxisEnds ends, const std::function<bool(const AxisTicks&)>& fits) {
   constexpr int fewest = 4, most = 8;
+  if (!std::isfinite(high - low)) low = 0, high = 1;
+  if (const double size = std::max(std::abs(low), std::abs(high)); !(high - low > 1e-12 * size)) {
+    const double room = size > 0 ? 0.5 * size : 1;
+    low -= room, high += room;
+  }
   std::optional<AxisTicks> best;
   for (double step = nice_step(high - low, 4 * most);; step = nice_step(2 * step, 1)) {
     const double first = ends == AxisEnds::kept ? std::ceil(low / step - 1e-9) : std::floor(low / step + 1e-9),

@@ -20,8 +20,9 @@ struct AxisTicks {
   std::vector<double> marks;
 };
 enum class AxisEnds { kept, whole_steps };
-/// An axis over [low, high], low < high, with 4 to 8 ticks: as fine as `fits`, or, where nothing fits, as coarse as
+/// An axis over [low, high] with 4 to 8 ticks: as fine as `fits`, or, where nothing fits, as coarse as
 /// four ticks are. It ends where it is told, or goes out to whole steps; it does where fewer than four lie within.
+/// Where there is no such range, of infinite or too narrow ends, it has one about them.
 AxisTicks axis_ticks(
     double low, double high, AxisEnds ends,
     const std::function<bool(const AxisTicks&)>& fits = [](const AxisTicks&) { return true; });

@@ -25,7 +25,7 @@ std::vector<float> column(const Field& field, std::size_t component) {
 CellMaps::Map& CellMaps::map_of(const FieldGroup& group) {
   const auto known = std::ranges::find(maps_, group.name, &Map::probe);
   if (known != maps_.end()) return *known;
-  Map map{group.name, {}, Description::array(), 0, {}};
+  Map map{.probe = group.name, .fields = {}, .boxes = {}};
   for (const Field& field : group.fields) {
     if (field.name == "centre" || field.name == "size" || is_bookkeeping(field)) continue;
     map.fields.push_back(
@@ -70,11 +70,12 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
       }
     }
     const std::size_t bytes = sizeof(float) * numbers.size();
-    if (bytes > bytes_left_) {
+    // A probe with a cell a grain shall not leave the others without their last frames.
+    if (bytes > bytes_left_ || map.bytes + bytes > bytes_ / groups.size()) {
       ++map.left_out;
       continue;
     }
-    bytes_left_ -= bytes;
+    bytes_left_ -= bytes, map.bytes += bytes;
     map.frames.push_back(Description{{"frame", frame}, {"cells", cells}, {"data", data_.add_numbers<float>(numbers)}});
   }
 }

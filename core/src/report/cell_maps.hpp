@@ -19,9 +19,9 @@ namespace grit {
 /// Takes frames one after another. Of a probe the page knows what fields the first of its frames had.
 class CellMaps {
  public:
-  /// Numbers are kept as float32, of `bytes` before deflating at most: a probe of which a frame would go beyond that
-  /// has no map there.
-  CellMaps(DataElements& data, std::size_t bytes) : data_(data), bytes_left_(bytes) {}
+  /// Numbers are kept as float32, of `bytes` before deflating at most, of which each probe of a frame has the same
+  /// share: a probe of which a frame would go beyond that has no map there.
+  CellMaps(DataElements& data, std::size_t bytes) : data_(data), bytes_(bytes), bytes_left_(bytes) {}
 
   /// The maps of a frame. What they lack is NaN.
   void add(std::size_t frame, const std::string& stage, const std::vector<FieldGroup>& maps);
@@ -57,13 +57,13 @@ class CellMaps {
     std::string probe;
     std::vector<MapField> fields;
     Description frames = Description::array();
-    std::size_t left_out = 0;
+    std::size_t left_out = 0, bytes = 0;
     std::map<std::string, Box> boxes;  ///< by stage
   };
   Map& map_of(const FieldGroup& group);
 
   DataElements& data_;
-  std::size_t bytes_left_;
+  std::size_t bytes_, bytes_left_;
   std::vector<Map> maps_;
 };
 

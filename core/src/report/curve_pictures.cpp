@@ -175,8 +175,7 @@ std::vector<NamedPicture> profile_pictures(const RunResults& run) {
     for (const auto& channel : probe.channels) {
       if (!is_profile(probe, channel)) continue;
       const auto& place = *probe.channel(channel.sampled.coordinate);
-      Panel panel{
-          {spelled(place.name), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false};
+      Panel panel{{spelled(place.name), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false};
       const std::size_t last = std::min(channel.sampled.samples, time->sampled.values.size());
       std::size_t drawn = last;
       for (const std::size_t sample : {(last - 1) / 3, 2 * (last - 1) / 3, last - 1}) {

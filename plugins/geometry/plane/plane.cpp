@@ -17,7 +17,10 @@ void Plane::declare(Parameters& p) {
       .symbol("A")
       .at_least(0)
       .doc("area that carries pressure; 0: none, so no servo on pressure");
-  p.add("extent", extent_).unit("m").above(0).doc("side of the square drawn in pictures; default: that of the area, or else as far as the scene reaches");
+  p.add("extent", extent_)
+      .unit("m")
+      .above(0)
+      .doc("side of the square drawn in pictures; default: that of the area, or else as far as the scene reaches");
   p.check([this](const Complain& complain) {
     if (!(normal_.norm() > 0)) complain("normal", "a vector of length 0", "a vector that has a direction");
   });
