@@ -129,6 +129,21 @@ def read(path):
             if one.get('run_type') != 'aggregate'}
 
 
+def kernels(program, pattern):
+    """(name → what was measured, cores that others took) of the kernels whose names fit."""
+    built = Path(program).parent / 'bench_kernels'
+    if not built.is_file():
+        raise Complaint(f'{built}: no such program; build it (scripts/install-deps.sh installs Google Benchmark, then cmake '
+                        '--build --preset release --target bench_kernels)')
+    with tempfile.TemporaryDirectory(prefix='grit-kernels-') as folder:
+        out = Path(folder) / 'kernels.json'
+        try:
+            done = machine.run([built, f'--benchmark_filter={pattern}', '--benchmark_min_time=0.5', f'--benchmark_out={out}'], 1, folder)
+        except subprocess.CalledProcessError as error:
+            raise Complaint(f'{built}: {machine.reason(error)}') from error
+        return read(out), done.others
+
+
 def measured(program):
     """(limits, how the table's head says it); no limits where the kernels are not built beside the program, or fail, or
     have no time left."""

@@ -79,6 +79,8 @@ class Bench(unittest.TestCase):
         out = self.place / 'rows.json'
         # A test with all probes takes too long.
         names = ['threads', 'size', 'grading', 'drum', 'silo', 'clumps', 'memory', 'start', 'busy', 'walls', 'phases', 'growth']
+        if (GRIT.parent / 'bench_kernels').is_file():
+            names += ['guards', 'bare']
         done = call(BENCH / 'rows', '--grit', GRIT, '--short', '--json', out, *names)
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = json.loads(out.read_text(encoding='utf-8'))['rows']
