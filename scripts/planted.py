@@ -25,46 +25,46 @@ LAWS = ROOT / 'plugins' / 'contacts'
 PATIENCE = 60                                            # s of the processor's time
 SLOW = ('Silo.*', 'DirectShear.*', 'InterfaceShear.*', 'Triaxial.*', 'GroovedVoidRatio.*', 'PackingStress.*')
 OF_WALLS = ('*Seams.*', 'Faceted*.*', 'FacetingError.*')
+# What a shear spring lacks that is half a step late.
 LATE = '(L(0.5) * ks * at.dt) * at.tangential(at.velocity)'
-
-# (what, text of the source, what stands in its place: $ is the text itself)
 FRICTION = 'std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)))'
 ROLLING_LIMIT = 'interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit))'
 
 
-def twice(what, text, factor='2'):
+def at_each(what, text, factor='2'):
     """At pairs and at walls, each alone."""
     return [(f'{what} of pairs', text, f'(wall ? 1 : {factor}) * ($)'), (f'{what} of walls', text, f'(wall ? {factor} : 1) * ($)')]
 
 
+# Part: (folder, source, [(what, text of the source, what stands in its place: $ is the text itself)])
 PARTS = {
     'linear-frictional': (LAWS / 'linear-frictional', 'linear-frictional.hpp', [
-        *twice('shear stiffness × 2', '0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness)'),
-        *twice('friction + 1 %', FRICTION, '1.01'),
+        *at_each('shear stiffness × 2', '0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness)'),
+        *at_each('friction + 1 %', FRICTION, '1.01'),
         ('dashpot × 2', 'dashpot(pair.damping, kn, inverse_mass)', 'L(2.0) * $'),
         ('dashpot in shear × 2', 'dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass)', 'L(2.0) * $'),
         ('velocity of shear half a step late', 'response.shear = spring;', f'response.shear = spring + {LATE};'),
     ]),
     'linear-rolling': (LAWS / 'linear-rolling', 'linear-rolling.hpp', [
-        *twice('shear stiffness × 2', 'mean(a.shear_to_normal_stiffness, stiff_b.shear_to_normal_stiffness)'),
-        *twice('friction + 1 %', FRICTION, '1.01'),
+        *at_each('shear stiffness × 2', 'mean(a.shear_to_normal_stiffness, stiff_b.shear_to_normal_stiffness)'),
+        *at_each('friction + 1 %', FRICTION, '1.01'),
         ('velocity of shear half a step late',
          'state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;',
          f'$ response.shear = response.shear + {LATE};'),
         ('rolling moment of the wrong sign',
          'stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, pair.rolling * angular, at.spin)',
          'stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, -(pair.rolling * angular), at.spin)'),
-        *twice('rolling stiffness × 2', 'mean(a.rolling_stiffness, stiff_b.rolling_stiffness)'),
-        *twice('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
+        *at_each('rolling stiffness × 2', 'mean(a.rolling_stiffness, stiff_b.rolling_stiffness)'),
+        *at_each('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
         ('twisting moment of the wrong sign', 'twisted(at, state.twisting, pair.twisting * angular, pair.twisting_limit * arm)',
          'twisted(at, state.twisting, -(pair.twisting * angular), pair.twisting_limit * arm)'),
-        *twice('twisting stiffness × 2', 'mean(a.twisting_stiffness, stiff_b.twisting_stiffness)'),
-        *twice('twisting limit + 1 %', 'interface.twisting_limit.value_or(std::min(a.twisting_limit, b.twisting_limit))', '1.01'),
+        *at_each('twisting stiffness × 2', 'mean(a.twisting_stiffness, stiff_b.twisting_stiffness)'),
+        *at_each('twisting limit + 1 %', 'interface.twisting_limit.value_or(std::min(a.twisting_limit, b.twisting_limit))', '1.01'),
     ]),
     'hertz-mindlin': (LAWS / 'hertz-mindlin', 'hertz-mindlin.hpp', [
-        *twice('normal stiffness + 1 %', '1 / (plane_compliance(a) + plane_compliance(b))', '1.01'),
-        *twice('shear stiffness × 2', '1 / (shear_compliance(a) + shear_compliance(b))'),
-        *twice('friction + 1 %', FRICTION, '1.01'),
+        *at_each('normal stiffness + 1 %', '1 / (plane_compliance(a) + plane_compliance(b))', '1.01'),
+        *at_each('shear stiffness × 2', '1 / (shear_compliance(a) + shear_compliance(b))'),
+        *at_each('friction + 1 %', FRICTION, '1.01'),
         ('dashpot × 2', 'dashpot(L(0.5) * pair.damping, kn, at.inverse_mass_a + at.inverse_mass_b)', 'L(2.0) * $'),
         ('springs keep their force as the contact is unloaded', 'contact_radius / max(state.contact_radius, L(tiny<L>))', 'L(1.0)'),
         ('velocity of shear half a step late',
@@ -72,8 +72,8 @@ PARTS = {
          f'$ response.shear = response.shear + {LATE};'),
         ('rolling moment of the wrong sign', 'stretched(at, kept * stored, stiffness, at.spin)',
          'stretched(at, kept * stored, -stiffness, at.spin)'),
-        *twice('rolling stiffness × 2', '0.5 * (a.rolling_stiffness + b.rolling_stiffness)'),
-        *twice('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
+        *at_each('rolling stiffness × 2', '0.5 * (a.rolling_stiffness + b.rolling_stiffness)'),
+        *at_each('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
     ]),
     'walls': (ROOT / 'core' / 'src' / 'contact', 'wall_contacts.cpp', [
         ('an edge that two faces share counts twice', 'std::abs(along - (radius - deeper.overlap)) <= on_plane * radius', 'false'),
@@ -189,12 +189,14 @@ def main():
     words = sys.argv[1:]
     parts = list(PARTS)
     if words[:1] == ['--only']:
-        parts, words = [words[1]], words[2:]
-        if parts[0] not in PARTS:
-            sys.exit(f'planted.py: --only takes one of {", ".join(PARTS)}')
+        parts, words = words[1:2], words[2:]
+        if parts[:1] not in [[part] for part in PARTS]:
+            print(f'planted.py: --only takes one of {", ".join(PARTS)}', file=sys.stderr)
+            return 2
     build = Path(words[0] if words else ROOT / 'build').resolve()
     if not (build / 'tests' / 'test_physics').is_file():
-        sys.exit(f'{build}/tests/test_physics: no such program; build it (cmake --build --preset release)')
+        print(f'{build}/tests/test_physics: no such program; build it (cmake --build --preset release)', file=sys.stderr)
+        return 2
     for part in parts:
         library = library_of(build, part)
         if library.with_suffix('.unplanted').is_file():
