@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -110,18 +111,37 @@ class AveragingCells {
   /// What a cell does not share with the next ones [m]: what to fill on a map.
   Vec3 own() const { return {axes_[0].own(), axes_[1].own(), axes_[2].own()}; }
 
-  /// Calls visit(part, volume) for each part that a sphere may reach into, with the volume [m³] that lies there.
+  /// Calls visit(part, volume) for each part that a sphere may reach into, with the volume [m³] that lies there, to
+  /// 1e-12 of the sphere's.
   template <class Visit>
   void share_out_sphere(const Vec3& centre, double radius, const Visit& visit) const {
     const Vec3 reach = Vec3::Constant(radius);
     each_image(centre, -reach, reach, [&](const Vec3& place) {
-      std::array<std::size_t, 3> first, last;
+      std::array<std::size_t, 3> first, count;
       for (int k = 0; k < 3; ++k)
-        first[axis(k)] = along(k).strip(place[k] - radius), last[axis(k)] = along(k).strip(place[k] + radius);
-      for (std::size_t i = first[0]; i <= last[0]; ++i)
-        for (std::size_t j = first[1]; j <= last[1]; ++j)
-          for (std::size_t k = first[2]; k <= last[2]; ++k)
-            visit(part(i, j, k), sphere_box_volume(place, radius, corner(i, j, k), corner(i + 1, j + 1, k + 1)));
+        first[axis(k)] = along(k).strip(place[k] - radius),
+        count[axis(k)] = along(k).strip(place[k] + radius) - first[axis(k)] + 1;
+      const auto [x, y, z] = first;
+      // What lies in all parts up to one: most of these are cut by fewer planes than the parts are.
+      Volumes volumes;
+      for (std::size_t i = 1; i <= count[0]; ++i)
+        for (std::size_t j = 1; j <= count[1]; ++j)
+          for (std::size_t k = 1; k <= count[2]; ++k)
+            volumes.push_back(sphere_box_volume(place, radius, corner(x, y, z), corner(x + i, y + j, z + k)));
+      // Differences along one axis after the other, from the end on, leave each part its own.
+      std::size_t apart = 1;
+      for (int axis_of = 2; axis_of >= 0; --axis_of) {
+        const std::size_t along_axis = count[axis(axis_of)];
+        for (std::size_t n = volumes.size(); n-- > 0;)
+          if (n / apart % along_axis > 0) volumes[n] -= volumes[n - apart];
+        apart *= along_axis;
+      }
+      const double rounding = 1e-14 * radius * radius * radius;  // is nothing where there was nothing
+      std::size_t n = 0;
+      for (std::size_t i = 0; i < count[0]; ++i)
+        for (std::size_t j = 0; j < count[1]; ++j)
+          for (std::size_t k = 0; k < count[2]; ++k, ++n)
+            visit(part(x + i, y + j, z + k), volumes[n] > rounding ? volumes[n] : 0);
     });
   }
 
@@ -129,7 +149,7 @@ class AveragingCells {
   template <class Visit>
   void share_out_branch(const Branch& branch, const Visit& visit) const {
     const Vec3 zero = Vec3::Zero();
-    std::vector<double> cuts;
+    Cuts cuts;
     each_image(branch.start, branch.way.cwiseMin(zero), branch.way.cwiseMax(zero), [&](const Vec3& start) {
       double from = 0, to = 1;
       for (int k = 0; k < 3; ++k) {
@@ -142,7 +162,7 @@ class AveragingCells {
         from = std::max(from, std::min(low, high)), to = std::min(to, std::max(low, high));
       }
       if (!(to > from)) return;
-      cuts = {from, to};
+      cuts.assign({from, to});
       for (int k = 0; k < 3; ++k) cut(along(k), start[k], branch.way[k], from, to, cuts);
       std::sort(cuts.begin(), cuts.end());
       for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
@@ -212,8 +232,10 @@ class AveragingCells {
         for (int k = least[2]; k <= most[2]; ++k) visit(place + Vec3(i * period[0], j * period[1], k * period[2]));
   }
 
+  using Volumes = boost::container::small_vector<double, 27>;
+  using Cuts = boost::container::small_vector<double, 16>;
   /// Notes where between `from` and `to` a branch crosses edges of strips.
-  static void cut(const CellAxis& axis, double start, double way, double from, double to, std::vector<double>& cuts) {
+  static void cut(const CellAxis& axis, double start, double way, double from, double to, Cuts& cuts) {
     if (way == 0) return;
     const double one = start + from * way, other = start + to * way, high = std::max(one, other);
     for (std::size_t edge = axis.strip(std::min(one, other)) + 1; edge < axis.strips() && axis.edges()[edge] < high;

@@ -1,6 +1,7 @@
 #include "coarse_fields.hpp"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 
 #include "lucy.hpp"
@@ -18,7 +19,7 @@ class Spread {
   template <class Visit>
   void operator()(std::vector<CoarseFields>& fields, const Vec3& place, const Vec3& low, const Vec3& high,
                   Visit visit) const {
-    std::array<std::vector<Place>, 3> rows;
+    std::array<Places, 3> rows;
     for (int axis = 0; axis < 3; ++axis) rows[static_cast<std::size_t>(axis)] = on(axis, place, low, high);
     for (const Place& x : rows[0])
       for (const Place& y : rows[1])
@@ -32,11 +33,12 @@ class Spread {
     std::size_t index;
     double off;
   };
-  std::vector<Place> on(int axis, const Vec3& place, const Vec3& low, const Vec3& high) const {
+  using Places = boost::container::small_vector<Place, 16>;
+  Places on(int axis, const Vec3& place, const Vec3& low, const Vec3& high) const {
     const double first = grid_.first[axis], step = grid_.step[axis],
                  last = static_cast<double>(grid_.count[static_cast<std::size_t>(axis)]) - 1;
     const double least = place[axis] + low[axis] - reach_, most = place[axis] + high[axis] + reach_;
-    std::vector<Place> rows;
+    Places rows;
     if (!std::isfinite(least + most)) return rows;  // a run that has failed
     const bool periodic = cell_.periodic[static_cast<std::size_t>(axis)];
     const double period = periodic ? cell_.high[axis] - cell_.low[axis] : 0;
