@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -24,10 +23,9 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 constexpr double flat = 1e-8;     // variance of grey values below which a square has nothing to see
 constexpr double settled = 1e-3;  // what a corner of a square still moves when it is found, pixels
 constexpr int most_steps = 30;
-// What shortens its steps by less than a fifth does not come from a pixel to what is settled in so many of them; given
-// up after so many in a row.
-constexpr double slow = 0.8;
-constexpr int most_slow = 4;
+// Whoever is to be beyond so many times `settled` after most_steps, at the rate of the last few, is given up.
+constexpr double hopeless = 10;
+constexpr int rated = 5, first_rated = 10;
 
 // Pixels side by side that are worked on together.
 #if defined(__AVX512F__)
@@ -406,9 +404,8 @@ std::optional<Match> Correlation::refined(std::ptrdiff_t column, std::ptrdiff_t 
   const auto half = static_cast<double>(half_);
   Mat2 stretch = Mat2::Identity() + guess.gradient;
   Vec2 moved = guess.moved;
-  double last_corner = std::numeric_limits<double>::infinity();
-  int slow_steps = 0;
-  for (int step = 0; step < most_steps && slow_steps < most_slow; ++step) {
+  std::array<double, most_steps> corners;  // what they moved in each step
+  for (int step = 0; step < most_steps; ++step) {
     const Vec2 middle = moved + Vec2(static_cast<double>(column), static_cast<double>(row));
     for (const double x : {-half, half})
       for (const double y : {-half, half})
@@ -429,8 +426,11 @@ std::optional<Match> Correlation::refined(std::ptrdiff_t column, std::ptrdiff_t 
       return Match{.moved = moved,
                    .gradient = stretch - Mat2::Identity(),
                    .correlation = seen.together / std::sqrt(square.variance() * seen.variance)};
-    slow_steps = corner > slow * last_corner ? slow_steps + 1 : 0;
-    last_corner = corner;
+    corners[static_cast<std::size_t>(step)] = corner;
+    if (step < first_rated) continue;
+    const double rate = corner / corners[static_cast<std::size_t>(step - rated)];
+    if (corner * std::pow(rate, static_cast<double>(most_steps - 1 - step) / rated) > hopeless * settled)
+      return std::nullopt;
   }
   return std::nullopt;
 }
