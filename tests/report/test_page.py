@@ -86,12 +86,13 @@ class Page(unittest.TestCase):
         grains = [{"position": ["4 mm", "3 mm", f"{0.5 + 0.99 * k} mm"], "radius": "0.5 mm"} for k in range(5)]
         grains += [{"position": [f"{x} mm", "1 mm", "8 mm"], "radius": "0.5 mm"} for x in (1, 1.999)]
         run(self.folder, "column", bodies={"grains": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": grains}}},
-            stages=[{"name": "stand", "until": {"type": "steps", "value": 2}, "limit": "1 s"}], output={},
+            stages=[{"name": "stand", "until": {"type": "steps", "value": 2}, "limit": "1 s"}], output={"frames": {"every_steps": 2}},
             probes={"packing": {"type": "packing", "every_steps": 1}, "forces": {"type": "force-chains", "every_steps": 1}})
         subprocess.run([GRIT, "report", "column"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
         self.open("column/report.html")
         lines = f"""(async (name, on) => {{
             const view = {GRAINS};
+            await view.turn(0);
             await view.change({{walls: false, cut: 0}});
             if (view[name].checked !== on) view[name].click();
             await view.show(view.now);
