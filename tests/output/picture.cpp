@@ -69,8 +69,8 @@ TEST(Scale, AxesAreAsFineAsNumbersFit) {
 TEST(Scale, AxesEndWhereNumbersDo) {
   EXPECT_LE(axis_ticks(1e10, 1e10 + 4e-6, AxisEnds::whole_steps).marks.size(), 8u);
   for (const AxisEnds ends : {AxisEnds::kept, AxisEnds::whole_steps}) {
-    for (const double low : {1.0, -3e-7, 0.0, std::numeric_limits<double>::quiet_NaN(), -INFINITY, -1e308})
-      for (const double high : {std::nextafter(low, 2), low, INFINITY, 1e308}) {
+    for (const double low : {1.0, -3e-7, 0.0, std::numeric_limits<double>::quiet_NaN(), -HUGE_VAL, -1e308})
+      for (const double high : {std::nextafter(low, 2.0), low, HUGE_VAL, 1e308}) {
         const AxisTicks axis = axis_ticks(low, high, ends);
         EXPECT_GE(axis.marks.size(), 4u) << low << " … " << high;
         EXPECT_LE(axis.marks.size(), 8u) << low << " … " << high;

@@ -74,12 +74,18 @@ nlohmann::json begin(std::size_t frame, const char* stage) { return {{"frame", f
 
 TEST(Layers, AreOfTheStartOfTheLastStage) {
   const Folder folder;
-  write(folder / "run", {{"fill", {4, 3, 2, 1}}, {"shear", {1, 2, 3, 11}}, {"shear", {5, 5, 5, 5}}});
+  write(folder / "run", {{"fill", {4, 3, 2, 1}}, {"shear", {1, 4.5, 8.5, 11}}, {"shear", {5, 5, 5, 5}}});
   const auto svg = drawn(folder / "run");
   ASSERT_TRUE(svg);
-  EXPECT_THAT(classes(*svg), ElementsAre("c0", "c1", "c2", "c9")) << "of ten, from 1 to 11";
+  EXPECT_THAT(classes(*svg), ElementsAre("c0", "c3", "c7", "c9")) << "of ten, from 1 to 11";
   EXPECT_THAT(*svg, HasSubstr("layers by z when shear began"));
   EXPECT_EQ(on_the_page(folder / "run"), begin(1, "shear"));
+}
+
+TEST(Layers, AreBetweenThoseThatAreNotFarFromAllOthers) {
+  const Folder folder;
+  write(folder / "run", {{"shear", {1, 4.5, 8.5, 11, -900, 2000}}, {"shear", {5, 5, 5, 5, 5, 5}}});
+  EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c0", "c3", "c7", "c9", "c0", "c9"));
 }
 
 TEST(Layers, AreOfTheStageInWhichGrainsBeginToLeave) {

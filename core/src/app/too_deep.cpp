@@ -31,7 +31,9 @@ std::optional<std::string> by_studies(const std::string& scenario, const std::ve
       if (advice.now == nullptr) continue;
       tried = true;
       for (const Evidence* one : advice.cheaper) {
-        if (!one->known || shows(*one) || one->confidence(tolerance) > Confidence::likely) continue;
+        if (!one->known || one->findings.empty() || advice.now->sets.empty() || shows(*one) ||
+            one->confidence(tolerance) > Confidence::likely)
+          continue;
         const double saved = advice.now->cost / one->cost;
         if (saved < far_beyond) continue;
         const Finding& finding = *one->decisive(tolerance);

@@ -36,8 +36,9 @@ std::vector<double> ticks(double low, double high, int pieces) {
 AxisTicks axis_ticks(double low, double high, AxisEnds ends, const std::function<bool(const AxisTicks&)>& fits) {
   constexpr int fewest = 4, most = 8;
   if (!std::isfinite(high - low)) low = 0, high = 1;
-  if (const double size = std::max(std::abs(low), std::abs(high)); !(high - low > 1e-12 * size)) {
-    const double room = size > 0 ? 0.5 * size : 1;
+  constexpr double nothing = 1e-300;  // below which steps lose their digits
+  if (const double size = std::max(std::abs(low), std::abs(high)); !(high - low > std::max(1e-12 * size, nothing))) {
+    const double room = size > nothing ? 0.5 * size : 1;
     low -= room, high += room;
   }
   std::optional<AxisTicks> best;

@@ -123,15 +123,10 @@ struct Extent : Box {
   }
 };
 
-double mean_diameter(const Frame& frame) {
-  const double radii = std::accumulate(frame.radius.begin(), frame.radius.end(), 0.0);
-  return frame.bodies() > 0 ? 2 * radii / static_cast<double>(frame.bodies()) : 0;
-}
-
 /// Takes out of a frame the bodies that are nowhere, or all but there, as those of a run that has failed; returns how
 /// many.
 std::size_t drop_unplaced(Frame& frame) {
-  const Fences fences(frame.position, mean_diameter(frame), far_to_keep);
+  const Fences fences(frame, far_to_keep);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < frame.bodies(); ++i)
     if (fences.hold(frame.position, i)) kept.push_back(i);
@@ -246,7 +241,7 @@ class Writer {
 
   /// Where the grains are, but for those that are far from all others.
   void add_box(const Frame& frame, Description& json) const {
-    const Fences fences(frame.position, mean_diameter(frame), far_to_see);
+    const Fences fences(frame, far_to_see);
     std::vector<double> seen;
     for (std::size_t i = 0; i < frame.bodies(); ++i)
       if (fences.hold(frame.position, i)) seen.insert(seen.end(), &frame.position[3 * i], &frame.position[3 * i] + 3);

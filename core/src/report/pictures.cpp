@@ -17,6 +17,7 @@
 #include "output/scale.hpp"
 #include "report/layers.hpp"
 #include "report/map_fields.hpp"
+#include "report/strays.hpp"
 
 namespace grit {
 namespace {
@@ -176,15 +177,16 @@ std::optional<std::string> layers_picture(RunResults& run) {
   if (first + 1 == run.frames.size()) return std::nullopt;
   const Frame start = read_frame(run.frames[first]);
   const auto up = static_cast<std::size_t>(view_wanted(run)[1] - 'x');
-  std::vector<double> heights;
-  for (std::size_t i = 0; i < start.bodies(); ++i) heights.push_back(start.position[3 * i + up]);
+  const auto height = [&](std::size_t i) { return start.position[3 * i + up]; };
   std::map<std::int64_t, int> layer_of;
+  // Between those that are not far from all others, as on the page.
+  const Fences fences(start, far_to_see);
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double height : heights)
-    if (std::isfinite(height)) low = std::min(low, height), high = std::max(high, height);
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    if (std::isfinite(heights[i])) {
-      const double share = high > low ? (heights[i] - low) / (high - low) : 0;
+  for (std::size_t i = 0; i < start.bodies(); ++i)
+    if (fences.hold(start.position, i)) low = std::min(low, height(i)), high = std::max(high, height(i));
+  for (std::size_t i = 0; i < start.bodies(); ++i)
+    if (std::isfinite(height(i))) {
+      const double share = high > low ? std::clamp((height(i) - low) / (high - low), 0.0, 1.0) : 0;
       layer_of[start.id[i]] = 1 + std::min(layer_count - 1, static_cast<int>(layer_count * share));
     }
   std::vector<int> layers;

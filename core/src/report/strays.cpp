@@ -2,8 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace grit {
+namespace {
+
+double mean_diameter(const Frame& frame) {
+  const double radii = std::accumulate(frame.radius.begin(), frame.radius.end(), 0.0);
+  return frame.bodies() > 0 ? 2 * radii / static_cast<double>(frame.bodies()) : 0;
+}
+
+}  // namespace
+
+Fences::Fences(const Frame& frame, const Far& far) : Fences(frame.position, mean_diameter(frame), far) {}
 
 Fences::Fences(const std::vector<double>& positions, double diameter, const Far& far) {
   for (std::size_t axis = 0; axis < 3; ++axis) {

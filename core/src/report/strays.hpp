@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "output/read_frames.hpp"
+
 namespace grit {
 
 /// How far from the middle half of all positions along an axis, in its widths, and more than that, in mean diameters:
@@ -24,6 +26,8 @@ class Fences {
   /// `positions` has x, y, z of one body after another [m]; what is not finite counts for nothing. `diameter`: the mean
   /// one [m].
   Fences(const std::vector<double>& positions, double diameter, const Far& far);
+  /// About the bodies of a frame.
+  Fences(const Frame& frame, const Far& far);
 
   /// Whether the body at this place of the list is between them. It is not where its position is not finite.
   bool hold(const std::vector<double>& positions, std::size_t body) const;
