@@ -269,8 +269,9 @@ class InABrowser(unittest.TestCase):
             for chart in (forces, moved):
                 evaluate(f"{chart}.draw()")
             evaluate(f"{MAP}.takeField('packing/stress')")
-            wait(f"{MAP}.now")  # cells are unpacked in the background
-            frame, end = evaluate(f"[{MAP}.now.number, {moved}.group.choice.now]")
+            # Cells are unpacked in the background, those of each frame that comes, and there are none meanwhile.
+            frame, end = evaluate(f"""(async () => {{ while (!{MAP}.now) await new Promise((go) => setTimeout(go, 20));
+                return [{MAP}.now.number, {moved}.group.choice.now]; }})()""")
             # One slider stays at its time, the other at the end.
             evaluate(f"(() => {{ const {{slider}} = {forces}.group.choice; slider.value = 500; slider.dispatchEvent(new Event('input')); }})()")
             chosen = evaluate(f"{forces}.group.choice.now")
