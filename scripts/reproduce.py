@@ -1,18 +1,24 @@
 #!/usr/bin/python3
 """Writes docs/reproduction.md: what tests of the reference work come to in grit, beside what they came to there.
 
-  reproduce.py [--run GLOB]… [--threads N] [--results FOLDER] [--grit FILE]
+  reproduce.py [--run GLOB]… [--samples N] [--for SECONDS] [--threads N] [--results FOLDER] [--grit FILE]
 
 docs/reproduction.json has the figures. Each description of sims/ whose finished run lies in FOLDER/TEST/NAME (results/reproduce
 unless given) gets its rows; the others are listed with the time they would take. --run runs those that GLOB fits and
-that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100.
+that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100, and --samples as many packings of each:
+the second's run, of seed 2, lies in FOLDER/TEST/NAME-sample-2. Rows of several samples have their mean and the standard
+deviation of one of them. --for interrupts a run that has taken so many core-seconds, so that it is timed; it goes on where it
+stopped when it is run again.
 """
 import argparse
 import fnmatch
 import json
+import os
 import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import h5py
@@ -22,9 +28,18 @@ ROOT = Path(__file__).resolve().parents[1]
 HEAD = '''# Reproduction
 Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's (A. Grabowski, doctoral dissertation,
 Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, sheared faster, to show order and
-shape, and differ as the notes below them say. Either is one sample of one packing.
+shape, and differ as the notes below them say. A figure is of one packing, or the mean of several ± the standard deviation of one; so is the
+reference's of one packing.
 
 '''
+
+UNFINISHED = '''## Not run to their ends
+Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
+(`--for`): how much of the course they went, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
+if it goes on at that speed.
+
+| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
+| --- | --- | --- | --- | --- |'''
 
 
 def found(series, row):
@@ -59,64 +74,117 @@ def lacks(series, row):
     return next((row[key] for key in ('of', 'against', 'before') if key in row and row[key] not in series), None)
 
 
-def table(name, folder, run, rows, note, older):
+def samples(results, name):
+    """Folders of the finished runs of a description, the packing of its own seed first."""
+    folders = [results / name, *sorted((results / name).parent.glob(f'{Path(name).name}-sample-*'),
+                                       key=lambda folder: int(folder.name.rpartition('-')[2]))]
+    return [folder for folder in folders if (state(folder) or {}).get('status') == 'done']
+
+
+def rows(name, folders, figures, older):
+    """Lines of the table: a figure in all samples beside the reference's."""
+    for row in figures:
+        reference, allowed = row['reference'], row['allowed']
+        values = []
+        for folder in folders:
+            with h5py.File(folder / 'series.h5') as series:
+                if channel := lacks(series, row):
+                    if not older:
+                        sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
+                                 f'{folder / "series.h5"} lacks; correct it, run {name} again, or name it under "older" if its '
+                                 'run is from before there was that channel')
+                    break
+                values.append(found(series, row))
+        if not values:
+            yield f"| {row['figure']} | {reference:g} ± {allowed:g} | not recorded | | |"
+            continue
+        mean = numpy.mean(values)
+        scatter = f' ± {numpy.std(values, ddof=1):.2g}' if len(values) > 1 else ''
+        verdict = 'within' if abs(mean - reference) <= allowed else 'outside'
+        yield f"| {row['figure']} | {reference:g} ± {allowed:g} | {mean:.3g}{scatter} | {mean - reference:+.2g} | {verdict} |"
+
+
+def table(name, folders, figures, note, older):
+    run = state(folders[0])
     yield f'## {name}\n'
-    yield (f"{run['bodies']:,} bodies, {run['steps']:,} steps, {run['wall_s']:.0f} s on {run['threads']} "
-           f"thread{'s' if run['threads'] > 1 else ''}, {run['particle_steps_per_s'] / 1e6:.1f} M particle-steps/s.\n")
+    several = f'{len(folders)} packings; the first: ' if len(folders) > 1 else ''
+    yield (f"{several}{run['bodies']:,} bodies, {run['steps']:,} steps, {run.get('cpu_s', run['wall_s']):.0f} core-seconds on {run['threads']} "
+           f"thread{'s' if run['threads'] > 1 else ''}, {run['bodies'] * run['steps'] / run.get('cpu_s', run['wall_s']) / 1e6:.1f} M particle-steps a core-second.\n")
     yield '| figure | reference | grit | deviation | |'
     yield '| --- | --- | --- | --- | --- |'
-    with h5py.File(folder / 'series.h5') as series:
-        for row in rows:
-            reference, allowed = row['reference'], row['allowed']
-            if channel := lacks(series, row):
-                if not older:
-                    sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
-                             f'{folder / "series.h5"} lacks; correct it, run {name} again, or name it under "older" if its '
-                             'run is from before there was that channel')
-                yield f"| {row['figure']} | {reference:g} ± {allowed:g} | not recorded | | |"
-                continue
-            figure = found(series, row)
-            verdict = 'within' if abs(figure - reference) <= allowed else 'outside'
-            yield f"| {row['figure']} | {reference:g} ± {allowed:g} | {figure:.3g} | {figure - reference:+.2g} | {verdict} |"
+    yield from rows(name, folders, figures, older)
     if note:
         yield '\n' + note
     yield ''
 
 
 def estimate(program, description):
+    """(hours by `grit check` without and with stages that end by a condition, grains in the end)"""
     words = subprocess.run([program, 'check', description], capture_output=True, text=True, check=False).stdout
-    match = re.search(r'^estimated time.*$', words, re.M)
-    return match.group(0) if match else 'grit check refuses it'
+    match = re.search(r'^estimated time.*?: ([0-9.]+) h \(.*?\)(?:, and at most ([0-9.]+) h)?', words, re.M)
+    if not match:
+        return 'refused', 0
+    least, more = float(match[1]), float(match[2] or 0)
+    grains = sum(map(int, re.findall(r'^(?:bodies: | +)(\d+)(?:, | more in)', words, re.M)))
+    return f'{least:.2f}' + (f' … {least + more:.1f}' if more else ''), grains
+
+
+def part(run, course, grains):
+    """Columns that say how far a run went, how fast, and the core-hours that its whole course takes at that speed."""
+    if not run or not run.get('cpu_s') or not run.get('particle_steps_per_s'):
+        return '| | |'
+    done = run['particle_steps_per_s'] * run['wall_s']
+    rate = done / run['cpu_s']
+    words = run['message'].splitlines()[0] if run['status'] == 'failed' else f"{run['steps']:,} steps"
+    if course is None or run['status'] == 'failed':
+        return f"{words} | {1e-6 * rate:.1f} | |"
+    all_of_it = sum(span * share for span, share in course) / run['time_step_s'] * grains
+    return f"{100 * done / all_of_it:.1f} %, {words} | {1e-6 * rate:.1f} | {all_of_it / rate / 3600:.1f} |"
+
+
+def start(words, most):
+    """Runs, and interrupts what has taken so many core-seconds."""
+    with subprocess.Popen(words) as process:
+        while process.poll() is None:
+            time.sleep(1)
+            fields = Path(f'/proc/{process.pid}/stat').read_text(encoding='ascii').rpartition(')')[2].split()
+            if most is not None and (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK') > most:
+                process.send_signal(signal.SIGINT)
+                process.wait()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--run', action='append', default=[], metavar='GLOB')
+    parser.add_argument('--samples', type=int, default=1, metavar='N')
+    parser.add_argument('--for', type=float, dest='most', metavar='SECONDS')
     parser.add_argument('--threads', default='2')
     parser.add_argument('--results', default=ROOT / 'results' / 'reproduce', type=Path)
     parser.add_argument('--grit', default=ROOT / 'build' / 'bin' / 'grit')
     given = parser.parse_args()
     reference = json.loads((ROOT / 'docs' / 'reproduction.json').read_text(encoding='utf-8'))
-    names = list(dict.fromkeys(row['description'] for row in reference['figures']))
+    names = list(dict.fromkeys([*(row['description'] for row in reference['figures']), *reference['courses']]))
 
     for name in names:
-        folder = given.results / name
-        if (state(folder) or {}).get('status') != 'done' and any(fnmatch.fnmatch(name, glob) for glob in given.run):
-            subprocess.run([given.grit, 'run', ROOT / 'sims' / f'{name}.json', '--out', folder, '--overwrite',
-                            '--threads', given.threads], check=False)
+        if not any(fnmatch.fnmatch(name, glob) for glob in given.run):
+            continue
+        for seed in range(1, given.samples + 1):
+            folder = given.results / (name if seed == 1 else f'{name}-sample-{seed}')
+            if (state(folder) or {}).get('status') != 'done':
+                other = [] if seed == 1 else ['--set', f'/scenario/seed={seed}']
+                start([given.grit, 'run', ROOT / 'sims' / f'{name}.json', '--out', folder, '--resume', '--threads', given.threads, *other],
+                      given.most)
 
     lines, missing = [], []
     for name in names:
-        folder = given.results / name
-        run = state(folder)
-        if run is None or run['status'] != 'done':
-            stopped = run['message'] if run and run['status'] == 'failed' else ''
-            missing.append(f"| {name} | {estimate(given.grit, ROOT / 'sims' / f'{name}.json')} | {stopped} |")
-        else:
-            lines += table(name, folder, run, [row for row in reference['figures'] if row['description'] == name],
+        if folders := samples(given.results, name):
+            lines += table(name, folders, [row for row in reference['figures'] if row['description'] == name],
                            reference['notes'].get(name), name in reference['older'])
+        else:
+            hours, grains = estimate(given.grit, ROOT / 'sims' / f'{name}.json')
+            missing.append(f"| {name} | {hours} | {part(state(given.results / name), reference['courses'].get(name), grains)}")
     if missing:
-        lines += ['## Not run to their ends', '| description | by `grit check` | |', '| --- | --- | --- |', *missing]
+        lines += [UNFINISHED, *missing]
     (ROOT / 'docs' / 'reproduction.md').write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
     print(f'docs/reproduction.md: {len(names) - len(missing)} of {len(names)} descriptions')
 
