@@ -1,6 +1,10 @@
 // Surfaces made of several walls: edges between coplanar faces are not felt, shared ones count once.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include "support/scene.hpp"
 #include "support/stl_file.hpp"
 #include "support/verified.hpp"
@@ -138,6 +142,80 @@ TEST(Corners, AShallowValleyKeepsBothFaces) {
   d["walls"]["left"] = plane(Vec3::Zero(), Vec3(std::sin(slope), 0, std::cos(slope)));
   d["walls"]["right"] = plane(Vec3::Zero(), Vec3(-std::sin(slope), 0, std::cos(slope)));
   EXPECT_EQ(Trial(d).world().contacts().size(), 2u);
+}
+
+/// Balls at one height side by side along y, from place to place along x; force on each, over that of a plane.
+std::vector<Vec3> forces_along(const std::vector<double>& places, double overlap, const Description& walls) {
+  std::vector<Grain> grains;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    grains.push_back({{places[i], 3 * radius * static_cast<double>(i), radius - overlap}, radius});
+  Description d = description("linear-frictional", {{"friction_angle", 0.0}}, grains);
+  d["walls"] = walls;
+  Description whole = d;
+  whole["walls"] = {{"floor", plane(Vec3::Zero(), Vec3::UnitZ())}};
+  const Trial trial(d), flat(whole);
+  std::vector<Vec3> forces;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    forces.push_back(xyz(trial.world().forces()[i]) / flat.world().forces()[i].z);
+  return forces;
+}
+
+/// What lands without friction do to such a ball, each at its closest place.
+Vec3 by_each(double x, double overlap, const std::vector<std::pair<double, double>>& lands) {
+  Vec3 force = Vec3::Zero();
+  for (const auto& [from, to] : lands) {
+    const Vec3 away(x - std::clamp(x, from, to), 0, radius - overlap);
+    force += std::max(0.0, radius - away.norm()) / overlap * away.normalized();
+  }
+  return force;
+}
+
+/// From over one land to over the next.
+constexpr double groove = 40e-6, land = 60e-6, pressed = 2e-6;
+
+void expect_each_land_once(const std::string& of, const Description& walls,
+                           const std::vector<std::pair<double, double>>& lands) {
+  std::vector<double> places;
+  for (int i = 0; i <= 40; ++i) places.push_back((land + groove) * i / 40);
+  const std::vector<Vec3> forces = forces_along(places, pressed, walls);
+  Errors error("force of " + of + " on a ball over them, off that of each at its closest place, over that of a plane");
+  for (std::size_t i = 0; i < places.size(); ++i) error.add((forces[i] - by_each(places[i], pressed, lands)).norm());
+  error.verify(1e-9);
+}
+
+TEST(Gaps, BetweenCoplanarWallsLeaveEachItsForce) {
+  const auto sheet = [](double from) { return rectangle(Vec3(from, -1, 0), land * Vec3::UnitX(), 2 * Vec3::UnitY()); };
+  expect_each_land_once("two sheets with a gap between them", {{"left", sheet(0)}, {"right", sheet(land + groove)}},
+                        {{0, land}, {land + groove, 2 * land + groove}});
+}
+
+TEST(Gaps, BetweenLandsLeaveEachItsForce) {
+  constexpr double spacing = land + groove;
+  const Description walls = {{"floor",
+                              {{"type", "saw-tooth"},
+                               {"corner", vector(Vec3(-20 * spacing, -1, 0))},
+                               {"edge_a", vector(Vec3(40 * spacing, 0, 0))},
+                               {"edge_b", vector(Vec3(0, 2, 0))},
+                               {"depth", groove / 2},
+                               {"spacing", spacing},
+                               {"offset", land},
+                               {"material", "grain"}}}};
+  std::vector<std::pair<double, double>> lands;
+  for (int i = -20; i < 20; ++i) lands.emplace_back(i * spacing, i * spacing + land);
+  expect_each_land_once("lands between grooves", walls, lands);
+}
+
+TEST(Gaps, AreClosedByAWallBetween) {
+  const auto sheet = [](double from, double to) {
+    return rectangle(Vec3(from, -1, 0), (to - from) * Vec3::UnitX(), 2 * Vec3::UnitY());
+  };
+  // The ball reaches over the narrow one in the middle.
+  const std::vector<Vec3> forces =
+      forces_along({-0.01e-3, 0, 0.01e-3, 0.02e-3, 0.03e-3}, pressed,
+                   {{"left", sheet(-tile, 0)}, {"middle", sheet(0, 0.02e-3)}, {"right", sheet(0.02e-3, tile)}});
+  Errors error("force of three coplanar sheets on a ball that reaches over one of them, off that of a plane");
+  for (const Vec3& force : forces) error.add((force - Vec3::UnitZ()).norm());
+  error.verify(1e-12);
 }
 
 }  // namespace

@@ -15,17 +15,10 @@ namespace {
 
 auto key(const auto& t) { return std::tuple(t.wall, t.body, t.feature); }
 
-/// A point counts as one of a plane within so many radii: round-off of positions a thousand radii away is far less.
-constexpr double on_plane = 1e-9;
+/// A gap between walls that is narrower, in radii, is closed.
+constexpr double no_gap = 1e-8;
 /// Cosine between normals of one surface that goes on in another wall or face.
 constexpr double goes_on = 0.9;
-
-/// Whether what touches at the lesser overlap is where the plane of the deeper touch is anyway: the edge of a face
-/// beside it that goes on in its plane, or the same edge again.
-bool hidden(const WallTouch& lesser, const WallTouch& deeper, double radius) {
-  const double along = (radius - lesser.overlap) * lesser.normal.dot(deeper.normal);
-  return std::abs(along - (radius - deeper.overlap)) <= on_plane * radius;
-}
 
 /// A law takes the change of the normal for a turn of what is touched, with which a sphere turns that pivots about an
 /// edge or is carried along: (overlap / dt) (normal − normal_before) of surface velocity. A touch that goes on in one
@@ -147,7 +140,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     }
   }
 
-  leave_out_hidden(chunk, work, bodies);
+  leave_out_hidden(chunk, work, bodies, walls);
   hand_on_memories(chunk, work, bodies, dt);
   chunk.row.resize(chunk.touch.size());
   WallBatch batch{.position = bodies.position.data(),
@@ -193,7 +186,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
   return batch.largest_overlap;
 }
 
-void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies) {
+void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies,
+                                    std::span<const WallSurface> walls) {
   if (chunk.touch.size() < 2) return;
   constexpr std::uint32_t none = ~0u;
   std::array<std::uint32_t, chunk_bodies> latest;  // touch of each body
@@ -205,12 +199,14 @@ void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies&
   for (std::uint32_t i = 0; i < chunk.touch.size(); ++i) {
     const WallTouch& t = chunk.touch[i];
     before[i] = std::exchange(latest[t.body % chunk_bodies], i);
-    const double radius = bodies.position[t.body].w;
-    for (std::uint32_t j = before[i]; j != none && !hide[i]; j = before[j]) {
-      if (hide[j]) continue;
+    const Row& body = bodies.position[t.body];
+    for (std::uint32_t j = before[i]; j != none; j = before[j]) {
+      // A wall tells each of its own places once. What is hidden itself hides what is behind it.
+      if (chunk.touch[j].wall == t.wall) continue;
       const bool later_is_lesser = t.overlap <= chunk.touch[j].overlap;
       const std::uint32_t lesser = later_is_lesser ? i : j, deeper = later_is_lesser ? j : i;
-      if (hidden(chunk.touch[lesser], chunk.touch[deeper], radius)) any = hide[lesser] = true;
+      if (!hide[lesser] && hidden(chunk.touch[lesser], chunk.touch[deeper], body, walls, work))
+        any = hide[lesser] = true;
     }
   }
   if (!any) return;
@@ -218,6 +214,17 @@ void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies&
   for (std::size_t i = 0; i < chunk.touch.size(); ++i)
     if (!hide[i]) chunk.touch[kept++] = chunk.touch[i];
   chunk.touch.resize(kept);
+}
+
+bool WallContacts::hidden(const WallTouch& lesser, const WallTouch& deeper, const Row& body,
+                          std::span<const WallSurface> walls, Workspace& work) {
+  const Vec3 place = xyz(body) + (body.w - lesser.overlap) * lesser.normal;
+  const double close = no_gap * body.w;
+  const Sphere probe{place - close * deeper.normal, 2 * close, deeper.body};
+  const WallSurface& wall = walls[deeper.wall];
+  work.found.clear();
+  wall.geometry->touch(wall.pose, {&probe, 1}, work.found);
+  return !work.found.empty();
 }
 
 void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const {

@@ -119,9 +119,13 @@ class WallContacts {
     std::vector<std::uint32_t> same_body_before, fresh, gone;  // indices of touches
     std::vector<bool> hide;
   };
-  /// Leaves out touches where the surface of another touch of the same body goes on: edges of coplanar faces, and edges
-  /// that faces share, count once, whatever walls they belong to.
-  static void leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies);
+  /// Leaves out touches where the surface of another wall that the same body touches goes on: edges of coplanar faces
+  /// that meet, and edges that faces share, count once. Across a gap each face counts: whatever the body is over, its
+  /// force does not jump there.
+  static void leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies, std::span<const WallSurface> walls);
+  /// Whether the wall of the deeper touch is also where the lesser one is.
+  static bool hidden(const WallTouch& lesser, const WallTouch& deeper, const Row& body,
+                     std::span<const WallSurface> walls, Workspace& work);
   /// From the touches of the last step to those of this one.
   void hand_on_memories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const;
 
