@@ -121,6 +121,19 @@ TEST_F(Reports, DrawPlanesWithoutAnExtent) {
       << "that is across no axis";
 }
 
+// How far such a plane is drawn depends on the bodies, which are made once: a pipe cannot be read a second time.
+TEST_F(Reports, DrawPlanesAroundAPackingThatIsPiped) {
+  const auto outcome =
+      shell(folder.path(),
+            "printf '0 0 0 0.001\\n0.002 0 0 0.001\\n' | \"" GRIT_BINARY
+            "\" run two.json --no-report --set '/bodies/grains/grains={\"type\": \"file\", \"path\": \"/dev/stdin\"}' "
+            "--set '/walls/floor={\"type\": \"plane\", \"point\": [0, 0, -0.0015], \"normal\": [0, 0, 1], "
+            "\"material\": \"sand\"}'");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(grit({"report", "--png", "results/two"}).status, 0);
+  EXPECT_THAT(text("results/two/grains.svg"), HasSubstr("class=\"wall\""));
+}
+
 TEST_F(Reports, SayThatTheConverterIsMissing) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   const auto outcome = shell(folder.path(), "PATH=/nowhere \"" GRIT_BINARY "\" report --png results/two");
