@@ -106,6 +106,35 @@ TEST_F(Reports, LayCurvesOfSeveralFoldersOverEachOther) {
   EXPECT_FALSE(exists("results/stiff/curves-overlaid.svg"));
 }
 
+TEST_F(Reports, DrawTheOthersWhereAFolderIsBad) {
+  for (const std::string name : {"two", "three"})
+    ASSERT_EQ(grit({"run", "two.json", "--no-report", "--out", "results/" + name}).status, 0);
+  folder.write("results/empty/notes.txt", "");
+  auto outcome = grit({"report", "--png", "nothing", "results/two", "results/empty", "results/three"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: nothing: there is no such folder\n"),
+                                 HasSubstr("grit: results/empty: holds no run")));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("picture: results/two/grains.png\n"), HasSubstr("picture: results/three/grains.png\n"),
+                    HasSubstr("picture: results/two/curves-overlaid.png\n")));
+  EXPECT_TRUE(exists("results/three/curves.png"));
+}
+
+TEST_F(Reports, DrawTheOtherPicturesWhereAFrameIsDamaged) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  // Its attributes are there, which tell where layers begin.
+  ASSERT_EQ(shell(folder.path(),
+                  "/usr/bin/python3 -c 'import h5py; del h5py.File(\"results/two/frames/000000.h5\", "
+                  "\"r+\")[\"bodies/radius\"]'")
+                .status,
+            0);
+  const auto outcome = grit({"report", "--png", "results/two"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("grit: left out: results/two/frames/000000.h5"));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("grains.png"), HasSubstr("map-packing-stress.png"), Not(HasSubstr("layers.png"))));
+}
+
 // An endless plane has no triangles of its own: the floor of most tests.
 TEST_F(Reports, DrawPlanesWithoutAnExtent) {
   const auto drawn = [&](const std::string& wall) {
