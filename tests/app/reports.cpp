@@ -106,6 +106,35 @@ TEST_F(Reports, LayCurvesOfSeveralFoldersOverEachOther) {
   EXPECT_FALSE(exists("results/stiff/curves-overlaid.svg"));
 }
 
+TEST_F(Reports, DrawTheOthersWhereAFolderIsBad) {
+  for (const std::string name : {"two", "three"})
+    ASSERT_EQ(grit({"run", "two.json", "--no-report", "--out", "results/" + name}).status, 0);
+  folder.write("results/empty/notes.txt", "");
+  auto outcome = grit({"report", "--png", "nothing", "results/two", "results/empty", "results/three"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: nothing: there is no such folder\n"),
+                                 HasSubstr("grit: results/empty: holds no run")));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("picture: results/two/grains.png\n"), HasSubstr("picture: results/three/grains.png\n"),
+                    HasSubstr("picture: results/two/curves-overlaid.png\n")));
+  EXPECT_TRUE(exists("results/three/curves.png"));
+}
+
+TEST_F(Reports, DrawTheOtherPicturesWhereAFrameIsDamaged) {
+  ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
+  // Its attributes are there, which tell where layers begin.
+  ASSERT_EQ(shell(folder.path(),
+                  "/usr/bin/python3 -c 'import h5py; del h5py.File(\"results/two/frames/000000.h5\", "
+                  "\"r+\")[\"bodies/radius\"]'")
+                .status,
+            0);
+  const auto outcome = grit({"report", "--png", "results/two"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("grit: left out: results/two/frames/000000.h5"));
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("grains.png"), HasSubstr("map-packing-stress.png"), Not(HasSubstr("layers.png"))));
+}
+
 // An endless plane has no triangles of its own: the floor of most tests.
 TEST_F(Reports, DrawPlanesWithoutAnExtent) {
   const auto drawn = [&](const std::string& wall) {
@@ -119,6 +148,19 @@ TEST_F(Reports, DrawPlanesWithoutAnExtent) {
   EXPECT_THAT(drawn(R"({"type": "plane", "point": [0, 0, "-1.5 mm"], "normal": [0, 1, 1], "material": "sand"})"),
               Not(HasSubstr(line)))
       << "that is across no axis";
+}
+
+// How far such a plane is drawn depends on the bodies, which are made once: a pipe cannot be read a second time.
+TEST_F(Reports, DrawPlanesAroundAPackingThatIsPiped) {
+  const auto outcome =
+      shell(folder.path(),
+            "printf '0 0 0 0.001\\n0.002 0 0 0.001\\n' | \"" GRIT_BINARY
+            "\" run two.json --no-report --set '/bodies/grains/grains={\"type\": \"file\", \"path\": \"/dev/stdin\"}' "
+            "--set '/walls/floor={\"type\": \"plane\", \"point\": [0, 0, -0.0015], \"normal\": [0, 0, 1], "
+            "\"material\": \"sand\"}'");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(grit({"report", "--png", "results/two"}).status, 0);
+  EXPECT_THAT(text("results/two/grains.svg"), HasSubstr("class=\"wall\""));
 }
 
 TEST_F(Reports, SayThatTheConverterIsMissing) {

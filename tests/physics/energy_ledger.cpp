@@ -52,6 +52,23 @@ TEST(EnergyLedger, LocalDampingTakesItsShareOfTheWork) {
   EXPECT_LE(std::abs(now.closure_error), 1e-3 * now.kinetic) << "the half step is braked by whole forces";
 }
 
+// Damping adds to the force that brakes the grains and takes from the one that drives them apart again: a spring is
+// loaded by 1 / (1 + λ) of what they bring, and gives 1 - λ of that back.
+TEST(EnergyLedger, LocalDampingTakesItsShareOfAnImpact) {
+  const double speed = 0.1, damping = 0.3;
+  Description d = grains("linear-rolling", {},
+                         {{Vec3::Zero(), radius, {speed, 0, 0}}, {{2 * radius, 0, 0}, radius, {-speed, 0, 0}}});
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", damping}};
+  Kept pair(d);
+  pair.step(2000);
+  const EnergyLedger now = pair.world().energies();
+  const double before = 2 * kinetic_at(speed), left = (1 - damping) / (1 + damping);
+  ASSERT_EQ(now.elastic(), 0) << "they are apart again";
+  EXPECT_NEAR(now.local_damping / before, 1 - left, 2e-3);
+  EXPECT_NEAR(now.kinetic / before, left, 2e-3);
+  EXPECT_LE(std::abs(now.closure_error), 1e-3 * before);
+}
+
 TEST(EnergyLedger, ADashpotTakesWhatRestitutionSays) {
   for (const std::string law : {"linear-frictional", "hertz-mindlin"}) {
     Description material{{"restitution", 0.5}, {"friction_angle", 0}};

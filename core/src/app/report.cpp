@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <iostream>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
@@ -38,23 +40,48 @@ void write_pictures(const std::filesystem::path& folder, const std::vector<Named
   }
 }
 
-void make_pictures(const std::vector<std::filesystem::path>& folders) {
+/// All of a run that can be drawn; what cannot becomes one of its problems.
+std::vector<NamedPicture> pictures_of(RunResults& run) {
+  std::vector<NamedPicture> pictures;
+  const auto draw = [&](auto work) {
+    try {
+      work();
+    } catch (const FileError& error) {
+      run.problems.emplace_back(error.what());
+    }
+  };
+  const auto add = [&](const char* name, std::optional<std::string> picture) {
+    if (picture) pictures.push_back({name, std::move(*picture)});
+  };
+  draw([&] { add("curves", curves_picture(std::span(&run, 1))); });
+  draw([&] { std::ranges::move(profile_pictures(run), std::back_inserter(pictures)); });
+  draw([&] { add("grains", grains_picture(run)); });
+  draw([&] { add("layers", layers_picture(run)); });
+  draw([&] { add("linear-chains", chains_picture(run)); });
+  draw([&] { std::ranges::move(map_pictures(run), std::back_inserter(pictures)); });
+  return pictures;
+}
+
+/// A folder that is bad is told with why, and leaves the others their pictures; the status is that of the first.
+ExitStatus make_pictures(const std::vector<std::filesystem::path>& folders) {
+  ExitStatus status = ExitStatus::done;
+  const auto attempt = [&](auto work) {
+    const ExitStatus one = report([&] { return work(), ExitStatus::done; });
+    if (status == ExitStatus::done) status = one;
+  };
   std::vector<RunResults> runs;
-  for (const auto& folder : folders) runs.push_back(read_results(folder));
+  for (const auto& folder : folders) attempt([&] { runs.push_back(read_results(folder)); });
   tell_apart(runs);
   for (RunResults& run : runs) {
-    std::vector<NamedPicture> pictures;
-    if (auto curves = curves_picture(std::span(&run, 1))) pictures.push_back({"curves", std::move(*curves)});
-    std::ranges::move(profile_pictures(run), std::back_inserter(pictures));
-    if (auto grains = grains_picture(run)) pictures.push_back({"grains", std::move(*grains)});
-    if (auto layers = layers_picture(run)) pictures.push_back({"layers", std::move(*layers)});
-    if (auto chains = chains_picture(run)) pictures.push_back({"linear-chains", std::move(*chains)});
-    std::ranges::move(map_pictures(run), std::back_inserter(pictures));
-    write_pictures(run.folder, pictures);
+    attempt([&] { write_pictures(run.folder, pictures_of(run)); });
     for (const std::string& problem : run.problems) std::cerr << "grit: left out: " << problem << '\n';
   }
-  if (runs.size() < 2) return;
-  if (auto curves = curves_picture(runs)) write_pictures(folders.front(), {{"curves-overlaid", std::move(*curves)}});
+  if (runs.size() > 1)
+    attempt([&] {
+      if (auto curves = curves_picture(runs))
+        write_pictures(runs.front().folder, {{"curves-overlaid", std::move(*curves)}});
+    });
+  return status;
 }
 
 void make_page(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
@@ -79,10 +106,9 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");
   const std::vector<std::filesystem::path> folders(options.words().begin(), options.words().end());
-  if (options.has("png")) make_pictures(folders);
-  else
-    make_page(folders, options.has("out") ? std::filesystem::path(options.get<std::string>("out"))
-                                          : folders.front() / "report.html");
+  if (options.has("png")) return make_pictures(folders);
+  make_page(folders, options.has("out") ? std::filesystem::path(options.get<std::string>("out"))
+                                        : folders.front() / "report.html");
   return ExitStatus::done;
 }
 

@@ -154,7 +154,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
                                    .plugins = plugins_used(description, registry),
                                    .seed = description.seed,
                                    .threads = threads},
-                         .walls = wall_shapes(scene),
+                         .walls = {},
                          .picture = {}};
   if (const auto& picture = description.output.picture)
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};
@@ -176,11 +176,13 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     checkpoint = resumed(folder, results.facts);
     if (!checkpoint) results.existing = Existing::overwrite;
   }
+  Bodies bodies = make_bodies(description, run_state(description));
+  results.walls = wall_shapes(scene, bodies);
   ResultsFolder recorder(std::move(results));
   std::optional<Watch> watch;
   if (listener) watch.emplace(*listener, folder);
 
-  Simulation simulation(description, make_bodies(description, run_state(description)), threads);
+  Simulation simulation(description, std::move(bodies), threads);
   say(std::to_string(simulation.positions().size()) + " bodies, " + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
   if (checkpoint)

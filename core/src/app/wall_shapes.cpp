@@ -5,8 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "scene/make_bodies.hpp"
-
 namespace grit {
 namespace {
 
@@ -24,7 +22,7 @@ int endless_across(const Geometry& geometry) {
 }
 
 /// How far endless planes are drawn.
-Bounds drawn_box(const SceneDescription& scene) {
+Bounds drawn_box(const SceneDescription& scene, const Bodies& bodies) {
   Bounds box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (const auto& [name, wall] : scene.walls) {
     const Geometry& geometry = *wall.geometry;
@@ -41,7 +39,6 @@ Bounds drawn_box(const SceneDescription& scene) {
         reaches_nowhere(axis) && low && high && std::isfinite((*high - *low)[axis]))
       box.low[axis] = (*low)[axis], box.high[axis] = (*high)[axis];
   if (!reaches_nowhere(0) && !reaches_nowhere(1) && !reaches_nowhere(2)) return box;
-  const Bodies bodies = make_bodies(scene, {});
   Bounds grains{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     const Vec3 centre = xyz(bodies.position[i]), radius = Vec3::Constant(bodies.position[i].w);
@@ -70,11 +67,11 @@ std::vector<Vec3> rectangle(const Geometry& plane, int across, const Bounds& box
 
 }  // namespace
 
-std::vector<WallShape> wall_shapes(const Scene& scene) {
+std::vector<WallShape> wall_shapes(const Scene& scene, const Bodies& bodies) {
   const SceneDescription& start = *scene.description;
   const bool has_endless =
       std::ranges::any_of(start.walls, [](const auto& wall) { return endless_across(*wall.second.geometry) >= 0; });
-  const Bounds box = has_endless ? drawn_box(start) : Bounds{Vec3::Zero(), Vec3::Zero()};
+  const Bounds box = has_endless ? drawn_box(start, bodies) : Bounds{Vec3::Zero(), Vec3::Zero()};
   const auto triangles = [&](const Geometry& geometry) {
     const int across = endless_across(geometry);
     return across >= 0 && has_endless ? rectangle(geometry, across, box) : geometry.triangles();

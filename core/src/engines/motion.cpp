@@ -18,6 +18,12 @@ Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
   return power > 0 ? less : power < 0 ? more : force;
 }
 
+/// What that takes off an impulse of the force.
+Quad taken(const Quad& impulse, const Quad& force, const Quad& velocity, double coefficient) {
+  const Quad power = force * velocity, share = coefficient * impulse, none{};
+  return power > 0 ? share : power < 0 ? -share : none;
+}
+
 Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -35,6 +41,7 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
   const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
+  const bool falls = !settings.gravity.isZero(0.0);
   Quad fastest{}, poison{}, damped_energy{}, momentum{};
   double fastest_carried = 0;
   for (std::size_t i = first; i < last; ++i) {
@@ -51,21 +58,20 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
-    double mass = 0, inertia = 0;
-    if constexpr (Energies) {  // one division for both: it is what a ledger costs most
-      const double inverse = 1 / (inverse_mass * inverse_inertia);
-      mass = inverse * inverse_inertia, inertia = inverse * inverse_mass;
-    }
+    // Impulses are at hand where nothing falls: a division by body is what a ledger would cost most.
+    const double mass = Energies && falls ? 1 / inverse_mass : 0;
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
-      if constexpr (Energies)
-        damped_energy +=
-            (push - pushed) * (v + 0.5 * pushed) * mass + (twist - twisted) * (w + 0.5 * twisted) * inertia;
+      if constexpr (Energies) {
+        const Quad impulse = falls ? push * mass : force * kick;
+        damped_energy += taken(impulse, push, v - flow, damping) * (v + 0.5 * pushed) +
+                         taken(moment * turn_kick, twist, w, damping) * (w + 0.5 * twisted);
+      }
       push = pushed, twist = twisted;
     }
     v += push, w += twist;
     x += v * drift;
-    if constexpr (Energies) momentum += v * mass;
+    if (Energies && falls) momentum += v * mass;
     store(x, bodies.position[i]), store(v, bodies.velocity[i]), store(w, bodies.spin[i]);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;

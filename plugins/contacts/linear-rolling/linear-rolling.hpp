@@ -149,24 +149,37 @@ struct LinearRolling {
     return response;
   }
 
+  /// slip_work() times the stiffness, where evaluate() has shortened `trial` to `limit`: by the share that is kept,
+  /// which is known from there.
+  template <class L>
+  [[gnu::always_inline]] static L slipped(const Vec<L>& before, const Vec<L>& trial, const L& limit) {
+    const L square = dot(trial, trial), kept = min(L(1.0), limit / max(sqrt(square), L(tiny<L>)));
+    return L(0.5) * (L(1.0) - kept) * (dot(before, trial) + kept * square);
+  }
+
   template <unsigned Features, class L>
   [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
-                                               const State<L>& after, const Response<L>&) {
+                                               const State<L>& after, const Response<L>& response) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
-    const L angular = ks * at.radius_a * at.radius_b;
     const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
-    Loss<L> loss{L(0.0), L(0.0), L(0.0)};
+    const L slid =
+        slipped(at.turn(shear), stretched(at, shear, ks, at.velocity), pair.friction * response.normal_force);
+    const L angular = ks * at.radius_a * at.radius_b, rolling_stiffness = pair.rolling * angular;
+    // Of rolling, where it is on; one division serves both springs.
+    L other(1.0), rolled(0.0);
+    if constexpr ((Features & with_rolling) != 0) {
+      const L mean = L(0.5) * (at.radius_a + at.radius_b), smaller = min(at.radius_a, at.radius_b);
+      const L arm = select(pair.smaller_radius > L(0.0), smaller, mean) * response.normal_force;
+      const Vec<L> rolling{before.rolling_x, before.rolling_y, before.rolling_z};
+      other = select(pair.rolling_limit > L(0.0), rolling_stiffness, L(1.0));
+      rolled = slipped(at.turn(rolling), stretched(at, rolling, rolling_stiffness, at.spin), pair.rolling_limit * arm);
+    }
+    const L inverse = L(1.0) / max(ks * other, L(tiny<L>));
     // What a spring held when it was switched off is booked with that.
     const auto where_on = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
-    loss.friction = where_on(pair.friction, slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity),
-                                                      Vec<L>{after.shear_x, after.shear_y, after.shear_z}, ks));
-    if constexpr ((Features & with_rolling) != 0) {
-      const Vec<L> rolling{before.rolling_x, before.rolling_y, before.rolling_z};
-      const L stiffness = pair.rolling * angular;
-      loss.rolling =
-          where_on(pair.rolling_limit, slip_work(at.turn(rolling), stretched(at, rolling, stiffness, at.spin),
-                                                 Vec<L>{after.rolling_x, after.rolling_y, after.rolling_z}, stiffness));
-    }
+    Loss<L> loss{L(0.0), L(0.0), L(0.0)};
+    loss.friction = where_on(pair.friction, slid * (inverse * other));
+    if constexpr ((Features & with_rolling) != 0) loss.rolling = where_on(pair.rolling_limit, rolled * (inverse * ks));
     if constexpr ((Features & with_twisting) != 0) {
       const L stiffness = pair.twisting * angular;
       const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);

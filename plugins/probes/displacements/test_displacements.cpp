@@ -90,6 +90,28 @@ TEST(Displacements, StripsHaveGradientsOfTheirOwn) {
   EXPECT_THROW(channel_values(probe, world, "gradient_strip_4"), Error);
 }
 
+// Who has just gone past a side belongs to the strip at the other one.
+TEST(Displacements, StripsHaveBodiesThatArePastAPeriodicSide) {
+  FakeWorld world;
+  for (int k = 0; k < 1000; ++k)
+    for (const double x : {-0.02, 0.1, 0.9, 1.01, 2.03}) {
+      const double z = (k + 0.5) / 1000;
+      world.add({x, 0.5, z}, 0.005);
+      world.displacement.push_back({x < 0 || x == 0.9 ? 0.3 * z : -0.7 * z, 0, 0});
+    }
+  world.make_periodic(Vec3::Zero(), Vec3::Ones());
+  world.box.periodic[2] = false;
+  Displacements probe;
+  probe.profile.places = 11, probe.strips = 3;
+  probe.prepare(world);
+  const auto first = channel_values(probe, world, "gradient_strip_1"),
+             last = channel_values(probe, world, "gradient_strip_3");
+  for (std::size_t k = 0; k < 11; ++k) {
+    EXPECT_NEAR(first[k], -0.7, 1e-10) << k;
+    EXPECT_NEAR(last[k], 0.3, 1e-10) << k;
+  }
+}
+
 TEST(Displacements, StripsLieAcrossTheirProfiles) {
   Displacements probe;
   probe.strips = 4, probe.strips_along = "z";

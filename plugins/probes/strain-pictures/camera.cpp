@@ -187,13 +187,13 @@ class Exposure {
       tent_[static_cast<std::size_t>(k)] =
           static_cast<float>(std::min(k + 1, 2 * rays - 1 - k)) / static_cast<float>(rays * rays);
   }
-  /// Row j of rays, in rising order.
-  void add(std::ptrdiff_t j, const std::vector<float>& light) {
+  /// Row j of rays, in rising order: the light of those from column `first` on; there is none elsewhere.
+  void add(std::ptrdiff_t j, std::ptrdiff_t first, std::span<const float> light) {
     const std::ptrdiff_t middle = j / rays;
     for (const std::ptrdiff_t pixel : {middle - 1, middle, middle + 1}) {
       const std::ptrdiff_t k = j - rays * pixel + wing;  // of the tent
       if (pixel < 0 || pixel >= image_.height || k < 0 || k > 2 * (rays - 1)) continue;
-      float* const sum = rows_[static_cast<std::size_t>(pixel % 3)].data() + wing;
+      float* const sum = rows_[static_cast<std::size_t>(pixel % 3)].data() + wing + first;
       const float weight = tent_[static_cast<std::size_t>(k)];
       for (std::size_t i = 0; i < light.size(); ++i) sum[i] += weight * light[i];
       if (k == 2 * (rays - 1) || j == rays * image_.height - 1) finish(pixel);
@@ -236,14 +236,28 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
       in_band[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(n));
   }
 
+  // Around the specimen rays meet nothing: half of a picture.
+  std::ptrdiff_t left = columns, right = 0;
+  for (const Disc& disc : near) {
+    left = std::min(left, first_ray(disc.x - disc.radius, 0));
+    right = std::max(right, last_ray(disc.x + disc.radius, columns) + 1);
+  }
+
   Image image(width, height);
   Exposure exposure(image);
   std::vector<float> depth(static_cast<std::size_t>(columns * band_rows)), light(static_cast<std::size_t>(columns));
   std::vector<std::uint32_t> who(depth.size());
   for (std::ptrdiff_t band = 0; band < bands; ++band) {
-    std::ranges::fill(depth, std::numeric_limits<float>::infinity());
-    std::ranges::fill(who, nobody);
     const std::ptrdiff_t begin = band * band_rows, end = std::min(begin + band_rows, rows);
+    if (in_band[static_cast<std::size_t>(band)].empty()) {
+      for (std::ptrdiff_t j = begin; j < end; ++j) exposure.add(j, 0, {});
+      continue;
+    }
+    for (std::ptrdiff_t row = 0; row < band_rows; ++row) {
+      std::fill(depth.begin() + row * columns + left, depth.begin() + row * columns + right,
+                std::numeric_limits<float>::infinity());
+      std::fill(who.begin() + row * columns + left, who.begin() + row * columns + right, nobody);
+    }
     const auto row = [&](std::ptrdiff_t j) -> RayRow {
       return {depth.data() + (j - begin) * columns, who.data() + (j - begin) * columns};
     };
@@ -255,15 +269,16 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
     }
     for (std::ptrdiff_t j = begin; j < end; ++j) {
       const RayRow met = row(j);
-      for (std::ptrdiff_t i = 0, after; i < columns; i = after) {
+      for (std::ptrdiff_t i = left, after; i < right; i = after) {
         const std::uint32_t n = met.who[i];
-        for (after = i + 1; after < columns && met.who[after] == n;) ++after;
+        for (after = i + 1; after < right && met.who[after] == n;) ++after;
         if (n == nobody) std::fill(light.begin() + i, light.begin() + after, 0.0f);
         else
           shade(skins[n], static_cast<float>(place(i) - near[n].x), static_cast<float>(place(j) - near[n].y),
                 {met.depth + i, met.depth + after}, light.data() + i);
       }
-      exposure.add(j, light);
+      exposure.add(j, left,
+                   std::span(light).subspan(static_cast<std::size_t>(left), static_cast<std::size_t>(right - left)));
     }
   }
   return image;

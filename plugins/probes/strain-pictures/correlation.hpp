@@ -55,8 +55,9 @@ class Correlation {
   /// where the square is of one grey. Where has().
   std::optional<Match> search(std::ptrdiff_t column, std::ptrdiff_t row, std::ptrdiff_t reach) const;
   /// The match next to a guess that has the least sum of squared differences, by Gauss and Newton's steps. None where
-  /// they lead out of the picture or to no end, or where a square is of one grey. Where has().
-  std::optional<Match> refined(std::ptrdiff_t column, std::ptrdiff_t row, Match guess) const;
+  /// they lead out of the picture or to no end, or where a square is of one grey; nor, perhaps, where the match would
+  /// have a correlation below `least`. Where has().
+  std::optional<Match> refined(std::ptrdiff_t column, std::ptrdiff_t row, Match guess, double least = 0) const;
 
  private:
   const ReferenceImage& before_;
