@@ -241,6 +241,13 @@ TEST_F(Studies, RunAgainWhatAnotherBuildOfAPluginMade) {
   EXPECT_THAT(missing_with([](auto& run) { run.erase("plugins"); }), HasSubstr("1 of 8 runs are missing"));
 }
 
+TEST_F(Studies, AreNotDrawnBeforeAnyOfThemWasRun) {
+  const auto outcome = grit({"chart", "study.json", "--draw"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("results/study: has no runs of the study"), HasSubstr("leave out --draw")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
 TEST_F(Studies, AreDrawnAgainOfRunsByAnOlderGrit) {
   ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
   const std::string path = "results/study/runs/usual/seed-1/run.json";
