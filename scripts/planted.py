@@ -7,6 +7,7 @@ physics turn red.
 
 While it runs, a library of the build is exchanged for its copy, which has all errors and takes the one that the environment names.
 Five minutes on one core. What was exchanged when it was killed is put back when it begins again.
+tests/house/planted.py sees, without a build, that all errors can still be planted and that the page is of these.
 """
 import os
 import re
@@ -213,4 +214,5 @@ def main():
     return 1 if green else 0
 
 
-sys.exit(main())
+if __name__ == '__main__':
+    sys.exit(main())

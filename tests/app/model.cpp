@@ -51,8 +51,13 @@ TEST_F(ModelOfARun, TurnsAndMovesAreKeptOnlyWhereSomethingAsks) {
   const json plain = of({"/seed=2"});
   EXPECT_THAT(plain.at("body_state"), IsEmpty());
   EXPECT_EQ(plain.at("gravity"), false);
-  const json asked = of({R"(/probes/ledger={"type": "energy", "every_steps": 10})"});
-  EXPECT_THAT(asked.at("body_state"), ElementsAre("energy"));
+  const std::pair<const char*, const char*> asked[] = {
+      {"rotations", "rotation"}, {"displacements", "displacement"}, {"energy", "energy"}};
+  for (const auto& [probe, state] : asked) {
+    const json kept = of({"/seed=2", R"(/probes/asks={"type": ")" + std::string(probe) + R"(", "every_steps": 10})"});
+    EXPECT_THAT(kept.at("body_state"), ElementsAre(state));
+    if (probe != std::string("energy")) EXPECT_GT(kept.at("bytes"), plain.at("bytes")) << probe;
+  }
   const json falls = of({R"(/engines/weight={"type": "gravity"})"});
   EXPECT_EQ(falls.at("gravity"), true);
 }

@@ -241,6 +241,13 @@ TEST_F(Studies, RunAgainWhatAnotherBuildOfAPluginMade) {
   EXPECT_THAT(missing_with([](auto& run) { run.erase("plugins"); }), HasSubstr("1 of 8 runs are missing"));
 }
 
+TEST_F(Studies, AreNotDrawnBeforeAnyOfThemWasRun) {
+  const auto outcome = grit({"chart", "study.json", "--draw"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("results/study: has no runs of the study"), HasSubstr("leave out --draw")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
 TEST_F(Studies, AreDrawnAgainOfRunsByAnOlderGrit) {
   ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
   const std::string path = "results/study/runs/usual/seed-1/run.json";
@@ -333,6 +340,31 @@ TEST_F(Studies, AdviseOnScenesOfTheSamePartsWhereThereIsNoScenario) {
   EXPECT_EQ(other.status, 1);
   EXPECT_THAT(other.err, AllOf(HasSubstr("no scenario"), HasSubstr("(the nearest is of \"A column under gravity"),
                                HasSubstr(": here is no \"wall left: plane\", there is no \"wall lid: plane\")")));
+}
+
+TEST_F(Studies, OfTheInstallationThatCannotBeReadAreLeftOutByName) {
+  namespace fs = std::filesystem;
+  const fs::path lib = fs::path(GRIT_BINARY).parent_path().parent_path() / "lib/grit";
+  fs::create_directories(folder / "own");
+  fs::copy(lib / "libgrit.so", folder / "own");
+  fs::copy(lib / "studies", folder / "own/studies");
+  const auto own_grit = [&](const std::string& command) {
+    return Program({"env", "LD_LIBRARY_PATH=" + (folder / "own").string(), "GRIT_PLUGIN_PATH=" + lib.string(),
+                    GRIT_BINARY, command, std::string(GRIT_SOURCE_DIR) + "/sims/column/quick.json"},
+                   folder.path())
+        .finish();
+  };
+  const auto whole = own_grit("advise");
+  EXPECT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(whole.err, "");
+  folder.write("own/studies/broken.json", R"({"title": "half a)");
+  for (const char* command : {"check", "advise"}) {
+    const auto outcome = own_grit(command);
+    EXPECT_EQ(outcome.status, 0) << command << ": " << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("left out: " + (folder / "own/studies/broken.json").string()),
+                                   HasSubstr("is no chart.json"), Not(HasSubstr("column.json"))));
+    if (command == std::string("advise")) EXPECT_EQ(outcome.out, whole.out);
+  }
 }
 
 }  // namespace

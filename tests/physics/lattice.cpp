@@ -216,7 +216,7 @@ TEST(Lattice, SixSpheresBetweenWallsAreAsStrongAsThorntonSays) {
   // closer and the sides give way so that contacts across keep their overlap and slide; those in the plane open. Each
   // lid bears four contacts, each side what four of them press towards it.
   constexpr double squeeze = 1e-5, sunk = squeeze * diameter;
-  for (const Law* law : {&linear_rolling, &linear_frictional})
+  for (const Law* law : {&linear_rolling, &linear_frictional, &hertz_mindlin})
     for (const double angle : {5.0, 18.0, 30.0}) {
       const double friction = std::tan(angle * std::numbers::pi / 180);
       const double half = 0.5 * diameter * (1 - squeeze), high = root2 * half;

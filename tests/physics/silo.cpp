@@ -17,6 +17,16 @@ namespace {
 
 constexpr double wide = 10e-3, across = std::numbers::pi * wide * wide / 4, g = 9.81, slice = 2.5e-3;
 
+/// Of touches of the wall, sums of forces [N].
+struct Friction {
+  double normal = 0, size = 0, upwards = 0;  ///< pressing; rubbing, whatever its direction; its part against gravity
+  double along_slip = 0;                     ///< what `normal` times the part of the slip against gravity comes to
+
+  void add(const Friction& other) {
+    normal += other.normal, size += other.size, upwards += other.upwards, along_slip += other.along_slip;
+  }
+};
+
 /// Means over the last 0.2 s of the raising, slice by slice from the bottom up.
 struct Raised : Curves {
   static constexpr std::size_t most = 24;
@@ -24,6 +34,7 @@ struct Raised : Curves {
   double bottom = 0, wall = 0, weight = 0, centre = 0;      ///< N; m
   int samples = 0;
   double slipping = 0;  ///< the largest friction of a touch of the wall, over its normal force
+  Friction all, slid;   ///< of its touches, and of those that it passes at half its own speed or faster
 
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override {
     Curves::sample(probe, world, values);
@@ -40,8 +51,13 @@ struct Raised : Curves {
       if (!contact.with_wall || world.walls()[contact.b].name != "wall") continue;
       const auto i = static_cast<std::size_t>(std::max(world.positions()[contact.a].z, 0.0) / slice);
       const double ring = std::numbers::pi * wide * slice;
-      slipping =
-          std::max(slipping, (contact.force - contact.normal_force * contact.normal).norm() / contact.normal_force);
+      const Vec3 rubbing = contact.force - contact.normal_force * contact.normal;
+      slipping = std::max(slipping, rubbing.norm() / contact.normal_force);
+      const Vec3 passing = slip(world, contact);
+      const Friction one{contact.normal_force, rubbing.norm(), -rubbing.z(),
+                         -contact.normal_force * passing.normalized().z()};
+      all.add(one);
+      if (passing.norm() >= 0.5 * world.walls()[contact.b].velocity.norm()) slid.add(one);
       if (i < most) lateral[i] += contact.normal_force / ring, shear[i] -= contact.force.z() / ring;
     }
     for (const WallView& one : world.walls()) (one.name == "wall" ? wall : bottom) -= one.force.z();
@@ -62,6 +78,13 @@ struct Raised : Curves {
   }
 
  private:
+  /// Of the grain's surface over the wall's [m/s].
+  static Vec3 slip(const World& world, const Contact& touch) {
+    const Vec3 surface = xyz(world.velocities()[touch.a]) + xyz(world.spins()[touch.a]).cross(touch.branch);
+    const Vec3 passing = surface - world.walls()[touch.b].velocity;
+    return passing - passing.dot(touch.normal) * touch.normal;
+  }
+
   std::vector<std::string> probe_names_;
   double start_ = -1;
 };
@@ -85,6 +108,7 @@ Raised raised(int times) {
     }
     mean.bottom += silo.bottom / fillings, mean.wall += silo.wall / fillings;
     mean.slipping = std::max(mean.slipping, silo.slipping);
+    mean.all.add(silo.all), mean.slid.add(silo.slid);
     mean.weight += silo.weight / fillings, mean.centre += silo.centre / fillings;
   }
   return mean;
@@ -112,11 +136,18 @@ TEST(Silo, CarriesItsFillingAsJanssenSays) {
   verify("weight that bottom and wall carry, filled to 5 D", (tall.bottom + tall.wall) / tall.weight, 1, 0.01);
   verify("weight that bottom and wall carry, filled to 3 D", (low.bottom + low.wall) / low.weight, 1, 0.01);
   RecordProperty("K", std::to_string(lateral / vertical));
-  // The wall's own 12°, beside the grains' 25°. Where a touch slips it is that; of all, some roll or slip around the
-  // wall.
+  // The wall's own 12°, beside the grains' 25°. Where it slides over a grain friction is that, against the slip.
   const double friction = std::tan(12 * std::numbers::pi / 180);
   verify("largest friction of a touch of the wall, over its normal force", tall.slipping, friction, 1e-9);
+  verify("friction of touches that the wall slides over, over their normal force", tall.slid.size / tall.slid.normal,
+         friction, 1e-3);
+  verify("its part along the wall's way, over that of their slip", tall.slid.upwards / tall.slid.along_slip, friction,
+         2e-3);
+  EXPECT_GT(tall.slid.normal, 0.6 * tall.all.normal);
+  // Of all, some roll and bear less, and of what is borne some is around the wall and lifts nothing.
   verify("shear over lateral stress on the wall that is raised", shear / lateral, friction, 0.12);
+  verify("the same of touches that roll or slip, whatever the direction", tall.all.size / tall.all.normal, friction,
+         0.04);
   EXPECT_LT(tall.bottom, 0.3 * tall.weight) << "or nothing was carried by the wall";
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "grit/error.hpp"
+#include "support/mapped.hpp"
 #include "support/packing.hpp"
 
 namespace grit::test {
@@ -58,21 +59,32 @@ std::size_t missed(double period, int steps) {
   return worst;
 }
 
-bool refused(double period) {
+template <class Begin>
+bool stops(Begin begin) {
   try {
-    missed(period, 1);
+    begin();
   } catch (const NumericsError&) {
     return true;
   }
   return false;
 }
+bool refused(double period) {
+  return stops([&] { missed(period, 1); });
+}
 
-TEST(SmallPeriod, IsRefusedWhereAGrainWouldMeetAnotherTwiceAndRightAbove) {
+/// The longest period that is refused, by halving: `refused` says of one whether it is.
+template <class Refused>
+double longest(Refused refused) {
   double low = 2 * radius, high = 8 * radius;
   while (high > 1.0005 * low) {
     const double middle = std::sqrt(low * high);
     (refused(middle) ? low : high) = middle;
   }
+  return low;
+}
+
+TEST(SmallPeriod, IsRefusedWhereAGrainWouldMeetAnotherTwiceAndRightAbove) {
+  const double low = longest([](double period) { return refused(period); });
   EXPECT_NEAR(low / shortest, 1, 1e-3);
   for (const double share : {0.5, 0.8, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0}) {
     const double period = share * low;
@@ -80,6 +92,23 @@ TEST(SmallPeriod, IsRefusedWhereAGrainWouldMeetAnotherTwiceAndRightAbove) {
     if (share > 1) {
       EXPECT_EQ(missed(period, 200), 0u) << period / radius;
     }
+  }
+}
+
+TEST(SmallPeriod, GoesByTheLargestGrainAmongSmallerOnes) {
+  for (const double ratio : {1.0, 2.0, 5.0, 10.0, 30.0, 100.0}) {
+    const double small = radius / ratio;
+    const auto begins = [&](double period) {
+      Trial t(
+          repeating({{Vec3::Constant(radius), radius}, {{4 * radius, radius, radius}, small}}, {0.01, 0.01, period}));
+    };
+    const double low = longest([&](double period) { return stops([&] { begins(period); }); });
+    const double predicted = 4 * (radius + 0.03 * (radius + small));
+    EXPECT_NEAR(low / predicted, 1, 1e-3) << ratio;
+    const std::string map = "shortest period that is taken, over the largest diameter|largest over smallest diameter";
+    map_point(map, "refused below, taken above", ratio, low / (2 * radius));
+    map_point(map, "predicted", ratio, predicted / (2 * radius));
+    map_point(map, "predicted bound below which it touches itself", ratio, 1);
   }
 }
 

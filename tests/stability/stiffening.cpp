@@ -129,10 +129,12 @@ struct Pressed {
 };
 
 /// A cubic packing of a hundred and twenty-five grains that its walls press from first touch on. Beside it one rattles
-/// between two plates that soon still it: what it hits with at first sets the step, and nobody goes far enough later to
-/// have it looked at. `safety` is 0 for the usual one.
+/// between two plates that soon still it: what it hits with at first sets the step, for about as deep an overlap as the
+/// packing's in the end, and nobody goes far enough later to have it looked at. For that the packing begins without
+/// overlaps that would ask for a shorter step, and the plates damp little, since dashpots would. `safety` is 0 for the
+/// usual one.
 Pressed pressed_packing(double safety) {
-  constexpr double young = 1e8, deepest = 1e-3 * radius, inwards = 2e-5, rattling = 0.0066, gap = 1e-6;
+  constexpr double young = 1e8, deepest = 3e-3 * radius, inwards = 6e-5, rattling = 0.0262, gap = 3e-7;
   constexpr int sides = 5;
   Description m = glass(young, 1);
   m["friction_angle"] = 0.4;
@@ -142,19 +144,19 @@ Pressed pressed_packing(double safety) {
   for (int x = 0; x < sides; ++x)
     for (int y = 0; y < sides; ++y)
       for (int z = 0; z < sides; ++z)
-        grains.push_back({radius * Vec3(2 * x + 1, 2 * y + 1, 2 * z + 1), radius + about(0.05 * deepest)});
+        grains.push_back({radius * Vec3(2 * x + 1, 2 * y + 1, 2 * z + 1), radius + about(1e-3 * deepest)});
   Description d = description("hertz-mindlin", m, grains);
-  d["materials"]["dead"] = glass(young, 0.1);
+  d["materials"]["plates"] = glass(young, 0.8);
   const Vec3 low = Vec3::Zero(), high = Vec3::Constant(2 * sides * radius), apart = 30 * radius * Vec3::UnitX();
   d["bodies"]["lone"] = d["bodies"]["grains"];
-  d["bodies"]["lone"]["material"] = "dead";
+  d["bodies"]["lone"]["material"] = "plates";
   d["bodies"]["lone"]["grains"]["grains"] =
       Description::array({{{"position", vector(apart + Vec3(radius, radius, radius + gap))},
                            {"radius", radius},
                            {"velocity", {0, 0, rattling}}}});
   const Vec3 wide = apart + Vec3::Constant(2 * radius);
-  d["walls"]["below"] = side(2, 0, apart, wide, true, "dead");
-  d["walls"]["above"] = side(2, 2 * radius + 2 * gap, apart, wide, false, "dead");
+  d["walls"]["below"] = side(2, 0, apart, wide, true, "plates");
+  d["walls"]["above"] = side(2, 2 * radius + 2 * gap, apart, wide, false, "plates");
   for (int axis = 0; axis < 3; ++axis)
     for (const bool up : {true, false}) {
       Description& wall = d["walls"][std::string(up ? "low_" : "high_") + "xyz"[axis]];
@@ -173,7 +175,9 @@ Pressed pressed_packing(double safety) {
   return {force, std::abs(now.closure_error / now.walls), now.kinetic / now.elastic()};
 }
 
-// A packing asks for a shorter step than two grains do that are pressed as deep: 20 k_s/m against 7.
+// A packing asks for a shorter step than two grains do that are pressed as deep: 20 k_s/m against 7. Were the step set
+// anew from half of the impact's overlap on, instead of 0.15, a twenty-fifth of the walls' work would be lost from the
+// ledger and the walls feel 4 % less; at 0.4 nothing shows.
 TEST(Stiffening, PackingThatIsPressedPushesBackAsAtATenthOfTheStep) {
   const Pressed usual = pressed_packing(0), fine = pressed_packing(0.08);
   for (const Pressed& one : {usual, fine}) {
@@ -181,7 +185,7 @@ TEST(Stiffening, PackingThatIsPressedPushesBackAsAtATenthOfTheStep) {
     EXPECT_LT(one.unrest, 1e-4);
   }
   EXPECT_NEAR(usual.force / fine.force, 1, 1e-3);
-  EXPECT_GT(usual.force, 25 * 0.5 * hertz(1e8, radius, 0.5e-3 * radius)) << "pressed";
+  EXPECT_GT(usual.force, 25 * 0.5 * hertz(1e8, radius, 1.5e-3 * radius)) << "pressed";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // grit reckons with.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
@@ -128,11 +129,12 @@ TEST(TimeStep, BallThatResistsRollingStartsToGrowWhereItsRockingSays) {
 }
 
 /// Grains that came to rest without friction in a periodic cell that presses them, rough and trembling from now on.
-Description packed(double friction) {
+Description packed(double friction, double shear_to_normal = shear_ratio) {
   auto grains = jumble({4, 4, 4}, 1e-3, 0, 9);
   constexpr double closer = 0.92, side = 4e-3 * closer;
   for (Grain& g : grains) g.position *= closer;
   Description m = material(1);
+  m["shear_to_normal_stiffness"] = shear_to_normal;
   const auto cell = [&](const std::vector<Grain>& list, double tangent) {
     m["friction_angle"] = std::atan(tangent);
     Description d = description("linear-frictional", m, list);
@@ -160,6 +162,55 @@ TEST(TimeStep, DensePackingStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     EXPECT_LE(said, found);
     EXPECT_GE(said, 0.5 * found) << "not shorter than it need be";
     EXPECT_LT(growth(d, 0.99 * said, 4000), 1e3);
+  }
+}
+
+/// 2/ω of the fastest mode of all grains of a packing whose contacts stick [s].
+double limit_of_all_modes(const World& world, double shear_to_normal) {
+  const auto count = static_cast<Eigen::Index>(world.positions().size());
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(6 * count, 6 * count);
+  for (const Contact& c : world.contacts()) {
+    const double a = world.positions()[c.a].w, b = world.positions()[c.b].w, kn = 2 * modulus * a * b / (a + b);
+    const Mat3 along = c.normal * c.normal.transpose(), across = Mat3::Identity() - along;
+    const Mat3 turn{
+        {0, -c.normal.z(), c.normal.y()}, {c.normal.z(), 0, -c.normal.x()}, {-c.normal.y(), c.normal.x(), 0}};
+    // Of the surface of b over that of a, by ways of both and by turns; what presses turns with the branch.
+    Eigen::Matrix<double, 3, 12> slip, apart;
+    slip << -Mat3::Identity(), a * turn, Mat3::Identity(), b * turn;
+    apart << -Mat3::Identity(), Mat3::Zero(), Mat3::Identity(), Mat3::Zero();
+    const Eigen::Matrix<double, 12, 12> one = slip.transpose() * (kn * along + shear_to_normal * kn * across) * slip -
+                                              apart.transpose() * (c.normal_force / c.branch.norm() * across) * apart;
+    const Eigen::Index first[] = {6 * c.a, 6 * c.b};
+    for (int row = 0; row < 2; ++row)
+      for (int column = 0; column < 2; ++column)
+        stiffness.block<6, 6>(first[row], first[column]) += one.block<6, 6>(6 * row, 6 * column);
+  }
+  Eigen::VectorXd scale(6 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    scale.segment<3>(6 * i).setConstant(std::sqrt(world.velocities()[k].w));
+    scale.segment<3>(6 * i + 3).setConstant(std::sqrt(world.spins()[k].w));
+  }
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  return 2 /
+         std::sqrt(
+             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff());
+}
+
+TEST(TimeStep, DensePackingStartsToGrowWhereItsEigenvaluesSay) {
+  for (const double ratio : {0.03, 0.1, 0.3, 1.0}) {
+    const Description d = packed(10, ratio);
+    const double predicted = limit_of_all_modes(Trial(d).world(), ratio), said = critical(d);
+    const double found = found_limit(d, predicted);
+    EXPECT_NEAR(found / predicted, 1, 0.01) << ratio;
+    EXPECT_LE(said, found);
+    constexpr double r = 0.5e-3;
+    const double spring = 2 * std::sqrt(density * 4 / 3 * std::numbers::pi * r * r / modulus);
+    const std::string map =
+        "longest stable step of a dense packing, over 2 √(m/k) of its mean grain|shear over normal stiffness";
+    map_point(map, "found", ratio, found / spring);
+    map_point(map, "predicted", ratio, predicted / spring);
+    map_point(map, "critical step", ratio, said / spring);
   }
 }
 

@@ -292,6 +292,10 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   if (!options.has("quiet") && !options.has("draw"))
     std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
               << " runs to do, results in " << out.string() << std::endl;
+  if (options.has("draw") && !std::filesystem::is_directory(out / "runs"))
+    throw FileError(out.string() +
+                    ": has no runs of the study that could be drawn; leave out --draw to run them, or name the folder "
+                    "that has them with --out");
   const auto& interrupted = catch_interrupts();
   run_missing(study, runs, all, options, interrupted);
   if (interrupted.load()) {

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 
+#include "grit/error.hpp"
 #include "plugins/loader.hpp"
 
 namespace grit {
 
-std::vector<ChartedStudy> shipped_studies(const std::vector<std::string>& figures) {
+std::vector<ChartedStudy> shipped_studies() {
   namespace fs = std::filesystem;
   const fs::path folder = library_directory() / "studies";
   std::vector<fs::path> files;
@@ -16,7 +18,13 @@ std::vector<ChartedStudy> shipped_studies(const std::vector<std::string>& figure
       if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::ranges::sort(files);
   std::vector<ChartedStudy> studies;
-  for (const auto& file : files) studies.push_back(read_charted_study(file, figures));
+  for (const auto& file : files) {
+    try {
+      studies.push_back(read_charted_study(file, {}));
+    } catch (const FileError& error) {  // the others count all the same
+      std::cerr << "grit: left out: " << error.what() << std::endl;
+    }
+  }
   return studies;
 }
 
