@@ -616,6 +616,54 @@ class Page(unittest.TestCase):
         self.assertEqual(set(image[10, 27:55]), {-1}, "what is far from others stays so")
         self.assertEqual(list(image[10, 55:66]), [4] * 10 + [-1])
 
+    def test_no_hole_is_left_where_gaps_cross(self):
+        """Of four by three cells, ten pixels wide, whose columns have slid past each other by half a cell and have moved apart, as rows have."""
+        centres = [(10 + 16 * i, 10 + 16 * j + 5 * (i % 2)) for i in range(4) for j in range(3)]
+        owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
+            return [...cellsByPixel({{x: centres.map((one) => one[0]), y: centres.map((one) => one[1]), w: half, h: half}}, 68, 58)]; }})()""")
+        image = numpy.array(owner).reshape(58, 68)
+        self.assertNotIn(-1, image[10:47, 5:63])
+        for i in range(4):  # no more than they reach, but for the gaps
+            first = 5 + 5 * (i % 2)
+            column = image[:, 10 + 16 * i]
+            self.assertEqual([k for k in range(58) if column[k] >= 0], list(range(first, first + 42)))
+        self.assertEqual(set(image[:, :5].flat) | set(image[:, 63:].flat) | set(image[52:].flat), {-1})
+
+    def test_a_cell_that_is_missing_leaves_its_place(self):
+        centres = [(10 + 10 * i, 10 + 10 * j) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
+        owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
+            return [...cellsByPixel({{x: centres.map((one) => one[0]), y: centres.map((one) => one[1]), w: half, h: half}}, 40, 40)]; }})()""")
+        image = numpy.array(owner).reshape(40, 40)
+        self.assertEqual(set(image[15:25, 15:25].flat), {-1})
+        self.assertEqual(int((image < 0).sum()), 40 * 40 - 8 * 100)
+
+    def test_axes_have_four_to_eight_ticks(self):
+        """1, 2 or 5 times a power of ten apart."""
+        counts = self.browser.evaluate("""(() => { const counts = [];
+            for (let i = 0; i < 500; ++i) {
+                const high = 10 ** (-6 + 12 * i / 500), step = tickStep(-0.04 * high, high), lead = step / 10 ** Math.floor(Math.log10(step * 1.0001));
+                if (![1, 2, 5].some((one) => Math.abs(lead - one) < 1e-9)) throw Error(`a step of ${step}`);
+                counts.push(multiples(step, -0.04 * high, high).length);
+            }
+            return counts; })()""")
+        self.assertTrue(all(4 <= count <= 8 for count in counts), sorted(set(counts)))
+        for low, high in ((0, 1), (-7.3e-5, 2.1e-5), (0.9, 7.96), (199.41, 200.77), (-3, -2.99)):
+            shown, step = self.browser.evaluate(f"(() => {{ const shown = settled([{low}, {high}]); return [shown, tickStep(...shown, ticksUp(plotHeight))]; }})()")
+            self.assertLessEqual(shown[0], low + 0.03 * (high - low) + 1e-12)
+            self.assertGreaterEqual(shown[1], high - 0.03 * (high - low) - 1e-12)
+            for end in shown:
+                self.assertAlmostEqual(end / step, round(end / step), 6)
+            self.assertIn(round((shown[1] - shown[0]) / step) + 1, range(4, 9))
+        for width, height in ((390, 844), (1400, 1000), (2560, 1440)):
+            self.browser.resize(width, height)
+            try:
+                self.browser.evaluate("(async () => { const {chart} = document.querySelector('figure.chart'); chart.fit(); await chart.draw(); })()")
+                ticks = self.browser.evaluate("[...document.querySelectorAll('figure.chart .role-axis')].slice(0, 2).map((axis) => axis.querySelectorAll('.role-axis-grid line').length)")
+                for count in ticks:
+                    self.assertIn(count, range(4, 9), f"{ticks} at {width}")
+            finally:
+                self.browser.resize(1400, 1000)
+
     def test_a_colour_scale_is_of_the_field_and_not_of_its_values(self):
         for number in (1, 5):
             self.go(number)

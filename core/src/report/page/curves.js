@@ -30,8 +30,10 @@ function settled([low, high]) {
     return [low - room, high + room];
   }
   // From tick to tick, and no tick more for noise about one.
-  const room = 0.03 * (high - low), step = niceStep((high - low) / ticksUp);
-  return [Math.floor((low + room) / step + 1e-9) * step, Math.ceil((high - room) / step - 1e-9) * step];
+  const room = 0.03 * (high - low), most = ticksUp(plotHeight);
+  const reaches = (step) => [Math.floor((low + room) / step + 1e-9), Math.ceil((high - room) / step - 1e-9)];
+  const step = tickSteps(low, high, most).find((one) => reaches(one)[1] - reaches(one)[0] < most);
+  return reaches(step).map((tick) => tick * step);
 }
 /** Whole powers of ten about the numbers above zero, at most so many. */
 function settledPowers(lists, most) {
@@ -228,7 +230,7 @@ class Chart {
       ],
       axes: [
         { ...axis, scale: "x", orient: "bottom", title: titled(this.abscissa.label, this.abscissa.shown_unit), ...this.ticks(this.xDomain, ticksAcross(width)) },
-        { ...axis, scale: "y", orient: "left", ...this.ticks(this.yDomain, ticksUp) },
+        { ...axis, scale: "y", orient: "left", ...this.ticks(this.yDomain, ticksUp(plotHeight)) },
       ],
       marks: [
         { type: "text", name: "title", interactive: false, encode: { update: { x: { value: 2 - around.left }, y: { value: -16 }, text: { value: titled(this.channel.label, this.channel.shown_unit) },
@@ -248,7 +250,7 @@ class Chart {
   }
   /** Of an axis. */
   ticks(domain, count) {
-    if (!this.byPowers) return { tickCount: count };
+    if (!this.byPowers) return { tickCount: (domain[1] - domain[0]) / tickStep(...domain, count) };
     const values = powersWithin(domain, count), words = Object.fromEntries(values.map((value) => [value, atPower(value)]));
     return { values, encode: { labels: { update: { text: { signal: `(${JSON.stringify(words)})[datum.value]` } } } } };
   }
