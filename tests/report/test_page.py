@@ -647,8 +647,8 @@ class Page(unittest.TestCase):
             }
             return counts; })()""")
         self.assertTrue(all(4 <= count <= 8 for count in counts), sorted(set(counts)))
-        for low, high in ((0, 1), (-7.3e-5, 2.1e-5), (0.9, 7.96), (199.41, 200.77), (-3, -2.99)):
-            shown, step = self.browser.evaluate(f"(() => {{ const shown = settled([{low}, {high}]); return [shown, tickStep(...shown, ticksUp(plotHeight))]; }})()")
+        for low, high in ((0, 1), (-7.3e-5, 2.1e-5), (0.9, 7.96), (199.41, 200.77), (-3, -2.99), (0.2, 1.45)):
+            shown, step = self.browser.evaluate(f"(() => {{ const {{ends, step}} = settled([{low}, {high}]); return [ends, step]; }})()")
             self.assertLessEqual(shown[0], low + 0.03 * (high - low) + 1e-12)
             self.assertGreaterEqual(shown[1], high - 0.03 * (high - low) - 1e-12)
             for end in shown:
@@ -661,6 +661,8 @@ class Page(unittest.TestCase):
                 ticks = self.browser.evaluate("[...document.querySelectorAll('figure.chart .role-axis')].slice(0, 2).map((axis) => axis.querySelectorAll('.role-axis-grid line').length)")
                 for count in ticks:
                     self.assertIn(count, range(4, 9), f"{ticks} at {width}")
+                last, top = self.browser.evaluate("(() => { const {chart} = document.querySelector('figure.chart'); return [chart.view.scale('y')(chart.yDomain[1]), Math.min(...[...document.querySelectorAll('figure.chart .role-axis')[1].querySelectorAll('.role-axis-grid line')].map((line) => line.transform.baseVal[0].matrix.f))]; })()")
+                self.assertAlmostEqual(last, top, delta=1, msg="a line at the upper end")
             finally:
                 self.browser.resize(1400, 1000)
 
