@@ -647,12 +647,13 @@ class Page(unittest.TestCase):
             }
             return counts; })()""")
         self.assertTrue(all(4 <= count <= 8 for count in counts), sorted(set(counts)))
-        for low, high in ((0, 1), (-7.3e-5, 2.1e-5), (0.9, 7.96), (199.41, 200.77), (-3, -2.99), (0.2, 1.45)):
+        for low, high in ((0, 1), (-7.3e-5, 2.1e-5), (0.9, 7.96), (199.41, 200.77), (-3, -2.99), (0.2, 1.45), (199.67, 200.26)):
             shown, step = self.browser.evaluate(f"(() => {{ const {{ends, step}} = settled([{low}, {high}]); return [ends, step]; }})()")
             self.assertLessEqual(shown[0], low + 0.03 * (high - low) + 1e-12)
             self.assertGreaterEqual(shown[1], high - 0.03 * (high - low) - 1e-12)
             for end in shown:
                 self.assertAlmostEqual(end / step, round(end / step), 6)
+                self.assertEqual(end, float(f"{end:.10g}"), "as a tick there is, to the last bit")
             self.assertIn(round((shown[1] - shown[0]) / step) + 1, range(4, 9))
         for width, height in ((390, 844), (1400, 1000), (2560, 1440)):
             self.browser.resize(width, height)

@@ -33,7 +33,7 @@ function settled([low, high]) {
   const room = 0.03 * (high - low), most = ticksUp(plotHeight);
   const reaches = (step) => [Math.floor((low + room) / step + 1e-9), Math.ceil((high - room) / step - 1e-9)];
   const step = tickSteps(low, high, most).find((one) => reaches(one)[1] - reaches(one)[0] < most);
-  return { ends: reaches(step).map((tick) => tick * step), step };
+  return { ends: reaches(step).map((tick) => +(tick * step).toPrecision(12)), step }; // else the first tick may lie below
 }
 /** Whole powers of ten about the numbers above zero, at most so many. */
 function settledPowers(lists, most) {
