@@ -766,6 +766,45 @@ class Page(unittest.TestCase):
             self.browser.resize(1400, 1000)
             self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
 
+    def test_what_is_read_in_the_dark_is_printed_on_white(self):
+        emulate = lambda media: self.browser.call("Emulation.setEmulatedMedia", media=media, features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        shown = """new Promise((done) => setTimeout(done, 300)).then(() => {
+            const ink = (canvas) => { const {width, height} = canvas, copy = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
+                copy.drawImage(canvas, 0, 0);
+                const {data} = copy.getImageData(0, Math.floor(0.9 * height), Math.floor(0.3 * width), Math.floor(0.1 * height));
+                let light = 0, dark = 0;
+                for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) (data[i] > 200 ? (light += 1) : data[i] < 60 ? (dark += 1) : 0);
+                return light > dark ? 'paper is light' : 'paper is dark'; };
+            return [document.querySelector('figure.chart').chart.view.background(), ink(document.querySelector('.grains .overlay'))]; })"""
+        emulate("")
+        try:
+            self.open("one/report.html")
+            self.browser.wait(f"{GRAINS}.painted")
+            self.assertEqual(self.browser.evaluate(shown), ["#17181a", "paper is dark"])
+            emulate("print")
+            self.assertEqual(self.browser.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)")
+            self.browser.evaluate("dispatchEvent(new Event('beforeprint'))")
+            self.assertEqual(self.browser.evaluate(shown), ["#fff", "paper is light"])
+            emulate("")
+            self.browser.evaluate("dispatchEvent(new Event('afterprint'))")
+            self.assertEqual(self.browser.evaluate(shown), ["#17181a", "paper is dark"])
+        finally:
+            self.browser.call("Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": "light"}])
+
+    def test_a_stage_that_shrinks_squeezes_no_grain(self):
+        """As when a page is printed: nothing is drawn between."""
+        wide, shrunk = self.browser.evaluate(f"""(() => {{ const {{canvas, stage}} = {GRAINS}, size = () => {{
+                const {{width, height}} = canvas.getBoundingClientRect(), scale = Math.min(width / canvas.width, height / canvas.height);
+                return getComputedStyle(canvas).objectFit === 'contain' ? [scale, scale] : [width / canvas.width, height / canvas.height]; }};
+            const wide = size();
+            stage.style.width = '50%';
+            const shrunk = size();
+            stage.style.width = '';
+            return [wide, shrunk]; }})()""")
+        self.assertAlmostEqual(wide[0], wide[1], 6)
+        self.assertAlmostEqual(shrunk[0], shrunk[1], 6)
+        self.assertLess(shrunk[0], 0.6 * wide[0])
+
     def test_grains_are_drawn_without_webgl(self):
         script = self.browser.call("Page.addScriptToEvaluateOnNewDocument", source="""
             const context = HTMLCanvasElement.prototype.getContext;
