@@ -736,6 +736,12 @@ class Page(unittest.TestCase):
         self.assertAlmostEqual(times[0], 6e-3, delta=2e-5)
         self.assertAlmostEqual(times[1], 6e-3, delta=2e-5)
 
+    def test_a_file_of_many_runs_has_a_name_that_file_systems_take(self):
+        self.open("both.html")
+        name = "(() => { const {runs} = report; report.runs = Array.from({length: %d}, (_, i) => runs[i %% 2]); try { return document.querySelector('figure.chart').chart.fileName; } finally { report.runs = runs; } })()"
+        self.assertEqual(self.browser.evaluate(name % 2), "one-two-packing-coordination_number")
+        self.assertEqual(self.browser.evaluate(name % 40), "one-and-39-more-packing-coordination_number")
+
     def test_long_series_are_drawn_by_what_is_seen_of_them(self):
         count, lowest, highest, gap = self.browser.evaluate("""(() => { const y = Float64Array.from({length: 100001}, (_, i) => Math.sin(i));
             y[5000] = -7, y[70000] = 9, y[30000] = NaN;

@@ -329,7 +329,8 @@ class Chart {
   }
 
   get fileName() {
-    return `${report.runs.map((run) => run.name).join("-")}-${this.group.name}-${this.name}`;
+    const names = report.runs.map((run) => run.name), named = names.length > 3 ? [names[0], `and-${names.length - 1}-more`] : names; // file systems take 255 bytes
+    return [...named, this.group.name, this.name].join("-");
   }
   /** What goes into files. */
   fileView() {
