@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the pictures of the documentation anew, from runs of a minute each. Needs a build.
+# Draws the pictures of the documentation anew, from runs of some minutes each. Needs a build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -43,6 +43,7 @@ end
   }
   shot results/pictures/direct-shear/report.html pictures/report
   watched=results/pictures/watched
+  rm -rf "$watched" # else its frames are there already
   build/bin/grit run sims/silo-discharge/quick.json --out "$watched" --overwrite --threads 1 --watch 2> "$watched.log" &
   until [[ -e $watched/frames/000018.h5 ]]; do sleep 1; done
   shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched

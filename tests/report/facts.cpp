@@ -102,8 +102,8 @@ TEST(Facts, DoubtFastShearUnlessGrainsAreToFlow) {
   // What is marked does not read as the limit.
   for (const auto& [inertial, words, doubtful] :
        {std::tuple(1.004e-3, "0.001", false), std::tuple(1.006e-3, "0.00101", true)}) {
-    const Fact told = fact(trust_facts(run_with(Description::object(), {{"inertial_number", {inertial}}}), 0),
-                           "inertial number");
+    const Fact told =
+        fact(trust_facts(run_with(Description::object(), {{"inertial_number", {inertial}}}), 0), "inertial number");
     EXPECT_EQ(told.value, words);
     EXPECT_EQ(told.doubtful, doubtful);
   }
