@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Draws the pictures of the documentation anew, from runs of a minute each. Needs a build.
+# Draws the pictures of the documentation anew, from runs of some minutes each. Needs a build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -27,24 +27,26 @@ drawn silo-discharge/layers.svg gallery/silo-discharge-layers
 
 # Pages, where there is a browser: that of a run for the README, and the one that a run serves when it has got some way.
 if command -v chromium > /dev/null; then
-  # shot URL PICTURE HEIGHT
+  # shot URL PICTURE: the page down to its grains.
   shot() {
-    PYTHONPATH=tests/report /usr/bin/python3 - "$1" "docs/$2.png" "$3" << 'end'
+    PYTHONPATH=tests/report /usr/bin/python3 - "$1" "docs/$2.png" << 'end'
 import sys
 from browser import GRAINS, Browser, find_chromium
 
-with Browser(find_chromium(), width=1000, height=int(sys.argv[3])) as browser:
+with Browser(find_chromium(), width=1000, height=2400) as browser:
     browser.open(sys.argv[1])
     browser.wait("document.querySelectorAll('figure.chart[data-drawn]').length > 1 && !document.querySelector('.problems')")
     browser.wait(f"{GRAINS}.painted")
+    browser.resize(1000, browser.evaluate("Math.ceil(document.querySelector('figure.grains').getBoundingClientRect().bottom) + 16"))
     browser.screenshot(sys.argv[2])
 end
   }
-  shot results/pictures/direct-shear/report.html pictures/report 2110
+  shot results/pictures/direct-shear/report.html pictures/report
   watched=results/pictures/watched
+  rm -rf "$watched" # else its frames are there already
   build/bin/grit run sims/silo-discharge/quick.json --out "$watched" --overwrite --threads 1 --watch 2> "$watched.log" &
   until [[ -e $watched/frames/000018.h5 ]]; do sleep 1; done
-  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched 2200
+  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched
   kill -INT $!
   wait $! || true
 fi

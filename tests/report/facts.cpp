@@ -99,6 +99,14 @@ TEST(Facts, TrustIsOfTheLastStageAndNotOfItsPreparation) {
 TEST(Facts, DoubtFastShearUnlessGrainsAreToFlow) {
   const std::vector<std::pair<std::string, std::vector<double>>> fast{{"inertial_number", {4e-3}}};
   EXPECT_TRUE(fact(trust_facts(run_with(Description::object(), fast), 0), "inertial number").doubtful);
+  // What is marked does not read as the limit.
+  for (const auto& [inertial, words, doubtful] :
+       {std::tuple(1.004e-3, "0.001", false), std::tuple(1.006e-3, "0.00101", true)}) {
+    const Fact told =
+        fact(trust_facts(run_with(Description::object(), {{"inertial_number", {inertial}}}), 0), "inertial number");
+    EXPECT_EQ(told.value, words);
+    EXPECT_EQ(told.doubtful, doubtful);
+  }
   const Description falling = {{"description", {{"engines", {{"weight", {{"type", "gravity"}}}}}}}};
   EXPECT_FALSE(fact(trust_facts(run_with(falling, fast), 0), "inertial number").doubtful);
 }

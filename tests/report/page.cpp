@@ -323,7 +323,8 @@ TEST(ReportPage, PutsRunsSideBySide) {
   EXPECT_EQ(numbers_of<double>(page.html, channel_of(runs.at(1), "test", "stress_ratio").at("data")).at(4), 2.0 / 3);
   EXPECT_THAT(page.html,
               AllOf(HasSubstr("<h1>Runs side by side</h1>"), HasSubstr("one</th>"), HasSubstr("other</th>")));
-  EXPECT_THAT(page.html, HasSubstr("<td colspan=\"2\">a small run</td>")) << "what is the same is said once";
+  EXPECT_THAT(page.html, HasSubstr("<td class=\"name\" colspan=\"2\">a small run</td>"))
+      << "what is the same is said once";
   EXPECT_THAT(page.html, HasSubstr("largest overlap<small>of the mean diameter, in the last stage</small></td><td>"));
 }
 

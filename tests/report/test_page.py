@@ -616,6 +616,57 @@ class Page(unittest.TestCase):
         self.assertEqual(set(image[10, 27:55]), {-1}, "what is far from others stays so")
         self.assertEqual(list(image[10, 55:66]), [4] * 10 + [-1])
 
+    def test_no_hole_is_left_where_gaps_cross(self):
+        """Of four by three cells, ten pixels wide, whose columns have slid past each other by half a cell and have moved apart, as rows have."""
+        centres = [(10 + 16 * i, 10 + 16 * j + 5 * (i % 2)) for i in range(4) for j in range(3)]
+        owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
+            return [...cellsByPixel({{x: centres.map((one) => one[0]), y: centres.map((one) => one[1]), w: half, h: half}}, 68, 58)]; }})()""")
+        image = numpy.array(owner).reshape(58, 68)
+        self.assertNotIn(-1, image[10:47, 5:63])
+        for i in range(4):  # no more than they reach, but for the gaps
+            first = 5 + 5 * (i % 2)
+            column = image[:, 10 + 16 * i]
+            self.assertEqual([k for k in range(58) if column[k] >= 0], list(range(first, first + 42)))
+        self.assertEqual(set(image[:, :5].flat) | set(image[:, 63:].flat) | set(image[52:].flat), {-1})
+
+    def test_a_cell_that_is_missing_leaves_its_place(self):
+        centres = [(10 + 10 * i, 10 + 10 * j) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
+        owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
+            return [...cellsByPixel({{x: centres.map((one) => one[0]), y: centres.map((one) => one[1]), w: half, h: half}}, 40, 40)]; }})()""")
+        image = numpy.array(owner).reshape(40, 40)
+        self.assertEqual(set(image[15:25, 15:25].flat), {-1})
+        self.assertEqual(int((image < 0).sum()), 40 * 40 - 8 * 100)
+
+    def test_axes_have_four_to_eight_ticks(self):
+        """1, 2 or 5 times a power of ten apart."""
+        counts = self.browser.evaluate("""(() => { const counts = [];
+            for (let i = 0; i < 500; ++i) {
+                const high = 10 ** (-6 + 12 * i / 500), step = tickStep(-0.04 * high, high), lead = step / 10 ** Math.floor(Math.log10(step * 1.0001));
+                if (![1, 2, 5].some((one) => Math.abs(lead - one) < 1e-9)) throw Error(`a step of ${step}`);
+                counts.push(multiples(step, -0.04 * high, high).length);
+            }
+            return counts; })()""")
+        self.assertTrue(all(4 <= count <= 8 for count in counts), sorted(set(counts)))
+        for low, high in ((0, 1), (-7.3e-5, 2.1e-5), (0.9, 7.96), (199.41, 200.77), (-3, -2.99), (0.2, 1.45), (199.67, 200.26)):
+            shown, step = self.browser.evaluate(f"(() => {{ const {{ends, step}} = settled([{low}, {high}]); return [ends, step]; }})()")
+            self.assertLessEqual(shown[0], low + 0.03 * (high - low) + 1e-12)
+            self.assertGreaterEqual(shown[1], high - 0.03 * (high - low) - 1e-12)
+            for end in shown:
+                self.assertAlmostEqual(end / step, round(end / step), 6)
+                self.assertEqual(end, float(f"{end:.10g}"), "as a tick there is, to the last bit")
+            self.assertIn(round((shown[1] - shown[0]) / step) + 1, range(4, 9))
+        for width, height in ((390, 844), (1400, 1000), (2560, 1440)):
+            self.browser.resize(width, height)
+            try:
+                self.browser.evaluate("(async () => { const {chart} = document.querySelector('figure.chart'); chart.fit(); await chart.draw(); })()")
+                ticks = self.browser.evaluate("[...document.querySelectorAll('figure.chart .role-axis')].slice(0, 2).map((axis) => axis.querySelectorAll('.role-axis-grid line').length)")
+                for count in ticks:
+                    self.assertIn(count, range(4, 9), f"{ticks} at {width}")
+                last, top = self.browser.evaluate("(() => { const {chart} = document.querySelector('figure.chart'); return [chart.view.scale('y')(chart.yDomain[1]), Math.min(...[...document.querySelectorAll('figure.chart .role-axis')[1].querySelectorAll('.role-axis-grid line')].map((line) => line.transform.baseVal[0].matrix.f))]; })()")
+                self.assertAlmostEqual(last, top, delta=1, msg="a line at the upper end")
+            finally:
+                self.browser.resize(1400, 1000)
+
     def test_a_colour_scale_is_of_the_field_and_not_of_its_values(self):
         for number in (1, 5):
             self.go(number)
@@ -685,6 +736,12 @@ class Page(unittest.TestCase):
         self.assertAlmostEqual(times[0], 6e-3, delta=2e-5)
         self.assertAlmostEqual(times[1], 6e-3, delta=2e-5)
 
+    def test_a_file_of_many_runs_has_a_name_that_file_systems_take(self):
+        self.open("both.html")
+        name = "(() => { const {runs} = report; report.runs = Array.from({length: %d}, (_, i) => runs[i %% 2]); try { return document.querySelector('figure.chart').chart.fileName; } finally { report.runs = runs; } })()"
+        self.assertEqual(self.browser.evaluate(name % 2), "one-two-packing-coordination_number")
+        self.assertEqual(self.browser.evaluate(name % 40), "one-and-39-more-packing-coordination_number")
+
     def test_long_series_are_drawn_by_what_is_seen_of_them(self):
         count, lowest, highest, gap = self.browser.evaluate("""(() => { const y = Float64Array.from({length: 100001}, (_, i) => Math.sin(i));
             y[5000] = -7, y[70000] = 9, y[30000] = NaN;
@@ -714,6 +771,45 @@ class Page(unittest.TestCase):
         finally:
             self.browser.resize(1400, 1000)
             self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
+
+    def test_what_is_read_in_the_dark_is_printed_on_white(self):
+        emulate = lambda media: self.browser.call("Emulation.setEmulatedMedia", media=media, features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        shown = """new Promise((done) => setTimeout(done, 300)).then(() => {
+            const ink = (canvas) => { const {width, height} = canvas, copy = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
+                copy.drawImage(canvas, 0, 0);
+                const {data} = copy.getImageData(0, Math.floor(0.9 * height), Math.floor(0.3 * width), Math.floor(0.1 * height));
+                let light = 0, dark = 0;
+                for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200) (data[i] > 200 ? (light += 1) : data[i] < 60 ? (dark += 1) : 0);
+                return light > dark ? 'paper is light' : 'paper is dark'; };
+            return [document.querySelector('figure.chart').chart.view.background(), ink(document.querySelector('.grains .overlay'))]; })"""
+        emulate("")
+        try:
+            self.open("one/report.html")
+            self.browser.wait(f"{GRAINS}.painted")
+            self.assertEqual(self.browser.evaluate(shown), ["#17181a", "paper is dark"])
+            emulate("print")
+            self.assertEqual(self.browser.evaluate("getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)")
+            self.browser.evaluate("dispatchEvent(new Event('beforeprint'))")
+            self.assertEqual(self.browser.evaluate(shown), ["#fff", "paper is light"])
+            emulate("")
+            self.browser.evaluate("dispatchEvent(new Event('afterprint'))")
+            self.assertEqual(self.browser.evaluate(shown), ["#17181a", "paper is dark"])
+        finally:
+            self.browser.call("Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": "light"}])
+
+    def test_a_stage_that_shrinks_squeezes_no_grain(self):
+        """As when a page is printed: nothing is drawn between."""
+        wide, shrunk = self.browser.evaluate(f"""(() => {{ const {{canvas, stage}} = {GRAINS}, size = () => {{
+                const {{width, height}} = canvas.getBoundingClientRect(), scale = Math.min(width / canvas.width, height / canvas.height);
+                return getComputedStyle(canvas).objectFit === 'contain' ? [scale, scale] : [width / canvas.width, height / canvas.height]; }};
+            const wide = size();
+            stage.style.width = '50%';
+            const shrunk = size();
+            stage.style.width = '';
+            return [wide, shrunk]; }})()""")
+        self.assertAlmostEqual(wide[0], wide[1], 6)
+        self.assertAlmostEqual(shrunk[0], shrunk[1], 6)
+        self.assertLess(shrunk[0], 0.6 * wide[0])
 
     def test_grains_are_drawn_without_webgl(self):
         script = self.browser.call("Page.addScriptToEvaluateOnNewDocument", source="""

@@ -144,7 +144,7 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
   if (auto closure = closure_fact(run)) facts.push_back(std::move(*closure));
   const bool flows = has_engine(run, "gravity");
   if (const auto inertial = largest(run, "inertial_number"); inertial && *inertial > 0)
-    facts.push_back({"inertial number", fmt::format("{:.2g}", *inertial),
+    facts.push_back({"inertial number", fmt::format("{:.3g}", *inertial),
                      "largest of the last stage; quasi-static below 0.001", *inertial > 1e-3 * 1.005 && !flows});
   const auto modulus = least_modulus(run);
   const auto stress = largest(run, "mean_stress");

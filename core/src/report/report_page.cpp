@@ -73,7 +73,7 @@ std::string facts_table(const std::vector<RunResults>& runs, const std::vector<s
   html += "</tr></thead><tbody>\n<tr><td class=\"name\">title</td>";
   const auto same_title = [&](const RunResults& run) { return run.title() == runs[0].title(); };
   if (std::ranges::all_of(runs, same_title))
-    html += fmt::format("<td colspan=\"{}\">{}</td>", runs.size(), escaped(runs[0].title()));
+    html += fmt::format("<td class=\"name\" colspan=\"{}\">{}</td>", runs.size(), escaped(runs[0].title()));
   else
     for (const RunResults& run : runs) html += "<td>" + escaped(run.title()) + "</td>";
   html += "</tr>\n<tr><td class=\"name\">status</td>";

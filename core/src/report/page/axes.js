@@ -23,8 +23,20 @@ function atTick(value, step) {
   return value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))).replace("-", "−");
 }
 
-const ticksUp = 5, pixelsATick = 80; // of all axes: so many upwards, and to the right as many as have room
-const ticksAcross = (width) => Math.max(2, Math.floor(width / pixelsATick));
+const mostTicks = 8;
+/** As many ticks as have room. */
+const ticksAcross = (width) => Math.max(2, Math.min(mostTicks, Math.floor(width / 40)));
+const ticksUp = (height) => Math.max(2, Math.min(mostTicks, Math.floor(height / 22)));
+
+/** From fine to coarse: of a range, so that the first is too fine for so many ticks, and the last coarse enough. */
+function tickSteps(low, high, most) {
+  const power = 10 ** Math.floor(Math.log10((high - low) / most));
+  return [1, 2, 5, 10, 20].map((lead) => lead * power);
+}
+/** The finest step that has at most so many ticks within a range; from 4 of them on, but for few ranges that have 3. */
+function tickStep(low, high, most = mostTicks) {
+  return tickSteps(low, high, most).find((step) => multiples(step, low, high).length <= most);
+}
 
 const raised = (power) => String(power).replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
 /** Powers of ten within a range, as few as about `count`; where it has less than three, 2 and 5 times those too. */
@@ -47,14 +59,14 @@ function drawAxes(pen, look, layout, view, { left, top, right, bottom }) {
   const largest = Math.max(...[left, right].map((x) => Math.abs(layout.metresAcross(x))), ...[top, bottom].map((y) => Math.abs(layout.metresUp(y))));
   const [factor, unit] = prefixed("m", largest);
   const along = (low, high, count, draw) => {
-    const step = niceStep(((high - low) * factor) / count);
+    const step = tickStep(low * factor, high * factor, count);
     for (const value of multiples(step, low * factor, high * factor)) draw(value / factor, atTick(value, step));
   };
   along(layout.metresAcross(left), layout.metresAcross(right), ticksAcross(right - left), (at, words) => {
     pen.line(layout.across(at), bottom, layout.across(at), bottom + 4, look.frame, 1);
     pen.text(layout.across(at), bottom + 17, words, look.soft, "middle", 11.5);
   });
-  along(layout.metresUp(bottom), layout.metresUp(top), Math.max(2, Math.min(ticksUp, Math.floor((bottom - top) / 24))), (at, words) => {
+  along(layout.metresUp(bottom), layout.metresUp(top), ticksUp(bottom - top), (at, words) => {
     pen.line(left - 4, layout.down(at), left, layout.down(at), look.frame, 1);
     pen.text(left - 8, layout.down(at) + 4, words, look.soft, "end", 11.5);
   });

@@ -5,33 +5,34 @@ const gapClosed = 0.75; // of a cell's width: what is wider between two is no ga
 
 /** By pixel of a width × height image the place of its cell, -1 of none. Cells: lists of centres and half sizes [px]. */
 function cellsByPixel({ x, y, w, h }, width, height) {
-  const owner = new Int32Array(width * height).fill(-1), distance = new Float32Array(width * height).fill(Infinity);
-  // In its own measure a cell is from -1 to 1; it is asked for half a gap more on each side.
-  const reach = 1 + gapClosed;
+  // In its own measure a cell is from -1 to 1; it is asked for half a gap more on each side, by whole pixels, and for what that needs about the image.
+  const beyond = (half) => Math.round(gapClosed * half), margin = beyond([...w, ...h].reduce((a, b) => Math.max(a, b), 0));
+  const wide = width + 2 * margin, tall = height + 2 * margin;
+  const nearest = new Int32Array(wide * tall).fill(-1), distance = new Float32Array(wide * tall).fill(Infinity);
   for (let i = 0; i < x.length; ++i) {
-    const lastRow = Math.min(height - 1, Math.floor(y[i] + reach * h[i] - 0.5)), lastColumn = Math.min(width - 1, Math.floor(x[i] + reach * w[i] - 0.5));
-    for (let row = Math.max(0, Math.ceil(y[i] - reach * h[i] - 0.5)); row <= lastRow; ++row) {
-      const up = Math.abs(row + 0.5 - y[i]) / h[i];
-      for (let column = Math.max(0, Math.ceil(x[i] - reach * w[i] - 0.5)); column <= lastColumn; ++column) {
-        const off = Math.max(up, Math.abs(column + 0.5 - x[i]) / w[i]), p = row * width + column;
-        if (off < distance[p]) (distance[p] = off), (owner[p] = i);
+    const across = w[i] + beyond(w[i]), up = h[i] + beyond(h[i]), left = x[i] + margin, top = y[i] + margin;
+    const lastRow = Math.min(tall - 1, Math.floor(top + up - 0.5)), lastColumn = Math.min(wide - 1, Math.floor(left + across - 0.5));
+    for (let row = Math.max(0, Math.ceil(top - up - 0.5)); row <= lastRow; ++row) {
+      const off = Math.abs(row + 0.5 - top) / h[i];
+      for (let column = Math.max(0, Math.ceil(left - across - 0.5)); column <= lastColumn; ++column) {
+        const most = Math.max(off, Math.abs(column + 0.5 - left) / w[i]), p = row * wide + column;
+        if (most < distance[p]) (distance[p] = most), (nearest[p] = i);
       }
     }
   }
-  // Beyond its edge a cell has only what lies between it and another one: along a row, along a column, and where such gaps cross.
-  const within = Uint8Array.from(distance, (off) => (off <= 1 + 1e-6 ? 1 : 0));
-  const close = (lines, length, at, size) => {
-    for (let line = 0; line < lines; ++line)
-      for (let k = 0, last = -1; k < length; ++k) {
-        const p = at(line, k);
-        if (!within[p]) continue;
-        if (last >= 0 && k - last - 1 <= 2 * gapClosed * size[owner[p]]) for (let i = last + 1; i < k; ++i) within[at(line, i)] = 1;
-        last = k;
-      }
-  };
-  close(height, width, (row, column) => row * width + column, w);
-  close(width, height, (column, row) => row * width + column, h); // across gaps that are closed by now, too
-  for (let p = 0; p < owner.length; ++p) if (!within[p]) owner[p] = -1;
+  // Then what has grown is taken back ("closing" of image analysis): beyond its edge a cell keeps what has cells all about it.
+  const before = new Int32Array((wide + 1) * (tall + 1)), line = wide + 1; // pixels of cells above and to the left
+  for (let row = 0, p = 0; row < tall; ++row)
+    for (let column = 0, along = 0; column < wide; ++column, ++p) before[(row + 1) * line + column + 1] = before[row * line + column + 1] + (along += nearest[p] >= 0 ? 1 : 0);
+  const owner = new Int32Array(width * height);
+  for (let row = 0, q = 0; row < height; ++row)
+    for (let column = 0; column < width; ++column, ++q) {
+      const p = (row + margin) * wide + column + margin, cell = (owner[q] = nearest[p]);
+      if (cell < 0 || distance[p] <= 1 + 1e-6) continue;
+      const across = beyond(w[cell]), up = beyond(h[cell]), top = (row + margin - up) * line, bottom = (row + margin + up + 1) * line;
+      const left = column + margin - across, right = column + margin + across + 1;
+      if (before[bottom + right] - before[top + right] - before[bottom + left] + before[top + left] < (2 * across + 1) * (2 * up + 1)) owner[q] = -1;
+    }
   return owner;
 }
 

@@ -6,9 +6,16 @@ function lookOf(style) {
   const of = (name) => style.getPropertyValue(`--${name}`).trim();
   return { ink: of("ink"), soft: of("soft"), paper: of("paper"), line: of("line"), frame: of("frame") };
 }
-const theme = () => lookOf(getComputedStyle(document.documentElement));
-/** Files go into papers, which are white, whatever the page is read in. */
+let printing = false;
+const theme = () => (printing ? filesLook() : lookOf(getComputedStyle(document.documentElement)));
+/** Files and prints go on paper, which is white, whatever the page is read in. */
 const filesLook = () => lookOf([...document.styleSheets[0].cssRules].find(({ selectorText }) => selectorText === ":root").style);
+
+for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
+  addEventListener(event, () => {
+    printing = now;
+    if (dark.matches) dark.dispatchEvent(new Event("change")); // who listens draws anew
+  });
 
 const seriesColour = (place) => report.colours.series[place % report.colours.series.length];
 

@@ -21,17 +21,19 @@ function rangeOf(lists) {
   return low <= high ? [low, high] : [0, 1];
 }
 
-/** Zero is shown where it is near, and nothing has no height. */
+/** {ends, step} of an axis upwards: zero is shown where it is near, and nothing has no height. */
 function settled([low, high]) {
   if (low > 0 && low < 0.5 * high) low = 0;
   if (high < 0 && high > 0.5 * low) high = 0;
   if (high - low <= 1e-12 * Math.max(Math.abs(low), Math.abs(high))) {
     const room = low === 0 ? 1 : 0.5 * Math.abs(low);
-    return [low - room, high + room];
+    return { ends: [low - room, high + room], step: tickStep(low - room, high + room, 5) };
   }
   // From tick to tick, and no tick more for noise about one.
-  const room = 0.03 * (high - low), step = niceStep((high - low) / ticksUp);
-  return [Math.floor((low + room) / step + 1e-9) * step, Math.ceil((high - room) / step - 1e-9) * step];
+  const room = 0.03 * (high - low), most = ticksUp(plotHeight);
+  const reaches = (step) => [Math.floor((low + room) / step + 1e-9), Math.ceil((high - room) / step - 1e-9)];
+  const step = tickSteps(low, high, most).find((one) => reaches(one)[1] - reaches(one)[0] < most);
+  return { ends: reaches(step).map((tick) => +(tick * step).toPrecision(12)), step }; // else the first tick may lie below
 }
 /** Whole powers of ten about the numbers above zero, at most so many. */
 function settledPowers(lists, most) {
@@ -178,7 +180,8 @@ class Chart {
     }
     this.xDomain = rangeOf(this.series.map((one) => one.shownX));
     if (this.xDomain[0] === this.xDomain[1]) this.xDomain = [this.xDomain[0] - 0.5, this.xDomain[1] + 0.5];
-    this.yDomain = settled(rangeOf(this.series.map((one) => one.shownY)));
+    const { ends, step } = settled(rangeOf(this.series.map((one) => one.shownY)));
+    this.yDomain = ends, this.yStep = step;
   }
   /** What a reader who does not see the chart wants to know of it. */
   inWords() {
@@ -228,7 +231,7 @@ class Chart {
       ],
       axes: [
         { ...axis, scale: "x", orient: "bottom", title: titled(this.abscissa.label, this.abscissa.shown_unit), ...this.ticks(this.xDomain, ticksAcross(width)) },
-        { ...axis, scale: "y", orient: "left", ...this.ticks(this.yDomain, ticksUp) },
+        { ...axis, scale: "y", orient: "left", ...this.ticks(this.yDomain, ticksUp(plotHeight), this.yStep) },
       ],
       marks: [
         { type: "text", name: "title", interactive: false, encode: { update: { x: { value: 2 - around.left }, y: { value: -16 }, text: { value: titled(this.channel.label, this.channel.shown_unit) },
@@ -246,9 +249,9 @@ class Chart {
       ],
     };
   }
-  /** Of an axis. */
-  ticks(domain, count) {
-    if (!this.byPowers) return { tickCount: count };
+  /** Of an axis: at most so many, or about so many powers of ten. */
+  ticks(domain, count, step) {
+    if (!this.byPowers) return { tickCount: (domain[1] - domain[0]) / (step ?? tickStep(...domain, count)) };
     const values = powersWithin(domain, count), words = Object.fromEntries(values.map((value) => [value, atPower(value)]));
     return { values, encode: { labels: { update: { text: { signal: `(${JSON.stringify(words)})[datum.value]` } } } } };
   }
@@ -326,7 +329,8 @@ class Chart {
   }
 
   get fileName() {
-    return `${report.runs.map((run) => run.name).join("-")}-${this.group.name}-${this.name}`;
+    const names = report.runs.map((run) => run.name), named = names.length > 3 ? [names[0], `and-${names.length - 1}-more`] : names; // file systems take 255 bytes
+    return [...named, this.group.name, this.name].join("-");
   }
   /** What goes into files. */
   fileView() {

@@ -292,7 +292,7 @@ class GrainView {
     };
   }
   /** What takes long to draw is drawn fine only when it is left alone, or must be. */
-  paint(fine = false) {
+  paint(fine = printing) {
     const { layout } = this, look = theme();
     for (const canvas of [this.canvas, this.overlay]) {
       const width = Math.round(layout.width * devicePixelRatio), height = Math.round(layout.height * devicePixelRatio);

@@ -102,6 +102,10 @@ class PolarChart extends ListChart {
     this.step = niceBelow(high / 2);
     this.reach = Math.max(Math.ceil((high / this.step) * (1 - 1e-9)), 1) * this.step;
   }
+  /** Rings stand for them. */
+  ticks() {
+    return {};
+  }
   /** Half a turn, in the unit of the directions. */
   get half() {
     return this.abscissa.shown_unit.startsWith("rad") ? Math.PI : 180;
