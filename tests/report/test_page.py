@@ -517,7 +517,7 @@ class Page(unittest.TestCase):
     def test_axes_go_from_tick_to_tick(self):
         # With zero where it is near, no tick more for noise about one, and something where nothing changes.
         for span, wanted in (([0, 1.03], [0, 1]), ([0.4, 1], [0, 1]), ([-0.03, 1], [0, 1]), ([-0.2, 1], [-0.2, 1]), ([99, 101], [99, 101]), ([7, 7], [3.5, 10.5]), ([0, 0], [-1, 1])):
-            numpy.testing.assert_allclose(self.browser.evaluate(f"settled({span})"), wanted, atol=1e-12)
+            numpy.testing.assert_allclose(self.browser.evaluate(f"settled({span}).ends"), wanted, atol=1e-12)
 
     def test_units_are_written_as_people_do(self):
         for unit, written in (("kg m-3", "kg m⁻³"), ("degree", "°"), ("m", "m"), ("Pa2 Hz-1", "Pa² Hz⁻¹"), ("rad/s", "rad/s")):
@@ -655,6 +655,11 @@ class Page(unittest.TestCase):
                 self.assertAlmostEqual(end / step, round(end / step), 6)
                 self.assertEqual(end, float(f"{end:.10g}"), "as a tick there is, to the last bit")
             self.assertIn(round((shown[1] - shown[0]) / step) + 1, range(4, 9))
+        for low, high, tall in ((-0.72, 0.72, 240), (-59, 59, 194), (0, 441, 240), (0.53, 0.86, 126)):
+            words = self.browser.evaluate(f"""(() => {{ const words = [], pen = {{image() {{}}, line() {{}}, text: (x, y, said) => words.push(said)}};
+                drawColourBar(pen, theme(), {{left: 0, top: 0, tall: {tall}, low: {low}, high: {high}, table: colourTables.diverging, factor: 1}});
+                return words; }})()""")
+            self.assertIn(len(words), range(4, 9), f"{words} of colours")
         for width, height in ((390, 844), (1400, 1000), (2560, 1440)):
             self.browser.resize(width, height)
             try:

@@ -1,11 +1,6 @@
 // Axes: where their ticks are and what stands there, for charts and for maps.
 "use strict";
 
-/** 1, 2 or 5 times a power of ten, about as large as a number; as axes have their ticks. */
-function niceStep(rough) {
-  const power = 10 ** Math.floor(Math.log10(rough)), lead = rough / power;
-  return power * (lead < Math.SQRT2 ? 1 : lead < Math.sqrt(10) ? 2 : lead < Math.sqrt(50) ? 5 : 10);
-}
 /** 1, 2 or 5 times a power of ten, at most `most`. */
 function niceBelow(most) {
   const power = 10 ** Math.floor(Math.log10(most));
@@ -24,9 +19,10 @@ function atTick(value, step) {
 }
 
 const mostTicks = 8;
-/** As many ticks as have room. */
-const ticksAcross = (width) => Math.max(2, Math.min(mostTicks, Math.floor(width / 40)));
-const ticksUp = (height) => Math.max(2, Math.min(mostTicks, Math.floor(height / 22)));
+/** As many ticks as have room [px]. */
+const ticksWithin = (length, each) => Math.max(2, Math.min(mostTicks, Math.floor(length / each)));
+const ticksAcross = (width) => ticksWithin(width, 40);
+const ticksUp = (height) => ticksWithin(height, 22);
 
 /** From fine to coarse: of a range, so that the first is too fine for so many ticks, and the last coarse enough. */
 function tickSteps(low, high, most) {

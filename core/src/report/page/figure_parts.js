@@ -102,7 +102,7 @@ function drawColourBar(pen, look, { left, top, tall, low, high, table, factor })
   const bar = make("canvas", { width: 1, height: table.length }), context = bar.getContext("2d");
   table.forEach((colour, i) => ((context.fillStyle = rgb(colour)), context.fillRect(0, table.length - 1 - i, 1, 1)));
   pen.image(bar, left, top, 13, tall);
-  const step = niceStep(((high - low) * factor) / 4);
+  const step = tickStep(low * factor, high * factor, ticksWithin(tall, 16));
   for (const value of multiples(step, low * factor, high * factor)) {
     const at = top + tall * (1 - (value / factor - low) / (high - low));
     pen.line(left + 13, at, left + 17, at, look.frame, 1);
