@@ -171,7 +171,7 @@ TEST(MapPicture, CopesWithHugeNumbers) {
     const std::string text = draw(picture);
     EXPECT_THAT(text, testing::Not(testing::AnyOf(HasSubstr("e+"), HasSubstr("inf"), HasSubstr("nan"))));
     EXPECT_THAT(elements(parsed(text), "line", "wall"), SizeIs(1));
-    EXPECT_THAT(text, HasSubstr("4 cells far from all others, not shown"));
+    EXPECT_THAT(text, HasSubstr("4 of the cells far from all others, not shown"));
   }
   for (const double all : {huge, 1e29}) {
     MapPicture picture = row_of({all, -all, all}, false);

@@ -241,7 +241,7 @@ std::string draw(const MapPicture& whole) {
   MapPicture picture = whole;
   picture.cells = near_cells(whole.cells);
   if (const std::size_t far = whole.cells.size() - picture.cells.size(); far > 0)
-    picture.facts += fmt::format("  ·  {} cells far from all others, not shown", grouped(far));
+    picture.facts += fmt::format("  ·  {} of the cells far from all others, not shown", grouped(far));
   const Plot plot = plot_of(picture);
   const double left = std::round(margin + axis_wide + 0.5 * (width - 2 * margin - axis_wide - colour_bar - plot.wide));
   const double panel_high = std::max<double>(plot.high, 150) + axis_high + 44;
