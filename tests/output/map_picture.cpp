@@ -151,6 +151,35 @@ TEST(MapPicture, LeavesPlacesWithoutCellsFree) {
   EXPECT_EQ(closed[0].x + closed[0].wide, closed[1].x);
 }
 
+// What has gone wrong hides nothing of the rest.
+TEST(MapPicture, CopesWithHugeNumbers) {
+  const double huge = 1e300;
+  for (const bool about_zero : {false, true}) {
+    MapPicture picture = row_of({-2, 0, 1, 2, 2}, about_zero);
+    picture.walls = {{-10, 0, 10, 0}};
+    const auto whole = tiles(picture);
+    picture.walls = {{-huge, 0, huge, 0}, {-1e25, 0, 1e25, 0}};
+    picture.cells[4].values = {-huge};  // of the colour of its neighbour before
+    picture.cells.push_back({huge, 0, 1e-3, 1e-3, {0}}), picture.cells.push_back({0, -1e20, 1e-3, 1e-3, {0}});
+    picture.cells.push_back({2e-3, 0, huge, 1e-3, {0}}), picture.cells.push_back({2e-3, 0, 1e-3, 1e18, {0}});
+    const auto seen = tiles(picture);
+    ASSERT_EQ(seen.size(), whole.size());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      EXPECT_EQ(seen[i].x, whole[i].x);
+      EXPECT_EQ(seen[i].colour, i == 4 ? "#d4d4d0" : whole[i].colour);
+    }
+    const std::string text = draw(picture);
+    EXPECT_THAT(text, testing::Not(testing::AnyOf(HasSubstr("e+"), HasSubstr("inf"), HasSubstr("nan"))));
+    EXPECT_THAT(elements(parsed(text), "line", "wall"), SizeIs(1));
+    EXPECT_THAT(text, HasSubstr("4 of the cells far from all others, not shown"));
+  }
+  for (const double all : {huge, 1e29}) {
+    MapPicture picture = row_of({all, -all, all}, false);
+    for (MapCell& cell : picture.cells) cell.x = all;
+    EXPECT_THAT(draw(picture), testing::Not(testing::AnyOf(HasSubstr("inf"), HasSubstr("nan"))));
+  }
+}
+
 TEST(MapPicture, CopesWithNothing) {
   MapPicture picture;
   picture.panels = {{"value", false}};

@@ -16,9 +16,11 @@
 namespace grit {
 namespace {
 
+using testing::AnyOf;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::Pointwise;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -289,6 +291,71 @@ TEST(Picture, CopesWithNothing) {
                   .grains = GrainView{}};
   EXPECT_THAT(draw(picture), testing::Not(HasSubstr("nan")));
   EXPECT_THAT(draw(picture), testing::Not(HasSubstr("inf")));
+}
+
+// What has gone wrong hides nothing of the rest, and leaves no number that a browser cannot take.
+TEST(Picture, CopesWithHugeNumbers) {
+  const double huge = 1e300;
+  Curve curve{"run", {}, {}};
+  for (int i = 0; i <= 10; ++i) curve.x.push_back(i), curve.y.push_back(0.1 * i);
+  GrainView view;
+  for (int i = 0; i < 5; ++i) view.discs.push_back({1.0 * i, 0.5 * i, 0.5, 0.1 * i});
+  view.walls = {{0, -0.5, 4, -0.5}, {-1000, 1, 1000, 1}};
+  view.links = {{0, 0, 1, 0.5, 1}};
+  const auto drawn = [&] {
+    return draw({.title = "", .facts = "", .panels = {{{"x"}, {"y"}, {curve}}}, .grains = view});
+  };
+  const auto whole = parsed(drawn());
+
+  curve.x.insert(curve.x.begin() + 11, {huge, 11}), curve.y.insert(curve.y.begin() + 11, {0.5, -huge});
+  view.discs.push_back({huge, 0, 0.5, 0}), view.discs.push_back({2, 1, huge, 0});
+  view.discs[0].value = huge;
+  view.walls[1] = {-1e25, 1, 1e25, 1}, view.walls.push_back({-huge, 0, huge, 0});
+  view.links.push_back({0, 0, huge, huge, huge});
+  const std::string text = drawn();
+  EXPECT_THAT(text, Not(AnyOf(HasSubstr("e+"), HasSubstr("inf"), HasSubstr("nan"))));
+  const auto strayed = parsed(text);
+  EXPECT_EQ(elements(strayed, "polyline", "").size(), 1u);
+  EXPECT_EQ(text_of(elements(strayed, "polyline", "").at(0), "points"),
+            text_of(elements(whole, "polyline", "").at(0), "points"));
+  const auto wall = [](const auto& picture, std::size_t i) { return elements(picture, "line", "wall").at(i); };
+  EXPECT_EQ(number_of(wall(strayed, 0), "x2"), number_of(wall(whole, 0), "x2"));
+  ASSERT_EQ(elements(strayed, "line", "wall").size(), 2u);
+  EXPECT_LT(number_of(wall(strayed, 1), "x1"), 0) << "goes through the picture";
+  EXPECT_GT(number_of(wall(strayed, 1), "x2"), 900);
+}
+
+TEST(Picture, TellsAllHugeNumbersFromNone) {
+  const std::vector<double> most(3, 1.7e308), large{1e29, 1e29, 1e29};
+  for (const auto& numbers : {most, large}) {
+    GrainView view;
+    view.discs.assign(3, {numbers[0], -numbers[0], 0.5, numbers[0]});
+    const Curve curve{"run", numbers, {numbers[0], -numbers[0], 0}};
+    const std::string text = draw({.title = "", .facts = "", .panels = {{{"x"}, {"y"}, {curve}}}, .grains = view});
+    EXPECT_THAT(text, Not(AnyOf(HasSubstr("inf"), HasSubstr("nan"))));
+  }
+}
+
+TEST(Scale, TicksEndWhereNumbersHaveNoDigitsLeft) {
+  EXPECT_THAT(ticks(1e300, std::nextafter(1e300, 2e300), 7), ElementsAre(1e300));
+  EXPECT_THAT(ticks(-1.7e308, 1.7e308, 7), ElementsAre(-1.7e308));
+}
+
+TEST(GrainView, LeavesOutWhatIsFarFromAllOthers) {
+  NumberedWorld world;
+  for (std::uint32_t i = 0; i <= 9; ++i) world.add(i, {0.1 * i, i / 9.0, 0}, 0.01);
+  const auto whole = grain_view(world, {}, "xz", "speed");
+  EXPECT_EQ(whole.left_out, 0u);
+  world.add(10, {0, 1e300, 0}, 0.01), world.add(11, {-1e20, 0.5, 0}, 0.01), world.add(12, {0, 0.5, 1000}, 0.01);
+  world.add(13, {0, 0.5, 0}, 1e300);
+  const auto seen = grain_view(world, {}, "xz", "speed");
+  EXPECT_EQ(seen.left_out, 4u);
+  ASSERT_EQ(seen.discs.size(), whole.discs.size());
+  for (std::size_t i = 0; i < seen.discs.size(); ++i) EXPECT_EQ(seen.discs[i].x, whole.discs[i].x);
+  EXPECT_THAT(draw({.title = "", .facts = "10 grains", .panels = {}, .grains = seen}),
+              HasSubstr("10 grains  ·  4 far from all others, not shown"));
+  world.add(14, {0.5, 0.5, 1.5}, 1.4);
+  EXPECT_EQ(grain_view(world, {}, "xz", "speed").left_out, 4u) << "large, and on top of the others";
 }
 
 TEST(GrainView, LooksAlongTheAxisAndCountsClockwise) {

@@ -31,6 +31,25 @@ FieldGroup two_cells(double density, double shear) {
 
 json made_of(CellMaps& maps) { return maps.result(); }
 
+TEST(CellMaps, HaveABoxWithoutWhatIsFarFromAllOthers) {
+  DataElements data;
+  CellMaps maps(data, 1 << 20);
+  FieldGroup group = two_cells(1000, 0.5);
+  const auto add = [&](std::vector<double> centre, std::vector<double> size, double density) {
+    auto append = [](std::vector<double>& list, const std::vector<double>& more) {
+      list.insert(list.end(), more.begin(), more.end());
+    };
+    append(group.fields[0].values, centre), append(group.fields[1].values, size);
+    append(group.fields[2].values, {density}), append(group.fields[3].values, {0.1, 0});
+  };
+  add({1, 0, 0.5}, {1, 2, 1}, 1e300), add({1, 0, 0.5}, {1, 2, 1}, 3000);
+  add({1e300, 0, 0.5}, {1, 2, 1}, 1000), add({1, 1e6, 0.5}, {1, 2, 1}, 1000), add({1, 0, 0.5}, {1, 2, 1e300}, 1000);
+  maps.add(0, "shear", {group});
+  const json all = made_of(maps);
+  EXPECT_EQ(all.at(0).at("boxes").at("shear"), (json{{"low", {0, -1, 0}}, {"high", {2, 1, 1}}}));
+  EXPECT_EQ(all.at(0).at("fields").at(0).at("ranges").at("shear"), (json{{1000, 3000}}));
+}
+
 TEST(CellMaps, HasTheCellsOfEachFrame) {
   DataElements data;
   CellMaps maps(data, 1 << 20);

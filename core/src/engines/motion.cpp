@@ -18,10 +18,10 @@ Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
   return power > 0 ? less : power < 0 ? more : force;
 }
 
-/// What that takes off an impulse of the force.
-Quad taken(const Quad& impulse, const Quad& force, const Quad& velocity, double coefficient) {
-  const Quad power = force * velocity, share = coefficient * impulse, none{};
-  return power > 0 ? share : power < 0 ? -share : none;
+/// What that takes off the force, over the coefficient; `push` has the force's signs.
+Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
+  const Quad power = push * velocity, none{};
+  return power > 0 ? force : power < 0 ? -force : none;
 }
 
 Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
@@ -42,7 +42,8 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
   const bool falls = !settings.gravity.isZero(0.0);
-  Quad fastest{}, poison{}, damped_energy{}, momentum{};
+  const Quad weight = quad(settings.gravity);
+  Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{};
   double fastest_carried = 0;
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
@@ -58,14 +59,13 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
-    // Impulses are at hand where nothing falls: a division by body is what a ledger would cost most.
+    // Forces are at hand where nothing falls: a division by body is what a ledger would cost most.
     const double mass = Energies && falls ? 1 / inverse_mass : 0;
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
       if constexpr (Energies) {
-        const Quad impulse = falls ? push * mass : force * kick;
-        damped_energy += taken(impulse, push, v - flow, damping) * (v + 0.5 * pushed) +
-                         taken(moment * turn_kick, twist, w, damping) * (w + 0.5 * twisted);
+        damped_power += taken(falls ? force + weight * mass : force, push, v - flow) * (v + 0.5 * pushed);
+        damped_turning += taken(moment, twist, w) * (w + 0.5 * twisted);
       }
       push = pushed, twist = twisted;
     }
@@ -83,7 +83,8 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
   const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
   return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
-          product(damped_energy, quad(Vec3::Ones())), step.drift * product(momentum, quad(settings.gravity))};
+          damping * (product(damped_power, kick) + product(damped_turning, turn_kick)),
+          step.drift * product(momentum, quad(settings.gravity))};
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "grit/error.hpp"
+#include "output/scale.hpp"
+#include "output/strays.hpp"
 
 namespace grit {
 namespace {
@@ -58,6 +60,19 @@ Value colouring(const SeenBodies& seen, const Sight& look, const std::string& co
   throw Error("picture: there is no color '" + color + "'; there are 'rotation', 'displacement' and 'speed'");
 }
 
+/// Whether each body is near enough to the others to be seen beside them.
+std::vector<bool> those_in_sight(std::span<const Row> rows) {
+  std::vector<double> positions, diameters;
+  for (const Row& row : rows) {
+    positions.insert(positions.end(), {row.x, row.y, row.z});
+    diameters.push_back(2 * row.w);
+  }
+  const Fences fences(positions, median(diameters), far_to_draw);
+  std::vector<bool> near;
+  for (std::size_t i = 0; i < rows.size(); ++i) near.push_back(fences.hold(positions, i) && drawable(rows[i].w));
+  return near;
+}
+
 /// Where the plane at `depth` cuts the triangles.
 void cut(std::span<const Vec3> triangles, const Sight& look, double depth, std::vector<Segment>& segments) {
   for (std::size_t first = 0; first + 2 < triangles.size(); first += 3) {
@@ -89,15 +104,20 @@ GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> 
   const auto value = colouring(seen, look, color, shown);
 
   const auto rows = seen.positions;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const auto& row : rows) {
-    low = std::min(low, xyz(row)[look.depth]);
-    high = std::max(high, xyz(row)[look.depth]);
+  const std::vector<bool> near = those_in_sight(rows);
+  shown.left_out = static_cast<std::size_t>(std::ranges::count(near, false));
+  double low = std::numeric_limits<double>::infinity(), high = -low, radii = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!near[i]) continue;
+    radii += rows[i].w;
+    low = std::min(low, xyz(rows[i])[look.depth]);
+    high = std::max(high, xyz(rows[i])[look.depth]);
   }
-  const double third = high - low < 3 * seen.mean_diameter ? 0 : (high - low) / 3;
+  const double mean_diameter = 2 * radii / static_cast<double>(std::max<std::size_t>(1, rows.size() - shown.left_out));
+  const double third = high - low < 3 * mean_diameter ? 0 : (high - low) / 3;
   std::vector<std::uint32_t> bodies;
   for (std::uint32_t i = 0; i < rows.size(); ++i)
-    if (const double depth = xyz(rows[i])[look.depth]; depth >= low + third && depth <= high - third)
+    if (const double depth = xyz(rows[i])[look.depth]; near[i] && depth >= low + third && depth <= high - third)
       bodies.push_back(i);
   std::ranges::stable_sort(bodies, std::greater(),
                            [&](std::uint32_t i) { return look.away * xyz(rows[i])[look.depth]; });
@@ -107,7 +127,7 @@ GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> 
   }
 
   double middle = 0.5 * (low + high);
-  if (rows.empty()) {
+  if (!(low <= high)) {
     middle = 0.5 * (seen.specimen.low[look.depth] + seen.specimen.high[look.depth]);
   }
   shown.walls = cut_walls(walls, view, middle);
@@ -118,9 +138,9 @@ GrainView grain_view(const World& world, std::span<const WallShape> walls, const
                      const std::string& color) {
   std::vector<std::vector<Vec3>> where;
   for (const WallView& wall : world.walls()) where.push_back(triangles_of(wall, walls, world.stage()));
-  return grain_view(SeenBodies{world.positions(), world.velocities(), world.rotations(), world.displacements(),
-                               world.mean_diameter(), world.specimen()},
-                    where, view, color);
+  return grain_view(
+      SeenBodies{world.positions(), world.velocities(), world.rotations(), world.displacements(), world.specimen()},
+      where, view, color);
 }
 
 }  // namespace grit

@@ -14,7 +14,6 @@ namespace grit {
 struct SeenBodies {
   std::span<const Row> positions, velocities;
   std::span<const Vec3> rotations, displacements;
-  double mean_diameter = 0;                     ///< m
   Region specimen{Vec3::Zero(), Vec3::Zero()};  ///< where walls are cut through if there is no body
   std::span<const int> layers = {};             ///< from 1, 0 for none; for the colour "layer"
 };
@@ -29,8 +28,8 @@ inline constexpr int layer_count = 10;
 /// first axis; "speed"; "layer" where layers are told. Where the world does not keep the state, grains are grey.
 ///
 /// Grains whose centres lie in the middle third of the depth are shown, back to front; all of them where the depth is
-/// less than three mean diameters. Walls, as triangles of three corners each [m], are cut at mid-depth. Throws Error
-/// for another view or colour.
+/// less than three mean diameters. Those that are far from all others (far_to_draw) are counted, not shown. Walls, as
+/// triangles of three corners each [m], are cut at mid-depth. Throws Error for another view or colour.
 GrainView grain_view(const SeenBodies& bodies, std::span<const std::vector<Vec3>> walls, const std::string& view,
                      const std::string& color);
 

@@ -9,8 +9,10 @@
 #include <tuple>
 #include <utility>
 
+#include "output/clipped.hpp"
 #include "output/colours.hpp"
 #include "output/scale.hpp"
+#include "output/strays.hpp"
 #include "output/svg.hpp"
 
 namespace grit {
@@ -31,14 +33,14 @@ struct Colours {
   double low = 0, high = 1;
   std::span<const Rgb> scale = sequential_colours;
   std::string of(double value) const {
-    return std::isfinite(value) ? colour_at(scale, (value - low) / (high - low)) : "#d4d4d0";
+    return drawable(value) ? colour_at(scale, (value - low) / (high - low)) : "#d4d4d0";
   }
 };
 
 Colours colours_of(const std::vector<MapCell>& cells, std::size_t panel, bool about_zero) {
   std::vector<double> finite;
   for (const MapCell& cell : cells)
-    if (std::isfinite(cell.values[panel])) finite.push_back(cell.values[panel]);
+    if (drawable(cell.values[panel])) finite.push_back(cell.values[panel]);
   Colours colours;
   if (about_zero) colours = {-1, 1, diverging_colours};
   if (finite.empty()) return colours;
@@ -63,8 +65,23 @@ struct Plot {
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double value) { low = std::min(low, value), high = std::max(high, value); }
-  double span() const { return std::max(high - low, 1e-12); }
+  /// Never so small that places within it have no digits left [m].
+  double span() const { return std::max({high - low, 1e-12, 1e-9 * std::abs(low), 1e-9 * std::abs(high)}); }
 };
+
+/// Those that are not far from all others, and no larger than that.
+std::vector<MapCell> near_cells(const std::vector<MapCell>& cells) {
+  std::vector<double> places, sizes;
+  for (const MapCell& cell : cells)
+    places.insert(places.end(), {cell.x, cell.y, 0}), sizes.push_back(std::max(cell.wide, cell.high));
+  const Fences fences(places, median(sizes), far_to_draw);
+  std::vector<MapCell> near;
+  for (const MapCell& cell : cells)
+    if (drawable(cell.x) && drawable(cell.y) && fences.hold(0, cell.x - 0.5 * cell.wide, cell.x + 0.5 * cell.wide) &&
+        fences.hold(1, cell.y - 0.5 * cell.high, cell.y + 0.5 * cell.high))
+      near.push_back(cell);
+  return near;
+}
 
 Plot plot_of(const MapPicture& picture) {
   Range x, y;
@@ -78,6 +95,7 @@ Plot plot_of(const MapPicture& picture) {
     return std::max(a, b) > range.low - reach && std::min(a, b) < range.high + reach;
   };
   for (const Segment& wall : picture.walls) {
+    if (!drawable(wall.x1 + wall.x2) || !drawable(wall.y1 + wall.y2)) continue;
     if (!near(wall.x1, wall.x2, cells_x) || !near(wall.y1, wall.y2, cells_y)) continue;
     for (const double end : {wall.x1, wall.x2}) x.add(std::clamp(end, cells_x.low - reach, cells_x.high + reach));
     for (const double end : {wall.y1, wall.y2}) y.add(std::clamp(end, cells_y.low - reach, cells_y.high + reach));
@@ -219,11 +237,16 @@ void draw_axes(Svg& svg, const MapPicture& picture, const Plot& plot, double lef
 
 }  // namespace
 
-std::string draw(const MapPicture& picture) {
+std::string draw(const MapPicture& whole) {
+  MapPicture picture = whole;
+  picture.cells = near_cells(whole.cells);
+  if (const std::size_t far = whole.cells.size() - picture.cells.size(); far > 0)
+    picture.facts += fmt::format("  ·  {} of the cells far from all others, not shown", grouped(far));
   const Plot plot = plot_of(picture);
   const double left = std::round(margin + axis_wide + 0.5 * (width - 2 * margin - axis_wide - colour_bar - plot.wide));
   const double panel_high = std::max<double>(plot.high, 150) + axis_high + 44;
   const double bottom = 92 + panel_high * static_cast<double>(picture.panels.size());
+  const double span_x = plot.wide / plot.scale, span_y = plot.high / plot.scale;
   const std::vector<Tile> tiles = tiles_of(cells_by_pixel(picture.cells, plot), plot);
 
   Svg svg(width, bottom, picture.title, style);
@@ -245,8 +268,10 @@ std::string draw(const MapPicture& picture) {
     svg.clip(id, {left - 1, top - 1}, plot.wide + 2, plot.high + 2);
     svg.open_group(fmt::format("clip-path=\"url(#{})\"", id));
     for (const Segment& wall : picture.walls)
-      svg.line({left + plot.across(wall.x1), top + plot.down(wall.y1)},
-               {left + plot.across(wall.x2), top + plot.down(wall.y2)}, "class=\"wall\"");
+      if (const auto seen = clipped(wall, plot.low_x - span_x, plot.low_x + 2 * span_x, plot.high_y - 2 * span_y,
+                                    plot.high_y + span_y))
+        svg.line({left + plot.across(seen->x1), top + plot.down(seen->y1)},
+                 {left + plot.across(seen->x2), top + plot.down(seen->y2)}, "class=\"wall\"");
     svg.close_group();
     draw_axes(svg, picture, plot, left, top);
     draw_bar(svg, colours, unit.factor, top, std::clamp<double>(plot.high, 100, 240));

@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 
+#include "output/clipped.hpp"
 #include "output/colours.hpp"
 #include "output/scale.hpp"
 #include "output/svg.hpp"
@@ -29,7 +30,7 @@ constexpr double letter = 6.6;  // about how wide one is, px
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double value) {
-    if (!std::isfinite(value)) return;
+    if (!drawable(value)) return;
     low = std::min(low, value);
     high = std::max(high, value);
   }
@@ -119,7 +120,7 @@ class PanelDrawing {
     left_ = corner.x + 46, right_ = corner.x + wide - 12, top_ = corner.y + 26, bottom_ = corner.y + high - 44;
     for (const auto& curve : panel.curves)
       for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
-        if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+        if (drawable(curve.x[i]) && drawable(curve.y[i])) {
           x_.add(curve.x[i]);
           y_.add(curve.y[i]);
         }
@@ -190,7 +191,7 @@ class PanelDrawing {
     };
     const auto count = std::min(curve.x.size(), curve.y.size());
     for (std::size_t i = 0; i < count; ++i) {
-      if (!std::isfinite(curve.x[i]) || !std::isfinite(curve.y[i])) {
+      if (!drawable(curve.x[i]) || !drawable(curve.y[i])) {
         finish();
         continue;
       }
@@ -206,8 +207,7 @@ class PanelDrawing {
     std::size_t peak = 0;
     bool found = false;
     for (std::size_t i = 0; i < std::min(curve.x.size(), curve.y.size()); ++i)
-      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]) &&
-          (!found || std::abs(curve.y[i]) > std::abs(curve.y[peak]))) {
+      if (drawable(curve.x[i]) && drawable(curve.y[i]) && (!found || std::abs(curve.y[i]) > std::abs(curve.y[peak]))) {
         peak = i;
         found = true;
       }
@@ -244,18 +244,19 @@ ViewLayout layout(const GrainView& view) {
   ViewLayout result;
   std::vector<double> sizes;
   for (const auto& disc : view.discs) {
-    if (!std::isfinite(disc.x) || !std::isfinite(disc.y)) continue;
+    if (!drawable(disc.x) || !drawable(disc.y) || !drawable(disc.radius)) continue;
     for (const double side : {-disc.radius, disc.radius}) {
       result.x.add(disc.x + side);
       result.y.add(disc.y + side);
     }
-    if (std::isfinite(disc.value)) sizes.push_back(std::abs(disc.value));
+    if (drawable(disc.value)) sizes.push_back(std::abs(disc.value));
   }
   // Walls may reach far beyond the grains; a third of the grains' extent of them is enough to understand the scene.
   const bool bare = result.x.empty();
   const double reach = bare ? 0 : 0.35 * std::max(result.x.span(), result.y.span());
   const Range x = result.x, y = result.y;
   for (const auto& wall : view.walls) {
+    if (!drawable(wall.x1) || !drawable(wall.y1) || !drawable(wall.x2) || !drawable(wall.y2)) continue;
     const auto beyond = [&](double a, double b, const Range& range) {
       return std::max(a, b) < range.low - reach || std::min(a, b) > range.high + reach;
     };
@@ -270,8 +271,10 @@ ViewLayout layout(const GrainView& view) {
   const double most = std::max(result.x.span(), result.y.span());
   if (result.x.span() < 1e-3 * most) result.x = {result.x.low - 0.1 * most, result.x.high + 0.1 * most};
   if (result.y.span() < 1e-3 * most) result.y = {result.y.low - 0.1 * most, result.y.high + 0.1 * most};
-  if (most <= 0)
-    result.x = {result.x.low - 0.5, result.x.low + 0.5}, result.y = {result.y.low - 0.5, result.y.low + 0.5};
+  if (most <= 0) {
+    const double room = std::max({0.5, 1e-3 * std::abs(result.x.low), 1e-3 * std::abs(result.y.low)});
+    result.x = {result.x.low - room, result.x.low + room}, result.y = {result.y.low - room, result.y.low + room};
+  }
   result.scale = std::min((inner - colour_bar) / result.x.span(), tallest / result.y.span());
   result.wide = result.scale * result.x.span();
   result.high = result.scale * result.y.span();
@@ -297,25 +300,34 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double t
   svg.clip("view", {left - 3, top - 3}, at.wide + 6, at.high + 6);
   svg.open_group("clip-path=\"url(#view)\"");
   double mean = 0;
-  for (const auto& disc : view.discs) mean += disc.radius / static_cast<double>(view.discs.size());
+  for (const auto& disc : view.discs)
+    if (drawable(disc.radius)) mean += disc.radius / static_cast<double>(view.discs.size());
   svg.open_group(fmt::format("class=\"grains{}\" stroke-width=\"{:.2f}\"", view.links.empty() ? "" : " faint",
                              std::clamp(0.12 * mean * at.scale, 0.05, 0.8)));
   std::vector<std::string> names;
   for (int i = 0; i < classes_of(view); ++i) names.push_back(fmt::format("class=\"c{}\"", i));
   for (const auto& disc : view.discs) {
-    if (!std::isfinite(disc.x) || !std::isfinite(disc.y)) continue;
-    const bool coloured = std::isfinite(disc.value);
+    if (!drawable(disc.x) || !drawable(disc.y) || !drawable(disc.radius)) continue;
+    const bool coloured = drawable(disc.value);
     svg.circle(place(disc.x, disc.y), disc.radius * at.scale,
                coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view))] : "class=\"n\"");
   }
   svg.close_group();
+  // Half as far again as is seen: what is cut off has no end in sight.
+  const double beyond_x = 0.5 * at.x.span(), beyond_y = 0.5 * at.y.span();
+  const auto in_sight = [&](const Segment& segment) {
+    return clipped(segment, at.x.low - beyond_x, at.x.high + beyond_x, at.y.low - beyond_y, at.y.high + beyond_y);
+  };
   for (const Link& link : view.links)
-    svg.line(place(link.x1, link.y1), place(link.x2, link.y2),
-             fmt::format("class=\"link\" stroke-width=\"{:.2f}\"",
-                         std::max(0.8, 1.2 * mean * at.scale * std::clamp(link.weight, 0.0, 1.0))));
+    if (const auto seen = in_sight({link.x1, link.y1, link.x2, link.y2}))
+      svg.line(place(seen->x1, seen->y1), place(seen->x2, seen->y2),
+               fmt::format("class=\"link\" stroke-width=\"{:.2f}\"",
+                           std::max(0.8, 1.2 * mean * at.scale * std::clamp(link.weight, 0.0, 1.0))));
   std::set<std::array<long, 4>> drawn;  // an edge that two triangles share is one line
   for (const auto& wall : view.walls) {
-    auto a = place(wall.x1, wall.y1), b = place(wall.x2, wall.y2);
+    const auto seen = in_sight(wall);
+    if (!seen) continue;
+    auto a = place(seen->x1, seen->y1), b = place(seen->x2, seen->y2);
     if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) std::swap(a, b);
     if (std::hypot(a.x - b.x, a.y - b.y) < 0.01) continue;
     if (drawn.insert({std::lround(100 * a.x), std::lround(100 * a.y), std::lround(100 * b.x), std::lround(100 * b.y)})
@@ -337,7 +349,7 @@ void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doubl
 }
 
 void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
-  if (std::ranges::none_of(view.discs, [](const Disc& disc) { return std::isfinite(disc.value); })) return;
+  if (std::ranges::none_of(view.discs, [](const Disc& disc) { return drawable(disc.value); })) return;
   const double left = margin + inner - 64, tall = std::clamp(at.high - 60, 120.0, 240.0), first = top + 30;
   const auto unit = readable(view.value.unit, at.limit);
   svg.text({margin + inner, top + 4}, axis_title(view.value.label, unit.unit), "class=\"axis e\"");
@@ -376,7 +388,11 @@ std::string draw(const Picture& picture) {
   Svg svg(width, height, picture.title, style(picture));
   svg.rectangle({0, 0}, width, height, "fill=\"#fff\"");
   svg.text({margin, 44}, picture.title, "class=\"title\"");
-  svg.text({margin, 66}, picture.facts, "class=\"facts\"");
+  const std::size_t left_out = picture.grains ? picture.grains->left_out : 0;
+  svg.text(
+      {margin, 66},
+      picture.facts + (left_out > 0 ? fmt::format("  ·  {} far from all others, not shown", grouped(left_out)) : ""),
+      "class=\"facts\"");
   legend(&svg, names, 88);
   for (std::size_t i = 0; i < count; ++i) {
     const Point corner{margin + static_cast<double>(i % columns) * (panel_wide + gap),

@@ -18,8 +18,8 @@ struct Axis {
   std::string unit = "1";  ///< SI; shown with the prefix that reads best, radians as degrees
 };
 
-/// Curves that share two axes, of 4 to 8 ticks each. Points that are not finite interrupt a curve; the value farthest
-/// from zero is marked where `peaks` says so.
+/// Curves that share two axes, of 4 to 8 ticks each. Points that are not drawable() interrupt a curve; the value
+/// farthest from zero is marked where `peaks` says so.
 struct Panel {
   Axis x, y;
   std::vector<Curve> curves;
@@ -28,7 +28,7 @@ struct Panel {
 
 struct Disc {
   double x, y, radius;  ///< m
-  double value;         ///< what its colour says; not finite: grey
+  double value;         ///< what its colour says; not drawable(): grey
 };
 
 struct Segment {
@@ -48,9 +48,10 @@ struct GrainView {
   std::vector<Segment> walls;
   std::vector<Link> links;  ///< above the grains, which are faint then
   Axis value;
-  std::string note;       ///< beneath the colour bar: the sign convention
-  bool symmetric = true;  ///< blue–white–red about zero, else dark to bright from zero
-  int layers = 0;         ///< above 0: values are 1, 2, … up to it, with a colour each
+  std::string note;          ///< beneath the colour bar: the sign convention
+  bool symmetric = true;     ///< blue–white–red about zero, else dark to bright from zero
+  int layers = 0;            ///< above 0: values are 1, 2, … up to it, with a colour each
+  std::size_t left_out = 0;  ///< bodies that are far from all others: the picture says how many
 };
 
 struct Picture {

@@ -18,6 +18,8 @@ std::string with_minus(std::string text) {
 
 }  // namespace
 
+bool drawable(double value) { return std::abs(value) < 1e30; }
+
 double nice_step(double span, int pieces) {
   const double rough = span / pieces;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -26,7 +28,8 @@ double nice_step(double span, int pieces) {
 }
 
 std::vector<double> ticks(double low, double high, int pieces) {
-  if (!(high > low)) return {low};
+  // Of a narrower range the steps have no digits left.
+  if (!(high - low > 1e-12 * std::max(std::abs(low), std::abs(high))) || !std::isfinite(high - low)) return {low};
   const double step = nice_step(high - low, pieces);
   std::vector<double> marks;
   for (auto i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) marks.push_back(i * step);

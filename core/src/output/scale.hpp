@@ -8,6 +8,10 @@
 
 namespace grit {
 
+/// Whether a number can be drawn, and be part of a scale: finite, and below 1e30 in SI, which nothing of this field
+/// reaches. A greater one is of something that has gone wrong, and would hide all others.
+bool drawable(double value);
+
 /// The steps 1, 2, 5 × 10ⁿ: the one that cuts `span` (> 0) into about `pieces`.
 double nice_step(double span, int pieces);
 

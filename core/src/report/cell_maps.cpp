@@ -6,17 +6,20 @@
 #include <utility>
 
 #include "output/scale.hpp"
+#include "output/strays.hpp"
 
 namespace grit {
 namespace {
 
 constexpr double share_shown = 0.98;  // of the cells of a frame, in the middle: the rest is drawn as the scale's ends
 
-/// One component of all rows.
+/// One component of all rows; NaN for what is not drawable().
 std::vector<float> column(const Field& field, std::size_t component) {
   std::vector<float> all;
-  for (std::size_t i = component; i < field.values.size(); i += field.width)
-    all.push_back(static_cast<float>(field.values[i]));
+  for (std::size_t i = component; i < field.values.size(); i += field.width) {
+    const double value = field.values[i];
+    all.push_back(drawable(value) ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN());
+  }
   return all;
 }
 
@@ -39,11 +42,15 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
   for (const FieldGroup& group : groups) {
     Map& map = map_of(group);
     const std::size_t cells = group.fields[0].values.size() / 3;
+    // Those that are far from all others would leave these no room.
+    const std::vector<double>&centres = group.fields[0].values, &sizes = group.fields[1].values;
+    const Fences fences(centres, median(sizes), far_to_draw);
     for (std::size_t i = 0; i < 3 * cells; ++i) {
       auto& [low, high] = map.boxes.try_emplace(stage).first->second;
-      const double centre = group.fields[0].values[i], half = 0.5 * group.fields[1].values[i];
-      low[i % 3] = std::min(low[i % 3], centre - half);
-      high[i % 3] = std::max(high[i % 3], centre + half);
+      const double least = centres[i] - 0.5 * sizes[i], most = centres[i] + 0.5 * sizes[i];
+      if (!fences.hold(i % 3, least, most)) continue;
+      low[i % 3] = std::min(low[i % 3], least);
+      high[i % 3] = std::max(high[i % 3], most);
     }
     std::vector<float> numbers;
     for (const std::size_t place : {0, 1})

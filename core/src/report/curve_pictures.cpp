@@ -87,7 +87,7 @@ Curve drawn(const Reference& reference, const Panel& panel) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& one : panel.curves)
     for (const double x : one.x)
-      if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+      if (drawable(x)) low = std::min(low, x), high = std::max(high, x);
   if (low <= high) curve.x = {low, high}, curve.y = {*reference.value, *reference.value};
   return curve;
 }

@@ -10,9 +10,9 @@
 
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
+#include "output/strays.hpp"
 #include "report/cell_maps.hpp"
 #include "report/layers.hpp"
-#include "report/strays.hpp"
 
 namespace grit {
 namespace {

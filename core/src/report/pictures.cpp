@@ -15,9 +15,9 @@
 #include "output/picture.hpp"
 #include "output/read_frames.hpp"
 #include "output/scale.hpp"
+#include "output/strays.hpp"
 #include "report/layers.hpp"
 #include "report/map_fields.hpp"
-#include "report/strays.hpp"
 
 namespace grit {
 namespace {
@@ -59,9 +59,7 @@ Picture view_of(const RunResults& run, const Frame& frame, const std::string& co
     velocities.push_back({v[0], v[1], v[2], 0});
   }
   const auto rotations = vectors(frame.rotation), displacements = vectors(frame.displacement);
-  const double diameters = 2 * std::accumulate(frame.radius.begin(), frame.radius.end(), 0.0);
-  SeenBodies seen{positions, velocities, rotations, displacements,
-                  positions.empty() ? 0 : diameters / static_cast<double>(positions.size())};
+  SeenBodies seen{positions, velocities, rotations, displacements};
   seen.layers = layers;
   return {run.title(),
           fmt::format("{} grains  ·  stage {}  ·  {:.4g} s", grouped(frame.bodies()), frame.stage, frame.time),
@@ -151,7 +149,7 @@ std::optional<std::string> chains_picture(RunResults& run) {
     const double* start = &frame->position[3 * static_cast<std::size_t>(body - frame->id.begin())];
     const double* way = &frame->branch[3 * k];
     links.push_back({start[right], start[up], start[right] + way[right], start[up] + way[up], frame->normal_force[k]});
-    strongest = std::max(strongest, frame->normal_force[k]);
+    if (drawable(frame->normal_force[k])) strongest = std::max(strongest, frame->normal_force[k]);
   }
   for (Link& link : links) link.weight /= strongest > 0 ? strongest : 1;
   view.links = std::move(links);

@@ -1,5 +1,5 @@
 // Who is so far from all others that a picture which shows it shows nothing else.
-#include "report/strays.hpp"
+#include "output/strays.hpp"
 
 #include <gtest/gtest.h>
 

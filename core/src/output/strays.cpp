@@ -1,8 +1,10 @@
-#include "report/strays.hpp"
+#include "output/strays.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "output/scale.hpp"
 
 namespace grit {
 namespace {
@@ -14,13 +16,21 @@ double mean_diameter(const Frame& frame) {
 
 }  // namespace
 
+double median(std::vector<double> numbers) {
+  std::erase_if(numbers, [](double number) { return !drawable(number); });
+  if (numbers.empty()) return 0;
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
 Fences::Fences(const Frame& frame, const Far& far) : Fences(frame.position, mean_diameter(frame), far) {}
 
 Fences::Fences(const std::vector<double>& positions, double diameter, const Far& far) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::vector<double> places;
     for (std::size_t i = axis; i < positions.size(); i += 3)
-      if (std::isfinite(positions[i])) places.push_back(positions[i]);
+      if (drawable(positions[i])) places.push_back(positions[i]);
     double lower = 0, upper = 0;
     if (!places.empty()) {
       const auto last = static_cast<double>(places.size() - 1);
