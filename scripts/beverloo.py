@@ -13,82 +13,141 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[1]
-SEEDS = (1,)
-KEEPS_OFF = 1.4                                          # Beverloo's own k
-# Diameter or width [mm], and the share of the mass that leaves.
-OUTLETS = {'hole': ((6, 0.08), (7, 0.12), (9, 0.2), (12, 0.3)), 'slot': ((6, 0.2), (7, 0.25), (9, 0.3), (12, 0.35))}
-STEADY_FROM = 0.03                                       # share
+# Diameter or width [mm]; side of the bin [mm], number of grains, height of their cloud [mm], share of the mass that leaves, samples.
+OUTLETS = {'hole': ((8, 24, 21100, 55, 0.12, 2), (10, 26, 24800, 55, 0.18, 2), (12, 28, 28700, 55, 0.25, 1), (16, 32, 46900, 69, 0.3, 1)),
+           'slot': ((8, 38, 19600, 77, 0.25, 2), (12, 42, 21700, 77, 0.35, 2), (16, 46, 26400, 86, 0.38, 2), (24, 54, 41000, 113, 0.4, 2))}
+EXPONENTS = {'hole': 2.5, 'slot': 1.5}
+BOUND = 0.1
+BEVERLOO = 1.4                                           # his own k
+STEADY_FROM = 0.25                                       # of the mass that leaves
 
 HEAD = '''## Beverloo's law
 Written by `scripts/beverloo.py` from runs of [sims/beverloo](../sims/beverloo). Do not edit. Grains of 0.9 to 1.1 mm (d = 1 mm) without rolling resistance,
-friction 25°, flow out of a flat-bottomed bin through a round hole (22 000 grains), or through a slot of which 10 mm repeat (16 000). Rates are
-slopes of the mass that has left, from 3 % of it on; fitted is C (D − k d)^n with k = 1.4 and the n that fits best.
+friction 25°, flow out of a flat-bottomed bin through a round hole, or through a slot of which 10 mm repeat. The bin is 30 d wider than a slot, as
+Nedderman asks for, and 16 d than a hole, and filled to about 45 d or 2.7 slots, to 32 d or 2.5 holes, whichever is more. Rates, one of each sample, are slopes of the mass
+that has left, from a quarter of what leaves on.
 
-| outlet | D/d | rate, g/s | fitted |
-| --- | --- | --- | --- |
 '''
 
 
-def settings(kind, width, share, seed):
-    half = f'{0.5e-3 * width:g}'
-    of = {'hole': [f'/walls/bottom/start_radius={half}'],
-          'slot': [f'/walls/bottom-left/edge_a/0={25e-3 - 0.5e-3 * width:g}', f'/walls/bottom-right/corner/0={half}']}
-    return of[kind] + [f'/stages/1/until/share={share:g}', f'/seed={seed}']
+def settings(kind, outlet, seed):
+    size, side, count, height, share, _ = outlet
+    half, edge, over, gate = (f'{1e-3 * x:.9g}' for x in (0.5 * size, 0.5 * side, 0.5 * side + 2, 0.5 * size + 2))
+    length = f'{1e-3 * (size + 4):.9g}'
+    of = [f'/domain/low/0=-{over}', f'/bodies/sand/grains/low/0=-{edge}', f'/bodies/sand/grains/high/0={edge}',
+          f'/walls/left/point/0=-{edge}', f'/walls/right/point/0={edge}', f'/walls/gate/corner/0=-{gate}',
+          f'/walls/gate/edge_a/0={length}', f'/bodies/sand/grains/high/2={1e-3 * height:.9g}',
+          f'/bodies/sand/grains/count={count}', f'/stages/1/until/share={share:g}', f'/seed={seed}']
+    if kind == 'hole':
+        return of + [f'/domain/low/1=-{over}', f'/domain/high=[{over},{over},0.2]', f'/bodies/sand/grains/low/1=-{edge}',
+                     f'/bodies/sand/grains/high/1={edge}', f'/walls/front/point/1=-{edge}', f'/walls/back/point/1={edge}',
+                     f'/walls/gate/corner/1=-{gate}', f'/walls/gate/edge_b/1={length}', f'/walls/bottom/start_radius={half}',
+                     f'/walls/bottom/end_radius={0.75e-3 * side:.9g}']
+    beyond = 0.5 * side + 5                              # where the bottom ends
+    return of + [f'/domain/high/0={over}', f'/walls/bottom-left/corner/0=-{1e-3 * beyond:.9g}', f'/walls/bottom-right/corner/0={half}',
+                 *(f'/walls/bottom-{side_of}/edge_a/0={1e-3 * (beyond - 0.5 * size):.9g}' for side_of in ('left', 'right'))]
 
 
-def run(grit, kind, width, share, seed):
+def run(grit, kind, outlet, seed):
     """The results' folder of one outlet."""
-    folder = ROOT / 'results' / 'beverloo' / f'{kind}-{width}-{seed}'
+    folder = ROOT / 'results' / 'beverloo' / f'{kind}-{outlet[0]}-{seed}'
     try:
         if json.loads((folder / 'run.json').read_text())['status'] == 'done':
             return folder
     except FileNotFoundError:
         pass
-    sets = [word for one in settings(kind, width, share, seed) for word in ('--set', one)]
-    subprocess.run([grit, 'run', ROOT / 'sims' / 'beverloo' / f'{kind}.json', '--threads', '1', '--overwrite', '--out',
+    sets = [word for one in settings(kind, outlet, seed) for word in ('--set', one)]
+    subprocess.run([grit, 'run', ROOT / 'sims' / 'beverloo' / f'{kind}.json', '--threads', '1', '--overwrite', '--no-report', '--out',
                     folder, *sets], check=True)
     return folder
 
 
-def slope(points):
-    """Of the straight line through points, by least squares."""
+def line(points):
+    """(slope, value at 0, standard error of the slope, sum of squares left) of the straight line through points, by least squares."""
     n = len(points)
     x, y = (sum(p[k] for p in points) / n for k in (0, 1))
-    return sum((p[0] - x) * (p[1] - y) for p in points) / sum((p[0] - x) ** 2 for p in points)
+    spread = sum((p[0] - x) ** 2 for p in points)
+    slope = sum((p[0] - x) * (p[1] - y) for p in points) / spread
+    left = sum((p[1] - y - slope * (p[0] - x)) ** 2 for p in points)
+    return slope, y - slope * x, math.sqrt(left / (n - 2) / spread), left
 
 
 def rate(folder):
     """Mass that leaves in a second [g/s], once it flows steadily."""
     import h5py
     with h5py.File(folder / 'series.h5') as series:
-        flow = {name: series['flow'][name][:] for name in ('time', 'mass', 'mass_left')}
-    all_mass = flow['mass'][-1] + flow['mass_left'][-1]
-    return 1e3 * slope([(t, m) for t, m in zip(flow['time'], flow['mass']) if m > STEADY_FROM * all_mass])
+        flow = {name: series['flow'][name][:] for name in ('time', 'mass')}
+    return 1e3 * line([(t, m) for t, m in zip(flow['time'], flow['mass']) if m > STEADY_FROM * flow['mass'][-1]])[0]
 
 
-def exponent(rates, keeps_off):
-    """(n, ln C) of W = C (D − k d)^n, d = 1 mm."""
-    points = [(math.log(width - keeps_off), math.log(w)) for width, w in rates]
-    n = slope(points)
-    return n, sum(y - n * x for x, y in points) / len(points)
+def logs(rates, k):
+    """Points (ln(D − k d), ln W), d = 1 mm."""
+    return [(math.log(size - k), math.log(w)) for size, w in rates]
+
+
+def misfit(found, k):
+    """How far Beverloo's law with his exponents is off, each kind of outlet with a constant of its own."""
+    off = 0
+    for kind, rates in found.items():
+        constants = [y - EXPONENTS[kind] * x for x, y in logs(rates, k)]
+        mean = sum(constants) / len(constants)
+        off += sum((one - mean) ** 2 for one in constants)
+    return off
+
+
+CANDIDATES = [0.01 * n for n in range(0, 500)]           # k
+
+
+def best_k(found):
+    """The one k by which his law misses the rates of all outlets least."""
+    return min(CANDIDATES, key=lambda k: misfit(found, k))
+
+
+def best_of_both(rates):
+    """(k, n), both free, that fit the rates of one kind best."""
+    k = min(CANDIDATES, key=lambda k: line(logs(rates, k))[3])
+    return k, line(logs(rates, k))[0]
+
+
+def verdict(kind, n):
+    return 'holds' if abs(n - EXPONENTS[kind]) <= BOUND else 'misses'
+
+
+def page(found):
+    fitted = best_k(found)
+    sizes = {kind: {size: [w for s, w in rates if s == size] for size, _ in rates} for kind, rates in found.items()}
+    text = '| outlet | D/d | rate, g/s | by the law with k = %.2f |\n| --- | --- | --- | --- |\n' % fitted
+    for kind, of_size in sizes.items():
+        constant = sum(y - EXPONENTS[kind] * x for x, y in logs(found[kind], fitted)) / len(found[kind])
+        for size, samples in of_size.items():
+            law = math.exp(constant) * (size - fitted) ** EXPONENTS[kind]
+            text += f'| {kind} | {size} | {", ".join(f"{one:.2f}" for one in samples)} | {law:.2f} |\n'
+    text += (f'\nThe law is W = C (D − k d)^n, n = 2.5 for holes and 1.5 for slots, asked for to within {BOUND}. k is one for both kinds: the one by which\n'
+             f'the law, with its own exponents and a constant for each kind, misses all rates least (sum of squares of ln W): **k = {fitted:.2f}**.\n'
+             'With it, exponents are fitted anew, each kind by itself; ± is the standard error of the fit, k being given.\n\n'
+             '| k | holes, 2.5 ± 0.1 | | slots, 1.5 ± 0.1 | |\n| --- | --- | --- | --- | --- |\n')
+    for k, name in ((fitted, 'the rule'), (BEVERLOO, "Beverloo's"), (1.6, ''), (1.8, ''), (2.0, ''), (2.4, '')):
+        text += f'| {k:.2f}{", " + name if name else ""} |'
+        for kind in ('hole', 'slot'):
+            n, _, error, _ = line(logs(found[kind], k))
+            text += f' {n:.2f} ± {error:.3f} | {verdict(kind, n)} |'
+        text += '\n'
+    text += '\nThat k is drawn towards the exponents that are looked for. One that the other kind alone has chosen is not:\n\n'
+    for kind, other in (('slot', 'hole'), ('hole', 'slot')):
+        k = best_k({other: found[other]})
+        n, _, error, _ = line(logs(found[kind], k))
+        text += f'- k = {k:.2f}, of {other}s: {kind}s have {n:.2f} ± {error:.3f}, {verdict(kind, n)}\n'
+    free = ', '.join(f'k = {k:.2f} and n = {n:.2f} for {kind}s' for kind, (k, n) in
+                     ((kind, best_of_both(rates)) for kind, rates in found.items()))
+    return text + f'\nWith k and n both free, and each kind by itself, what fits best is {free}.\n'
 
 
 def main():
     grit = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / 'build').resolve() / 'bin' / 'grit'
-    found = {kind: [(width, [rate(run(grit, kind, width, share, seed)) for seed in SEEDS]) for width, share in outlets]
+    found = {kind: [(outlet[0], rate(run(grit, kind, outlet, seed))) for outlet in outlets for seed in range(1, outlet[-1] + 1)]
              for kind, outlets in OUTLETS.items()}
-    means = {kind: [(width, sum(rates) / len(rates)) for width, rates in outlets] for kind, outlets in found.items()}
-    text = HEAD
-    for kind, rates in found.items():
-        n, constant = exponent(means[kind], KEEPS_OFF)
-        for width, samples in rates:
-            fitted = math.exp(constant) * (width - KEEPS_OFF) ** n
-            text += f'| {kind} | {width} | {", ".join(f"{one:.2f}" for one in samples)} | {fitted:.2f} |\n'
-    text += '\n| k | exponent of holes, 2.5 by Beverloo | of slots, 1.5 |\n| --- | --- | --- |\n'
-    for k in (1.2, 1.4, 1.6, 1.8, 2.0):
-        text += f'| {k} | {exponent(means["hole"], k)[0]:.2f} | {exponent(means["slot"], k)[0]:.2f} |\n'
-    page = ROOT / 'docs' / 'beverloo.md'
-    page.write_text(text, encoding='utf-8')
+    text = HEAD + page(found)
+    (ROOT / 'docs' / 'beverloo.md').write_text(text, encoding='utf-8')
     print(text)
 
 

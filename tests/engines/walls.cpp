@@ -124,6 +124,109 @@ TEST(Walls, TurnStaysARotation) {
   EXPECT_NEAR(turn.determinant(), 1, 3e-15);
 }
 
+/// How far an oscillation without a ramp has gone.
+double sine(const OscillationDescription& how, double time) {
+  return std::sin(2 * std::numbers::pi * how.frequency * time + how.phase) - std::sin(how.phase);
+}
+
+TEST(Walls, OscillatesAlongItsSineWhateverTheSteps) {
+  const Vec3 steady(0.3, 0, -0.1);
+  for (const double phase : {0.0, 0.5 * std::numbers::pi, -2.5}) {
+    const OscillationDescription how{.amplitude = {2e-3, 0, -1e-3}, .frequency = 40, .phase = phase};
+    Walls walls;
+    walls.apply({plate({.velocity = steady, .oscillation = how})});
+    const double period = 1 / how.frequency, omega = 2 * std::numbers::pi * how.frequency;
+    double time = 0;
+    for (int n = 0; n < 3000; ++n) {
+      const double dt = period / (n % 2 == 0 ? 750 : 375);  // pairs of 0.004 periods
+      step(walls, dt);
+      const double middle = time + 0.5 * dt, slow = std::sin(0.5 * omega * dt) / (0.5 * omega * dt);
+      time += dt;
+      const Vec3 way = time * steady + sine(how, time) * how.amplitude;
+      EXPECT_LT((walls.pose(0).shift - way).norm(), 1e-15 + 1e-14 * time) << n;
+      const Vec3 velocity = steady + slow * omega * std::cos(omega * middle + phase) * how.amplitude;
+      EXPECT_LT((view(walls).velocity - velocity).norm(), 1e-10) << "the mean over the step";
+      EXPECT_LT(std::abs(slow - 1), 1.2e-5);
+    }
+    EXPECT_NEAR(time, 6 * period, 1e-14);
+    EXPECT_LT((walls.pose(0).shift - time * steady).norm(), 3e-15) << "back after whole periods";
+    EXPECT_FALSE(walls.pose(0).turned());
+  }
+}
+
+TEST(Walls, TurnsToAndFroAlongItsSine) {
+  const Vec3 about(1, -2, 0.5), axis = Vec3(1, 2, -2) / 3, point(3, 1, 2);
+  for (const double steady : {0.0, 4.0}) {
+    const double swept = 0.7;
+    const OscillationDescription how{.angle = swept * axis, .frequency = 5, .phase = 1};
+    Walls walls;
+    walls.apply({plate({.spin = steady * axis, .about = about, .oscillation = how})});
+    const int steps = 400;
+    const double dt = 1 / how.frequency / steps, omega = 2 * std::numbers::pi * how.frequency;
+    for (int n = 1; n <= 3 * steps; ++n) {
+      step(walls, dt);
+      const double time = n * dt, angle = steady * time + swept * sine(how, time);
+      const Vec3 place = about + Eigen::AngleAxisd(angle, axis) * (point - about);
+      EXPECT_LT((walls.pose(0).to_world(point) - place).norm(), 1e-12) << n;
+      const double spin = steady + swept * omega * std::cos(omega * (time - 0.5 * dt) + how.phase);
+      EXPECT_LT((view(walls).spin - spin * axis).norm(), 1.1e-5 * omega) << "(ω dt)²/24 = 1.03e-5";
+    }
+    const double turned = steady * 3 / how.frequency;
+    EXPECT_LT((walls.pose(0).turn - Eigen::AngleAxisd(turned, axis).toRotationMatrix()).norm(), 1e-12);
+    EXPECT_EQ(walls.pose(0).shift, Vec3::Zero());
+  }
+}
+
+TEST(Walls, OscillationGrowsWithTheRampFromRest) {
+  const OscillationDescription how{.amplitude = {0, 1, 0}, .frequency = 10, .phase = 2};
+  Walls walls;
+  walls.apply({plate({.ramp_time = 0.5, .oscillation = how})});
+  const double dt = 1e-3;
+  step(walls, dt);
+  const double omega = 2 * std::numbers::pi * how.frequency;
+  EXPECT_LT(std::abs(view(walls).velocity.y()), dt / 0.5 * omega) << "a share of its full speed";
+  for (int n = 2; n <= 800; ++n) {
+    step(walls, dt);
+    EXPECT_NEAR(walls.pose(0).shift.y(), std::min(1.0, n * dt / 0.5) * sine(how, n * dt), 1e-13) << n;
+  }
+}
+
+TEST(Walls, OscillationGoesOnFromStageToStageAndThroughChanges) {
+  OscillationDescription how{.amplitude = {0, 0, 2}, .frequency = 3, .phase = 0.4};
+  const double dt = 1e-2;
+  Walls walls;
+  const auto set = [&] { return std::vector{plate({.oscillation = how})}; };
+  walls.apply(set());
+  const auto go = [&](int steps) {
+    for (int n = 0; n < steps; ++n) step(walls, dt);
+    return walls.pose(0).shift.z();
+  };
+  go(7);
+  walls.apply(set());
+  EXPECT_NEAR(go(11), 2 * sine(how, 18 * dt), 1e-14) << "a stage that leaves it as it is";
+  EXPECT_NEAR(view(walls).stage_position.z(), 2 * (sine(how, 18 * dt) - sine(how, 7 * dt)), 1e-14);
+
+  const double before = walls.pose(0).shift.z(), angle = 2 * std::numbers::pi * 3 * 18 * dt + how.phase;
+  how.frequency = 5, how.amplitude = {0, 0, 1};
+  walls.change(set());
+  EXPECT_EQ(walls.pose(0).shift.z(), before) << "no jump";
+  go(4);
+  EXPECT_NEAR(walls.pose(0).shift.z() - before, std::sin(angle + 2 * std::numbers::pi * 5 * 4 * dt) - std::sin(angle),
+              1e-14)
+      << "the phase goes on, too";
+
+  const double later = walls.pose(0).shift.z();
+  how.phase = -1;
+  walls.apply(set());
+  EXPECT_NEAR(go(9) - later, sine(how, 9 * dt), 1e-14) << "another phase: it begins anew";
+
+  const double last = walls.pose(0).shift.z();
+  walls.apply({plate({})});
+  EXPECT_EQ(go(5), last) << "it ends where it is";
+  walls.apply(set());
+  EXPECT_NEAR(go(6) - last, sine(how, 6 * dt), 1e-14) << "and begins anew";
+}
+
 TEST(Walls, TurnsAboutTheMiddleOfItsBoundsUnlessToldOtherwise) {
   Walls walls;
   const auto endless = std::make_shared<Plate>();
@@ -232,6 +335,27 @@ TEST(Walls, ServoNeverExceedsItsVelocity) {
   EXPECT_EQ(view(unloaded.walls).velocity, Vec3(0, 0, 0)) << "no pressure wanted and none there";
 }
 
+/// A wall without area and normal, as a closed mesh is, that is pushed against springs along x on either side.
+TEST(Walls, ServoKeepsAForceWithoutAnArea) {
+  for (const double force : {40.0, -40.0, 0.0}) {
+    auto geometry = std::make_shared<Plate>();
+    geometry->surface = 0, geometry->towards = Vec3::Zero();
+    Walls walls;
+    walls.apply({{"ram", geometry, {.servo = ServoDescription{.axis = "x", .force = force, .max_velocity = 2}}}});
+    step(walls, 1e-3);
+    EXPECT_EQ(view(walls).velocity.x(), force == 0 ? 0 : std::copysign(2, force)) << "closes while nothing touches";
+    const double stiffness = 1e4;
+    const auto push = [&] { return -stiffness * walls.pose(0).shift.x(); };
+    for (int n = 0; n < 2000; ++n) {
+      walls.clear_forces();
+      walls.add(0, {{push(), 7, 0}, Vec3::Zero(), stiffness, 1});
+      step(walls, 1e-3);
+    }
+    EXPECT_NEAR(push(), -force, 1e-6);
+    EXPECT_EQ(view(walls).pressure, 0);
+  }
+}
+
 TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
   const auto behind = [](std::string leader, std::string axes, Vec3 own) {
     return MotionDescription{.velocity = own,
@@ -244,6 +368,11 @@ TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
   EXPECT_EQ(view(walls, 2).velocity, Vec3(1, 2, -3));
   EXPECT_EQ(view(walls, 1).velocity, Vec3(1, 0, -3));
   EXPECT_EQ(view(walls, 0).velocity, Vec3(0, 9, -3));
+
+  const OscillationDescription swing{.amplitude = {0, 0, 1}, .frequency = 2};
+  walls.apply({plate(behind("b", "z", {0, 9, 0}), "a"), plate({.oscillation = swing}, "b")});
+  step(walls, 0.01);
+  EXPECT_NEAR(view(walls, 0).velocity.z(), sine(swing, 0.01) / 0.01, 1e-12);
 }
 
 TEST(Walls, SumsWhatBodiesDo) {
@@ -304,18 +433,26 @@ TEST(Walls, NewReferencePointMovesNothing) {
 }
 
 TEST(Walls, RestoredWallsGoOnToTheSameBits) {
-  const std::vector<WallSetup> setups{plate({.velocity = {1, 0, 0},
-                                             .spin = {0.1, 0.2, 0.3},
-                                             .ramp_time = 0.7,
-                                             .free = FreeDescription{.axes = "z", .mass = 3, .load = {0, 0, 1}}})};
+  std::vector<WallSetup> setups{
+      plate({.velocity = {1, 0, 0},
+             .spin = {0.1, 0.2, 0.3},
+             .ramp_time = 0.7,
+             .oscillation = OscillationDescription{.amplitude = {0, 0.2, 0}, .angle = {0.3, 0, 0}, .frequency = 0.4},
+             .free = FreeDescription{.axes = "z", .mass = 3, .load = {0, 0, 1}}})};
   Walls whole, halved;
   whole.apply(setups);
   for (int i = 0; i < 5; ++i) step(whole, 0.1);
-  halved.apply(setups);
+  const std::vector<WallSetup> first = setups;
+  setups[0].motion.oscillation->frequency = 0.7;
+  whole.change(setups);
+  step(whole, 0.1);
+  halved.apply(first);
   restore_memory(halved, saved_memory(whole));
+  halved.change(setups);  // as of the increment of a ramp at which it stopped
   for (int i = 0; i < 5; ++i) step(whole, 0.1), step(halved, 0.1);
   EXPECT_EQ(whole.pose(0).shift, halved.pose(0).shift);
   EXPECT_EQ(whole.pose(0).turn, halved.pose(0).turn);
+  EXPECT_GT(std::abs(whole.pose(0).shift.y()), 1e-3);
   EXPECT_EQ(view(whole).velocity, view(halved).velocity);
   try {
     Walls none;
@@ -337,8 +474,8 @@ TEST(Walls, SayWhichMotionCannotBe) {
   };
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), servo)), "");
   EXPECT_EQ(complaint(flat(0, -Vec3::UnitZ(), servo)),
-            "wall \"lid\": a servo needs an area for its pressure, and this geometry has none; give it one, or take a "
-            "rectangle");
+            "wall \"lid\": a servo needs an area for its pressure, and this geometry has none; give it one, take a "
+            "rectangle, or keep a force");
   EXPECT_EQ(complaint(flat(1, Vec3::UnitX(), servo)),
             "wall \"lid\": a servo along z, but its normal is perpendicular to that axis");
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "z", .pressure = 1})),
@@ -346,7 +483,17 @@ TEST(Walls, SayWhichMotionCannotBe) {
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "xz", .pressure = 1, .max_velocity = 1})),
             "wall \"lid\": a servo along \"xz\"; it acts along one axis");
   EXPECT_EQ(complaint({plate({.velocity = {0, 0, 1}, .servo = servo})}),
-            "wall \"lid\": two motions along z; choose one of velocity, servo, follow and free");
+            "wall \"lid\": two motions along z; choose velocity and oscillation, or one of servo, follow and free");
+  EXPECT_EQ(complaint({plate(
+                {.oscillation = OscillationDescription{.amplitude = {1, 0, 1}, .frequency = 1}, .servo = servo})}),
+            "wall \"lid\": two motions along z; choose velocity and oscillation, or one of servo, follow and free");
+  EXPECT_EQ(complaint({plate({.velocity = {1, 0, 0},
+                              .oscillation = OscillationDescription{.amplitude = {1, 0, 0}, .frequency = 1},
+                              .servo = servo})}),
+            "");
+  EXPECT_EQ(complaint(flat(0, Vec3::Zero(), {.axis = "z", .force = -3, .max_velocity = 1})), "");
+  EXPECT_EQ(complaint(flat(1, Vec3::UnitZ(), {.axis = "z", .max_velocity = 1})),
+            "wall \"lid\": a servo keeps a pressure or a force, one of them");
   EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "z"}})}),
             "wall \"lid\": a free wall needs a mass above 0");
   EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "w", .mass = 1}})}),

@@ -46,6 +46,11 @@ TEST_F(SceneTest, ReadsIntoTypes) {
   EXPECT_EQ(std::get<FileGrains>(s.bodies.at("saved").grains.value()).path,
             std::string(GRIT_SOURCE_DIR) + "/tests/input/good/grains.txt");
   EXPECT_EQ(s.walls.at("lid").motion.servo->pressure, 2e5);
+  const OscillationDescription& shaken = *s.walls.at("cup").motion.oscillation;
+  EXPECT_EQ(shaken.amplitude, Vec3(1e-4, 0, 0));
+  EXPECT_EQ(shaken.angle, Vec3(0, 0, 0.5));
+  EXPECT_EQ(shaken.frequency, 2000);
+  EXPECT_EQ(shaken.phase, -0.25);
   EXPECT_EQ(s.walls.at("cup").geometry.type(), "mesh");
   EXPECT_EQ(s.engines.at("damping").engine.type(), "damping");
   EXPECT_EQ(s.probes.at("curve").cadence.every_time, 1e-3);

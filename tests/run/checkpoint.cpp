@@ -75,13 +75,20 @@ Description stiffening() {
   d["materials"]["grain"] = {{"density", 2600}, {"young_modulus", 1e7}, {"poisson_ratio", 0.2}, {"restitution", 0.5}};
   return d;
 }
-/// A lid that lies on the grains freely, and a side that turns.
+/// A lid that lies on the grains freely, a side that turns and one that shakes, faster and faster.
 Description loose() {
   Description d = box("linear-frictional", {7, 6, 6}, 8);
   d["walls"]["lid"]["motion"] = {{"free", {{"axes", "z"}, {"mass", 1e-3}, {"load", {0, 0, -0.01}}}}};
   d["walls"]["left"]["motion"] = {{"spin", {0, 0.5, 0}}, {"velocity", {0.01, 0, 0}}, {"ramp_time", 1e-3}};
+  d["walls"]["right"]["motion"]["oscillation"] = {
+      {"amplitude", {1e-5, 0, 0}}, {"angle", {0, 0.01, 0}}, {"frequency", 300}, {"phase", 0.3}};
   d["stages"] = {stage("fall", steps(230)),
                  stage("rest", {{"type", "any"}, {"of", {steps(350), {{"type", "kinetic-energy"}, {"below", 1e-9}}}}})};
+  d["stages"][0]["ramps"] = {{{"pointer", "/walls/right/motion/oscillation/frequency"},
+                              {"from", 300},
+                              {"to", 600},
+                              {"duration", 5e-4},
+                              {"increments", 10}}};
   return d;
 }
 

@@ -34,8 +34,10 @@ StageTime stage_time(const StageDescription& stage, const SceneDescription& scen
   if (const auto* time = std::get_if<TimeCondition>(&condition)) return {time->value, true};
   if (const auto* displacement = std::get_if<DisplacementCondition>(&condition)) {
     const MotionDescription& motion = scene.walls.at(displacement->wall).motion;
-    const double speed = motion.velocity[displacement->axis[0] - 'x'];
-    if (speed != 0) return {std::abs(displacement->value / speed) + 0.5 * motion.ramp_time, true};
+    const int axis = displacement->axis[0] - 'x';
+    const double speed = motion.velocity[axis];
+    const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
+    if (speed != 0 && !swings) return {std::abs(displacement->value / speed) + 0.5 * motion.ramp_time, true};
   }
   return {stage.limit, false};
 }
@@ -82,6 +84,8 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   double known = 0, most = 0;  // s times bodies
   std::size_t there = bodies;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+    check_oscillations(*scene.stages[i].start, dt);
+    for (const auto& increment : scene.stages[i].ramp) check_oscillations(*increment, dt);
     const StageDescription& stage = description.stages[i];
     const StageTime time = stage_time(stage, *scene.stages[i].start);
     there += coming[stage.name];

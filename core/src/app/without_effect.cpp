@@ -47,8 +47,8 @@ bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std
   if (!domain.low || !domain.high || deforms || !domain.open_sides.empty() ||
       std::ranges::any_of(scene.bodies, [](const auto& group) { return !group.second.stage.empty(); }))
     return false;
-  if (!motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.servo || motion.follow || motion.free ||
-      is_changed(scene, "walls", name))
+  if (!motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation || motion.servo || motion.follow ||
+      motion.free || is_changed(scene, "walls", name))
     return false;
   const auto bodies = world.positions();
   if (bodies.empty()) return false;
@@ -90,8 +90,9 @@ bool only_contacts_turn(const SceneDescription& scene) {
                               [](const auto& one) { return one.second.engine->phase() == Phase::forces; }) &&
          std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
          std::ranges::all_of(scene.walls, [&](const auto& one) {
-           return one.second.motion.spin.isZero(0.0) && !one.second.motion.free &&
-                  !is_changed(scene, "walls", one.first);
+           const MotionDescription& motion = one.second.motion;
+           return motion.spin.isZero(0.0) && !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) &&
+                  !motion.free && !is_changed(scene, "walls", one.first);
          });
 }
 

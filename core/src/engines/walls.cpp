@@ -1,9 +1,12 @@
 #include "engines/walls.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <utility>
 
 #include "grit/error.hpp"
@@ -16,6 +19,9 @@ namespace {
 constexpr double aslant = 1e-6;
 /// Steps, times the gain, in which a servo gets used to a velocity. A stack of some dozens of grains is slower.
 constexpr double habit_steps = 30;
+/// Fewest steps to a period of an oscillation: by then the mean velocity of a step differs from the one at its middle
+/// by (ω dt)²/24, 0.4 %.
+constexpr double steps_to_a_period = 20;
 
 [[noreturn]] void fail(const WallSetup& setup, const std::string& what) {
   throw Error("wall \"" + setup.name + "\": " + what);
@@ -53,11 +59,32 @@ Vec3 middle(const Geometry& geometry) {
 
 bool presses_on_specimen(const MotionDescription& motion) { return motion.servo && motion.servo->area == "specimen"; }
 
+/// How far an oscillation of amplitude 1 has gone some time [s] after it began.
+double swing(const MotionDescription& motion, double time, double lead) {
+  const OscillationDescription& how = *motion.oscillation;
+  const double periods = how.frequency * time + lead,
+               ramp = motion.ramp_time > 0 ? std::min(1.0, time / motion.ramp_time) : 1;
+  const double angle = 2 * std::numbers::pi * (periods - std::floor(periods)) + how.phase;
+  return ramp * (std::sin(angle) - std::sin(how.phase));
+}
+
+/// What becomes of an oscillation when the motion may have changed: it goes on from where it is, at its new frequency,
+/// or begins.
+void swing_on(const MotionDescription& motion, WallState& state) {
+  const OscillationDescription how = motion.oscillation.value_or(OscillationDescription{});
+  if (state.swing_frequency > 0 && how.frequency > 0 && state.swing_phase == how.phase)
+    state.swing_lead += (state.swing_frequency - how.frequency) * state.swing_time;
+  else state.swing_time = state.swing_lead = 0;
+  state.swing_frequency = how.frequency, state.swing_phase = how.phase;
+}
+
 /// Component of a servo's wall's normal along its axis. Throws if the servo has nothing to press with.
 double facing(const WallSetup& setup, const Pose& pose) {
   const std::string& letter = setup.motion.servo->axis;
   if (!presses_on_specimen(setup.motion) && !(setup.geometry->area() > 0))
-    fail(setup, "a servo needs an area for its pressure, and this geometry has none; give it one, or take a rectangle");
+    fail(setup,
+         "a servo needs an area for its pressure, and this geometry has none; give it one, take a rectangle, or keep a "
+         "force");
   const double along = (pose.turn * setup.geometry->normal())[letter.front() - 'x'];
   if (std::abs(along) < aslant)
     fail(setup, "a servo along " + letter + ", but its normal is perpendicular to that axis");
@@ -69,13 +96,12 @@ double facing(const WallSetup& setup, const Pose& pose) {
 /// Such a wall takes energy out, whatever it presses on.
 double servo_velocity(const WallSetup& setup, int axis, double area, WallState& state, double dt) {
   const ServoDescription& servo = *setup.motion.servo;
-  const double along = facing(setup, state.pose), side = along < 0 ? -1 : 1;
+  const double wanted = servo.force ? *servo.force : *servo.pressure * area * facing(setup, state.pose);
   if (state.touches == 0 || !(state.stiffness > 0)) {  // nothing to press on yet: close
     state.habit = 0;
-    return servo.pressure > 0 ? side * servo.max_velocity : 0;
+    return wanted != 0 ? std::copysign(servo.max_velocity, wanted) : 0;
   }
-  const double excess = -side * state.force[axis] - servo.pressure * area * std::abs(along);
-  const double wished = state.habit - side * servo.gain * excess / (state.stiffness * dt);
+  const double wished = state.habit + servo.gain * (state.force[axis] + wanted) / (state.stiffness * dt);
   const double velocity = std::clamp(wished, -servo.max_velocity, servo.max_velocity);
   state.habit += servo.gain / habit_steps * (velocity - state.habit);
   return velocity;
@@ -87,6 +113,19 @@ std::vector<WallSetup> wall_setups(const SceneDescription& scene) {
   std::vector<WallSetup> setups;
   for (const auto& [name, wall] : scene.walls) setups.push_back({name, wall.geometry.get(), wall.motion});
   return setups;
+}
+
+void check_oscillations(const SceneDescription& scene, double dt) {
+  for (const WallSetup& setup : wall_setups(scene)) {
+    if (!setup.motion.oscillation) continue;
+    const double frequency = setup.motion.oscillation->frequency;
+    if (frequency * dt * steps_to_a_period > 1)
+      fail(setup,
+           fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
+                       "more: lower the frequency, or shorten the time step by /time_step/safety or "
+                       "/time_step/value",
+                       frequency, 1 / (frequency * dt), dt, steps_to_a_period));
+  }
 }
 
 void Walls::apply(std::vector<WallSetup> setups) {
@@ -106,9 +145,10 @@ void Walls::change(std::vector<WallSetup> setups) {
     WallState state;
     if (known != setups_.end()) state = states_[static_cast<std::size_t>(known - setups_.begin())];
     else state.pose.about = middle(*setup.geometry);
+    swing_on(setup.motion, state);
     tell_from(setup.motion.about.value_or(state.pose.about), state);
     drives.push_back(drive_of(setups, setup));
-    if (drives.back().servo_axis >= 0) facing(setup, state.pose);
+    if (drives.back().servo_axis >= 0 && setup.motion.servo->pressure) facing(setup, state.pose);
     states.push_back(state);
   }
   order_ = leaders_first(setups, drives);
@@ -126,6 +166,8 @@ Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSet
     if (std::count(servo.begin(), servo.end(), true) != 1)
       fail(setup, "a servo along \"" + motion.servo->axis + "\"; it acts along one axis");
     if (!(motion.servo->max_velocity > 0)) fail(setup, "a servo needs a max_velocity above 0");
+    if (motion.servo->pressure.has_value() == motion.servo->force.has_value())
+      fail(setup, "a servo keeps a pressure or a force, one of them");
     drive.servo_axis = static_cast<int>(std::find(servo.begin(), servo.end(), true) - servo.begin());
   }
   if (motion.follow) {
@@ -139,9 +181,12 @@ Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSet
     drive.free = axes_of(setup, "free", motion.free->axes);
     if (!(motion.free->mass > 0)) fail(setup, "a free wall needs a mass above 0");
   }
-  for (int axis = 0; axis < 3; ++axis)
-    if ((motion.velocity[axis] != 0) + servo[axis] + drive.follow[axis] + drive.free[axis] > 1)
-      fail(setup, std::string("two motions along ") + "xyz"[axis] + "; choose one of velocity, servo, follow and free");
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
+    if ((motion.velocity[axis] != 0 || swings) + servo[axis] + drive.follow[axis] + drive.free[axis] > 1)
+      fail(setup, std::string("two motions along ") + "xyz"[axis] +
+                      "; choose velocity and oscillation, or one of servo, follow and free");
+  }
   return drive;
 }
 
@@ -206,14 +251,23 @@ void Walls::drive(double dt) {
     WallState& state = states_[wall];
     // The ramp in the middle of the step: so a ramp of whole steps covers exactly half of velocity × ramp_time.
     const double ramp = motion.ramp_time > 0 ? std::min(1.0, (state.stage_time + 0.5 * dt) / motion.ramp_time) : 1.0;
+    double swings = 0;  // amplitudes in a second
+    if (motion.oscillation)
+      swings =
+          (swing(motion, state.swing_time + dt, state.swing_lead) - swing(motion, state.swing_time, state.swing_lead)) /
+          dt;
     for (int axis = 0; axis < 3; ++axis) {
       double& velocity = state.velocity[axis];
       if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], axis, area(wall), state, dt);
       else if (how.follow[axis]) velocity = states_[how.leader].velocity[axis];
       else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
-      else velocity = ramp * motion.velocity[axis];
+      else {
+        velocity = ramp * motion.velocity[axis];
+        if (motion.oscillation) velocity += swings * motion.oscillation->amplitude[axis];
+      }
     }
     state.spin = ramp * motion.spin;
+    if (motion.oscillation) state.spin += swings * motion.oscillation->angle;
   }
 }
 
@@ -229,7 +283,7 @@ Demand Walls::demand() const {
 void Walls::move(double dt) {
   for (WallState& state : states_) {
     state.pose.shift += dt * state.velocity;
-    state.stage_time += dt;
+    state.stage_time += dt, state.swing_time += dt;
     const double angle = dt * state.spin.norm();
     if (angle == 0) continue;  // the turn of a wall that does not spin stays the exact identity
     const Mat3 turn = Eigen::AngleAxisd(angle, state.spin.normalized()) * state.pose.turn;

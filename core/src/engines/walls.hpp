@@ -24,6 +24,8 @@ struct WallSetup {
 };
 /// The walls of a scene, in the order of their names.
 std::vector<WallSetup> wall_setups(const SceneDescription& scene);
+/// Throws grit::Error, naming the wall, for an oscillation that steps of dt [s] cannot follow.
+void check_oscillations(const SceneDescription& scene, double dt);
 
 /// All that a wall remembers. pose.about is its reference point, where the description puts it;
 /// pose.shift is how far that point has moved.
@@ -37,22 +39,27 @@ struct WallState {
   double stiffness = 0;                               ///< sum over the touches, normal [N/m]
   double spring = 0, dashpot = 0;                     ///< the same in their stiffest directions [N/m, N s/m]
   double habit = 0;                                   ///< of a servo: its velocity, averaged over recent steps [m/s]
+  double swing_time = 0;                              ///< since the oscillation began [s]
+  double swing_lead = 0;                              ///< periods by which changes of frequency have set it ahead
+  double swing_frequency = 0, swing_phase = 0;        ///< of the oscillation that goes on [Hz, rad]; 0 Hz: none
   std::uint32_t touches = 0;
 };
 template <>
 inline constexpr bool plain_numbers<WallState> = true;
 
 /// Owns the walls while they move. A step is: clear_forces(), touch and add() for all bodies, drive(dt), move(dt).
-/// Velocities are those of the middle of the step, as the bodies' are. Used by one thread.
+/// Velocities are those of the middle of the step, as the bodies' are; that of an oscillation is the mean over the
+/// step, so that its path is that of the sine at every step. Used by one thread.
 class Walls {
  public:
   /// Begins a stage: walls get their new geometries and motions, and keep their poses and velocities by name; new walls
   /// stand where the description puts them. Throws grit::Error, naming the wall, for motions that cannot be: two on one
-  /// axis, a wall that is unknown or follows itself, a servo without an area or along the wall's face, no mass.
+  /// axis, a wall that is unknown or follows itself, a servo on a pressure without an area or along the wall's face, no
+  /// mass. An oscillation goes on from the stage before, unless it was not there or has another phase.
   void apply(const SceneDescription& scene) { apply(wall_setups(scene)); }
   void apply(std::vector<WallSetup> setups);
-  /// The same within a stage, e.g. for one increment of a ramp: the stage's time and start stay. Throws as apply()
-  /// does.
+  /// The same within a stage, e.g. for one increment of a ramp: the stage's time and start stay, and an oscillation
+  /// goes on from where it is. Throws as apply() does.
   void change(const SceneDescription& scene) { change(wall_setups(scene)); }
   void change(std::vector<WallSetup> setups);
 

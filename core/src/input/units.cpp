@@ -39,6 +39,7 @@ const std::map<std::string, Spellings>& table() {
       {"m/s^2", {{"m/s^2", "mm/s^2"}, {"cm/s^2", "m/s2", "mm/s2", "m s-2"}}},
       {"rad/s", {{"rad/s"}, {"mrad/s", "deg/s", "deg/min", "rpm"}}},
       {"1/s", {{"1/s"}, {"s-1", "%/s", "1/min", "%/min", "1/h", "%/h", "Hz", "kHz"}}},
+      {"Hz", {{"Hz", "kHz"}, {"MHz", "1/s", "1/min"}}},
       {"1/m", {{"1/m", "1/mm"}, {"1/cm"}}},
       {"kg/m^3", {{"kg/m^3"}, {"g/cm^3", "t/m^3", "kg/m3", "g/cm3", "t/m3"}}},
       {"kg m^2", {{"kg m^2"}, {"g mm^2", "g cm^2", "kg mm^2"}}},

@@ -293,6 +293,7 @@ void Simulation::choose_time_step(const Demand& contacts) {
       fail("the time step " + number(*wish.value) + " s is above the critical one, " +
                number(clock_.critical_time_step) + " s",
            "leave out /time_step/value, or say \"allow_unstable\": true");
+    check_oscillations(*scene_, clock_.time_step);
     return;
   }
   const double safe = wish.safety * clock_.critical_time_step;
@@ -302,6 +303,7 @@ void Simulation::choose_time_step(const Demand& contacts) {
                                      : "contacts have no stiffness to speak of, so that no time step is too long; make "
                                        "them stiffer, or give /time_step/value");
   if (clock_.time_step == 0 || safe < clock_.time_step || safe > raise_when * clock_.time_step) clock_.time_step = safe;
+  check_oscillations(*scene_, clock_.time_step);
 }
 
 bool Simulation::prepare() {

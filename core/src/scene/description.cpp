@@ -226,17 +226,23 @@ void BodiesDescription::declare(Parameters& p) {
 
 void ServoDescription::declare(Parameters& p) {
   p.add("axis", axis).one_of(one_axis).doc("axis along which the wall is driven");
-  p.add("pressure", pressure)
-      .unit("Pa")
-      .symbol("p")
-      .at_least(0)
-      .required()
-      .doc("pressure to keep, compression positive");
+  p.add("pressure", pressure).unit("Pa").symbol("p").at_least(0).doc("pressure to keep, compression positive");
+  p.add("force", force)
+      .unit("N")
+      .symbol("F")
+      .doc("force to keep, with which the wall pushes bodies along the axis, by its sign; for any geometry");
   p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
   p.add("gain", gain).above(0).at_most(1).doc("share of the force's error that one step takes away");
   p.add("area", area)
       .one_of({"geometry", "specimen"})
       .doc("what the pressure acts on: the geometry's area, or the specimen's cross-section as it is then");
+  p.check(
+      [this](const Complain& complain) {
+        if (!pressure && !force) complain("pressure", "neither a pressure nor a force", "one of them, to be kept");
+        if (pressure && force) complain("force", "a pressure and a force", "one of them");
+        if (force && area != "geometry") complain("area", "the area of a force", "it beside a pressure alone");
+      },
+      {"pressure", "force", "area"});
 }
 void FollowDescription::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall whose motion it shares");
@@ -247,11 +253,30 @@ void FreeDescription::declare(Parameters& p) {
   p.add("mass", mass).unit("kg").symbol("m").above(0).required().doc("its mass");
   p.add("load", load).unit("N").symbol("F").doc("force on the wall from outside");
 }
+void OscillationDescription::declare(Parameters& p) {
+  p.add("amplitude", amplitude).unit("m").symbol("A").doc("of the displacement, half of the way from end to end");
+  p.add("angle", angle).unit("rad").symbol("alpha").doc("the same of the turn about its point, right-handed");
+  p.add("frequency", frequency).unit("Hz").symbol("f").above(0).required().doc("periods in a second");
+  p.add("phase", phase)
+      .unit("rad")
+      .symbol("phi")
+      .doc("where in its period it begins; 0: in the middle of its way, 90 deg: at its far end");
+  p.check(
+      [this](const Complain& complain) {
+        if (amplitude.isZero(0.0) && angle.isZero(0.0))
+          complain("amplitude", "neither an amplitude nor an angle", "one that is not 0, or no oscillation");
+      },
+      {"amplitude", "angle"});
+}
 void MotionDescription::declare(Parameters& p) {
   p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity");
   p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity, right-handed");
   p.add("about", about).unit("m").doc("point that it turns about; left out: the geometry's reference point");
-  p.add("ramp_time", ramp_time).unit("s").at_least(0).doc("time in which velocity and spin grow linearly from zero");
+  p.add("ramp_time", ramp_time)
+      .unit("s")
+      .at_least(0)
+      .doc("time in which velocity, spin and oscillation grow linearly from zero");
+  p.add("oscillation", oscillation).doc("to and fro as a sine, on top of velocity and spin");
   p.add("servo", servo).doc("keeps a pressure");
   p.add("follow", follow).doc("shares the motion of another wall");
   p.add("free", free).doc("moves as forces push it");
@@ -262,7 +287,9 @@ void MotionDescription::declare(Parameters& p) {
           const auto claim = [&](bool claimed, const char* key) {
             if (claimed) claims.push_back(key);
           };
-          claim(velocity[k] != 0, "velocity");
+          const bool swings = oscillation && oscillation->amplitude[k] != 0;
+          claim(velocity[k] != 0 && !swings, "velocity");
+          claim(swings, "oscillation");
           claim(servo && servo->axis == one_axis[k], "servo");
           claim(follow && follow->axes.find(one_axis[k]) != std::string::npos, "follow");
           claim(free && free->axes.find(one_axis[k]) != std::string::npos, "free");
@@ -272,7 +299,7 @@ void MotionDescription::declare(Parameters& p) {
           complain(claims.back(), "the axis " + one_axis[k] + " claimed by " + all, "one of them for each axis");
         }
       },
-      {"velocity", "servo", "follow", "free"});
+      {"velocity", "oscillation", "servo", "follow", "free"});
 }
 WallDescription::WallDescription(const Registry& registry) : geometry(registry) {}
 void WallDescription::declare(Parameters& p) {

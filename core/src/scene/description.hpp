@@ -103,9 +103,10 @@ struct BodiesDescription {
 
 struct ServoDescription {
   std::string axis = "z";
-  double pressure = 0;      ///< Pa, compression positive
-  double max_velocity = 0;  ///< m/s
-  double gain = 1;          ///< share of the force's error that one step takes away
+  std::optional<double> pressure{};  ///< Pa, compression positive
+  std::optional<double> force{};     ///< N, what the wall exerts on the bodies, along the axis
+  double max_velocity = 0;           ///< m/s
+  double gain = 1;                   ///< share of the force's error that one step takes away
   std::string area = "geometry";
   void declare(Parameters& p);
 };
@@ -119,11 +120,21 @@ struct FreeDescription {
   Vec3 load = Vec3::Zero();
   void declare(Parameters& p);
 };
-/// Along each axis a wall is fixed, has a velocity, follows another wall, is servo-controlled, or is free.
+/// On top of velocity and spin. After t the wall has gone amplitude × (sin(2π f t + phase) − sin(phase)), and turned as
+/// far by angle.
+struct OscillationDescription {
+  Vec3 amplitude = Vec3::Zero(), angle = Vec3::Zero();  ///< of the displacement [m], of the rotation vector [rad]
+  double frequency = 0;                                 ///< Hz
+  double phase = 0;                                     ///< rad
+  void declare(Parameters& p);
+};
+/// Along each axis a wall is fixed, has a velocity or oscillates, follows another wall, is servo-controlled, or is
+/// free.
 struct MotionDescription {
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
   std::optional<Vec3> about{};
   double ramp_time = 0;
+  std::optional<OscillationDescription> oscillation{};
   std::optional<ServoDescription> servo{};
   std::optional<FollowDescription> follow{};
   std::optional<FreeDescription> free{};
