@@ -9,20 +9,70 @@
 #include <string>
 #include <vector>
 
+#include "closed_forms.hpp"
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
 #include "wall_descriptions.hpp"
 
 namespace grit {
 
+/// What a closed form is worked out with where it differs from the others.
+struct SiloForm {
+  std::optional<double> stress_ratio, wall_friction_angle, unit_weight;
+
+  void declare(Parameters& p) {
+    p.add("stress_ratio", stress_ratio).symbol("K").above(0).doc("left out: that of closed_forms");
+    p.add("wall_friction_angle", wall_friction_angle)
+        .unit("rad")
+        .symbol("phi_w")
+        .above(0)
+        .below(std::numbers::pi / 2)
+        .doc("left out: that of closed_forms");
+    p.add("unit_weight", unit_weight)
+        .unit("N/m^3")
+        .symbol("gamma")
+        .above(0)
+        .doc("of the bulk; left out: at the void ratio that the filling is expected to come to");
+  }
+};
+
+/// What the run is put beside; none of it acts on the grains.
+struct SiloForms {
+  double internal_friction_angle = 36 * std::numbers::pi / 180;
+  std::optional<double> stress_ratio, wall_friction_angle;
+  std::optional<SiloForm> drescher, en_1991_4;
+
+  void declare(Parameters& p) {
+    p.add("internal_friction_angle", internal_friction_angle)
+        .unit("rad")
+        .symbol("phi_i")
+        .above(0)
+        .below(std::numbers::pi / 2)
+        .doc("of the sand as it shears in itself; the default is that of sand in EN 1991-4");
+    p.add("stress_ratio", stress_ratio)
+        .symbol("K")
+        .above(0)
+        .doc("horizontal over vertical stress; left out: 1.1 (1 - sin phi_i) of EN 1991-4");
+    p.add("wall_friction_angle", wall_friction_angle)
+        .unit("rad")
+        .symbol("phi_w")
+        .above(0)
+        .below(std::numbers::pi / 2)
+        .doc("between sand and wall; left out: EN 1991-4's, that of the surface where it is flat or nearly so");
+    p.add("drescher", drescher).doc("P after Drescher, with one wall's friction, on the bottom of a silo-quasistatic");
+    p.add("en_1991_4", en_1991_4).doc("P by EN 1991-4 with values of its own, on the bottom of a silo-quasistatic");
+  }
+};
+
 struct Silo {
-  static constexpr double degree = std::numbers::pi / 180, gravity = 9.81;
+  static constexpr double degree = std::numbers::pi / 180, gravity = closed_forms::gravity;
   /// Of the cloud that falls into the silo.
   static constexpr double cloud_solid_fraction = 0.35;
 
   double width = 200e-3, height = 500e-3, depth = 7.5e-3;
   std::string wall_surface = "saw-tooth";
   double roughness = 1, groove_spacing = 0, groove_inclination = 45 * degree, wall_friction_angle = 18 * degree;
+  double depth_over_wavelength = 0.24, wavelength = 15e-3;
   std::int64_t wall_pieces = 10;
   double smallest_diameter = 0.5e-3, largest_diameter = 2.5e-3, density = 2600, friction_angle = 25 * degree;
   double contact_modulus = 10e6, shear_to_normal_stiffness = 0.3, rolling_stiffness = 0.2, rolling_limit = 0.4;
@@ -31,13 +81,14 @@ struct Silo {
   std::string filling = "cloud";
   std::optional<double> filling_friction_angle;
   std::int64_t layers = 6, seed = 1;
+  SiloForms forms;
 
   void declare(Parameters& p) {
     const double right_angle = std::numbers::pi / 2;
     p.add("width", width).unit("m").symbol("b").above(0).doc("between the walls, along x");
     p.add("height", height).unit("m").symbol("h").above(0).doc("to which the silo is filled, at the void ratio");
     p.add("depth", depth).unit("m").above(0).doc("between the panes, along y, which are smooth");
-    p.add("wall_surface", wall_surface).one_of({"flat", "saw-tooth"}).doc("of the two walls");
+    p.add("wall_surface", wall_surface).one_of({"flat", "saw-tooth", "sinusoidal"}).doc("of the two walls");
     p.add("roughness", roughness)
         .symbol("R_n")
         .above(0)
@@ -45,12 +96,17 @@ struct Silo {
     p.add("groove_spacing", groove_spacing)
         .unit("m")
         .at_least(0)
-        .doc("from groove to groove; 0: four times their depth");
+        .doc("from groove to groove of saw-tooth walls; 0: four times their depth");
     p.add("groove_inclination", groove_inclination)
         .unit("rad")
         .above(0)
         .below(right_angle)
-        .doc("of a groove's flanks against the wall");
+        .doc("of a groove's flanks against a saw-tooth wall");
+    p.add("depth_over_wavelength", depth_over_wavelength)
+        .symbol("d/l")
+        .at_least(0)
+        .doc("of sinusoidal walls: from crests to troughs over the wavelength");
+    p.add("wavelength", wavelength).unit("m").symbol("l").above(0).doc("of sinusoidal walls");
     p.add("wall_friction_angle", wall_friction_angle)
         .unit("rad")
         .at_least(0)
@@ -96,6 +152,7 @@ struct Silo {
         .at_most(100)
         .doc("of equal mass, turn by turn of the materials sand and dyed, which differ in name alone");
     p.add("seed", seed).at_least(0).doc("of the grains' sizes and places");
+    p.add("closed_forms", forms).doc("what the curves are drawn beside; without effect on the grains");
     p.check(
         [this](const Complain& complain) {
           if (!(smallest_diameter <= largest_diameter))
@@ -104,10 +161,8 @@ struct Silo {
         {"smallest_diameter", "largest_diameter"});
     p.check(
         [this](const Complain& complain) {
-          const double groove = 2 * groove_depth() / std::tan(groove_inclination);
-          if (groove_spacing > 0 && groove_spacing < groove)
-            complain("groove_spacing", std::to_string(groove_spacing) + " m",
-                     "at least the width of a groove, " + std::to_string(groove) + " m; or 0");
+          if (wall_surface == "saw-tooth")
+            check_groove_spacing(complain, groove_spacing, 2 * groove_depth() / std::tan(groove_inclination));
         },
         {"groove_spacing", "roughness", "groove_inclination", "wall_surface"});
     p.check(
@@ -124,11 +179,18 @@ struct Silo {
   }
 
   double mean_diameter() const { return 0.5 * (smallest_diameter + largest_diameter); }
-  double groove_depth() const { return wall_surface == "flat" ? 0 : roughness * mean_diameter(); }
-  double spacing() const { return groove_spacing > 0 ? groove_spacing : 4 * groove_depth(); }
+  double groove_depth() const {
+    if (wall_surface == "sinusoidal") return depth_over_wavelength * wavelength;
+    return wall_surface == "flat" ? 0 : roughness * mean_diameter();
+  }
+  double spacing() const {
+    if (wall_surface == "sinusoidal") return wavelength;
+    return groove_spacing > 0 ? groove_spacing : 4 * groove_depth();
+  }
   /// Seen from above, with the grooves of both walls [m²].
   double area() const {
-    const double groove = groove_depth() * groove_depth() / std::tan(groove_inclination);
+    const double groove = wall_surface == "sinusoidal" ? 0.5 * groove_depth() * wavelength
+                                                       : groove_depth() * groove_depth() / std::tan(groove_inclination);
     return (width + (groove > 0 ? 2 * groove / spacing() : 0)) * depth;
   }
   std::int64_t grains() const {
@@ -270,6 +332,9 @@ struct Silo {
     };
     constant("g", gravity, "acceleration of gravity [m s-2]");
     constant("area", area(), "of the silo, seen from above, with its grooves [m2]");
+    constant("width", width, "between the walls [m]");
+    constant("height", height, "to which the silo is filled [m]");
+    constant("piece_height", height / static_cast<double>(wall_pieces), "of a piece of a wall [m]");
     constant("density", density, "of the grains [kg m-3]");
     curve("weight", "mass * g", "N", "G, of the sand in the silo");
     curve("bottom_force", p, "N", "P, on the bottom, downwards positive");
@@ -279,10 +344,48 @@ struct Silo {
     curve("wall_shear_share", "(" + t + ") / " + g, "1", "T/G of one wall");
     curve("wall_normal_share", "(" + n + ") / " + g, "1", "N/G of one wall");
     curve("wall_friction_angle", "180 / _pi * atan2(" + t + ", " + n + ")", "degree", "phi_w = atan(T/N), mobilised");
+    // Over the whole height: what lies above each level, less what the walls bear of it, is on the bottom of the level.
+    std::string borne;
+    const auto bears = [&](const std::string& piece, const std::string& place) {
+      borne += " + " + sum({"left" + piece, "right" + piece}, "z") + " * (" + place + ")";
+    };
+    if (below) bears("-below", "-0.5 * " + level);
+    for (std::int64_t i = 1; i <= wall_pieces; ++i)
+      bears('-' + std::to_string(i), std::to_string(i) + " * piece_height - 0.5 * piece_height - " + level);
+    bears("-above", "height - " + level);
+    curve("lateral_stress_ratio", n + " * width / (" + g + " * (centre_z - " + level + ")" + borne + ")", "1",
+          "K: horizontal stress on the walls over the vertical one, each the mean over the height; from the balance");
     curve("balance", "(" + p + " + 2 * (" + t + ")) / " + g, "1", "P/G + 2 T/G: 1 at rest");
     curve("void_ratio", "2 * (centre_z - " + level + ") * area * density / mass - 1", "1",
           "overall, of a filling that is even and level; from the height of its centre of mass");
     return test;
+  }
+
+  /// Janssen's balance, or another's, of the filling as it is expected.
+  closed_forms::PlaneSilo balance(const SiloForm& form = {}) const {
+    return {.width = width,
+            .height = height,
+            .depth = depth,
+            .unit_weight = form.unit_weight.value_or(bulk_density() * gravity),
+            .stress_ratio = form.stress_ratio.value_or(stress_ratio()),
+            .wall_friction = std::tan(form.wall_friction_angle.value_or(wall_friction()))};
+  }
+
+  /// What the curves of the full silo are drawn beside. Descriptions add their own by other names.
+  Description references() const {
+    Description all;
+    const auto beside = [&](const char* name, const char* curve, double value) {
+      all[name] = {{"of", std::string("test/") + curve}, {"value", value}};
+    };
+    const closed_forms::PlaneSilo janssen = balance();
+    beside("Janssen_P_over_G", "bottom_share", janssen.bottom_share());
+    beside("Janssen_T_over_G", "wall_shear_share", janssen.wall_shear_share());
+    beside("Janssen_N_over_G", "wall_normal_share", janssen.wall_normal_share());
+    beside("Janssen_K", "lateral_stress_ratio", janssen.stress_ratio);
+    beside("Janssen_wall_friction", "wall_friction_angle", wall_friction() / degree);
+    beside("Rankine_active", "lateral_stress_ratio", closed_forms::rankine_active(forms.internal_friction_angle));
+    beside("Rankine_passive", "lateral_stress_ratio", closed_forms::rankine_passive(forms.internal_friction_angle));
+    return all;
   }
 
   /// Stresses on both walls together, by height.
@@ -296,6 +399,18 @@ struct Silo {
  private:
   static constexpr const char* dyed = "dyed";
 
+  /// K of the closed forms.
+  double stress_ratio() const {
+    return forms.stress_ratio.value_or(closed_forms::stored_stress_ratio(forms.internal_friction_angle));
+  }
+  /// φ_w of the closed forms [rad].
+  double wall_friction() const {
+    if (forms.wall_friction_angle) return *forms.wall_friction_angle;
+    const double factor = closed_forms::usual_wall_contact_factor(groove_depth(), mean_diameter());
+    return std::atan(
+        closed_forms::effective_wall_friction(factor, std::tan(wall_friction_angle), forms.internal_friction_angle));
+  }
+
   /// The stage in which a layer falls, from 1.
   static std::string fill(std::int64_t layer) { return "fill-" + std::to_string(layer); }
 
@@ -308,8 +423,12 @@ struct Silo {
     d.erase("two_sided");
     d["type"] = wall_surface;
     d["depth"] = groove_depth();
-    d["inclination"] = groove_inclination;
-    d["spacing"] = spacing();
+    if (wall_surface == "sinusoidal") {
+      d["wavelength"] = wavelength;
+    } else {
+      d["inclination"] = groove_inclination;
+      d["spacing"] = spacing();
+    }
     d["offset"] = -std::fmod(low, spacing());
     return d;
   }

@@ -42,6 +42,7 @@ TEST(Units, OtherFactorsAreRoundedToAnUlp) {
   EXPECT_TRUE(within_ulp(si("18°", "rad"), 18 * std::numbers::pi / 180));
   EXPECT_TRUE(within_ulp(si("60 rpm", "rad/s"), 2 * std::numbers::pi));
   EXPECT_EQ(si("1.5 min", "s"), 90);
+  EXPECT_EQ(si("17 kN/m^3", "N/m^3"), 17e3);
   EXPECT_TRUE(within_ulp(si("1 mm/min", "m/s"), 1e-3 / 60));
 }
 
@@ -61,7 +62,7 @@ TEST(Units, TooLargeANumberIsInfinite) {
 TEST(Units, EverySpellingConvertsAndMatchesThePattern) {
   for (const char* unit : {"1",     "m",   "m^2",   "m^3",     "s",     "kg",   "kg/s", "Pa",     "N",      "N m",
                            "rad",   "m/s", "m/s^2", "rad/s",   "1/s",   "Hz",   "1/m",  "kg/m^3", "kg m^2", "J",
-                           "J/m^3", "W",   "N/m",   "N m/rad", "N s/m", "Pa s", "Pa/m", "Pa/s"}) {
+                           "J/m^3", "W",   "N/m",   "N m/rad", "N s/m", "Pa s", "Pa/m", "Pa/s",   "N/m^3"}) {
     const std::regex pattern(quantity_pattern(unit));
     for (const auto& spelling : unit_spellings(unit)) {
       const auto found = parse_quantity("2 " + spelling, unit);

@@ -42,6 +42,7 @@ const std::map<std::string, Spellings>& table() {
       {"Hz", {{"Hz", "kHz"}, {"MHz", "1/s", "1/min"}}},
       {"1/m", {{"1/m", "1/mm"}, {"1/cm"}}},
       {"kg/m^3", {{"kg/m^3"}, {"g/cm^3", "t/m^3", "kg/m3", "g/cm3", "t/m3"}}},
+      {"N/m^3", {{"N/m^3", "kN/m^3"}, {"MN/m^3", "N/m3", "kN/m3"}}},
       {"kg m^2", {{"kg m^2"}, {"g mm^2", "g cm^2", "kg mm^2"}}},
       {"J", {{"J", "mJ", "uJ", "kJ"}, {"µJ", "nJ", "N m"}}},
       {"J/m^3", {{"J/m^3", "kJ/m^3"}, {"J/m3"}}},

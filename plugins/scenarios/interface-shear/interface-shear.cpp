@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../closed_forms.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -10,6 +11,8 @@ namespace {
 // Shear starts from rest over this share of its duration.
 constexpr double start_share = 0.02;
 constexpr int curve_samples = 400, frames_in_shear = 10;
+// For the wall contact factor, where the description does not say.
+constexpr double usual_internal_friction = 44 * degree;
 
 }  // namespace
 
@@ -36,7 +39,7 @@ void InterfaceShear::declare(Parameters& p) {
       .doc("from groove to groove of a saw-tooth surface; 0: side by side, otherwise with flats between the grooves");
   p.add("depth_over_wavelength", depth_over_wavelength_)
       .symbol("d/l")
-      .above(0)
+      .at_least(0)
       .doc("of a sinusoidal surface: from crests to troughs over the wavelength");
   p.add("wavelength", wavelength_).unit("m").symbol("l").above(0).doc("of a sinusoidal surface");
   p.add("surface_friction_angle", surface_friction_angle_)
@@ -65,14 +68,14 @@ void InterfaceShear::declare(Parameters& p) {
       .symbol("phi_i")
       .above(0)
       .below(std::numbers::pi / 2)
-      .doc("of the sand, for the wall contact factor alone");
+      .doc(
+          "of the sand as it shears in itself, for the wall contact factor alone: left out, 44 deg; given, EN 1991-4's "
+          "friction of the surface is drawn beside the curves");
   preparation_.declare_course(p);
   p.check(
       [this](const Complain& complain) {
-        if (groove_spacing_ > 0 && groove_spacing_ < 2 * groove_depth() / std::tan(groove_inclination_))
-          complain("groove_spacing", std::to_string(groove_spacing_) + " m",
-                   "at least the width of a groove, " +
-                       std::to_string(2 * groove_depth() / std::tan(groove_inclination_)) + " m; or 0");
+        if (surface_ == "saw-tooth")
+          check_groove_spacing(complain, groove_spacing_, 2 * groove_depth() / std::tan(groove_inclination_));
       },
       {"groove_spacing", "roughness", "groove_inclination", "surface"});
 }
@@ -188,7 +191,8 @@ Description InterfaceShear::expand() const {
   };
   constant("area", area, "of the box, seen from above [m2]");
   constant("start_height", cloud_height, "of the lid over the tips at the start of the run [m]");
-  constant("tan_phi_i", std::tan(internal_friction_angle_), "internal friction of the sand");
+  constant("tan_phi_i", std::tan(internal_friction_angle_.value_or(usual_internal_friction)),
+           "internal friction of the sand");
   constant("mu_w", std::tan(surface_friction_angle_), "friction of the surface where it is flat");
   curve("shear_displacement", "lid_stage_travel_x", "m", "of the box");
   curve("shear_stress", "surface_force_x / area", "Pa", "horizontal force on the surface over the area of the box");
@@ -215,6 +219,18 @@ Description InterfaceShear::expand() const {
                    {"y", {"test/friction_angle", "test/volumetric_strain", "slip/share"}},
                    {"color", "rotation"}}},
                  {"summary", {"test/friction_angle", "test/volumetric_strain", "slip/share"}}};
+  if (internal_friction_angle_) {
+    using namespace closed_forms;
+    const double factor = usual_wall_contact_factor(groove_depth(), preparation_.mean_diameter());
+    const double friction =
+        effective_wall_friction(factor, std::tan(surface_friction_angle_), *internal_friction_angle_);
+    const auto beside = [&](const char* name, const char* curve, double value) {
+      d["output"]["references"][name] = {{"of", std::string("test/") + curve}, {"value", value}};
+    };
+    beside("EN_1991-4_effective_wall_friction", "stress_ratio", friction);
+    beside("EN_1991-4_effective_wall_friction_angle", "friction_angle", std::atan(friction) / degree);
+    beside("EN_1991-4_wall_contact_factor", "wall_contact_factor", factor);
+  }
   return d;
 }
 

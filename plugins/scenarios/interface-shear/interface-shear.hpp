@@ -1,6 +1,7 @@
 // Interface shear test: a box of sand is driven over a flat, grooved or wavy surface under a constant normal stress.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "../preparation.hpp"
@@ -31,7 +32,8 @@ class InterfaceShear final : public Scenario {
   std::string depth_boundary_ = "walls", surface_ = "saw-tooth";
   double roughness_ = 1, groove_inclination_ = 45 * degree, groove_spacing_ = 0;
   double depth_over_wavelength_ = 0.24, wavelength_ = 15e-3;
-  double surface_friction_angle_ = 18 * degree, internal_friction_angle_ = 44 * degree, local_damping_ = 0.08;
+  double surface_friction_angle_ = 18 * degree, local_damping_ = 0.08;
+  std::optional<double> internal_friction_angle_;
   double gap_ = 0, normal_stress_ = 100e3, shear_displacement_ = 7e-3, inertial_number_ = 1e-3;
 };
 

@@ -35,6 +35,12 @@ TEST(InterfaceShear, MakesWavesAsDeepAsTheirLengthSays) {
   EXPECT_DOUBLE_EQ(d["wavelength"], 15e-3);
 }
 
+TEST(InterfaceShear, TakesWavesWithoutDepth) {
+  const Description flat = {{"surface", "sinusoidal"}, {"depth_over_wavelength", 0}};
+  EXPECT_EQ(surface(flat)["depth"], 0.0);
+  EXPECT_EQ(count(flat), count({{"surface", "flat"}}));
+}
+
 TEST(InterfaceShear, TakesARectangleWhereTheSurfaceIsFlat) {
   const Description d = surface({{"surface", "flat"}});
   EXPECT_EQ(d["type"], "rectangle");
@@ -82,13 +88,36 @@ TEST(InterfaceShear, DrivesTheBoxAsOneAtTheInertialNumber) {
     EXPECT_DOUBLE_EQ(wall["motion"]["velocity"][0], scenario->shear_velocity()) << name;
 }
 
+TEST(InterfaceShear, PutsTheFrictionOfEN1991BesideTheCurves) {
+  EXPECT_FALSE(made()->expand()["output"].contains("references"));
+  const auto value = [](const Description& keys, const char* name, const char* of) -> double {
+    Description all = {{"internal_friction_angle", "44 deg"}, {"surface_friction_angle", "16 deg"}};
+    all.update(keys);
+    const Description reference = made(all)->expand()["output"]["references"][name];
+    EXPECT_EQ(reference["of"], of);
+    return reference["value"];
+  };
+  const Description waves = {{"surface", "sinusoidal"}}, even = {{"surface", "flat"}};
+  const double friction = 0.2 * std::tan(16 * degree) + 0.8 * std::tan(44 * degree);
+  EXPECT_NEAR(value(waves, "EN_1991-4_effective_wall_friction", "test/stress_ratio"), friction, 1e-12);
+  EXPECT_NEAR(value(waves, "EN_1991-4_effective_wall_friction_angle", "test/friction_angle"),
+              std::atan(friction) / degree, 1e-12);
+  EXPECT_EQ(value(waves, "EN_1991-4_wall_contact_factor", "test/wall_contact_factor"), 0.2);
+  EXPECT_NEAR(value(even, "EN_1991-4_effective_wall_friction", "test/stress_ratio"), std::tan(16 * degree), 1e-12);
+  EXPECT_EQ(value(even, "EN_1991-4_wall_contact_factor", "test/wall_contact_factor"), 1);
+}
+
 TEST(InterfaceShear, SaysWhatIsWrong) {
   const auto problem = [](const Description& keys) {
     const auto result = read_scenario<InterfaceShear>(keys);
     return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
   };
   EXPECT_THAT(problem({{"groove_spacing", "0.9 mm"}}), HasSubstr("/groove_spacing"));
-  EXPECT_EQ(problem({{"groove_spacing", "1.1 mm"}}), "");
+  EXPECT_EQ(problem({{"groove_spacing", "1 mm"}}), "") << "as wide as the groove, whatever the tangent's last digit";
+  const std::string narrow = problem({{"groove_spacing", "0.9999999 mm"}});
+  EXPECT_THAT(narrow, HasSubstr("0.0009999999 m"));
+  EXPECT_THAT(narrow, HasSubstr("at least the width of a groove, 0.001 m; or 0"));
+  EXPECT_EQ(problem({{"groove_spacing", "0.9 mm"}, {"surface", "sinusoidal"}}), "");
   EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
   EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
   EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio is 0.9"));

@@ -1,15 +1,21 @@
 #include "silo-discharge.hpp"
 
+#include <functional>
+#include <sstream>
+
 #include "grit/plugin.hpp"
 
 namespace grit {
 namespace {
 
 constexpr int curve_samples = 400, frames_while_discharged = 10;
-// Beverloo's law for a slot, and by how much its grains keep off the edges, over their mean diameter.
-constexpr double slot_coefficient = 1.03, empty_margin = 1.4;
 // An outlet of fewer largest grains is sure to be closed by an arch.
 constexpr double least_outlet = 3;
+
+/// Of the stage that ends when so much has left: "discharge-10" for a tenth, "discharge-0.5" for less.
+std::string discharge(double share) {
+  return "discharge-" + (std::ostringstream() << 100 * share).str();  // six digits, so that 29 % is no 28.999…
+}
 
 }  // namespace
 
@@ -28,6 +34,8 @@ void SiloDischarge::declare(Parameters& p) {
       [this](const Complain& complain) {
         if (!std::ranges::is_sorted(shares_, std::less_equal<>()))
           complain("shares", "a share that is not above the one before", "shares that rise");
+        else if (std::ranges::adjacent_find(shares_, {}, discharge) != shares_.end())
+          complain("shares", "two shares whose first six digits are the same", "shares whose stages have names");
       },
       {"shares"});
   p.check(
@@ -71,8 +79,7 @@ std::vector<SiloDischarge::Slot> SiloDischarge::outlets() const {
 double SiloDischarge::expected_rate() const {
   double rate = 0;
   for (const auto& [low, high] : outlets())
-    rate += slot_coefficient * silo_.bulk_density() * std::sqrt(Silo::gravity) * silo_.depth *
-            std::pow(high - low - empty_margin * silo_.mean_diameter(), 1.5);
+    rate += closed_forms::beverloo_slot(silo_.bulk_density(), silo_.depth, high - low, silo_.mean_diameter());
   return rate;
 }
 
@@ -111,7 +118,7 @@ Description SiloDischarge::expand() const {
   auto stages = silo_.filling_stages();
   for (std::size_t i = 0; i < shares_.size(); ++i) {
     Description stage;
-    stage["name"] = "discharge-" + std::to_string(std::lround(100 * shares_[i]));
+    stage["name"] = discharge(shares_[i]);
     if (i == 0) {
       stage["change"]["engines"]["damping"]["coefficient"] = silo_.local_damping;
       for (const std::string& gate : gates) {
@@ -126,7 +133,8 @@ Description SiloDischarge::expand() const {
         {"type", "all"},
         {"of", {{{"type", "time"}, {"value", 0.5 * expected}}, {{"type", "unbalanced-force"}, {"below", 1e-3}}}}};
     stage["until"] = {{"type", "any"}, {"of", {left, rests}}};
-    stage["limit"] = 10 * expected + silo_.falling_time();
+    // What is left may have to come to rest first, however little should still leave.
+    stage["limit"] = 10 * expected + 20 * silo_.falling_time();
     stages.push_back(stage);
   }
   d["stages"] = stages;
@@ -167,6 +175,8 @@ Description SiloDischarge::expand() const {
                    {"y", {"flow/rate", "test/bottom_share", "test/wall_shear_share"}},
                    {"color", "speed"}}},
                  {"summary", {"flow/mass", "flow/rate", "test/bottom_share", "test/wall_shear_share", "test/balance"}}};
+  auto& references = d["output"]["references"] = silo_.references();
+  references["Beverloo"] = {{"of", "flow/rate"}, {"value", expected_rate()}};
   return d;
 }
 

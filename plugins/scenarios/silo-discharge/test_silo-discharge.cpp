@@ -74,6 +74,35 @@ TEST(SiloDischarge, HasAStageForEachShare) {
   EXPECT_FALSE(stages[3].contains("change"));
 }
 
+TEST(SiloDischarge, TellsSmallSharesApart) {
+  const auto names = [](const Description& shares) {
+    std::vector<std::string> all;
+    const Description stages = expanded({{"shares", shares}})["stages"];
+    for (std::size_t i = 2; i < stages.size(); ++i) all.push_back(stages[i]["name"]);
+    return all;
+  };
+  EXPECT_THAT(names({0.001, 0.002}), ElementsAre("discharge-0.1", "discharge-0.2"));
+  EXPECT_THAT(names({0.101, 0.104, 0.29}), ElementsAre("discharge-10.1", "discharge-10.4", "discharge-29"));
+  EXPECT_THAT(problem({{"shares", {0.5, 0.50000001}}}), HasSubstr("two shares whose first six digits are the same"));
+}
+
+TEST(SiloDischarge, GivesSandTheTimeToComeToRestHoweverLittleLeaves) {
+  for (const Description shares : {Description({0.1, 0.101}), Description({0.2, 0.9, 1})}) {
+    const Description stages = expanded({{"shares", shares}})["stages"];
+    EXPECT_GE(stages.back()["limit"].get<double>(), stages[1]["limit"].get<double>()) << "as it has to settle";
+  }
+}
+
+TEST(SiloDischarge, PutsClosedFormsBesideTheCurves) {
+  const Description d = expanded({{"outlet_positions", {0.05, 0.15}}, {"outlet_widths", {0.03, 0.03}}});
+  const Description references = d["output"]["references"];
+  EXPECT_EQ(references["Beverloo"]["of"], "flow/rate");
+  EXPECT_NEAR(references["Beverloo"]["value"].get<double>(),
+              2 * 1.03 * 1625 * std::sqrt(9.81) * 7.5e-3 * std::pow(30e-3 - 1.4 * 1.5e-3, 1.5), 1e-12);
+  EXPECT_EQ(references["Janssen_P_over_G"]["of"], "test/bottom_share");
+  EXPECT_TRUE(d["probes"].contains("flow"));
+}
+
 TEST(SiloDischarge, OpensOnceTheLastLayerRests) {
   const Description d = expanded({{"layers", 2}, {"filling", "layers"}, {"shares", {0.5}}});
   std::vector<std::string> names;

@@ -54,6 +54,15 @@ Description SiloQuasistatic::expand() const {
                  {"summary",
                   {"test/bottom_share", "test/wall_shear_share", "test/wall_normal_share", "test/wall_friction_angle",
                    "test/balance", "test/void_ratio"}}};
+  auto& references = d["output"]["references"] = silo_.references();
+  const auto on_the_bottom = [&](const char* name, const std::optional<SiloForm>& form, double rubbing_walls) {
+    if (!form) return;
+    closed_forms::PlaneSilo balance = silo_.balance(*form);
+    balance.rubbing_walls = rubbing_walls;
+    references[name] = {{"of", "test/bottom_force"}, {"value", balance.bottom_force()}};
+  };
+  on_the_bottom("Drescher", silo_.forms.drescher, 1);
+  on_the_bottom("EN_1991-4", silo_.forms.en_1991_4, 2);
   return d;
 }
 

@@ -22,18 +22,22 @@ std::string problem(const Description& keys) {
 TEST(SiloQuasistatic, ExpandsToTheGoldenDescription) { expect_golden(expanded(), "silo-quasistatic"); }
 
 TEST(SiloQuasistatic, CutsWallsIntoPiecesThatFollowOneAnother) {
-  const Description walls = expanded({{"wall_pieces", 3}})["walls"];
-  for (const std::string side : {"left", "right"}) {
-    double end = -(30e-3 + 2 * 2.5e-3);
-    for (const char* piece : {"-below", "-1", "-2", "-3", "-above"}) {
-      const Description& wall = walls[side + piece];
-      const double low = wall["corner"][2], spacing = wall["spacing"];
-      EXPECT_NEAR(low, end, 1e-12) << side << piece;
-      // Some groove begins where one would if the wall were in one piece from z = 0.
-      EXPECT_NEAR(std::remainder(low + wall["offset"].get<double>(), spacing), 0, 1e-12) << side << piece;
-      end = low + wall["edge_a"][2].get<double>();
+  for (const char* surface : {"saw-tooth", "sinusoidal"}) {
+    const Description walls =
+        expanded({{"wall_pieces", 3}, {"wall_surface", surface}, {"wavelength", "7 mm"}})["walls"];
+    for (const std::string side : {"left", "right"}) {
+      double end = -(30e-3 + 2 * 2.5e-3);
+      for (const char* piece : {"-below", "-1", "-2", "-3", "-above"}) {
+        const Description& wall = walls[side + piece];
+        const double low = wall["corner"][2];
+        const double spacing = wall[std::string(surface) == "sinusoidal" ? "wavelength" : "spacing"];
+        EXPECT_NEAR(low, end, 1e-12) << side << piece;
+        // Some groove begins where one would if the wall were in one piece from z = 0.
+        EXPECT_NEAR(std::remainder(low + wall["offset"].get<double>(), spacing), 0, 1e-12) << side << piece;
+        end = low + wall["edge_a"][2].get<double>();
+      }
+      EXPECT_GT(end, 0.5);
     }
-    EXPECT_GT(end, 0.5);
   }
 }
 
@@ -48,6 +52,22 @@ TEST(SiloQuasistatic, MakesWallsAsRoughAsSaid) {
   EXPECT_FALSE(flat.contains("depth"));
 }
 
+TEST(SiloQuasistatic, MakesWallsAsWavyAsSaid) {
+  const Description wavy =
+      expanded({{"wall_surface", "sinusoidal"}, {"depth_over_wavelength", 0.1}, {"wavelength", "20 mm"}});
+  for (const char* name : {"left-below", "left-1", "right-10", "right-above"}) {
+    const Description& wall = wavy["walls"][name];
+    EXPECT_EQ(wall["type"], "sinusoidal") << name;
+    EXPECT_DOUBLE_EQ(wall["depth"], 2e-3) << name;
+    EXPECT_DOUBLE_EQ(wall["wavelength"], 20e-3) << name;
+    EXPECT_FALSE(wall.contains("inclination") || wall.contains("spacing") || wall.contains("two_sided")) << name;
+  }
+  EXPECT_LT(wavy["walls"]["bottom"]["corner"][0].get<double>(), -2e-3) << "the bottom closes the troughs";
+  const Description still = {{"wall_surface", "sinusoidal"}, {"depth_over_wavelength", 0}};
+  EXPECT_EQ(problem(still), "");
+  EXPECT_EQ(expanded(still)["walls"]["left-1"]["depth"], 0.0);
+}
+
 TEST(SiloQuasistatic, FillsGroovesToo) {
   const auto count = [](const Description& keys) {
     double sum = 0;
@@ -60,6 +80,9 @@ TEST(SiloQuasistatic, FillsGroovesToo) {
   EXPECT_NEAR(flat, 200 * 500 * 7.5 / 1.6 / (std::numbers::pi / 6 * 4.875), 1);
   // A groove of 45 degrees as deep as R_n d50, at four times its depth, takes as much as a layer of a quarter of that.
   EXPECT_NEAR(count({{"roughness", 1}, {"layers", 7}}) / flat, (200 + 2 * 1.5 / 4) / 200, 1e-4);
+  // Waves are filled half as deep as they are.
+  EXPECT_NEAR(count({{"wall_surface", "sinusoidal"}, {"depth_over_wavelength", 0.1}, {"wavelength", "20 mm"}}) / flat,
+              (200 + 2 * 1.) / 200, 1e-4);
 }
 
 TEST(SiloQuasistatic, TakesTurnsOfTwoMaterialsThatDifferInNameAlone) {
@@ -110,10 +133,56 @@ TEST(SiloQuasistatic, LowersTheBottomIntoWhereWallsGoOn) {
   EXPECT_LT(d["domain"]["low"][2].get<double>(), -12e-3);
 }
 
+TEST(SiloQuasistatic, PutsClosedFormsBesideTheCurves) {
+  const auto value = [](const Description& keys, const char* name) -> double {
+    return expanded(keys)["output"]["references"][name]["value"];
+  };
+  const Description d = expanded();
+  for (const auto& [name, reference] : d["output"]["references"].items())
+    EXPECT_TRUE(d["probes"]["test"]["curves"].contains(reference["of"].get<std::string>().substr(5))) << name;
+
+  // b = 0.2 m, h = 0.5 m; EN 1991-4's K and friction of corrugated walls.
+  const Description none = Description::object();
+  const double k = 0.45343622, mu = 0.2 * 0.32491970 + 0.8 * 0.72654253, a = 2 * k * mu * 0.5 / 0.2,
+               p = (1 - std::exp(-a)) / a;
+  EXPECT_NEAR(value(none, "Janssen_K"), k, 1e-8);
+  EXPECT_NEAR(value(none, "Janssen_P_over_G"), p, 1e-7);
+  EXPECT_NEAR(value(none, "Janssen_T_over_G"), (1 - p) / 2, 1e-7);
+  EXPECT_NEAR(value(none, "Janssen_N_over_G"), (1 - p) / 2 / mu, 1e-7);
+  EXPECT_NEAR(value(none, "Janssen_wall_friction"), std::atan(mu) / Silo::degree, 1e-5);
+  EXPECT_NEAR(value(none, "Rankine_active"), 0.25961618, 1e-8);
+  EXPECT_NEAR(value(none, "Rankine_passive"), 1 / 0.25961618, 1e-6);
+  EXPECT_NEAR(value({{"wall_surface", "flat"}}, "Janssen_wall_friction"), 18, 1e-9);
+  EXPECT_NEAR(value({{"roughness", 0.01}}, "Janssen_wall_friction"), 18, 1e-9) << "sand slides on such grooves";
+  EXPECT_NEAR(value({{"closed_forms", {{"wall_friction_angle", "27 deg"}}}}, "Janssen_wall_friction"), 27, 1e-9);
+  EXPECT_EQ(value({{"closed_forms", {{"stress_ratio", 0.6}}}}, "Janssen_K"), 0.6);
+  EXPECT_NEAR(value({{"closed_forms", {{"internal_friction_angle", "30 deg"}}}}, "Janssen_K"), 0.55, 1e-12);
+  EXPECT_NEAR(value({{"closed_forms", {{"internal_friction_angle", "30 deg"}}}}, "Rankine_passive"), 3, 1e-12);
+
+  // On the 7.5 mm of a silo that the source has as 0.6 m.
+  const double depth = 0.6 / 7.5e-3;
+  const auto force = [&](const char* form, const char* name, double ratio, const char* angle, const char* weight) {
+    return depth *
+           value({{"closed_forms",
+                   {{form, {{"stress_ratio", ratio}, {"wall_friction_angle", angle}, {"unit_weight", weight}}}}}},
+                 name);
+  };
+  EXPECT_NEAR(force("drescher", "Drescher", 0.83, "32 deg", "16 kN/m^3"), 537, 0.01 * 537);
+  EXPECT_NEAR(force("en_1991_4", "EN_1991-4", 0.63, "32 deg", "17 kN/m^3"), 446, 0.01 * 446);
+  EXPECT_FALSE(expanded()["output"]["references"].contains("Drescher"));
+  // Without values of its own EN 1991-4 is Janssen's balance of this filling.
+  EXPECT_NEAR(value({{"closed_forms", {{"en_1991_4", Description::object()}}}}, "EN_1991-4"),
+              p * 2600 / 1.6 * 9.81 * 0.2 * 0.5 * 7.5e-3, 1e-6);
+}
+
 TEST(SiloQuasistatic, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"roughness", -0.1}}), HasSubstr("/roughness"));
   EXPECT_THAT(problem({{"groove_spacing", "2.9 mm"}}), HasSubstr("at least the width of a groove, 0.003"));
-  EXPECT_EQ(problem({{"groove_spacing", "3.1 mm"}}), "");
+  EXPECT_EQ(problem({{"groove_spacing", "3 mm"}}), "") << "as wide as the groove, whatever the tangent's last digit";
+  EXPECT_EQ(problem({{"groove_spacing", "2.9 mm"}, {"wall_surface", "sinusoidal"}}), "");
+  EXPECT_THAT(problem({{"depth_over_wavelength", -0.1}}), HasSubstr("/depth_over_wavelength"));
+  EXPECT_THAT(problem({{"closed_forms", {{"en_1991_4", {{"stress_ratio", 0}}}}}}),
+              HasSubstr("/closed_forms/en_1991_4/stress_ratio"));
   EXPECT_EQ(problem({{"groove_spacing", "2.9 mm"}, {"wall_surface", "flat"}}), "");
   EXPECT_THAT(problem({{"width", "9 mm"}}), HasSubstr("at least 4 of the largest grains"));
   EXPECT_THAT(problem({{"depth", "4 mm"}}), HasSubstr("at least 2 of the largest grains"));

@@ -48,6 +48,16 @@ TEST(Triaxial, ClosesTopAndBottomAlikeAtTheInertialNumber) {
   EXPECT_EQ(walls.size(), 2u) << "the sides keep their stress";
 }
 
+TEST(Triaxial, PutsRankinesStrengthBesideTheCurves) {
+  EXPECT_FALSE(made()->expand()["output"].contains("references"));
+  const Description references =
+      made({{"internal_friction_angle", "30 deg"}, {"confining_stress", "50 kPa"}})->expand()["output"]["references"];
+  EXPECT_EQ(references["Rankine_strength"]["of"], "test/sigma_1");
+  EXPECT_NEAR(references["Rankine_strength"]["value"].get<double>(), 3 * 50e3, 1e-6);
+  EXPECT_EQ(references["Rankine_friction_angle"]["of"], "test/friction_angle");
+  EXPECT_NEAR(references["Rankine_friction_angle"]["value"].get<double>(), 30, 1e-12);
+}
+
 TEST(Triaxial, HoldsFrontAndBackInPlaneStrain) {
   const Description stages = made({{"front_and_back", "held"}})->expand()["stages"];
   for (const char* wall : {"front", "back"}) EXPECT_TRUE(stages.back()["change"]["walls"][wall]["motion"].is_null());

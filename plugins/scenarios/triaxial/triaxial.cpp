@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "../closed_forms.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -82,6 +83,12 @@ void Triaxial::declare(Parameters& p) {
       .above(0)
       .at_most(0.1)
       .doc("during compression, with the rate of axial strain and the confining stress; sets the rate");
+  p.add("internal_friction_angle", internal_friction_angle_)
+      .unit("rad")
+      .symbol("phi_i")
+      .above(0)
+      .below(std::numbers::pi / 2)
+      .doc("of the sand, for Rankine's strength alone, which is drawn beside the curves; left out: none is");
   preparation_.declare_course(p);
   p.check(
       [this](const Complain& complain) {
@@ -195,6 +202,12 @@ Description Triaxial::expand() const {
                    {"y", {"test/sigma_1", "test/friction_angle", "test/volumetric_strain"}},
                    {"color", "rotation"}}},
                  {"summary", {"test/sigma_1", "test/friction_angle", "test/volumetric_strain"}}};
+  if (internal_friction_angle_) {
+    const double strength = confining_stress_ * closed_forms::rankine_passive(*internal_friction_angle_);
+    d["output"]["references"] = {
+        {"Rankine_strength", {{"of", "test/sigma_1"}, {"value", strength}}},
+        {"Rankine_friction_angle", {{"of", "test/friction_angle"}, {"value", *internal_friction_angle_ / degree}}}};
+  }
   return d;
 }
 

@@ -24,7 +24,7 @@ class Triaxial final : public Scenario {
   Vec3 size_ = Vec3::Constant(100e-3);
   double confining_stress_ = 200e3, axial_strain_ = 0.3, inertial_number_ = 1e-4, local_damping_ = 0.08;
   std::string front_and_back_ = "confining-stress";
-  std::optional<double> intermediate_stress_;
+  std::optional<double> intermediate_stress_, internal_friction_angle_;
 };
 
 }  // namespace grit
