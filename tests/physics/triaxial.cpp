@@ -1,6 +1,7 @@
 // The triaxial test from one end to the other, in a cell of some 500 grains.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -60,6 +61,45 @@ TEST(Triaxial, PlaneStrainPressesOnTheWallsThatStand) {
   const double sigma_1 = plane.mean("sigma_1", 0.5, 1), sigma_2 = plane.mean("sigma_2", 0.5, 1);
   EXPECT_GT(sigma_2, 1.1 * 200e3);
   EXPECT_LT(sigma_2, 0.8 * sigma_1);
+}
+
+/// Means over packings of a description of sims/triaxial; friction angles [deg] of a twentieth of the test, so that no
+/// single slip counts as a peak.
+struct Course {
+  double peak = 0, at = 0, late = 0, volumetric_strain = 0, least_volumetric_strain = 0;
+};
+Course course(const std::string& file) {
+  constexpr int packings = 2, windows = 20;
+  Course mean;
+  for (int seed = 1; seed <= packings; ++seed) {
+    Curves one;
+    run_to_the_end("sims/triaxial/" + file, {"/scenario/seed=" + std::to_string(seed)}, one);
+    std::vector<double> angles;
+    for (int i = 0; i < windows; ++i)
+      angles.push_back(one.mean("friction_angle", static_cast<double>(i) / windows, (i + 1.0) / windows));
+    const auto peak = std::ranges::max_element(angles);
+    const double from = static_cast<double>(peak - angles.begin()) / windows;
+    const auto& volume = one.channel.at("volumetric_strain");
+    mean.peak += *peak / packings;
+    mean.at += one.mean("axial_strain", from, from + 1.0 / windows) / packings;
+    mean.late += one.mean("friction_angle", 0.8, 1) / packings;
+    mean.volumetric_strain += volume.back() / packings;
+    mean.least_volumetric_strain += *std::ranges::min_element(volume) / packings;
+  }
+  return mean;
+}
+
+// The critical state: one friction angle, whatever the packing was; what is denser peaks and dilates on its way there.
+TEST(Triaxial, LooseSandHardensAndContractsWhereDenseSandPeaksAndDilates) {
+  const Course dense = course("quick.json"), loose = course("quick-loose.json");
+  EXPECT_LT(dense.at, 0.1);
+  EXPECT_GT(dense.peak, dense.late + 4);
+  EXPECT_GT(dense.volumetric_strain, 0.04);
+  EXPECT_GT(loose.at, 0.1);
+  EXPECT_LT(loose.peak, loose.late + 1.5) << "the highest of twenty windows that scatter";
+  EXPECT_LT(loose.volumetric_strain, 0);
+  EXPECT_LT(loose.least_volumetric_strain, dense.least_volumetric_strain - 0.005);
+  EXPECT_NEAR(loose.late, dense.late, 2);
 }
 
 }  // namespace
