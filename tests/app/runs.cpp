@@ -71,6 +71,24 @@ TEST_F(Runs, TakeSets) {
   EXPECT_EQ(run_json("set").at("description").at("stages").at(0).at("until").at("value"), 20);
 }
 
+TEST_F(Runs, SayWhichCurvesHaveNoValueAtTheEnd) {
+  auto scene = json::parse(two_grains);
+  const auto curve = [](const char* formula) { return json{{"formula", formula}}; };
+  scene["probes"]["test"] = {{"type", "formula"},
+                             {"every_steps", 50},
+                             {"curves",
+                              {{"gone", curve("step < 200 ? 2 : 0 / 0")},
+                               {"never", curve("0 / 0")},
+                               {"late", curve("step > 0 ? 3 : 0 / 0")}}}};
+  scene["output"]["summary"] = {"test/gone", "test/never", "test/late"};
+  folder.write("undefined.json", scene.dump());
+  const auto outcome = grit({"run", "undefined.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("test/gone: peak 2, not defined at the end\n"
+                                      "test/never: not defined at the end\n"
+                                      "test/late: peak 3, final 3\n"));
+}
+
 TEST_F(Runs, DoNotReplaceOthersUnlessToldTo) {
   ASSERT_EQ(grit({"run", "two.json"}).status, 0);
   const auto before = text_of(folder / "results/two/run.json");

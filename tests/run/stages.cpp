@@ -160,6 +160,19 @@ TEST(Stage, EndsWhenAllOrAnyHold) {
             40u);
 }
 
+TEST(Stage, TellsWhichOfItsConditionsEndedIt) {
+  const auto told = [](const Description& until) { return run(lone(until)).notes.ended.at(0); };
+  const auto any = [](const Description& of) { return Description{{"type", "any"}, {"of", of}}; };
+  const auto all = [](const Description& of) { return Description{{"type", "all"}, {"of", of}}; };
+  using testing::StartsWith;
+  EXPECT_THAT(told(any({steps(20), seconds(5e-4)})), StartsWith("by steps, "));
+  EXPECT_THAT(told(any({steps(60), seconds(5e-4)})), StartsWith("by time, "));
+  EXPECT_THAT(told(any({steps(60), all({steps(30), seconds(4e-4)})})), StartsWith("by steps and time, "));
+  EXPECT_THAT(told(all({steps(20), any({steps(60), seconds(4e-4)})})), StartsWith("by steps and time, "));
+  for (const Description& sure : {steps(20), all({steps(20), seconds(1e-4)}), any(Description::array({steps(20)}))})
+    EXPECT_THAT(told(sure), testing::Not(StartsWith("by "))) << "there was no choice";
+}
+
 TEST(Stage, TellsHowFarItIs) {
   const Scene scene = scene_of(lone({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}}));
   Simulation world(*scene.description, make_bodies(*scene.description, {}), 1);

@@ -34,6 +34,7 @@ void CurveSummary::sample(std::size_t probe, const World& world, std::span<const
   for (Curve& curve : curves_) {
     if (curve.probe != probe) continue;
     curve.last = values[curve.channel][0];
+    if (std::isnan(curve.last)) continue;
     if (!curve.any || std::abs(curve.last) > std::abs(curve.largest)) curve.largest = curve.last;
     curve.any = true;
   }
@@ -54,9 +55,13 @@ std::string CurveSummary::text() const {
   std::ostringstream text;
   text.precision(4);
   for (const Curve& curve : curves_) {
-    if (!curve.any) continue;
+    const bool ends = !std::isnan(curve.last);
+    if (!curve.any && ends) continue;  // nobody looked
     const std::string unit = curve.unit == "1" ? "" : ' ' + curve.unit;
-    text << curve.name << ": peak " << curve.largest << unit << ", final " << curve.last << unit << '\n';
+    text << curve.name << ": ";
+    if (curve.any) text << "peak " << curve.largest << unit << ", ";
+    if (ends) text << "final " << curve.last << unit << '\n';
+    else text << "not defined at the end\n";
   }
   return text.str();
 }

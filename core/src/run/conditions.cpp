@@ -74,6 +74,26 @@ struct Met {
   bool operator()(std::monostate) const { return true; }
 };
 
+/// A condition as its types, "all" and "any" opened.
+std::string in_words(const Condition& condition, const Met& met) {
+  const auto joined = [&](const auto& of, const char* with, bool met_alone) {
+    std::string text;
+    for (const auto& one : of)
+      if (!met_alone || std::visit(met, one->is.value())) text += (text.empty() ? "" : with) + in_words(*one, met);
+    return text;
+  };
+  if (const auto* all = std::get_if<AllCondition>(&condition.is.value())) return joined(all->of, " and ", false);
+  if (const auto* any = std::get_if<AnyCondition>(&condition.is.value())) return joined(any->of, " and ", true);
+  return condition.is.type();
+}
+
+bool has_choice(const Condition& condition) {
+  const auto& is = condition.is.value();
+  if (const auto* any = std::get_if<AnyCondition>(&is)) return any->of.size() > 1;
+  const auto* all = std::get_if<AllCondition>(&is);
+  return all && std::ranges::any_of(all->of, [](const auto& one) { return has_choice(*one); });
+}
+
 struct Progress {
   const Simulation& simulation;
   const StageStart& start;
@@ -117,6 +137,10 @@ bool is_met(const Condition& condition, const Simulation& simulation, const Stag
 
 bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
   return std::visit(Met{simulation, start, true}, condition.is.value());
+}
+
+std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start) {
+  return has_choice(condition) ? in_words(condition, Met{simulation, start, false}) : "";
 }
 
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "run/simulation.hpp"
 #include "scene/description.hpp"
@@ -26,6 +27,10 @@ bool is_met(const Condition& condition, const Simulation& simulation, const Stag
 
 /// The same without looking at forces: false where the condition surely does not hold.
 bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
+
+/// Which of several conditions ended a stage whose condition holds, "any" at any depth opened: "left", or "time and
+/// unbalanced-force"; "" where there was no choice.
+std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start);
 
 /// How far on the way the stage is, 0 … 1, where the condition tells: not where all that can be told has come true and
 /// it waits for something else.

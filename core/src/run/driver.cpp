@@ -108,9 +108,9 @@ class Run {
       step_bodies();
       report(stage);
     }
+    const std::string by = ended_by(stage.until, simulation_, start_);
     simulation_.end_stage();
-    const std::string what = reached();
-    recorder_.stage_ended(simulation_, what);
+    recorder_.stage_ended(simulation_, (by.empty() ? "" : "by " + by + ", ") + reached());
     if (stage.expect.void_ratio) {
       const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
       if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
@@ -258,6 +258,7 @@ class Run {
     const auto comes_later = [](const auto& group) { return !group.second.stage.empty(); };
     if (std::ranges::any_of(scene_.description->bodies, comes_later))
       text = std::to_string(simulation_.positions().size()) + " bodies, " + text;
+    if (simulation_.share_left() > 0) text += ", " + number(100 * simulation_.share_left()) + " % of the mass has left";
     return text + ", time " + number(simulation_.time() - start_.time) + " s";
   }
 
