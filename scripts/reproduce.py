@@ -36,7 +36,7 @@ reference's of one packing.
 UNFINISHED = '''## Not run to their ends
 Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
 (`--for`): how much of the course they went, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
-if it goes on at that speed.
+if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so the hours are the least.
 
 | description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
 | --- | --- | --- | --- | --- |'''
