@@ -23,9 +23,10 @@ constexpr double habit_steps = 30;
 /// by (ω dt)²/24, 0.4 %.
 constexpr double steps_to_a_period = 20;
 
-[[noreturn]] void fail(const WallSetup& setup, const std::string& what) {
-  throw Error("wall \"" + setup.name + "\": " + what);
+[[noreturn]] void fail(const std::string& wall, const std::string& what) {
+  throw Error("wall \"" + wall + "\": " + what);
 }
+[[noreturn]] void fail(const WallSetup& setup, const std::string& what) { fail(setup.name, what); }
 
 std::array<bool, 3> axes_of(const WallSetup& setup, const std::string& motion, const std::string& letters) {
   std::array<bool, 3> axes{};
@@ -116,11 +117,11 @@ std::vector<WallSetup> wall_setups(const SceneDescription& scene) {
 }
 
 void check_oscillations(const SceneDescription& scene, double dt) {
-  for (const WallSetup& setup : wall_setups(scene)) {
-    if (!setup.motion.oscillation) continue;
-    const double frequency = setup.motion.oscillation->frequency;
+  for (const auto& [name, wall] : scene.walls) {  // asked as often as the time step is chosen
+    if (!wall.motion.oscillation) continue;
+    const double frequency = wall.motion.oscillation->frequency;
     if (frequency * dt * steps_to_a_period > 1)
-      fail(setup,
+      fail(name,
            fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
                        "more: lower the frequency, or shorten the time step by /time_step/safety or "
                        "/time_step/value",
