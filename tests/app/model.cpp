@@ -76,5 +76,16 @@ TEST_F(ModelOfARun, KnowsWallsClumpsAndTheLoop) {
   EXPECT_THAT(clumped.at("body_state"), ElementsAre("clump"));
 }
 
+TEST_F(ModelOfARun, IsOfOneMaterialHoweverWallsAreCalled) {
+  const json before = of({R"(/materials/frame={"density": 2600})",
+                          R"(/walls/floor={"type": "plane", "material": "frame", "point": [0, 0, -1]})"});
+  EXPECT_THAT(before.at("materials"), ElementsAre("sand", "frame"));
+  EXPECT_EQ(before.at("one_material"), true);
+  const json mixture = of(
+      {R"(/materials/frame={"density": 2600})",
+       R"(/bodies/other={"type": "sphere", "material": "frame", "grains": {"type": "list", "grains": [{"position": [0, 0, 3], "radius": 0.1}]}})"});
+  EXPECT_EQ(mixture.at("one_material"), false);
+}
+
 }  // namespace
 }  // namespace grit

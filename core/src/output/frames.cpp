@@ -66,7 +66,7 @@ void write_bodies(hdf5::Group group, const World& world) {
                 [rows = world.velocities()](auto i) { return xyz(rows[i]); });
   bodies.vector({"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}},
                 [rows = world.spins()](auto i) { return xyz(rows[i]); });
-  bodies.scalar<std::int32_t>({"material", "1", "place of the material in the description, from 0", {}},
+  bodies.scalar<std::int32_t>({"material", "1", "number of the material, from 0: its place in /model/materials of run.json", {}},
                               [materials = world.materials()](auto i) { return materials[i]; });
   if (const auto clump_of = world.clump_of(); !clump_of.empty())
     bodies.scalar<std::int64_t>({"clump", "1", "id of the clump that the body is part of; -1 by itself", {}},

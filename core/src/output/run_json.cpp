@@ -132,6 +132,7 @@ void RunJson::finish(const World& world, const RunSummary& summary) {
                     {"law_parts", model.law_parts},
                     {"contact_state", model.contact_state},
                     {"body_state", model.body_state},
+                    {"materials", model.materials},
                     {"one_material", model.one_material},
                     {"periodic", model.periodic},
                     {"walls", model.walls},

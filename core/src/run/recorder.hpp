@@ -45,6 +45,7 @@ struct Model {
   std::vector<std::string> law_parts;      ///< of the contact law, compiled into that loop
   std::vector<std::string> contact_state;  ///< what each contact remembers
   std::vector<std::string> body_state;     ///< of bodies, beyond position, velocity and spin
+  std::vector<std::string> materials;      ///< in the order of their numbers
   bool one_material = true, periodic = false, walls = false, gravity = false, local_damping = false;
   std::size_t bytes = 0;  ///< held by bodies and contacts
 };

@@ -13,6 +13,7 @@
 #include "grit/error.hpp"
 #include "run/number.hpp"
 #include "run/stopwatch.hpp"
+#include "scene/make_bodies.hpp"
 
 namespace grit {
 namespace {
@@ -49,8 +50,7 @@ bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high ==
 }  // namespace
 
 Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned threads)
-    : team_(threads), bodies_(std::move(bodies)), shifts_(27) {
-  for (const auto& [name, material] : scene.materials) material_names_.push_back(name);
+    : material_names_(material_names(scene)), team_(threads), bodies_(std::move(bodies)), shifts_(27) {
   phases_ = {{"search", 0}, {"contacts", 0}, {"walls", 0}, {"motion", 0}};
   const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
   clock_.cell = {scene.domain.low.value_or(-open), scene.domain.high.value_or(open), scene.domain.periodic,
@@ -594,6 +594,7 @@ Model Simulation::model() const {
   };
   add(!bodies_.rotation.empty(), "rotation"), add(!bodies_.displacement.empty(), "displacement");
   add(bodies_.energies(), "energy"), add(!bodies_.clumps.none(), "clump");
+  model.materials = material_names_;
   model.one_material = stock_.one_material, model.periodic = periodic_, model.walls = walls_.size() > 0;
   model.gravity = !settings_.gravity.isZero(0.0), model.local_damping = settings_.local_damping > 0;
   model.bytes = memory();

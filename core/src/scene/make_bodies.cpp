@@ -24,13 +24,15 @@ Eigen::Quaterniond any_orientation(Random& random) {
 /// Adds a group. Clouds keep clear of `there` and of what `bodies` has.
 void add_group(const SceneDescription& scene, const BodiesDescription& group, const Cell& cell,
                std::span<const Row> there, Random& random, Bodies& bodies) {
-  const auto found = scene.materials.find(group.material);
-  const auto material = static_cast<std::uint8_t>(std::distance(scene.materials.begin(), found));
+  const auto names = material_names(scene);
+  const auto material =
+      static_cast<std::uint8_t>(std::find(names.begin(), names.end(), group.material) - names.begin());
+  const double density = scene.materials.at(group.material).density;
   const ClumpShape* const clump = group.kind->clump();
   const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
                        const Vec3& spin) {
     const double inert = std::max(radius, 0.5 * group.heavier_below);
-    const double mass = found->second.density * group.kind->volume(inert);
+    const double mass = density * group.kind->volume(inert);
     if (clump == nullptr) {
       bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
       return;
@@ -93,6 +95,16 @@ StateRequest requested_state(const SceneDescription& scene, StateRequest also) {
   for (const auto& [name, probe] : scene.probes) also = also | probe.probe->needs();
   for (const auto& [name, engine] : scene.engines) also = also | engine.engine->needs();
   return also;
+}
+
+std::vector<std::string> material_names(const SceneDescription& scene) {
+  std::vector<std::string> names;
+  for (const auto& [name, material] : scene.materials) names.push_back(name);
+  std::stable_partition(names.begin(), names.end(), [&](const std::string& name) {
+    return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                       [&](const auto& group) { return group.second.material == name; });
+  });
+  return names;
 }
 
 Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
