@@ -38,7 +38,7 @@ inline void check_groove_spacing(const Complain& complain, double spacing, doubl
     text << length << " m";
     return text.str();
   };
-  complain("groove_spacing", metres(spacing), "at least the width of a groove, " + metres(width) + "; or 0");
+  complain("groove_spacing", metres(spacing), "at least the width of a groove, " + metres(width) + "; or left out");
 }
 
 }  // namespace grit

@@ -32,11 +32,15 @@ void InterfaceShear::declare(Parameters& p) {
       .unit("rad")
       .above(0)
       .below(std::numbers::pi / 2)
-      .doc("of the flanks of a saw-tooth surface");
+      .doc(
+          "of the flanks of a saw-tooth surface: left out, 45 deg, or what puts the grooves side by side where "
+          "groove_spacing is given");
   p.add("groove_spacing", groove_spacing_)
       .unit("m")
-      .at_least(0)
-      .doc("from groove to groove of a saw-tooth surface; 0: side by side, otherwise with flats between the grooves");
+      .above(0)
+      .doc(
+          "from groove to groove of a saw-tooth surface: left out, side by side; with flats between the grooves where "
+          "they are narrower by groove_inclination");
   p.add("depth_over_wavelength", depth_over_wavelength_)
       .symbol("d/l")
       .at_least(0)
@@ -75,7 +79,8 @@ void InterfaceShear::declare(Parameters& p) {
   p.check(
       [this](const Complain& complain) {
         if (surface_ == "saw-tooth")
-          check_groove_spacing(complain, groove_spacing_, 2 * groove_depth() / std::tan(groove_inclination_));
+          check_groove_spacing(complain, groove_spacing_.value_or(0),
+                               2 * groove_depth() / std::tan(groove_inclination()));
       },
       {"groove_spacing", "roughness", "groove_inclination", "surface"});
 }
@@ -91,14 +96,19 @@ double InterfaceShear::groove_depth() const {
   return surface_ == "sinusoidal" ? depth_over_wavelength_ * wavelength_ : 0;
 }
 
+double InterfaceShear::groove_inclination() const {
+  if (groove_inclination_) return *groove_inclination_;
+  return groove_spacing_ ? std::atan(2 * groove_depth() / *groove_spacing_) : 45 * degree;
+}
+
 double InterfaceShear::groove_spacing() const {
   if (surface_ == "sinusoidal") return wavelength_;
-  return groove_spacing_ > 0 ? groove_spacing_ : 2 * groove_depth() / std::tan(groove_inclination_);
+  return groove_spacing_.value_or(2 * groove_depth() / std::tan(groove_inclination()));
 }
 
 double InterfaceShear::groove_volume() const {
   if (surface_ == "sinusoidal") return 0.5 * groove_depth();
-  return surface_ == "flat" ? 0 : groove_depth() * groove_depth() / std::tan(groove_inclination_) / groove_spacing();
+  return surface_ == "flat" ? 0 : groove_depth() * groove_depth() / std::tan(groove_inclination()) / groove_spacing();
 }
 
 Description InterfaceShear::surface(double reach) const {
@@ -113,8 +123,8 @@ Description InterfaceShear::surface(double reach) const {
   if (surface_ == "sinusoidal") {
     d["wavelength"] = wavelength_;
   } else {
-    d["inclination"] = groove_inclination_;
-    if (groove_spacing_ > 0) d["spacing"] = groove_spacing_;
+    d["inclination"] = groove_inclination();
+    if (groove_spacing_ && groove_inclination_) d["spacing"] = *groove_spacing_;
   }
   return d;
 }

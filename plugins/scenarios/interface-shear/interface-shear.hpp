@@ -21,6 +21,8 @@ class InterfaceShear final : public Scenario {
  private:
   /// From tips to valleys [m]; 0 where the surface is flat.
   double groove_depth() const;
+  /// Of the flanks of a saw-tooth surface [rad].
+  double groove_inclination() const;
   /// From groove to groove [m].
   double groove_spacing() const;
   /// Volume below the tips, per area of the surface [m].
@@ -30,7 +32,8 @@ class InterfaceShear final : public Scenario {
   Preparation preparation_;
   double width_ = 100e-3, height_ = 20e-3, depth_ = 5e-3;
   std::string depth_boundary_ = "walls", surface_ = "saw-tooth";
-  double roughness_ = 1, groove_inclination_ = 45 * degree, groove_spacing_ = 0;
+  double roughness_ = 1;
+  std::optional<double> groove_inclination_, groove_spacing_;
   double depth_over_wavelength_ = 0.24, wavelength_ = 15e-3;
   double surface_friction_angle_ = 18 * degree, local_damping_ = 0.08;
   std::optional<double> internal_friction_angle_;

@@ -25,7 +25,17 @@ TEST(InterfaceShear, CutsGroovesAsDeepAsTheRoughnessSays) {
   EXPECT_EQ(d["type"], "saw-tooth");
   EXPECT_DOUBLE_EQ(d["depth"], 0.25 * 0.5e-3);
   EXPECT_FALSE(d.contains("spacing"));
-  EXPECT_DOUBLE_EQ(surface({{"roughness", 0.25}, {"groove_spacing", "2 mm"}})["spacing"], 2e-3);
+  EXPECT_DOUBLE_EQ(d["inclination"], 45 * degree);
+}
+
+TEST(InterfaceShear, PutsGroovesOfAGivenSpacingSideBySideOrLeavesFlatsBetweenSteeperOnes) {
+  const Description beside = surface({{"roughness", 0.25}, {"groove_spacing", "1 mm"}});
+  EXPECT_NEAR(beside["inclination"], std::atan(0.25), 1e-15);
+  EXPECT_FALSE(beside.contains("spacing"));
+  const Description apart =
+      surface({{"roughness", 0.25}, {"groove_spacing", "2 mm"}, {"groove_inclination", "45 deg"}});
+  EXPECT_DOUBLE_EQ(apart["inclination"], 45 * degree);
+  EXPECT_DOUBLE_EQ(apart["spacing"], 2e-3);
 }
 
 TEST(InterfaceShear, MakesWavesAsDeepAsTheirLengthSays) {
@@ -66,7 +76,8 @@ TEST(InterfaceShear, FillsTheGroovesToo) {
   EXPECT_NEAR(count({{"surface", "sinusoidal"}, {"depth_over_wavelength", 0.4}}) / flat, (height + 3e-3) / height,
               1e-4);
   // A groove of 45 degrees, 1 mm deep, in every 4 mm.
-  EXPECT_NEAR(count({{"roughness", 2}, {"groove_spacing", "4 mm"}}) / flat, (height + 0.25e-3) / height, 1e-4);
+  EXPECT_NEAR(count({{"roughness", 2}, {"groove_spacing", "4 mm"}, {"groove_inclination", "45 deg"}}) / flat,
+              (height + 0.25e-3) / height, 1e-4);
 }
 
 TEST(InterfaceShear, StandsOnTheTipsWhileItIsFilledAndIsLiftedByTheLargestGrain) {
@@ -112,12 +123,16 @@ TEST(InterfaceShear, SaysWhatIsWrong) {
     const auto result = read_scenario<InterfaceShear>(keys);
     return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
   };
-  EXPECT_THAT(problem({{"groove_spacing", "0.9 mm"}}), HasSubstr("/groove_spacing"));
-  EXPECT_EQ(problem({{"groove_spacing", "1 mm"}}), "") << "as wide as the groove, whatever the tangent's last digit";
-  const std::string narrow = problem({{"groove_spacing", "0.9999999 mm"}});
+  const auto spaced = [](const char* spacing, const char* form = "saw-tooth") {
+    return Description{{"groove_spacing", spacing}, {"groove_inclination", "45 deg"}, {"surface", form}};
+  };
+  EXPECT_THAT(problem(spaced("0.9 mm")), HasSubstr("/groove_spacing"));
+  EXPECT_EQ(problem(spaced("1 mm")), "") << "as wide as the groove, whatever the tangent's last digit";
+  const std::string narrow = problem(spaced("0.9999999 mm"));
   EXPECT_THAT(narrow, HasSubstr("0.0009999999 m"));
-  EXPECT_THAT(narrow, HasSubstr("at least the width of a groove, 0.001 m; or 0"));
-  EXPECT_EQ(problem({{"groove_spacing", "0.9 mm"}, {"surface", "sinusoidal"}}), "");
+  EXPECT_THAT(narrow, HasSubstr("at least the width of a groove, 0.001 m"));
+  EXPECT_EQ(problem(spaced("0.9 mm", "sinusoidal")), "");
+  EXPECT_THAT(problem({{"groove_spacing", 0}}), HasSubstr("/groove_spacing"));
   EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
   EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
   EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio is 0.9"));
