@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAWS = ROOT / 'plugins' / 'contacts'
 # All tests that are left take seconds; an error may keep a ball rolling for ever.
 PATIENCE = 60                                            # s of the processor's time
-SLOW = ('Silo.*', 'DirectShear.*', 'InterfaceShear.*', 'Triaxial.*', 'GroovedVoidRatio.*', 'PackingStress.*')
+SLOW = ('PlaneSilo.*', 'Silo.*', 'DirectShear.*', 'InterfaceShear.*', 'Triaxial.*', 'GroovedVoidRatio.*', 'PackingStress.*')
 OF_WALLS = ('*Seams.*', 'Faceted*.*', 'FacetingError.*')
 # What a shear spring lacks that is half a step late.
 LATE = '(L(0.5) * ks * at.dt) * at.tangential(at.velocity)'
