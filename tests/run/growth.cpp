@@ -144,10 +144,10 @@ TEST(Growth, GivesTheSameBitsForAnyNumberOfThreadsAndWhoeverLooks) {
   for (const bool clumps : {false, true}) {
     const Description d = crowd(clumps, clumps ? 100 : 30);
     Grown asked(d, 1);
-    asked.step(600);
+    asked.step(1200);
     for (const unsigned threads : {1u, 3u, 4u}) {
       Grown other(d, threads);
-      other.step_on(600);
+      other.step_on(1200);
       ASSERT_TRUE(same_bits(asked.world(), other.world())) << threads << " threads";
     }
     EXPECT_GT(asked.world().pair_count(), clumps ? 60u : 600u) << "a packing";

@@ -21,7 +21,7 @@ Description inside(const std::string& law, double overlap, double safety) {
   Description m{{"density", density}, {"friction_angle", 0}};
   m[law == "hertz-mindlin" ? "young_modulus" : "contact_modulus"] = modulus;
   Description d = description(law, m, {{Vec3::Zero(), radius}, {Vec3((2 - overlap) * radius, 0, 0), radius}});
-  d["time_step"]["safety"] = safety;
+  d["time_step"] = {{"safety", safety}, {"steps_per_impact", 0}};
   return d;
 }
 

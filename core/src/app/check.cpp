@@ -74,13 +74,18 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   for (const StageDescription& stage : description.stages)
     if (coming.contains(stage.name))
       std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';
+  const TimeStepDescription& wish = description.time_step;
+  const double safe = wish.safety * simulation.clock().critical_time_step;
   std::cout << "time step: " << simulation.dt() << " s, critical " << simulation.clock().critical_time_step
-            << " s at the start; followed as contacts change\n";
+            << " s at the start; ";
+  if (!wish.value && simulation.dt() < safe)
+    std::cout << "an impact of two takes " << wish.steps_per_impact << " steps; ";
+  std::cout << "followed as contacts change\n";
   std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(simulation.memory())) + 1 << " MB now, about "
             << std::lround(1e-6 * 700.0 * static_cast<double>(all_bodies)) + 1 << " MB when dense\n\nstages\n";
 
   const bool cloud = simulation.pair_count() * 2 < bodies;
-  const double dt = simulation.dt() * (cloud && !description.time_step.value ? dense_step_share : 1);
+  const double dt = cloud && !wish.value ? std::min(simulation.dt(), dense_step_share * safe) : simulation.dt();
   double known = 0, most = 0;  // s times bodies
   std::size_t there = bodies;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {

@@ -155,6 +155,8 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
 
   if (scene.time_step.value && scene.time_step.safety != TimeStepDescription().safety)
     say("/time_step/safety", "the step is given by /time_step/value");
+  if (scene.time_step.value && scene.time_step.steps_per_impact != TimeStepDescription().steps_per_impact)
+    say("/time_step/steps_per_impact", "the step is given by /time_step/value");
   for (const auto& [name, material] : scene.materials) {
     const bool used =
         std::ranges::any_of(scene.bodies, [&](const auto& group) { return group.second.material == name; }) ||

@@ -161,7 +161,7 @@ Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant&
   Demand all;
   for (const Chunk& chunk : chunk_)
     for (const Demand& one : {chunk.demand, chunk.together})
-      all = {std::max(all.spring, one.spring), std::max(all.dashpot, one.dashpot)};
+      all = {std::max(all.spring, one.spring), std::max(all.dashpot, one.dashpot), std::max(all.impact, one.impact)};
   return all;
 }
 
@@ -224,6 +224,10 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     const double alone = demand(k, bodies, i, across);
     demand_[i] = std::max(springs[i - first], alone);
     own.demand.spring = std::max({own.demand.spring, 2 * alone, demand_[i]});
+    // Springs that stiffen from nothing part softly: what counts is the stiffness at first touch.
+    const double first_touch =
+        at.overlap > 0 ? at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]).normal : k.normal;
+    own.demand.impact = std::max(own.demand.impact, 2 * first_touch * mobility(bodies, i, across).along);
     if (clumps)
       clumps_.springs[i] = springs[i - first], clumps_.least[i] = alone,
       clumps_.dashpots[i] = clump_dashpots[i - first];

@@ -14,7 +14,8 @@ namespace grit {
 /// Q_a + Q_b, with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I) (the element bound
 /// of Irons and Treharne, doi 10.1002/eqe.4290010107; Gershgorin's rows give the same without rotations). Dashpots add
 /// up in their directions: the damping rate is at most the largest over the bodies of |Σ c (1/m_a + 1/m_b) n n|. Pairs
-/// nearer than `near` count as touching, and every body has at least one contact with its like, `overlap` deep.
+/// nearer than `near` count as touching, and every body has at least one contact with its like, `overlap` deep: the
+/// shortest impact is taken from that one, as none with a larger body is shorter.
 ///
 /// Contacts form and part where bodies move, so that chunks are looked at anew when their bodies have gone far enough,
 /// each by itself.

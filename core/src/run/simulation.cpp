@@ -285,7 +285,7 @@ void Simulation::choose_time_step(const Demand& contacts) {
   const TimeStepDescription& wish = scene_->time_step;
   clock_.contact_demand = contacts, clock_.wall_demand = walls_.demand();
   clock_.critical_time_step =
-      Demand{contacts.spring + clock_.wall_demand.spring, contacts.dashpot + clock_.wall_demand.dashpot}
+      Demand{contacts.spring + clock_.wall_demand.spring, contacts.dashpot + clock_.wall_demand.dashpot, 0}
           .critical_time_step();
   if (wish.value) {
     clock_.time_step = *wish.value;
@@ -296,7 +296,7 @@ void Simulation::choose_time_step(const Demand& contacts) {
     check_oscillations(*scene_, clock_.time_step);
     return;
   }
-  const double safe = wish.safety * clock_.critical_time_step;
+  const double safe = std::min(wish.safety * clock_.critical_time_step, contacts.step_of_impact(wish.steps_per_impact));
   if (!std::isfinite(safe) && clock_.time_step > 0) return;  // all bodies have left
   if (!std::isfinite(safe))
     throw Error(bodies_.count() == 0 ? "there is no body, so that there is no time step; give /time_step/value"

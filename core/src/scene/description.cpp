@@ -356,7 +356,17 @@ void SpecimenDescription::declare(Parameters& p) {
 }
 void TimeStepDescription::declare(Parameters& p) {
   p.add("safety", safety).above(0).at_most(10).doc("time step over the critical one");
-  p.add("value", value).unit("s").symbol("dt").above(0).doc("time step; left out: safety times the critical one");
+  p.add("steps_per_impact", steps_per_impact)
+      .at_least(0)
+      .at_most(1e6)
+      .doc("that an impact of two grains by themselves takes at least; 0: as few as safety allows");
+  p.add("value", value)
+      .unit("s")
+      .symbol("dt")
+      .above(0)
+      .doc(
+          "time step; left out: safety times the critical one, or what steps_per_impact asks for where that is "
+          "shorter");
   p.add("allow_unstable", allow_unstable).doc("runs above the critical time step too");
   p.check([this](const Complain& complain) {
     if (safety > 1 && !allow_unstable)

@@ -166,6 +166,7 @@ struct SpecimenDescription {
 };
 struct TimeStepDescription {
   double safety = 0.8;
+  double steps_per_impact = 7;  ///< (π/7)²/4: such an impact gains 5 % at most, what the energy guard allows
   std::optional<double> value;
   bool allow_unstable = false;
   void declare(Parameters& p);
