@@ -74,6 +74,21 @@ TEST_F(ModelOfARun, KnowsWallsClumpsAndTheLoop) {
   EXPECT_EQ(walled.at("walls"), true);
   const json clumped = of({R"(/bodies/grains/type="clump")", R"(/bodies/grains/shape={"type": "rod"})"});
   EXPECT_THAT(clumped.at("body_state"), ElementsAre("clump"));
+  const json run = json::parse(text_of(folder / "results/run.json"));
+  ASSERT_EQ(run.at("clumps").size(), 1u);
+  const json clump = run.at("clumps").at("grains");
+  EXPECT_EQ(clump.at("spheres"), 2);
+  for (const char* error : {"mass_error", "centre_error", "inertia_error"}) {
+    EXPECT_GT(clump.at(error), 0) << error;
+    EXPECT_LT(clump.at(error), 1e-3) << error;
+  }
+}
+
+TEST_F(ModelOfARun, IsToldBeforehandHowFarOffClumpsMayBe) {
+  const auto outcome = grit_in(folder.path(), {"check", "two.json", "--set", R"(/bodies/grains/type="clump")", "--set",
+                                               R"(/bodies/grains/shape={"type": "rod", "count": 3})"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("clumps grains: 3 spheres each; mass to "));
 }
 
 TEST_F(ModelOfARun, IsOfOneMaterialHoweverWallsAreCalled) {

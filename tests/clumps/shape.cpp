@@ -83,7 +83,7 @@ TEST(ClumpShape, IsTheSameHoweverItIsTurnedMovedAndScaled) {
 TEST(ClumpShape, CountsNothingTwice) {
   std::vector<Ball> balls{{0, 0, 0, 1}, {0.8, 0, 0, 1}};
   const ClumpShape pair = make_clump_shape(balls);
-  balls.push_back({0.4, 0, 0, 0.5});  // inside of both
+  balls.push_back({0.4, 0, 0, 0.9});  // sticks out of either, but not of both
   const ClumpShape filled = make_clump_shape(balls);
   EXPECT_NEAR(filled.volume, pair.volume, 1e-12);
   double shares = 0;
@@ -123,7 +123,7 @@ TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
   Parameters of_shape;
   shape_of.declare(of_shape);
   of_shape.choice()->choose("asymmetric");
-  body.prepare();
+  parameters.checks().front().run([](auto, auto found, auto) { ADD_FAILURE() << found; });
   const ClumpShape& shape = *body.clump();
   ASSERT_EQ(shape.spheres.size(), 4u);
   for (const Row& one : shape.spheres) {
@@ -161,15 +161,112 @@ TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
   verify("convex hull over the asymmetric clump", std::pow(2.4, 3) * inside / points / shape.volume, 1.16, 0.03);
 }
 
-TEST(ClumpShape, IsRefusedWhereItFallsApart) {
-  const std::vector<Ball> apart{{0, 0, 0, 1}, {2.1, 0, 0, 1}};
+/// Two spheres, of radius 1 at the origin and of radius r at a distance d along x, that cut each other at x = cut.
+struct Unequal {
+  Unequal(double r, double d) {
+    const double cut = (d * d + 1 - r * r) / (2 * d);
+    // Of a ball, the part on the far side of a plane at −h from its centre; axis: the plane's normal, from that plane.
+    const auto add = [&](double radius, double h, double centre, double side) {
+      const auto power = [&](int n) { return (std::pow(radius, n + 1) - std::pow(-h, n + 1)) / (n + 1); };  // ∫ xⁿ
+      const auto area = [&](int n) { return pi * (radius * radius * power(n) - power(n + 2)); };  // ∫ xⁿ A
+      volume += area(0);
+      first += centre * area(0) + side * area(1);
+      second += centre * centre * area(0) + 2 * centre * side * area(1) + area(2);
+      const double r4 = std::pow(radius, 4);
+      along += pi / 2 * (r4 * power(0) - 2 * radius * radius * power(2) + power(4));
+    };
+    add(1, cut, 0, -1), add(r, d - cut, d, 1);
+    centre = first / volume;
+    along /= volume;
+    across = along / 2 + second / volume - centre * centre;
+  }
+  double volume = 0, first = 0, second = 0, along = 0, centre = 0, across = 0;
+};
+
+TEST(ClumpShape, KnowsHowFarOffItIs) {
+  Random random(7);
+  for (int trial = 0; trial < 60; ++trial) {
+    const double r = 0.2 + 0.8 * random.uniform(), d = 1 - r + 2 * r * (0.02 + 0.96 * random.uniform());
+    const Vec3 along = Vec3(random.normal(), random.normal(), random.normal()).normalized(), place = d * along;
+    std::vector<Ball> balls{{0, 0, 0, 1}, {place.x(), place.y(), place.z(), r}};
+    if (trial % 2 == 1) std::swap(balls[0], balls[1]);
+    const Unequal known(r, d);
+    for (const int rays : {300, 501}) {
+      const IntegratedShape shape = make_clump_shape(balls, rays);
+      const double size = (1 + d + r) / 2;
+      const auto& large = shape.spheres[trial % 2];
+      const double mass = shape.volume * std::pow(size, 3) / known.volume - 1;
+      const double centre = (shape.axes * xyz(large)).dot(along) + known.centre / size;
+      const Vec3 inertia = shape.inertia * size * size;
+      EXPECT_LT(std::abs(mass), shape.errors.mass) << trial;
+      EXPECT_LT(std::abs(centre), shape.errors.centre) << trial;
+      EXPECT_LT(std::abs(inertia[0] / known.along - 1), shape.errors.inertia) << trial;
+      EXPECT_LT(std::abs(inertia[1] / known.across - 1), shape.errors.inertia) << trial;
+      EXPECT_LT(std::abs(inertia[2] / known.across - 1), shape.errors.inertia) << trial;
+    }
+  }
+}
+
+/// Of a long rod, whose moment about its axis is a thousandth of that across.
+TEST(ClumpShape, OfALongRodHasItsInertiaAboutItsAxis) {
+  const int count = 24;
+  const double apart = 1.5;
+  const Vec3 along = Vec3(1, 1, 0.3).normalized();
+  std::vector<Ball> balls;
+  for (int k = 0; k < count; ++k) {
+    const Vec3 place = k * apart * along;
+    balls.push_back({place.x(), place.y(), place.z(), 1});
+  }
+  // Two caps make a pair; each of the others is a sphere cut at both sides.
+  const Pair caps(apart);
+  const double h = apart / 2, volume = caps.volume + (count - 2) * 2 * pi * (h - std::pow(h, 3) / 3);
+  const double about = caps.along * caps.volume + (count - 2) * pi * (h - 2 * std::pow(h, 3) / 3 + std::pow(h, 5) / 5);
+  const double size = 1 + (count - 1) * apart / 2;
+  const IntegratedShape shape = make_clump_shape(balls);
+  verify("volume of a rod of 24 spheres", shape.volume * std::pow(size, 3), volume, 1e-5);
+  verify("moment of inertia of a rod of 24 spheres about its axis", shape.inertia[0] * size * size, about / volume,
+         1e-4);
+  EXPECT_LT(std::abs(shape.volume * std::pow(size, 3) / volume - 1), shape.errors.mass);
+  EXPECT_LT(std::abs(shape.inertia[0] * size * size * volume / about - 1), shape.errors.inertia);
+  EXPECT_LT(shape.errors.inertia, 1e-3);
+}
+
+TEST(ClumpShape, IsRefusedWhereItIsTooFarOff) {
+  const std::vector<Ball> balls{{0, 0, 0, 1}, {1, 0, 0, 1}};
   try {
-    make_clump_shape(apart);
+    make_clump_shape(balls, 12);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("hang together"));
+    EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr("may be off by"), testing::HasSubstr("allowed is 0.1 %")));
   }
-  EXPECT_THROW(make_clump_shape({}), Error);
+}
+
+TEST(ClumpShape, MayHaveASphereThatHardlySticksOut) {
+  for (const double r : {1e-3, 1e-6, 1e-8}) {
+    const std::vector<Ball> balls{{0, 0, 0, 1}, {1, 0, 0, r}, {0.9, 0.3, 0, 0.2}};
+    const Ball large = smallest_enclosing(balls);
+    for (const Ball& one : balls) EXPECT_LE((xyz(one) - xyz(large)).norm() + one.w, large.w * (1 + 1e-12));
+    EXPECT_LE(large.w, 1.08);
+    EXPECT_FALSE(clump_defect(balls)) << r;
+  }
+  const std::vector<Ball> pair{{0, 0, 0, 1}, {1, 0, 0, 1e-6}};
+  EXPECT_NEAR(smallest_enclosing(pair).w, 1 + 0.5e-6, 1e-9);
+}
+
+TEST(ClumpShape, IsRefusedWhereItIsNoBody) {
+  const auto found = [](const std::vector<Ball>& balls) {
+    const auto defect = clump_defect(balls);
+    return defect ? defect->found : "nothing";
+  };
+  EXPECT_EQ(found({}), "0 spheres");
+  EXPECT_EQ(found(std::vector<Ball>(65, Ball{0, 0, 0, 1})), "65 spheres");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {2.1, 0, 0, 1}}), "sphere 2, which does not hang together with sphere 1");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}, {4, 0, 0, 1}, {5, 0, 0, 1}}),
+            "sphere 3, which does not hang together with sphere 1");
+  EXPECT_EQ(found({{0.1, 0, 0, 0.2}, {0, 0, 0, 1}}), "sphere 1, which lies within sphere 2");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {0, 0, 0, 1}}), "sphere 1, which lies within sphere 2");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}}), "nothing");
+  EXPECT_THROW(make_clump_shape(std::vector<Ball>{{0, 0, 0, 1}, {2.1, 0, 0, 1}}), Error);
 }
 
 }  // namespace

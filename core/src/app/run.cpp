@@ -153,7 +153,8 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
                          .facts = {.description = resolved(description),
                                    .plugins = plugins_used(description, registry),
                                    .seed = description.seed,
-                                   .threads = threads},
+                                   .threads = threads,
+                                   .clumps = clumps_of(description)},
                          .walls = {},
                          .picture = {}};
   if (const auto& picture = description.output.picture)

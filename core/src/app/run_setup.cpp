@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "scene/clump_body.hpp"
 #include "scene/make_bodies.hpp"
 
 namespace grit {
@@ -29,6 +30,14 @@ std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Regist
     used.push_back({kind, name, info.version, registry.file(kind, name), info.tag});
   }
   return used;
+}
+
+std::map<std::string, ClumpFacts> clumps_of(const SceneDescription& scene) {
+  std::map<std::string, ClumpFacts> clumps;
+  for (const auto& [name, group] : scene.bodies)
+    if (const auto* clump = dynamic_cast<const ClumpBody*>(&*group.kind))
+      clumps[name] = {clump->integrated().spheres.size(), clump->integrated().errors};
+  return clumps;
 }
 
 StateRequest run_state(const SceneDescription& scene) { return requested_state(scene, picture_state(scene)); }

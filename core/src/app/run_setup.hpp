@@ -1,6 +1,8 @@
 // What `run` and `check` both need to know before a run.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "output/run_json.hpp"
@@ -11,6 +13,9 @@ namespace grit {
 
 /// Every component of the scene, once, by kind and name.
 std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry);
+
+/// Of each group of clumps.
+std::map<std::string, ClumpFacts> clumps_of(const SceneDescription& scene);
 
 /// State of bodies that the scene's components and its picture ask for.
 StateRequest run_state(const SceneDescription& scene);

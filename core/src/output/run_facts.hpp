@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "grit/description.hpp"
 #include "grit/plugin.hpp"
+#include "scene/clump_shape.hpp"
 
 namespace grit {
 
@@ -18,12 +20,19 @@ struct PluginUsed {
   BuildTag tag;
 };
 
+/// What bodies of a group are, where they are clumps.
+struct ClumpFacts {
+  std::size_t spheres = 0;
+  ShapeErrors errors;
+};
+
 /// What is known before a run begins.
 struct RunFacts {
   Description description;  ///< resolved: everything inherited, set, and by default
   std::vector<PluginUsed> plugins;
   std::int64_t seed = 0;
   unsigned threads = 1;
+  std::map<std::string, ClumpFacts> clumps;  ///< by the name of their group
 };
 
 /// This grit: version, revision, compiler and so on.

@@ -64,6 +64,7 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"time", 0.0},
            {"steps", 0},
            {"bodies", 0},
+           {"clumps", Description::object()},
            {"time_step_s", nullptr},
            {"critical_time_step_s", nullptr},
            {"contacts_per_body", nullptr},
@@ -77,6 +78,11 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"stages", Description::array()},
            {"plugins", Description::array()},
            {"description", facts.description}};
+  for (const auto& [group, clump] : facts.clumps)
+    json_["clumps"][group] = {{"spheres", clump.spheres},
+                              {"mass_error", clump.errors.mass},
+                              {"centre_error", clump.errors.centre},
+                              {"inertia_error", clump.errors.inertia}};
   for (const auto& used : facts.plugins) json_["plugins"].push_back(plugin_facts(used));
 }
 

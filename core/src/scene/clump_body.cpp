@@ -1,12 +1,16 @@
 #include "scene/clump_body.hpp"
 
+#include <string>
 #include <vector>
 
+#include "grit/error.hpp"
 #include "scene/clump_shape.hpp"
 #include "scene/packing_file.hpp"
 
 namespace grit {
 namespace {
+
+constexpr const char* lines_of_file = "a file with a line a sphere: x y z radius";
 
 struct Balls {
   std::vector<Ball> operator()(std::monostate) const { return {}; }
@@ -58,16 +62,32 @@ void RodSpheres::declare(Parameters& p) {
 
 void ClumpBody::declare(Parameters& p) {
   p.add("shape", spheres_).required().doc("spheres that it is made of, in proportion");
+  p.check(
+      [this](const Complain& complain) {
+        const auto* file = std::get_if<SpheresOfFile>(&spheres_.value());
+        try {
+          balls_ = std::visit(Balls{}, spheres_.value());
+        } catch (const DescriptionError& error) {
+          for (const Problem& problem : error.problems())
+            complain("shape/path", DescriptionError({problem}).what(), lines_of_file);
+          return;
+        } catch (const FileError& error) {
+          return complain("shape/path", error.what(), lines_of_file);
+        }
+        const auto defect = clump_defect(balls_);
+        if (!defect) return;
+        std::string key = "shape";
+        if (file != nullptr) key += "/path";
+        else if (spheres_.type() == RodSpheres::type_name) key += "/spacing";
+        else key += "/spheres" + (defect->sphere ? '/' + std::to_string(*defect->sphere) : "");
+        complain(key, (file != nullptr ? file->path + ": " : "") + defect->found, defect->allowed);
+      },
+      {"shape"});
 }
 
-void ClumpBody::prepare() {
-  balls_ = std::visit(Balls{}, spheres_.value());
-  check_clump(balls_);
-}
-
-const ClumpShape* ClumpBody::clump() const {
+const IntegratedShape& ClumpBody::integrated() const {
   if (!shape_) shape_ = make_clump_shape(balls_);
-  return &*shape_;
+  return *shape_;
 }
 
 const PluginInfo& clump_body() {

@@ -8,6 +8,7 @@
 
 #include "grit/body_kind.hpp"
 #include "grit/plugin.hpp"
+#include "scene/clump_shape.hpp"
 
 namespace grit {
 
@@ -42,16 +43,16 @@ struct AsymmetricSpheres {
 class ClumpBody : public BodyKind {
  public:
   void declare(Parameters& p) override;
-  void prepare() override;
-  const ClumpShape* clump() const override;
+  const ClumpShape* clump() const override { return &integrated(); }
+  const IntegratedShape& integrated() const;
   double volume(double radius) const override { return clump()->volume * radius * radius * radius; }
   /// The least principal moment.
   double inertia(double radius, double mass) const override { return clump()->inertia[0] * mass * radius * radius; }
 
  private:
   OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
-  std::vector<Row> balls_;
-  mutable std::optional<ClumpShape> shape_;  // integrated when asked for: not by every stage
+  std::vector<Ball> balls_;
+  mutable std::optional<IntegratedShape> shape_;  // integrated when asked for: not by every stage
 };
 
 /// For Registry::add().

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grit/error.hpp"
@@ -13,14 +16,20 @@
 namespace grit {
 namespace {
 
-constexpr int rays = 1000;  // along either axis
+constexpr double largest_error = 1e-3;
+// A sphere that sticks out of another by less than this part of its radius adds nothing but round-off.
+constexpr double least_out = 1e-9;
 
+double reach(const Vec3& from, std::span<const Ball> balls) {
+  double most = 0;
+  for (const Ball& one : balls) most = std::max(most, (xyz(one) - from).norm() + one.w);
+  return most;
+}
 bool encloses(const Ball& large, std::span<const Ball> balls) {
-  return std::ranges::all_of(
-      balls, [&](const Ball& one) { return (xyz(one) - xyz(large)).norm() + one.w <= large.w * (1 + 1e-12); });
+  return reach(xyz(large), balls) <= large.w * (1 + 1e-12);
 }
 
-/// Has `best` be the smallest ball that all of `on` touch from inside, if it is smaller and encloses all balls.
+/// Has `best` be the smallest ball that all of `on` touch from inside, grown to enclose all balls, if it is smaller.
 void try_on(std::span<const Ball* const> on, std::span<const Ball> balls, Ball& best) {
   const Ball& base = *on[0];
   const auto others = static_cast<Eigen::Index>(on.size()) - 1;
@@ -43,12 +52,15 @@ void try_on(std::span<const Ball* const> on, std::span<const Ball> balls, Ball& 
     const double radius = (-b + root) / a;
     if (!(radius > 0 && radius < best.w)) continue;
     const Vec3 centre = xyz(base) + u + radius * w;
-    const Ball found{centre.x(), centre.y(), centre.z(), radius};
-    if (encloses(found, balls)) best = found;
+    Ball found{centre.x(), centre.y(), centre.z(), radius};
+    // Where one ball hardly sticks out of another, the root has lost digits.
+    if (!encloses(found, balls)) found.w = reach(centre, balls);
+    if (found.w < best.w) best = found;
   }
 }
 
-bool hang_together(std::span<const Ball> balls) {
+/// A ball that does not hang together with the first, if there is one.
+std::optional<std::size_t> out_of_reach(std::span<const Ball> balls) {
   std::vector<std::size_t> reached{0};
   std::vector<bool> seen(balls.size(), false);
   seen[0] = true;
@@ -59,62 +71,118 @@ bool hang_together(std::span<const Ball> balls) {
       seen[j] = true;
       reached.push_back(j);
     }
-  return reached.size() == balls.size();
+  const auto lost = std::ranges::find(seen, false);
+  if (lost == seen.end()) return std::nullopt;
+  return static_cast<std::size_t>(lost - seen.begin());
 }
 
-/// Integrals over the union of 1, r and r rᵀ, and over each ball of one over the number of balls there.
+/// Integrals of 1, r and r rᵀ.
 struct Moments {
   double volume = 0;
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
-  std::vector<double> of_ball;
+
+  /// Adds a piece of the line at x, y.
+  void add_piece(double x, double y, double low, double high) {
+    const double length = high - low, line = 0.5 * (high * high - low * low);
+    volume += length;
+    first += Vec3(x * length, y * length, line);
+    second(0, 0) += x * x * length, second(0, 1) += x * y * length, second(0, 2) += x * line;
+    second(1, 1) += y * y * length, second(1, 2) += y * line;
+    second(2, 2) += (high * high * high - low * low * low) / 3;
+  }
+  /// `area` times these pieces about `centre`, as seen from the origin.
+  Moments moved(const Vec3& centre, double area) const {
+    const Mat3 about = second.selfadjointView<Eigen::Upper>(), mixed = centre * first.transpose();
+    return {area * volume, area * (first + volume * centre),
+            area * (about + mixed + mixed.transpose() + volume * centre * centre.transpose())};
+  }
+  Moments plus(const Moments& other, double times = 1) const {
+    return {volume + times * other.volume, first + times * other.first, second + times * other.second};
+  }
+  Vec3 centre() const { return first / volume; }
+  /// About the centre, for a mass of 1.
+  Mat3 inertia() const {
+    const Mat3 spread = second / volume - centre() * centre().transpose();
+    return spread.trace() * Mat3::Identity() - spread;
+  }
 };
 
-Moments moments(std::span<const Ball> balls) {
-  Moments all;
-  all.of_ball.assign(balls.size(), 0);
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
-  for (const Ball& ball : balls)
-    low = low.cwiseMin((xyz(ball).array() - ball.w).matrix()),
-    high = high.cwiseMax((xyz(ball).array() + ball.w).matrix());
-  const double dx = (high.x() - low.x()) / rays, dy = (high.y() - low.y()) / rays;
+/// By each ball.
+struct Integrals {
+  std::vector<Moments> fine, coarse;  ///< what it adds to the union; the same by every third line either way
+  std::vector<double> shared;         ///< of one over the number of balls
+};
+
+/// Ball by ball, each by lines of its own and about its own centre, so that errors are small beside what each adds:
+/// lines through all of a long rod would have its moment about its axis wrong by a third.
+Integrals integrate(std::span<const Ball> balls, int rays) {
+  Integrals result;
   struct End {
     double z;
-    std::size_t ball;
-    bool enters;
+    int balls, earlier;  ///< by how many more it is covered from here on; and by how many that come before this ball
   };
   std::vector<End> ends;
-  std::vector<std::size_t> inside;
-  for (int i = 0; i < rays; ++i)
-    for (int j = 0; j < rays; ++j) {
-      const double x = low.x() + (i + 0.5) * dx, y = low.y() + (j + 0.5) * dy;
-      ends.clear(), inside.clear();
-      for (std::size_t k = 0; k < balls.size(); ++k) {
-        const Ball& ball = balls[k];
-        const double square = ball.w * ball.w - (x - ball.x) * (x - ball.x) - (y - ball.y) * (y - ball.y);
-        if (square <= 0) continue;
-        ends.push_back({ball.z - std::sqrt(square), k, true}), ends.push_back({ball.z + std::sqrt(square), k, false});
-      }
-      std::ranges::sort(ends, {}, &End::z);
-      for (std::size_t e = 0; e < ends.size(); ++e) {
-        if (!inside.empty()) {
-          const double a = ends[e - 1].z, b = ends[e].z;
-          const double length = b - a, line = 0.5 * (b * b - a * a), square = (b * b * b - a * a * a) / 3;
-          all.volume += length;
-          all.first += Vec3(x * length, y * length, line);
-          all.second(0, 0) += x * x * length, all.second(0, 1) += x * y * length, all.second(0, 2) += x * line;
-          all.second(1, 1) += y * y * length, all.second(1, 2) += y * line, all.second(2, 2) += square;
-          for (const std::size_t k : inside) all.of_ball[k] += length / static_cast<double>(inside.size());
-        }
-        if (ends[e].enters) inside.push_back(ends[e].ball);
-        else std::erase(inside, ends[e].ball);
-      }
+  for (std::size_t k = 0; k < balls.size(); ++k) {
+    const Ball& own = balls[k];
+    std::vector<std::pair<Ball, bool>> others;  // as seen from its centre; whether it comes before
+    for (std::size_t j = 0; j < balls.size(); ++j) {
+      const Vec3 place = xyz(balls[j]) - xyz(own);
+      if (j != k && place.norm() < balls[j].w + own.w)
+        others.push_back({{place.x(), place.y(), place.z(), balls[j].w}, j < k});
     }
-  const double area = dx * dy;
-  all.volume *= area, all.first *= area, all.second *= area;
-  for (double& volume : all.of_ball) volume *= area;
-  all.second = Mat3(all.second.selfadjointView<Eigen::Upper>());
-  return all;
+    const double apart = 2 * own.w / rays;
+    Moments fine, coarse;
+    double shared = 0;
+    for (int i = 0; i < rays; ++i)
+      for (int j = 0; j < rays; ++j) {
+        const double x = (i + 0.5) * apart - own.w, y = (j + 0.5) * apart - own.w;
+        const double square = own.w * own.w - x * x - y * y;
+        if (square <= 0) continue;
+        const double half = std::sqrt(square);
+        ends.clear();
+        for (const auto& [other, before] : others) {
+          const double its_square = other.w * other.w - (x - other.x) * (x - other.x) - (y - other.y) * (y - other.y);
+          if (its_square <= 0) continue;
+          const double low = std::max(other.z - std::sqrt(its_square), -half),
+                       high = std::min(other.z + std::sqrt(its_square), half);
+          if (low >= high) continue;
+          ends.push_back({low, 1, before}), ends.push_back({high, -1, -before});
+        }
+        std::ranges::sort(ends, {}, &End::z);
+        ends.push_back({half, 0, 0});
+        double from = -half;
+        int there = 1, earlier = 0;
+        for (const End& end : ends) {
+          shared += (end.z - from) / there;
+          if (earlier == 0) {
+            fine.add_piece(x, y, from, end.z);
+            if (i % 3 == 1 && j % 3 == 1) coarse.add_piece(x, y, from, end.z);
+          }
+          from = end.z, there += end.balls, earlier += end.earlier;
+        }
+      }
+    const double area = apart * apart;
+    result.fine.push_back(fine.moved(xyz(own), area)), result.coarse.push_back(coarse.moved(xyz(own), 9 * area));
+    result.shared.push_back(area * shared);
+  }
+  return result;
+}
+
+/// The sum of what each ball alone changes if it is told by its coarse lines: no two may make up for each other.
+ShapeErrors errors_of(const Moments& all, const Integrals& integrals) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(all.inertia());
+  const Mat3 axes = solver.eigenvectors();
+  double mass = 0, centre = 0;
+  Vec3 inertia = Vec3::Zero();
+  for (std::size_t k = 0; k < integrals.fine.size(); ++k) {
+    const Moments other = all.plus(integrals.fine[k], -1).plus(integrals.coarse[k]);
+    mass += std::abs(other.volume / all.volume - 1);
+    centre += (other.centre() - all.centre()).norm();
+    const Mat3 change = axes.transpose() * (other.inertia() - all.inertia()) * axes;
+    inertia += change.diagonal().cwiseAbs().cwiseQuotient(solver.eigenvalues());
+  }
+  return {mass, centre, inertia.maxCoeff()};
 }
 
 }  // namespace
@@ -139,37 +207,55 @@ Ball smallest_enclosing(std::span<const Ball> balls) {
   return best;
 }
 
-void check_clump(std::span<const Ball> spheres) {
-  if (spheres.empty()) throw Error("a clump needs a sphere at least");
-  if (spheres.size() > 64)
-    throw Error("a clump of " + std::to_string(spheres.size()) + " spheres: 64 at most are allowed");
-  if (!hang_together(spheres)) throw Error("spheres of a clump must overlap so that they hang together");
+std::optional<ClumpDefect> clump_defect(std::span<const Ball> spheres) {
+  if (spheres.empty() || spheres.size() > 64)
+    return ClumpDefect{{}, std::to_string(spheres.size()) + " spheres", "1 to 64 of them"};
+  const auto sphere = [](std::size_t k) { return "sphere " + std::to_string(k + 1); };
+  for (std::size_t k = 0; k < spheres.size(); ++k)
+    for (std::size_t j = 0; j < spheres.size(); ++j) {
+      const Ball &inner = spheres[k], &outer = spheres[j];
+      if (j == k || (xyz(inner) - xyz(outer)).norm() + inner.w > outer.w * (1 + least_out)) continue;
+      return ClumpDefect{k, sphere(k) + ", which lies within " + sphere(j),
+                         "one that sticks out of every other; leave it out"};
+    }
+  if (const auto lost = out_of_reach(spheres))
+    return ClumpDefect{*lost, sphere(*lost) + ", which does not hang together with sphere 1",
+                       "one that overlaps others, so that all are one body"};
+  return std::nullopt;
 }
 
-ClumpShape make_clump_shape(std::span<const Ball> spheres) {
-  check_clump(spheres);
+IntegratedShape make_clump_shape(std::span<const Ball> spheres, int rays) {
+  if (const auto defect = clump_defect(spheres))
+    throw Error("found " + defect->found + "; allowed is " + defect->allowed);
   const Ball enclosing = smallest_enclosing(spheres);
   std::vector<Ball> balls;
   for (const Ball& one : spheres) {
     const Vec3 place = (xyz(one) - xyz(enclosing)) / enclosing.w;
     balls.push_back({place.x(), place.y(), place.z(), one.w / enclosing.w});
   }
-  const Moments all = moments(balls);
-  const Vec3 centre = all.first / all.volume;
-  const Mat3 spread = all.second / all.volume - centre * centre.transpose();
-  const Mat3 inertia = spread.trace() * Mat3::Identity() - spread;
-  const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+  const Integrals integrals = integrate(balls, rays);
+  Moments all;
+  for (const Moments& one : integrals.fine) all = all.plus(one);
+  const ShapeErrors errors = errors_of(all, integrals);
+  if (const double most = std::max({errors.mass, errors.centre, errors.inertia}); !(most <= largest_error))
+    throw Error("mass, centre or inertia of a clump may be off by " + std::to_string(100 * most) +
+                " %; allowed is 0.1 %; let its spheres overlap less");
+  const Vec3 centre = all.centre();
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(all.inertia());
   Mat3 axes = solver.eigenvectors();
   if (axes.determinant() < 0) axes.col(2) *= -1;
 
-  ClumpShape shape;
+  IntegratedShape shape;
+  shape.errors = errors;
   shape.volume = all.volume, shape.inertia = solver.eigenvalues(), shape.axes = axes;
   shape.middle = axes.transpose() * -centre;
+  // Shares have an error of their own; together they are the union.
+  const double parts = std::accumulate(integrals.shared.begin(), integrals.shared.end(), 0.0);
   for (std::size_t k = 0; k < balls.size(); ++k) {
     const Vec3 place = axes.transpose() * (xyz(balls[k]) - centre);
     const double r = balls[k].w;
     shape.spheres.push_back({place.x(), place.y(), place.z(), r});
-    shape.shares.push_back(all.of_ball[k] / (4.0 / 3.0 * std::numbers::pi * r * r * r));
+    shape.shares.push_back(integrals.shared[k] * all.volume / parts / (4.0 / 3.0 * std::numbers::pi * r * r * r));
   }
   return shape;
 }

@@ -118,6 +118,13 @@ struct LinearRolling {
     return pair;
   }
 
+  /// Limits of moments are in it times the normal force [m].
+  template <class L>
+  [[gnu::always_inline]] static L limiting_radius(const ContactPoint<L>& at, const Pair<L>& pair) {
+    const L mean = L(0.5) * (at.radius_a + at.radius_b), smaller = min(at.radius_a, at.radius_b);
+    return select(pair.smaller_radius > L(0.0), smaller, mean);
+  }
+
   template <unsigned Features, class L>
   [[gnu::always_inline]] static Response<L> evaluate(const ContactPoint<L>& at, const Pair<L>& pair, State<L>& state) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
@@ -130,8 +137,7 @@ struct LinearRolling {
     state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
 
     if constexpr (Features != 0) {
-      const L mean = L(0.5) * (at.radius_a + at.radius_b), smaller = min(at.radius_a, at.radius_b);
-      const L arm = select(pair.smaller_radius > L(0.0), smaller, mean) * response.normal_force;
+      const L arm = limiting_radius(at, pair) * response.normal_force;
       const L angular = ks * at.radius_a * at.radius_b;
       if constexpr ((Features & with_rolling) != 0) {
         const Vec<L> rolling =
@@ -168,8 +174,7 @@ struct LinearRolling {
     // Of rolling, where it is on; one division serves both springs.
     L other(1.0), rolled(0.0);
     if constexpr ((Features & with_rolling) != 0) {
-      const L mean = L(0.5) * (at.radius_a + at.radius_b), smaller = min(at.radius_a, at.radius_b);
-      const L arm = select(pair.smaller_radius > L(0.0), smaller, mean) * response.normal_force;
+      const L arm = limiting_radius(at, pair) * response.normal_force;
       const Vec<L> rolling{before.rolling_x, before.rolling_y, before.rolling_z};
       other = select(pair.rolling_limit > L(0.0), rolling_stiffness, L(1.0));
       rolled = slipped(at.turn(rolling), stretched(at, rolling, rolling_stiffness, at.spin), pair.rolling_limit * arm);

@@ -361,6 +361,28 @@ TEST(Sinusoidal, NothingSlipsThroughBehind) {
   }
 }
 
+// Crests are curved with the radius of troughs: from that deep on, either flank is as close.
+TEST(Sinusoidal, PushesOutOfTheFlankOnItsSideOfACrest) {
+  constexpr double crest = 0.8, aside = 1e-9, radius = 0.2;
+  const auto touch = [&](double x, double below) {
+    const auto touches = touches_of(*usual.made(), {x, 0.5, -below}, radius);
+    EXPECT_EQ(touches.size(), 1u);
+    return touches.empty() ? Touch{} : touches[0];
+  };
+  const double shallow = 0.95 * usual.trough_radius(), deep = 1.2 * usual.trough_radius();
+  for (const double x : {crest - aside, crest, crest + aside}) {
+    EXPECT_NEAR(touch(x, shallow).overlap, radius + shallow, 1e-9);
+    EXPECT_NEAR(touch(x, shallow).normal.x(), 0, 1e-6);
+  }
+  const Touch before = touch(crest - aside, deep), at = touch(crest, deep), after = touch(crest + aside, deep);
+  EXPECT_LT(at.overlap, radius + deep - 1e-4);
+  EXPECT_NEAR(before.overlap, at.overlap, 2 * aside);
+  EXPECT_NEAR(after.overlap, at.overlap, 2 * aside);
+  EXPECT_GT(before.normal.x(), 0.1);
+  EXPECT_LT(after.normal.x(), -0.1);
+  EXPECT_NEAR(at.normal.x(), after.normal.x(), 1e-6);
+}
+
 TEST(Sinusoidal, SideIsThinWhereNothingIsOnIt) {
   const Vec3 at = steep.off_surface(0.31, 0, 0), normal = (steep.off_surface(0.31, 0, 1) - at).normalized();
   for (const double off : {0.03, -0.03}) {  // over the edge, and under it

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <sstream>
+#include <utility>
 
 #include "grit/plugin.hpp"
 
@@ -65,6 +66,15 @@ void SiloDischarge::declare(Parameters& p) {
         }
       },
       {"outlet_positions", "outlet_widths", "width", "largest_diameter"});
+  p.check(
+      [this](const Complain& complain) {
+        for (const auto& [name, form] :
+             {std::pair("drescher", silo_.forms.drescher), {"en_1991_4", silo_.forms.en_1991_4}})
+          if (form)
+            complain(std::string("closed_forms/") + name, "a closed form of the force on a bottom without outlets",
+                     "the others of closed_forms; silo-quasistatic draws it");
+      },
+      {"closed_forms"});
 }
 
 std::vector<SiloDischarge::Slot> SiloDischarge::outlets() const {

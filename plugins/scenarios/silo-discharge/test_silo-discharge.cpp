@@ -143,6 +143,9 @@ TEST(SiloDischarge, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"shares", {0.5, 0.2}}}), HasSubstr("shares that rise"));
   EXPECT_THAT(problem({{"shares", {1.2}}}), HasSubstr("/shares"));
   EXPECT_THAT(problem({{"roughness", -1}}), HasSubstr("/roughness"));
+  for (const std::string form : {"drescher", "en_1991_4"})
+    EXPECT_THAT(problem({{"closed_forms", {{form, Description::object()}}}}),
+                HasSubstr("/closed_forms/" + form + " found a closed form of the force on a bottom without outlets"));
 }
 
 }  // namespace

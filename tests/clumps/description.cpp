@@ -1,0 +1,90 @@
+// Clumps that cannot be: where a description says so, what was found, what is allowed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "grit/error.hpp"
+#include "support/program.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class ClumpDescription : public testing::Test {
+ protected:
+  /// What is said of a shape, which stands in line 5.
+  std::string problems_of(const std::string& shape) const {
+    const auto file = folder.write("clumps.json", R"({
+  "contacts": {"type": "linear-rolling"},
+  "materials": {"sand": {"density": 2600}},
+  "bodies": {"grains": {"type": "clump", "material": "sand", "grains": {"type": "list", "grains": [{"position": [0, 0, 0], "radius": 1}]},
+    "shape": )" + shape + R"(
+  }},
+  "stages": [{"name": "only", "until": {"type": "steps", "value": 1}, "limit": 1}]
+})");
+    try {
+      load_scene(file, {}, installed());
+    } catch (const DescriptionError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::string in_line_5(const std::string& pointer) const {
+    return (folder / "clumps.json").string() + ":5: /bodies/grains/shape" + pointer + ": ";
+  }
+  OwnFolder folder;
+};
+
+TEST_F(ClumpDescription, OfAListNamesTheSphereAtFault) {
+  const auto list = [&](const std::string& spheres) {
+    return problems_of(R"({"type": "list", "spheres": [)" + spheres + "]}");
+  };
+  const std::string unit = R"({"position": [0, 0, 0], "radius": 1})";
+  EXPECT_EQ(list(unit + R"(, {"position": [1, 0, 0], "radius": 1})"), "");
+  EXPECT_EQ(list(""), in_line_5("/spheres") + "found 0 entries; allowed are 1 or more");
+  EXPECT_EQ(list(R"({"position": [0, 0, 0], "radius": 0})"),
+            in_line_5("/spheres/0/radius") + "found 0 m; allowed is above 0 m");
+  EXPECT_EQ(list(unit + R"(, {"position": [0.1, 0, 0], "radius": 0.2})"),
+            in_line_5("/spheres/1") +
+                "found sphere 2, which lies within sphere 1; allowed is one that sticks out of every "
+                "other; leave it out");
+  EXPECT_EQ(list(unit + R"(, {"position": [3, 0, 0], "radius": 1})"),
+            in_line_5("/spheres/1") +
+                "found sphere 2, which does not hang together with sphere 1; allowed is one that "
+                "overlaps others, so that all are one body");
+  // Its centre on the surface, a millionth as large: half of it sticks out.
+  EXPECT_EQ(list(unit + R"(, {"position": [1, 0, 0], "radius": 1e-6})"), "");
+}
+
+TEST_F(ClumpDescription, OfARodWhoseSpheresAreAllButOneNamesTheSpacing) {
+  EXPECT_THAT(problems_of(R"({"type": "rod", "spacing": 1e-12})"),
+              StartsWith(in_line_5("/spacing") + "found sphere 1"));
+}
+
+TEST_F(ClumpDescription, OfAFileNamesFileAndLine) {
+  const auto file = [&](const std::string& lines) {
+    folder.write("spheres.txt", lines);
+    return problems_of(R"({"type": "file", "path": "spheres.txt"})");
+  };
+  const std::string path = (folder / "spheres.txt").string(), place = in_line_5("/path") + "found ";
+  EXPECT_EQ(file("0 0 0 1\n1 0 0 1\n"), "");
+  EXPECT_EQ(file("# x y z radius\n0 0 0 1\n1 0 0\n1 0 x 1\n0 0 0 -1\n"),
+            place + path +
+                ":3: found 3 numbers; a grain is four: x y z radius, in m; allowed is a file with a line a "
+                "sphere: x y z radius\n" +
+                place + path + ":4: z is \"x\", not a number; allowed is a file with a line a sphere: x y z radius\n" +
+                place + path +
+                ":5: radius is -1.000000 m; it must be above 0; allowed is a file with a line a sphere: "
+                "x y z radius");
+  EXPECT_THAT(file("# nothing\n"), StartsWith(place + path + ": holds no grain"));
+  EXPECT_THAT(file("0 0 0 1\n3 0 0 1\n"), StartsWith(place + path + ": sphere 2, which does not hang together"));
+  EXPECT_THAT(problems_of(R"({"type": "file", "path": "missing.txt"})"),
+              testing::AllOf(StartsWith(place), HasSubstr("missing.txt: cannot read grains: No such file"),
+                             EndsWith("allowed is a file with a line a sphere: x y z radius")));
+}
+
+}  // namespace
+}  // namespace grit::test
