@@ -265,7 +265,13 @@ std::string script_element(std::string_view script) {
 ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
                              DataElements& data, std::chrono::milliseconds patience) {
   std::vector<RunResults> runs;
-  for (const auto& folder : folders) runs.push_back(read_results(folder, patience));
+  std::vector<std::string> unread;
+  for (const auto& folder : folders) try {
+      runs.push_back(read_results(folder, patience));
+    } catch (const FileError& error) {
+      unread.emplace_back(error.what());
+    }
+  if (runs.empty()) throw FileError(fmt::format("{}", fmt::join(unread, "\n  ")));
   tell_apart(runs);
   GrainLimits share = limits;
   share.bytes /= std::max<std::size_t>(1, runs.size());
@@ -281,7 +287,10 @@ ReportContent report_content(std::span<const std::filesystem::path> folders, con
     content.json["runs"].push_back(std::move(one));
   }
   add_readable_units(content.json["runs"]);
-  content.head = head_of(runs, diameters) + problems_part(content.problems);
+  std::vector<std::string> all = unread;
+  all.insert(all.end(), content.problems.begin(), content.problems.end());
+  content.head = head_of(runs, diameters) + problems_part(all);
+  content.unread = std::move(unread), content.first = runs.front().folder;
   return content;
 }
 
@@ -315,7 +324,8 @@ std::string report_html(const ReportContent& content, const DataElements& data, 
 ReportPage report_page(std::span<const std::filesystem::path> folders, const GrainLimits& limits) {
   DataElements data;
   ReportContent content = report_content(folders, limits, data);
-  return {report_html(content, data, Reach::closed), std::move(content.problems)};
+  return {report_html(content, data, Reach::closed), std::move(content.problems), std::move(content.unread),
+          std::move(content.first)};
 }
 
 }  // namespace grit
