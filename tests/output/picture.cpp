@@ -99,10 +99,65 @@ TEST(Scale, UnitsAreReadable) {
   EXPECT_DOUBLE_EQ(readable("rad", 1).factor * std::acos(-1.0), 180);
   EXPECT_EQ(readable("1", 1e6).factor, 1);
   EXPECT_EQ(readable("kg", 0.02).unit, "g");
-  EXPECT_EQ(readable("kg s-1", 0.02).unit, "g s-1");
+  EXPECT_EQ(readable("kg s-1", 0.02).unit, "g/s");
   EXPECT_EQ(readable("kg s-1", 0.02).factor, 1e3);
   EXPECT_EQ(readable("kg", 2).unit, "kg");
-  EXPECT_EQ(readable("kg m-3", 0.02).unit, "kg m-3");
+  EXPECT_EQ(readable("kg m-3", 0.02).unit, "kg/m³");
+  EXPECT_EQ(readable("N m-3", 2.6e4).unit, "kN/m³");
+  EXPECT_DOUBLE_EQ(readable("N m-3", 2.6e4).factor, 1e-3);
+  EXPECT_EQ(readable("m s-1", 0.02).unit, "mm/s");
+  EXPECT_EQ(readable("m s-1", 2000).unit, "m/s");
+  EXPECT_EQ(readable("Pa2 Hz-1", 1e9).unit, "Pa²/Hz") << "a prefix would be squared";
+  EXPECT_EQ(readable("degree", 1).unit, "°");
+  EXPECT_EQ(readable("m", 1e-9).unit, "µm");
+  EXPECT_EQ(readable("N m", 0).unit, "N m");
+}
+
+TEST(Scale, UnitsAreWrittenAsPeopleDo) {
+  const std::pair<const char*, const char*> all[] = {{"m s-1", "m/s"},
+                                                     {"m/s", "m/s"},
+                                                     {"m.s-1", "m/s"},
+                                                     {"degree", "°"},
+                                                     {"kN m-3", "kN/m³"},
+                                                     {"m2", "m²"},
+                                                     {"m^2/s", "m²/s"},
+                                                     {"kg m-2 s-1", "kg/(m² s)"},
+                                                     {"s-1", "1/s"},
+                                                     {"1/s", "1/s"},
+                                                     {"Pa2 Hz-1", "Pa²/Hz"},
+                                                     {"N m", "N m"},
+                                                     {"m-12", "1/m¹²"},
+                                                     {"1", "1"},
+                                                     {"", "1"},
+                                                     {"%", "%"},
+                                                     {"rad/s", "rad/s"},
+                                                     {"J m0", "J"}};
+  for (const auto& [unit, written] : all) EXPECT_EQ(written_unit(unit), written) << unit;
+  for (const char* other : {"100 Pa", "m**2", "m2s", "m//s", "m/", "m-", "degree from here-1-2"})
+    EXPECT_EQ(written_unit(other), other) << "not understood, and so left alone";
+}
+
+TEST(Scale, NamesAreWrittenAsPeopleDo) {
+  EXPECT_EQ(spelled("shear_stress"), "shear stress");
+  EXPECT_EQ(spelled("sigma_1"), "σ₁");
+  EXPECT_EQ(spelled("sigma_12_left"), "σ₁₂ left");
+  EXPECT_EQ(spelled("mu_eff"), "μ_eff");
+  EXPECT_EQ(spelled("sigma_left"), "σ left");
+  EXPECT_EQ(spelled("gradient_strip_1"), "gradient strip 1");
+  EXPECT_EQ(spelled("sigmas"), "sigmas");
+  EXPECT_EQ(channel_label("slip", "share"), "slip: share");
+  EXPECT_EQ(channel_label("test", "sigma_1"), "σ₁");
+  EXPECT_EQ(channel_label("packing", "time"), "time");
+  EXPECT_EQ(with_symbols("asin((sigma_1 - sigma_3) / a_1), mu_eff: not mu, nor shear_stress"),
+            "asin((σ₁ - σ₃) / a_1), μ_eff: not mu, nor shear_stress");
+}
+
+TEST(Scale, TimesHaveAUnitThatReadsWell) {
+  EXPECT_EQ(written_time(0.06923), "69.23 ms");
+  EXPECT_EQ(written_time(12), "12 s");
+  EXPECT_EQ(written_time(123456), "123456 s");
+  EXPECT_EQ(written_time(2.5e-6), "2.5 µs");
+  EXPECT_EQ(written_time(0), "0 s");
 }
 
 std::vector<double> ys_of(const SvgElement& polyline) {

@@ -194,7 +194,7 @@ Description channel_json(const ProbeSeries::Channel& channel, DataElements& data
   return {{"name", channel.name},
           {"label", spelled(channel.name)},
           {"unit", channel.sampled.unit},
-          {"about", channel.sampled.doc},
+          {"about", with_symbols(channel.sampled.doc)},
           {"largest", largest},
           {"width", channel.width()},
           {"coordinate", channel.sampled.coordinate},
