@@ -333,6 +333,77 @@ TEST(Picture, HasAColourALayer) {
                              testing::Not(HasSubstr(".c3{fill"))));
 }
 
+/// As a tall narrow silo is.
+GrainView column_of_grains() {
+  GrainView view;
+  view.value = {"displacement", "m"}, view.note = "x +";
+  for (int i = 0; i < 60; ++i) view.discs.push_back({0.1 * (i % 6), 0.4 * (i / 6), 0.05, 1e-3 * i});
+  return view;
+}
+
+TEST(Picture, FitsItsFrameToTheGrains) {
+  const GrainView view = column_of_grains();
+  const auto svg = parsed(draw({.title = "a silo", .facts = "60 grains", .panels = {}, .grains = view}));
+  const double width = number_of(svg.get_child("svg"), "width");
+  EXPECT_EQ(width, 420);
+  EXPECT_EQ(number_of(elements(svg, "rect").at(0), "width"), width) << "white as far as it goes";
+  double right = 0, bar = 1e9;
+  for (const auto& disc : elements(svg, "circle"))
+    right = std::max(right, number_of(disc, "cx") + number_of(disc, "r"));
+  for (const auto& piece : elements(svg, "rect", "c0")) bar = std::min(bar, number_of(piece, "x"));
+  EXPECT_GT(bar, right + 10);
+  EXPECT_LT(bar, right + 40) << "colours are beside what they are of";
+  for (const auto& text : elements(svg, "text", "axis")) {
+    EXPECT_EQ(text.data(), "displacement [mm]");
+    EXPECT_GE(number_of(text, "x"), bar);
+    EXPECT_LT(number_of(text, "x") + 7.0 * 17, width);
+  }
+}
+
+TEST(Picture, HasNoWordsOverTheLengthOfANarrowView) {
+  const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = column_of_grains()}));
+  double bar = 0;
+  for (const auto& line : elements(svg, "line", "scale")) bar = std::max(bar, number_of(line, "y1"));
+  for (const auto& text : elements(svg, "text", "small"))
+    if (text.data().starts_with("x →")) EXPECT_GT(number_of(text, "y"), bar + 10) << "in a line of its own";
+}
+
+TEST(Picture, HasNoRoomForColoursThatThereAreNot) {
+  GrainView view;
+  for (int i = 0; i < 10; ++i) view.discs.push_back({1.0 * i, 0, 0.5, nan});
+  const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view}));
+  double right = 0;
+  for (const auto& disc : elements(svg, "circle"))
+    right = std::max(right, number_of(disc, "cx") + number_of(disc, "r"));
+  EXPECT_NEAR(right, number_of(svg.get_child("svg"), "width") - 36, 0.1);
+}
+
+TEST(Picture, WrapsTitleAndFacts) {
+  std::string facts = "1 000 grains";
+  for (int i = 0; i < 20; ++i) facts += "  ·  run-" + std::to_string(i) + ": done";
+  const Picture picture{.title = "a title that is far longer than a picture of a silo can be wide, with μ = 0.5",
+                        .facts = facts,
+                        .panels = {},
+                        .grains = column_of_grains()};
+  const auto svg = parsed(draw(picture));
+  EXPECT_EQ(svg.get<std::string>("svg.title"), picture.title) << "as it is";
+  std::string title, told;
+  double lowest = 0;
+  for (const auto& line : elements(svg, "text", "title")) {
+    title += (title.empty() ? "" : " ") + line.data();
+    EXPECT_LT(36 + 11 * static_cast<double>(line.data().size()), 420);
+  }
+  EXPECT_EQ(title, picture.title);
+  for (const auto& line : elements(svg, "text", "facts")) {
+    told += (told.empty() ? "" : "  ·  ") + line.data();
+    EXPECT_LT(36 + 6.5 * static_cast<double>(line.data().size()), 420 + 36);  // the dot is two bytes
+    EXPECT_GT(number_of(line, "y"), lowest);
+    lowest = number_of(line, "y");
+  }
+  EXPECT_EQ(told, facts);
+  for (const auto& disc : elements(svg, "circle")) EXPECT_GT(number_of(disc, "cy") - number_of(disc, "r"), lowest + 10);
+}
+
 TEST(Picture, StaysSmallForManyGrains) {
   GrainView view;
   for (int i = 0; i < 55000; ++i) view.discs.push_back({(i % 300) * 1.37, (i / 300) * 1.37, 0.5, std::sin(0.1 * i)});
