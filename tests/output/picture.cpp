@@ -156,6 +156,7 @@ TEST(Scale, TimesHaveAUnitThatReadsWell) {
   EXPECT_EQ(written_time(0.06923), "69.23 ms");
   EXPECT_EQ(written_time(12), "12 s");
   EXPECT_EQ(written_time(123456), "123456 s");
+  EXPECT_EQ(written_time(9999.7), "10000 s");
   EXPECT_EQ(written_time(2.5e-6), "2.5 µs");
   EXPECT_EQ(written_time(0), "0 s");
 }
@@ -215,6 +216,16 @@ TEST(Picture, HasTicksOnBothAxesThatDoNotTouch) {
     EXPECT_GE(across, 4 * panels) << panels;
     EXPECT_LE(across, 8 * panels) << panels;
   }
+}
+
+TEST(Picture, HasRoomForTheTitlesOfItsPanels) {
+  Picture picture{.title = "", .facts = "", .panels = {}, .grains = {}};
+  for (const char* label : {"strain", "force", "force-chains: tangential force anisotropy"})
+    picture.panels.push_back({{"time", "s"}, {label, "N"}, {{"", {0, 1}, {0, 1}}}});
+  const auto titles = elements(parsed(draw(picture)), "text", "axis");
+  ASSERT_EQ(titles.size(), 6u) << "of y and x of each";
+  EXPECT_EQ(number_of(titles[0], "y"), number_of(titles[2], "y"));
+  EXPECT_GT(number_of(titles[4], "y"), number_of(titles[2], "y")) << "below, where it has half of the width";
 }
 
 TEST(Picture, ShowsReferencesBesideRuns) {

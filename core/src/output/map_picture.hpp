@@ -30,8 +30,9 @@ struct MapPicture {
 };
 
 /// The picture as SVG, up to 900 px wide: a panel a value, each with its axes and the scale of its colours, side by
-/// side where they are narrow or many. It tells 98 of 100 cells apart, the middle ones. Cells meet: what is less than
-/// three quarters of a cell between two is coloured as the nearest one. Of walls what is near the cells is seen.
+/// side where they are tall or more than four. It tells 98 of 100 cells apart, the middle ones. Cells meet: what is
+/// less than three quarters of a cell between two is coloured as the nearest one. Of walls what is near the cells is
+/// seen.
 std::string draw(const MapPicture& picture);
 
 }  // namespace grit

@@ -28,6 +28,12 @@ constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#
 constexpr std::array<const char*, 4> dashes{"2 4", "8 3 2 3", "6 4", "12 3"};
 constexpr double letter = 6.6;  // about how wide one is, px
 
+/// About how wide a title of an axis is [px].
+double title_wide(const std::string& title) {
+  constexpr double title_letter = 7.2;
+  return title_letter * static_cast<double>(letters(title));
+}
+
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double value) {
@@ -286,9 +292,8 @@ ViewLayout layout(const GrainView& view) {
     if (*nth > 0) result.limit = *nth;
     result.unit = readable(view.value.unit, result.limit);
     result.value_title = axis_title(view.value.label, result.unit.unit);
-    constexpr double title_letter = 7.2, numbers = 64;  // px
-    const double words = std::max(title_letter * static_cast<double>(letters(result.value_title)),
-                                  letter * static_cast<double>(letters(view.note)));
+    constexpr double numbers = 64;  // px
+    const double words = std::max(title_wide(result.value_title), letter * static_cast<double>(letters(view.note)));
     result.bar = bar_gap + std::max(numbers, words);
   }
   result.scale = std::min((widest - result.bar) / result.x.span(), tallest / result.y.span());
@@ -389,7 +394,13 @@ void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doub
 
 std::string draw(const Picture& picture) {
   const auto count = picture.panels.size();
-  const auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
+  constexpr double gap = 16;
+  const auto panel_wide_of = [&](std::size_t columns) {
+    return (widest - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+  };
+  auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
+  for (const Panel& panel : picture.panels)  // a title has the room above its panel
+    while (columns > 1 && title_wide(axis_title(panel.y.label, panel.y.unit)) > panel_wide_of(columns)) --columns;
   const auto rows = (count + columns - 1) / columns;
   const auto view = picture.grains ? layout(*picture.grains) : ViewLayout{};
   const std::size_t left_out = picture.grains ? picture.grains->left_out : 0;
@@ -401,7 +412,7 @@ std::string draw(const Picture& picture) {
   const double panels_top = heading.bottom() + legend(nullptr, names, 0), panel_high = columns == 1   ? 300
                                                                                        : columns == 2 ? 280
                                                                                                       : 250;
-  const double gap = 16, panel_wide = (widest - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+  const double panel_wide = panel_wide_of(columns);
   const double grains_top = panels_top + panel_high * static_cast<double>(rows) + (count > 0 ? 30 : 8);
   const double height = picture.grains ? grains_top + std::max(view.high, 180.0) + 56 : grains_top;
 

@@ -208,7 +208,7 @@ ReadableUnit readable(const std::string& unit, double largest) {
 }
 
 std::string written_time(double seconds) {
-  constexpr double four_digits = 1e4;  // of more, {:.4g} would be a power of ten
+  constexpr double four_digits = 9999.5;  // of more, {:.4g} would be a power of ten
   if (std::abs(seconds) >= four_digits) return fmt::format("{:.0f} s", seconds);
   for (const auto& [size, unit] : {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "µs")})
     if (std::abs(seconds) >= size) return fmt::format("{:.4g} {}", seconds / size, unit);
