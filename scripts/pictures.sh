@@ -3,8 +3,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# drawn RUN PICTURE: a run's picture as PNG.
-drawn() { rsvg-convert --width 1000 "results/pictures/$1" --output "docs/$2.png"; }
+# drawn RUN PICTURE: a run's picture as PNG, 1000 pixels wide where it has the whole width.
+drawn() { rsvg-convert --zoom 1.1111 "results/pictures/$1" --output "docs/$2.png"; }
 
 mkdir -p docs/pictures docs/gallery
 # gallery NAME FILE [OPTION…]: curves and grains of a test, as docs/gallery/README.md has them.
@@ -37,6 +37,7 @@ with Browser(find_chromium(), width=1000, height=2400) as browser:
     browser.open(sys.argv[1])
     browser.wait("document.querySelectorAll('figure.chart[data-drawn]').length > 1 && !document.querySelector('.problems')")
     browser.wait(f"{GRAINS}.painted")
+    browser.wait("[...document.querySelectorAll('.progress')].every((line) => line.textContent)")
     browser.resize(1000, browser.evaluate("Math.ceil(document.querySelector('figure.grains').getBoundingClientRect().bottom) + 16"))
     browser.screenshot(sys.argv[2])
 end
@@ -45,14 +46,22 @@ end
   watched=results/pictures/watched
   rm -rf "$watched" # else its frames are there already
   build/bin/grit run sims/silo-discharge/quick.json --out "$watched" --overwrite --threads 1 --watch 2> "$watched.log" &
-  until [[ -e $watched/frames/000018.h5 ]]; do sleep 1; done
-  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched
-  kill -INT $!
-  wait $! || true
+  run=$!
+  until [[ -e $watched/frames/000018.h5 ]]; do
+    kill -0 "$run" # it has not ended before
+    sleep 1
+  done
+  kill -STOP "$run" # else it may end while the page is drawn, which another process serves
+  status=0
+  shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched || status=$?
+  kill -CONT "$run"
+  kill -INT "$run"
+  wait "$run" || true
+  ((status == 0))
 fi
 
 # Its force chains in ParaView, where there is one, by the script of docs/results.md; in 256 colours it has a quarter of the size.
-if command -v pvpython xvfb-run > /dev/null; then
+if command -v pvpython > /dev/null && command -v xvfb-run > /dev/null; then
   (
     cd results/pictures
     sed -n '/^```pvpython/,/^```$/{/^```/d; p}' ../../docs/results.md | sed "s@/home/me/results/box@$PWD/direct-shear@" > chains.py

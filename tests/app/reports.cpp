@@ -112,12 +112,40 @@ TEST_F(Reports, DrawTheOthersWhereAFolderIsBad) {
   folder.write("results/empty/notes.txt", "");
   auto outcome = grit({"report", "--png", "nothing", "results/two", "results/empty", "results/three"});
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: nothing: there is no such folder\n"),
-                                 HasSubstr("grit: results/empty: holds no run")));
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("grit: nothing: there is no such folder; give one that 'grit run' has written\n"),
+                    HasSubstr("grit: results/empty: holds no run")));
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("picture: results/two/grains.png\n"), HasSubstr("picture: results/three/grains.png\n"),
                     HasSubstr("picture: results/two/curves-overlaid.png\n")));
   EXPECT_TRUE(exists("results/three/curves.png"));
+}
+
+TEST_F(Reports, ShowTheOthersWhereAFolderIsBad) {
+  for (const std::string name : {"two", "three"})
+    ASSERT_EQ(grit({"run", "two.json", "--no-report", "--out", "results/" + name}).status, 0);
+  folder.write("results/empty/notes.txt", "");
+  auto outcome = grit({"report", "nothing", "results/empty", "results/two", "results/three"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err,
+              AllOf(StartsWith("grit: nothing: there is no such folder; give one that 'grit run' has written\n"
+                               "grit: results/empty: holds no run"),
+                    HasSubstr("give a folder that 'grit run' has written\n")));
+  EXPECT_EQ(outcome.out, "report: results/two/report.html\n") << "in the first that holds a run";
+  EXPECT_THAT(text("results/two/report.html"),
+              AllOf(HasSubstr("<h1>Runs side by side</h1>"), HasSubstr("two</th>"), HasSubstr("three</th>"),
+                    HasSubstr("<li>nothing: there is no such folder")));
+  EXPECT_FALSE(exists("nothing"));
+  EXPECT_FALSE(exists("results/empty/report.html"));
+
+  outcome = grit({"report", "results/two", "nothing", "--out", "one.html"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(text("one.html"), HasSubstr("<h1>two grains</h1>"));
+
+  outcome = grit({"report", "nothing", "results/empty", "--out", "none.html"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("nothing: there is no such folder"), HasSubstr("empty: holds no run")));
+  EXPECT_FALSE(exists("none.html"));
 }
 
 TEST_F(Reports, DrawTheOtherPicturesWhereAFrameIsDamaged) {

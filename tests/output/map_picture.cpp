@@ -95,17 +95,27 @@ TEST(MapPicture, HasEnoughTicksWhereStepsFallBadly) {
   EXPECT_GE(upwards, 8u);
 }
 
-/// By pixel, how many tiles cover it.
-std::vector<int> covered(const std::vector<Tile>& all, double left, double top, int wide, int high) {
-  std::vector<int> count(static_cast<std::size_t>(wide * high));
+/// By pixel of the box of all tiles, how many cover it.
+struct Cover {
+  int wide, high;
+  std::vector<int> count;
+  int at(int row, int column) const { return count[static_cast<std::size_t>(row * wide + column)]; }
+};
+Cover cover_of(const std::vector<Tile>& all) {
+  double left = 1e9, right = 0, top = 1e9, bottom = 0;
+  for (const Tile& tile : all) {
+    left = std::min(left, tile.x), right = std::max(right, tile.x + tile.wide);
+    top = std::min(top, tile.y), bottom = std::max(bottom, tile.y + tile.high);
+  }
+  Cover cover{static_cast<int>(right - left), static_cast<int>(bottom - top), {}};
+  cover.count.resize(static_cast<std::size_t>(cover.wide * cover.high));
   for (const Tile& tile : all)
     for (int y = 0; y < tile.high; ++y)
       for (int x = 0; x < tile.wide; ++x) {
         const int column = static_cast<int>(tile.x - left) + x, row = static_cast<int>(tile.y - top) + y;
-        if (column >= 0 && column < wide && row >= 0 && row < high)
-          ++count[static_cast<std::size_t>(row * wide + column)];
+        ++cover.count[static_cast<std::size_t>(row * cover.wide + column)];
       }
-  return count;
+  return cover;
 }
 
 // Cells that have moved with what they are of: rows slid over each other, rows and columns drawn apart.
@@ -117,18 +127,12 @@ TEST(MapPicture, HasNoCracksBetweenCellsThatMoved) {
   const auto all = tiles(picture);
   for (const Tile& tile : all)
     for (const double edge : {tile.x, tile.y, tile.wide, tile.high}) EXPECT_EQ(edge, std::round(edge));
-  double left = 1e9, right = 0, top = 1e9, bottom = 0;
-  for (const Tile& tile : all) {
-    left = std::min(left, tile.x), right = std::max(right, tile.x + tile.wide);
-    top = std::min(top, tile.y), bottom = std::max(bottom, tile.y + tile.high);
-  }
-  const int wide = static_cast<int>(right - left), high = static_cast<int>(bottom - top);
-  const auto count = covered(all, left, top, wide, high);
-  const double scale = wide / (1.3 * 19 + 0.1 * 11 + 1);
+  const Cover cover = cover_of(all);
+  const double scale = cover.wide / (1.3 * 19 + 0.1 * 11 + 1);
   int seams = 0, twice = 0;
-  for (int row = 0; row < high; ++row)
-    for (int column = 0; column < wide; ++column) {
-      const int here = count[static_cast<std::size_t>(row * wide + column)];
+  for (int row = 0; row < cover.high; ++row)
+    for (int column = 0; column < cover.wide; ++column) {
+      const int here = cover.at(row, column);
       twice += here > 1;
       // Well within the sheared sheet, by the row of cells that is the nearest.
       const double z = 1.2 * 11 + 0.5 - (row + 0.5) / scale, k = std::clamp(std::round(z / 1.2), 0.0, 11.0),
@@ -137,6 +141,106 @@ TEST(MapPicture, HasNoCracksBetweenCellsThatMoved) {
     }
   EXPECT_EQ(seams, 0);
   EXPECT_EQ(twice, 0);
+}
+
+// Columns that have slid past each other by half a cell, and rows and columns that have moved apart.
+TEST(MapPicture, HasNoHolesWhereGapsCross) {
+  MapPicture picture;
+  picture.panels = {{"strain", true}};
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      picture.cells.push_back({1.6 * i, 1.6 * k + 0.5 * (i % 2), 1, 1, {std::sin(i + 2.0 * k)}});
+  const auto all = tiles(picture);
+  const Cover cover = cover_of(all);
+  const double scale = cover.wide / (1.6 * 3 + 1);
+  int holes = 0, beyond = 0;
+  for (int row = 0; row < cover.high; ++row)
+    for (int column = 0; column < cover.wide; ++column) {
+      const int here = cover.at(row, column);
+      const double x = (column + 0.5) / scale, z = (cover.high - row - 0.5) / scale;  // from the corner of all
+      if (z > 0.52 && z < 1.6 * 2 + 0.98) holes += here == 0;
+      // No more than they reach, but for the gaps: the first column ends below, the second begins above.
+      if ((x < 0.98 && z > 1.6 * 2 + 1.02) || (x > 1.62 && x < 2.58 && z < 0.48)) beyond += here > 0;
+    }
+  EXPECT_EQ(holes, 0);
+  EXPECT_EQ(beyond, 0);
+}
+
+TEST(MapPicture, LeavesTheRimOfAPlaceWithoutACellAsItIs) {
+  MapPicture picture;
+  picture.panels = {{"value", false}};
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (i != 1 || k != 1) picture.cells.push_back({1.0 * i, 1.0 * k, 1, 1, {1.0 * i + 3 * k}});
+  double area = 0, wide = 0;
+  for (const Tile& tile : tiles(picture)) area += tile.wide * tile.high, wide = std::max(wide, tile.wide);
+  EXPECT_NEAR(area / (wide * wide), 8, 0.05);
+}
+
+/// Each panel's title and where its frame begins and ends.
+struct PanelPlace {
+  double title, left, top, right;
+};
+std::vector<PanelPlace> panels_of(const MapPicture& picture) {
+  std::vector<PanelPlace> all;
+  const auto svg = parsed(draw(picture));
+  for (const auto& text : elements(svg, "text", "label")) all.push_back({number_of(text, "x"), 0, 0, 0});
+  std::size_t i = 0;
+  for (const auto& frame : elements(svg, "rect", "frame"))
+    all.at(i).left = number_of(frame, "x"), all.at(i).top = number_of(frame, "y"),
+    all.at(i).right = number_of(frame, "x") + number_of(frame, "width"), ++i;
+  return all;
+}
+
+/// Cells of 1 mm in so many rows and columns, with so many values.
+MapPicture sheet_of(int columns, int rows, std::size_t values) {
+  MapPicture picture;
+  for (std::size_t k = 0; k < values; ++k) picture.panels.push_back({"stress " + std::to_string(k), true});
+  picture.unit = "Pa";
+  for (int i = 0; i < columns; ++i)
+    for (int k = 0; k < rows; ++k)
+      picture.cells.push_back({1e-3 * i, 1e-3 * k, 1e-3, 1e-3, std::vector<double>(values, 1e3 * (i + k))});
+  return picture;
+}
+
+TEST(MapPicture, StandsSideBySideWhereItIsTallOrOfMany) {
+  const auto narrow = panels_of(sheet_of(4, 9, 3));
+  ASSERT_THAT(narrow, SizeIs(3));
+  EXPECT_EQ(narrow[0].top, narrow[2].top);
+  EXPECT_GT(narrow[1].left, narrow[0].right + 92) << "with its colours between";
+  const auto wide = panels_of(sheet_of(20, 8, 3));
+  EXPECT_EQ(wide[0].left, wide[2].left) << "below each other";
+  const auto tensor = panels_of(sheet_of(20, 8, 9));
+  EXPECT_EQ(tensor[0].top, tensor[1].top) << "of many two in a row";
+  EXPECT_GT(tensor[2].top, tensor[0].top);
+  EXPECT_EQ(tensor[2].left, tensor[0].left);
+  const auto tall = panels_of(sheet_of(4, 9, 9));
+  EXPECT_EQ(tall[2].top, tall[0].top) << "three rows of three";
+  EXPECT_EQ(tall[3].left, tall[0].left);
+  for (const auto& panels : {narrow, wide, tensor, tall})
+    for (const PanelPlace& panel : panels) EXPECT_EQ(panel.title, panel.left);
+}
+
+TEST(MapPicture, FitsItsFrameToTheMap) {
+  const auto svg = parsed(draw(sheet_of(4, 40, 1)));
+  EXPECT_EQ(number_of(svg.get_child("svg"), "width"), 420);
+  const auto frame = elements(svg, "rect", "frame").at(0);
+  const double right = number_of(frame, "x") + number_of(frame, "width");
+  double bar = 0;
+  for (const auto& piece : elements(svg, "rect"))
+    if (number_of(piece, "width") == 14) bar = number_of(piece, "x");
+  EXPECT_GT(bar, right);
+  EXPECT_LT(bar, right + 40);
+  EXPECT_NEAR(number_of(parsed(draw(sheet_of(20, 8, 1))).get_child("svg"), "width"), 900, 1);
+}
+
+TEST(MapPicture, HasNoWallOnItsFrame) {
+  MapPicture picture = sheet_of(10, 5, 1);
+  picture.walls = {{-1e-3, -1.5e-3, 10e-3, -1.5e-3}};
+  const auto svg = parsed(draw(picture));
+  const auto frame = elements(svg, "rect", "frame").at(0), wall = elements(svg, "line", "wall").at(0);
+  EXPECT_LT(number_of(wall, "y1"), number_of(frame, "y") + number_of(frame, "height") - 3);
+  EXPECT_GT(number_of(wall, "x1"), number_of(frame, "x") + 3);
 }
 
 TEST(MapPicture, LeavesPlacesWithoutCellsFree) {

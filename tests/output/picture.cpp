@@ -99,10 +99,66 @@ TEST(Scale, UnitsAreReadable) {
   EXPECT_DOUBLE_EQ(readable("rad", 1).factor * std::acos(-1.0), 180);
   EXPECT_EQ(readable("1", 1e6).factor, 1);
   EXPECT_EQ(readable("kg", 0.02).unit, "g");
-  EXPECT_EQ(readable("kg s-1", 0.02).unit, "g s-1");
+  EXPECT_EQ(readable("kg s-1", 0.02).unit, "g/s");
   EXPECT_EQ(readable("kg s-1", 0.02).factor, 1e3);
   EXPECT_EQ(readable("kg", 2).unit, "kg");
-  EXPECT_EQ(readable("kg m-3", 0.02).unit, "kg m-3");
+  EXPECT_EQ(readable("kg m-3", 0.02).unit, "kg/m³");
+  EXPECT_EQ(readable("N m-3", 2.6e4).unit, "kN/m³");
+  EXPECT_DOUBLE_EQ(readable("N m-3", 2.6e4).factor, 1e-3);
+  EXPECT_EQ(readable("m s-1", 0.02).unit, "mm/s");
+  EXPECT_EQ(readable("m s-1", 2000).unit, "m/s");
+  EXPECT_EQ(readable("Pa2 Hz-1", 1e9).unit, "Pa²/Hz") << "a prefix would be squared";
+  EXPECT_EQ(readable("degree", 1).unit, "°");
+  EXPECT_EQ(readable("m", 1e-9).unit, "µm");
+  EXPECT_EQ(readable("N m", 0).unit, "N m");
+}
+
+TEST(Scale, UnitsAreWrittenAsPeopleDo) {
+  const std::pair<const char*, const char*> all[] = {{"m s-1", "m/s"},
+                                                     {"m/s", "m/s"},
+                                                     {"m.s-1", "m/s"},
+                                                     {"degree", "°"},
+                                                     {"kN m-3", "kN/m³"},
+                                                     {"m2", "m²"},
+                                                     {"m^2/s", "m²/s"},
+                                                     {"kg m-2 s-1", "kg/(m² s)"},
+                                                     {"s-1", "1/s"},
+                                                     {"1/s", "1/s"},
+                                                     {"Pa2 Hz-1", "Pa²/Hz"},
+                                                     {"N m", "N m"},
+                                                     {"m-12", "1/m¹²"},
+                                                     {"1", "1"},
+                                                     {"", "1"},
+                                                     {"%", "%"},
+                                                     {"rad/s", "rad/s"},
+                                                     {"J m0", "J"}};
+  for (const auto& [unit, written] : all) EXPECT_EQ(written_unit(unit), written) << unit;
+  for (const char* other : {"100 Pa", "m**2", "m2s", "m//s", "m/", "m-", "degree from here-1-2"})
+    EXPECT_EQ(written_unit(other), other) << "not understood, and so left alone";
+}
+
+TEST(Scale, NamesAreWrittenAsPeopleDo) {
+  EXPECT_EQ(spelled("shear_stress"), "shear stress");
+  EXPECT_EQ(spelled("sigma_1"), "σ₁");
+  EXPECT_EQ(spelled("sigma_12_left"), "σ₁₂ left");
+  EXPECT_EQ(spelled("mu_eff"), "μ_eff");
+  EXPECT_EQ(spelled("sigma_left"), "σ left");
+  EXPECT_EQ(spelled("gradient_strip_1"), "gradient strip 1");
+  EXPECT_EQ(spelled("sigmas"), "sigmas");
+  EXPECT_EQ(channel_label("slip", "share"), "slip: share");
+  EXPECT_EQ(channel_label("test", "sigma_1"), "σ₁");
+  EXPECT_EQ(channel_label("packing", "time"), "time");
+  EXPECT_EQ(with_symbols("asin((sigma_1 - sigma_3) / a_1), mu_eff: not mu, nor shear_stress"),
+            "asin((σ₁ - σ₃) / a_1), μ_eff: not mu, nor shear_stress");
+}
+
+TEST(Scale, TimesHaveAUnitThatReadsWell) {
+  EXPECT_EQ(written_time(0.06923), "69.23 ms");
+  EXPECT_EQ(written_time(12), "12 s");
+  EXPECT_EQ(written_time(123456), "123456 s");
+  EXPECT_EQ(written_time(9999.7), "10000 s");
+  EXPECT_EQ(written_time(2.5e-6), "2.5 µs");
+  EXPECT_EQ(written_time(0), "0 s");
 }
 
 std::vector<double> ys_of(const SvgElement& polyline) {
@@ -160,6 +216,16 @@ TEST(Picture, HasTicksOnBothAxesThatDoNotTouch) {
     EXPECT_GE(across, 4 * panels) << panels;
     EXPECT_LE(across, 8 * panels) << panels;
   }
+}
+
+TEST(Picture, HasRoomForTheTitlesOfItsPanels) {
+  Picture picture{.title = "", .facts = "", .panels = {}, .grains = {}};
+  for (const char* label : {"strain", "force", "force-chains: tangential force anisotropy"})
+    picture.panels.push_back({{"time", "s"}, {label, "N"}, {{"", {0, 1}, {0, 1}}}});
+  const auto titles = elements(parsed(draw(picture)), "text", "axis");
+  ASSERT_EQ(titles.size(), 6u) << "of y and x of each";
+  EXPECT_EQ(number_of(titles[0], "y"), number_of(titles[2], "y"));
+  EXPECT_GT(number_of(titles[4], "y"), number_of(titles[2], "y")) << "below, where it has half of the width";
 }
 
 TEST(Picture, ShowsReferencesBesideRuns) {
@@ -276,6 +342,77 @@ TEST(Picture, HasAColourALayer) {
   EXPECT_THAT(svg.get<std::string>("svg.style"),
               testing::AllOf(HasSubstr(".c0{fill:#440154}"), HasSubstr(".c2{fill:#fde725}"),
                              testing::Not(HasSubstr(".c3{fill"))));
+}
+
+/// As a tall narrow silo is.
+GrainView column_of_grains() {
+  GrainView view;
+  view.value = {"displacement", "m"}, view.note = "x +";
+  for (int i = 0; i < 60; ++i) view.discs.push_back({0.1 * (i % 6), 0.4 * (i / 6), 0.05, 1e-3 * i});
+  return view;
+}
+
+TEST(Picture, FitsItsFrameToTheGrains) {
+  const GrainView view = column_of_grains();
+  const auto svg = parsed(draw({.title = "a silo", .facts = "60 grains", .panels = {}, .grains = view}));
+  const double width = number_of(svg.get_child("svg"), "width");
+  EXPECT_EQ(width, 420);
+  EXPECT_EQ(number_of(elements(svg, "rect").at(0), "width"), width) << "white as far as it goes";
+  double right = 0, bar = 1e9;
+  for (const auto& disc : elements(svg, "circle"))
+    right = std::max(right, number_of(disc, "cx") + number_of(disc, "r"));
+  for (const auto& piece : elements(svg, "rect", "c0")) bar = std::min(bar, number_of(piece, "x"));
+  EXPECT_GT(bar, right + 10);
+  EXPECT_LT(bar, right + 40) << "colours are beside what they are of";
+  for (const auto& text : elements(svg, "text", "axis")) {
+    EXPECT_EQ(text.data(), "displacement [mm]");
+    EXPECT_GE(number_of(text, "x"), bar);
+    EXPECT_LT(number_of(text, "x") + 7.0 * 17, width);
+  }
+}
+
+TEST(Picture, HasNoWordsOverTheLengthOfANarrowView) {
+  const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = column_of_grains()}));
+  double bar = 0;
+  for (const auto& line : elements(svg, "line", "scale")) bar = std::max(bar, number_of(line, "y1"));
+  for (const auto& text : elements(svg, "text", "small"))
+    if (text.data().starts_with("x →")) EXPECT_GT(number_of(text, "y"), bar + 10) << "in a line of its own";
+}
+
+TEST(Picture, HasNoRoomForColoursThatThereAreNot) {
+  GrainView view;
+  for (int i = 0; i < 10; ++i) view.discs.push_back({1.0 * i, 0, 0.5, nan});
+  const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view}));
+  double right = 0;
+  for (const auto& disc : elements(svg, "circle"))
+    right = std::max(right, number_of(disc, "cx") + number_of(disc, "r"));
+  EXPECT_NEAR(right, number_of(svg.get_child("svg"), "width") - 36, 0.1);
+}
+
+TEST(Picture, WrapsTitleAndFacts) {
+  std::string facts = "1 000 grains";
+  for (int i = 0; i < 20; ++i) facts += "  ·  run-" + std::to_string(i) + ": done";
+  const Picture picture{.title = "a title that is far longer than a picture of a silo can be wide, with μ = 0.5",
+                        .facts = facts,
+                        .panels = {},
+                        .grains = column_of_grains()};
+  const auto svg = parsed(draw(picture));
+  EXPECT_EQ(svg.get<std::string>("svg.title"), picture.title) << "as it is";
+  std::string title, told;
+  double lowest = 0;
+  for (const auto& line : elements(svg, "text", "title")) {
+    title += (title.empty() ? "" : " ") + line.data();
+    EXPECT_LT(36 + 11 * static_cast<double>(line.data().size()), 420);
+  }
+  EXPECT_EQ(title, picture.title);
+  for (const auto& line : elements(svg, "text", "facts")) {
+    told += (told.empty() ? "" : "  ·  ") + line.data();
+    EXPECT_LT(36 + 6.5 * static_cast<double>(line.data().size()), 420 + 36);  // the dot is two bytes
+    EXPECT_GT(number_of(line, "y"), lowest);
+    lowest = number_of(line, "y");
+  }
+  EXPECT_EQ(told, facts);
+  for (const auto& disc : elements(svg, "circle")) EXPECT_GT(number_of(disc, "cy") - number_of(disc, "r"), lowest + 10);
 }
 
 TEST(Picture, StaysSmallForManyGrains) {

@@ -194,7 +194,7 @@ TEST(CellMaps, AreDrawnWithoutABrowser) {
   ASSERT_THAT(pictures, SizeIs(2));
   EXPECT_EQ(pictures[0].name, "map-cells-density");
   EXPECT_EQ(pictures[1].name, "map-cells-strain");
-  EXPECT_THAT(pictures[0].svg, testing::AllOf(HasSubstr("density of cells"), HasSubstr("density [kg m-3]"),
+  EXPECT_THAT(pictures[0].svg, testing::AllOf(HasSubstr("density of cells"), HasSubstr("density [kg/m³]"),
                                               HasSubstr("fill=\"#d4d4d0\"")))
       << "a cell without a number is grey";
   EXPECT_THAT(pictures[1].svg, testing::AllOf(HasSubstr("strain zz"), HasSubstr("strain xz"),

@@ -63,6 +63,30 @@ TEST(ReportPage, HasTheCurvesToTheLastBit) {
   EXPECT_EQ(numbers_of<double>(page.html, stress.at("data")).at(14), 2e5);
 }
 
+TEST(ReportPage, WritesUnitsAndNamesAsPicturesDo) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  const std::vector<ProbeGroup> probes{{"test",
+                                        {{"sigma_1", "N m-3", "sigma_1 of the mean", {}},
+                                         {"phi_s", "degree", "of the interface", {}},
+                                         {"speed", "m s-1", "mean", {}}}}};
+  results.begin(run.world, probes);
+  const double weight[] = {2.6e4}, angle[] = {30}, speed[] = {0.02};
+  const std::span<const double> values[] = {weight, angle, speed};
+  results.sample(0, run.world, values);
+  results.finish(run.world, {});
+  const json shown = json_of(page_of(folder / "run").html).at("runs").at(0);
+  const auto told = [&](const char* name) {
+    const json channel = channel_of(shown, "test", name);
+    return channel.at("label").get<std::string>() + " [" + channel.at("shown_unit").get<std::string>() + "] of " +
+           channel.at("unit").get<std::string>() + ": " + channel.at("about").get<std::string>();
+  };
+  EXPECT_EQ(told("sigma_1"), "σ₁ [kN/m³] of N m-3: σ₁ of the mean");
+  EXPECT_EQ(told("phi_s"), "φ_s [°] of degree: of the interface");
+  EXPECT_EQ(told("speed"), "speed [mm/s] of m s-1: mean");
+}
+
 TEST(ReportPage, HasTheGrainsToATenThousandth) {
   const Folder folder;
   SmallRun run(folder / "run");

@@ -114,6 +114,25 @@ TEST(CurvePictures, OfOneRunHaveNoLegend) {
   EXPECT_THAT(words_of(parsed(*curves_picture(std::span(&run, 1)))), Not(Contains("dense")));
 }
 
+TEST(CurvePictures, SayInALineWhatRan) {
+  const Folder folder;
+  write_test(folder / "dense", 1);
+  RunResults run = read_results(folder / "dense");
+  run.json["status"] = "done", run.json["bodies"] = 12440, run.json["time"] = 0.06923, run.json["wall_s"] = 64,
+  run.json["steps"] = 5, run.json["particle_steps_per_s"] = 2.2e6;
+  EXPECT_THAT(words_of(parsed(*curves_picture(std::span(&run, 1))), "facts"),
+              ElementsAre("done  ·  12\u202f440 bodies  ·  69.23 ms simulated  ·  took 64 s  ·  "
+                          "2.2 million particle-steps/s"));
+}
+
+TEST(CurvePictures, HaveNoPanelOfNothing) {
+  const Folder folder;
+  write_test(folder / "dense", 1);
+  RunResults run = read_results(folder / "dense");
+  for (double& value : run.probes[0].channels.back().sampled.values) value = nan;
+  EXPECT_FALSE(curves_picture(std::span(&run, 1)).has_value());
+}
+
 TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   const Folder folder;
   SmallRun run(folder / "run");
@@ -201,6 +220,27 @@ TEST(LinearChainPictures, AreNotOfRowsThatAreOtherContacts) {
   write_chains(folder / "run", {4, 3});
   RunResults run = read_results(folder / "run");
   EXPECT_FALSE(chains_picture(run).has_value());
+}
+
+TEST(MapPictures, SayWhatTheyShowOnce) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  const std::vector<FieldGroup> tables{{"strain",
+                                        {{"centre", "m", "", 3, {0.5, 0, 0.5}},
+                                         {"size", "m", "", 3, {1, 2, 1}},
+                                         {"strain", "1", "", 1, {1}},
+                                         {"spin", "rad", "", 1, {1}}}}};
+  run.world.now = 0.02914;
+  results.frame(run.world, tables);
+  results.finish(run.world, {});
+  RunResults read = read_results(folder / "run");
+  const auto pictures = map_pictures(read);
+  ASSERT_THAT(pictures, SizeIs(2));
+  EXPECT_THAT(words_of(parsed(pictures[0].svg), "facts"), ElementsAre(testing::StartsWith("spin of strain  ·  stage")));
+  EXPECT_THAT(words_of(parsed(pictures[1].svg), "facts"),
+              ElementsAre(testing::AllOf(testing::StartsWith("strain  ·  stage"), testing::EndsWith("  ·  29.14 ms"))));
 }
 
 TEST(MapPictures, HaveWallsAxesAndTheirFieldsPalette) {

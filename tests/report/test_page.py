@@ -519,9 +519,10 @@ class Page(unittest.TestCase):
         for span, wanted in (([0, 1.03], [0, 1]), ([0.4, 1], [0, 1]), ([-0.03, 1], [0, 1]), ([-0.2, 1], [-0.2, 1]), ([99, 101], [99, 101]), ([7, 7], [3.5, 10.5]), ([0, 0], [-1, 1])):
             numpy.testing.assert_allclose(self.browser.evaluate(f"settled({span}).ends"), wanted, atol=1e-12)
 
-    def test_units_are_written_as_people_do(self):
-        for unit, written in (("kg m-3", "kg m⁻³"), ("degree", "°"), ("m", "m"), ("Pa2 Hz-1", "Pa² Hz⁻¹"), ("rad/s", "rad/s")):
-            self.assertEqual(self.browser.evaluate(f"writtenUnit('{unit}')"), written)
+    def test_units_stand_behind_numbers_and_labels(self):
+        for unit, behind, beside in (("kg/m³", "7 kg/m³", "it [kg/m³]"), ("°", "7°", "it [°]"), ("1", "7", "it"), ("", "7", "it")):
+            self.assertEqual(self.browser.evaluate(f"told(7, {{shown_unit: '{unit}'}})"), behind)
+            self.assertEqual(self.browser.evaluate(f"withUnit('it', '{unit}')"), beside)
 
     def go(self, frame):
         self.browser.evaluate(f"{GRAINS}.player.go({frame})")

@@ -84,11 +84,15 @@ ExitStatus make_pictures(const std::vector<std::filesystem::path>& folders) {
   return status;
 }
 
-void make_page(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& out) {
+/// A folder that is bad is told as with pictures. The page is in the first that is not, if nowhere else.
+ExitStatus make_page(const std::vector<std::filesystem::path>& folders, std::optional<std::filesystem::path> out) {
   const ReportPage page = report_page(folders);
-  write_atomically(out, page.html);
+  if (!out) out = page.first / "report.html";
+  for (const std::string& why : page.unread) std::cerr << "grit: " << why << '\n';
+  write_atomically(*out, page.html);
   for (const std::string& problem : page.problems) std::cerr << "grit: left out: " << problem << '\n';
-  std::cout << "report: " << out.string() << '\n';
+  std::cout << "report: " << out->string() << '\n';
+  return page.unread.empty() ? ExitStatus::done : ExitStatus::files;
 }
 
 }  // namespace
@@ -97,19 +101,18 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   namespace po = boost::program_options;
   Options options(command("report"));
   options.add()("out", po::value<std::string>()->value_name("FILE"),
-                "the page; default: report.html in the first folder")(
+                "the page; default: report.html in the first folder that holds a run")(
       "png",
       "instead of a page, pictures in each folder, as curves.png, profiles-PROBE.png, grains.png, layers.png, "
       "linear-chains.png and map-PROBE-FIELD.png, and the same as SVG; of several folders curves-overlaid.png in the "
-      "first");
+      "first that holds a run");
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");
   const std::vector<std::filesystem::path> folders(options.words().begin(), options.words().end());
   if (options.has("png")) return make_pictures(folders);
-  make_page(folders, options.has("out") ? std::filesystem::path(options.get<std::string>("out"))
-                                        : folders.front() / "report.html");
-  return ExitStatus::done;
+  return make_page(folders, options.has("out") ? std::optional<std::filesystem::path>(options.get<std::string>("out"))
+                                               : std::nullopt);
 }
 
 }  // namespace grit

@@ -11,6 +11,7 @@
 
 #include "output/clipped.hpp"
 #include "output/colours.hpp"
+#include "output/heading.hpp"
 #include "output/scale.hpp"
 #include "output/strays.hpp"
 #include "output/svg.hpp"
@@ -18,13 +19,16 @@
 namespace grit {
 namespace {
 
-constexpr double width = 900, margin = 36, axis_wide = 58, axis_high = 50, colour_bar = 104, tallest = 480;
+constexpr double widest = Heading::widest - 2 * Heading::margin, axis_wide = 58, axis_high = 50, colour_bar = 92,
+                 between = 20, tallest = 480,
+                 label_letter = 8.4;                 // px
+constexpr int few = 4;                               // of panels that stand below each other where they are wide
+constexpr int most_columns = 3, large_enough = 200;  // of panels; px of the longer side
 constexpr double share_shown = 0.98;  // of the cells, in the middle: the rest is drawn as the scale's ends
 constexpr double gap_closed = 0.75;   // of a cell: what is wider between two is a place without cells
 constexpr double wall_reach = 0.2;    // of the longer side of the cells' box
+constexpr double wall_room = 0.02;    // of the longer side of the plot, about walls: none lies on the frame
 constexpr const char* style =
-    "text{font-family:'Helvetica Neue',Helvetica,Arial,'Liberation Sans','DejaVu Sans',sans-serif;font-size:12px;"
-    "fill:#333}\n.title{font-size:20px;font-weight:600;fill:#111}.facts{font-size:13px;fill:#666}\n"
     ".label{font-size:14px;font-weight:600;fill:#222}.axis{font-size:13px;fill:#222}.m{text-anchor:middle}\n"
     ".e{text-anchor:end}.small{font-size:11px;fill:#666}.frame{fill:none;stroke:#8a8a86;stroke-width:1}\n"
     ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.cells rect{shape-rendering:crispEdges}\n";
@@ -83,7 +87,11 @@ std::vector<MapCell> near_cells(const std::vector<MapCell>& cells) {
   return near;
 }
 
-Plot plot_of(const MapPicture& picture) {
+/// Of so many columns [px].
+double room_of_a_panel(int columns) { return (widest - between * (columns - 1)) / columns; }
+
+/// In so many columns, of which each has room for axes and the scale of colours.
+Plot plot_of(const MapPicture& picture, int columns) {
   Range x, y;
   for (const MapCell& cell : picture.cells)
     if (std::isfinite(cell.x + cell.y + cell.wide + cell.high))
@@ -91,6 +99,7 @@ Plot plot_of(const MapPicture& picture) {
   if (!std::isfinite(x.low)) x = y = {0, 1};
   const double reach = wall_reach * std::max(x.span(), y.span());
   const Range cells_x = x, cells_y = y;
+  bool walls = false;
   const auto near = [&](double a, double b, const Range& range) {
     return std::max(a, b) > range.low - reach && std::min(a, b) < range.high + reach;
   };
@@ -99,59 +108,81 @@ Plot plot_of(const MapPicture& picture) {
     if (!near(wall.x1, wall.x2, cells_x) || !near(wall.y1, wall.y2, cells_y)) continue;
     for (const double end : {wall.x1, wall.x2}) x.add(std::clamp(end, cells_x.low - reach, cells_x.high + reach));
     for (const double end : {wall.y1, wall.y2}) y.add(std::clamp(end, cells_y.low - reach, cells_y.high + reach));
+    walls = true;
   }
-  const double scale = std::min((width - 2 * margin - axis_wide - colour_bar) / x.span(), tallest / y.span());
+  if (walls) {
+    const double room = wall_room * std::max(x.span(), y.span());
+    x = {x.low - room, x.high + room}, y = {y.low - room, y.high + room};
+  }
+  const double room = room_of_a_panel(columns) - axis_wide - colour_bar;
+  const double scale = std::min(room / x.span(), tallest / y.span());
   return {x.low, y.high, scale, std::max(1, static_cast<int>(std::lround(scale * x.span()))),
           std::max(1, static_cast<int>(std::lround(scale * y.span())))};
 }
 
 /// By pixel of the plot, row by row, the place of its cell; -1 of none. It is the cell that is nearest in its own
-/// measure, as far as it reaches or along a row or a column to the next one.
+/// measure. Cells grow by what is to be closed between two, by whole pixels; then what has grown is taken back
+/// ("closing" of image analysis): beyond its edge a cell keeps what has cells all about it, as on the page.
 std::vector<int> cells_by_pixel(const std::vector<MapCell>& cells, const Plot& plot) {
-  const auto wide = static_cast<std::size_t>(plot.wide), high = static_cast<std::size_t>(plot.high);
-  std::vector<int> owner(wide * high, -1);
-  std::vector<double> distance(owner.size(), std::numeric_limits<double>::infinity());
-  constexpr double inside = 1 + 1e-6;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const double x = plot.across(cells[i].x), y = plot.down(cells[i].y), half_wide = 0.5 * cells[i].wide * plot.scale,
-                 half_high = 0.5 * cells[i].high * plot.scale;
-    if (!(half_wide > 0 && half_high > 0) || !std::isfinite(x + y)) continue;
-    const auto pixels = [](double middle, double half, int count) {
-      const double first = std::ceil(middle - (1 + gap_closed) * half - 0.5),
-                   last = std::floor(middle + (1 + gap_closed) * half - 0.5);
+  struct Seen {  // px of the plot
+    double x, y, half_wide, half_high;
+    int beyond_x, beyond_y;
+  };
+  std::vector<Seen> seen;
+  int margin = 0;
+  for (const MapCell& cell : cells) {
+    const double half_wide = 0.5 * cell.wide * plot.scale, half_high = 0.5 * cell.high * plot.scale;
+    const auto beyond = [](double half) { return half > 0 ? static_cast<int>(std::lround(gap_closed * half)) : 0; };
+    seen.push_back(
+        {plot.across(cell.x), plot.down(cell.y), half_wide, half_high, beyond(half_wide), beyond(half_high)});
+    margin = std::max({margin, seen.back().beyond_x, seen.back().beyond_y});
+  }
+  // With what cells need about the plot when they have grown.
+  const int wide = plot.wide + 2 * margin, high = plot.high + 2 * margin;
+  const auto place = [](int row, int column, int length) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(length) + static_cast<std::size_t>(column);
+  };
+  std::vector<int> nearest(place(high, 0, wide), -1);
+  std::vector<double> distance(nearest.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Seen& cell = seen[i];
+    if (!(cell.half_wide > 0 && cell.half_high > 0) || !std::isfinite(cell.x + cell.y)) continue;
+    const auto pixels = [&](double middle, double reach, int count) {
+      const double first = std::ceil(middle + margin - reach - 0.5), last = std::floor(middle + margin + reach - 0.5);
       return std::pair(static_cast<int>(std::max(first, 0.0)), static_cast<int>(std::min(last, count - 1.0)));
     };
-    const auto [left, right] = pixels(x, half_wide, plot.wide);
-    const auto [top, bottom] = pixels(y, half_high, plot.high);
+    const auto [left, right] = pixels(cell.x, cell.half_wide + cell.beyond_x, wide);
+    const auto [top, bottom] = pixels(cell.y, cell.half_high + cell.beyond_y, high);
     for (int row = top; row <= bottom; ++row)
       for (int column = left; column <= right; ++column) {
-        const double off = std::max(std::abs(column + 0.5 - x) / half_wide, std::abs(row + 0.5 - y) / half_high);
-        const auto p = static_cast<std::size_t>(row) * wide + static_cast<std::size_t>(column);
-        if (off < distance[p]) distance[p] = off, owner[p] = static_cast<int>(i);
+        const double off = std::max(std::abs(column - margin + 0.5 - cell.x) / cell.half_wide,
+                                    std::abs(row - margin + 0.5 - cell.y) / cell.half_high);
+        const auto p = place(row, column, wide);
+        if (off < distance[p]) distance[p] = off, nearest[p] = static_cast<int>(i);
       }
   }
-  // Along rows first, then along columns, where what rows have closed counts: so crossings of gaps are closed too.
-  std::vector<bool> taken(owner.size());
-  for (std::size_t p = 0; p < owner.size(); ++p) taken[p] = distance[p] <= inside;
-  const auto close = [&](std::size_t lines, std::size_t length, auto at, auto size) {
-    for (std::size_t line = 0; line < lines; ++line)
-      for (std::size_t k = 0, next = 0; k < length; ++k) {  // next: behind the last pixel that is taken
-        const std::size_t p = at(line, k);
-        if (!taken[p]) continue;
-        const double gap = static_cast<double>(k - next);
-        if (next > 0 && gap <= gap_closed * plot.scale * size(cells[static_cast<std::size_t>(owner[p])]))
-          for (std::size_t i = next; i < k; ++i) taken[at(line, i)] = owner[at(line, i)] >= 0;
-        next = k + 1;
-      }
-  };
-  close(
-      high, wide, [&](std::size_t row, std::size_t column) { return row * wide + column; },
-      [](const MapCell& cell) { return cell.wide; });
-  close(
-      wide, high, [&](std::size_t column, std::size_t row) { return row * wide + column; },
-      [](const MapCell& cell) { return cell.high; });
-  for (std::size_t p = 0; p < owner.size(); ++p)
-    if (!taken[p]) owner[p] = -1;
+  std::vector<int> before(place(high + 1, 0, wide + 1));  // pixels of cells above and to the left
+  for (int row = 0; row < high; ++row)
+    for (int column = 0, along = 0; column < wide; ++column) {
+      along += nearest[place(row, column, wide)] >= 0 ? 1 : 0;
+      before[place(row + 1, column + 1, wide + 1)] = before[place(row, column + 1, wide + 1)] + along;
+    }
+  constexpr double inside = 1 + 1e-6;
+  std::vector<int> owner(place(plot.high, 0, plot.wide), -1);
+  for (int row = 0; row < plot.high; ++row)
+    for (int column = 0; column < plot.wide; ++column) {
+      const auto p = place(row + margin, column + margin, wide);
+      if (nearest[p] < 0) continue;
+      const auto [across, up] = std::pair(seen[static_cast<std::size_t>(nearest[p])].beyond_x,
+                                          seen[static_cast<std::size_t>(nearest[p])].beyond_y);
+      const auto until = [&](int down, int right) {
+        return before[place(row + margin + down, column + margin + right, wide + 1)];
+      };
+      const int about =
+          until(up + 1, across + 1) - until(-up, across + 1) - until(up + 1, -across) + until(-up, -across);
+      if (distance[p] <= inside || about == (2 * across + 1) * (2 * up + 1))
+        owner[place(row, column, plot.wide)] = nearest[p];
+    }
   return owner;
 }
 
@@ -197,9 +228,9 @@ AxisTicks axis_within(double low, double high, double pixels, double room) {
   return {low, high, nice_step(high - low, 7), ticks(low, high, 7)};
 }
 
-void draw_bar(Svg& svg, const Colours& colours, double factor, double top, double tall) {
+void draw_bar(Svg& svg, const Colours& colours, double factor, double left, double top, double tall) {
   constexpr int pieces = 48;
-  const double left = width - margin - 64, low = colours.low * factor, high = colours.high * factor;
+  const double low = colours.low * factor, high = colours.high * factor;
   for (int i = 0; i < pieces; ++i)
     svg.rectangle({left, top + tall * (pieces - 1 - i) / pieces}, 14, tall / pieces + 0.3,
                   fmt::format("fill=\"{}\"", colour_at(colours.scale, static_cast<double>(i) / (pieces - 1))));
@@ -217,7 +248,6 @@ void draw_axes(Svg& svg, const MapPicture& picture, const Plot& plot, double lef
   const ReadableUnit unit = readable(
       "m", std::max({std::abs(plot.low_x), std::abs(plot.low_x + span_x), std::abs(low_y), std::abs(plot.high_y)}));
   const double bottom = top + plot.high;
-  svg.rectangle({left, top}, plot.wide, plot.high, "class=\"frame\"");
   const AxisTicks x = axis_within(plot.low_x * unit.factor, (plot.low_x + span_x) * unit.factor, plot.wide, 44),
                   y = axis_within(low_y * unit.factor, plot.high_y * unit.factor, plot.high, 20);
   for (const double mark : x.marks) {
@@ -242,28 +272,54 @@ std::string draw(const MapPicture& whole) {
   picture.cells = near_cells(whole.cells);
   if (const std::size_t far = whole.cells.size() - picture.cells.size(); far > 0)
     picture.facts += fmt::format("  ·  {} of the cells far from all others, not shown", grouped(far));
-  const Plot plot = plot_of(picture);
-  const double left = std::round(margin + axis_wide + 0.5 * (width - 2 * margin - axis_wide - colour_bar - plot.wide));
+  const int count = static_cast<int>(picture.panels.size());
+  struct Panel {
+    Colours colours;
+    ReadableUnit unit;
+    std::string title;
+  };
+  std::vector<Panel> panels;
+  double longest = 0;
+  for (std::size_t i = 0; i < picture.panels.size(); ++i) {
+    const Colours colours = colours_of(picture.cells, i, picture.panels[i].about_zero);
+    ReadableUnit unit = readable(picture.unit, std::max(std::abs(colours.low), std::abs(colours.high)));
+    std::string title = axis_title(picture.panels[i].label, unit.unit);
+    longest = std::max(longest, label_letter * static_cast<double>(letters(title)));
+    panels.push_back({colours, std::move(unit), std::move(title)});
+  }
+  const auto panel_wide = [&](const Plot& plot) { return axis_wide + std::max(plot.wide + colour_bar, longest); };
+  // What is tall stands side by side, and so do many panels, or nobody finds their way: as long as they are large
+  // enough.
+  Plot plot = plot_of(picture, 1);
+  int columns = 1;
+  for (int more = 2; more <= std::min(count, most_columns) && (plot.high > plot.wide || count > few); ++more)
+    if (const Plot smaller = plot_of(picture, more); std::max(smaller.wide, smaller.high) >= large_enough &&
+                                                     panel_wide(smaller) <= room_of_a_panel(more) + 1)  // whole pixels
+      plot = smaller, columns = more;
+  const Heading heading(picture.title, picture.facts, columns * (panel_wide(plot) + between) - between);
+  const double first = std::round(Heading::margin + axis_wide +
+                                  0.5 * (heading.inner() + between - columns * (panel_wide(plot) + between)));
   const double panel_high = std::max<double>(plot.high, 150) + axis_high + 44;
-  const double bottom = 92 + panel_high * static_cast<double>(picture.panels.size());
+  const double bottom = heading.bottom() + panel_high * ((count + columns - 1) / columns);
   const double span_x = plot.wide / plot.scale, span_y = plot.high / plot.scale;
   const std::vector<Tile> tiles = tiles_of(cells_by_pixel(picture.cells, plot), plot);
 
-  Svg svg(width, bottom, picture.title, style);
-  svg.rectangle({0, 0}, width, bottom, "fill=\"#fff\"");
-  svg.text({margin, 44}, picture.title, "class=\"title\"");
-  svg.text({margin, 66}, picture.facts, "class=\"facts\"");
-  for (std::size_t panel = 0; panel < picture.panels.size(); ++panel) {
-    const double top = std::round(114 + panel_high * static_cast<double>(panel));
-    const Colours colours = colours_of(picture.cells, panel, picture.panels[panel].about_zero);
-    const ReadableUnit unit = readable(picture.unit, std::max(std::abs(colours.low), std::abs(colours.high)));
-    svg.text({left, top - 12}, axis_title(picture.panels[panel].label, unit.unit), "class=\"label\"");
+  Svg svg(heading.width(), bottom, picture.title, std::string(Heading::style) + style);
+  svg.rectangle({0, 0}, heading.width(), bottom, "fill=\"#fff\"");
+  heading.draw(svg);
+  for (std::size_t panel = 0; panel < panels.size(); ++panel) {
+    const int row = static_cast<int>(panel) / columns, column = static_cast<int>(panel) % columns;
+    const double left = first + std::round(column * (panel_wide(plot) + between)),
+                 top = std::round(heading.bottom() + 22 + panel_high * row);
+    const auto& [colours, unit, title] = panels[panel];
+    svg.text({left, top - 12}, title, "class=\"label\"");
     svg.open_group("class=\"cells\"");
     for (const Tile& tile : tiles)
       svg.rectangle(
           {left + tile.x, top + tile.y}, tile.wide, tile.high,
           fmt::format("fill=\"{}\"", colours.of(picture.cells[static_cast<std::size_t>(tile.cell)].values[panel])));
     svg.close_group();
+    svg.rectangle({left, top}, plot.wide, plot.high, "class=\"frame\"");
     const std::string id = fmt::format("plot-{}", panel);
     svg.clip(id, {left - 1, top - 1}, plot.wide + 2, plot.high + 2);
     svg.open_group(fmt::format("clip-path=\"url(#{})\"", id));
@@ -274,7 +330,7 @@ std::string draw(const MapPicture& whole) {
                  {left + plot.across(seen->x2), top + plot.down(seen->y2)}, "class=\"wall\"");
     svg.close_group();
     draw_axes(svg, picture, plot, left, top);
-    draw_bar(svg, colours, unit.factor, top, std::clamp<double>(plot.high, 100, 240));
+    draw_bar(svg, colours, unit.factor, left + plot.wide + 24, top, std::clamp<double>(plot.high, 100, 240));
   }
   return std::move(svg).finish();
 }

@@ -29,9 +29,10 @@ struct MapPicture {
   std::string unit;  ///< of all values
 };
 
-/// The picture as SVG, 900 px wide: a panel a value, below each other, each with its axes and the scale of its colours.
-/// It tells 98 of 100 cells apart, the middle ones. Cells meet: what is less than three quarters of a cell between two
-/// is coloured as the nearest one. Of walls what is near the cells is seen.
+/// The picture as SVG, up to 900 px wide: a panel a value, each with its axes and the scale of its colours, side by
+/// side where they are tall or more than four. It tells 98 of 100 cells apart, the middle ones. Cells meet: what is
+/// less than three quarters of a cell between two is coloured as the nearest one. Of walls what is near the cells is
+/// seen.
 std::string draw(const MapPicture& picture);
 
 }  // namespace grit

@@ -11,14 +11,15 @@
 
 #include "output/clipped.hpp"
 #include "output/colours.hpp"
+#include "output/heading.hpp"
 #include "output/scale.hpp"
 #include "output/svg.hpp"
 
 namespace grit {
 namespace {
 
-constexpr double width = 900, margin = 36, inner = width - 2 * margin;
-constexpr int classes = 21;  // of colour, odd: one is for zero
+constexpr double margin = Heading::margin, widest = Heading::widest - 2 * margin;  // px, of what is between margins
+constexpr int classes = 21;                                                        // of colour, odd: one is for zero
 constexpr double percentile = 0.98;
 
 // Okabe and Ito's colours that stand out on white, told apart by all readers.
@@ -26,6 +27,12 @@ constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#
 /// Of references.
 constexpr std::array<const char*, 4> dashes{"2 4", "8 3 2 3", "6 4", "12 3"};
 constexpr double letter = 6.6;  // about how wide one is, px
+
+/// About how wide a title of an axis is [px].
+double title_wide(const std::string& title) {
+  constexpr double title_letter = 7.2;
+  return title_letter * static_cast<double>(letters(title));
+}
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -49,12 +56,11 @@ std::string class_colour(int i, const GrainView& view) {
 }
 
 std::string style(const Picture& picture) {
-  std::string sheet =
-      "text{font-family:'Helvetica Neue',Helvetica,Arial,'Liberation Sans','DejaVu Sans',sans-serif;font-size:12px;"
-      "fill:#333}\n"
-      ".title{font-size:20px;font-weight:600;fill:#111}.facts{font-size:13px;fill:#666}.axis{font-size:13px;fill:#222}"
-      "\n"
-      ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600}.small{font-size:11px;fill:#666}\n"
+  std::string sheet(Heading::style);
+  sheet +=
+      ".axis{font-size:13px;fill:#222}"
+      ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3px;"
+      "stroke-linejoin:round}.small{font-size:11px;fill:#666}\n"
       ".grid{stroke:#e6e6e3;stroke-width:1}.frame{stroke:#8a8a86;stroke-width:1}\n"
       ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:round}\n"
       ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.scale{stroke:#222;stroke-width:2}\n"
@@ -100,8 +106,8 @@ double legend(Svg* svg, const Names& names, double top) {
   double x = margin, y = top;
   const auto entry = [&](const std::string& name, bool reference) {
     if (name.empty()) return;
-    const double wide = sample + 7 + letter * static_cast<double>(name.size());
-    if (x > margin && x + wide > margin + inner) x = margin, y += row;
+    const double wide = sample + 7 + letter * static_cast<double>(letters(name));
+    if (x > margin && x + wide > margin + widest) x = margin, y += row;
     if (svg) {
       svg->line({x, y}, {x + sample, y}, fmt::format("class=\"curve {}\"", names.style_of(name, reference)));
       svg->text({x + sample + 7, y + 4}, name);
@@ -174,7 +180,7 @@ class PanelDrawing {
     y_ = {y_ticks_.low, y_ticks_.high};
     const auto apart = [&](const AxisTicks& axis) {
       std::size_t longest = 0;
-      for (const double mark : axis.marks) longest = std::max(longest, tick_label(mark, axis.step).size());
+      for (const double mark : axis.marks) longest = std::max(longest, letters(tick_label(mark, axis.step)));
       const double between = axis.step / (axis.high - axis.low) * (right_ - left_);
       return letter * static_cast<double>(longest) + 8 < between;
     };
@@ -233,14 +239,19 @@ class PanelDrawing {
 
 /// Where the view of the grains goes, and what its colours mean.
 struct ViewLayout {
-  Range x, y;         ///< m
-  double scale = 1;   ///< px/m
-  double wide, high;  ///< px
-  double limit = 1;   ///< value of the outermost colour
+  Range x, y;               ///< m
+  double scale = 1;         ///< px/m
+  double wide, high;        ///< px
+  double limit = 1;         ///< value of the outermost colour
+  ReadableUnit unit{};      ///< of that
+  std::string value_title;  ///< above the colour bar
+  double bar = 0;           ///< px that the colour bar takes beside the view, the gap between included; 0 of none
 };
 
+constexpr double bar_gap = 28;  // between the view and what its colours mean, px
+
 ViewLayout layout(const GrainView& view) {
-  constexpr double colour_bar = 96, tallest = 640;
+  constexpr double tallest = 640;
   ViewLayout result;
   std::vector<double> sizes;
   for (const auto& disc : view.discs) {
@@ -275,14 +286,19 @@ ViewLayout layout(const GrainView& view) {
     const double room = std::max({0.5, 1e-3 * std::abs(result.x.low), 1e-3 * std::abs(result.y.low)});
     result.x = {result.x.low - room, result.x.low + room}, result.y = {result.y.low - room, result.y.low + room};
   }
-  result.scale = std::min((inner - colour_bar) / result.x.span(), tallest / result.y.span());
-  result.wide = result.scale * result.x.span();
-  result.high = result.scale * result.y.span();
   if (!sizes.empty()) {
     const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(sizes.size() - 1));
     std::ranges::nth_element(sizes, nth);
     if (*nth > 0) result.limit = *nth;
+    result.unit = readable(view.value.unit, result.limit);
+    result.value_title = axis_title(view.value.label, result.unit.unit);
+    constexpr double numbers = 64;  // px
+    const double words = std::max(title_wide(result.value_title), letter * static_cast<double>(letters(view.note)));
+    result.bar = bar_gap + std::max(numbers, words);
   }
+  result.scale = std::min((widest - result.bar) / result.x.span(), tallest / result.y.span());
+  result.wide = result.scale * result.x.span();
+  result.high = result.scale * result.y.span();
   return result;
 }
 
@@ -292,8 +308,7 @@ int class_of(double value, double limit, const GrainView& view) {
   return static_cast<int>(std::lround(std::clamp(place, 0.0, 1.0) * (classes - 1)));
 }
 
-void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
-  const double left = margin + 0.5 * (inner - 96 - at.wide);
+void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double left, double top) {
   const auto place = [&](double x, double y) {
     return Point{left + (x - at.x.low) * at.scale, top + (at.y.high - y) * at.scale};
   };
@@ -337,27 +352,30 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double t
   svg.close_group();
 }
 
-void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
-  const double left = margin + 0.5 * (inner - 96 - at.wide), y = top + at.high + 24;
-  const double length = nice_step(140 / at.scale, 1);
+void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double left, double top) {
+  const double y = top + at.high + 24;
+  const double length = nice_step(std::min(140.0, 0.5 * at.wide) / at.scale, 1);
   const auto unit = readable("m", length);
   const double end = left + length * at.scale;
   svg.line({left, y}, {end, y}, "class=\"scale\"");
   for (const double x : {left, end}) svg.line({x, y - 4}, {x, y + 4}, "class=\"scale\"");
-  svg.text({end + 10, y + 4}, fmt::format("{:g} {}", length * unit.factor, unit.unit));
-  svg.text({left + at.wide, y + 4}, view.horizontal + " →\u2003" + view.vertical + " ↑", "class=\"e small\"");
+  const std::string told = fmt::format("{:g} {}", length * unit.factor, unit.unit),
+                    axes = view.horizontal + " →\u2003" + view.vertical + " ↑";
+  svg.text({end + 10, y + 4}, told);
+  const double taken = end + 10 + letter * static_cast<double>(letters(told) + letters(axes) + 2);
+  if (taken < left + at.wide) svg.text({left + at.wide, y + 4}, axes, "class=\"e small\"");
+  else svg.text({left, y + 22}, axes, "class=\"small\"");
 }
 
-void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double top) {
-  if (std::ranges::none_of(view.discs, [](const Disc& disc) { return drawable(disc.value); })) return;
-  const double left = margin + inner - 64, tall = std::clamp(at.high - 60, 120.0, 240.0), first = top + 30;
-  const auto unit = readable(view.value.unit, at.limit);
-  svg.text({margin + inner, top + 4}, axis_title(view.value.label, unit.unit), "class=\"axis e\"");
+void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, double left, double top) {
+  if (at.bar == 0) return;
+  const double tall = std::clamp(at.high - 60, 120.0, 240.0), first = top + 20;
+  svg.text({left, top + 4}, at.value_title, "class=\"axis\"");
   const int pieces = classes_of(view);
   for (int i = 0; i < pieces; ++i)
     svg.rectangle({left, first + tall * (pieces - 1 - i) / pieces}, 14, tall / pieces + 0.3,
                   fmt::format("class=\"c{}\"", i));
-  double high = at.limit * unit.factor, low = view.symmetric ? -high : 0;
+  double high = at.limit * at.unit.factor, low = view.symmetric ? -high : 0;
   auto marks = ticks(low, high, 4);
   if (view.layers > 0) {  // a number at the middle of each piece
     low = 0.5, high = view.layers + 0.5;
@@ -369,40 +387,49 @@ void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doub
     svg.line({left + 14, y}, {left + 18, y}, "class=\"frame\"");
     svg.text({left + 22, y + 4}, tick_label(mark, marks.size() > 1 ? marks[1] - marks[0] : 1));
   }
-  if (!view.note.empty()) svg.text({margin + inner, first + tall + 20}, view.note, "class=\"small e\"");
+  if (!view.note.empty()) svg.text({left, first + tall + 20}, view.note, "class=\"small\"");
 }
 
 }  // namespace
 
 std::string draw(const Picture& picture) {
   const auto count = picture.panels.size();
-  const auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
+  constexpr double gap = 16;
+  const auto panel_wide_of = [&](std::size_t columns) {
+    return (widest - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
+  };
+  auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
+  for (const Panel& panel : picture.panels)  // a title has the room above its panel
+    while (columns > 1 && title_wide(axis_title(panel.y.label, panel.y.unit)) > panel_wide_of(columns)) --columns;
   const auto rows = (count + columns - 1) / columns;
-  const Names names(picture.panels);
-  const double panels_top = 92 + legend(nullptr, names, 0), panel_high = columns == 1 ? 300 : columns == 2 ? 280 : 250;
-  const double gap = 16, panel_wide = (inner - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
-  const double grains_top = panels_top + panel_high * static_cast<double>(rows) + (count > 0 ? 30 : 8);
   const auto view = picture.grains ? layout(*picture.grains) : ViewLayout{};
+  const std::size_t left_out = picture.grains ? picture.grains->left_out : 0;
+  const Heading heading(
+      picture.title,
+      picture.facts + (left_out > 0 ? fmt::format("  ·  {} far from all others, not shown", grouped(left_out)) : ""),
+      count > 0 ? widest : view.wide + view.bar);
+  const Names names(picture.panels);
+  const double panels_top = heading.bottom() + legend(nullptr, names, 0), panel_high = columns == 1   ? 300
+                                                                                       : columns == 2 ? 280
+                                                                                                      : 250;
+  const double panel_wide = panel_wide_of(columns);
+  const double grains_top = panels_top + panel_high * static_cast<double>(rows) + (count > 0 ? 30 : 8);
   const double height = picture.grains ? grains_top + std::max(view.high, 180.0) + 56 : grains_top;
 
-  Svg svg(width, height, picture.title, style(picture));
-  svg.rectangle({0, 0}, width, height, "fill=\"#fff\"");
-  svg.text({margin, 44}, picture.title, "class=\"title\"");
-  const std::size_t left_out = picture.grains ? picture.grains->left_out : 0;
-  svg.text(
-      {margin, 66},
-      picture.facts + (left_out > 0 ? fmt::format("  ·  {} far from all others, not shown", grouped(left_out)) : ""),
-      "class=\"facts\"");
-  legend(&svg, names, 88);
+  Svg svg(heading.width(), height, picture.title, style(picture));
+  svg.rectangle({0, 0}, heading.width(), height, "fill=\"#fff\"");
+  heading.draw(svg);
+  legend(&svg, names, heading.bottom() - 4);
   for (std::size_t i = 0; i < count; ++i) {
     const Point corner{margin + static_cast<double>(i % columns) * (panel_wide + gap),
                        panels_top + static_cast<double>(i / columns) * panel_high};
     PanelDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
   }
   if (picture.grains) {
-    draw_grains(svg, *picture.grains, view, grains_top);
-    draw_scale_bar(svg, *picture.grains, view, grains_top);
-    draw_colour_bar(svg, *picture.grains, view, grains_top);
+    const double left = margin + 0.5 * (heading.inner() - view.bar - view.wide);
+    draw_grains(svg, *picture.grains, view, left, grains_top);
+    draw_scale_bar(svg, *picture.grains, view, left, grains_top);
+    draw_colour_bar(svg, *picture.grains, view, left + view.wide + bar_gap, grains_top);
   }
   return std::move(svg).finish();
 }

@@ -61,7 +61,8 @@ struct Picture {
   std::optional<GrainView> grains;
 };
 
-/// The picture as SVG, 900 px wide.
+/// The picture as SVG: 900 px wide, of grains alone as wide as they need; title and facts in as many lines as that
+/// takes.
 std::string draw(const Picture& picture);
 
 }  // namespace grit

@@ -142,7 +142,7 @@ ResultsFolder::Kept ResultsFolder::find(const char* asking, const std::string& n
       const auto& found = probes[probe].channels[channel];
       if (hdf5::product(found.shape) != 1) continue;
       const auto full = probes[probe].name + '/' + found.name;
-      if (full == name) return {probe, channel, spelled(found.name), found.unit, {}, {}};
+      if (full == name) return {probe, channel, channel_label(probes[probe].name, found.name), found.unit, {}, {}};
       there += (there.empty() ? "" : ", ") + full;
     }
   }
@@ -153,8 +153,8 @@ ResultsFolder::Kept ResultsFolder::find(const char* asking, const std::string& n
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {
   Picture picture;
   picture.title = options_.title.empty() ? options_.folder.filename().string() : options_.title;
-  picture.facts = fmt::format("{} grains  ·  {:.4g} s simulated  ·  {} steps  ·  {:.3g} million particle-steps/s",
-                              grouped(summary.bodies), summary.time, grouped(summary.steps),
+  picture.facts = fmt::format("{} grains  ·  {} simulated  ·  {} steps  ·  {:.3g} million particle-steps/s",
+                              grouped(summary.bodies), written_time(summary.time), grouped(summary.steps),
                               1e-6 * summary.particle_steps_per_second);
   const auto& x = kept_.front();
   for (const auto& y : std::span(kept_).subspan(1)) {

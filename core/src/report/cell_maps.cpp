@@ -112,7 +112,7 @@ Description CellMaps::result() const {
                                    {"unit", field.unit},
                                    {"shown_unit", shown.unit},
                                    {"factor", shown.factor},
-                                   {"about", field.doc},
+                                   {"about", with_symbols(field.doc)},
                                    {"components", field.components},
                                    {"signed", field.parted},
                                    {"rank", field.rank},

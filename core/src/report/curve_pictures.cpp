@@ -73,7 +73,7 @@ std::string facts_line(std::span<const RunResults> runs) {
   std::vector<std::string> parts;
   if (runs.size() == 1) {
     parts.push_back(status_of(runs[0]));
-    for (const Fact& fact : cost_facts(runs[0])) parts.push_back(fact.name + ' ' + fact.value);
+    for (const Fact& fact : cost_facts(runs[0])) parts.push_back(fact.in_line);
   } else {
     for (const RunResults& run : runs) parts.push_back(run.name + ": " + status_of(run));
   }
@@ -92,7 +92,7 @@ Curve drawn(const Reference& reference, const Panel& panel) {
   return curve;
 }
 
-/// A panel of the channel, with what all runs have of it over the same abscissa; nothing where none has.
+/// A panel of the channel, with what all runs have of it over the same abscissa; nothing where that is no point.
 std::optional<Panel> panel_of(const std::string& wanted, std::span<const RunResults> runs,
                               const std::vector<std::vector<Reference>>& references) {
   std::optional<Panel> panel;
@@ -104,14 +104,20 @@ std::optional<Panel> panel_of(const std::string& wanted, std::span<const RunResu
     if (!own.channel) continue;
     if (!panel) {
       x = own;
-      panel = Panel{
-          {spelled(x.channel->name), x.channel->sampled.unit}, {spelled(y.channel->name), y.channel->sampled.unit}, {}};
+      panel = Panel{{channel_label(x.probe->name, x.channel->name), x.channel->sampled.unit},
+                    {channel_label(y.probe->name, y.channel->name), y.channel->sampled.unit},
+                    {}};
     }
     const bool alike = own.channel->name == x.channel->name && own.channel->sampled.unit == panel->x.unit &&
                        y.channel->sampled.unit == panel->y.unit;
     if (alike) panel->curves.push_back(curve_of(runs.size() > 1 ? run.name : "", own, y));
   }
-  if (!panel) return panel;
+  const auto has_a_point = [](const Curve& curve) {
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      if (drawable(curve.x[i]) && drawable(curve.y[i])) return true;
+    return false;
+  };
+  if (!panel || std::ranges::none_of(panel->curves, has_a_point)) return std::nullopt;
   std::vector<Curve> drawn_references;
   for (const auto& of_run : references)
     for (const Reference& reference : of_run) {
@@ -181,7 +187,7 @@ std::vector<NamedPicture> profile_pictures(const RunResults& run) {
       for (const std::size_t sample : {(last - 1) / 3, 2 * (last - 1) / 3, last - 1}) {
         if (last == 0 || sample == drawn) continue;
         drawn = sample;
-        panel.curves.push_back({.name = fmt::format("{:.4g} s", time->sampled.values[sample]),
+        panel.curves.push_back({.name = written_time(time->sampled.values[sample]),
                                 .x = row(place.sampled, sample),
                                 .y = row(channel.sampled, sample)});
       }

@@ -17,13 +17,6 @@ std::optional<double> number(const RunResults& run, const std::string& pointer) 
   return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
 }
 
-/// "1.2 ms", "3.40 µs".
-std::string time_text(double seconds) {
-  for (const auto& [size, unit] : {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "µs")})
-    if (std::abs(seconds) >= size) return fmt::format("{:.3g} {}", seconds / size, unit);
-  return seconds == 0 ? "0 s" : fmt::format("{:.3g} ns", seconds * 1e9);
-}
-
 /// Whether run.json knows how far the run is and how long it took: it is written when a stage ends, and then of that.
 bool has_ended_a_stage(const RunResults& run) {
   return status_of(run) != "running" || number(run, "/steps").value_or(0) > 0;
@@ -107,7 +100,7 @@ std::string where_interrupted(const RunResults& run) {
   const auto time = number(run, "/time");
   if (!stage.is_string() || !all.is_array() || !ended.is_array() || !time) return "";
   return fmt::format("Interrupted in stage {} ({} of {}), {} after it began.", stage.get<std::string>(),
-                     std::min(ended.size() + 1, all.size()), all.size(), time_text(*time - last_stage_began(run)));
+                     std::min(ended.size() + 1, all.size()), all.size(), written_time(*time - last_stage_began(run)));
 }
 
 std::vector<Fact> cost_facts(const RunResults& run) {
@@ -115,21 +108,25 @@ std::vector<Fact> cost_facts(const RunResults& run) {
   if (const auto bodies = number(run, "/bodies")) {
     const auto contacts = number(run, "/contacts_per_body");
     facts.push_back({"bodies", grouped(static_cast<std::uint64_t>(*bodies)),
-                     contacts ? fmt::format("{:.2f} contacts each", *contacts) : "", false});
+                     contacts ? fmt::format("{:.2f} contacts each", *contacts) : "", false,
+                     grouped(static_cast<std::uint64_t>(*bodies)) + " bodies"});
   }
   const bool told = has_ended_a_stage(run);
   if (const auto time = number(run, "/time"); time && told) {
     const auto steps = number(run, "/steps");
-    facts.push_back(
-        {"simulated", time_text(*time), steps ? grouped(static_cast<std::uint64_t>(*steps)) + " steps" : "", false});
+    facts.push_back({"simulated", written_time(*time),
+                     steps ? grouped(static_cast<std::uint64_t>(*steps)) + " steps" : "", false,
+                     written_time(*time) + " simulated"});
   }
   if (const auto wall = number(run, "/wall_s"); wall && told) {
     const auto threads = number(run, "/threads");
     facts.push_back({"took", cost_text(*wall),
-                     threads ? fmt::format("{:g} thread{}", *threads, *threads == 1 ? "" : "s") : "", false});
+                     threads ? fmt::format("{:g} thread{}", *threads, *threads == 1 ? "" : "s") : "", false,
+                     "took " + cost_text(*wall)});
   }
   if (const auto speed = number(run, "/particle_steps_per_s"); speed && told)
-    facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps a second", false});
+    facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps a second", false,
+                     fmt::format("{:.3g} million particle-steps/s", 1e-6 * *speed)});
   return facts;
 }
 
@@ -139,7 +136,7 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
     const auto critical = number(run, "/critical_time_step_s");
     const double share = critical && *critical > 0 ? *dt / *critical : 0;
     facts.push_back(
-        {"time step", time_text(*dt), share > 0 ? fmt::format("{:.2g} of the critical one", share) : "", share > 1});
+        {"time step", written_time(*dt), share > 0 ? fmt::format("{:.2g} of the critical one", share) : "", share > 1});
   }
   if (auto closure = closure_fact(run)) facts.push_back(std::move(*closure));
   const bool flows = has_engine(run, "gravity");

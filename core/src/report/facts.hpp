@@ -12,6 +12,7 @@ struct Fact {
   std::string name, value;
   std::string note;       ///< small, below the value
   bool doubtful = false;  ///< beyond what is usually asked for
+  std::string in_line{};  ///< value, unit and what it is of: "37 ms simulated"; of what is told in a line
 };
 
 /// What ran and what it cost. Only what the results say.

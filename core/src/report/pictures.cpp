@@ -62,7 +62,7 @@ Picture view_of(const RunResults& run, const Frame& frame, const std::string& co
   SeenBodies seen{positions, velocities, rotations, displacements};
   seen.layers = layers;
   return {run.title(),
-          fmt::format("{} grains  ·  stage {}  ·  {:.4g} s", grouped(frame.bodies()), frame.stage, frame.time),
+          fmt::format("{} grains  ·  stage {}  ·  {}", grouped(frame.bodies()), frame.stage, written_time(frame.time)),
           {},
           grain_view(seen, walls_of(frame), view_wanted(run), color)};
 }
@@ -96,7 +96,9 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
       if (is_bookkeeping(field)) continue;
       MapPicture picture{
           run.title(),
-          fmt::format("{} of {}  ·  stage {}  ·  {:.4g} s", spelled(field.name), map.name, frame->stage, frame->time),
+          fmt::format("{}  ·  stage {}  ·  {}",
+                      field.name == map.name ? spelled(field.name) : spelled(field.name) + " of " + map.name,
+                      frame->stage, written_time(frame->time)),
           view.substr(0, 1),
           view.substr(1, 1),
           {},

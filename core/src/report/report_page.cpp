@@ -9,6 +9,7 @@
 #include "output/colours.hpp"
 #include "output/page.hpp"
 #include "output/scale.hpp"
+#include "output/shell_word.hpp"
 #include "output/svg.hpp"
 #include "report/facts.hpp"
 #include "report/references.hpp"
@@ -150,7 +151,7 @@ std::string details(const RunResults& run) {
 std::string message_of(const RunResults& run) {
   std::string message = text_at(run, "/message");
   if (const std::string where = where_interrupted(run); message.empty() && !where.empty())
-    message = where + " 'grit run --resume " + run.folder.string() + "' goes on.";
+    message = where + " 'grit run --resume " + shell_word(run.folder.string()) + "' goes on.";
   return message.empty() ? "" : "<p class=\"message\">" + escaped(message) + "</p>\n";
 }
 
@@ -193,7 +194,7 @@ Description channel_json(const ProbeSeries::Channel& channel, DataElements& data
   return {{"name", channel.name},
           {"label", spelled(channel.name)},
           {"unit", channel.sampled.unit},
-          {"about", channel.sampled.doc},
+          {"about", with_symbols(channel.sampled.doc)},
           {"largest", largest},
           {"width", channel.width()},
           {"coordinate", channel.sampled.coordinate},
@@ -264,7 +265,13 @@ std::string script_element(std::string_view script) {
 ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
                              DataElements& data, std::chrono::milliseconds patience) {
   std::vector<RunResults> runs;
-  for (const auto& folder : folders) runs.push_back(read_results(folder, patience));
+  std::vector<std::string> unread;
+  for (const auto& folder : folders) try {
+      runs.push_back(read_results(folder, patience));
+    } catch (const FileError& error) {
+      unread.emplace_back(error.what());
+    }
+  if (runs.empty()) throw FileError(fmt::format("{}", fmt::join(unread, "\n  ")));
   tell_apart(runs);
   GrainLimits share = limits;
   share.bytes /= std::max<std::size_t>(1, runs.size());
@@ -280,7 +287,10 @@ ReportContent report_content(std::span<const std::filesystem::path> folders, con
     content.json["runs"].push_back(std::move(one));
   }
   add_readable_units(content.json["runs"]);
-  content.head = head_of(runs, diameters) + problems_part(content.problems);
+  std::vector<std::string> all = unread;
+  all.insert(all.end(), content.problems.begin(), content.problems.end());
+  content.head = head_of(runs, diameters) + problems_part(all);
+  content.unread = std::move(unread), content.first = runs.front().folder;
   return content;
 }
 
@@ -314,7 +324,8 @@ std::string report_html(const ReportContent& content, const DataElements& data, 
 ReportPage report_page(std::span<const std::filesystem::path> folders, const GrainLimits& limits) {
   DataElements data;
   ReportContent content = report_content(folders, limits, data);
-  return {report_html(content, data, Reach::closed), std::move(content.problems)};
+  return {report_html(content, data, Reach::closed), std::move(content.problems), std::move(content.unread),
+          std::move(content.first)};
 }
 
 }  // namespace grit

@@ -19,9 +19,11 @@ struct ReportContent {
   Description json;  ///< what curves and grains are drawn from; its numbers of data elements are those of `data`
   std::vector<std::string> problems;  ///< what could not be read; the page says so too
   bool unsettled = false;             ///< some of it because a run was writing to it whenever it was looked at
+  std::vector<std::string> unread;    ///< why folders hold nothing of a run; the page says so too
+  std::filesystem::path first;        ///< folder that does
 };
 
-/// Head, curves over each other, grains. Throws FileError for a folder that holds nothing of a run.
+/// Head, curves over each other, grains. Throws FileError where no folder holds anything of a run.
 ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
                              DataElements& data, std::chrono::milliseconds patience = reader_patience);
 
@@ -37,7 +39,8 @@ std::string report_html(const ReportContent& content, const DataElements& data, 
 
 struct ReportPage {
   std::string html;
-  std::vector<std::string> problems;
+  std::vector<std::string> problems, unread;  ///< as in ReportContent
+  std::filesystem::path first;
 };
 
 /// The content of the folders as one page that opens from disk. Throws as report_content() does.

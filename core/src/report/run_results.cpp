@@ -51,7 +51,8 @@ RunResults read_results(const std::filesystem::path& folder, std::chrono::millis
   std::error_code none;
   const auto whole = std::filesystem::canonical(folder, none);
   results.name = (none ? folder : whole).filename().string();
-  if (!std::filesystem::is_directory(folder, none)) throw FileError(folder.string() + ": there is no such folder");
+  if (!std::filesystem::is_directory(folder, none))
+    throw FileError(folder.string() + ": there is no such folder; give one that 'grit run' has written");
   results.frames = frame_files(folder);
   const bool has_json = std::filesystem::exists(folder / "run.json", none);
   if (!has_json && !std::filesystem::exists(folder / "series.h5", none) && results.frames.empty())

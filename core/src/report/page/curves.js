@@ -230,11 +230,11 @@ class Chart {
         { name: "dash", type: "ordinal", domain: keys, range: this.series.map((one) => this.dash(one)) },
       ],
       axes: [
-        { ...axis, scale: "x", orient: "bottom", title: titled(this.abscissa.label, this.abscissa.shown_unit), ...this.ticks(this.xDomain, ticksAcross(width)) },
+        { ...axis, scale: "x", orient: "bottom", title: withUnit(this.abscissa.label, this.abscissa.shown_unit), ...this.ticks(this.xDomain, ticksAcross(width)) },
         { ...axis, scale: "y", orient: "left", ...this.ticks(this.yDomain, ticksUp(plotHeight), this.yStep) },
       ],
       marks: [
-        { type: "text", name: "title", interactive: false, encode: { update: { x: { value: 2 - around.left }, y: { value: -16 }, text: { value: titled(this.channel.label, this.channel.shown_unit) },
+        { type: "text", name: "title", interactive: false, encode: { update: { x: { value: 2 - around.left }, y: { value: -16 }, text: { value: withUnit(this.channel.label, this.channel.shown_unit) },
           fill: { value: look.ink }, font: { value: font }, fontSize: { value: 13.5 }, fontWeight: { value: 600 } } } },
         ...(this.byPowers ? [] : [{ type: "rule", encode: { update: { x: { value: 0 }, x2: { field: { group: "width" } }, y: { scale: "y", value: 0 }, stroke: { value: look.frame },
           opacity: { signal: "inrange(0, domain('y')) ? 1 : 0" } } } }]),

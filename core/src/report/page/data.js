@@ -72,14 +72,8 @@ function writtenTime(seconds, largest = seconds) {
   return `${readable(seconds * factor)} ${unit}`;
 }
 
-/** A unit of UDUNITS as people write it: "kg m⁻³", "°". */
-function writtenUnit(unit) {
-  if (/^deg(ree)?s?$/.test(unit)) return "°";
-  return unit.replace(/([A-Za-z])(-?\d+)/g, (_, letter, power) => letter + power.replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]));
-}
-/** Behind a number. */
-const ofUnit = (unit) => (unit === "1" || unit === "" ? "" : writtenUnit(unit) === "°" ? "°" : ` ${writtenUnit(unit)}`);
+/** Behind a number; units that are shown come as people write them. */
+const ofUnit = (unit) => (unit === "1" || unit === "" ? "" : unit === "°" ? "°" : ` ${unit}`);
 
-/** A label of an axis, and, with the unit as it is in files, of a column. */
-const titled = (label, unit) => withUnit(label, writtenUnit(unit));
+/** A label with its unit, of an axis as it is shown, of a column as it is in files. */
 const withUnit = (label, unit) => (unit === "1" || unit === "" ? label : `${label} [${unit}]`);

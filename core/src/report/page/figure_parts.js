@@ -113,7 +113,7 @@ function drawColourBar(pen, look, { left, top, tall, low, high, table, factor })
 function drawColourScale(pen, look, { width, height, label, unit, note, ...scale }) {
   const tall = Math.min(240, height - 110), top = 46;
   pen.text(width - 2, 20, label, look.ink, "end", 12.5);
-  if (unit !== "1") pen.text(width - 2, 35, `[${writtenUnit(unit)}]`, look.soft, "end", 11.5);
+  if (unit !== "1") pen.text(width - 2, 35, `[${unit}]`, look.soft, "end", 11.5);
   drawColourBar(pen, look, { left: width - 66, top, tall, ...scale });
   if (note) pen.text(width - 2, top + tall + 18, note, look.soft, "end", 11);
 }

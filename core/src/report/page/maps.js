@@ -214,7 +214,7 @@ class MapView {
     });
     drawAxes(pen, look, layout, view, layout.frame);
     const [scale, unit] = prefixed("m", Math.abs(this.plane)), slice = this.layers(view.depth) < 2 ? "" : `  ·  ${letter(view.depth)} = ${readable(this.plane * scale)} ${unit}`;
-    pen.text(left, top - 26, titled(this.label, field.shown_unit), look.ink, "start", 13.5, false, 600);
+    pen.text(left, top - 26, withUnit(this.label, field.shown_unit), look.ink, "start", 13.5, false, 600);
     pen.text(left, top - 9, `${writtenTime(now.time)}${slice}`, look.soft, "start", 11.5);
     drawColourBar(pen, look, { left: right + 16, top, tall: Math.min(320, bottom - top), ...colours, factor: field.factor });
     if (shown.some((i) => !Number.isFinite(values[i]))) pen.text(right + 16, Math.min(top + 320, bottom) + 17, "grey: none", look.soft, "start", 11);
