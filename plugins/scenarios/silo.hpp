@@ -80,6 +80,7 @@ struct Silo {
   double void_ratio = 0.6;
   std::string filling = "cloud";
   std::optional<double> filling_friction_angle;
+  double relieved_gravity = 1.0 / 6;
   std::int64_t layers = 6, seed = 1;
   SiloForms forms;
 
@@ -144,6 +145,12 @@ struct Silo {
         .at_least(0)
         .below(right_angle)
         .doc("between grains while they fall; low: dense, high: loose; left out: their own");
+    p.add("relieved_gravity", relieved_gravity)
+        .above(0)
+        .at_most(1)
+        .doc(
+            "share of gravity that is left while friction becomes the grains' own; it rises again afterwards; "
+            "without effect unless there is a filling_friction_angle");
     p.add("filling", filling)
         .one_of({"cloud", "layers"})
         .doc("cloud: all grains fall at once; layers: one layer after the other, each once all before it rest");
@@ -209,6 +216,11 @@ struct Silo {
   double falling_time(std::int64_t first_layers) const {
     return falling_time() * std::sqrt(static_cast<double>(first_layers) / static_cast<double>(layers));
   }
+  /// Whether gravity is taken off and put on again once the silo is filled.
+  bool relieved() const { return filling_friction_angle && relieved_gravity < 1; }
+  /// In which gravity changes: that of twenty waves from top to bottom at sqrt(E_c/rho), which pressure in the sand
+  /// does not reach, so that nothing bounces [s].
+  double relief_time() const { return 20 * height / std::sqrt(contact_modulus / density); }
   /// By which walls and bottom reach beyond each other, so that no grain comes between them [m].
   double overhang() const { return groove_depth() + largest_diameter; }
 
@@ -277,27 +289,39 @@ struct Silo {
   }
 
   /// "fill": the cloud falls and comes to rest; or "fill-1" and so on: a layer does. "settle": friction is the grains'
-  /// own.
+  /// own. Where it was another one gravity goes down before, in "relieve", and rises while they settle: stress that
+  /// came about with little friction is nearly as high sideways as downwards, and more friction leaves it so.
   std::vector<Description> filling_stages() const {
-    const auto stage = [&](const std::string& name, const Description& change, double after, double unbalanced) {
-      Description d = {{"name", name}};
-      if (!change.empty()) d["change"] = change;
-      d["until"] = {
-          {"type", "all"},
-          {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}};
-      d["limit"] = 20 * falling_time();
-      return d;
+    const auto stage = [&](const std::string& name, double after, double unbalanced) -> Description {
+      return {{"name", name},
+              {"until",
+               {{"type", "all"},
+                {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}}},
+              {"limit", 20 * falling_time()}};
     };
-    const Description none = Description::object();
+    const auto gravity_goes = [&](double from, double to) {
+      return Description::array({{{"pointer", "/engines/gravity/acceleration/2"},
+                                  {"from", -from * gravity},
+                                  {"to", -to * gravity},
+                                  {"duration", relief_time()},
+                                  {"increments", 50}}});
+    };
     std::vector<Description> stages;
-    if (filling == "cloud") stages.push_back(stage("fill", none, falling_time(), 0.01));
+    if (filling == "cloud") stages.push_back(stage("fill", falling_time(), 0.01));
     else
       for (std::int64_t layer = 1; layer <= layers; ++layer)
-        stages.push_back(stage(fill(layer), none, falling_time(layer), 0.01));
-    Description own_friction;
+        stages.push_back(stage(fill(layer), falling_time(layer), 0.01));
+    Description settle = stage("settle", 0.1 * falling_time() + (relieved() ? relief_time() : 0), 1e-3);
     for (const char* name : {"sand", "dyed"})
-      if (name != dyed || layers > 1) own_friction["materials"][name]["friction_angle"] = friction_angle;
-    stages.push_back(stage("settle", own_friction, 0.1 * falling_time(), 1e-3));
+      if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
+    if (relieved()) {
+      settle["ramps"] = gravity_goes(relieved_gravity, 1);
+      stages.push_back({{"name", "relieve"},
+                        {"ramps", gravity_goes(1, relieved_gravity)},
+                        {"until", {{"type", "time"}, {"value", relief_time()}}},
+                        {"limit", 2 * relief_time()}});
+    }
+    stages.push_back(settle);
     return stages;
   }
 

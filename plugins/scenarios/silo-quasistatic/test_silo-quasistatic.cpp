@@ -100,9 +100,39 @@ TEST(SiloQuasistatic, TakesTurnsOfTwoMaterialsThatDifferInNameAlone) {
 TEST(SiloQuasistatic, FillsWithOneFrictionAndGoesOnWithTheGrainsOwn) {
   const Description d = expanded({{"filling_friction_angle", 0.1}, {"friction_angle", 0.4}, {"local_damping", 0.02}});
   EXPECT_EQ(d["materials"]["sand"]["friction_angle"], 0.1);
-  EXPECT_EQ(d["stages"][1]["change"]["materials"]["dyed"]["friction_angle"], 0.4);
+  EXPECT_EQ(d["stages"][2]["change"]["materials"]["dyed"]["friction_angle"], 0.4);
   EXPECT_EQ(d["interfaces"]["sand+wall"]["friction_angle"], d["materials"]["wall"]["friction_angle"]);
-  EXPECT_EQ(d["stages"][2]["change"]["engines"]["damping"]["coefficient"], 0.02);
+  EXPECT_EQ(d["stages"][3]["change"]["engines"]["damping"]["coefficient"], 0.02);
+}
+
+TEST(SiloQuasistatic, TakesGravityOffBeforeFrictionBecomesTheGrainsOwn) {
+  const auto stages = [](Description keys) {
+    keys["filling_friction_angle"] = 0.1;
+    return expanded(keys)["stages"];
+  };
+  const Description all = stages({{"relieved_gravity", 0.2}});
+  ASSERT_EQ(all.size(), 4u);
+  const Description &relieve = all[1], &settle = all[2];
+  EXPECT_EQ(relieve["name"], "relieve");
+  EXPECT_FALSE(relieve.contains("change")) << "with the friction that grains fell with";
+  const Description &down = relieve["ramps"][0], &up = settle["ramps"][0];
+  EXPECT_EQ(down["pointer"], "/engines/gravity/acceleration/2");
+  EXPECT_EQ(up["pointer"], down["pointer"]);
+  EXPECT_DOUBLE_EQ(down["from"], -9.81);
+  EXPECT_DOUBLE_EQ(down["to"], -0.2 * 9.81);
+  EXPECT_EQ(up["from"], down["to"]);
+  EXPECT_EQ(up["to"], down["from"]);
+  // Of 2 600 kg/m³ and 10 MPa: 62 m/s, so 8.1 ms for 0.5 m.
+  EXPECT_NEAR(down["duration"], 20 * 0.5 / 62.017, 1e-5);
+  EXPECT_EQ(relieve["until"]["value"], down["duration"]);
+  EXPECT_GT(settle["until"]["of"][0]["value"], up["duration"]) << "some more of it to come to rest in";
+  EXPECT_TRUE(settle["change"]["materials"].contains("sand"));
+
+  const Description kept = stages({{"relieved_gravity", 1}});
+  ASSERT_EQ(kept.size(), 3u);
+  EXPECT_FALSE(kept[1].contains("ramps"));
+  EXPECT_EQ(expanded({{"relieved_gravity", 0.2}})["stages"], expanded()["stages"]) << "their own friction throughout";
+  EXPECT_EQ(stages({{"filling", "layers"}, {"layers", 3}})[3]["name"], "relieve") << "once the last layer rests";
 }
 
 TEST(SiloQuasistatic, FillsLayerAfterLayer) {
@@ -188,6 +218,8 @@ TEST(SiloQuasistatic, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"depth", "4 mm"}}), HasSubstr("at least 2 of the largest grains"));
   EXPECT_THAT(problem({{"smallest_diameter", "3 mm"}}), HasSubstr("at most largest_diameter"));
   EXPECT_THAT(problem({{"velocity", 0}}), HasSubstr("/velocity"));
+  EXPECT_THAT(problem({{"relieved_gravity", 0}}), HasSubstr("/relieved_gravity"));
+  EXPECT_THAT(problem({{"relieved_gravity", 1.1}}), HasSubstr("to 1"));
   EXPECT_THAT(problem({{"filling", "rain"}}), HasSubstr("one of cloud, layers"));
 }
 
