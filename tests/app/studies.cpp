@@ -36,6 +36,7 @@ class Studies : public testing::Test {
     auto scene = json::parse(two_grains);
     scene["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0}};
     scene["output"].erase("frames");
+    scene["time_step"]["steps_per_impact"] = 0;  // the safety alone sets the step
     folder.write("two.json", scene.dump());
     folder.write("study.json", study);
   }

@@ -89,7 +89,7 @@ TEST(ClumpPacking, IsTheSameBitsForAnyNumberOfThreads) {
   std::vector<std::unique_ptr<Trial>> trials;
   for (const unsigned count : threads) trials.push_back(std::make_unique<Trial>(d, count));
   ASSERT_GT(trials.front()->world().ids().size(), 5 * chunk_bodies);
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < 6; ++round) {
     for (auto& trial : trials) trial->step(1000), trial->world().search_next();
     for (std::size_t i = 1; i < trials.size(); ++i)
       ASSERT_TRUE(same_bits(trials[0]->world(), trials[i]->world())) << threads[i] << " threads, round " << round;

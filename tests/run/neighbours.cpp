@@ -145,7 +145,7 @@ TEST(NeighbourSearch, MissesNoPairOfFastGrainsBetweenMovingWalls) {
                          {"inside", false},
                          {"material", "grain"},
                          {"motion", {{"spin", {0, 1000, 0}}}}};
-  expect_no_missed_pair(d, 600);
+  expect_no_missed_pair(d, 900);
 }
 
 TEST(NeighbourSearch, MissesNoPairWhereAWallBeginsToTurn) {
@@ -193,7 +193,7 @@ TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {
                    {"high", {6e-3, 6e-3, 6e-3}},
                    {"periodic", {true, true, true}},
                    {"strain_rate", {rate, -0.5 * rate, 0}}};
-    expect_no_missed_pair(d, 600);
+    expect_no_missed_pair(d, 900);
   }
 }
 
