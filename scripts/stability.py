@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Writes docs/stability.md and its maps: where methods fail, as the stability tests of a build find it.
 
-  stability.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, and nothing is written
+  stability.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, or tells a figure of the table
+                            no more, and nothing is written
 
 Maps are docs/stability/*.svg.
 """
@@ -13,37 +14,49 @@ import sys
 sys.dont_write_bytecode = True
 import reported  # noqa: E402
 
-MAPPED = 'mapped: '
+MAPPED, FIGURE = 'mapped: ', 'figure: '
 COLOURS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#8a6d00', '#56b4e9']
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 830, 430, 78, 500, 30, 370
 
+# Where a figure stands, {its name:its format}: tests tell it (figure() of tests/support/mapped.hpp).
 HEAD = '''# Where methods fail
 Written by `scripts/stability.py` from what the tests in [tests/stability](../tests/stability) find. Do not edit. Each limit is looked for from both
 sides; beside it stands what is predicted, and what grit does beyond it.
 
 | what | predicted limit | what grit does there |
 | --- | --- | --- |
-| time step | 2/ω of the fastest mode, dashpots and spins included; bound by body ([definitions](definitions.md#time-step)) | refuses an explicit step above it; chooses 0.8 of the bound else; the energy guard trips where a scene defeats both |
-| undamped collisions at a long step | the contact lasts π/(ω dt) steps: 2 at 0.8 of the critical step, and where in a step it begins is chance, so that each rebound is off by a share of the order of the step over the contact's time | nothing: energy is right in the mean of dense packings only. Take a safety of 0.1 or less where single collisions count; the `energy` probe tells |
-| speed: tunnelling | a contact is missed when a step is longer than the sum of what lies on both sides of the middle: a diameter at a thin wall, both diameters at a grain | the travel guard stops at 0.05 radii a step, with body, time and advice |
-| ratio of sizes | none: velocities and forces of both bodies are of the same instants | nothing to do |
-| mixture of sizes | none: sizes are searched for class by class | nothing is missed at 1 : 100, counted at every step |
-| inertia of clumps | 2/ω of a clump that is held at one end, ω² = k (1/m + a²/I) with a from its middle | reckons with mass and inertia; the bound is at most half too short |
-| ratio of masses | Q_a + Q_b of the contact that asks most; light grains alone set it | the bound stays within 0.7 of the longest stable step |
-| ratio of stiffnesses | springs in line: the soft one counts | the bound takes it that two of the stiffest may meet: too short by the root of the ratio where they never do. A stiff wall costs nothing with linear springs, which are the grain's |
-| free wall | grain and wall swing together: less than 2 √(m/2k) of the grain between fixed walls and than 2 √(M/k) of the wall on a fixed grain; which, the eigenvalues of both say | adds what springs and dashpots ask of the wall to what they ask of the grains; refuses, chooses, guards as for the time step |
-| servo | on a heavy specimen a gain of 2.07; on a stack the eigenvalues of grains, wall and delay: the lone grain is worst | takes no gain above 1; 0.8 of the critical step is stable with any gain. Above 0.82 of it a gain of 1 shakes a lone grain until the travel or overlap guard trips: take 0.8, or a gain of 0.3, which holds to 0.95 |
-| overlap at the start | speeds of δ ω / 2: at 0.8 of the critical step 0.08 radii move a grain 0.05 radii in a step; below a safety of 0.25 the guard's own 0.2 radii | the overlap guard stops before the first step, the travel guard in it; what survives flies apart with the energy of its springs |
-| friction on the edge | tan of the slope equal to the coefficient of friction, or of rolling resistance | sticks below without creep, slides above as Coulomb has it |
-| short period | four times the largest radius and skin: below, one body would meet another twice | refuses before the first step, and stops a cell that shrinks to it, with length, limit and advice |
-| fast grain among slow ones | a search when it has used up a skin of 100 steps, at least 0.03 and at most 0.4 mean diameters | seeks neighbours as often as that takes; no contact is missed |
-| energy of impacts | what the parting step makes of it, (π/n)²/4 where the contact lasts n steps | nothing is gained beyond that at any angle, friction or restitution, at given steps and at those that grit chooses |
-| springs that stiffen | those of the deepest contact, and of the deepest that an impact at the present speeds will make | sets the step anew when either has grown by a fifth, and an impact's before it begins: what is pressed from first touch on feels Hertz's force within 1 %, a packing that of a tenth of the step within 0.1 %, what falls or is poured gains no more than with linear springs. Not seen: a packing pressed less deep than some contact was before; a face-centred one (40 k_s/m against 7 of a pair) swung beside a lone grain that had been pressed deeper, for 2 % of the walls' work, until it was as deep itself. A safety of 0.4 is below that |
+| time step | 2/ω of the fastest mode, dashpots and spins included; bound by body ([definitions](definitions.md#time-step)) | refuses an explicit step above it; chooses {share of the bound that is chosen:.2g} of the bound else; the energy guard trips where a scene defeats both |
+| energy of impacts | what the parting step makes of it, (π/n)²/4 where the contact lasts n steps; where in a step it begins is chance | nothing is gained beyond that at a plane, at any angle, friction or restitution. At the step that grit chooses, an impact of two that are alone lasts {pair, least steps of an impact at the chosen step:.3g} steps or more and gains at most {pair, most that an impact gains at the chosen step:.1%} of its energy. Where single impacts count, take a tenth of the critical step: their velocities are off by {error of an oblique collision at a tenth of the critical step, of its speed:.1%} of the speed; the `energy` probe tells |
+| speed: tunnelling | a contact is missed when a step is longer than the sum of what lies on both sides of the middle: a diameter at a thin wall, both diameters at a grain | the travel guard stops at {way in a step that the travel guard allows, in radii:.2g} radii a step, with body, time and advice |
+| ratio of sizes | none: velocities and forces of both bodies are of the same instants | none sticks up to 1 : 100, and rebounds at the step that grit chooses are off by at most {error of the rebound of two sizes at the chosen step:.2g} of the speed |
+| mixture of sizes | none: sizes are searched for class by class | nothing is missed at 1 : {ratio of sizes up to which no contact is missed:.0f}, counted at every step |
+| inertia of clumps | 2/ω of a clump that is held at one end, ω² = k (1/m + a²/I) with a from its middle | reckons with mass and inertia; the bound is {bound of a clump over its longest stable step, at least:.2g} of the longest stable step or more |
+| ratio of masses | Q_a + Q_b of the contact that asks most; light grains alone set it | the bound is {bound over the longest stable step, of heavier grains among light ones, at least:.2g} of the longest stable step or more |
+| ratio of stiffnesses | springs in line: the soft one counts | the bound takes it that two of the stiffest may meet: too short by the root of the ratio where they never do, {bound over the longest stable step, of grains 1e4 times as stiff among others:.2g} of the longest stable step at a ratio of 10⁴. A stiff wall costs nothing: {bound over the longest stable step, of a grain between stiffer plates, at least:.2g} or more |
+| free wall | grain and wall swing together: less than 2 √(m/2k) of the grain between fixed walls and than 2 √(M/k) of the wall on a fixed grain; which, the eigenvalues of both say | adds what springs and dashpots ask of the wall to what they ask of the grains: {bound over the longest stable step, of a free wall, at least:.2g} of the longest stable step or more; refuses, chooses, guards as for the time step |
+| servo | on a heavy specimen a gain of {gain that a servo on a heavy specimen may have:.3g}; on a stack the eigenvalues of grains, wall and delay: the lone grain is worst | takes no gain above {gain of a servo that is taken:.2g}; {share of the bound that is chosen:.2g} of the critical step is stable with any gain. Above {stable step over the critical one, of a servo of gain 1:.2g} of it a gain of 1 shakes a lone grain until the travel or overlap guard trips: take less, or a gain of 0.3, which holds to {stable step over the critical one, of a servo of gain 0.3:.2g} |
+| overlap at the start | speeds of δ ω / 2: at 0.8 of the critical step {deepest start that survives at 0.8 of the critical step, in radii:.2g} radii move a grain {way in a step that the travel guard allows, in radii:.2g} radii in a step; at a quarter of it or less the overlap guard's own {deepest start that survives at most, in radii:.2g} radii | the overlap guard stops before the first step, the travel guard in it; what survives flies apart with the energy of its springs |
+| friction on the edge | tan of the slope equal to the coefficient of friction, or of rolling resistance | sticks below without creep, slides above as Coulomb has it, at {distance from the limit of friction, of it:.1%} from the limit too |
+| short period | {shortest period over the largest radius and skin:.2g} times the largest radius and skin: below, one body would meet another twice | refuses before the first step, and stops a cell that shrinks to it, with length, limit and advice |
+| fast grain among slow ones | a search when it has used up a skin of {steps that a skin lasts:.0f} steps, at least {least skin, in mean diameters:.2g} and at most {most skin, in mean diameters:.2g} mean diameters | seeks neighbours as often as that takes; no contact is missed |
+| springs that stiffen | those of the deepest contact, and of the deepest that an impact at the present speeds will make | sets the step anew as either grows, and an impact's before it begins: what is pressed from first touch on feels Hertz's force within {error of the force of what is pressed from first touch on:.1%}, a packing that of a tenth of the step within {error of the force of a packing that is pressed:.1g}; what falls rises by at most {height that is gained by a fall:.1%} of its height more than restitution says, and the ledger of what is poured closes within {closure error of what is poured:.1%}. Not seen: a packing pressed less deep than some contact was before, until it is as deep itself |
 
 Guards run with every simulation. [false_alarms.cpp](../tests/stability/false_alarms.cpp) runs the quick column and oedometer to their ends, and the
-quick direct shear, dense and loose, as boxes of 650 grains sheared by 0.1 mm: no guard trips. The quick descriptions that
+quick direct shear, dense and loose, as boxes of some {grains in the box that is sheared:.2g} grains sheared by {way that the box is sheared, in mm:.2g} mm: no guard trips. The quick descriptions that
 [reproduction](reproduction.md) lists were run to their ends by `scripts/reproduce.py`; tests/sims runs all others for a while.
 
+## What the energy guard does not see
+It looks now and then, not at every step, and trips at gains alone: a loss of any size passes. Each stage, and each change of a ramp, starts
+its account anew.
+
+- **Without an `energy` probe** it holds what is stored against the work of walls, so that dissipation hides as much as it takes. It does not
+  look where bodies grow or gravity acts along a periodic axis.
+- **With one**, from its first sample on, it takes the error of the ledger's closure, and its limit is a share of the largest energy and of what was
+  dissipated. Growth and gravity along a periodic axis are reckoned with.
+- It does not look at all while a cell deforms, bodies are held, or engines push them, with a probe or without; after that, a
+  ledger that had begun before stays open, and the guard goes on without it.
+
+## Limits found by halving
 Where limits are looked for by halving, what is found is one limit. Two Hertz grains that begin inside each other have several, since
 the step in which they are fastest is another one at another safety; their curve goes up and down, and nothing is predicted.
 
@@ -105,19 +118,31 @@ def picture(title, series):
     return '\n'.join(out + ['</svg>', ''])
 
 
+def filled(text, figures):
+    """Ends the process where the tests tell no figure of such a name."""
+    place = re.compile('{([^{}:]+):([^{}:]+)}')
+    missing = sorted({name for name, _ in place.findall(text) if name not in figures})
+    if missing:
+        print('docs/stability.md is as it was: no test tells\n' + '\n'.join(missing), file=sys.stderr)
+        sys.exit(1)
+    return place.sub(lambda found: format(figures[found[1]], found[2]), text)
+
+
 def main():
-    tests, maps = reported.tests('test_stability', 'docs/stability.md'), {}
+    tests, maps, figures = reported.tests('test_stability', 'docs/stability.md'), {}, {}
     for _, properties in tests:
         for key, value in properties.items():
+            if key.startswith(FIGURE):
+                figures[key[len(FIGURE):]] = max(float(value), figures.get(key[len(FIGURE):], -math.inf))
             if key.startswith(MAPPED):
                 y_title, x_title, series, _ = key[len(MAPPED):].split('|')
                 curves = maps.setdefault(f'{y_title}|{x_title}', {})
                 curves.setdefault(series, []).append(tuple(map(float, value.split())))
+    text = filled(HEAD, figures)
     folder = reported.ROOT / 'docs' / 'stability'
     folder.mkdir(exist_ok=True)
     for old in folder.glob('*.svg'):
         old.unlink()
-    text = HEAD
     for title, series in sorted(maps.items()):
         name = re.sub('[^a-z0-9]+', '-', title.split('|')[0].lower()).strip('-') + '.svg'
         (folder / name).write_text(picture(title, series), encoding='utf-8')

@@ -33,7 +33,7 @@ class CheckpointFile : public testing::Test {
     return error_of<Kind>([this] { read_checkpoint(path_, facts_); });
   }
   /// One with other facts, as another build would have written it.
-  void rewrite(const std::string& facts, std::uint64_t format = 1) const {
+  void rewrite(const std::string& facts, std::uint64_t format = 2) const {
     hdf5::File file(path_, hdf5::Mode::replace);
     file.set_attribute("format", format);
     file.set_attribute("stage", "shear");
@@ -98,8 +98,8 @@ TEST_F(CheckpointFile, OfAnotherGritIsRefused) {
   rewrite(facts);
   EXPECT_THAT(refusal<FileError>(),
               AllOf(HasSubstr("checkpoint.h5: was written by another grit"), HasSubstr("/compiler: found ")));
-  rewrite(facts_text(), 2);
-  EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 2, allowed 1"));
+  rewrite(facts_text(), 1);
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 1, allowed 2"));
   rewrite("{");
   EXPECT_THAT(refusal<FileError>(), HasSubstr("is no JSON"));
 }

@@ -1,4 +1,5 @@
-// Closed ways of two spheres leave no shear force behind: there and back, around a square, around each other.
+// Closed ways of two spheres leave no shear force behind: there and back, around a square, around each other. Where
+// springs stiffen with the overlap, what is left around a square follows from the order of its sides.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,6 +7,7 @@
 #include <numbers>
 
 #include "grit/plugin.hpp"
+#include "scene/random.hpp"
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
@@ -135,6 +137,127 @@ TEST(ClosedCycle, StoredForceTurnsWithThePairAndComesBack) {
   // The chord of a step is shorter than its arc: in all 2 π · 3 mm · (2 π/8000)²/24, beside 0.6 µm of shear.
   verify("shear force left after a turn of a sheared pair, over the largest", whole.left / whole.most, 0, 2e-3, 1);
   EXPECT_LT(whole.left, 0.3 * coarse.left) << "of second order in the step";
+}
+
+/// A ball, too heavy to move, on a floor that is led along the sides of a polygon in x, shear, and z, pressing; it
+/// begins at the first overlap.
+struct Floor {
+  static constexpr double radius = 1e-3, overlap = 1e-6, dt = 1e-3;
+  static constexpr int steps = 250;  // a side
+
+  struct Corner {
+    double force;                  ///< of the shear spring on the floor, along x [N]
+    double lost, stored, elastic;  ///< by the ledger since the start, in the shear spring, in both springs [J]
+    double closure;                ///< error of the ledger [J]
+  };
+
+  /// What there is at the end of each side.
+  static std::vector<Corner> led(const std::string& law, const std::vector<Vec3>& sides) {
+    Description d =
+        description(law, {{"density", 1e30}, {"friction_angle", 1.3}}, {{{0, 0, radius - overlap}, radius}});
+    d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+    d["time_step"]["value"] = dt;
+    for (std::size_t i = 0; i < sides.size(); ++i)
+      d["stages"].push_back(
+          {{"name", "side" + std::to_string(i)},
+           {"change", {{"walls", {{"floor", {{"motion", {{"velocity", vector(sides[i] / (steps * dt))}}}}}}}}},
+           {"until", {{"type", "steps"}, {"value", steps}}},
+           {"limit", 1}});
+    Trial t(d, 1, BodyState::energy);
+    t.world().energies();
+    std::vector<Corner> corners;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      t.world().begin_stage("side" + std::to_string(i), *t.scene().stages.at(i + 1).start);
+      t.world().find_forces();
+      t.step(steps);
+      const EnergyLedger now = t.world().energies();
+      corners.push_back({t.world().wall_states().states()[0].force.x(), now.friction, now.elastic_shear, now.elastic(),
+                         now.closure_error});
+    }
+    return corners;
+  }
+};
+
+const Vec3 sheared(2e-7, 0, 0), pressed(0, 0, 2e-6);
+std::vector<Vec3> around(const Vec3& first, const Vec3& second, int cycles) {
+  std::vector<Vec3> sides;
+  for (int i = 0; i < cycles; ++i) sides.insert(sides.end(), {first, second, -first, -second});
+  return sides;
+}
+
+constexpr int cycles = 6;
+
+TEST(ClosedCycle, LinearSpringsForgetASquareInEitherOrder) {
+  for (const std::string law : {"linear-rolling", "linear-frictional"})
+    for (const bool press_first : {true, false}) {
+      const auto corners =
+          Floor::led(law, press_first ? around(pressed, sheared, cycles) : around(sheared, pressed, cycles));
+      double most = 0, energy = 0;
+      for (const Floor::Corner& c : corners)
+        most = std::max(most, std::abs(c.force)), energy = std::max(energy, c.stored);
+      ASSERT_GT(most, 0);
+      verify("shear force left by six squares, " + law + (press_first ? ", pressed first" : ", sheared first") +
+                 ", over the largest",
+             corners.back().force / most, 0, 1e-12, 1);
+      for (const Floor::Corner& c : corners) EXPECT_NEAR(c.lost, 0, 1e-9 * energy);
+    }
+}
+
+// While a grows, dF = K(a) du; while it shrinks, F goes with a. With r = a₁/a₂ = K₁/K₂ a square that is sheared first
+// makes r (F + K₁ d − K₂ d) of F, so that n of them leave −K₁ d (1 − rⁿ); one that is pressed first makes
+// r (F + K₂ d) − K₁ d = r F of it, which is nothing.
+TEST(ClosedCycle, HertzAndMindlinsSpringsLeaveWhatTheirRuleSays) {
+  const double poisson = 0.3, modulus = 70e9, way = sheared.x();
+  const double shear_modulus = modulus / (2 * (1 + poisson)) / (2 * (2 - poisson));
+  const auto spring = [&](double overlap) { return 8 * shear_modulus * std::sqrt(Floor::radius * overlap); };
+  const double shallow = spring(Floor::overlap), deep = spring(Floor::overlap + pressed.z()), r = shallow / deep;
+
+  const auto sheared_first = Floor::led("hertz-mindlin", around(sheared, pressed, cycles));
+  const auto pressed_first = Floor::led("hertz-mindlin", around(pressed, sheared, cycles));
+  Errors left("shear force left by one to six squares, hertz-mindlin, sheared first, error over its limit");
+  Errors none("shear force left by one to six squares, hertz-mindlin, pressed first, over that limit");
+  Errors lost("energy lost in each of these squares, error over that of the deep spring");
+  const double whole = 0.5 * deep * way * way;
+  double before[2] = {0, 0};
+  for (int n = 1; n <= cycles; ++n) {
+    const auto corner = static_cast<std::size_t>(4 * n - 1);
+    // The floor goes along x, and the ball holds it back.
+    left.add(sheared_first[corner].force / (shallow * way) - (1 - std::pow(r, n)));
+    none.add(pressed_first[corner].force / (shallow * way));
+    // A spring that holds F gives (1 − r) of its energy away where it is pressed, and as much where it is eased.
+    const double held = std::pow(r, n - 1), back = 1 - std::pow(r, n);
+    lost.add((sheared_first[corner].lost - before[0]) / whole - (1 - r) * (r * held * held + back * back));
+    lost.add((pressed_first[corner].lost - before[1]) / whole - (1 - r));
+    before[0] = sheared_first[corner].lost, before[1] = pressed_first[corner].lost;
+  }
+  left.verify(1e-12), none.verify(1e-12), lost.verify(1e-12);
+}
+
+TEST(ClosedCycle, NoOrderOfPressingAndShearingGainsEnergy) {
+  for (const std::string law : {"linear-rolling", "linear-frictional", "hertz-mindlin"}) {
+    double least = 1;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Random random(seed);
+      std::vector<Vec3> sides;
+      Vec3 place = Vec3::Zero();
+      for (int i = 0; i < 8; ++i) {
+        const Vec3 next = i % 2 == 0 ? Vec3((2 * random.uniform() - 1) * sheared.x(), 0, place.z())
+                                     : Vec3(place.x(), 0, random.uniform() * pressed.z());
+        sides.push_back(next - place), place = next;
+      }
+      sides.push_back({-place.x(), 0, 0}), sides.push_back({0, 0, -place.z()});
+      double before = 0, energy = 0, elastic = 0;
+      const auto corners = Floor::led(law, sides);
+      for (const Floor::Corner& c : corners)
+        energy = std::max(energy, c.stored), elastic = std::max(elastic, c.elastic);
+      for (const Floor::Corner& c : corners) {
+        least = std::min(least, (c.lost - before) / energy), before = c.lost;
+        EXPECT_NEAR(c.closure, 0, 1e-5 * elastic) << law << ' ' << seed;
+      }
+    }
+    verify("least energy lost on a side of twenty closed ways, " + law + ", over the largest stored",
+           std::min(least, 0.0), 0, 1e-9, 1);
+  }
 }
 
 }  // namespace

@@ -190,6 +190,80 @@ TEST(Guards, EnergyFromNowhereInAStageThatIsSoonOver) {
   EXPECT_NO_THROW(stable.world().end_stage());
 }
 
+std::string complaint_by_ledger(const Description& d, std::size_t steps) {
+  try {
+    Trial t(d, 1, BodyState::energy);
+    t.world().energies();
+    t.step(steps);
+  } catch (const NumericsError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Rough grains without dashpots that fly about in a periodic cell; `turn`: ω dt of two in contact.
+Description rough_gas(double turn) {
+  constexpr double modulus = 1e7, spacing = 1e-3, density = 2500, radius = 0.5 * spacing;
+  std::vector<Grain> grains = jumble({5, 5, 5}, 1.3 * spacing, 0.3, 3);
+  for (Grain& grain : grains) grain.radius = radius;
+  Description d = description("linear-frictional",
+                              {{"contact_modulus", modulus}, {"density", density}, {"friction_angle", 0.1}}, grains);
+  d["domain"] = {{"low", {0, 0, 0}}, {"high", vector(Vec3::Constant(5 * 1.3 * spacing))}};
+  d["domain"]["periodic"] = {true, true, true};
+  const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
+  d["time_step"] = {{"value", turn / std::sqrt(2 * modulus * radius / mass)}, {"allow_unstable", true}};
+  d["guards"] = {{"travel", 1}};
+  return d;
+}
+
+TEST(Guards, EnergyFromNowhereThatFrictionHides) {
+  const std::size_t steps = 20000;
+  EXPECT_EQ(complaint(rough_gas(1.56), steps), "") << "friction takes what appears";
+  EXPECT_THAT(complaint_by_ledger(rough_gas(1.56), steps),
+              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: energy came from nowhere: [0-9.e+-]+ J more than "
+                                    "was put in, [0-9.e+-]+ of the largest energy so far and of what was dissipated; "
+                                    "/guards/energy allows 0\\.05; the time step may be too large for the stiffest "
+                                    "contact; try a smaller /time_step/safety"));
+  EXPECT_EQ(complaint_by_ledger(rough_gas(0.156), steps), "");
+}
+
+TEST(Guards, EnergyFromNowhereWhereItIsPulledAlongAPeriodicAxis) {
+  // ω dt = 2.2, as above.
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
+                              {{{0.05, 0, 1.01e-3}, 1e-3}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["domain"] = {{"low", {0, -1, -1}}, {"high", {0.1, 1, 1e3}}, {"periodic", {true, false, false}}};
+  d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0.1, 0, -9.81}}};
+  const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
+  EXPECT_EQ(complaint(d, 3000), "") << "there is no potential, and nobody asked for the ledger";
+  EXPECT_THAT(complaint_by_ledger(d, 3000), HasSubstr("energy came from nowhere"));
+  d["time_step"]["value"] = 0.1 * dt;
+  EXPECT_EQ(complaint_by_ledger(d, 3000), "");
+}
+
+TEST(Guards, EnergyFromNowhereAfterTheLedgerGaveUp) {
+  // Held at first, so that the ledger never closes; what is stored tells.
+  Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
+                              {{{0, 0, 1.01e-3}, 1e-3}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"] = {{"gravity", {{"type", "gravity"}}}, {"hold", {{"type", "hold"}}}};
+  const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+  d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
+  d["stages"].push_back({{"name", "free"},
+                         {"change", {{"engines", {{"hold", nullptr}}}}},
+                         {"until", {{"type", "steps"}, {"value", 1}}},
+                         {"limit", 1}});
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  t.step(3);
+  t.world().begin_stage("free", *t.scene().stages.at(1).start);
+  t.world().find_forces();
+  EXPECT_THROW(t.step(3000), NumericsError);
+}
+
 TEST(Guards, NotANumber) {
   static const PluginInfo poison = [] {
     PluginInfo info;

@@ -12,6 +12,8 @@ namespace grit::test {
 namespace {
 
 constexpr double spacing = 1e-3, dt = 2e-7;
+/// A skin lasts so many steps, but has at least and at most so many mean diameters.
+constexpr double steps_of_skin = 100, least_skin = 0.03, most_skin = 0.4;
 
 /// A block of grains that just touch, at rest, and one outside that flies `travel` of its radii a step through it, or
 /// past it.
@@ -39,10 +41,10 @@ TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
     }
     EXPECT_EQ(missed, 0u) << travel;
     EXPECT_GT(compared, 5000u);
-    // A skin for 100 steps, but at least 0.03 and at most 0.4 mean diameters; the last twentieth is not used.
+    // The last twentieth of a skin is not used.
     Trial flight(shot(travel, true));
     const double mean = flight.world().mean_diameter(), way = travel * 0.4 * spacing;
-    const double skin = std::clamp(100 * way, 0.03 * mean, 0.4 * mean);
+    const double skin = std::clamp(steps_of_skin * way, least_skin * mean, most_skin * mean);
     flight.step(static_cast<std::size_t>(20.5 * skin / way));
     const double between = 20.5 * skin / way / static_cast<double>(flight.world().clock().rebuilds - 1);
     EXPECT_GT(between, 0.9 * (skin / way - 2)) << travel;
@@ -50,6 +52,9 @@ TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
     map_point(map, "found", travel, between);
     map_point(map, "predicted", travel, skin / way);
   }
+  figure("steps that a skin lasts", steps_of_skin);
+  figure("least skin, in mean diameters", least_skin);
+  figure("most skin, in mean diameters", most_skin);
 }
 
 }  // namespace

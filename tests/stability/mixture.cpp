@@ -39,6 +39,7 @@ TEST(Mixture, MissesNoContactUpToOneToAHundred) {
       looked_at += t.world().candidate_count();
     }
     EXPECT_EQ(missed, 0u) << ratio;
+    if (missed == 0) figure("ratio of sizes up to which no contact is missed", ratio);
     EXPECT_GT(compared, ratio < 10 ? 1u : 500u) << ratio;
     const double a_grain = static_cast<double>(looked_at) / steps / static_cast<double>(grains.size());
     EXPECT_LT(a_grain, 20) << ratio;

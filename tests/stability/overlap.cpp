@@ -64,6 +64,8 @@ TEST(Overlap, DeepestStartThatSurvivesIsWhereTheGuardsSay) {
     const double found = deepest("linear-frictional", safety), predicted = predicted_deepest(safety);
     EXPECT_NEAR(found / predicted, 1, 5e-4) << safety;
     map_point(map, "two grains, linear", safety, found);
+    if (safety == 0.8) figure("deepest start that survives at 0.8 of the critical step, in radii", found);
+    if (safety <= 0.25) figure("deepest start that survives at most, in radii", found);
     map_point(map, "predicted, linear", safety, predicted);
     map_point(map, "two grains, Hertz", safety, deepest("hertz-mindlin", safety));
   }

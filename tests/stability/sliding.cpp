@@ -72,7 +72,9 @@ TEST_P(Sliding, BeginsAtTheAngleOfFrictionAndNothingCreepsBelow) {
   const Edge& edge = GetParam();
   const auto& map =
       "acceleration over gravity, or speed of creep over √(g R) below|distance of the slope from its limit";
-  for (const double beyond : {1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3}) {
+  constexpr double nearest = 1e-3;
+  figure("distance from the limit of friction, of it", nearest);
+  for (const double beyond : {nearest, 3e-3, 1e-2, 3e-2, 0.1, 0.3}) {
     const double below = creep(edge, (1 - beyond) * edge.limit()) / std::sqrt(g * radius);
     const double slope = (1 + beyond) * edge.limit(), above = acceleration(edge, slope);
     EXPECT_LT(std::abs(below), 1e-12) << edge.name << ' ' << beyond;

@@ -86,6 +86,7 @@ double longest(Refused refused) {
 TEST(SmallPeriod, IsRefusedWhereAGrainWouldMeetAnotherTwiceAndRightAbove) {
   const double low = longest([](double period) { return refused(period); });
   EXPECT_NEAR(low / shortest, 1, 1e-3);
+  figure("shortest period over the largest radius and skin", 4 * low / shortest);
   for (const double share : {0.5, 0.8, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5, 2.0}) {
     const double period = share * low;
     EXPECT_EQ(refused(period), share < 1) << period / radius;

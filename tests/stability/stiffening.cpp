@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/mapped.hpp"
 #include "support/packing.hpp"
 
 namespace grit::test {
@@ -61,10 +62,14 @@ double error_of_pressing(const Description& d, double young, double deepest) {
 }
 
 TEST(Stiffening, WhatIsPressedPushesBackAsHertzSays) {
+  double most = 0;
   for (const double young : {1e7, 70e9})
-    for (const double deepest : {2e-4, 1e-3, 1e-2})
-      EXPECT_LT(error_of_pressing(press(young, slow(young, deepest * radius)), young, deepest * radius), 0.01)
-          << young << ' ' << deepest;
+    for (const double deepest : {2e-4, 1e-3, 1e-2}) {
+      const double error = error_of_pressing(press(young, slow(young, deepest * radius)), young, deepest * radius);
+      EXPECT_LT(error, 0.01) << young << ' ' << deepest;
+      most = std::max(most, error);
+    }
+  figure("error of the force of what is pressed from first touch on", most);
 }
 
 TEST(Stiffening, AnotherThatIsPressedHarderHidesNothing) {
@@ -79,6 +84,7 @@ TEST(Stiffening, AnotherThatIsPressedHarderHidesNothing) {
 }
 
 TEST(Stiffening, WhatFallsComesBackNoHigher) {
+  double most = 0;
   for (const double restitution : {1.0, 0.9, 0.5})
     for (const double height : {1e-6, 1e-5, 1e-4, 1e-3, 1e-2}) {
       Description d = description("hertz-mindlin", glass(1e9, restitution), {{{0, 0, radius + height}, radius}});
@@ -90,7 +96,9 @@ TEST(Stiffening, WhatFallsComesBackNoHigher) {
       while (!touched || t.velocity(0).z() > 0) t.step(), touched = touched || t.position(0).z() < radius;
       const double rise = (t.position(0).z() - radius) / height;
       EXPECT_LT(rise, restitution * restitution + 0.1) << restitution << ' ' << height;
+      most = std::max(most, rise - restitution * restitution);
     }
+  figure("height that is gained by a fall", most);
 }
 
 /// Closure of the ledger of some grains that fall into a box and come to rest, over what fell.
@@ -116,9 +124,14 @@ double closure_of_a_pour(double young, double restitution) {
 }
 
 TEST(Stiffening, WhatIsPouredGainsNothing) {
+  double most = 0;
   for (const double young : {1e8, 1e9})
-    for (const double restitution : {0.6, 0.9})
-      EXPECT_LT(closure_of_a_pour(young, restitution), 0.03) << young << ' ' << restitution;
+    for (const double restitution : {0.6, 0.9}) {
+      const double closure = closure_of_a_pour(young, restitution);
+      EXPECT_LT(closure, 0.03) << young << ' ' << restitution;
+      most = std::max(most, closure);
+    }
+  figure("closure error of what is poured", most);
 }
 
 /// What a packing does when all its walls have come in.
@@ -185,6 +198,7 @@ TEST(Stiffening, PackingThatIsPressedPushesBackAsAtATenthOfTheStep) {
     EXPECT_LT(one.unrest, 1e-4);
   }
   EXPECT_NEAR(usual.force / fine.force, 1, 1e-3);
+  figure("error of the force of a packing that is pressed", std::abs(usual.force / fine.force - 1));
   EXPECT_GT(usual.force, 25 * 0.5 * hertz(1e8, radius, 1.5e-3 * radius)) << "pressed";
 }
 

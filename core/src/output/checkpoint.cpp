@@ -10,7 +10,7 @@ namespace grit {
 namespace {
 
 /// Of the layout of the file and of what is in the memory.
-constexpr std::uint64_t format = 1;
+constexpr std::uint64_t format = 2;
 constexpr const char* advice = "go on with what began the run, or begin anew (--overwrite)";
 
 /// Wherever its file lies.

@@ -61,8 +61,11 @@ struct EnergyBook {
   double stored_at_start = 0;  ///< J, kinetic, elastic and gravitational, when the present settings began
   double work = 0;             ///< J, done by walls since then, but for half of the last step
   double largest = 0;          ///< J, largest kinetic and elastic energy since then
+  double closure_at_start = 0, dissipated_at_start = 0;  ///< J, of a ledger that was kept then
 
-  void remember(Memory& memory) { memory(begins, first, stored_at_start, work, largest); }
+  void remember(Memory& memory) {
+    memory(begins, first, stored_at_start, work, largest, closure_at_start, dissipated_at_start);
+  }
 };
 
 /// What has gone in and out since a component first asked [J].
@@ -245,7 +248,10 @@ class Simulation final : public World {
   void update_surfaces();
   void check_overlap(double largest) const;
   void check_periods() const;
+  /// Only gains trip. By the ledger where one is kept and complete, else by what is stored, so that what is dissipated
+  /// hides what appears. Without a ledger it does not look where work is done that is not reckoned at each step.
   void check_energy();
+  bool ledger_is_complete() const { return flows_.begun && flows_.complete; }
   bool energy_check_is_due() const;
   ElasticEnergy elastic_energy() const;
   /// At time(), by the forces that act there.

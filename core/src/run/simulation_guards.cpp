@@ -59,27 +59,37 @@ bool Simulation::energy_check_is_due() const {
 }
 
 void Simulation::check_energy() {
-  const bool begins = std::exchange(energy_.begins, false);
-  // What growth puts in is not reckoned at each step.
-  bool kept = all_work_is_kept() && growth_rate_ == 0;
-  // There is no potential along a periodic axis.
-  for (int k = 0; k < 3; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
+  const bool begins = std::exchange(energy_.begins, false), by_ledger = ledger_is_complete();
+  // Without a ledger, what growth puts in is not reckoned at each step.
+  bool kept = by_ledger || (all_work_is_kept() && growth_rate_ == 0);
+  // Nor is there a potential along a periodic axis.
+  for (int k = 0; k < 3 && !by_ledger; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
   if (!kept) {  // nor would what is not a number ever be too much
     if (begins) energy_.stored_at_start = std::numeric_limits<double>::quiet_NaN();
     return;
   }
   const double energy = kinetic_energy() + elastic_energy().total(), stored = energy + gravitational();
   const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
+  const EnergyLedger ledger = by_ledger ? energies() : EnergyLedger{};
   if (begins) {
-    energy_ = {.begins = false, .first = clock_.step, .stored_at_start = stored, .work = -last_half, .largest = energy};
+    energy_ = {.begins = false,
+               .first = clock_.step,
+               .stored_at_start = stored,
+               .work = -last_half,
+               .largest = energy,
+               .closure_at_start = ledger.closure_error,
+               .dissipated_at_start = ledger.dissipated()};
     return;
   }
   energy_.largest = std::max(energy_.largest, energy);
-  const double gained = stored - energy_.stored_at_start - (energy_.work + last_half);
-  if (gained > scene_->guards.energy * energy_.largest)
-    fail("energy came from nowhere: " + number(gained) + " J more than was put in, " +
-             number(gained / energy_.largest) + " of the largest energy so far; /guards/energy allows " +
-             number(scene_->guards.energy),
+  const double gained = by_ledger ? ledger.closure_error - energy_.closure_at_start
+                                  : stored - energy_.stored_at_start - (energy_.work + last_half);
+  // What went through is what a ledger may be wrong by a share of.
+  const double scale = energy_.largest + (ledger.dissipated() - energy_.dissipated_at_start);
+  if (gained > scene_->guards.energy * scale)
+    fail("energy came from nowhere: " + number(gained) + " J more than was put in, " + number(gained / scale) +
+             " of the largest energy so far" + (by_ledger ? " and of what was dissipated" : "") +
+             "; /guards/energy allows " + number(scene_->guards.energy),
          "the time step may be too large for the stiffest contact; try a smaller /time_step/safety");
 }
 

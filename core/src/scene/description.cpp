@@ -376,7 +376,11 @@ void TimeStepDescription::declare(Parameters& p) {
 void GuardsDescription::declare(Parameters& p) {
   p.add("overlap", overlap).above(0).doc("largest overlap, over the smaller radius");
   p.add("travel", travel).above(0).doc("largest way in one step, over the radius");
-  p.add("energy", energy).above(0).doc("largest share of the energy that may appear from nowhere");
+  p.add("energy", energy)
+      .above(0)
+      .doc(
+          "largest share of the energy that may appear from nowhere; dissipation hides gains unless an energy probe "
+          "looks; not looked at where a cell deforms, bodies are held or engines push them");
 }
 void EngineDescription::declare(Parameters& p) { p.choose(engine); }
 void ProbeDescription::declare(Parameters& p) {
