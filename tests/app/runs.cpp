@@ -175,26 +175,28 @@ TEST_F(Runs, SayThatTheDiskIsFull) {
 class Interrupted : public Runs, public testing::WithParamInterface<int> {};
 
 TEST_P(Interrupted, RunsAreSaved) {
-  Program program(grit_with({"run", "two.json", "--set", R"(/stages/0/until={"type": "time", "value": "1000 h"})",
-                             "--set", "/stages/0/limit=\"2000 h\"", "--set", "/output/frames/every_steps=100000000",
-                             "--set", "/probes/packing/every_steps=10000"}),
-                  folder.path());
+  Program program(
+      grit_with({"run", "two.json", "--out", "results/two of them", "--set",
+                 R"(/stages/0/until={"type": "time", "value": "1000 h"})", "--set", "/stages/0/limit=\"2000 h\"",
+                 "--set", "/output/frames/every_steps=100000000", "--set", "/probes/packing/every_steps=10000"}),
+      folder.path());
   ASSERT_TRUE(program.wait_for("1/1 part"));  // the first report of progress
   program.interrupt(GetParam());
   const auto outcome = program.finish();
   EXPECT_EQ(outcome.status, 130);
-  EXPECT_THAT(outcome.err, HasSubstr("interrupted; what was reached is saved in results/two"));
-  EXPECT_THAT(outcome.out, HasSubstr("results: results/two"));
-  const auto run = run_json("results/two");
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted; what was reached is saved in results/two of them; 'grit run "
+                                     "--resume \"results/two of them\"' goes on"));
+  EXPECT_THAT(outcome.out, HasSubstr("results: results/two of them"));
+  const auto run = run_json("results/two of them");
   EXPECT_EQ(run.at("status"), "interrupted");
   EXPECT_GT(run.at("steps"), 0);
-  EXPECT_THAT(text_of(folder / "results/two/series.h5"), StartsWith(hdf5_signature));
-  EXPECT_TRUE(exists("results/two/frames/000000.h5"));
-  EXPECT_TRUE(exists("results/two/packing.txt"));
-  EXPECT_THAT(outcome.out, HasSubstr("report: results/two/report.html"));
-  EXPECT_THAT(text_of(folder / "results/two/report.html"),
+  EXPECT_THAT(text_of(folder / "results/two of them/series.h5"), StartsWith(hdf5_signature));
+  EXPECT_TRUE(exists("results/two of them/frames/000000.h5"));
+  EXPECT_TRUE(exists("results/two of them/packing.txt"));
+  EXPECT_THAT(outcome.out, HasSubstr("report: results/two of them/report.html"));
+  EXPECT_THAT(text_of(folder / "results/two of them/report.html"),
               AllOf(HasSubstr(">interrupted</span>"), HasSubstr("Interrupted in stage "), HasSubstr("(1 of 1), "),
-                    HasSubstr("'grit run --resume results/two' goes on.")));
+                    HasSubstr("'grit run --resume &quot;results/two of them&quot;' goes on.")));
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "results"))
     EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
 }

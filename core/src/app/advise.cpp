@@ -9,6 +9,7 @@
 #include "app/shipped_studies.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
+#include "output/shell_word.hpp"
 #include "study/advice.hpp"
 #include "study/parts.hpp"
 
@@ -144,7 +145,7 @@ void print(const ChartedStudy& study, const std::string& file, std::vector<std::
         with_scatter(sum->error, sum->standard_error), sum->figure,
         unknown.empty() ? "" : fmt::format("; not counted: {}", fmt::join(unknown, ", ")));
   if (!any) return;
-  std::cout << "  grit run " << file;
+  std::cout << "  grit run " << shell_word(file);
   for (const auto& set : given) std::cout << " --set '" << set << '\'';
   std::cout << '\n';
 }

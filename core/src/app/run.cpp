@@ -16,6 +16,7 @@
 #include "output/checkpoint.hpp"
 #include "output/read_results.hpp"
 #include "output/results_folder.hpp"
+#include "output/shell_word.hpp"
 #include "report/report_page.hpp"
 #include "scene/make_bodies.hpp"
 #include "study/figures.hpp"
@@ -127,7 +128,7 @@ bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
   const auto other = done ? differences(facts.description, then) : differences_on_the_way(facts.description, then);
   if (!other.empty())
     throw Error(folder.string() + ": holds a run of another description:" + other +
-                "\n  go on with the description that it began with ('grit run --resume " + folder.string() +
+                "\n  go on with the description that it began with ('grit run --resume " + shell_word(folder.string()) +
                 "'), choose another folder (--out DIR) or replace it (--overwrite)");
   return done;
 }
@@ -220,7 +221,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   // Said before the page is made, which takes time with many grains: who cannot wait presses Ctrl-C again.
   if (summary.status == "interrupted")
     std::cerr << "interrupted; what was reached is saved in " << folder.string() << "; 'grit run --resume "
-              << folder.string() << "' goes on" << std::endl;
+              << shell_word(folder.string()) << "' goes on" << std::endl;
   if (!options.has("no-report")) make_report(folder);
   if (summary.status == "interrupted") return ExitStatus::interrupted;
   if (summary.status == "failed") throw NumericsError(summary.message + way_on(summary.message, folder));

@@ -9,6 +9,7 @@
 #include "output/colours.hpp"
 #include "output/page.hpp"
 #include "output/scale.hpp"
+#include "output/shell_word.hpp"
 #include "output/svg.hpp"
 #include "report/facts.hpp"
 #include "report/references.hpp"
@@ -150,7 +151,7 @@ std::string details(const RunResults& run) {
 std::string message_of(const RunResults& run) {
   std::string message = text_at(run, "/message");
   if (const std::string where = where_interrupted(run); message.empty() && !where.empty())
-    message = where + " 'grit run --resume " + run.folder.string() + "' goes on.";
+    message = where + " 'grit run --resume " + shell_word(run.folder.string()) + "' goes on.";
   return message.empty() ? "" : "<p class=\"message\">" + escaped(message) + "</p>\n";
 }
 

@@ -1,0 +1,28 @@
+#include "output/shell_word.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "support/program.hpp"
+
+namespace grit {
+namespace {
+
+TEST(ShellWord, StaysAsItIsWhereAShellTakesItSo) {
+  for (const char* word : {"results/quick-rn-0.25", "../a_b/C:1,2", "größe"}) EXPECT_EQ(shell_word(word), word);
+}
+
+TEST(ShellWord, IsQuotedWhereItIsNot) {
+  EXPECT_EQ(shell_word("my results/two"), "\"my results/two\"");
+  EXPECT_EQ(shell_word("a$HOME\"`\\"), R"("a\$HOME\"\`\\")");
+  EXPECT_EQ(shell_word(""), "\"\"");
+}
+
+TEST(ShellWord, IsReadBackByAShell) {
+  for (const std::string word : {"my results", "it's", "$HOME `ls` \\n \"x\"", "a;b&c|d>e<f*g?(h)[i]{j}~k#l", "größe"})
+    EXPECT_EQ(shell(".", "printf %s " + shell_word(word)).out, word);
+}
+
+}  // namespace
+}  // namespace grit
