@@ -80,6 +80,25 @@ TEST(Studies, SayWhatIsWrong) {
   EXPECT_THAT(problems_of(two_settings, R"(, "colour": 1)"), HasSubstr("/colour"));
 }
 
+TEST(Studies, NothingIsChangedTwice) {
+  EXPECT_THAT(
+      problems_of(R"({"r": {"pointers": ["/a", "/r"], "values": [[1, 1], [2, 2]]},
+                              "s": {"pointers": ["/r"], "values": [3, 4]}})"),
+      HasSubstr("/settings/s/pointers/0: found /r, of which /settings/r/pointers/1 changes /r; allowed is what no "
+                "other setting and no seed changes"));
+  EXPECT_THAT(
+      problems_of(R"({"r": {"pointers": ["/t/step"], "values": [1, 2]}, "s": {"pointers": ["/t"], "values": [3, 4]}})"),
+      HasSubstr("/settings/s/pointers/0: found /t, of which /settings/r/pointers/0 changes /t/step"));
+  EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/seed"], "values": [1, 2]}})"),
+              HasSubstr("/seeds/pointer: found /seed, of which /settings/r/pointers/0 changes /seed"));
+  EXPECT_THAT(problems_of(two_settings, R"(, "set": {"/a/part": 1})"),
+              HasSubstr("/set: found /a/part, of which /settings/size/pointers/0 changes /a"));
+  EXPECT_EQ(problems_of(R"({"r": {"pointers": ["/t/step"], "values": [1, 2]}, "s": {"pointers": ["/t/steps"],
+    "values": [3, 4]}})",
+                        R"(, "set": {"/t": {}})"),
+            "");
+}
+
 TEST(Studies, AFigureIsOfAChannelAndHasTheReferenceOfItsKind) {
   const auto figure = [](const std::string& text) {
     const OwnFolder folder;

@@ -22,6 +22,36 @@ std::string plain(const Description& value) {
   return text;
 }
 
+/// A pointer, and where in the study it stands.
+struct Changed {
+  std::string pointer, where;
+};
+
+/// Whether what the first pointer changes has all that the second does.
+bool covers(const std::string& one, const std::string& other) { return (other + '/').starts_with(one + '/'); }
+
+/// What is changed twice has the value of the last, and a chart of it is of runs that do not differ.
+void check_pointers(const StudyDescription& study, const Complain& complain) {
+  std::vector<Changed> varied;
+  for (const auto& [name, setting] : study.settings)
+    for (std::size_t i = 0; i < setting.pointers.size(); ++i)
+      varied.push_back({setting.pointers[i], fmt::format("settings/{}/pointers/{}", name, i)});
+  varied.push_back({study.seeds.pointer, "seeds/pointer"});
+  for (std::size_t i = 0; i < varied.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (covers(varied[i].pointer, varied[k].pointer) || covers(varied[k].pointer, varied[i].pointer))
+        complain(varied[i].where,
+                 fmt::format("{}, of which /{} changes {}", varied[i].pointer, varied[k].where, varied[k].pointer),
+                 "what no other setting and no seed changes");
+  // What is set first may be varied in part.
+  if (!study.set.is_object()) return;
+  for (const auto& [pointer, value] : study.set.items())
+    for (const Changed& one : varied)
+      if (covers(one.pointer, pointer))
+        complain("set", fmt::format("{}, of which /{} changes {}", pointer, one.where, one.pointer),
+                 "what no setting and no seed changes");
+}
+
 }  // namespace
 
 void MeanFigure::declare(Parameters& p) {
@@ -129,6 +159,7 @@ void StudyDescription::declare(Parameters& p) {
         if (figures.empty()) complain("figures", "none", "at least one");
       },
       {"set", "settings", "figures"});
+  p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"set", "settings", "seeds"});
 }
 
 StudyDescription load_study(const std::filesystem::path& path) {

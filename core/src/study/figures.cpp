@@ -98,11 +98,20 @@ Figure value_of(const FigureDescription& figure, const Figure& all) {
   return one(all.y.back(), all.unit);
 }
 
+/// A line as it is on any system: without what ends it elsewhere, and without the mark of UTF-8 that some begin with.
+bool get_line(std::istream& stream, std::string& line) {
+  const bool first = stream.tellg() == std::streampos(0);
+  if (!std::getline(stream, line)) return false;
+  if (first && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
+  if (line.ends_with('\r')) line.pop_back();
+  return true;
+}
+
 std::vector<std::string> cells(const std::string& line) {
   std::vector<std::string> all;
   std::istringstream stream(line);
   for (std::string cell; std::getline(stream, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\r\""), last = cell.find_last_not_of(" \t\r\"");
+    const auto first = cell.find_first_not_of(" \t\""), last = cell.find_last_not_of(" \t\"");
     all.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
   }
   return all;
@@ -123,14 +132,14 @@ double at(const Figure& curve, double x) {
 Figure take_figure(const FigureDescription& figure, const std::filesystem::path& folder) {
   const SampledChannel of = read_channel(folder, figure.of);
   const std::string where = (folder / "series.h5").string() + ": " + figure.of;
-  if (of.samples == 0) throw FileError(where + " has no sample");
+  if (of.samples == 0) throw NumericsError(figure.of + " has no sample");
   const bool profile = std::holds_alternative<ProfileFigure>(figure.what.value());
   if (!profile && of.values.size() != of.samples)
     throw FileError(where + " has several numbers a sample, which only a profile takes");
   const SampledChannel against = abscissa_of(figure, of, folder, where);
   const Figure all =
       finite(profile ? last_row(against) : against.values, profile ? last_row(of) : of.values, of.unit, against.unit);
-  if (all.x.empty()) throw FileError(where + " has no finite number");
+  if (all.x.empty()) throw NumericsError(figure.of + " has no finite number");
   return figure.is_curve() ? rising(all) : value_of(figure, all);
 }
 
@@ -138,7 +147,7 @@ Figure read_reference(const ReferenceCurve& curve) {
   std::ifstream file(curve.file);
   if (!file) throw FileError(curve.file + ": cannot be read");
   std::string line;
-  std::getline(file, line);
+  get_line(file, line);
   const auto names = cells(line);
   const auto column = [&](const std::string& name) {
     const auto found = std::ranges::find(names, name);
@@ -148,7 +157,7 @@ Figure read_reference(const ReferenceCurve& curve) {
   };
   const std::size_t x = column(curve.x), y = column(curve.y);
   std::vector<double> xs, ys;
-  for (int number = 2; std::getline(file, line); ++number) {
+  for (int number = 2; get_line(file, line); ++number) {
     const auto row = cells(line);
     if (row.empty() || row.front().starts_with('#')) continue;
     try {

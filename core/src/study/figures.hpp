@@ -15,8 +15,8 @@ struct Figure {
   std::string unit, x_unit;
 };
 
-/// Throws FileError if the run has no such channel, no finite number of it, or samples its abscissa at other instants;
-/// NumericsError if it did not reach the abscissa of a value.
+/// Throws FileError if the run has no such channel, or samples its abscissa at other instants; NumericsError if it has
+/// no finite number of it, or did not reach the abscissa of a value.
 Figure take_figure(const FigureDescription& figure, const std::filesystem::path& folder);
 
 /// The curve that a description gives. Throws FileError.
