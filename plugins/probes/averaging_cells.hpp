@@ -60,6 +60,11 @@ class CellAxis {
     return static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(strips()) - 1));
   }
+  /// The same where it is strip `from` or one of the few behind it.
+  std::size_t strip(double x, std::size_t from) const {
+    while (from + 1 < strips() && edges_[from + 1] <= x) ++from;
+    return from;
+  }
 
  private:
   std::vector<Cell> cells_;
@@ -120,7 +125,7 @@ class AveragingCells {
       std::array<std::size_t, 3> first, count;
       for (int k = 0; k < 3; ++k)
         first[axis(k)] = along(k).strip(place[k] - radius),
-        count[axis(k)] = along(k).strip(place[k] + radius) - first[axis(k)] + 1;
+        count[axis(k)] = along(k).strip(place[k] + radius, first[axis(k)]) - first[axis(k)] + 1;
       const auto [x, y, z] = first;
       // What lies in all parts up to one: most of these are cut by fewer planes than the parts are.
       Volumes volumes;
@@ -131,10 +136,10 @@ class AveragingCells {
       // Differences along one axis after the other, from the end on, leave each part its own.
       std::size_t apart = 1;
       for (int axis_of = 2; axis_of >= 0; --axis_of) {
-        const std::size_t along_axis = count[axis(axis_of)];
-        for (std::size_t n = volumes.size(); n-- > 0;)
-          if (n / apart % along_axis > 0) volumes[n] -= volumes[n - apart];
-        apart *= along_axis;
+        const std::size_t line = apart * count[axis(axis_of)];
+        for (std::size_t start = 0; start < volumes.size(); start += line)
+          for (std::size_t n = start + line; n-- > start + apart;) volumes[n] -= volumes[n - apart];
+        apart = line;
       }
       const double rounding = 1e-14 * radius * radius * radius;  // is nothing where there was nothing
       std::size_t n = 0;

@@ -28,8 +28,13 @@ Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-template <bool Energies, bool Clumps>
-Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
+/// What of the bodies' energies is kept. Constants for the compiler: it would divide by what may not be needed, for
+/// every body, and a division by body is what a ledger costs most.
+enum class Ledger { none, without_weight, with_weight };
+
+/// Not inlined: all of them in one function would have their constants in memory.
+template <Ledger ledger, bool Clumps>
+[[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
@@ -41,10 +46,13 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
   const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
-  const bool falls = !settings.gravity.isZero(0.0);
+  constexpr bool falls = ledger == Ledger::with_weight;
   const Quad weight = quad(settings.gravity);
   Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{};
   double fastest_carried = 0;
+  // What is stored might be the arrays' own pointers for all that the compiler knows.
+  Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
+             *const spin = bodies.spin.data();
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
@@ -53,17 +61,16 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
         continue;
       }
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
-    Quad x = load(bodies.position[i]), v = load(bodies.velocity[i]), w = load(bodies.spin[i]);
-    const double inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
+    Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
+    const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
     v += growth * v;
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
-    // Forces are at hand where nothing falls: a division by body is what a ledger would cost most.
-    const double mass = Energies && falls ? 1 / inverse_mass : 0;
+    const double mass = falls ? 1 / inverse_mass : 0;
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
-      if constexpr (Energies) {
+      if constexpr (ledger != Ledger::none) {
         damped_power += taken(falls ? force + weight * mass : force, push, v - flow) * (v + 0.5 * pushed);
         damped_turning += taken(moment, twist, w) * (w + 0.5 * twisted);
       }
@@ -71,8 +78,8 @@ Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionS
     }
     v += push, w += twist;
     x += v * drift;
-    if (Energies && falls) momentum += v * mass;
-    store(x, bodies.position[i]), store(v, bodies.velocity[i]), store(w, bodies.spin[i]);
+    if constexpr (falls) momentum += v * mass;
+    store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;
     poison += v * 0.0 + w * 0.0;
@@ -101,9 +108,13 @@ Vec3 MotionStep::free_rotation() const {
 }
 
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
-  if (bodies.clumps.none())
-    return step.energies ? move<true, false>(chunk, bodies, sum, step) : move<false, false>(chunk, bodies, sum, step);
-  return step.energies ? move<true, true>(chunk, bodies, sum, step) : move<false, true>(chunk, bodies, sum, step);
+  const auto with = [&]<Ledger ledger>() {
+    return bodies.clumps.none() ? move<ledger, false>(chunk, bodies, sum, step)
+                                : move<ledger, true>(chunk, bodies, sum, step);
+  };
+  if (!step.energies) return with.operator()<Ledger::none>();
+  return step.settings.gravity.isZero(0.0) ? with.operator()<Ledger::without_weight>()
+                                           : with.operator()<Ledger::with_weight>();
 }
 
 }  // namespace grit

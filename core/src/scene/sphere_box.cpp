@@ -78,36 +78,42 @@ double piece(const double* plane, int planes) {
 
 double sphere_box_volume(const Vec3& centre, double radius, const Vec3& low, const Vec3& high) {
   double outside = 0, farthest = 0, nearest_face = radius;
+  int planes = 0;
+  double plane = 0;  // from the centre towards the inside
   for (int k = 0; k < 3; ++k) {
     const double below = low[k] - centre[k], above = high[k] - centre[k];
     if (!(below < above)) return 0;
     const double gap = std::max({below, -above, 0.0}), far = std::max(-below, above);
     outside += gap * gap, farthest += far * far;
     nearest_face = std::min({nearest_face, -below, above});
+    for (const double to : {below, -above})
+      if (std::abs(to) < radius) ++planes, plane = to;
   }
   const double cube = radius * radius * radius;
   if (nearest_face >= radius) return ball * cube;
   if (outside >= radius * radius) return 0;
   const double box = (high - low).prod();
   if (farthest <= radius * radius) return box;
+  // Most spheres that are cut are cut once.
+  if (planes == 1) return std::min(box, (plane < 0 ? ball - cap(-plane / radius) : cap(plane / radius)) * cube);
 
   const Vec3 from = (low - centre) / radius, to = (high - centre) / radius;
   const Side x(from[0], to[0]), y(from[1], to[1]), z(from[2], to[2]);
   double sum = 0;
-  double plane[3];
+  double cuts[3];
   for (int i = 0; i < 3; ++i) {
     if (x.weight[i] == 0) continue;
     int cut_x = 0;
-    if (i > 0) plane[cut_x++] = x.plane[i];
+    if (i > 0) cuts[cut_x++] = x.plane[i];
     for (int j = 0; j < 3; ++j) {
       if (y.weight[j] == 0) continue;
       int cut_y = cut_x;
-      if (j > 0) plane[cut_y++] = y.plane[j];
+      if (j > 0) cuts[cut_y++] = y.plane[j];
       for (int k = 0; k < 3; ++k) {
         if (z.weight[k] == 0) continue;
         int cut_z = cut_y;
-        if (k > 0) plane[cut_z++] = z.plane[k];
-        sum += x.weight[i] * y.weight[j] * z.weight[k] * piece(plane, cut_z);
+        if (k > 0) cuts[cut_z++] = z.plane[k];
+        sum += x.weight[i] * y.weight[j] * z.weight[k] * piece(cuts, cut_z);
       }
     }
   }

@@ -22,9 +22,10 @@ class Spread {
     std::array<Places, 3> rows;
     for (int axis = 0; axis < 3; ++axis) rows[static_cast<std::size_t>(axis)] = on(axis, place, low, high);
     for (const Place& x : rows[0])
-      for (const Place& y : rows[1])
-        for (const Place& z : rows[2])
-          visit(fields[(x.index * grid_.count[1] + y.index) * grid_.count[2] + z.index], Vec3(x.off, y.off, z.off));
+      for (const Place& y : rows[1]) {
+        CoarseFields* const line = fields.data() + (x.index * grid_.count[1] + y.index) * grid_.count[2];
+        for (const Place& z : rows[2]) visit(line[z.index], Vec3(x.off, y.off, z.off));
+      }
   }
 
  private:
@@ -68,11 +69,12 @@ std::vector<CoarseFields> coarse_fields(const World& world, const PointGrid& gri
 
   const auto add_grain = [&](const Vec3& centre, const Vec3& velocity, double mass) {
     const Vec3 zero = Vec3::Zero();
+    const Mat3 flux = velocity * velocity.transpose();
     spread(fields, centre, zero, zero, [&](CoarseFields& field, const Vec3& off) {
       const double weight = mass * kernel(off.norm());
       if (weight == 0) return;
       field.density += weight, field.momentum += weight * velocity;
-      field.kinetic += weight * velocity * velocity.transpose();
+      field.kinetic += weight * flux;
     });
   };
   const auto clump_of = world.clump_of();

@@ -44,16 +44,18 @@ class Lucy {
  private:
   /// Of φ from one place to another along a line that passes the middle at the distance √off2, all in m.
   double integral(double from, double to, double off2) const {
-    const double c2 = cutoff_ * cutoff_, r_from = std::sqrt(off2 + from * from), r_to = std::sqrt(off2 + to * to);
+    const double per = 1 / cutoff_, per2 = per * per, r_from = std::sqrt(off2 + from * from),
+                 r_to = std::sqrt(off2 + to * to);
     const auto polynomial = [&](double u, double r) {
       const double u2 = u * u, r2 = off2 + u2;
-      const double second = u * (off2 + u2 / 3), fourth = u * (off2 * off2 + u2 * (2 * off2 / 3 + u2 / 5));
-      return u - 6 * second / c2 + u * r * (2 * r2 + 3 * off2) / (c2 * cutoff_) - 3 * fourth / (c2 * c2);
+      const double second = off2 + u2 * (1.0 / 3), fourth = off2 * off2 + u2 * (2.0 / 3 * off2 + 0.2 * u2);
+      return u * (1 + per2 * (per * r * (2 * r2 + 3 * off2) - 6 * second - 3 * per2 * fourth));
     };
     // The difference of asinh(u / off) by one logarithm of (u + r) / off, which below 0 is off / (r − u).
     const auto end = [off2](double u, double r) { return u < 0 ? off2 / (r - u) : u + r; };
-    const double turn = off2 > 1e-32 * c2 ? 3 * off2 * off2 * std::log(end(to, r_to) / end(from, r_from)) : 0;
-    return scale_ * (polynomial(to, r_to) - polynomial(from, r_from) + turn / (c2 * cutoff_));
+    const double turn =
+        off2 * per2 > 1e-32 ? 3 * off2 * off2 * std::log(end(to, r_to) / end(from, r_from)) * (per2 * per) : 0;
+    return scale_ * (polynomial(to, r_to) - polynomial(from, r_from) + turn);
   }
 
   double cutoff_, scale_;

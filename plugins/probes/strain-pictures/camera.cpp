@@ -153,14 +153,20 @@ struct RayColumns {
   std::ptrdiff_t first, last;
 };
 
+/// Whether all that the rays of these columns have met is in front of a disc.
+bool is_hidden(const Disc& disc, const RayColumns& reach, const float* depth) {
+  const auto front = static_cast<float>(disc.depth - disc.radius);
+  int hidden = 1;
+  for (std::ptrdiff_t i = reach.first; i <= reach.last; ++i) hidden &= depth[i] < front ? 1 : 0;
+  return hidden != 0;
+}
+
 /// Where disc n is in front of what they have met so far. Loops without branches: they vectorise.
 void meet(const Disc& disc, std::uint32_t n, const RayColumns& reach, double y, std::ptrdiff_t columns,
           const RayRow& row) {
-  const auto front = static_cast<float>(disc.depth - disc.radius);
-  int hidden = 1;
-  for (std::ptrdiff_t i = reach.first; i <= reach.last; ++i) hidden &= row.depth[i] < front ? 1 : 0;
+  if (is_hidden(disc, reach, row.depth)) return;
   const double dy = y - disc.y, square = disc.radius * disc.radius - dy * dy;
-  if (hidden != 0 || !(square > 0)) return;
+  if (!(square > 0)) return;
   const double half = std::sqrt(square);
   const std::ptrdiff_t left = first_ray(disc.x - half, 0), right = last_ray(disc.x + half, columns);
   const int count = static_cast<int>(right - left + 1);
@@ -246,6 +252,7 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
   Image image(width, height);
   Exposure exposure(image);
   std::vector<float> depth(static_cast<std::size_t>(columns * band_rows)), light(static_cast<std::size_t>(columns));
+  std::vector<float> deepest(light.size());  // of each column's rays in a band: most discs are behind that
   std::vector<std::uint32_t> who(depth.size());
   for (std::ptrdiff_t band = 0; band < bands; ++band) {
     const std::ptrdiff_t begin = band * band_rows, end = std::min(begin + band_rows, rows);
@@ -258,14 +265,22 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
                 std::numeric_limits<float>::infinity());
       std::fill(who.begin() + row * columns + left, who.begin() + row * columns + right, nobody);
     }
+    std::fill(deepest.begin() + left, deepest.begin() + right, std::numeric_limits<float>::infinity());
     const auto row = [&](std::ptrdiff_t j) -> RayRow {
       return {depth.data() + (j - begin) * columns, who.data() + (j - begin) * columns};
     };
     for (const std::uint32_t n : in_band[static_cast<std::size_t>(band)]) {
       const Disc& disc = near[n];
       const RayColumns reach{first_ray(disc.x - disc.radius, 0), last_ray(disc.x + disc.radius, columns)};
+      if (is_hidden(disc, reach, deepest.data())) continue;
       const auto low = first_ray(disc.y - disc.radius, begin), high = last_ray(disc.y + disc.radius, end);
       for (std::ptrdiff_t j = low; j <= high; ++j) meet(disc, n, reach, place(j), columns, row(j));
+      std::copy(row(begin).depth + reach.first, row(begin).depth + reach.last + 1, deepest.begin() + reach.first);
+      for (std::ptrdiff_t j = begin + 1; j < end; ++j)
+        for (std::ptrdiff_t i = reach.first; i <= reach.last; ++i) {
+          float& most = deepest[static_cast<std::size_t>(i)];
+          most = std::max(most, row(j).depth[i]);
+        }
     }
     for (std::ptrdiff_t j = begin; j < end; ++j) {
       const RayRow met = row(j);
