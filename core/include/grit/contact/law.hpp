@@ -618,17 +618,19 @@ class LawPlugin final : public ContactLaw {
   template <class L>
   void pairs(PairBatch& batch) const {
     with_features([&]<unsigned F>() {
-      // The twin and mixtures take the general loop; others are worth their compilation, in single precision and with
-      // the ledger one for periodic scenes and those that are not.
+      // The twin and mixtures take the general loop; others are worth their compilation, in single precision one for
+      // periodic scenes and those that are not.
       const bool general = lane_width<L> == 1 || batch.material != nullptr, ledger = batch.losses != nullptr;
       if (general && ledger) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
       else if (general) detail::evaluate_pairs<Law, F, L, true, false, false>(batch, table_.data(), count_);
       else if constexpr (lane_width<L> > 1) {
-        if (ledger) detail::evaluate_pairs<Law, F, L, true, true, true>(batch, table_.data(), count_);
-        else if (is_single<L> || batch.image != nullptr)
-          detail::evaluate_pairs<Law, F, L, true, true, false>(batch, table_.data(), count_);
-        else if constexpr (!is_single<L>)
-          detail::evaluate_pairs<Law, F, L, false, true, false>(batch, table_.data(), count_);
+        if (is_single<L> || batch.image != nullptr) {
+          if (ledger) detail::evaluate_pairs<Law, F, L, true, true, true>(batch, table_.data(), count_);
+          else detail::evaluate_pairs<Law, F, L, true, true, false>(batch, table_.data(), count_);
+        } else if constexpr (!is_single<L>) {
+          if (ledger) detail::evaluate_pairs<Law, F, L, false, true, true>(batch, table_.data(), count_);
+          else detail::evaluate_pairs<Law, F, L, false, true, false>(batch, table_.data(), count_);
+        }
       }
     });
   }
