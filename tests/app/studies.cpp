@@ -302,6 +302,22 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
   EXPECT_EQ(advise({"--tolerance", "5"}).status, 1) << "500 %";
   EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);
+  folder.write("it's two.json", text_of(folder / "two.json"));
+  EXPECT_THAT(grit({"advise", "it's two.json", "--study", chart, "--set", "/time_step/safety=0.01", "--tolerance", "1%",
+                    "--set", "/title=it's"})
+                  .out,
+              HasSubstr("grit run \"it's two.json\" --set '/time_step/safety=0.01' --set \"/title=it's\""));
+  EXPECT_THAT(fine.out, HasSubstr("whose scene has the same parts"));
+  const auto other = advise({"--set", R"(/engines/gravity={"type": "gravity"})"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, AllOf(HasSubstr(chart + ": is of a scene without a scenario, and two.json is a scene without"),
+                               HasSubstr("(there is no \"engine gravity: gravity\")"),
+                               HasSubstr("run a study of your own scene")));
+  const auto sheared =
+      grit({"advise", std::string(GRIT_SOURCE_DIR) + "/sims/direct-shear/quick.json", "--study", chart});
+  EXPECT_EQ(sheared.status, 2);
+  EXPECT_THAT(sheared.err, HasSubstr("quick.json is the scenario \"direct-shear\", so that nothing may be relaxed"));
+  EXPECT_EQ(sheared.out, "");
   charted["advice"] = false;
   folder.write("sand.json", charted.dump());
   const auto sand = grit({"advise", "two.json", "--study", "sand.json"});
