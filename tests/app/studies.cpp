@@ -98,6 +98,31 @@ TEST_F(Studies, EndWithStatus4IfTheReferenceFails) {
   EXPECT_THAT(outcome.out, HasSubstr("nothing to compare with"));
 }
 
+TEST_F(Studies, SayWhichFigureCannotBeCharted) {
+  auto changed = json::parse(study);
+  folder.write("lab.csv", "x,y\n500,1\n1000,2\n");
+  changed["figures"]["begin"] = {{"type", "minimum"}, {"of", "packing/kinetic_energy"}};
+  changed["figures"]["lab"] = {
+      {"type", "curve"}, {"of", "packing/kinetic_energy"}, {"curve", {{"file", "lab.csv"}, {"x", "x"}, {"y", "y"}}}};
+  folder.write("study.json", changed.dump());
+  const auto some = grit({"chart", "study.json"});
+  EXPECT_EQ(some.status, 0);
+  EXPECT_THAT(some.err, AllOf(HasSubstr("grit: not charted: begin: its reference is 0"),
+                              HasSubstr("grit: not charted: lab: no run has an abscissa in common")));
+  EXPECT_THAT(some.out, HasSubstr("safety=0.1: "));
+  const json figures = chart().at("figures");
+  EXPECT_THAT(figures.at("lab").at("not_charted").get<std::string>(), HasSubstr("mind the units"));
+  EXPECT_GT(figures.at("energy").at("scale"), 0);
+  changed["figures"].erase("energy");
+  folder.write("study.json", changed.dump());
+  const auto none = grit({"chart", "study.json"});
+  EXPECT_EQ(none.status, 4);
+  EXPECT_THAT(none.out, HasSubstr("No figure could be charted."));
+  const auto advice = grit({"advise", "two.json", "--study", "results/study/chart.json"});
+  EXPECT_EQ(advice.status, 5);
+  EXPECT_THAT(advice.err, HasSubstr("has no errors of any figure"));
+}
+
 TEST_F(Studies, BeginNothingThatCannotBeRun) {
   auto changed = json::parse(study);
   changed["settings"]["safety"]["pointers"] = {"/time_step/safty"};

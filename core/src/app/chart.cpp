@@ -307,6 +307,7 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   write_atomically(out / "chart.csv", to_csv(chart));
   write_atomically(out / "chart.html", chart_page(chart));
   print(chart);
+  for (const std::string& line : not_charted(chart)) std::cerr << "grit: not charted: " << line << std::endl;
   std::cout << "chart: " << (out / "chart.html").string() << '\n';
   return chart.reference.empty() ? ExitStatus::numerics : ExitStatus::done;
 }
