@@ -123,6 +123,31 @@ TEST_F(Studies, SayWhichFigureCannotBeCharted) {
   EXPECT_THAT(advice.err, HasSubstr("has no errors of any figure"));
 }
 
+TEST_F(Studies, AreOneAtATimeInAFolder) {
+  auto changed = json::parse(study);
+  changed["set"]["/stages/0/until"]["value"] = "1 s";
+  changed["set"]["/stages/0/limit"] = "2 s";
+  folder.write("long.json", changed.dump());
+  Program first(grit_with({"chart", "long.json", "--jobs", "1"}), folder.path());
+  ASSERT_TRUE(first.wait_for("at work"));
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const auto& one : std::filesystem::recursive_directory_iterator(folder / "results"))
+      if (one.path().string().find("usual/seed-1") == std::string::npos) all.push_back(one.path());
+    return all;
+  };
+  const auto before = names();
+  for (const char* way : {"--quiet", "--draw"}) {
+    const auto second = grit({"chart", "long.json", way});
+    EXPECT_EQ(second.status, 5);
+    EXPECT_THAT(second.err, HasSubstr("results/long: another 'grit chart'"));
+  }
+  EXPECT_EQ(names(), before);
+  EXPECT_EQ(grit({"chart", "long.json", "--dry"}).status, 0);
+  first.interrupt();
+  EXPECT_EQ(first.finish().status, 130);
+}
+
 TEST_F(Studies, BeginNothingThatCannotBeRun) {
   auto changed = json::parse(study);
   changed["settings"]["safety"]["pointers"] = {"/time_step/safty"};
@@ -149,7 +174,19 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   EXPECT_THAT(file.err, HasSubstr("none.csv: cannot be read"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   EXPECT_EQ(grit({"chart"}).status, 1);
-  EXPECT_EQ(grit({"chart", "study.json", "--jobs", "0"}).status, 1);
+  for (const char* jobs : {"0", "-1", "2x"}) {
+    const auto number = grit({"chart", "study.json", "--jobs", jobs});
+    EXPECT_EQ(number.status, 1);
+    EXPECT_THAT(number.err, HasSubstr("--jobs takes a number from 1 to 1024, not \"" + std::string(jobs) + '"'));
+  }
+  changed = json::parse(study);
+  changed["settings"]["damping"]["pointers"] = {"/time_step/safety"};
+  folder.write("twice.json", changed.dump());
+  const auto twice = grit({"chart", "twice.json"});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_THAT(twice.err, HasSubstr("/settings/safety/pointers/0: found /time_step/safety, of which "
+                                   "/settings/damping/pointers/0 changes /time_step/safety"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   const auto both = grit({"chart", "study.json", "--dry", "--draw"});
   EXPECT_EQ(both.status, 1);
   EXPECT_THAT(both.err, HasSubstr("--draw does none: give one of them"));
