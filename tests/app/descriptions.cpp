@@ -92,10 +92,41 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   EXPECT_THAT(check({"/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0"}),
               HasSubstr("  /materials/sand/rolling_stiffness: rolling_limit is 0, so that no moment comes of it"));
   EXPECT_THAT(check({"/materials/sand/rolling_limit=0"}), testing::Not(HasSubstr("without effect")));
+  EXPECT_THAT(check({"/materials/sand/rolling_stiffness=0", "/materials/sand/rolling_limit=0.3"}),
+              HasSubstr("  /materials/sand/rolling_limit: rolling_stiffness is 0, so that no moment comes of it"));
+  EXPECT_THAT(check({"/materials/sand/rolling_stiffness=0", R"(/materials/steel={"rolling_stiffness": 0})",
+                     R"(/interfaces/sand+steel={"rolling_limit": 0.3})"}),
+              AllOf(HasSubstr("  /interfaces/sand+steel/rolling_limit: rolling_stiffness is 0"),
+                    HasSubstr("  /interfaces/sand+steel: sand and steel never meet\n")));
+  const std::string floor = R"(/walls/floor={"type": "plane", "point": [0, 0, "-2 mm"], "material": "steel"})";
+  const std::string own = R"(/interfaces/sand+sand={"friction_angle": 0.3})";
+  EXPECT_THAT(check({"/materials/steel={}", floor, own, R"(/interfaces/sand+steel={"friction_angle": 0.3})"}),
+              testing::Not(HasSubstr("without effect")));
+  EXPECT_THAT(check({"/materials/steel={}", floor, R"(/interfaces/steel+steel={"friction_angle": 0.3})"}),
+              HasSubstr("  /interfaces/steel+steel: no two things of steel meet\n"));
+  EXPECT_THAT(check({R"(/output/frames={"every_time": 1e-12})"}),
+              HasSubstr("  /output/frames/every_time: 1e-12 s is less than a step takes, "));
+  EXPECT_THAT(check({R"(/output/frames={"every_time": 1e-3})"}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})",
                      R"(/stages/0/change={"engines": {"damping": {"coefficient": 0.3}}})"}),
               testing::Not(HasSubstr("without effect")))
       << "a stage switches it on";
+}
+
+TEST(Descriptions, CheckRefusesChannelsThatNoProbeHas) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto outcome = grit_in(
+      folder.path(), {"check", "two.json", "--set", R"(/output/picture={"x": "packing/time", "y": ["packing/nope"]})",
+                      "--set", R"(/output/references={"a": {"of": "test/x", "value": 1}})", "--set",
+                      R"(/output/summary=["packing/kinetic_energy", "packing/none"])"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(HasSubstr("two.json: /output/picture/y/0: found \"packing/nope\", which no probe has as one number; "
+                      "allowed is one of packing/time, "),
+            HasSubstr("/output/references/a/of: found \"test/x\""),
+            HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")));
 }
 
 TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {

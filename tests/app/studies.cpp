@@ -99,6 +99,56 @@ TEST_F(Studies, EndWithStatus4IfTheReferenceFails) {
   EXPECT_THAT(outcome.out, HasSubstr("nothing to compare with"));
 }
 
+TEST_F(Studies, SayWhichFigureCannotBeCharted) {
+  auto changed = json::parse(study);
+  folder.write("lab.csv", "x,y\n500,1\n1000,2\n");
+  changed["figures"]["begin"] = {{"type", "minimum"}, {"of", "packing/kinetic_energy"}};
+  changed["figures"]["lab"] = {
+      {"type", "curve"}, {"of", "packing/kinetic_energy"}, {"curve", {{"file", "lab.csv"}, {"x", "x"}, {"y", "y"}}}};
+  folder.write("study.json", changed.dump());
+  const auto some = grit({"chart", "study.json"});
+  EXPECT_EQ(some.status, 0);
+  EXPECT_THAT(some.err, AllOf(HasSubstr("grit: not charted: begin: its reference is 0"),
+                              HasSubstr("grit: not charted: lab: no run has an abscissa in common")));
+  EXPECT_THAT(some.out, HasSubstr("safety=0.1: "));
+  const json figures = chart().at("figures");
+  EXPECT_THAT(figures.at("lab").at("not_charted").get<std::string>(), HasSubstr("mind the units"));
+  EXPECT_GT(figures.at("energy").at("scale"), 0);
+  changed["figures"].erase("energy");
+  folder.write("study.json", changed.dump());
+  const auto none = grit({"chart", "study.json"});
+  EXPECT_EQ(none.status, 4);
+  EXPECT_THAT(none.out, HasSubstr("No figure could be charted."));
+  const auto advice = grit({"advise", "two.json", "--study", "results/study/chart.json"});
+  EXPECT_EQ(advice.status, 5);
+  EXPECT_THAT(advice.err, HasSubstr("has no errors of any figure"));
+}
+
+TEST_F(Studies, AreOneAtATimeInAFolder) {
+  auto changed = json::parse(study);
+  changed["set"]["/stages/0/until"]["value"] = "1 s";
+  changed["set"]["/stages/0/limit"] = "2 s";
+  folder.write("long.json", changed.dump());
+  Program first(grit_with({"chart", "long.json", "--jobs", "1"}), folder.path());
+  ASSERT_TRUE(first.wait_for("at work"));
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const auto& one : std::filesystem::recursive_directory_iterator(folder / "results"))
+      if (one.path().string().find("usual/seed-1") == std::string::npos) all.push_back(one.path());
+    return all;
+  };
+  const auto before = names();
+  for (const char* way : {"--quiet", "--draw"}) {
+    const auto second = grit({"chart", "long.json", way});
+    EXPECT_EQ(second.status, 5);
+    EXPECT_THAT(second.err, HasSubstr("results/long: another 'grit chart'"));
+  }
+  EXPECT_EQ(names(), before);
+  EXPECT_EQ(grit({"chart", "long.json", "--dry"}).status, 0);
+  first.interrupt();
+  EXPECT_EQ(first.finish().status, 130);
+}
+
 TEST_F(Studies, BeginNothingThatCannotBeRun) {
   auto changed = json::parse(study);
   changed["settings"]["safety"]["pointers"] = {"/time_step/safty"};
@@ -125,7 +175,19 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   EXPECT_THAT(file.err, HasSubstr("none.csv: cannot be read"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   EXPECT_EQ(grit({"chart"}).status, 1);
-  EXPECT_EQ(grit({"chart", "study.json", "--jobs", "0"}).status, 1);
+  for (const char* jobs : {"0", "-1", "2x"}) {
+    const auto number = grit({"chart", "study.json", "--jobs", jobs});
+    EXPECT_EQ(number.status, 1);
+    EXPECT_THAT(number.err, HasSubstr("--jobs takes a number from 1 to 1024, not \"" + std::string(jobs) + '"'));
+  }
+  changed = json::parse(study);
+  changed["settings"]["damping"]["pointers"] = {"/time_step/safety"};
+  folder.write("twice.json", changed.dump());
+  const auto twice = grit({"chart", "twice.json"});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_THAT(twice.err, HasSubstr("/settings/safety/pointers/0: found /time_step/safety, of which "
+                                   "/settings/damping/pointers/0 changes /time_step/safety"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
   const auto both = grit({"chart", "study.json", "--dry", "--draw"});
   EXPECT_EQ(both.status, 1);
   EXPECT_THAT(both.err, HasSubstr("--draw does none: give one of them"));
@@ -303,6 +365,22 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
   EXPECT_EQ(advise({"--tolerance", "5"}).status, 1) << "500 %";
   EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);
+  folder.write("it's two.json", text_of(folder / "two.json"));
+  EXPECT_THAT(grit({"advise", "it's two.json", "--study", chart, "--set", "/time_step/safety=0.01", "--tolerance", "1%",
+                    "--set", "/title=it's"})
+                  .out,
+              HasSubstr("grit run \"it's two.json\" --set '/time_step/safety=0.01' --set \"/title=it's\""));
+  EXPECT_THAT(fine.out, HasSubstr("whose scene has the same parts"));
+  const auto other = advise({"--set", R"(/engines/gravity={"type": "gravity"})"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, AllOf(HasSubstr(chart + ": is of a scene without a scenario, and two.json is a scene without"),
+                               HasSubstr("(there is no \"engine gravity: gravity\")"),
+                               HasSubstr("run a study of your own scene")));
+  const auto sheared =
+      grit({"advise", std::string(GRIT_SOURCE_DIR) + "/sims/direct-shear/quick.json", "--study", chart});
+  EXPECT_EQ(sheared.status, 2);
+  EXPECT_THAT(sheared.err, HasSubstr("quick.json is the scenario \"direct-shear\", so that nothing may be relaxed"));
+  EXPECT_EQ(sheared.out, "");
   charted["advice"] = false;
   folder.write("sand.json", charted.dump());
   const auto sand = grit({"advise", "two.json", "--study", "sand.json"});

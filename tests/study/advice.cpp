@@ -153,6 +153,41 @@ TEST_F(AdviceOf, ASavingWithinTheScatterOfTimesIsNone) {
   EXPECT_EQ(advice(0.2, "/1")[0].best->level, "4");
 }
 
+TEST_F(AdviceOf, ALevelIsWithinTheToleranceOnlyIfAllFinerOnesAre) {
+  chart["effects"][0] = effect("rate", "4", 0.25, 0.001, 0.001);
+  chart["effects"][1] = effect("rate", "2", 0.5, 0.06, 0.001);
+  const auto some = advice(0.05);
+  EXPECT_EQ(some[0].best, nullptr) << "its error is small, but grows where it is made finer";
+  const auto& levels = study.settings.at("rate");
+  EXPECT_EQ(least_sure(levels, levels[0], 0.05).level, "2");
+  EXPECT_EQ(least_sure(levels, levels[1], 0.05).level, "2");
+  EXPECT_EQ(least_sure(levels, levels[2], 0.05).level, "1");
+  EXPECT_EQ(advice(0.1)[0].best->level, "4");
+  chart["effects"][1] = effect("rate", "2", 0.5, 0.01, 0.06);
+  EXPECT_EQ(advice(0.05)[0].best, nullptr) << "of the finer one it cannot be told";
+  chart["effects"].erase(1);
+  EXPECT_EQ(advice(0.05)[0].best->level, "4") << "what failed says nothing";
+}
+
+TEST_F(AdviceOf, AChartWithoutErrorsIsNone) {
+  const auto refused = [&](const std::vector<std::string>& figures) {
+    try {
+      advice(0.05, "/1", "/small", figures);
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (auto& effect : chart["effects"]) effect["figures"]["small"]["error"] = nullptr;
+  EXPECT_EQ(refused({}), "");
+  EXPECT_THAT(refused({"small"}), HasSubstr("chart.json: has no errors of small"));
+  for (auto& effect : chart["effects"]) effect["figures"].erase("peak");
+  EXPECT_THAT(refused({"peak"}), HasSubstr("has no errors of peak"));
+  EXPECT_THAT(refused({}), HasSubstr("has no errors of any figure"));
+  chart["effects"] = json::array();
+  EXPECT_THAT(refused({}), HasSubstr("has no errors of any figure"));
+}
+
 TEST_F(AdviceOf, AStudyMaySayThatItAdvisesNothing) {
   advice(0.1);
   EXPECT_TRUE(study.advice);
@@ -173,6 +208,7 @@ TEST_F(AdviceOf, TheFigureThatIsLeastSureDecides) {
 TEST(Confidences, ComeFromErrorAndScatter) {
   EXPECT_EQ(confidence(0.05, 0.02, 0.1), Confidence::certain);
   EXPECT_EQ(confidence(0.05, 0.03, 0.1), Confidence::likely);
+  EXPECT_EQ(confidence(0.05, 0.06, 0.1), Confidence::untold);
   EXPECT_EQ(confidence(0.05, 0.12, 0.1), Confidence::untold);
   EXPECT_EQ(confidence(0.05, std::nan(""), 0.1), Confidence::untold);
   EXPECT_EQ(confidence(0.15, 0.08, 0.1), Confidence::untold);

@@ -39,6 +39,14 @@ std::vector<std::string> lacks(const std::vector<std::string>& these, const std:
   return missing;
 }
 
+/// What tells a description from a study's scene.
+std::string differences(const ChartedStudy& study, const std::vector<std::string>& parts) {
+  std::vector<std::string> all;
+  for (const auto& part : lacks(parts, study.parts)) all.push_back("here is no \"" + part + '"');
+  for (const auto& part : lacks(study.parts, parts)) all.push_back("there is no \"" + part + '"');
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
 /// What tells a description from the scene of the study that is most like it.
 std::string nearest_scene(const std::vector<ChartedStudy>& studies, const std::vector<std::string>& parts) {
   const ChartedStudy* nearest = nullptr;
@@ -48,10 +56,27 @@ std::string nearest_scene(const std::vector<ChartedStudy>& studies, const std::v
   for (const ChartedStudy& one : studies)
     if (one.advice && !one.parts.empty() && (nearest == nullptr || apart(one) < apart(*nearest))) nearest = &one;
   if (nearest == nullptr) return "";
-  std::vector<std::string> differences;
-  for (const auto& part : lacks(parts, nearest->parts)) differences.push_back("here is no \"" + part + '"');
-  for (const auto& part : lacks(nearest->parts, parts)) differences.push_back("there is no \"" + part + '"');
-  return fmt::format(" (the nearest is of \"{}\": {})", nearest->title, fmt::join(differences, ", "));
+  return fmt::format(" (the nearest is of \"{}\": {})", nearest->title, differences(*nearest, parts));
+}
+
+std::string kind_of(const std::string& scenario) {
+  return scenario.empty() ? "a scene without a scenario" : "the scenario \"" + scenario + '"';
+}
+
+/// Why a study that was named may be applied. Throws Error if its scene is another.
+std::string relation(const ChartedStudy& study, const std::string& file, const std::string& scenario,
+                     const std::vector<std::string>& parts) {
+  if (study.parts == parts) return "whose scene has the same parts";
+  if (scenario.empty() || study.scenario != scenario)
+    throw Error(
+        fmt::format("{}: is of {}, and {} is {}, so that nothing may be relaxed by it{}; run a study of your "
+                    "own scene ('grit describe study'), or leave out --study for those that came with grit",
+                    study.file.string(), kind_of(study.scenario), file, kind_of(scenario),
+                    study.scenario != scenario ? ""
+                    : study.parts.empty() ? ": it does not say what its scene is made of, which 'grit chart' now does"
+                                          : " (" + differences(study, parts) + ')'));
+  return fmt::format("whose scene is of the same scenario{}",
+                     study.parts.empty() ? "" : ", but not of the same parts: " + differences(study, parts));
 }
 
 /// The studies that came with grit for scenes like this. Throws UsageError if there is none.
@@ -65,7 +90,7 @@ std::vector<ChartedStudy> studies_like(const std::string& scenario, const std::v
     if (is_of(study, scenario, parts)) studies.push_back(read_charted_study(study.file, figures));
   }
   if (studies.empty())
-    throw UsageError(fmt::format("{}; name a chart.json with --study, of your own or one of these: {}",
+    throw UsageError(fmt::format("{}; name a chart.json of a scene like yours with --study; with grit came {}",
                                  scenario.empty() ? "the description has no scenario, and no study that came with this "
                                                     "grit has a scene of the same parts" +
                                                         nearest_scene(all, parts)
@@ -74,10 +99,10 @@ std::vector<ChartedStudy> studies_like(const std::string& scenario, const std::v
   return studies;
 }
 
-/// "5.4 % ± 3.0 %"; "?" for the scatter of one sample.
+/// "5.4 % ± 3.0 %"; "?" for the scatter of one sample, and for what a chart does not tell.
 std::string with_scatter(double error, double standard_error) {
-  return fmt::format("{:.1f} % ± {}", 100 * error,
-                     std::isnan(standard_error) ? "?" : fmt::format("{:.1f} %", 100 * standard_error));
+  const auto told = [](double share) { return std::isnan(share) ? "?" : fmt::format("{:.1f} %", 100 * share); };
+  return told(error) + " ± " + told(standard_error);
 }
 
 /// "1.16 ± 0.07 times cheaper"
@@ -96,25 +121,31 @@ std::string changes(const Evidence& one, double tolerance) {
   return fmt::format("changes {} by {}", finding->figure, with_scatter(finding->error, finding->standard_error));
 }
 
-std::string why(const Evidence& one, double tolerance) {
+/// `levels`: all of its setting.
+std::string why(const std::vector<Evidence>& levels, const Evidence& one, double tolerance) {
+  if (const Evidence& finer = least_sure(levels, one, tolerance); &finer != &one)
+    return fmt::format("{}: {}, which is finer, {}{}", word_of(finer.confidence(tolerance)), finer.level,
+                       changes(finer, tolerance),
+                       finer.confidence(tolerance) == Confidence::likely ? "" : ", so that errors may cancel here");
   switch (one.confidence(tolerance)) {
     case Confidence::certain:
       return "certain";
     case Confidence::likely:
       return "likely: the samples scatter by more than the tolerance leaves";
     case Confidence::untold:
-      return "cannot be told: the samples scatter by more than the tolerance; a study with more seeds would tell";
+      return "cannot be told: the samples scatter by more than the tolerance leaves; a study with more seeds would "
+             "tell";
     case Confidence::impossible:
       return "too much";
   }
   return "";
 }
 
-/// `given`: what --set changed in the description.
-void print(const ChartedStudy& study, const std::string& file, std::vector<std::string> given, double tolerance,
-           const std::vector<Advice>& advices) {
-  std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant)\n\n", file, 100 * tolerance,
-                           study.title, study.file.string(), study.samples);
+/// `related`: how to the description. `given`: what --set changed in that.
+void print(const ChartedStudy& study, const std::string& related, const std::string& file,
+           std::vector<std::string> given, double tolerance, const std::vector<Advice>& advices) {
+  std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant),\n  {}\n\n", file,
+                           100 * tolerance, study.title, study.file.string(), study.samples, related);
   std::vector<std::string> beyond, unknown;
   for (const Advice& advice : advices) {
     if (advice.now == nullptr) {
@@ -123,12 +154,14 @@ void print(const ChartedStudy& study, const std::string& file, std::vector<std::
       continue;
     }
     std::cout << fmt::format("  {}: {} here; {}\n", advice.setting, advice.now->level, changes(*advice.now, tolerance));
-    if (advice.now->confidence(tolerance) == Confidence::impossible) beyond.push_back(advice.setting);
+    const auto& levels = study.settings.at(advice.setting);
+    if (least_sure(levels, *advice.now, tolerance).confidence(tolerance) == Confidence::impossible)
+      beyond.push_back(advice.setting);
     if (advice.cheaper.empty()) std::cout << "      nothing cheaper was tried\n";
     for (const Evidence* one : advice.cheaper)
       std::cout << (one->known ? fmt::format("    {} {}: {}, {}, {}\n", one == advice.best && advice.taken ? "→" : " ",
                                              one->level, saving(*one, *advice.now), changes(*one, tolerance),
-                                             why(*one, tolerance))
+                                             why(levels, *one, tolerance))
                                : fmt::format("      {}: runs of the study failed with it\n", one->level));
     if (advice.taken) given.insert(given.end(), advice.best->sets.begin(), advice.best->sets.end());
   }
@@ -146,7 +179,8 @@ void print(const ChartedStudy& study, const std::string& file, std::vector<std::
         unknown.empty() ? "" : fmt::format("; not counted: {}", fmt::join(unknown, ", ")));
   if (!any) return;
   std::cout << "  grit run " << shell_word(file);
-  for (const auto& set : given) std::cout << " --set '" << set << '\'';
+  for (const auto& set : given)
+    std::cout << " --set " << (set.find('\'') == set.npos ? '\'' + set + '\'' : shell_word(set));
   std::cout << '\n';
 }
 
@@ -181,11 +215,14 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
                        ": its settings are what is modelled, not how (\"advice\": false), so that nothing may be "
                        "relaxed by it; name another study");
   }
-  if (studies.empty())
-    studies = studies_like(scenario_type(Document::load(file)), parts_of(now), options.list("figure"));
-  for (const ChartedStudy& study : studies) {
-    if (&study != &studies.front()) std::cout << '\n';
-    print(study, file, sets, tolerance, advise(study, tolerance, same));
+  const auto scenario = scenario_type(Document::load(file));
+  const auto parts = parts_of(now);
+  if (studies.empty()) studies = studies_like(scenario, parts, options.list("figure"));
+  std::vector<std::string> related;  // of all before anything is said
+  for (const ChartedStudy& study : studies) related.push_back(relation(study, file, scenario, parts));
+  for (std::size_t i = 0; i < studies.size(); ++i) {
+    if (i > 0) std::cout << '\n';
+    print(studies[i], related[i], file, sets, tolerance, advise(studies[i], tolerance, same));
   }
   return ExitStatus::done;
 }

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <optional>
 #include <ranges>
 #include <set>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
+#include "output/folder_lock.hpp"
 #include "output/read_results.hpp"
 #include "output/run_facts.hpp"
 #include "plugins/build_facts.hpp"
@@ -144,7 +146,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                               std::size_t& all) {
   std::vector<Run> runs;
   std::set<std::filesystem::path> folders;
-  const unsigned threads = options.get<unsigned>("threads");
+  const unsigned threads = options.threads();
   for (const Variant& variant : variants(study))
     for (const double seed : study.seeds.values) {
       const auto sets = sets_of(study, variant, seed);
@@ -207,6 +209,14 @@ class StudyProgress {
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
+/// Throws FileError if another has it.
+void keep_for_itself(const std::filesystem::path& out, std::optional<FolderLock>& lock) {
+  if (!lock.emplace(out).held())
+    throw FileError(out.string() +
+                    ": another 'grit chart', or a run that one began, is at work there; wait for it, or choose "
+                    "another folder with --out");
+}
+
 /// Throws FileError, also if the first run that is done lacks what a figure is of.
 void run_missing(const StudyDescription& study, const std::vector<Run>& runs, std::size_t all, const Options& options,
                  const std::atomic<bool>& interrupted) {
@@ -237,7 +247,7 @@ void run_missing(const StudyDescription& study, const std::vector<Run>& runs, st
                 ":\n" + text_of(runs[i].job.log) + "\n" + runs[i].job.log.string() + " has this";
     return false;
   };
-  run_batch(jobs, options.get<unsigned>("jobs"), interrupted,
+  run_batch(jobs, options.number("jobs"), interrupted,
             {.ended = ended, .waiting = [&](std::size_t at_work) { progress.show(at_work); }});
   progress.end();
   if (!trouble.empty()) throw FileError(trouble);
@@ -267,21 +277,21 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   Options options(command("chart"));
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   options.add()("out", po::value<std::string>()->value_name("DIR"), "folder of runs and chart; default: results/NAME")(
-      "jobs", po::value<unsigned>()->default_value(cores)->value_name("N"), "runs at once")(
-      "threads", po::value<unsigned>()->default_value(1)->value_name("N"), "threads of each run")(
+      "jobs", po::value<std::string>()->default_value(std::to_string(cores))->value_name("N"), "runs at once")(
+      "threads", po::value<std::string>()->default_value("1")->value_name("N"), "threads of each run")(
       "dry", "lists the runs and stops")("draw", "draws the chart of the runs that are there, by whatever grit")(
       "quiet,q", "no progress, only what came of it");
   if (!options.read(words)) return ExitStatus::done;
   const std::filesystem::path file = options.only_word("study");
   if (options.has("dry") && options.has("draw"))
     throw UsageError("--dry lists the runs that are to do, --draw does none: give one of them");
-  for (const char* name : {"jobs", "threads"})
-    if (const unsigned n = options.get<unsigned>(name); n < 1 || n > 1024)
-      throw UsageError(std::string("--") + name + " takes a number from 1 to 1024, not " + std::to_string(n));
+  for (const char* name : {"jobs", "threads"}) options.number(name);
   const auto registry = options.registry();
   const StudyDescription study = load_study(file);
   const std::filesystem::path out =
       options.has("out") ? std::filesystem::path(options.get<std::string>("out")) : "results" / file.stem();
+  std::optional<FolderLock> lock;  // before it is seen what is missing; but a study that is wrong makes no folder
+  if (!options.has("dry") && std::filesystem::is_directory(out)) keep_for_itself(out, lock);
   std::size_t all = 0;
   const auto runs = missing_runs(study, file, out, options, *registry, all);
   if (options.has("dry")) {
@@ -289,13 +299,17 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
     std::cout << runs.size() << " of " << all << " runs are missing in " << out.string() << '\n';
     return ExitStatus::done;
   }
-  if (!options.has("quiet") && !options.has("draw"))
-    std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
-              << " runs to do, results in " << out.string() << std::endl;
   if (options.has("draw") && !std::filesystem::is_directory(out / "runs"))
     throw FileError(out.string() +
                     ": has no runs of the study that could be drawn; leave out --draw to run them, or name the folder "
                     "that has them with --out");
+  if (!lock) {
+    std::filesystem::create_directories(out);
+    keep_for_itself(out, lock);
+  }
+  if (!options.has("quiet") && !options.has("draw"))
+    std::cerr << (study.title.empty() ? file.string() : study.title) << ": " << runs.size() << " of " << all
+              << " runs to do, results in " << out.string() << std::endl;
   const auto& interrupted = catch_interrupts();
   run_missing(study, runs, all, options, interrupted);
   if (interrupted.load()) {
@@ -307,6 +321,7 @@ ExitStatus chart_command(const std::vector<std::string>& words) {
   write_atomically(out / "chart.csv", to_csv(chart));
   write_atomically(out / "chart.html", chart_page(chart));
   print(chart);
+  for (const std::string& line : not_charted(chart)) std::cerr << "grit: not charted: " << line << std::endl;
   std::cout << "chart: " << (out / "chart.html").string() << '\n';
   return chart.reference.empty() ? ExitStatus::numerics : ExitStatus::done;
 }

@@ -28,12 +28,12 @@ void Options::add_threads(const char* doc) {
   visible_.add_options()("threads", po::value<std::string>()->default_value(std::to_string(all))->value_name("N"), doc);
 }
 
-unsigned Options::threads() const {
-  const auto text = get<std::string>("threads");
+unsigned Options::number(const char* name) const {
+  const auto text = get<std::string>(name);
   unsigned number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || number < 1 || number > 1024)
-    throw UsageError("--threads takes a number from 1 to 1024, not \"" + text + '"');
+    throw UsageError(std::string("--") + name + " takes a number from 1 to 1024, not \"" + text + '"');
   return number;
 }
 

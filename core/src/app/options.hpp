@@ -31,8 +31,9 @@ class Options {
     return values_[name].as<T>();
   }
   std::vector<std::string> list(const char* name) const;
-  /// Throws UsageError if it is not from 1 to 1024.
-  unsigned threads() const;
+  /// Of --threads, --jobs: throws UsageError if it is not from 1 to 1024.
+  unsigned number(const char* name) const;
+  unsigned threads() const { return number("threads"); }
   /// The one positional word that a command takes. Throws UsageError.
   std::string only_word(const char* what) const;
   /// Built-in components, and the plugins of --plugin-path, GRIT_PLUGIN_PATH, and of this installation.

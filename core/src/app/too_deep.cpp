@@ -30,9 +30,10 @@ std::optional<std::string> by_studies(const std::string& scenario, const std::ve
     for (const Advice& advice : advise(study, tolerance, same)) {
       if (advice.now == nullptr) continue;
       tried = true;
+      const auto& levels = study.settings.at(advice.setting);
       for (const Evidence* one : advice.cheaper) {
         if (!one->known || one->findings.empty() || advice.now->sets.empty() || shows(*one) ||
-            one->confidence(tolerance) > Confidence::likely)
+            least_sure(levels, *one, tolerance).confidence(tolerance) > Confidence::likely)
           continue;
         const double saved = advice.now->cost / one->cost;
         if (saved < far_beyond) continue;

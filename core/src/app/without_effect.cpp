@@ -66,6 +66,23 @@ bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std
   return true;
 }
 
+bool of_body(const SceneDescription& scene, const std::string& material) {
+  return std::ranges::any_of(scene.bodies, [&](const auto& group) { return group.second.material == material; });
+}
+
+/// Now, or by what a stage changes.
+bool of_wall(const SceneDescription& scene, const std::string& material) {
+  return std::ranges::any_of(scene.walls, [&](const auto& wall) { return wall.second.material == material; }) ||
+         std::ranges::any_of(scene.stages, [&](const StageDescription& stage) {
+           return stage.change.dump().find('"' + material + '"') != std::string::npos;
+         });
+}
+
+/// Whether a body of one of two materials may touch a body or a wall of the other.
+bool meet(const SceneDescription& scene, const std::string& a, const std::string& b) {
+  return (of_body(scene, a) && (of_body(scene, b) || of_wall(scene, b))) || (of_body(scene, b) && of_wall(scene, a));
+}
+
 /// Longest time that the stages can take in which a probe looks.
 double time_of_stages(const SceneDescription& scene, const std::vector<std::string>& names) {
   double sum = 0;
@@ -129,14 +146,16 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
         say("/probes/" + name, "it looks at rotations, and without friction nothing turns a sphere: all are 0");
   }
   const Description& written = described.document.json();
-  for (const std::string kind : {"rolling", "twisting"}) {
-    if (!is_zero(scene, values, kind + "_limit")) continue;
-    for (const auto& [name, material] : values.at("materials").items()) {
-      const std::string pointer = "/materials/" + pointer_token(name) + '/' + kind + "_stiffness";
-      if (written.contains(Description::json_pointer(pointer)) && material.at(kind + "_stiffness") != 0.0)
-        say(pointer, kind + "_limit is 0, so that no moment comes of it");
+  for (const std::string kind : {"rolling", "twisting"})
+    for (const auto& [lacking, given] : {std::pair("_limit", "_stiffness"), std::pair("_stiffness", "_limit")}) {
+      if (!is_zero(scene, values, kind + lacking)) continue;
+      for (const char* section : {"materials", "interfaces"})
+        for (const auto& [name, one] : values.at(section).items()) {
+          const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + given;
+          if (written.contains(Description::json_pointer(pointer)) && one.at(kind + given) != 0.0)
+            say(pointer, kind + lacking + " is 0, so that no moment comes of it");
+        }
     }
-  }
   if (smooth && values.at("contacts").value("shear_damping", false))
     say("/contacts/shear_damping", "without friction there is no shear force to damp");
 
@@ -157,15 +176,17 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
     say("/time_step/safety", "the step is given by /time_step/value");
   if (scene.time_step.value && scene.time_step.steps_per_impact != TimeStepDescription().steps_per_impact)
     say("/time_step/steps_per_impact", "the step is given by /time_step/value");
-  for (const auto& [name, material] : scene.materials) {
-    const bool used =
-        std::ranges::any_of(scene.bodies, [&](const auto& group) { return group.second.material == name; }) ||
-        std::ranges::any_of(scene.walls, [&](const auto& wall) { return wall.second.material == name; });
-    const bool later = std::ranges::any_of(scene.stages, [&](const StageDescription& stage) {
-      return stage.change.dump().find('"' + name + '"') != std::string::npos;
-    });
-    if (!used && !later) say("/materials/" + name, "no body and no wall is of it");
-  }
+  for (const auto& [name, material] : scene.materials)
+    if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall is of it");
+  for (const auto& [a, b] : scene.interfaces)
+    if (const std::string name = a + '+' + b; !meet(scene, a, b) && !is_changed(scene, "interfaces", name))
+      say("/interfaces/" + pointer_token(name),
+          a == b ? "no two things of " + a + " meet" : a + " and " + b + " never meet");
+  if (const auto& every = scene.output.frames.every_time; every && *every < world.dt())
+    say("/output/frames/every_time",
+        fmt::format("{:g} s is less than a step takes, {:g} s at the start: there is a frame at each step, {:.3g} a "
+                    "simulated second",
+                    *every, world.dt(), 1 / world.dt()));
   const auto walls = world.walls();
   Description others = values;
   others.erase("walls");

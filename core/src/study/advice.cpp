@@ -40,6 +40,7 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
                      json.value("advice", true),
                      json.at("samples").get<std::size_t>(),
                      {}};
+  bool told = false;
   for (const auto& [name, setting] : json.at("settings").items()) {
     auto& levels = study.settings[name];
     const auto& all = setting.at("levels");
@@ -54,11 +55,16 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
         evidence.cost = effect->at("cost").get<double>();
         evidence.cost_error = number_or_nan(effect->value("cost_standard_error", Description()));
         evidence.findings = findings_of(effect->at("figures"), figures);
-      } else {
-        evidence.known = &level == &all.back();
       }
+      evidence.known = &level == &all.back() || !evidence.findings.empty();
+      told |= std::ranges::any_of(evidence.findings, [](const Finding& one) { return std::isfinite(one.error); });
     }
   }
+  if (!told)
+    throw FileError(
+        fmt::format("{}: has no errors of {}, so that nothing can be advised by it; its page says why, and "
+                    "'grit chart' makes it anew",
+                    file.string(), figures.empty() ? "any figure" : fmt::format("{}", fmt::join(figures, ", "))));
   return study;
 }
 
@@ -80,6 +86,15 @@ Confidence Evidence::confidence(double tolerance) const {
   for (const Finding& one : findings)
     worst = std::max(worst, grit::confidence(one.error, one.standard_error, tolerance));
   return worst;
+}
+
+const Evidence& least_sure(const std::vector<Evidence>& levels, const Evidence& level, double tolerance) {
+  const Evidence* found = &level;
+  for (const Evidence& one : std::views::reverse(levels)) {
+    if (&one == &level) break;
+    if (one.known && one.confidence(tolerance) > found->confidence(tolerance)) found = &one;
+  }
+  return *found;
 }
 
 const Finding* Evidence::decisive(double tolerance) const {
@@ -138,7 +153,8 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
       if (!level.known && &level < advice.now) advice.cheaper.push_back(&level);
       if (!level.known || !(level.cost < advice.now->cost)) continue;
       advice.cheaper.push_back(&level);
-      if (!saves(level, *advice.now) || level.confidence(tolerance) > Confidence::likely) continue;
+      if (!saves(level, *advice.now) || least_sure(levels, level, tolerance).confidence(tolerance) > Confidence::likely)
+        continue;
       if (advice.best == nullptr || level.cost < advice.best->cost) advice.best = &level;
     }
   }

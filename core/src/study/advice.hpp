@@ -25,7 +25,7 @@ struct Evidence {
   std::vector<Finding> findings = {};  ///< of each figure that counts; none for the finest
   bool known = true;                   ///< false if runs of it, or of the finest level, failed
 
-  /// Of the figure that is least sure.
+  /// Its own, of the figure that is least sure.
   Confidence confidence(double tolerance) const;
   /// That figure, of several the one that changes most; nothing for the finest.
   const Finding* decisive(double tolerance) const;
@@ -41,7 +41,8 @@ struct ChartedStudy {
   std::map<std::string, std::vector<Evidence>> settings;  ///< from the cheapest level to the finest
 };
 
-/// `figures`: those that count; none: all. Throws FileError, and Error if a figure is unknown.
+/// `figures`: those that count; none: all. Throws FileError, also if the chart tells nothing of them, and Error if a
+/// figure is unknown.
 ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures);
 
 /// One setting.
@@ -56,6 +57,10 @@ struct Advice {
   /// What the setting has once the advice is taken.
   const Evidence* then() const { return taken ? best : now; }
 };
+
+/// What decides whether a level is within the tolerance: the level itself, or the finest of those finer ones of its
+/// setting that are less sure. `levels`: all of the setting, as in ChartedStudy.
+const Evidence& least_sure(const std::vector<Evidence>& levels, const Evidence& level, double tolerance);
 
 /// Whether a level costs less than another by more than their times scatter.
 bool saves(const Evidence& level, const Evidence& than);

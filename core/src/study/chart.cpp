@@ -35,11 +35,11 @@ Sample read_sample(const StudyDescription& study, double seed, const std::filesy
   sample.core_seconds = number("cpu_s"), sample.steps = number("steps");
   sample.particle_steps_per_second = number("particle_steps_per_s"), sample.bodies = number("bodies");
   if (sample.status != "done") return sample;
-  try {
-    for (const auto& [name, figure] : study.figures) sample.figures[name] = take_figure(figure, folder);
-  } catch (const NumericsError& error) {
-    sample.status = "failed", sample.message = error.what();
-  }
+  for (const auto& [name, figure] : study.figures) try {
+      sample.figures[name] = take_figure(figure, folder);
+    } catch (const NumericsError& error) {
+      sample.lacks[name] = error.what();
+    }
   return sample;
 }
 
@@ -91,20 +91,16 @@ std::vector<const Figure*> figures_of(const VariantResult& result, const std::st
   return all;
 }
 
-Error nothing_shared(const std::string& name) {
-  return Error("/figures/" + name + ": the curve and its reference have no abscissa in common; mind the units");
-}
-
-/// Where both can be compared: what all curves have; nothing for values. Throws Error if curves share nothing.
-std::vector<double> shared_places(const std::vector<const Figure*>& a, const std::vector<const Figure*>& b,
-                                  const std::string& name) {
+/// Where both can be compared: what all curves have; no place for values. Nothing if curves share none.
+std::optional<std::vector<double>> shared_places(const std::vector<const Figure*>& a,
+                                                 const std::vector<const Figure*>& b) {
   double low = -std::numeric_limits<double>::infinity(), high = -low;
   for (const auto* figures : {&a, &b})
     for (const Figure* figure : *figures) {
-      if (figure->x.empty()) return {};
+      if (figure->x.empty()) return std::vector<double>();
       low = std::max(low, figure->x.front()), high = std::min(high, figure->x.back());
     }
-  if (!(low <= high)) throw nothing_shared(name);
+  if (!(low <= high)) return std::nullopt;
   std::vector<double> x(places);
   for (std::size_t k = 0; k < places; ++k)
     x[k] = std::clamp(low + (high - low) * static_cast<double>(k) / (places - 1), low, high);
@@ -113,9 +109,8 @@ std::vector<double> shared_places(const std::vector<const Figure*>& a, const std
 
 /// Sample by sample, so that what samples of one seed have in common is not taken for scatter of the difference. A
 /// reference from elsewhere is one for all samples.
-Deviation deviation(const std::vector<const Figure*>& from, const std::vector<const Figure*>& reference, double scale,
-                    const std::string& name) {
-  const auto x = shared_places(from, reference, name);
+Deviation deviation(const std::vector<const Figure*>& from, const std::vector<const Figure*>& reference, double scale) {
+  const auto x = shared_places(from, reference).value();
   const Sampled own = sampled(values_at(from, x));
   auto differences = values_at(from, x);
   const auto others = values_at(reference, x);
@@ -127,6 +122,10 @@ Deviation deviation(const std::vector<const Figure*>& from, const std::vector<co
           .error = root_mean_square(difference.mean) / scale,
           .standard_error = std::sqrt(mean_of(difference.variance) / static_cast<double>(from.size())) / scale,
           .scatter = std::sqrt(mean_of(own.variance)) / scale};
+}
+
+std::string of_the_finest(const Sample& sample, const std::string& why) {
+  return fmt::format("of the finest settings, seed {:.0f}: {}", sample.seed, why);
 }
 
 /// Abscissae from one to another.
@@ -149,35 +148,60 @@ std::optional<Range> reference_range(const Chart& chart, const std::string& name
   return Range{mean.from / count, mean.to / count};
 }
 
-/// A curve that ends before its reference does is compared where that is easy only: such a run did not get far enough.
-/// Throws Error where no run shares an abscissa with the reference.
-void find_short_curves(Chart& chart) {
-  std::map<std::string, Range> ranges;
+/// A figure that no run has, or that the finest lacks, is not charted; any other run that lacks one has failed.
+void find_lacks(Chart& chart) {
   for (const auto& [name, figure] : chart.study.figures) {
-    if (!figure.is_curve()) continue;
+    std::string why;
+    bool had = false;
+    for (const VariantResult& result : chart.variants)
+      for (const Sample& sample : result.samples) {
+        had |= sample.figures.contains(name);
+        const auto lack = sample.lacks.find(name);
+        if (lack == sample.lacks.end()) continue;
+        if (&result == &chart.finest()) chart.uncharted.emplace(name, of_the_finest(sample, lack->second));
+        else if (why.empty()) why = lack->second;
+      }
+    if (!had && !why.empty()) chart.uncharted[name] = "in no run: " + why;
+  }
+  for (VariantResult& result : chart.variants)
+    for (Sample& sample : result.samples)
+      for (const auto& [name, why] : sample.lacks)
+        if (!chart.uncharted.contains(name)) sample.status = "failed", sample.message = why;
+}
+
+/// A curve that ends before its reference does is compared where that is easy only: such a run did not get far enough.
+/// If it is of the finest, or if no run shares an abscissa with the reference, the figure is not charted.
+void find_short_curves(Chart& chart) {
+  for (const auto& [name, figure] : chart.study.figures) {
+    if (!figure.is_curve() || chart.uncharted.contains(name)) continue;
     if (!figure.curve && all_done(chart.finest())) {
       const auto finest = figures_of(chart.finest(), name);
-      shared_places(finest, finest, name);
-    }
-    if (const auto range = reference_range(chart, name)) ranges[name] = *range;
-  }
-  std::map<std::string, bool> shared;  // whether any run that is done has an abscissa of the figure's reference
-  for (VariantResult& result : chart.variants)
-    for (Sample& sample : result.samples) {
-      if (sample.status != "done") continue;
-      for (const auto& [name, range] : ranges) {
-        const Figure& own = sample.figures.at(name);
-        const double reach = std::min(own.x.back(), range.to) - std::max(own.x.front(), range.from);
-        shared[name] |= reach >= 0;
-        if (reach >= least_reach * (range.to - range.from) || sample.status == "failed") continue;
-        sample.status = "failed";
-        sample.message =
-            fmt::format("{} is of abscissae from {:g} to {:g}, its reference from {:g} to {:g}",
-                        chart.study.figures.at(name).of, own.x.front(), own.x.back(), range.from, range.to);
+      if (!shared_places(finest, finest)) {
+        chart.uncharted[name] = "samples of the finest settings have no abscissa in common";
+        continue;
       }
     }
-  for (const auto& [name, by_any] : shared)
-    if (!by_any) throw nothing_shared(name);
+    const auto range = reference_range(chart, name);
+    if (!range) continue;
+    std::vector<std::pair<Sample*, std::string>> short_ones;
+    bool shared = false;
+    for (VariantResult& result : chart.variants)
+      for (Sample& sample : result.samples) {
+        if (sample.status != "done") continue;
+        const Figure& own = sample.figures.at(name);
+        const double reach = std::min(own.x.back(), range->to) - std::max(own.x.front(), range->from);
+        shared |= reach >= 0;
+        if (reach >= least_reach * (range->to - range->from)) continue;
+        short_ones.emplace_back(&sample, fmt::format("{} is of abscissae from {:g} to {:g}, its reference from {:g} to "
+                                                     "{:g}",
+                                                     figure.of, own.x.front(), own.x.back(), range->from, range->to));
+        if (&result == &chart.finest()) chart.uncharted.emplace(name, of_the_finest(sample, short_ones.back().second));
+      }
+    if (!shared && !short_ones.empty())
+      chart.uncharted[name] = "no run has an abscissa in common with its reference; mind the units";
+    if (chart.uncharted.contains(name)) continue;
+    for (const auto& [sample, why] : short_ones) sample->status = "failed", sample->message = why;
+  }
 }
 
 /// Means over the samples that are done.
@@ -207,21 +231,25 @@ double cost_ratio_error(const VariantResult& own, const VariantResult& other) {
 /// The reference of each figure, and what its errors are divided by.
 void find_references(Chart& chart) {
   for (const auto& [name, figure] : chart.study.figures) {
+    if (chart.uncharted.contains(name)) continue;
     Figure reference;
     if (figure.value) reference.y = {*figure.value};
     else if (figure.curve) reference = read_reference(*figure.curve);
     else if (all_done(chart.finest())) {
       const auto finest = figures_of(chart.finest(), name);
-      const auto x = shared_places(finest, finest, name);
+      const auto x = shared_places(finest, finest).value();
       reference = {x, sampled(values_at(finest, x)).mean, finest.front()->unit, finest.front()->x_unit};
     } else {
+      chart.uncharted[name] = "the finest settings have no result";
       continue;
     }
     double largest = 0;
     for (const double y : reference.y) largest = std::max(largest, std::abs(y));
     const double scale = figure.scale.value_or(largest);
-    if (scale == 0)
-      throw Error("/figures/" + name + ": its reference is 0, to which no error can be put in relation; give a scale");
+    if (scale == 0) {
+      chart.uncharted[name] = "its reference is 0, to which no error can be put in relation; give a scale";
+      continue;
+    }
     chart.reference[name] = std::move(reference), chart.scale[name] = scale;
   }
 }
@@ -233,8 +261,7 @@ void find_deviations(Chart& chart) {
       const auto& figure = chart.study.figures.at(name);
       const bool exact = figure.value || figure.curve;
       const auto others = exact ? std::vector<const Figure*>{&reference} : figures_of(chart.finest(), name);
-      Deviation& own = result.deviations[name] =
-          deviation(figures_of(result, name), others, chart.scale.at(name), name);
+      Deviation& own = result.deviations[name] = deviation(figures_of(result, name), others, chart.scale.at(name));
       // The finest is the reference, and no further from it than its samples scatter.
       if (!exact && &result == &chart.finest()) own.error = 0, own.standard_error = 0;
     }
@@ -260,7 +287,7 @@ void find_effects(Chart& chart) {
       Effect effect{
           name, setting.label(level), own->core_seconds / finest->core_seconds, cost_ratio_error(*own, *finest), {}};
       for (const auto& [figure, scale] : chart.scale)
-        effect.deviations[figure] = deviation(figures_of(*own, figure), figures_of(*finest, figure), scale, figure);
+        effect.deviations[figure] = deviation(figures_of(*own, figure), figures_of(*finest, figure), scale);
       chart.effects.push_back(std::move(effect));
     }
     ++k;
@@ -276,9 +303,27 @@ void find_front(Chart& chart) {
              (other.core_seconds < one.core_seconds || other.of_worst().error < one.of_worst().error);
     });
   }
+}
+
+/// Whether a variant has no level that is cheaper than the other's, and some that are finer.
+bool is_finer(const Variant& one, const Variant& other) {
+  return one.levels != other.levels && std::ranges::equal(one.levels, other.levels, std::greater_equal());
+}
+
+/// An error that grows again where a setting is made finer was small because others cancelled it.
+void find_cheapest(Chart& chart) {
+  for (VariantResult& one : chart.variants) {
+    if (!one.complete()) continue;
+    one.within = one.confidence(chart.study.tolerance);
+    for (const VariantResult& other : chart.variants) {
+      if (!other.complete() || !is_finer(other.variant, one.variant)) continue;
+      if (const auto finer = other.confidence(chart.study.tolerance); finer > one.within)
+        one.within = finer, one.decided_by = other.variant.name;
+    }
+  }
   for (std::size_t i = 0; i < chart.variants.size(); ++i) {
     const VariantResult& one = chart.variants[i];
-    if (!one.complete() || one.confidence(chart.study.tolerance) > Confidence::likely) continue;
+    if (!one.complete() || one.within > Confidence::likely) continue;
     if (!chart.cheapest || one.core_seconds < chart.variants[*chart.cheapest].core_seconds) chart.cheapest = i;
   }
 }
@@ -325,12 +370,14 @@ Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
         chart.parts = parts_of(run->at("description"));
     }
   }
+  find_lacks(chart);
   find_short_curves(chart);
   for (VariantResult& result : chart.variants) find_costs(result);
   find_references(chart);
   find_deviations(chart);
   find_effects(chart);
   find_front(chart);
+  find_cheapest(chart);
   return chart;
 }
 
@@ -357,12 +404,14 @@ Description to_json(const Chart& chart) {
         {"about", setting.about}, {"usual", setting.label(setting.usual_level())}, {"levels", levels}};
   }
   for (const auto& [name, figure] : chart.study.figures)
-    json["figures"][name] = {{"type", figure.what.type()},
-                             {"of", figure.of},
-                             {"reference", figure.value   ? "value"
-                                           : figure.curve ? "curve"
-                                                          : "finest"},
-                             {"scale", chart.scale.contains(name) ? Description(chart.scale.at(name)) : Description()}};
+    json["figures"][name] = {
+        {"type", figure.what.type()},
+        {"of", figure.of},
+        {"reference", figure.value   ? "value"
+                      : figure.curve ? "curve"
+                                     : "finest"},
+        {"scale", chart.scale.contains(name) ? Description(chart.scale.at(name)) : Description()},
+        {"not_charted", chart.uncharted.contains(name) ? Description(chart.uncharted.at(name)) : Description()}};
   for (const VariantResult& one : chart.variants) {
     Description levels = Description::object(), samples = Description::array();
     std::size_t k = 0;
@@ -384,6 +433,8 @@ Description to_json(const Chart& chart) {
                                 {"particle_steps_per_s", one.particle_steps_per_second},
                                 {"worst_figure", one.worst},
                                 {"on_front", one.on_front},
+                                {"within_tolerance", one.complete() ? Description(word_of(one.within)) : Description()},
+                                {"decided_by", one.decided_by},
                                 {"figures", to_json(one.deviations)},
                                 {"samples", samples}});
   }

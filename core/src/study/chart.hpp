@@ -20,12 +20,13 @@ namespace grit {
 /// One run: a variant with a seed.
 struct Sample {
   double seed = 0;
-  std::string status;  ///< "done", "failed" or "missing"; "failed" too if it did not get to where a figure is taken, or
-                       ///< where a curve's reference goes
+  std::string status;  ///< "done", "failed" or "missing"; "failed" too if it lacks a figure that is charted, or did not
+                       ///< get to where a curve's reference goes
   std::string message;   ///< why it failed
   std::string revision;  ///< of the grit that ran it
   double core_seconds = 0, steps = 0, particle_steps_per_second = 0, bodies = 0;
   std::map<std::string, Figure> figures;
+  std::map<std::string, std::string> lacks;  ///< figures that could not be taken of it, and why
 };
 
 /// A figure of a variant beside the reference. Shares are of the figure's scale; NaN where it cannot be told: the
@@ -46,9 +47,11 @@ struct VariantResult {
   std::map<std::string, Deviation> deviations;                     ///< by figure; empty if a sample failed
   std::string worst;                                               ///< figure with the largest error
   bool on_front = false;                                           ///< no other is both cheaper and nearer
+  Confidence within = Confidence::untold;  ///< the tolerance: of itself and of all that are finer, the least sure
+  std::string decided_by;                  ///< the finer variant which that is; empty if it is itself
 
   bool complete() const { return !deviations.empty(); }
-  /// Of the figure that is least sure.
+  /// Its own, of the figure that is least sure.
   Confidence confidence(double tolerance) const;
   const Deviation& of_worst() const { return deviations.at(worst); }
 };
@@ -67,15 +70,15 @@ struct Chart {
   std::set<std::string> revisions;      ///< of the grit that made the runs
   std::vector<VariantResult> variants;  ///< the finest last
   std::map<std::string, Figure> reference;
-  std::map<std::string, double> scale;  ///< what errors are divided by
+  std::map<std::string, double> scale;           ///< what errors are divided by
+  std::map<std::string, std::string> uncharted;  ///< figures without a reference that serves, and why
   std::vector<Effect> effects;
-  std::optional<std::size_t> cheapest;  ///< variant of least cost within the tolerance, certain or likely
+  std::optional<std::size_t> cheapest;  ///< variant of least cost that is within the tolerance, certain or likely
 
   const VariantResult& finest() const { return variants.back(); }
 };
 
-/// Reads what is in the runs' folders below `folder`. Throws FileError if a run that is done lacks a channel, Error if
-/// an error cannot be put in relation because the reference is zero.
+/// Reads what is in the runs' folders below `folder`. Throws FileError if a run that is done lacks a channel.
 Chart make_chart(StudyDescription study, const std::filesystem::path& folder);
 
 /// chart.json: everything above but whole curves.

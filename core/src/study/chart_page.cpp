@@ -21,17 +21,19 @@ std::string variants_table(const Chart& chart) {
       "<div class=\"wide\"><table><thead><tr><th>#</th><th class=\"name\">settings that differ from the "
       "usual</th><th>core-seconds</th>"
       "<th>cheaper than the finest</th><th>steps</th><th>M particle-steps/s</th>";
-  for (const auto& [name, figure] : chart.study.figures) html += "<th>error of " + escaped(name) + "</th>";
+  for (const auto& [name, reference] : chart.reference) html += "<th>error of " + escaped(name) + "</th>";
   html += "</tr></thead><tbody>\n";
   std::vector<std::size_t> order(chart.variants.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return chart.variants[i].core_seconds; });
   for (const std::size_t i : order) {
     const VariantResult& one = chart.variants[i];
+    const std::string finer = finer_that_is_not(chart, one);
     html += fmt::format(
-        "<tr{}><td><span class=\"dot\" style=\"background:{}\">{}</span></td><td class=\"name\">{}{}</td>",
+        "<tr{}><td><span class=\"dot\" style=\"background:{}\">{}</span></td><td class=\"name\">{}{}{}</td>",
         chart.cheapest == i ? " class=\"best\"" : "", colour_of(chart, one), i + 1, escaped(one.variant.name),
-        one.on_front ? " <b title=\"none is both cheaper and nearer\">◂</b>" : "");
+        one.on_front ? " <b title=\"none is both cheaper and nearer\">◂</b>" : "",
+        finer.empty() ? "" : "<br><small>not within the tolerance: " + escaped(finer) + "</small>");
     html += one.core_seconds > 0
                 ? fmt::format("<td>{:.3g} <small>± {}</small></td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>",
                               one.core_seconds, or_unknown(one.cost_scatter),
@@ -40,7 +42,7 @@ std::string variants_table(const Chart& chart) {
                                   : "?",
                               one.steps, 1e-6 * one.particle_steps_per_second)
                 : "<td>–</td><td>–</td><td>–</td><td>–</td>";
-    for (const auto& [name, figure] : chart.study.figures) {
+    for (const auto& [name, reference] : chart.reference) {
       const auto found = one.deviations.find(name);
       if (found == one.deviations.end()) {
         html += "<td>failed or not run</td>";
@@ -64,7 +66,7 @@ std::string effects_part(const Chart& chart) {
       "<h2>Each setting alone</h2>\n<p>A level beside the finest of the same setting, all others as usual.</p>\n"
       "<div class=\"wide\"><table><thead><tr><th class=\"name\">setting</th><th class=\"name\">level</th><th>cost over "
       "the finest</th>";
-  for (const auto& [name, figure] : chart.study.figures) html += "<th>changes " + escaped(name) + " by</th>";
+  for (const auto& [name, reference] : chart.reference) html += "<th>changes " + escaped(name) + " by</th>";
   html += "</tr></thead><tbody>\n";
   double largest = chart.study.tolerance;
   for (const Effect& effect : chart.effects)
@@ -77,7 +79,7 @@ std::string effects_part(const Chart& chart) {
         escaped(effect.setting), setting.about.empty() ? "" : "<br><small>" + escaped(setting.about) + "</small>",
         escaped(effect.level), escaped(setting.label(setting.finest_level())), times(effect.cost),
         or_unknown(effect.cost_error));
-    for (const auto& [name, figure] : chart.study.figures) {
+    for (const auto& [name, reference] : chart.reference) {
       const auto found = effect.deviations.find(name);
       if (found == effect.deviations.end()) {
         html += "<td>?</td>";
@@ -91,6 +93,12 @@ std::string effects_part(const Chart& chart) {
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
+}
+
+std::string uncharted_part(const Chart& chart) {
+  std::string html;
+  for (const std::string& line : not_charted(chart)) html += "<li>" + escaped(line) + "</li>\n";
+  return html.empty() ? "" : "<h2>Figures that could not be charted</h2>\n<ul>\n" + html + "</ul>\n";
 }
 
 std::string failures_part(const Chart& chart) {
@@ -132,9 +140,12 @@ std::string chart_page(const Chart& chart) {
     html += "<div class=\"first\">" + error_chart(chart, "") + "</div>\n";
     html +=
         "<p><small>Down is nearer, left is cheaper; none is both that lies above the stepped line. In the shaded part "
-        "differences are those between samples. The finest stands on the axis.</small></p>\n";
+        "differences are those between samples. The finest stands on the axis. A variant is within the tolerance only "
+        "if all that are finer are: where an error grows again with a finer setting, it was small because others "
+        "cancelled it.</small></p>\n";
   }
-  html += "<h2>Variants</h2>\n" + variants_table(chart) + effects_part(chart) + failures_part(chart);
+  html += "<h2>Variants</h2>\n" + variants_table(chart) + effects_part(chart) + uncharted_part(chart) +
+          failures_part(chart);
   if (chart.reference.size() > 1) {
     html += "<h2>Each figure</h2>\n<div class=\"charts\">\n";
     for (const auto& [name, reference] : chart.reference) html += "<div>" + error_chart(chart, name) + "</div>\n";

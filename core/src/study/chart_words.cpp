@@ -4,10 +4,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <ranges>
 
 #include "study/chart.hpp"
 
 namespace grit {
+namespace {
+
+/// What is cheaper than the best and may be near enough itself, but does not count. Empty if there is nothing.
+std::string passed_over(const Chart& chart) {
+  const VariantResult* cheapest = nullptr;
+  for (const VariantResult& one : chart.variants) {
+    if (finer_that_is_not(chart, one).empty()) continue;
+    if (chart.cheapest && one.core_seconds >= chart.variants[*chart.cheapest].core_seconds) continue;
+    if (cheapest == nullptr || one.core_seconds < cheapest->core_seconds) cheapest = &one;
+  }
+  if (cheapest == nullptr) return "";
+  return fmt::format(" {} does not count though its own largest error is {}: {}, so that errors may cancel there.",
+                     cheapest->variant.name, percent(cheapest->of_worst().error), finer_that_is_not(chart, *cheapest));
+}
+
+}  // namespace
 
 std::string percent(double share) {
   if (!std::isfinite(share)) return "?";
@@ -27,20 +45,44 @@ std::string cost_text(double seconds) {
                            : fmt::format("{:.1f} h", seconds / 3600);
 }
 
+std::vector<std::string> not_charted(const Chart& chart) {
+  std::map<std::string, std::vector<std::string>> by_reason;
+  for (const auto& [name, why] : chart.uncharted) by_reason[why].push_back(name);
+  std::vector<std::string> lines;
+  for (const auto& [why, names] : by_reason) lines.push_back(fmt::format("{}: {}", fmt::join(names, ", "), why));
+  return lines;
+}
+
+std::string finer_that_is_not(const Chart& chart, const VariantResult& one) {
+  const double tolerance = chart.study.tolerance;
+  const bool itself = one.confidence(tolerance) == Confidence::impossible;
+  if (itself || one.decided_by.empty() || one.within <= Confidence::likely) return "";
+  const auto finer = std::ranges::find_if(
+      chart.variants, [&](const VariantResult& other) { return other.variant.name == one.decided_by; });
+  for (const auto& [name, own] : finer->deviations)
+    if (confidence(own.error, own.standard_error, tolerance) == one.within)
+      return fmt::format("{}, which is finer, is {} ± {} off ({})", one.decided_by, percent(own.error),
+                         percent(own.standard_error), name);
+  return "";
+}
+
 std::string verdict(const Chart& chart) {
-  if (chart.reference.empty()) return "The finest settings have no result, so that there is nothing to compare with.";
+  if (chart.reference.empty()) {
+    const bool failed = std::ranges::any_of(chart.finest().samples, [](const auto& s) { return s.status != "done"; });
+    return failed ? "The finest settings have no result, so that there is nothing to compare with."
+                  : "No figure could be charted.";
+  }
   const std::string tolerance = percent(chart.study.tolerance);
-  std::vector<std::string> untold;
-  for (const auto& [name, figure] : chart.study.figures)
-    if (!chart.reference.contains(name)) untold.push_back(name);
   std::string text;
-  if (!untold.empty())
-    text = fmt::format("The finest settings have no result, so that nothing is known of {}. ", fmt::join(untold, ", "));
+  if (!chart.uncharted.empty())
+    text = fmt::format("Nothing is known of {}, which could not be charted. ",
+                       fmt::join(std::views::keys(chart.uncharted), ", "));
   const bool scattered = std::ranges::any_of(chart.variants, [&](const VariantResult& one) {
-    return one.complete() && &one != &chart.finest() && one.confidence(chart.study.tolerance) == Confidence::untold;
+    return one.complete() && &one != &chart.finest() && one.within == Confidence::untold;
   });
   const std::string more =
-      scattered ? " Of some it cannot be told: samples scatter by more than that; more seeds would tell." : "";
+      (scattered ? " Of some it cannot be told: samples scatter by more than that; more seeds would tell." : "") +
+      passed_over(chart);
   if (!chart.cheapest) return text + "No variant was found to keep all figures within " + tolerance + "." + more;
   const VariantResult& best = chart.variants[*chart.cheapest];
   if (&best == &chart.finest())
@@ -60,7 +102,9 @@ std::string verdict(const Chart& chart) {
   if (!doubtful.empty())
     text += fmt::format(" Samples scatter so much that this is not certain of {}; more seeds would tell.",
                         fmt::join(doubtful, ", "));
-  return text;
+  else if (best.within != Confidence::certain)
+    text += fmt::format(" It is not certain, for {}, which is finer, is not; more seeds would tell.", best.decided_by);
+  return text + passed_over(chart);
 }
 
 }  // namespace grit

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace grit {
 
 struct Chart;
+struct VariantResult;
 
 /// "2.1 %"; "?" where it cannot be told.
 std::string percent(double share);
@@ -16,7 +18,14 @@ std::string times(double ratio);
 /// "42 s", "12 min", "3.5 h".
 std::string cost_text(double seconds);
 
-/// One sentence or two: the cheapest variant that is good enough, and what it saves.
+/// "peak, end: its reference is 0 …": the figures that could not be charted, a line for each reason.
+std::vector<std::string> not_charted(const Chart& chart);
+
+/// "damping=0.01, which is finer, is 6.5 % ± 0.7 % off (bottom_share)": why a variant is not within the tolerance
+/// though its own error may be; empty where that is not so.
+std::string finer_that_is_not(const Chart& chart, const VariantResult& one);
+
+/// Some sentences: the cheapest variant that is good enough, what it saves, and what is unsure of that.
 std::string verdict(const Chart& chart);
 
 }  // namespace grit

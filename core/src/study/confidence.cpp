@@ -1,5 +1,6 @@
 #include "study/confidence.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace grit {
@@ -7,8 +8,22 @@ namespace grit {
 Confidence confidence(double error, double standard_error, double tolerance) {
   if (std::isnan(error) || std::isnan(standard_error)) return Confidence::untold;
   if (error + 2 * standard_error <= tolerance) return Confidence::certain;
-  if (error <= tolerance) return standard_error <= tolerance ? Confidence::likely : Confidence::untold;
-  return error <= 2 * standard_error ? Confidence::untold : Confidence::impossible;
+  if (error + standard_error <= tolerance) return Confidence::likely;
+  return error <= std::max(tolerance, 2 * standard_error) ? Confidence::untold : Confidence::impossible;
+}
+
+const char* word_of(Confidence confidence) {
+  switch (confidence) {
+    case Confidence::certain:
+      return "certain";
+    case Confidence::likely:
+      return "likely";
+    case Confidence::untold:
+      return "cannot be told";
+    case Confidence::impossible:
+      return "too much";
+  }
+  return "";
 }
 
 }  // namespace grit

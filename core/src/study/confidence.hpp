@@ -6,12 +6,15 @@ namespace grit {
 /// From the best to the worst.
 enum class Confidence {
   certain,     ///< twice the standard error more would still be within the tolerance
-  likely,      ///< error and standard error are within the tolerance, their sum as above is not
-  untold,      ///< the scatter is beyond the tolerance, and the error no larger than it; or there was one sample
+  likely,      ///< the standard error once more would be, twice would not
+  untold,      ///< the error is within the tolerance or twice the standard error, and not as above; or of one sample
   impossible,  ///< the error is beyond the tolerance, and is no scatter
 };
 
 /// Shares of one scale; NaN is the standard error of a single sample.
 Confidence confidence(double error, double standard_error, double tolerance);
+
+/// "certain", "likely", "cannot be told", "too much"
+const char* word_of(Confidence confidence);
 
 }  // namespace grit

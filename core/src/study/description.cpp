@@ -43,13 +43,6 @@ void check_pointers(const StudyDescription& study, const Complain& complain) {
         complain(varied[i].where,
                  fmt::format("{}, of which /{} changes {}", varied[i].pointer, varied[k].where, varied[k].pointer),
                  "what no other setting and no seed changes");
-  // What is set first may be varied in part.
-  if (!study.set.is_object()) return;
-  for (const auto& [pointer, value] : study.set.items())
-    for (const Changed& one : varied)
-      if (covers(one.pointer, pointer))
-        complain("set", fmt::format("{}, of which /{} changes {}", pointer, one.where, one.pointer),
-                 "what no setting and no seed changes");
 }
 
 }  // namespace
@@ -159,7 +152,7 @@ void StudyDescription::declare(Parameters& p) {
         if (figures.empty()) complain("figures", "none", "at least one");
       },
       {"set", "settings", "figures"});
-  p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"set", "settings", "seeds"});
+  p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"settings", "seeds"});
 }
 
 StudyDescription load_study(const std::filesystem::path& path) {
