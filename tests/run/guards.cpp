@@ -225,6 +225,9 @@ TEST(Guards, EnergyFromNowhereThatFrictionHides) {
                                     "/guards/energy allows 0\\.05; the time step may be too large for the stiffest "
                                     "contact; try a smaller /time_step/safety"));
   EXPECT_EQ(complaint_by_ledger(rough_gas(0.156), steps), "");
+  Description chosen = rough_gas(1);
+  chosen["time_step"] = Description::object();
+  EXPECT_EQ(complaint_by_ledger(chosen, steps), "") << "at the step that grit chooses";
 }
 
 TEST(Guards, EnergyFromNowhereWhereItIsPulledAlongAPeriodicAxis) {

@@ -57,7 +57,7 @@ class SizeRatio : public testing::TestWithParam<std::string> {};
 TEST_P(SizeRatio, NeitherMakesGrainsStickNorGainEnergy) {
   double worst = 0;
   for (const double ratio : {1.0, 3.0, 10.0, 30.0, 100.0}) {
-    double most = 0, least_rebound = 1e9, most_usual = 0, least_usual = 1e9, most_energy = 0;
+    double most = 0, least_rebound = 1e9, most_usual = 0, most_energy = 0;
     for (double angle = 0.05; angle < 1.2; angle += 0.2) {
       const Outcome fine = collide(GetParam(), ratio, angle, 0.02);
       EXPECT_LT(fine.energy, 1 + 2e-3) << "ratio " << ratio << ", angle " << angle;
@@ -69,12 +69,13 @@ TEST_P(SizeRatio, NeitherMakesGrainsStickNorGainEnergy) {
         const Outcome usual = collide(GetParam(), ratio, angle, {}, share);
         most_usual = std::max(most_usual, std::abs(usual.rebound - 1));
         most_energy = std::max(most_energy, usual.energy);
-        least_usual = std::min(least_usual, usual.rebound);
       }
     }
     EXPECT_GT(least_rebound, 0.5) << "ratio " << ratio << ": it sticks";
     worst = std::max(worst, most_usual);
-    EXPECT_GT(least_usual, 0.1) << "ratio " << ratio << ": it sticks";
+    // (π/7)²/4: what seven steps of an impact may make of its energy.
+    EXPECT_LT(most_usual, 0.05) << "ratio " << ratio;
+    EXPECT_LT(most_energy, 1.05) << "ratio " << ratio;
     map_point("error of the rebound at a fifth of the critical step|ratio of sizes", GetParam(), ratio, most);
     map_point("error of the rebound at the step that grit chooses|ratio of sizes", GetParam(), ratio, most_usual);
     map_point("most that is left of the energy of two sizes at the step that grit chooses|ratio of sizes", GetParam(),
