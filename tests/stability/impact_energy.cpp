@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "grit/contact/restitution.hpp"
 #include "support/mapped.hpp"
@@ -56,6 +57,28 @@ double bound(double degrees, double restitution, double turn) {
   return 1 - along + along * (square * (1 + 2 * damping_of_restitution(restitution) * turn) + parting);
 }
 
+constexpr int count = 24;  // impacts side by side
+
+/// Energy after over before, of each impact's ball that has come with the speed `fast`, once it touches no more.
+template <class Touches, class Ball>
+std::array<double, count> left_of_each(Trial& t, double fast, const Touches& touches, const Ball& ball) {
+  std::array<bool, count> touched{};
+  std::array<double, count> left{};
+  for (int steps = 0; steps < 10000 && std::ranges::count(left, 0.0) > 0; ++steps) {
+    t.step();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const bool now = touches(i);
+      if (touched[i] && !now && left[i] == 0) {
+        const double spin = t.spin(ball(i)).norm() * radius;
+        left[i] = (t.velocity(ball(i)).squaredNorm() + 0.4 * spin * spin) / (fast * fast);
+      }
+      touched[i] = touched[i] || now;
+    }
+  }
+  EXPECT_EQ(std::ranges::count(left, 0.0), 0) << "all have parted";
+  return left;
+}
+
 class ImpactEnergy : public testing::TestWithParam<std::string> {};
 
 TEST_P(ImpactEnergy, NeverGrowsMoreThanThePartingStepMakes) {
@@ -97,7 +120,6 @@ TEST_P(ImpactEnergy, NeverGrowsMoreThanThePartingStepMakes) {
 TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
   const std::string law = GetParam();
   const auto& map = "most that is left of the energy of a head-on impact at the chosen step|restitution";
-  constexpr int count = 24;
   for (const double restitution : {1.0, 0.8, 0.5, 0.1})
     for (const double degrees : {0.0, 45.0, 76.0})
       for (const double fast : {1e-3, 0.03, 1.0, 10.0}) {
@@ -115,21 +137,9 @@ TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
           grains.push_back({{0, 4 * i * radius, radius - v.z() * dt * (1 + (i + 0.5) / count)}, radius, v});
         d["bodies"] = description(law, solid, grains)["bodies"];
         Trial t(d);
-        std::array<bool, count> touched{};
-        std::array<double, count> left{};
-        double sum = 0;
-        for (int steps = 0; std::ranges::count(left, 0.0) > 0; ++steps) {
-          ASSERT_LT(steps, 10000);
-          t.step();
-          for (std::uint32_t i = 0; i < count; ++i) {
-            const bool touches = t.position(i).z() < radius;
-            if (touched[i] && !touches && left[i] == 0) {
-              const double spin = t.spin(i).norm() * radius;
-              left[i] = (t.velocity(i).squaredNorm() + 0.4 * spin * spin) / (fast * fast), sum += left[i];
-            }
-            touched[i] = touched[i] || touches;
-          }
-        }
+        const auto left = left_of_each(
+            t, fast, [&](std::uint32_t i) { return t.position(i).z() < radius; }, [](std::uint32_t i) { return i; });
+        const double sum = std::accumulate(left.begin(), left.end(), 0.0);
         const double turn = pi * dt / duration(law, solid.value("poisson_ratio", 0.0), -v.z());
         EXPECT_LT(turn, pi / 4) << "it lasts four steps at least";
         const double most = std::ranges::max(left);
@@ -146,7 +156,6 @@ TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
 /// The same of two alike, whose contact is over sooner by √2. Each pair begins at another part of a step.
 TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
   const std::string law = GetParam();
-  constexpr int count = 24;
   const auto& map = "most that is left of the energy of two that hit each other head-on at the chosen step|restitution";
   double shortest = 1e9, most_gained = 0;
   for (const double restitution : {1.0, 0.95, 0.5})
@@ -170,21 +179,10 @@ TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
         const double dt = Trial(d).world().dt();
         d["bodies"] = description(law, solid, pairs(dt))["bodies"];
         Trial t(d);  // with the guards that everybody has
-        std::array<bool, count> touched{};
-        std::array<double, count> left{};
-        double sum = 0;
-        for (int steps = 0; std::ranges::count(left, 0.0) > 0; ++steps) {
-          ASSERT_LT(steps, 10000);
-          t.step();
-          for (std::uint32_t i = 0; i < count; ++i) {
-            const bool touches = (t.position(2 * i) - t.position(2 * i + 1)).norm() < 2 * radius;
-            if (touched[i] && !touches && left[i] == 0) {
-              const double spin = t.spin(2 * i).norm() * radius;
-              left[i] = (t.velocity(2 * i).squaredNorm() + 0.4 * spin * spin) / (fast * fast), sum += left[i];
-            }
-            touched[i] = touched[i] || touches;
-          }
-        }
+        const auto left = left_of_each(
+            t, fast, [&](std::uint32_t i) { return (t.position(2 * i) - t.position(2 * i + 1)).norm() < 2 * radius; },
+            [](std::uint32_t i) { return 2 * i; });
+        const double sum = std::accumulate(left.begin(), left.end(), 0.0);
         const double turn = pi * dt * std::sqrt(2.0) / duration(law, solid.value("poisson_ratio", 0.0), -v.z());
         if (law != "hertz-mindlin") shortest = std::min(shortest, pi / turn);
         const double most = std::ranges::max(left);

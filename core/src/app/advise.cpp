@@ -127,18 +127,12 @@ std::string why(const std::vector<Evidence>& levels, const Evidence& one, double
     return fmt::format("{}: {}, which is finer, {}{}", word_of(finer.confidence(tolerance)), finer.level,
                        changes(finer, tolerance),
                        finer.confidence(tolerance) == Confidence::likely ? "" : ", so that errors may cancel here");
-  switch (one.confidence(tolerance)) {
-    case Confidence::certain:
-      return "certain";
-    case Confidence::likely:
-      return "likely: the samples scatter by more than the tolerance leaves";
-    case Confidence::untold:
-      return "cannot be told: the samples scatter by more than the tolerance leaves; a study with more seeds would "
-             "tell";
-    case Confidence::impossible:
-      return "too much";
-  }
-  return "";
+  const Confidence own = one.confidence(tolerance);
+  std::string text = word_of(own);
+  if (own == Confidence::likely || own == Confidence::untold)
+    text += ": the samples scatter by more than the tolerance leaves";
+  if (own == Confidence::untold) text += "; a study with more seeds would tell";
+  return text;
 }
 
 /// `related`: how to the description. `given`: what --set changed in that.
