@@ -4,7 +4,8 @@
   reproduce.py [--run GLOB]… [--samples N] [--for SECONDS] [--threads N] [--results FOLDER] [--grit FILE]
 
 docs/reproduction.json has the figures. Each description of sims/ whose finished run lies in FOLDER/TEST/NAME (results/reproduce
-unless given) gets its rows; the others are listed with the time they would take. --run runs those that GLOB fits and
+unless given) gets its rows. Of one without, what docs/reproduction.md has stays, as long as docs/reproduction.json asks for the
+same figures; the others are listed with the time they would take. --run runs those that GLOB fits and
 that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100, and --samples as many packings of each:
 the second's run, of seed 2, lies in FOLDER/TEST/NAME-sample-2. Rows of several samples have their mean and the standard
 deviation of one of them. --for interrupts a run that has taken so many core-seconds, so that it is timed; it goes on where it
@@ -29,11 +30,12 @@ HEAD = '''# Reproduction
 Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's (A. Grabowski, doctoral dissertation,
 Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, sheared faster, to show order and
 shape, and differ as the notes below them say. A figure is of one packing, or the mean of several ± the standard deviation of one; so is the
-reference's of one packing.
+reference's of one packing. A section stays until its test is run again, and says which commit of grit ran it, where that was kept.
 
 '''
 
-UNFINISHED = '''## Not run to their ends
+UNFINISHED = 'Not run to their ends'
+HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
 Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
 (`--for`): how much of the course they went, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
 if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so the hours are the least.
@@ -81,6 +83,11 @@ def samples(results, name):
     return [folder for folder in folders if (state(folder) or {}).get('status') == 'done']
 
 
+def asked(row):
+    """How the line of a figure begins."""
+    return f"| {row['figure']} | {row['reference']:g} ± {row['allowed']:g} |"
+
+
 def rows(name, folders, figures, older):
     """Lines of the table: a figure in all samples beside the reference's."""
     for row in figures:
@@ -96,26 +103,43 @@ def rows(name, folders, figures, older):
                     break
                 values.append(found(series, row))
         if not values:
-            yield f"| {row['figure']} | {reference:g} ± {allowed:g} | not recorded | | |"
+            yield f'{asked(row)} not recorded | | |'
             continue
         mean = numpy.mean(values)
         scatter = f' ± {numpy.std(values, ddof=1):.2g}' if len(values) > 1 else ''
         verdict = 'within' if abs(mean - reference) <= allowed else 'outside'
-        yield f"| {row['figure']} | {reference:g} ± {allowed:g} | {mean:.3g}{scatter} | {mean - reference:+.2g} | {verdict} |"
+        yield f'{asked(row)} {mean:.3g}{scatter} | {mean - reference:+.2g} | {verdict} |'
 
 
-def table(name, folders, figures, note, older):
+def commits(folders):
+    """By which commits of grit runs were made."""
+    names = dict.fromkeys(state(folder).get('grit', {}).get('revision') or 'unknown' for folder in folders)
+    return f"by commit{'s' if len(names) > 1 else ''} {', '.join(names)}"
+
+
+def table(name, folders, figures, older):
     run = state(folders[0])
-    yield f'## {name}\n'
+    yield ''
     several = f'{len(folders)} packings; the first: ' if len(folders) > 1 else ''
     yield (f"{several}{run['bodies']:,} bodies, {run['steps']:,} steps, {run.get('cpu_s', run['wall_s']):.0f} core-seconds on {run['threads']} "
-           f"thread{'s' if run['threads'] > 1 else ''}, {run['bodies'] * run['steps'] / run.get('cpu_s', run['wall_s']) / 1e6:.1f} M particle-steps a core-second.\n")
+           f"thread{'s' if run['threads'] > 1 else ''}, {run['bodies'] * run['steps'] / run.get('cpu_s', run['wall_s']) / 1e6:.1f} M particle-steps a core-second, {commits(folders)}.\n")
     yield '| figure | reference | grit | deviation | |'
     yield '| --- | --- | --- | --- | --- |'
     yield from rows(name, folders, figures, older)
-    if note:
-        yield '\n' + note
-    yield ''
+
+
+def sections(page):
+    """{heading: what stands below it}"""
+    return dict(text.split('\n', 1) for text in re.split('^## ', page, flags=re.MULTILINE)[1:])
+
+
+def kept(section, figures):
+    """The lines that table() once made of a section, if its figures are those that are asked for; else none."""
+    lines = section.splitlines()
+    at = [i for i, line in enumerate(lines) if line.startswith('| ')]
+    told = [lines[i] for i in at[2:]]
+    same = len(told) == len(figures) and all(line.startswith(asked(row)) for line, row in zip(told, figures))
+    return lines[:at[-1] + 1] if at and same else []
 
 
 def estimate(program, description):
@@ -130,9 +154,9 @@ def estimate(program, description):
 
 
 def part(run, course, grains):
-    """Columns that say how far a run went, how fast, and the core-hours that its whole course takes at that speed."""
+    """Columns that say how far a run went, how fast, and the core-hours that its whole course takes at that speed; none if it was not timed."""
     if not run or not run.get('cpu_s') or not run.get('particle_steps_per_s'):
-        return '| | |'
+        return ''
     done = run['particle_steps_per_s'] * run['wall_s']
     rate = done / run['cpu_s']
     words = run['message'].splitlines()[0] if run['status'] == 'failed' else f"{run['steps']:,} steps"
@@ -175,18 +199,29 @@ def main():
                 start([given.grit, 'run', ROOT / 'sims' / f'{name}.json', '--out', folder, '--resume', '--threads', given.threads, *other],
                       given.most)
 
+    page = ROOT / 'docs' / 'reproduction.md'
+    old = sections(page.read_text(encoding='utf-8'))
+    timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| (.*)$', old.get(UNFINISHED, ''), re.MULTILINE))
     lines, missing = [], []
     for name in names:
+        figures = [row for row in reference['figures'] if row['description'] == name]
+        description = ROOT / 'sims' / f'{name}.json'
         if folders := samples(given.results, name):
-            lines += table(name, folders, [row for row in reference['figures'] if row['description'] == name],
-                           reference['notes'].get(name), name in reference['older'])
+            section = [*table(name, folders, figures, name in reference['older'])]
         else:
-            hours, grains = estimate(given.grit, ROOT / 'sims' / f'{name}.json')
-            missing.append(f"| {name} | {hours} | {part(state(given.results / name), reference['courses'].get(name), grains)}")
+            section = kept(old.get(name, ''), figures) if description.exists() else []
+        if section:
+            note = reference['notes'].get(name)
+            lines += [f'## {name}', *section, *(['', note] if note else []), '']
+        else:
+            hours, grains = estimate(given.grit, description)
+            run, course = state(given.results / name), reference['courses'].get(name)
+            missing.append(f"| {name} | {hours} | {part(run, course, grains) or timed.get(name, '| | |')}")
     if missing:
-        lines += [UNFINISHED, *missing]
-    (ROOT / 'docs' / 'reproduction.md').write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
+        lines += [HEAD_OF_UNFINISHED, *missing]
+    page.write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
     print(f'docs/reproduction.md: {len(names) - len(missing)} of {len(names)} descriptions')
 
 
-main()
+if __name__ == '__main__':
+    main()

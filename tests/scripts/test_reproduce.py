@@ -1,0 +1,143 @@
+"""usage: test_reproduce.py ROOT [what unittest takes]
+
+What scripts/reproduce.py keeps of docs/reproduction.md, and what it writes anew. Exit status 77 where there is no h5py.
+"""
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+import unittest.mock
+
+try:
+    import h5py
+except ImportError:
+    print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
+    sys.exit(77)
+
+sys.dont_write_bytecode = True
+ROOT = sys.argv[1]
+sys.path.insert(0, f'{ROOT}/scripts')
+import reproduce  # noqa: E402
+
+NAMES = ('shear/run-long-ago', 'shear/run-now', 'shear/timed', 'shear/never-run')
+PAGE = '''# Reproduction
+
+## shear/run-long-ago
+
+100 bodies, by commit 111111111111.
+
+| figure | reference | grit | deviation | |
+| --- | --- | --- | --- | --- |
+| peak | 2 ± 0.5 | 2.25 | +0.25 | within |
+
+As it was.
+
+## shear/run-now
+
+100 bodies, by commit 111111111111.
+
+| figure | reference | grit | deviation | |
+| --- | --- | --- | --- | --- |
+| peak | 2 ± 0.5 | 1 | -1 | outside |
+
+## Not run to their ends
+| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
+| --- | --- | --- | --- | --- |
+| shear/timed | 9.00 | 1.6 %, 21,766 steps | 25.7 | 2.6 |
+| shear/never-run | 9.00 | | | |
+'''
+
+
+class Reproduction(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = pathlib.Path(self.folder.name)
+        self.given = {'figures': [{'description': name, 'figure': 'peak', 'of': 'test/y', 'how': 'maximum', 'reference': 2, 'allowed': 0.5}
+                                  for name in NAMES],
+                      'courses': {}, 'older': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
+        for name in NAMES:
+            self.file(f'sims/{name}.json', '{}')
+        self.file('docs/reproduction.md', PAGE)
+        self.file('grit', '#!/bin/sh\necho "bodies: 100, touching pairs"; echo "estimated time on 2 threads: 3.00 h (3 h)"\n').chmod(0o700)
+
+    def file(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding='utf-8')
+        return path
+
+    def ran(self, name, status, commit, **more):
+        """A run's results."""
+        run = {'status': status, 'grit': {'revision': commit}, 'bodies': 100, 'steps': 5000, 'threads': 2, 'wall_s': 2, 'cpu_s': 4,
+               'time_step_s': 1e-3, 'particle_steps_per_s': 250000, 'message': '', **more}
+        path = self.file(f'results/{name}/run.json', json.dumps(run))
+        with h5py.File(path.parent / 'series.h5', 'w') as series:
+            series['test/y'] = [1, 2.5, 2]
+
+    def written(self):
+        """The page, as {heading: text below it}, and all of it."""
+        self.file('docs/reproduction.json', json.dumps(self.given))
+        words = ['', '--results', str(self.root / 'results'), '--grit', str(self.root / 'grit')]
+        with unittest.mock.patch.object(reproduce, 'ROOT', self.root), unittest.mock.patch('sys.argv', words), \
+                unittest.mock.patch('builtins.print'):
+            reproduce.main()
+        page = (self.root / 'docs/reproduction.md').read_text(encoding='utf-8')
+        return reproduce.sections(page), page
+
+    def test_without_results_all_stays(self):
+        sections, page = self.written()
+        was = reproduce.sections(PAGE)
+        self.assertEqual({name: sections[name] for name in was if name in NAMES}, {name: was[name] for name in was if name in NAMES})
+        self.assertIn('| shear/timed | 3.00 | 1.6 %, 21,766 steps | 25.7 | 2.6 |\n| shear/never-run | 3.00 | | | |\n', page)
+        self.assertEqual(self.written()[1], page)
+
+    def test_a_finished_run_has_its_section_written_anew_and_names_its_commit(self):
+        self.ran('shear/run-now', 'done', '222222222222')
+        sections, _ = self.written()
+        self.assertIn('by commit 222222222222.\n', sections['shear/run-now'])
+        self.assertIn('| peak | 2 ± 0.5 | 2.5 | +0.5 | within |\n', sections['shear/run-now'])
+        self.assertEqual(sections['shear/run-long-ago'], reproduce.sections(PAGE)['shear/run-long-ago'])
+
+    def test_all_commits_of_several_packings_are_named(self):
+        self.ran('shear/run-now', 'done', '222222222222')
+        self.ran('shear/run-now-sample-2', 'done', '333333333333')
+        self.assertIn('by commits 222222222222, 333333333333.\n', self.written()[0]['shear/run-now'])
+
+    def test_a_run_that_has_not_ended_takes_no_section(self):
+        self.ran('shear/run-long-ago', 'interrupted', '222222222222')
+        self.assertEqual(self.written()[0]['shear/run-long-ago'], reproduce.sections(PAGE)['shear/run-long-ago'])
+
+    def test_a_newer_timing_counts(self):
+        self.ran('shear/timed', 'interrupted', '222222222222')
+        self.given['courses']['shear/timed'] = [[50, 1]]
+        self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps | 0.1 | 0.0 |\n', self.written()[1])
+
+    def test_a_note_is_the_one_of_the_figures(self):
+        self.given['notes']['shear/run-long-ago'] = 'Said better.'
+        section = self.written()[0]['shear/run-long-ago']
+        self.assertTrue(section.endswith('within |\n\nSaid better.\n\n'), section)
+
+    def test_what_is_asked_otherwise_is_to_be_run_again(self):
+        row, = (row for row in self.given['figures'] if row['description'] == 'shear/run-long-ago')
+        for change in ({'figure': 'residual'}, {'reference': 3}, {'allowed': 1}):
+            with self.subTest(change), unittest.mock.patch.dict(row, change):
+                self.file('docs/reproduction.md', PAGE)
+                self.expect_not_run()
+        self.given['figures'].append({**row, 'figure': 'residual'})
+        self.file('docs/reproduction.md', PAGE)
+        self.expect_not_run()
+
+    def test_a_description_that_is_gone_is_listed_as_not_run(self):
+        (self.root / 'sims/shear/run-long-ago.json').unlink()
+        self.expect_not_run()
+
+    def expect_not_run(self):
+        sections, page = self.written()
+        self.assertNotIn('shear/run-long-ago', sections)
+        self.assertIn('| shear/run-long-ago | 3.00 | | | |\n', page)
+        self.assertIn('shear/run-now', sections)
+
+
+unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
