@@ -113,20 +113,37 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
       << "a stage switches it on";
 }
 
-TEST(Descriptions, CheckRefusesChannelsThatNoProbeHas) {
+TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
-  const auto outcome = grit_in(
-      folder.path(), {"check", "two.json", "--set", R"(/output/picture={"x": "packing/time", "y": ["packing/nope"]})",
-                      "--set", R"(/output/references={"a": {"of": "test/x", "value": 1}})", "--set",
-                      R"(/output/summary=["packing/kinetic_energy", "packing/none"])"});
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(
-      outcome.err,
-      AllOf(HasSubstr("two.json: /output/picture/y/0: found \"packing/nope\", which no probe has as one number; "
-                      "allowed is one of packing/time, "),
-            HasSubstr("/output/references/a/of: found \"test/x\""),
-            HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")));
+  for (const std::string does : {"check", "run"}) {
+    const auto outcome = grit_in(
+        folder.path(), {does, "two.json", "--set", R"(/output/picture={"x": "packing/time", "y": ["packing/nope"]})",
+                        "--set", R"(/output/references={"a": {"of": "test/x", "value": 1}})", "--set",
+                        R"(/output/summary=["packing/kinetic_energy", "packing/none"])"});
+    EXPECT_EQ(outcome.status, 2) << does;
+    EXPECT_THAT(
+        outcome.err,
+        AllOf(HasSubstr("two.json: /output/picture/y/0: found \"packing/nope\", which no probe has as one number; "
+                        "allowed is one of packing/time, "),
+              HasSubstr("/output/references/a/of: found \"test/x\""),
+              HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")))
+        << does;
+  }
+}
+
+TEST(Descriptions, MayNameTheTimeOfSamplesWhereverChannelsAreNamed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  for (const std::string does : {"check", "run"}) {
+    const auto outcome =
+        grit_in(folder.path(),
+                {does, "two.json", "--set", R"(/output/picture={"x": "packing/mean_stress", "y": ["packing/time"]})",
+                 "--set", R"(/output/references={"a": {"of": "packing/time", "value": 1}})", "--set",
+                 R"(/output/summary=["packing/time"])"});
+    EXPECT_EQ(outcome.status, 0) << does << outcome.err;
+    if (does == "run") EXPECT_THAT(outcome.out, StartsWith("packing/time: peak "));
+  }
 }
 
 TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {

@@ -211,7 +211,7 @@ TEST_F(Reports, HaveWhatCurvesAreComparedWith) {
   };
   auto outcome = refused(R"({"of": "packing/nothing", "value": 1})");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("reference: no probe has a channel 'packing/nothing'"));
+  EXPECT_THAT(outcome.err, HasSubstr("two.json: /output/references/it/of: found \"packing/nothing\""));
   outcome = refused(R"({"of": "packing/mean_stress", "curve": {"file": "nothing.csv", "x": "u", "y": "ratio"}})");
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.err, HasSubstr("nothing.csv: cannot be read"));

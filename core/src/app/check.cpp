@@ -14,6 +14,7 @@
 #include "app/without_effect.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
+#include "output/single_channels.hpp"
 #include "run/observer.hpp"
 #include "run/simulation.hpp"
 #include "scene/make_bodies.hpp"
@@ -46,37 +47,6 @@ StageTime stage_time(const StageDescription& stage, const SceneDescription& scen
   return {stage.limit, false};
 }
 
-/// Throws DescriptionError where the output names a channel that no probe has, which a run would refuse.
-void check_channels(const std::string& file, const SceneDescription& scene, const Simulation& world) {
-  std::vector<std::string> there;
-  for (const auto& [name, probe] : scene.probes) {
-    there.push_back(name + "/time");
-    for (const Channel& channel : Observer(name, probe, world).group().channels)
-      if (std::ranges::all_of(channel.shape, [](std::size_t size) { return size == 1; }))
-        there.push_back(name + '/' + channel.name);
-  }
-  std::vector<Problem> problems;
-  const auto expect = [&](const std::string& pointer, const std::string& channel) {
-    if (channel.empty() || std::ranges::find(there, channel) != there.end()) return;
-    problems.push_back(
-        {file, 0, "/output/" + pointer,
-         fmt::format("found \"{}\", which no probe has as one number; allowed is {}", channel,
-                     there.empty() ? "nothing without probes" : fmt::format("one of {}", fmt::join(there, ", ")))});
-  };
-  const OutputDescription& output = scene.output;
-  if (output.picture) {
-    expect("picture/x", output.picture->x);
-    for (std::size_t i = 0; i < output.picture->y.size(); ++i)
-      expect(fmt::format("picture/y/{}", i), output.picture->y[i]);
-  }
-  for (const auto& [name, reference] : output.references) {
-    expect("references/" + name + "/of", reference.of);
-    expect("references/" + name + "/against", reference.against);
-  }
-  for (std::size_t i = 0; i < output.summary.size(); ++i) expect(fmt::format("summary/{}", i), output.summary[i]);
-  if (!problems.empty()) throw DescriptionError(std::move(problems));
-}
-
 void check_one(const std::string& file, const Options& options, const Registry& registry) {
   const Scene scene = load_scene(file, options.list("set"), registry);
   const SceneDescription& description = *scene.description;
@@ -88,7 +58,9 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   const unsigned threads = options.threads();
   Simulation simulation(description, make_bodies(description, run_state(description)), threads);
   simulation.find_forces();
-  check_channels(file, description, simulation);
+  std::vector<ProbeGroup> probes;
+  for (const auto& [name, probe] : description.probes) probes.push_back(Observer(name, probe, simulation).group());
+  SingleChannels(probes).check(file, description.output);  // as a run does
   const std::size_t bodies = simulation.positions().size();
 
   std::cout << "\nstate beyond position, velocity and spin\n";

@@ -1,39 +1,28 @@
 #include "app/curve_summary.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cmath>
 #include <sstream>
 
-#include "grit/error.hpp"
-
 namespace grit {
 
-CurveSummary::CurveSummary(Recorder& next, std::vector<std::string> channels,
+CurveSummary::CurveSummary(Recorder& next, std::string file, const OutputDescription& output,
                            std::function<void(const std::string&)> say)
-    : next_(next), say_(std::move(say)) {
-  for (auto& name : channels) curves_.push_back({.name = std::move(name), .unit = ""});
-}
+    : next_(next), file_(std::move(file)), output_(output), say_(std::move(say)), curves_(output.summary.size()) {}
 
 void CurveSummary::begin(const World& world, std::span<const ProbeGroup> probes) {
-  for (Curve& curve : curves_) {
-    bool found = false;
-    std::string all;
-    for (std::size_t p = 0; p < probes.size(); ++p)
-      for (std::size_t c = 0; c < probes[p].channels.size(); ++c) {
-        const Channel& channel = probes[p].channels[c];
-        if (!channel.shape.empty()) continue;
-        const std::string name = probes[p].name + '/' + channel.name;
-        all += (all.empty() ? "" : ", ") + name;
-        if (name == curve.name) found = true, curve.probe = p, curve.channel = c, curve.unit = channel.unit;
-      }
-    if (!found) throw Error("/output/summary names \"" + curve.name + "\", which no probe has; there is: " + all);
-  }
+  const SingleChannels channels(probes);
+  channels.check(file_, output_);
+  for (std::size_t i = 0; i < curves_.size(); ++i)
+    curves_[i].channel = channels.at(output_.summary[i], fmt::format("/output/summary/{}", i));
   next_.begin(world, probes);
 }
 
 void CurveSummary::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
   for (Curve& curve : curves_) {
-    if (curve.probe != probe) continue;
-    curve.last = values[curve.channel][0];
+    if (curve.channel.probe != probe) continue;
+    curve.last = curve.channel.of(world, values);
     if (std::isnan(curve.last)) continue;
     if (!curve.any || std::abs(curve.last) > std::abs(curve.largest)) curve.largest = curve.last;
     curve.any = true;
@@ -57,8 +46,8 @@ std::string CurveSummary::text() const {
   for (const Curve& curve : curves_) {
     const bool ends = !std::isnan(curve.last);
     if (!curve.any && ends) continue;  // nobody looked
-    const std::string unit = curve.unit == "1" ? "" : ' ' + curve.unit;
-    text << curve.name << ": ";
+    const std::string unit = curve.channel.unit == "1" ? "" : ' ' + curve.channel.unit;
+    text << curve.channel.full_name() << ": ";
     if (curve.any) text << "peak " << curve.largest << unit << ", ";
     if (ends) text << "final " << curve.last << unit << '\n';
     else text << "not defined at the end\n";

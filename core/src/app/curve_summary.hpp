@@ -6,16 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "output/single_channels.hpp"
 #include "run/recorder.hpp"
 
 namespace grit {
 
 class CurveSummary final : public Recorder {
  public:
-  /// `channels` as "probe/channel"; `say` gets a line for each stage that ends.
-  CurveSummary(Recorder& next, std::vector<std::string> channels, std::function<void(const std::string&)> say);
+  /// `file` and `output` are the description's; `say` gets a line for each stage that ends.
+  CurveSummary(Recorder& next, std::string file, const OutputDescription& output,
+               std::function<void(const std::string&)> say);
 
-  /// Throws Error for a channel that no probe has.
+  /// Throws DescriptionError for channels that the output names and no probe has.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override { next_.frame(world, fields); }
@@ -30,12 +32,13 @@ class CurveSummary final : public Recorder {
 
  private:
   struct Curve {
-    std::string name, unit;
-    std::size_t probe = 0, channel = 0;
+    SingleChannel channel;
     double largest = 0, last = 0;
     bool any = false;
   };
   Recorder& next_;
+  std::string file_;
+  const OutputDescription& output_;
   std::function<void(const std::string&)> say_;
   std::vector<Curve> curves_;
 };

@@ -160,11 +160,8 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
                          .picture = {}};
   if (const auto& picture = description.output.picture)
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};
-  for (const auto& [name, reference] : description.output.references) {
-    results.references.push_back(reference.of);
-    if (!reference.against.empty()) results.references.push_back(reference.against);
+  for (const auto& [name, reference] : description.output.references)
     if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
-  }
   const auto say = [&](const std::string& line) {
     if (!quiet) std::cerr << line << std::endl;
   };
@@ -191,7 +188,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
 
   ProgressBar bar;
-  CurveSummary summary_curves(recorder, description.output.summary, [&](const std::string& line) {
+  CurveSummary summary_curves(recorder, file, description.output, [&](const std::string& line) {
     bar.end();
     say(line);
   });

@@ -73,11 +73,12 @@ ResultsFolder::ResultsFolder(ResultsOptions options)
 
 void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes) {
   if (options_.picture) {
-    kept_.push_back(find("picture", options_.picture->x, probes));
-    for (const auto& name : options_.picture->y) kept_.push_back(find("picture", name, probes));
+    const SingleChannels channels(probes);
+    kept_.push_back({channels.at(options_.picture->x, "/output/picture/x")});
+    for (std::size_t i = 0; i < options_.picture->y.size(); ++i)
+      kept_.push_back({channels.at(options_.picture->y[i], fmt::format("/output/picture/y/{}", i))});
     grain_view(world, {}, options_.picture->view, options_.picture->color);
   }
-  for (const auto& name : options_.references) find("reference", name, probes);
   const auto path = options_.folder / "series.h5";
   const bool resumes = options_.existing == Existing::resume;
   if (resumes) {
@@ -94,9 +95,9 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
 void ResultsFolder::sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) {
   series_->append(probe, world.time(), world.step(), values);
   for (auto& kept : kept_)
-    if (kept.probe == probe) {
+    if (kept.channel.probe == probe) {
       kept.steps.push_back(static_cast<double>(world.step()));
-      kept.values.push_back(kept.channel ? values[*kept.channel].front() : world.time());
+      kept.values.push_back(kept.channel.of(world, values));
     }
 }
 
@@ -133,29 +134,15 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   std::filesystem::remove(options_.folder / "checkpoint.h5", nobody_needs_it);
 }
 
-ResultsFolder::Kept ResultsFolder::find(const char* asking, const std::string& name,
-                                        std::span<const ProbeGroup> probes) const {
-  std::string there;
-  for (std::size_t probe = 0; probe < probes.size(); ++probe) {
-    if (probes[probe].name + "/time" == name) return {probe, std::nullopt, "time", "s", {}, {}};
-    for (std::size_t channel = 0; channel < probes[probe].channels.size(); ++channel) {
-      const auto& found = probes[probe].channels[channel];
-      if (hdf5::product(found.shape) != 1) continue;
-      const auto full = probes[probe].name + '/' + found.name;
-      if (full == name) return {probe, channel, channel_label(probes[probe].name, found.name), found.unit, {}, {}};
-      there += (there.empty() ? "" : ", ") + full;
-    }
-  }
-  throw Error(std::string(asking) + ": no probe has a channel '" + name +
-              "' of one number; there are: " + (there.empty() ? "none" : there));
-}
-
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {
   Picture picture;
   picture.title = options_.title.empty() ? options_.folder.filename().string() : options_.title;
   picture.facts = fmt::format("{} grains  ·  {} simulated  ·  {} steps  ·  {:.3g} million particle-steps/s",
                               grouped(summary.bodies), written_time(summary.time), grouped(summary.steps),
                               1e-6 * summary.particle_steps_per_second);
+  const auto axis = [](const SingleChannel& channel) {
+    return Axis{channel_label(channel.probe_name, channel.name), channel.unit};
+  };
   const auto& x = kept_.front();
   for (const auto& y : std::span(kept_).subspan(1)) {
     // Probes may sample at different steps: a point is where both did.
@@ -169,7 +156,7 @@ void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) 
         x.steps[i] < y.steps[j] ? ++i : ++j;
       }
     }
-    picture.panels.push_back({{x.label, x.unit}, {y.label, y.unit}, {std::move(curve)}});
+    picture.panels.push_back({axis(x.channel), axis(y.channel), {std::move(curve)}});
   }
   picture.grains = grain_view(world, options_.walls, options_.picture->view, options_.picture->color);
   write_atomically(options_.folder / "picture.svg", draw(picture));

@@ -9,6 +9,7 @@
 #include "output/frames.hpp"
 #include "output/run_json.hpp"
 #include "output/series.hpp"
+#include "output/single_channels.hpp"
 #include "run/recorder.hpp"
 
 namespace grit {
@@ -35,7 +36,6 @@ struct ResultsOptions {
   RunFacts facts;
   std::vector<WallShape> walls;
   std::optional<PictureRequest> picture;
-  std::vector<std::string> references;  ///< channels of one number that the description has something to say of
   Flushing flushing = {};
 };
 
@@ -48,7 +48,7 @@ class ResultsFolder final : public Recorder {
   /// Makes the folder. Throws FileError where it cannot, or where it holds a run and `existing` says refuse.
   explicit ResultsFolder(ResultsOptions options);
 
-  /// Throws Error for a channel of the picture or of a reference that no probe has, or that is not one number.
+  /// Throws Error for a channel of the picture that no probe has, or that is not one number.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override;
@@ -61,10 +61,8 @@ class ResultsFolder final : public Recorder {
  private:
   /// A channel that the picture shows, kept in memory.
   struct Kept {
-    std::size_t probe;
-    std::optional<std::size_t> channel;  ///< nothing: the time of the samples
-    std::string label, unit;
-    std::vector<double> steps, values;
+    SingleChannel channel;
+    std::vector<double> steps = {}, values = {};
   };
 
   /// How much there was at a checkpoint.
@@ -75,7 +73,6 @@ class ResultsFolder final : public Recorder {
     void remember(Memory& memory) { memory(samples, frames, steps, values); }
   };
 
-  Kept find(const char* asking, const std::string& name, std::span<const ProbeGroup> probes) const;
   void draw_picture(const World& world, const RunSummary& summary) const;
 
   ResultsOptions options_;

@@ -1,0 +1,42 @@
+// Channels of one number: what the picture, the references and the summary of a description may name.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "run/recorder.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+struct SingleChannel {
+  std::string probe_name, name, unit;
+  std::size_t probe = 0;
+  std::optional<std::size_t> channel;  ///< nothing: the time of the samples
+  std::string full_name() const { return probe_name + '/' + name; }
+  /// `values` of a sample of its probe.
+  double of(const World& world, std::span<const std::span<const double>> values) const {
+    return channel ? values[*channel].front() : world.time();
+  }
+};
+
+/// Those of a run, and of each probe the time of its samples, by "probe/channel".
+class SingleChannels {
+ public:
+  explicit SingleChannels(std::span<const ProbeGroup> probes);
+  /// `pointer`: where the description has the name. Throws Error for one that is not there.
+  const SingleChannel& at(const std::string& name, const std::string& pointer) const;
+  /// Throws DescriptionError with all names of the section that are not there.
+  void check(const std::string& file, const OutputDescription& output) const;
+
+ private:
+  const SingleChannel* find(const std::string& name) const;
+  std::string refusal(const std::string& name) const;
+
+  std::vector<SingleChannel> all_;
+};
+
+}  // namespace grit
