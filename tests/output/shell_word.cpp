@@ -15,12 +15,16 @@ TEST(ShellWord, StaysAsItIsWhereAShellTakesItSo) {
 
 TEST(ShellWord, IsQuotedWhereItIsNot) {
   EXPECT_EQ(shell_word("my results/two"), "\"my results/two\"");
-  EXPECT_EQ(shell_word("a$HOME\"`\\"), R"("a\$HOME\"\`\\")");
+  EXPECT_EQ(shell_word("it's"), "\"it's\"");
+  EXPECT_EQ(shell_word(R"(/a={"type": "b"})"), R"('/a={"type": "b"}')");
+  EXPECT_EQ(shell_word("no!"), "'no!'");
+  EXPECT_EQ(shell_word("it's $5"), R"('it'\''s $5')");
   EXPECT_EQ(shell_word(""), "\"\"");
 }
 
 TEST(ShellWord, IsReadBackByAShell) {
-  for (const std::string word : {"my results", "it's", "$HOME `ls` \\n \"x\"", "a;b&c|d>e<f*g?(h)[i]{j}~k#l", "größe"})
+  for (const std::string word :
+       {"my results", "it's", "$HOME `ls` \\n \"x\"", "it's $HOME!", "a;b&c|d>e<f*g?(h)[i]{j}~k#l", "größe"})
     EXPECT_EQ(shell(".", "printf %s " + shell_word(word)).out, word);
 }
 

@@ -173,8 +173,7 @@ void print(const ChartedStudy& study, const std::string& related, const std::str
         unknown.empty() ? "" : fmt::format("; not counted: {}", fmt::join(unknown, ", ")));
   if (!any) return;
   std::cout << "  grit run " << shell_word(file);
-  for (const auto& set : given)
-    std::cout << " --set " << (set.find('\'') == set.npos ? '\'' + set + '\'' : shell_word(set));
+  for (const auto& set : given) std::cout << " --set " << shell_word(set);
   std::cout << '\n';
 }
 

@@ -12,12 +12,10 @@ std::string shell_word(const std::string& word) {
     return letter || (c & 0x80) != 0 || others.find(c) != others.npos;
   };
   if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
-  std::string quoted = "\"";
-  for (const char c : word) {
-    if (std::string_view("\\\"$`").find(c) != std::string_view::npos) quoted += '\\';
-    quoted += c;
-  }
-  return quoted + '"';
+  if (word.find_first_of("\\\"$`!") == word.npos) return '"' + word + '"';
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + '\'';
 }
 
 }  // namespace grit
