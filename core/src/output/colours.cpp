@@ -7,6 +7,14 @@
 
 namespace grit {
 
+double colour_limit(std::vector<double> sizes) {
+  if (sizes.empty()) return 0;
+  constexpr double share = 0.98;
+  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
+  std::ranges::nth_element(sizes, nth);
+  return *nth;
+}
+
 std::string colour_at(std::span<const Rgb> scale, double place) {
   const double along = std::clamp(place, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(along), scale.size() - 2);

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace grit {
 
@@ -20,6 +21,9 @@ inline constexpr std::array<Rgb, 7> diverging_colours{
 /// Viridis, from small to large.
 inline constexpr std::array<Rgb, 7> sequential_colours{
     {{68, 1, 84}, {68, 57, 131}, {49, 104, 142}, {33, 145, 140}, {53, 183, 121}, {144, 215, 67}, {253, 231, 37}}};
+
+/// What 98 % of sizes stay below, where colours end: a fast one leaves the others theirs. 0 without any.
+double colour_limit(std::vector<double> sizes);
 
 /// "#rrggbb" at a place of a scale, 0 to 1; the nearest end beyond.
 std::string colour_at(std::span<const Rgb> scale, double place);

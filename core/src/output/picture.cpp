@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "output/clipped.hpp"
 #include "output/colours.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr double margin = Heading::margin, widest = Heading::widest - 2 * margin;  // px, of what is between margins
 constexpr int classes = 21;                                                        // of colour, odd: one is for zero
-constexpr double percentile = 0.98;
 
 // Okabe and Ito's colours that stand out on white, told apart by all readers.
 constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#a8518a", "#7a6a00", "#555555"};
@@ -287,9 +287,7 @@ ViewLayout layout(const GrainView& view) {
     result.x = {result.x.low - room, result.x.low + room}, result.y = {result.y.low - room, result.y.low + room};
   }
   if (!sizes.empty()) {
-    const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(percentile * static_cast<double>(sizes.size() - 1));
-    std::ranges::nth_element(sizes, nth);
-    if (*nth > 0) result.limit = *nth;
+    if (const double limit = colour_limit(std::move(sizes)); limit > 0) result.limit = limit;
     result.unit = readable(view.value.unit, result.limit);
     result.value_title = axis_title(view.value.label, result.unit.unit);
     constexpr double numbers = 64;  // px

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "grit/error.hpp"
+#include "output/colours.hpp"
 #include "output/read_frames.hpp"
 #include "output/strays.hpp"
 #include "report/cell_maps.hpp"
@@ -16,8 +17,6 @@
 
 namespace grit {
 namespace {
-
-constexpr double share_shown = 0.98;  // of bodies whose value a colour tells; as the picture of a run has it
 
 /// Files of which all fit into the page, the first and the last among them.
 std::vector<std::filesystem::path> chosen(std::span<const std::filesystem::path> files, const GrainLimits& limits,
@@ -37,14 +36,6 @@ std::vector<std::filesystem::path> chosen(std::span<const std::filesystem::path>
   std::vector<std::filesystem::path> taken;
   for (std::size_t i = 0; i < most; ++i) taken.push_back(whole[i * (whole.size() - 1) / (most - 1)]);
   return taken;
-}
-
-/// The value that a share of all stay below, in size.
-double percentile(std::vector<double> sizes) {
-  if (sizes.empty()) return 0;
-  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(share_shown * static_cast<double>(sizes.size() - 1));
-  std::ranges::nth_element(sizes, nth);
-  return *nth;
 }
 
 double length(const std::vector<double>& vectors, std::size_t i) {
@@ -70,7 +61,7 @@ struct VectorRange {
       for (std::size_t i = axis; i < vectors.size(); i += 3)
         if (std::isfinite(vectors[i])) sizes.push_back(std::abs(vectors[i]));
       for (const double size : sizes) largest = std::max(largest, size);
-      limits[axis] = std::max(limits[axis], percentile(std::move(sizes)));
+      limits[axis] = std::max(limits[axis], colour_limit(std::move(sizes)));
     }
   }
 };
@@ -99,7 +90,7 @@ struct StageExtent {
     std::vector<double> finite = speeds(frame);
     std::erase_if(finite, [](double v) { return !std::isfinite(v); });
     for (const double v : finite) speed = std::max(speed, v);
-    speed_limit = std::max(speed_limit, percentile(std::move(finite)));
+    speed_limit = std::max(speed_limit, colour_limit(std::move(finite)));
     rotation.add(frame.rotation, frame.bodies()), displacement.add(frame.displacement, frame.bodies());
   }
 };

@@ -85,12 +85,12 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
     std::iota(cells.begin(), cells.end(), std::size_t{0});
     if (cells.empty()) continue;
     // Through the middle of cells, so that the cut is never between two.
-    const auto by_depth = [&](std::size_t cell) { return at(centre, cell, depth); };
-    std::ranges::nth_element(cells, cells.begin() + static_cast<std::ptrdiff_t>(cells.size() / 2), {}, by_depth);
-    const double plane = by_depth(cells[cells.size() / 2]);
+    const auto depth_of = [&](std::size_t cell) { return at(centre, cell, depth); };
+    std::vector<double> depths(cells.size());
+    std::ranges::transform(cells, depths.begin(), depth_of);
+    const double plane = median(std::move(depths));
     std::erase_if(cells,
-                  [&](std::size_t cell) { return std::abs(by_depth(cell) - plane) > 0.49999 * at(size, cell, depth); });
-    std::ranges::sort(cells);
+                  [&](std::size_t cell) { return std::abs(depth_of(cell) - plane) > 0.49999 * at(size, cell, depth); });
     const std::vector<Segment> walls = cut_walls(walls_of(*frame), view, plane);
     for (const Field& field : map.fields | std::views::drop(2)) {
       if (is_bookkeeping(field)) continue;
