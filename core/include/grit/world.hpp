@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -39,6 +40,13 @@ struct Cell {
   Vec3 low, high;  ///< m
   std::array<bool, 3> periodic{false, false, false};
   Vec3 strain_rate = Vec3::Zero();  ///< of the periodic axes, 1/s, positive in extension
+
+  /// Where a coordinate is seen within the cell: along a periodic axis whole periods off, else itself [m]. Bodies are
+  /// past a periodic side for a while before they come in at the other one.
+  double inside(double x, int axis) const {
+    const double period = high[axis] - low[axis];
+    return periodic[static_cast<std::size_t>(axis)] ? x - period * std::floor((x - low[axis]) / period) : x;
+  }
 };
 
 /// A box, for averages.

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "grit/error.hpp"
@@ -22,15 +21,10 @@ void write_grains(const std::filesystem::path& path, const World& world, const s
   std::vector<std::uint32_t> order(world.ids().size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
-  // Between two searches bodies may be past a periodic side.
   const Cell& cell = world.cell();
-  const auto inside = [&](double x, int axis) {
-    const double period = cell.high[axis] - cell.low[axis];
-    return cell.periodic[axis] ? x - period * std::floor((x - cell.low[axis]) / period) : x;
-  };
   const auto grain = [&](std::size_t i) -> Row {
     const Row& x = world.positions()[order[i]];
-    return {inside(x.x, 0), inside(x.y, 1), inside(x.z, 2), x.w};
+    return {cell.inside(x.x, 0), cell.inside(x.y, 1), cell.inside(x.z, 2), x.w};
   };
   write_packing(path, order.size(), grain, comment);
 }

@@ -82,15 +82,9 @@ void Displacements::fill_strips(const World& world, std::span<const std::span<do
   const Region box = specimen_box(world);
   const int side = strips_along[0] - 'x', axis = along[0] - 'x';
   const double width = (box.high[side] - box.low[side]) / static_cast<double>(strips);
-  const Cell& cell = world.cell();
-  // Bodies are past a periodic side for a while before they come in at the other one.
-  const auto inside = [&](double x) {
-    const double period = cell.high[side] - cell.low[side];
-    return cell.periodic[static_cast<std::size_t>(side)] ? x - period * std::floor((x - cell.low[side]) / period) : x;
-  };
   for (std::size_t strip = 0; strip < values.size(); ++strip) {
     const auto of_strip = [&](std::size_t i) {
-      const double across = (inside(xyz(world.positions()[i])[side]) - box.low[side]) / width;
+      const double across = (world.cell().inside(xyz(world.positions()[i])[side], side) - box.low[side]) / width;
       // What lies beyond the outermost ones is theirs.
       const double place = std::clamp(std::floor(across), 0.0, static_cast<double>(strips - 1));
       return place == static_cast<double>(strip) ? world.displacements()[i][axis]

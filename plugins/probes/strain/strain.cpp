@@ -59,11 +59,7 @@ std::vector<Strain::Body> Strain::bodies(const World& world) const {
       const int axis = axes[k];
       const auto side = static_cast<Eigen::Index>(k);
       body.moved[side] = world.displacements()[i][axis];
-      body.place[side] = xyz(world.positions()[i])[axis] - body.moved[side];
-      const Cell& cell = world.cell();
-      if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
-      const double period = cell.high[axis] - cell.low[axis];
-      body.place[side] -= period * std::floor((body.place[side] - cell.low[axis]) / period);
+      body.place[side] = world.cell().inside(xyz(world.positions()[i])[axis] - body.moved[side], axis);
     }
     all.push_back(body);
   }
@@ -136,17 +132,12 @@ std::vector<Field> Strain::fields(const World& world) {
     fields[field].values.insert(fields[field].values.end(), row.begin(), row.end());
   };
   const Region specimen = specimen_box(world);
-  const Cell& cell = world.cell();
   Vec3 size = specimen.high - specimen.low;
   size[first] = size[second] = step * world.mean_diameter();
   for (const Subset& one : subsets(world)) {
     Vec3 centre = 0.5 * (specimen.low + specimen.high);
     centre[first] = one.began[0] + one.moved[0], centre[second] = one.began[1] + one.moved[1];
-    for (const int axis : {first, second}) {
-      if (!cell.periodic[static_cast<std::size_t>(axis)]) continue;
-      const double period = cell.high[axis] - cell.low[axis];
-      centre[axis] -= period * std::floor((centre[axis] - cell.low[axis]) / period);
-    }
+    for (const int axis : {first, second}) centre[axis] = world.cell().inside(centre[axis], axis);
     append(0, centre), append(1, size), append(2, one.began), append(4, one.green);
     fields[3].values.push_back(one.bodies);
   }
