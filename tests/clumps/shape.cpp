@@ -192,7 +192,7 @@ TEST(ClumpShape, KnowsHowFarOffItIs) {
     if (trial % 2 == 1) std::swap(balls[0], balls[1]);
     const Unequal known(r, d);
     for (const int rays : {300, 501}) {
-      const IntegratedShape shape = make_clump_shape(balls, rays);
+      const ClumpShape shape = make_clump_shape(balls, rays);
       const double size = (1 + d + r) / 2;
       const auto& large = shape.spheres[trial % 2];
       const double mass = shape.volume * std::pow(size, 3) / known.volume - 1;
@@ -222,7 +222,7 @@ TEST(ClumpShape, OfALongRodHasItsInertiaAboutItsAxis) {
   const double h = apart / 2, volume = caps.volume + (count - 2) * 2 * pi * (h - std::pow(h, 3) / 3);
   const double about = caps.along * caps.volume + (count - 2) * pi * (h - 2 * std::pow(h, 3) / 3 + std::pow(h, 5) / 5);
   const double size = 1 + (count - 1) * apart / 2;
-  const IntegratedShape shape = make_clump_shape(balls);
+  const ClumpShape shape = make_clump_shape(balls);
   verify("volume of a rod of 24 spheres", shape.volume * std::pow(size, 3), volume, 1e-5);
   verify("moment of inertia of a rod of 24 spheres about its axis", shape.inertia[0] * size * size, about / volume,
          1e-4);

@@ -8,6 +8,13 @@
 
 namespace grit {
 
+/// How far off what was integrated of a shape may be; 0 where it is known in closed form.
+struct ShapeErrors {
+  double mass = 0;     ///< over the mass
+  double centre = 0;   ///< distance over the radius of the enclosing sphere
+  double inertia = 0;  ///< the largest of a principal moment over itself
+};
+
 /// Spheres that are fixed to each other and move as one, in units of the radius of the smallest sphere that encloses
 /// them. The origin is the centre of mass of their union, of uniform density, and the axes are its principal ones.
 struct ClumpShape {
@@ -17,6 +24,7 @@ struct ClumpShape {
   Mat3 axes = Mat3::Identity();  ///< columns: these axes, as seen in the frame in which the spheres were given
   double volume = 0;             ///< of the union
   Vec3 inertia = Vec3::Zero();   ///< principal moments for a mass of 1
+  ShapeErrors errors = {};       ///< of volume, centre of mass and inertia
 };
 
 class BodyKind {

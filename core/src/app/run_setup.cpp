@@ -3,7 +3,6 @@
 #include <set>
 #include <utility>
 
-#include "scene/clump_body.hpp"
 #include "scene/make_bodies.hpp"
 
 namespace grit {
@@ -35,8 +34,7 @@ std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Regist
 std::map<std::string, ClumpFacts> clumps_of(const SceneDescription& scene) {
   std::map<std::string, ClumpFacts> clumps;
   for (const auto& [name, group] : scene.bodies)
-    if (const auto* clump = dynamic_cast<const ClumpBody*>(&*group.kind))
-      clumps[name] = {clump->integrated().spheres.size(), clump->integrated().errors};
+    if (const ClumpShape* clump = group.kind->clump()) clumps[name] = {clump->spheres.size(), clump->errors};
   return clumps;
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "grit/body_kind.hpp"
 #include "grit/description.hpp"
 #include "grit/plugin.hpp"
-#include "scene/clump_shape.hpp"
 
 namespace grit {
 

@@ -85,9 +85,9 @@ void ClumpBody::declare(Parameters& p) {
       {"shape"});
 }
 
-const IntegratedShape& ClumpBody::integrated() const {
+const ClumpShape* ClumpBody::clump() const {
   if (!shape_) shape_ = make_clump_shape(balls_);
-  return *shape_;
+  return &*shape_;
 }
 
 const PluginInfo& clump_body() {

@@ -43,8 +43,7 @@ struct AsymmetricSpheres {
 class ClumpBody : public BodyKind {
  public:
   void declare(Parameters& p) override;
-  const ClumpShape* clump() const override { return &integrated(); }
-  const IntegratedShape& integrated() const;
+  const ClumpShape* clump() const override;
   double volume(double radius) const override { return clump()->volume * radius * radius * radius; }
   /// The least principal moment.
   double inertia(double radius, double mass) const override { return clump()->inertia[0] * mass * radius * radius; }
@@ -52,7 +51,7 @@ class ClumpBody : public BodyKind {
  private:
   OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
   std::vector<Ball> balls_;
-  mutable std::optional<IntegratedShape> shape_;  // integrated when asked for: not by every stage
+  mutable std::optional<ClumpShape> shape_;  // integrated when asked for: not by every stage
 };
 
 /// For Registry::add().

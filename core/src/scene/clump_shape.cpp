@@ -224,7 +224,7 @@ std::optional<ClumpDefect> clump_defect(std::span<const Ball> spheres) {
   return std::nullopt;
 }
 
-IntegratedShape make_clump_shape(std::span<const Ball> spheres, int rays) {
+ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays) {
   if (const auto defect = clump_defect(spheres))
     throw Error("found " + defect->found + "; allowed is " + defect->allowed);
   const Ball enclosing = smallest_enclosing(spheres);
@@ -245,7 +245,7 @@ IntegratedShape make_clump_shape(std::span<const Ball> spheres, int rays) {
   Mat3 axes = solver.eigenvectors();
   if (axes.determinant() < 0) axes.col(2) *= -1;
 
-  IntegratedShape shape;
+  ClumpShape shape;
   shape.errors = errors;
   shape.volume = all.volume, shape.inertia = solver.eigenvalues(), shape.axes = axes;
   shape.middle = axes.transpose() * -centre;

@@ -24,20 +24,9 @@ struct ClumpDefect {
 /// What is wrong where there is no sphere or more than 64, one lies within another, or they do not hang together.
 std::optional<ClumpDefect> clump_defect(std::span<const Ball> spheres);
 
-/// How far off the integrals of a shape may be.
-struct ShapeErrors {
-  double mass = 0;     ///< over the mass
-  double centre = 0;   ///< distance over the radius of the enclosing sphere
-  double inertia = 0;  ///< the largest of a principal moment over itself
-};
-
-struct IntegratedShape : ClumpShape {
-  ShapeErrors errors;
-};
-
 /// The clump of these spheres, in any unit and frame. Volume and moments are those of the union, by exact chords along
 /// `rays` × `rays` lines through each sphere, a multiple of 3, less what spheres before it cover. Errors are what comes
 /// of a third as many either way, sphere by sphere. Throws grit::Error where there is a defect or one is above 0.1 %.
-IntegratedShape make_clump_shape(std::span<const Ball> spheres, int rays = 501);
+ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays = 501);
 
 }  // namespace grit
