@@ -24,10 +24,12 @@ grains = 8
 (out / 'packing.txt').write_text('# cell 0 0 0 to 1 1 1, m\n' + ''.join(
     f'{i & 1} {i >> 1 & 1} {i >> 2 & 1} 0.5\n' for i in range(grains)))
 steps = int(json.loads(settings.get('/stages/1/until/value', '100')) or 1)
-(out / 'run.json').write_text(json.dumps({
+written = out / 'run.json.part'  # never seen half written, as grit's own is not
+written.write_text(json.dumps({
     'grit': {'revision': given['revision']}, 'bodies': grains, 'contacts_per_body': 4.0, 'steps': 10 + steps,
     'time_step_s': 0.8e-6, 'critical_time_step_s': 1e-6, 'wall_s': given['run'], 'rebuilds': given['rebuilds'],
     'model': {'bytes': 1000},
     'stages': [{'name': 'warm up', 'step': 10, 'wall_s': given['before']},
                {'name': 'timed', 'step': 10 + steps, 'wall_s': given['end']}]}))
+written.rename(out / 'run.json')
 print('packing/mean_stress: peak 1.5e5 Pa, final 1.5e5 Pa')
