@@ -141,7 +141,11 @@ def kernels(program, pattern):
             done = machine.run([built, f'--benchmark_filter={pattern}', '--benchmark_min_time=0.5', f'--benchmark_out={out}'], 1, folder)
         except subprocess.CalledProcessError as error:
             raise Complaint(f'{built}: {machine.reason(error)}') from error
-        return read(out), done.others
+        times = read(out)
+    for name, one in times.items():
+        if one.get('error_occurred'):
+            raise Complaint(f"{built}: {name} {one['error_message']}")
+    return times, done.others
 
 
 def measured(program):
