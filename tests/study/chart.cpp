@@ -345,6 +345,13 @@ TEST_F(Charts, WithoutTheFinestThereIsNothingToCompareWith) {
   EXPECT_TRUE(all.reference.empty());
   EXPECT_THAT(verdict(all), HasSubstr("nothing to compare with"));
   EXPECT_THAT(chart_page(all), HasSubstr("it broke"));
+  const Value slow = all.variants[1].values.at("end");
+  EXPECT_DOUBLE_EQ(slow.mean, 1.1);
+  EXPECT_DOUBLE_EQ(slow.scatter, std::sqrt(0.02));
+  EXPECT_FALSE(all.finest().values.contains("end"));
+  EXPECT_DOUBLE_EQ(to_json(all)["variants"][1]["values"]["end"]["mean"], 1.1);
+  EXPECT_THAT(to_csv(all), HasSubstr("\"rate=slow\",\"slow\",\"2\",\"end\",1.1,nan"));
+  EXPECT_THAT(chart_page(all), HasSubstr("1.1 <small>± 0.14</small>"));
 }
 
 TEST_F(Charts, VerdictNamesTheFiguresThatNothingIsKnownOf) {

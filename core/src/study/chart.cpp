@@ -228,6 +228,18 @@ double cost_ratio_error(const VariantResult& own, const VariantResult& other) {
   return std::sqrt(sampled({residuals}).variance.front() / static_cast<double>(residuals.size())) / other.core_seconds;
 }
 
+void find_values(const StudyDescription& study, VariantResult& result) {
+  if (!all_done(result)) return;
+  for (const auto& [name, figure] : study.figures) {
+    if (figure.is_curve() ||
+        std::ranges::any_of(result.samples, [&](const Sample& s) { return s.lacks.contains(name); }))
+      continue;
+    const auto figures = figures_of(result, name);
+    const Sampled values = sampled(values_at(figures, {}));
+    result.values[name] = {values.mean.front(), std::sqrt(values.variance.front()), figures.front()->unit};
+  }
+}
+
 /// The reference of each figure, and what its errors are divided by.
 void find_references(Chart& chart) {
   for (const auto& [name, figure] : chart.study.figures) {
@@ -372,7 +384,7 @@ Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
   }
   find_lacks(chart);
   find_short_curves(chart);
-  for (VariantResult& result : chart.variants) find_costs(result);
+  for (VariantResult& result : chart.variants) find_costs(result), find_values(chart.study, result);
   find_references(chart);
   find_deviations(chart);
   find_effects(chart);
@@ -413,9 +425,11 @@ Description to_json(const Chart& chart) {
         {"scale", chart.scale.contains(name) ? Description(chart.scale.at(name)) : Description()},
         {"not_charted", chart.uncharted.contains(name) ? Description(chart.uncharted.at(name)) : Description()}};
   for (const VariantResult& one : chart.variants) {
-    Description levels = Description::object(), samples = Description::array();
+    Description levels = Description::object(), values = Description::object(), samples = Description::array();
     std::size_t k = 0;
     for (const auto& [name, setting] : chart.study.settings) levels[name] = setting.label(one.variant.levels[k++]);
+    for (const auto& [name, value] : one.values)
+      values[name] = {{"mean", value.mean}, {"scatter", or_null(value.scatter)}, {"unit", value.unit}};
     for (const Sample& sample : one.samples)
       samples.push_back({{"seed", sample.seed},
                          {"folder", folder_of(one.variant, sample.seed).string()},
@@ -435,6 +449,7 @@ Description to_json(const Chart& chart) {
                                 {"on_front", one.on_front},
                                 {"within_tolerance", one.complete() ? Description(word_of(one.within)) : Description()},
                                 {"decided_by", one.decided_by},
+                                {"values", values},
                                 {"figures", to_json(one.deviations)},
                                 {"samples", samples}});
   }
@@ -461,7 +476,8 @@ std::string to_csv(const Chart& chart) {
     const auto done = std::ranges::count(one.samples, "done", &Sample::status);
     for (const auto& [name, figure] : chart.study.figures) {
       const auto found = one.deviations.find(name);
-      const Deviation figures = found == one.deviations.end() ? Deviation() : found->second;
+      Deviation figures = found == one.deviations.end() ? Deviation() : found->second;
+      if (const auto value = one.values.find(name); value != one.values.end()) figures.mean = value->second.mean;
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted(name), figures.mean, figures.error,
                           figures.standard_error, figures.scatter, one.core_seconds, one.cost_scatter, one.steps,
                           one.particle_steps_per_second, done, one.samples.size());

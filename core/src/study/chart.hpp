@@ -39,11 +39,19 @@ struct Deviation {
   double scatter = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation between samples
 };
 
+/// What a figure of one value came to, with or without a reference.
+struct Value {
+  double mean = 0;     ///< over samples
+  double scatter = 0;  ///< standard deviation between them; NaN of one sample
+  std::string unit;
+};
+
 struct VariantResult {
   Variant variant;
   std::vector<Sample> samples;
   double core_seconds = 0, steps = 0, particle_steps_per_second = 0;  ///< means of the samples that are done
   double cost_scatter = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of core_seconds between them
+  std::map<std::string, Value> values;                             ///< by figure of one value; empty if a sample failed
   std::map<std::string, Deviation> deviations;                     ///< by figure; empty if a sample failed
   std::string worst;                                               ///< figure with the largest error
   bool on_front = false;                                           ///< no other is both cheaper and nearer

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "output/page.hpp"
+#include "output/scale.hpp"
 #include "output/svg.hpp"
 #include "study/chart_words.hpp"
 #include "study/error_chart.hpp"
@@ -53,6 +56,37 @@ std::string variants_table(const Chart& chart) {
                             found->second.error > chart.study.tolerance ? " class=\"over\"" : "",
                             percent(found->second.error), percent(found->second.standard_error));
       }
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+/// The figures of one value themselves, each in the unit that reads best.
+std::string values_part(const Chart& chart) {
+  std::map<std::string, std::pair<std::string, double>> figures;  // by name: the unit, and the largest of all
+  for (const VariantResult& one : chart.variants)
+    for (const auto& [name, value] : one.values) {
+      auto& [unit, largest] = figures[name];
+      unit = value.unit, largest = std::max(largest, std::abs(value.mean));
+    }
+  if (figures.empty()) return "";
+  std::string html =
+      "<h2>What they came to</h2>\n<p>Means over samples ± the standard deviation of one.</p>\n"
+      "<div class=\"wide\"><table><thead><tr><th>#</th><th class=\"name\">settings that differ from the usual</th>";
+  for (const auto& [name, figure] : figures)
+    html += "<th>" + escaped(axis_title(name, readable(figure.first, figure.second).unit)) + "</th>";
+  html += "</tr></thead><tbody>\n";
+  for (std::size_t i = 0; i < chart.variants.size(); ++i) {
+    const VariantResult& one = chart.variants[i];
+    html += fmt::format("<tr><td>{}</td><td class=\"name\">{}</td>", i + 1, escaped(one.variant.name));
+    for (const auto& [name, figure] : figures) {
+      const auto value = one.values.find(name);
+      const double factor = readable(figure.first, figure.second).factor;
+      html += value == one.values.end()
+                  ? "<td>–</td>"
+                  : fmt::format("<td>{:.3g} <small>± {}</small></td>", factor * value->second.mean,
+                                or_unknown(factor * value->second.scatter));
     }
     html += "</tr>\n";
   }
@@ -144,8 +178,8 @@ std::string chart_page(const Chart& chart) {
         "if all that are finer are: where an error grows again with a finer setting, it was small because others "
         "cancelled it.</small></p>\n";
   }
-  html += "<h2>Variants</h2>\n" + variants_table(chart) + effects_part(chart) + uncharted_part(chart) +
-          failures_part(chart);
+  html += "<h2>Variants</h2>\n" + variants_table(chart) + values_part(chart) + effects_part(chart) +
+          uncharted_part(chart) + failures_part(chart);
   if (chart.reference.size() > 1) {
     html += "<h2>Each figure</h2>\n<div class=\"charts\">\n";
     for (const auto& [name, reference] : chart.reference) html += "<div>" + error_chart(chart, name) + "</div>\n";
