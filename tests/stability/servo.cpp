@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engines/walls.hpp"
+#include "grit/contact/restitution.hpp"
 #include "grit/error.hpp"
 #include "support/growth.hpp"
 #include "support/mapped.hpp"
@@ -16,12 +17,13 @@ namespace {
 
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius;
 const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
-constexpr double squeeze = 1e-3;    // of the radius
-constexpr double habit_steps = 30;  // as engines/walls has it
+constexpr double squeeze = 1e-3;                          // of the radius
+constexpr double habit_steps = 30, dashpots_counted = 3;  // as engines/walls has them
 
 /// Grains one on the other between the floor and a lid that presses them together by `squeeze`; `gap` [m] to the lid.
-Description stack(int grains, double gain, double gap = 0, double max_velocity = 1e3) {
-  const Description m{{"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}};
+Description stack(int grains, double gain, double gap = 0, double max_velocity = 1e3, double restitution = 1) {
+  const Description m{
+      {"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}, {"restitution", restitution}};
   const double speed = 1e-9 * squeeze * radius * std::sqrt(2 * stiffness / mass);
   const double pressed = gap > 0 ? 0 : squeeze * radius;
   std::vector<Grain> list;
@@ -43,30 +45,36 @@ Description stack(int grains, double gain, double gap = 0, double max_velocity =
 }
 
 /// Spectral radius of one step of grains, wall and its habit, with the same rules.
-double spectral_radius(int grains, double gain, double dt) {
-  const int n = grains, size = 2 * n + 2;
+double spectral_radius(int grains, double gain, double dt, double restitution) {
+  const int n = grains, size = 2 * n + 3;
+  const double turn = dt * dt * stiffness / mass, ratio = damping_of_restitution(restitution),
+               at_wall = 2 * ratio / std::sqrt(turn), between = at_wall / std::sqrt(2);  // c / (k dt)
   Eigen::MatrixXd step(size, size);
   for (int column = 0; column < size; ++column) {
-    Eigen::VectorXd s = Eigen::VectorXd::Unit(size, column);  // places, dt · velocities, of the wall: place, dt · habit
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(n + 2);
+    // Places and dt · velocities of the grains; of the wall its place, dt · habit and dt · velocity.
+    Eigen::VectorXd s = Eigen::VectorXd::Unit(size, column);
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(n + 2), u = x;
     x.segment(1, n) = s.head(n), x[n + 1] = s[2 * n];
-    const double turn = dt * dt * stiffness / mass;
-    for (int i = 0; i < n; ++i) s[n + i] += turn * (x[i] - 2 * x[i + 1] + x[i + 2]);
+    u.segment(1, n) = s.segment(n, n), u[n + 1] = s[2 * n + 2];
+    Eigen::VectorXd pushes(n + 1);  // force over k of the contact below each grain, and of the lid's
+    for (int i = 0; i <= n; ++i)
+      pushes[i] = x[i] - x[i + 1] + (i == 0 || i == n ? at_wall : between) * (u[i] - u[i + 1]);
+    for (int i = 0; i < n; ++i) s[n + i] += turn * (pushes[i] - pushes[i + 1]);
     s.head(n) += s.segment(n, n);
-    const double moved = s[size - 1] + gain * (x[n] - x[n + 1]);
-    s[size - 1] += gain / habit_steps * (moved - s[size - 1]);
-    s[2 * n] += moved;
+    const double moved = s[2 * n + 1] + gain * pushes[n] / (1 + dashpots_counted * at_wall);
+    s[2 * n + 1] += gain / habit_steps * (moved - s[2 * n + 1]);
+    s[2 * n] += moved, s[2 * n + 2] = moved;
     step.col(column) = s;
   }
   return step.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 /// The shortest step [s] that is unstable; a little growth is round-off of an eigenvalue of 1.
-double predicted_limit(int grains, double gain) {
+double predicted_limit(int grains, double gain, double restitution = 1) {
   double low = 0, high = 2.5 * std::sqrt(mass / stiffness);
   for (int halving = 0; halving < 40; ++halving) {
     const double middle = 0.5 * (low + high);
-    (spectral_radius(grains, gain, middle) > 1 + 1e-7 ? high : low) = middle;
+    (spectral_radius(grains, gain, middle, restitution) > 1 + 1e-7 ? high : low) = middle;
   }
   return low;
 }
@@ -87,6 +95,49 @@ TEST(Servo, OnAStackStartsToGrowWhereItsEigenvaluesSay) {
       if (grains == 1 && gain == 1) figure("stable step over the critical one, of a servo of gain 1", found / said);
     }
   }
+}
+
+TEST(Servo, OnDashpotsStartsToGrowWhereItsEigenvaluesSay) {
+  const auto& map = "longest stable step of a servo on dashpots over the critical one|restitution";
+  double least = 1;
+  for (const int grains : {1, 3})
+    for (const double gain : {0.3, 1.0}) {
+      const std::string name =
+          (grains == 1 ? "lone grain" : "stack of 3") + std::string(", gain ") + (gain < 1 ? "0.3" : "1");
+      for (const double restitution : {0.95, 0.8, 0.6, 0.4, 0.2, 0.05}) {
+        SCOPED_TRACE(name + ", restitution " + std::to_string(restitution));
+        const Description d = stack(grains, gain, 0, 1e3, restitution);
+        const double limit = predicted_limit(grains, gain, restitution), said = critical(d);
+        const double found = found_limit(d, limit);
+        EXPECT_NEAR(found / limit, 1, 1e-2);
+        least = std::min(least, found / said);
+        map_point(map, name, restitution, found / said);
+        map_point(map, "predicted, " + name, restitution, limit / said);
+      }
+    }
+  EXPECT_GT(least, 0.8) << "stable at the step that grit chooses";
+  figure("stable step over the critical one, of a servo on dashpots", least);
+}
+
+TEST(Servo, KeepsItsForceOnDashpotsAtAnyStep) {
+  for (const double restitution : {0.9, 0.5, 0.1})
+    for (const double gain : {0.3, 1.0})
+      for (const double safety : {0.8, 0.2, 0.05}) {
+        SCOPED_TRACE(testing::Message() << "restitution " << restitution << ", gain " << gain << ", safety " << safety);
+        Description d = stack(3, gain, 0, 1e3, restitution);
+        d["walls"]["lid"]["motion"]["servo"]["pressure"] =
+            1.1 * d["walls"]["lid"]["motion"]["servo"]["pressure"].get<double>();
+        d["time_step"] = {{"safety", safety}};
+        Trial t(d);
+        t.step(static_cast<int>(12000 / safety));
+        const double wanted = d["walls"]["lid"]["motion"]["servo"]["pressure"].get<double>();
+        double worst = 0;
+        for (int step = 0; step < 100; ++step) {
+          t.step(1);
+          worst = std::max(worst, std::abs(t.world().walls()[1].pressure / wanted - 1));
+        }
+        EXPECT_LT(worst, 1e-6);
+      }
 }
 
 /// The share of the force's error that is left after so many steps, on a spring without a mass.

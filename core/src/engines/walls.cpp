@@ -19,6 +19,10 @@ namespace {
 constexpr double aslant = 1e-6;
 /// Steps, times the gain, in which a servo gets used to a velocity. A stack of some dozens of grains is slower.
 constexpr double habit_steps = 30;
+/// How often a servo counts the dashpots it touches. A change of its velocity shows in their forces at once and whole,
+/// and it sees them a step late: counted once, a gain of 1 chatters on dashpots that are stable by themselves; three
+/// times, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
+constexpr double dashpots_counted = 3;
 /// Fewest steps to a period of an oscillation: by then the mean velocity of a step differs from the one at its middle
 /// by (ω dt)²/24, 0.4 %.
 constexpr double steps_to_a_period = 20;
@@ -93,8 +97,8 @@ double facing(const WallSetup& setup, const Pose& pose) {
 }
 
 /// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
-/// in one step if the touches are springs, and leaves no error behind when the specimen swells or shrinks steadily.
-/// Such a wall takes energy out, whatever it presses on.
+/// in one step if the touches are springs, less where they damp, and leaves no error behind when the specimen swells or
+/// shrinks steadily.
 double servo_velocity(const WallSetup& setup, int axis, double area, WallState& state, double dt) {
   const ServoDescription& servo = *setup.motion.servo;
   const double wanted = servo.force ? *servo.force : *servo.pressure * area * facing(setup, state.pose);
@@ -102,7 +106,8 @@ double servo_velocity(const WallSetup& setup, int axis, double area, WallState& 
     state.habit = 0;
     return wanted != 0 ? std::copysign(servo.max_velocity, wanted) : 0;
   }
-  const double wished = state.habit + servo.gain * (state.force[axis] + wanted) / (state.stiffness * dt);
+  const double wished = state.habit + servo.gain * (state.force[axis] + wanted) /
+                                          (state.stiffness * dt + dashpots_counted * state.dashpot);
   const double velocity = std::clamp(wished, -servo.max_velocity, servo.max_velocity);
   state.habit += servo.gain / habit_steps * (velocity - state.habit);
   return velocity;

@@ -232,7 +232,10 @@ void ServoDescription::declare(Parameters& p) {
       .symbol("F")
       .doc("force to keep, with which the wall pushes bodies along the axis, by its sign; for any geometry");
   p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
-  p.add("gain", gain).above(0).at_most(1).doc("share of the force's error that one step takes away");
+  p.add("gain", gain)
+      .above(0)
+      .at_most(1)
+      .doc("share of the force's error that one step takes away where contacts are springs; less where they damp");
   p.add("area", area)
       .one_of({"geometry", "specimen"})
       .doc("what the pressure acts on: the geometry's area, or the specimen's cross-section as it is then");
