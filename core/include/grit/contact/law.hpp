@@ -444,7 +444,7 @@ template <std::size_t count, class Use>
 }
 
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact. Not inlined, as pair_loop.
-template <class Law, unsigned Features, class L>
+template <class Law, unsigned Features, class L, bool Ledger>
 [[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
                                                std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
@@ -499,9 +499,9 @@ template <class Law, unsigned Features, class L>
     bool alike = true;
     for (std::size_t k = 1; k < width; ++k) alike = alike & (kind(k) == kind(0));
     const auto pair = alike ? broadcast_pair<Law, L>(table[kind(0)]) : load_pair<Law, L>(table, kind);
-    const State before_step = state;
+    [[maybe_unused]] const State before_step = state;
     const Response<L> response = Law::template evaluate<Features>(at, pair, state);
-    if (batch.losses != nullptr) {
+    if constexpr (Ledger) {
       const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
       const auto counts = place < L(static_cast<double>(used));
       left.friction = left.friction - select(counts, own.friction, L(0.0));
@@ -534,7 +534,7 @@ template <class Law, unsigned Features, class L>
     most = max(most, at.overlap / pa.w);
   }
   batch.largest_overlap = largest(most);
-  if (batch.losses != nullptr) add_losses(left, *batch.losses);
+  if constexpr (Ledger) add_losses(left, *batch.losses);
 }
 
 }  // namespace detail
@@ -596,7 +596,10 @@ class LawPlugin final : public ContactLaw {
     pairs<double>(batch);
   }
   void evaluate_walls(WallBatch& batch) const noexcept override {
-    with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, wall_table_.data(), count_); });
+    with_features([&]<unsigned F>() {
+      if (batch.losses != nullptr) detail::wall_loop<Law, F, Lane, true>(batch, wall_table_.data(), count_);
+      else detail::wall_loop<Law, F, Lane, false>(batch, wall_table_.data(), count_);
+    });
   }
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
     return Law::stiffness(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b]);
