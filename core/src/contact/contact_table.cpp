@@ -305,8 +305,7 @@ void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_bloc
 
 std::vector<double> ContactTable::state(std::size_t c) const {
   std::vector<double> numbers(fields_.size());
-  for (std::size_t f = 0; f < numbers.size(); ++f)
-    numbers[f] = state_[c / block_size * fields_.size() + f].lane[c % block_size];
+  for (std::size_t f = 0; f < numbers.size(); ++f) numbers[f] = remembered(c, f);
   return numbers;
 }
 

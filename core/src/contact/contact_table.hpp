@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -52,12 +53,22 @@ class ContactTable {
   template <class Use>
   void each_touching(const Instant& at, Use use) const {
     std::vector<ContactRow> rows;
-    for (std::size_t block = 0; block < touching_.size(); block += blocks_at_once) {
-      const std::size_t last = std::min(touching_.size(), block + blocks_at_once);
-      evaluate_again(block, last, at, rows);
-      for (std::size_t c = block * block_size; c < last * block_size; ++c)
-        if (touches(c)) use(c, rows[c - block * block_size]);
+    for (std::size_t block = 0, last; block < touching_.size(); block = last) {
+      // Many blocks have none that touches, most of them side by side.
+      for (last = block; last < touching_.size() && last < block + blocks_at_once && touching_[last] != 0;) ++last;
+      if (last > block) evaluate_again(block, last, at, rows);
+      else ++last;
+      each_touching(block, last, [&](std::size_t c) { use(c, rows[c - block * block_size]); });
     }
+  }
+  /// The same with what they remember: use(candidate, memory).
+  template <class Use>
+  void each_memory(Use use) const {
+    std::vector<double> memory(fields_.size());
+    each_touching(0, touching_.size(), [&](std::size_t c) {
+      for (std::size_t f = 0; f < memory.size(); ++f) memory[f] = remembered(c, f);
+      use(c, std::span<const double>(memory));
+    });
   }
   /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces are
   /// nearer than `near` [m], or touch.
@@ -141,6 +152,16 @@ class ContactTable {
     double furthest = 0;
     for (const std::uint32_t other : reached_[chunk]) furthest = std::max(furthest, skins.walked(other));
     return skins.walked(chunk) + furthest;
+  }
+  double remembered(std::size_t c, std::size_t field) const {
+    return state_[c / block_size * fields_.size() + field].lane[c % block_size];
+  }
+  /// Calls use(candidate) for those of some blocks that touch.
+  template <class Use>
+  void each_touching(std::size_t first_block, std::size_t last_block, Use use) const {
+    for (std::size_t block = first_block; block < last_block; ++block)
+      for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1)
+        use(block * block_size + static_cast<std::size_t>(std::countr_zero(mask)));
   }
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,

@@ -11,8 +11,7 @@ ElasticEnergy Simulation::elastic_energy() const {
   const auto add = [&](const ElasticEnergy& one) {
     all.normal += one.normal, all.shear += one.shear, all.rolling += one.rolling;
   };
-  for (std::size_t c = 0; c < pairs_.candidates(); ++c) {
-    if (!pairs_.touches(c)) continue;
+  pairs_.each_memory([&](std::size_t c, std::span<const double> memory) {
     const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
     const double overlap =
         bodies_.position[a].w + bodies_.position[b].w - pairs_.branch(c, bodies_, shifts_.data()).norm();
@@ -21,8 +20,8 @@ ElasticEnergy Simulation::elastic_energy() const {
                       .inverse_mass_a = bodies_.velocity[a].w,
                       .inverse_mass_b = bodies_.velocity[b].w,
                       .overlap = overlap},
-                     bodies_.material[a], bodies_.material[b], pairs_.state(c)));
-  }
+                     bodies_.material[a], bodies_.material[b], memory));
+  });
   wall_contacts_.each([&](const WallContacts::Touching& t) {
     const std::uint32_t a = t.touch->body;
     const double r = bodies_.position[a].w;

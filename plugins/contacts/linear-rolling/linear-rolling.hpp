@@ -155,12 +155,14 @@ struct LinearRolling {
     return response;
   }
 
-  /// slip_work() times the stiffness, where evaluate() has shortened `trial` to `limit`: by the share that is kept,
-  /// which is known from there.
+  /// slip_work() times twice the stiffness, where evaluate() has shortened `trial` to `limit`: by the share that is
+  /// kept, which is known from there.
   template <class L>
   [[gnu::always_inline]] static L slipped(const Vec<L>& before, const Vec<L>& trial, const L& limit) {
     const L square = dot(trial, trial), kept = min(L(1.0), limit / max(sqrt(square), L(tiny<L>)));
-    return L(0.5) * (L(1.0) - kept) * (dot(before, trial) + kept * square);
+    const L loaded = multiply_add(before.x, trial.x, multiply_add(before.y, trial.y, before.z * trial.z));
+    const L both = multiply_add(kept, square, loaded);
+    return multiply_add(-kept, both, both);
   }
 
   template <unsigned Features, class L>
@@ -179,12 +181,13 @@ struct LinearRolling {
       other = select(pair.rolling_limit > L(0.0), rolling_stiffness, L(1.0));
       rolled = slipped(at.turn(rolling), stretched(at, rolling, rolling_stiffness, at.spin), pair.rolling_limit * arm);
     }
-    const L inverse = L(1.0) / max(ks * other, L(tiny<L>));
+    // A spring without stiffness has no limit, see mix().
+    const L half = L(0.5) / (ks * other);
     // What a spring held when it was switched off is booked with that.
     const auto where_on = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
-    loss.friction = where_on(pair.friction, slid * (inverse * other));
-    if constexpr ((Features & with_rolling) != 0) loss.rolling = where_on(pair.rolling_limit, rolled * (inverse * ks));
+    loss.friction = where_on(pair.friction, slid * (half * other));
+    if constexpr ((Features & with_rolling) != 0) loss.rolling = where_on(pair.rolling_limit, rolled * (half * ks));
     if constexpr ((Features & with_twisting) != 0) {
       const L stiffness = pair.twisting * angular;
       const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <tuple>
+
+#include "floats.hpp"
 
 namespace grit {
 namespace {
@@ -50,9 +53,10 @@ void smooth(std::vector<float>& pattern, std::uint32_t stride, std::uint32_t lin
 
 /// Where sample (i, j) of the fine pattern is kept, around and around: squares of 8 by 8 after each other, as what a
 /// grain shows of it then is on few lines of the cache, whichever way it has turned.
-constexpr std::uint32_t kept_at(std::uint32_t i, std::uint32_t j) {
-  constexpr std::uint32_t within = fine_tile - 1;
-  return ((j & within & ~7u) * fine_tile) + ((i & within & ~7u) << 3) + ((j & 7) << 3) + (i & 7);
+template <class Index>
+Index kept_at(const Index& i, const Index& j) {
+  constexpr int squares = (fine_tile - 1) & ~7;
+  return (j & squares) * int{fine_tile} + ((i & squares) << 3) + ((j & 7) << 3) + (i & 7);
 }
 
 /// The pattern with samples between by linear interpolation, in parts of `most_contrast`.
@@ -102,30 +106,55 @@ Camera::Skin Camera::skin(const Disc& disc) const {
           static_cast<float>(fine_tile * share(more >> 32))};
 }
 
-/// The light of rays side by side that all meet one disc, the first of them at (x, y) from its centre.
+namespace {
+
+constexpr auto width = static_cast<std::ptrdiff_t>(floats_at_once);
+
+/// 0, 1, 2 …
+Floats counted() {
+  return Floats([](std::size_t k) { return k; });
+}
+
+Ints floor(const Floats& numbers) {
+  const Ints whole = __builtin_convertvector(numbers.numbers, Ints);
+  // All bits set are −1.
+  return whole + (__builtin_convertvector(whole, Floats::Numbers) > numbers.numbers);
+}
+
+}  // namespace
+
+/// The light of rays side by side that all meet one disc, the first of them at (x, y) from its centre. Whole registers
+/// are read and written.
 void Camera::shade(const Skin& skin, float x, float y, std::span<const float> depth, float* light) const {
   // The nearest sample; half a one on, so that what is cut off is the floor.
   const float u = skin.right + skin.cosine * x + skin.sine * y + 0.5f,
               v = skin.up - skin.sine * x + skin.cosine * y + 0.5f;
-  const float right = skin.cosine / rays, up = -skin.sine / rays;
-  constexpr int most = 64;
-  std::array<std::uint32_t, most> from;
-  std::array<std::int8_t, most> speckle;
-  for (std::size_t done = 0; done < depth.size(); done += most) {
-    const int count = static_cast<int>(std::min<std::size_t>(most, depth.size() - done));
-    const float *const depths = depth.data() + done, start = static_cast<float>(done);
-    float* const to = light + done;
-    // One loop for what vectorises and one for what does not.
-    for (int k = 0; k < count; ++k) {
-      const float along = start + static_cast<float>(k);
-      from[static_cast<std::size_t>(k)] =
-          kept_at(static_cast<std::uint32_t>(static_cast<int>(std::floor(u + right * along))),
-                  static_cast<std::uint32_t>(static_cast<int>(std::floor(v + up * along))));
+  const Floats right = skin.cosine / rays, up = -skin.sine / rays, fade = fade_;
+  constexpr std::ptrdiff_t most = 64;
+  // Of 64 bits, which loads take as they are: the compiler was seen to make them of fewer by more instructions than
+  // that saves.
+  using Places = detail::Register<std::int64_t, floats_at_once * sizeof(std::int64_t)>::type;
+  std::array<std::int64_t, most> from;
+  using Bytes = detail::Register<std::int8_t, floats_at_once>::type;
+  std::array<std::int8_t, most> speckle{};
+  const auto size = static_cast<std::ptrdiff_t>(depth.size());
+  for (std::ptrdiff_t done = 0; done < size; done += most) {
+    const std::ptrdiff_t count = std::min(most, size - done);
+    for (std::ptrdiff_t k = 0; k < count; k += width) {
+      const Floats along = counted() + static_cast<double>(done + k);
+      const Ints at = kept_at(floor(multiply_add(right, along, Floats(u))), floor(multiply_add(up, along, Floats(v))));
+      const Places wide = __builtin_convertvector(at, Places);
+      std::memcpy(from.data() + k, &wide, sizeof wide);
     }
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) speckle[k] = speckles_[from[k]];
-    for (int k = 0; k < count; ++k)
-      to[k] = (skin.grey + most_contrast / 127 * static_cast<float>(speckle[static_cast<std::size_t>(k)])) * fade_ /
-              (fade_ + std::max(0.0f, depths[k]));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+      speckle[k] = speckles_[static_cast<std::size_t>(from[k])];
+    for (std::ptrdiff_t k = 0; k < count; k += width) {
+      Bytes steps;
+      std::memcpy(&steps, speckle.data() + k, sizeof steps);
+      const Floats grey = multiply_add(Floats(most_contrast / 127),
+                                       Floats(__builtin_convertvector(steps, Floats::Numbers)), Floats(skin.grey));
+      store(grey * fade / (fade + max(Floats(0.0), load(depth.data() + done + k))), light + done + k);
+    }
   }
 }
 
@@ -142,7 +171,7 @@ std::ptrdiff_t last_ray(double high, std::ptrdiff_t end) {
 }
 double place(std::ptrdiff_t ray) { return (static_cast<double>(ray) + 0.5) / rays - 0.5; }
 
-/// What the rays of one row meet.
+/// What the rays of one row meet. Behind its last ray there is room for a register more.
 struct RayRow {
   float* depth;        ///< infinite where nothing
   std::uint32_t* who;  ///< index of the disc, or nobody
@@ -155,13 +184,15 @@ struct RayColumns {
 
 /// Whether all that the rays of these columns have met is in front of a disc.
 bool is_hidden(const Disc& disc, const RayColumns& reach, const float* depth) {
-  const auto front = static_cast<float>(disc.depth - disc.radius);
-  int hidden = 1;
-  for (std::ptrdiff_t i = reach.first; i <= reach.last; ++i) hidden &= depth[i] < front ? 1 : 0;
-  return hidden != 0;
+  const Floats front = disc.depth - disc.radius;
+  for (std::ptrdiff_t i = reach.first; i <= reach.last; i += width) {
+    const auto in_sight = !(load(depth + i) < front) && counted() <= static_cast<double>(reach.last - i);
+    if (detail::bits(in_sight) != 0) return false;
+  }
+  return true;
 }
 
-/// Where disc n is in front of what they have met so far. Loops without branches: they vectorise.
+/// Where disc n is in front of what they have met so far.
 void meet(const Disc& disc, std::uint32_t n, const RayColumns& reach, double y, std::ptrdiff_t columns,
           const RayRow& row) {
   if (is_hidden(disc, reach, row.depth)) return;
@@ -169,18 +200,29 @@ void meet(const Disc& disc, std::uint32_t n, const RayColumns& reach, double y, 
   if (!(square > 0)) return;
   const double half = std::sqrt(square);
   const std::ptrdiff_t left = first_ray(disc.x - half, 0), right = last_ray(disc.x + half, columns);
-  const int count = static_cast<int>(right - left + 1);
-  const auto depth = static_cast<float>(disc.depth), most = static_cast<float>(square),
-             from = static_cast<float>(place(left) - disc.x);
-  float* const depths = row.depth + left;
-  std::uint32_t* const whose = row.who + left;
-  for (int k = 0; k < count; ++k) {
-    const float dx = from + static_cast<float>(k) * (1.0f / rays);
-    const float surface = depth - std::sqrt(std::max(0.0f, most - dx * dx));
-    const bool nearer = surface < depths[k];
-    depths[k] = nearer ? surface : depths[k];
-    whose[k] = nearer ? n : whose[k];
+  const Floats depth = disc.depth, most = square, from = place(left) - disc.x;
+  for (std::ptrdiff_t i = left; i <= right; i += width) {
+    const Floats dx = multiply_add(counted() + static_cast<double>(i - left), Floats(1.0f / rays), from);
+    const Floats surface = depth - sqrt(max(Floats(0.0), multiply_add(-dx, dx, most))), met = load(row.depth + i);
+    const auto nearer = surface < met && counted() <= static_cast<double>(right - i);
+    store(select(nearer, surface, met), row.depth + i);
+    Ints who;
+    std::memcpy(&who, row.who + i, sizeof who);
+    who = nearer.bits ? static_cast<int>(n) - Ints{} : who;
+    std::memcpy(row.who + i, &who, sizeof who);
   }
+}
+
+/// Where those end that meet the same as ray i does.
+std::ptrdiff_t end_of_run(const std::uint32_t* who, std::ptrdiff_t i, std::ptrdiff_t end) {
+  const Ints same = static_cast<int>(who[i]) - Ints{};
+  for (; i < end; i += width) {
+    Ints here;
+    std::memcpy(&here, who + i, sizeof here);
+    if (const std::uint32_t others = detail::bits(Floats::Mask{here != same}); others != 0)
+      return std::min(end, i + std::countr_zero(others));
+  }
+  return end;
 }
 
 /// Light of rays to grey values of pixels. A pixel is lit by rays of its own and of its neighbours, by a tent: edges of
@@ -251,7 +293,8 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
 
   Image image(width, height);
   Exposure exposure(image);
-  std::vector<float> depth(static_cast<std::size_t>(columns * band_rows)), light(static_cast<std::size_t>(columns));
+  std::vector<float> depth(static_cast<std::size_t>(columns * band_rows + width)),
+      light(static_cast<std::size_t>(columns + width));
   std::vector<float> deepest(light.size());  // of each column's rays in a band: most discs are behind that
   std::vector<std::uint32_t> who(depth.size());
   for (std::ptrdiff_t band = 0; band < bands; ++band) {
@@ -275,18 +318,17 @@ Image Camera::picture(std::span<const Disc> discs, std::ptrdiff_t width, std::pt
       if (is_hidden(disc, reach, deepest.data())) continue;
       const auto low = first_ray(disc.y - disc.radius, begin), high = last_ray(disc.y + disc.radius, end);
       for (std::ptrdiff_t j = low; j <= high; ++j) meet(disc, n, reach, place(j), columns, row(j));
-      std::copy(row(begin).depth + reach.first, row(begin).depth + reach.last + 1, deepest.begin() + reach.first);
-      for (std::ptrdiff_t j = begin + 1; j < end; ++j)
-        for (std::ptrdiff_t i = reach.first; i <= reach.last; ++i) {
-          float& most = deepest[static_cast<std::size_t>(i)];
-          most = std::max(most, row(j).depth[i]);
-        }
+      for (std::ptrdiff_t i = reach.first; i <= reach.last; i += width) {
+        Floats most = load(row(begin).depth + i);
+        for (std::ptrdiff_t j = begin + 1; j < end; ++j) most = max(most, load(row(j).depth + i));
+        store(most, deepest.data() + i);
+      }
     }
     for (std::ptrdiff_t j = begin; j < end; ++j) {
       const RayRow met = row(j);
       for (std::ptrdiff_t i = left, after; i < right; i = after) {
         const std::uint32_t n = met.who[i];
-        for (after = i + 1; after < right && met.who[after] == n;) ++after;
+        after = end_of_run(met.who, i, right);
         if (n == nobody) std::fill(light.begin() + i, light.begin() + after, 0.0f);
         else
           shade(skins[n], static_cast<float>(place(i) - near[n].x), static_cast<float>(place(j) - near[n].y),

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "grit/contact/lanes.hpp"
+#include "floats.hpp"
 
 namespace grit {
 namespace {
@@ -36,22 +36,8 @@ constexpr int rated = 5, first_rated = 10, first_rated_wandering = 18;
 constexpr int first_compared = 4;
 constexpr double most_growth = 0.1;
 
-// Pixels side by side that are worked on together.
-#if defined(__AVX512F__)
-constexpr std::size_t width = 16;
-#elif defined(__AVX__)
-constexpr std::size_t width = 8;
-#else
-constexpr std::size_t width = 4;
-#endif
-using Floats = Pack<width, float>;
-using Ints = Floats::Bits;
+constexpr std::size_t width = floats_at_once;
 
-Floats load(const float* from) {
-  Floats lanes;
-  std::memcpy(&lanes, from, sizeof lanes);
-  return lanes;
-}
 double sum(const Floats& lanes) {
   double all = 0;
   for (std::size_t k = 0; k < width; ++k) all += lanes[k];
@@ -126,8 +112,9 @@ void transpose(std::array<Floats, 4>& rows) {
   rows = {shuffled<front>(a, c), shuffled<back>(a, c), shuffled<front>(b, d), shuffled<back>(b, d)};
 }
 
-/// Grey values at places right of and above `corner`, in pixels.
-Floats greys(const float* corner, std::ptrdiff_t stride, const Floats& x, const Floats& y) {
+/// Grey values at places right of and above `corner`, in pixels; of the first `used` of them.
+[[gnu::always_inline]] inline Floats greys(const float* corner, std::ptrdiff_t stride, const Floats& x, const Floats& y,
+                                           std::ptrdiff_t used) {
   const Ints column = __builtin_convertvector(x.numbers, Ints), row = __builtin_convertvector(y.numbers, Ints);
   const auto across = splines(x - Floats(__builtin_convertvector(column, Floats::Numbers)));
   const auto upwards = splines(y - Floats(__builtin_convertvector(row, Floats::Numbers)));
@@ -135,6 +122,21 @@ Floats greys(const float* corner, std::ptrdiff_t stride, const Floats& x, const 
   std::array<int, width> offset;
   std::memcpy(offset.data(), &offsets, sizeof offsets);
   std::array<Floats, 4> sums;
+  const auto add_across = [&] {
+    return across[0] * sums[0] + across[1] * sums[1] + (across[2] * sums[2] + across[3] * sums[3]);
+  };
+  // Most squares are hardly stretched: their places follow one another, a pixel each.
+  const Ints next = offset[0] + __builtin_convertvector(Floats([](std::size_t k) { return k; }).numbers, Ints);
+  if (detail::bits(Floats::Mask{offsets != next}) << (32 - used) == 0) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const float* const from = corner + offset[0] + c;
+      sums[c] = upwards[0] * load(from);
+      sums[c] = sums[c] + upwards[1] * load(from + stride);
+      sums[c] = sums[c] + upwards[2] * load(from + 2 * stride);
+      sums[c] = sums[c] + upwards[3] * load(from + 3 * stride);
+    }
+    return add_across();
+  }
   // Place 4 g + a is in group g of sums[a], once for each of four columns.
   const auto add_up = [&]<std::size_t a>(std::integral_constant<std::size_t, a>) {
     std::array<const float*, width / 4> from;
@@ -150,7 +152,7 @@ Floats greys(const float* corner, std::ptrdiff_t stride, const Floats& x, const 
   add_up(std::integral_constant<std::size_t, 0>{}), add_up(std::integral_constant<std::size_t, 1>{});
   add_up(std::integral_constant<std::size_t, 2>{}), add_up(std::integral_constant<std::size_t, 3>{});
   transpose(sums);
-  return across[0] * sums[0] + across[1] * sums[1] + (across[2] * sums[2] + across[3] * sums[3]);
+  return add_across();
 }
 
 constexpr std::ptrdiff_t most_together = 4 * width;  // places whose sums are worked on together
@@ -312,7 +314,7 @@ Square::Sight Square::seen(const DeformedImage& image, const Vec2& middle, const
   const float* const corner = weights.row(low - 1) + left - 1;
   const Vec2 from = middle - Vec2(static_cast<double>(left), static_cast<double>(low));
   // Grey values count from one of the picture's, so that those of one grey vanish.
-  const Floats zero = greys(corner, weights.width, from.x(), from.y())[0];
+  const Floats zero = greys(corner, weights.width, from.x(), from.y(), 1)[0];
   const Floats xx = stretch(0, 0), yx = stretch(1, 0);
 
   Floats all = 0, squares = 0, together = 0;
@@ -322,7 +324,8 @@ Square::Sight Square::seen(const DeformedImage& image, const Vec2& middle, const
     const Floats start_x = from.x() + stretch(0, 1) * y, start_y = from.y() + stretch(1, 1) * y;
     for (std::ptrdiff_t i = 0; i < stride_; i += lanes) {
       const Floats x = load(column() + i);
-      const Floats g = load(inside() + i) * (greys(corner, weights.width, start_x + xx * x, start_y + yx * x) - zero);
+      const Floats seen = greys(corner, weights.width, start_x + xx * x, start_y + yx * x, std::min(lanes, side_ - i));
+      const Floats g = load(inside() + i) * (seen - zero);
       all = all + g, squares = squares + g * g, together = together + load(grey(j) + i) * g;
       const Floats a = load(across(j) + i) * g, u = load(up(j) + i) * g;
       by_across.add(a, a * x, static_cast<float>(y)), by_up.add(u, u * x, static_cast<float>(y));

@@ -147,6 +147,7 @@ template <std::size_t N, class Real>
   using P = Pack<N, Real>;
 #if defined(__AVX512F__)
   if constexpr (std::is_same_v<P, Pack<8>>) return P(_mm512_sqrt_pd(a.numbers));
+  if constexpr (std::is_same_v<P, Pack<16, float>>) return P(_mm512_sqrt_ps(a.numbers));
 #endif
 #if defined(__AVX__)
   if constexpr (std::is_same_v<P, Pack<4>>) return P(_mm256_sqrt_pd(a.numbers));
@@ -197,6 +198,16 @@ template <std::size_t N, class Real>
   return P(a.numbers < b.numbers ? b.numbers : a.numbers);
 }
 
+/// a b + c, rounded once where the machine can: for what is booked alone, as sums of products elsewhere are rounded
+/// term by term.
+[[gnu::always_inline]] inline double multiply_add(double a, double b, double c) { return a * b + c; }
+[[gnu::always_inline]] inline float multiply_add(float a, float b, float c) { return a * b + c; }
+template <std::size_t N, class Real>
+[[gnu::always_inline]] inline Pack<N, Real> multiply_add(const Pack<N, Real>& a, const Pack<N, Real>& b,
+                                                         const Pack<N, Real>& c) {
+  return Pack<N, Real>(a.numbers * b.numbers + c.numbers);
+}
+
 /// The same lanes in the precision of L, rounded to nearest if that is less.
 template <class L>
 [[gnu::always_inline]] inline L in_precision(const Wide<L>& lanes) {
@@ -228,6 +239,7 @@ template <class Mask>
   constexpr std::size_t lane_bytes = sizeof mask.bits[0], width = sizeof mask.bits / lane_bytes;
 #if defined(__AVX512DQ__)
   if constexpr (lane_bytes == 8 && width == 8) return _mm512_movepi64_mask((__m512i)mask.bits);
+  if constexpr (lane_bytes == 4 && width == 16) return _mm512_movepi32_mask((__m512i)mask.bits);
 #endif
 #if defined(__AVX__)
   if constexpr (lane_bytes == 8 && width == 4)

@@ -119,10 +119,11 @@ template <class L>
   return turn;
 }
 
+/// `left`: what all lanes have lost, below 0.
 template <class L>
-inline void add_lanes(const Loss<L>& lanes, Losses& losses) {
-  losses.friction += total(lanes.friction), losses.rolling += total(lanes.rolling);
-  losses.viscosity += total(lanes.viscosity);
+inline void add_losses(const Loss<L>& left, Losses& losses) {
+  losses.friction -= total(left.friction), losses.rolling -= total(left.rolling);
+  losses.viscosity -= total(left.viscosity);
 }
 
 /// The members of a struct that has nothing but lanes, one after the other. (Not std::bit_cast: that was seen to copy
@@ -250,7 +251,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   const double remembered_dt = batch.again ? 0 : batch.dt;
   const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
-  Loss<W> lost{W(0.0), W(0.0), W(0.0)};
+  // What is lost is taken off: where a law loses nothing, x − 0 folds away, and x + 0 does not.
+  Loss<W> left{W(0.0), W(0.0), W(0.0)};
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
@@ -362,9 +364,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const L zero(0.0);
       if constexpr (Ledger) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
-        lost.friction = lost.friction + widened(select(touches, own.friction, zero));
-        lost.rolling = lost.rolling + widened(select(touches, own.rolling, zero));
-        lost.viscosity = lost.viscosity + widened(select(touches, own.viscosity, zero));
+        left.friction = left.friction - widened(select(touches, own.friction, zero));
+        left.rolling = left.rolling - widened(select(touches, own.rolling, zero));
+        left.viscosity = left.viscosity - widened(select(touches, own.viscosity, zero));
       }
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
@@ -411,7 +413,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));
   }
   out.largest_overlap = detail::largest(largest);
-  if constexpr (Ledger) add_lanes(lost, *out.losses);
+  if constexpr (Ledger) add_losses(left, *out.losses);
   return block;
 }
 
@@ -442,7 +444,7 @@ template <std::size_t count, class Use>
 }
 
 /// The loop over touches of walls. Few, so that their memory may lie contact by contact. Not inlined, as pair_loop.
-template <class Law, unsigned Features, class L>
+template <class Law, unsigned Features, class L, bool Ledger>
 [[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
                                                std::size_t materials) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
@@ -450,7 +452,7 @@ template <class Law, unsigned Features, class L>
   const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
   const L place([](std::size_t k) { return k; });
   L most(0.0);
-  Loss<L> lost{L(0.0), L(0.0), L(0.0)};
+  Loss<L> left{L(0.0), L(0.0), L(0.0)};
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
     // Lanes past the end repeat the last touch and are not stored.
@@ -497,14 +499,14 @@ template <class Law, unsigned Features, class L>
     bool alike = true;
     for (std::size_t k = 1; k < width; ++k) alike = alike & (kind(k) == kind(0));
     const auto pair = alike ? broadcast_pair<Law, L>(table[kind(0)]) : load_pair<Law, L>(table, kind);
-    const State before_step = state;
+    [[maybe_unused]] const State before_step = state;
     const Response<L> response = Law::template evaluate<Features>(at, pair, state);
-    if (batch.losses != nullptr) {
+    if constexpr (Ledger) {
       const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
       const auto counts = place < L(static_cast<double>(used));
-      lost.friction = lost.friction + select(counts, own.friction, L(0.0));
-      lost.rolling = lost.rolling + select(counts, own.rolling, L(0.0));
-      lost.viscosity = lost.viscosity + select(counts, own.viscosity, L(0.0));
+      left.friction = left.friction - select(counts, own.friction, L(0.0));
+      left.rolling = left.rolling - select(counts, own.rolling, L(0.0));
+      left.viscosity = left.viscosity - select(counts, own.viscosity, L(0.0));
     }
 
     const Vec<L> force = response.normal_force * normal + response.shear;
@@ -532,7 +534,7 @@ template <class Law, unsigned Features, class L>
     most = max(most, at.overlap / pa.w);
   }
   batch.largest_overlap = largest(most);
-  if (batch.losses != nullptr) add_lanes(lost, *batch.losses);
+  if constexpr (Ledger) add_losses(left, *batch.losses);
 }
 
 }  // namespace detail
@@ -594,7 +596,10 @@ class LawPlugin final : public ContactLaw {
     pairs<double>(batch);
   }
   void evaluate_walls(WallBatch& batch) const noexcept override {
-    with_features([&]<unsigned F>() { detail::wall_loop<Law, F, Lane>(batch, wall_table_.data(), count_); });
+    with_features([&]<unsigned F>() {
+      if (batch.losses != nullptr) detail::wall_loop<Law, F, Lane, true>(batch, wall_table_.data(), count_);
+      else detail::wall_loop<Law, F, Lane, false>(batch, wall_table_.data(), count_);
+    });
   }
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
     return Law::stiffness(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b]);
