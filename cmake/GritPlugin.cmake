@@ -28,7 +28,7 @@ function(grit_plugin folder name)
 
   if(TARGET GTest::gtest_main AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/test_${name}.cpp)
     add_executable(test_${target} test_${name}.cpp)
-    target_compile_options(test_${target} PRIVATE -Wall -Wextra -O0)  # what is tested is optimised; its test is built sooner
+    target_compile_options(test_${target} PRIVATE -Wall -Wextra -O1)  # what is tested is optimised; its test is built sooner
     target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     target_link_libraries(test_${target} PRIVATE ${target}_objects grit::grit GTest::gtest GTest::gmock GTest::gtest_main)
     gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST
