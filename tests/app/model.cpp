@@ -39,6 +39,28 @@ TEST_F(ModelOfARun, HasNoMemoryOfRollingWhereNothingResistsIt) {
   EXPECT_LT(without.at("bytes"), with.at("bytes"));
 }
 
+TEST_F(ModelOfARun, IsNotOfMaterialsThatNothingIsOf) {
+  const std::string law = "/contacts/type=linear-rolling", smooth = "/materials/sand/rolling_limit=0";
+  // Before and after sand in the order of names, with a rolling limit by default.
+  const std::string first = R"(/materials/rock={"density": 2600})", last = R"(/materials/steel={"density": 7800})";
+  const json alone = of({law, smooth});
+  const json beside = of({law, smooth, first, last});
+  EXPECT_THAT(beside.at("materials"), ElementsAre("sand", "rock", "steel"));
+  EXPECT_THAT(beside.at("law_parts"), IsEmpty());
+  EXPECT_EQ(beside.at("contact_state"), alone.at("contact_state"));
+  EXPECT_EQ(beside.at("bytes"), alone.at("bytes"));
+  const json floor = of({law, first, R"(/walls/floor={"type": "plane", "material": "rock", "point": [0, 0, -1]})"});
+  EXPECT_THAT(floor.at("law_parts"), ElementsAre("rolling"));
+}
+
+TEST_F(ModelOfARun, KnowsAMaterialThatAStageGivesAWall) {
+  const json later = of({"/contacts/type=linear-rolling", "/materials/sand/rolling_limit=0",
+                         R"(/materials/steel={"density": 7800})", R"(/interfaces/sand+steel={"rolling_limit": 0.3})",
+                         R"(/walls/floor={"type": "plane", "material": "sand", "point": [0, 0, -1]})",
+                         R"(/stages/0/change={"walls": {"floor": {"material": "steel"}}})"});
+  EXPECT_THAT(later.at("law_parts"), ElementsAre("rolling"));
+}
+
 TEST_F(ModelOfARun, HasNoHistoryWithoutFriction) {
   const json with = of({"/contacts/type=linear-frictional"});
   EXPECT_THAT(with.at("contact_state"), ElementsAre("shear_x", "shear_y", "shear_z"));

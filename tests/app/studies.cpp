@@ -12,6 +12,7 @@ namespace {
 
 using nlohmann::json;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -362,6 +363,28 @@ TEST_F(Studies, GiveAdvice) {
       << "what was set for the advice belongs to the command";
   EXPECT_THAT(advise({"--set", "/engines/damping/coefficient=0.5"}).out,
               HasSubstr("beyond the tolerance as it is: damping, safety;"));
+  // Of what is there as of what is cheaper: too much is not what cannot be told.
+  const auto with_safety = [&](json of_coarse, json of_fine) {
+    auto changed = charted;
+    for (auto& effect : changed["effects"])
+      for (auto& figure : effect["figures"])
+        figure.update(effect["level"] == "0.8" ? of_coarse : effect["level"] == "0.1" ? of_fine : json::object());
+    folder.write(chart, changed.dump());
+    const auto outcome = advise({"--set", "/time_step/safety=0.8", "--tolerance", "2%"});
+    folder.write(chart, charted.dump());
+    return outcome.out;
+  };
+  const json untold = {{"error", 0.03}, {"standard_error", 0.06}}, much = {{"error", 0.03}, {"standard_error", 0.001}},
+             little = {{"error", 0.001}, {"standard_error", 0.001}};
+  EXPECT_THAT(with_safety(untold, little),
+              AllOf(ContainsRegex("safety: 0.8 here; changes .* by 3.0 % ± 6.0 %, cannot be told"),
+                    HasSubstr("cannot be told of as it is: safety;"), Not(HasSubstr("beyond the tolerance"))));
+  EXPECT_THAT(with_safety(much, little),
+              AllOf(ContainsRegex("safety: 0.8 here; changes .* by 3.0 % ± 0.1 %, too much\n"),
+                    HasSubstr("beyond the tolerance as it is: safety;"), Not(HasSubstr("cannot be told"))));
+  EXPECT_THAT(with_safety(untold, much),
+              AllOf(ContainsRegex("0.8 here; changes .* by 3.0 % ± 6.0 %, too much: 0.1, which is finer, changes"),
+                    HasSubstr("beyond the tolerance as it is: safety;"), Not(HasSubstr("cannot be told"))));
   EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
   EXPECT_EQ(advise({"--tolerance", "5"}).status, 1) << "500 %";
   EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);

@@ -108,6 +108,38 @@ INSTANTIATE_TEST_SUITE_P(All, Seams,
                          testing::Combine(testing::Values("linear-frictional", "linear-rolling", "hertz-mindlin"),
                                           testing::Range(0, 4), testing::Values(0.05, 0.5)));
 
+/// Balls beside the joint of two rectangles askew in space, where the edge of the one is as near as the face of the
+/// other but for rounding.
+TEST(SeamsAskew, AreNotFeltBesideTheJoint) {
+  Errors aside("sideways force on a ball beside a seam askew in space, over its weight");
+  for (const double angle : {0.0, 0.3, 0.83, 1.9, 2.6}) {
+    const Mat3 turn = Eigen::AngleAxisd(angle, Vec3(0.3, -0.7, 0.45).normalized()).toRotationMatrix();
+    for (const Vec3& origin : {Vec3(0, 0, 0), Vec3(0.0123, -0.0457, 0.0311), Vec3(1.03, -0.71, 0.37)}) {
+      std::vector<Grain> grains;
+      std::vector<double> beyond;
+      for (const double radii : {0.0, 1e-14, 1e-11, 1e-9, 1e-8, 3e-8, 1e-7, 3e-7, 1e-6})
+        for (const double side : {-1.0, 1.0}) {
+          beyond.push_back(side * radii);
+          const Vec3 place(3 * radius * static_cast<double>(grains.size()), side * radii * radius, 0.9993 * radius);
+          grains.push_back({origin + turn * place, radius});
+        }
+      const double length = 3 * radius * static_cast<double>(grains.size());
+      const Vec3 along = turn * Vec3(length, 0, 0), across = turn * Vec3(0, tile, 0);
+      Description d = description("linear-frictional", {{"friction_angle", 0.3}}, grains);
+      d["walls"]["one"] = rectangle(origin - 0.5 / grains.size() * along, along, across);
+      d["walls"]["other"] = rectangle(origin - 0.5 / grains.size() * along - across, along, across);
+      const Trial trial(d);
+      EXPECT_EQ(trial.world().contacts().size(), grains.size()) << angle << ", " << origin.transpose();
+      for (std::size_t i = 0; i < grains.size(); ++i) {
+        const Vec3 force = turn.transpose() * xyz(trial.world().forces()[i]);
+        aside.add(force.y() / force.z());
+        EXPECT_NEAR(force.y() / force.z(), 0, 1e-12) << beyond[i] << ", " << angle << ", " << origin.transpose();
+      }
+    }
+  }
+  aside.verify(1e-12);
+}
+
 TEST(Corners, AreTouchedOnceByEachFace) {
   Description d =
       description("linear-frictional", {{"friction_angle", 0.3}}, {{Vec3::Constant(0.999 * radius), radius}});

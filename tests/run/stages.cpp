@@ -64,6 +64,24 @@ TEST(Stage, EndsAtATimeOrAfterSteps) {
   EXPECT_EQ(steps_until(steps(7)), 7u);
 }
 
+TEST(Stage, IsNoShorterThanHalfAStep) {
+  const Description brief = seconds(0.4 * dt), rest = {{"type", "unbalanced-force"}, {"below", 0.1}};
+  for (const Description& until : {brief, Description{{"type", "all"}, {"of", {brief, seconds(0.3 * dt)}}},
+                                   Description{{"type", "any"}, {"of", {rest, brief}}}}) {
+    Description d = lone(steps(3));
+    d["stages"].push_back(stage("tap", until));
+    const Done done = run(d);
+    EXPECT_EQ(done.summary().status, "failed") << until;
+    EXPECT_EQ(done.summary().steps, 3u);
+    EXPECT_THAT(done.summary().message,
+                HasSubstr("stage \"tap\" lasts 4e-06 s, less than half of the time step of 1e-05 "
+                          "s, so that it would take no step; give it more time "
+                          "(/stages/1/until) or a shorter step (/time_step)"));
+  }
+  EXPECT_EQ(steps_until(seconds(0.6 * dt)), 1u);
+  EXPECT_EQ(steps_until({{"type", "all"}, {"of", {brief, steps(2)}}}), 2u);
+}
+
 TEST(Stage, CountsFromItsOwnStart) {
   Description d = lone(steps(30));
   d["stages"].push_back(stage("second", seconds(2e-4)));

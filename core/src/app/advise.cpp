@@ -140,17 +140,20 @@ void print(const ChartedStudy& study, const std::string& related, const std::str
            std::vector<std::string> given, double tolerance, const std::vector<Advice>& advices) {
   std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant),\n  {}\n\n", file,
                            100 * tolerance, study.title, study.file.string(), study.samples, related);
-  std::vector<std::string> beyond, unknown;
+  std::vector<std::string> beyond, untold, unknown;
   for (const Advice& advice : advices) {
     if (advice.now == nullptr) {
       std::cout << fmt::format("  {}: {}\n", advice.setting, advice.found);
       unknown.push_back(advice.setting);
       continue;
     }
-    std::cout << fmt::format("  {}: {} here; {}\n", advice.setting, advice.now->level, changes(*advice.now, tolerance));
     const auto& levels = study.settings.at(advice.setting);
-    if (least_sure(levels, *advice.now, tolerance).confidence(tolerance) == Confidence::impossible)
-      beyond.push_back(advice.setting);
+    std::cout << fmt::format("  {}: {} here; {}{}\n", advice.setting, advice.now->level,
+                             changes(*advice.now, tolerance),
+                             advice.now->findings.empty() ? "" : ", " + why(levels, *advice.now, tolerance));
+    const Confidence within = least_sure(levels, *advice.now, tolerance).confidence(tolerance);
+    if (within == Confidence::impossible) beyond.push_back(advice.setting);
+    if (within == Confidence::untold) untold.push_back(advice.setting);
     if (advice.cheaper.empty()) std::cout << "      nothing cheaper was tried\n";
     for (const Evidence* one : advice.cheaper)
       std::cout << (one->known ? fmt::format("    {} {}: {}, {}, {}\n", one == advice.best && advice.taken ? "→" : " ",
@@ -162,6 +165,9 @@ void print(const ChartedStudy& study, const std::string& related, const std::str
   std::cout << '\n';
   if (!beyond.empty())
     std::cout << fmt::format("beyond the tolerance as it is: {}; a finer value costs more\n", fmt::join(beyond, ", "));
+  if (!untold.empty())
+    std::cout << fmt::format("cannot be told of as it is: {}; a study with more seeds would tell\n",
+                             fmt::join(untold, ", "));
   const Evidence all = together(advices);
   const bool any = std::ranges::any_of(advices, &Advice::taken);
   if (any) std::cout << fmt::format("together about {:.1f} times cheaper\n", 1 / all.cost);

@@ -205,8 +205,13 @@ void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies&
       if (chunk.touch[j].wall == t.wall) continue;
       const bool later_is_lesser = t.overlap <= chunk.touch[j].overlap;
       const std::uint32_t lesser = later_is_lesser ? i : j, deeper = later_is_lesser ? j : i;
-      if (!hide[lesser] && hidden(chunk.touch[lesser], chunk.touch[deeper], body, walls, work))
-        any = hide[lesser] = true;
+      const auto hides = [&](std::uint32_t one, std::uint32_t other) {
+        return !hide[other] && hidden(chunk.touch[other], chunk.touch[one], body, walls, work);
+      };
+      const double deeper_by = chunk.touch[deeper].overlap - chunk.touch[lesser].overlap;
+      if (hides(deeper, lesser)) any = hide[lesser] = true;
+      // Which of two that are as deep is the deeper is rounding: beside a joint the edge may be, not the face.
+      else if (deeper_by <= no_gap * body.w && !hide[lesser] && hides(lesser, deeper)) any = hide[deeper] = true;
     }
   }
   if (!any) return;

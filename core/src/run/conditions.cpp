@@ -129,6 +129,31 @@ struct Progress {
   }
 };
 
+struct Brief {
+  double half_a_step;
+
+  std::optional<double> operator()(const TimeCondition& c) const {
+    return c.value <= half_a_step ? std::optional(c.value) : std::nullopt;
+  }
+  std::optional<double> operator()(const AllCondition& c) const {
+    std::optional<double> longest;
+    for (const auto& one : c.of)
+      if (const auto brief = std::visit(*this, one->is.value())) longest = std::max(longest, brief);
+      else return std::nullopt;
+    return longest;
+  }
+  std::optional<double> operator()(const AnyCondition& c) const {
+    std::optional<double> shortest;
+    for (const auto& one : c.of)
+      if (const auto brief = std::visit(*this, one->is.value())) shortest = std::min(shortest.value_or(*brief), *brief);
+    return shortest;
+  }
+  template <class Other>
+  std::optional<double> operator()(const Other&) const {
+    return std::nullopt;
+  }
+};
+
 }  // namespace
 
 bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
@@ -141,6 +166,10 @@ bool may_be_met(const Condition& condition, const Simulation& simulation, const 
 
 std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start) {
   return has_choice(condition) ? in_words(condition, Met{simulation, start, false}) : "";
+}
+
+std::optional<double> time_without_a_step(const Condition& condition, const Simulation& simulation) {
+  return std::visit(Brief{0.5 * simulation.dt()}, condition.is.value());
 }
 
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start) {

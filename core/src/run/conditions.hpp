@@ -32,6 +32,9 @@ bool may_be_met(const Condition& condition, const Simulation& simulation, const 
 /// unbalanced-force"; "" where there was no choice.
 std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start);
 
+/// How long a stage lasts that time ends before its first step, less than half a step; nothing of another.
+std::optional<double> time_without_a_step(const Condition& condition, const Simulation& simulation);
+
 /// How far on the way the stage is, 0 … 1, where the condition tells: not where all that can be told has come true and
 /// it waits for something else.
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start);

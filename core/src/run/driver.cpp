@@ -99,7 +99,10 @@ class Run {
       step_forces();
       const bool met = may_end && is_met(stage.until, simulation_, start_);
       observe(met);
-      if (met) break;
+      if (met) {
+        refuse_without_a_step(stage);
+        break;
+      }
       if (stops) return false;  // here, where positions and forces are of one instant
       if (too_late(stage))
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
@@ -161,6 +164,14 @@ class Run {
     recorder_.remember(memory);
   }
 
+  void refuse_without_a_step(const StageDescription& stage) const {
+    if (simulation_.step() > start_.step) return;
+    if (const auto lasts = time_without_a_step(stage.until, simulation_))
+      throw NumericsError("stage \"" + stage.name + "\" lasts " + number(*lasts) +
+                          " s, less than half of the time step of " + number(simulation_.dt()) +
+                          " s, so that it would take no step; give it more time (/stages/" + std::to_string(stage_) +
+                          "/until) or a shorter step (/time_step)");
+  }
   bool too_late(const StageDescription& stage) const { return simulation_.time() - start_.time > stage.limit; }
   bool is_time_to_count() const { return simulation_.step() % contacts_counted_every == 0; }
   void ask_who_looks() {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <string>
 
 #include "grit/error.hpp"
@@ -104,6 +105,16 @@ std::vector<std::string> material_names(const SceneDescription& scene) {
     return std::any_of(scene.bodies.begin(), scene.bodies.end(),
                        [&](const auto& group) { return group.second.material == name; });
   });
+  return names;
+}
+
+std::vector<std::string> materials_in_use(const SceneDescription& scene, std::vector<std::string> names) {
+  std::set<std::string> used;
+  for (const auto& [name, group] : scene.bodies) used.insert(group.material);
+  for (const auto& [name, wall] : scene.walls) used.insert(wall.material);
+  if (used.empty()) return names;
+  for (std::string& name : names)
+    if (!used.contains(name)) name = *used.begin();
   return names;
 }
 

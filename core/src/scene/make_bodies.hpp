@@ -15,9 +15,13 @@ namespace grit {
 /// All state of bodies that a component of the scene, or `also`, asks for.
 StateRequest requested_state(const SceneDescription& scene, StateRequest also = {});
 
-/// Materials in the order of their numbers in bodies and walls: those of bodies come first, so that all bodies have number
-/// 0 where they are of one, whatever else there is.
+/// Materials in the order of their numbers in bodies and walls: those of bodies come first, so that all bodies have
+/// number 0 where they are of one, whatever else there is.
 std::vector<std::string> material_names(const SceneDescription& scene);
+
+/// `names` with one that is in use in place of each that no body and no wall of the scene is of: numbers stay, and what
+/// nothing is of switches no part of a contact law on.
+std::vector<std::string> materials_in_use(const SceneDescription& scene, std::vector<std::string> names);
 
 /// The bodies of all groups that are there at the start, in the order of their names; ids count through. Throws as the
 /// sources of grains do, those of later groups included where they are files.
