@@ -106,7 +106,7 @@ struct ServoDescription {
   std::optional<double> pressure{};  ///< Pa, compression positive
   std::optional<double> force{};     ///< N, what the wall exerts on the bodies, along the axis
   double max_velocity = 0;           ///< m/s
-  double gain = 1;                   ///< share of the force's error that one step takes away
+  double gain = 1;                   ///< share of the force's error that one step takes away where contacts are springs
   std::string area = "geometry";
   void declare(Parameters& p);
 };
