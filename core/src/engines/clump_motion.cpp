@@ -72,6 +72,36 @@ void turn_freely(Clump& clump, double dt) {
   clump.spin = 2 * arc_over_sine(turn.vec().squaredNorm()) / dt * turn.vec();
 }
 
+/// Puts a clump's body where the clump has moved it; its velocity is its way in the step over the step.
+[[gnu::always_inline]] inline void carry(std::uint32_t body, const Clump& clump, Bodies& bodies,
+                                         const MotionStep& step) {
+  const ClumpSphere& own = bodies.clumps.of_body[body];
+  const Vec3 arm = clump.axes * own.place;
+  const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
+  // The chord of the arc over the step: from the arm turned back to the arm.
+  const Vec3 across = clump.half_turn.cross(arm);
+  const Vec3 v = clump.velocity + clump.chord_rate * (across - clump.half_turn.cross(across)) -
+                 periods.cwiseProduct(step.period_growth);
+  const Vec3 x = clump.centre + arm - periods.cwiseProduct(step.period);
+  Row &position = bodies.position[body], &velocity = bodies.velocity[body], &spin = bodies.spin[body];
+  position.x = x.x(), position.y = x.y(), position.z = x.z();
+  velocity.x = v.x(), velocity.y = v.y(), velocity.z = v.z();
+  spin.x = clump.spin.x(), spin.y = clump.spin.y(), spin.z = clump.spin.z();
+}
+
+/// Spheres of a clump lie as space has them, where the processor does not guess.
+constexpr std::size_t ahead = 3;
+void fetch(const Clump& clump, const Bodies& bodies, const BodySum* sum) {
+  for (std::uint32_t k = clump.first; k < clump.last; ++k) {
+    const std::uint32_t body = bodies.clumps.spheres[k];
+    __builtin_prefetch(&sum[body]);
+    __builtin_prefetch(&bodies.clumps.of_body[body]);
+    __builtin_prefetch(&bodies.position[body], 1);
+    __builtin_prefetch(&bodies.velocity[body], 1);
+    __builtin_prefetch(&bodies.spin[body], 1);
+  }
+}
+
 }  // namespace
 
 ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum) {
@@ -90,6 +120,7 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
   const MotionSettings& settings = step.settings;
   const Vec3 free = step.free_translation(), turns = step.free_rotation();
   for (std::size_t c = first; c < last; ++c) {
+    fetch(bodies.clumps.clump[std::min(c + ahead, last - 1)], bodies, sum);
     Clump& clump = bodies.clumps.clump[c];
     const ClumpLoad load = load_of(clump, bodies, sum);
     clump.velocity += (step.flowed * step.strain_rate).cwiseProduct(clump.velocity);
@@ -108,25 +139,9 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
     clump.centre += step.drift * clump.velocity;
     if (step.energies) motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
     turn_freely(clump, step.drift);
+    for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step);
   }
   return motion;
-}
-
-double carry(std::size_t body, Bodies& bodies, const MotionStep& step) {
-  const ClumpSphere& own = bodies.clumps.of_body[body];
-  const Clump& clump = bodies.clumps.clump[own.clump];
-  const Vec3 arm = clump.axes * own.place;
-  const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
-  // The chord of the arc over the step: from the arm turned back to the arm.
-  const Vec3 across = clump.half_turn.cross(arm);
-  const Vec3 v = clump.velocity + clump.chord_rate * (across - clump.half_turn.cross(across)) -
-                 periods.cwiseProduct(step.period_growth);
-  const Vec3 x = clump.centre + arm - periods.cwiseProduct(step.period);
-  const Vec3 flow = step.strain_rate.cwiseProduct(xyz(bodies.position[body]) - step.centre);
-  bodies.position[body] = {x.x(), x.y(), x.z(), bodies.position[body].w};
-  bodies.velocity[body] = {v.x(), v.y(), v.z(), bodies.velocity[body].w};
-  bodies.spin[body] = {clump.spin.x(), clump.spin.y(), clump.spin.z(), bodies.spin[body].w};
-  return (v - flow).squaredNorm();
 }
 
 }  // namespace grit

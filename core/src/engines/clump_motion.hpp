@@ -14,14 +14,11 @@ struct ClumpLoad {
 /// Of its spheres' contacts, in their order.
 ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum);
 
-/// Moves clumps first … last − 1 under `sum`, by body index, but not yet their spheres. Angular momentum is kept in
+/// Moves clumps first … last − 1 under `sum`, by body index, and puts their spheres where they are then: a
+/// sphere's velocity is its way in the step over the step. Angular momentum is kept in
 /// space; the free top turns by its parts about the principal axes one after the other and back, which is symplectic
 /// and of second order: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) 5840,
 /// doi:10.1063/1.474310.
 Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step);
-
-/// Puts a clump's body where the clump has moved it; its velocity is its way in the step over the step. Returns the square of its
-/// speed against the mean flow.
-double carry(std::size_t body, Bodies& bodies, const MotionStep& step);
 
 }  // namespace grit

@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "engines/clump_motion.hpp"
-
 namespace grit {
 namespace {
 
@@ -56,8 +54,10 @@ template <Ledger ledger, bool Clumps>
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
-        fastest_carried = std::max(fastest_carried, carry(i, bodies, step));
-        poison += load(bodies.velocity[i]) * 0.0 + load(bodies.spin[i]) * 0.0;
+        const Quad v = load(velocity[i]), before = load(position[i]) - v * drift,
+                   against = v - rate * (before - centre);
+        fastest_carried = std::max(fastest_carried, product(against, against));
+        poison += v * 0.0 + load(spin[i]) * 0.0;
         continue;
       }
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);

@@ -33,7 +33,7 @@ struct Motion {
   double fallen = 0;         ///< work of gravity [J]
 };
 
-/// Moves the bodies of one chunk under `sum`, by index; those of clumps follow their clumps, which have moved.
+/// Moves the bodies of one chunk under `sum`, by index; those of clumps are where these have moved them.
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
 }  // namespace grit
