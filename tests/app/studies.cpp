@@ -444,29 +444,69 @@ TEST_F(Studies, AdviseOnScenesOfTheSamePartsWhereThereIsNoScenario) {
                                HasSubstr(": here is no \"wall left: plane\", there is no \"wall lid: plane\")")));
 }
 
-TEST_F(Studies, OfTheInstallationThatCannotBeReadAreLeftOutByName) {
-  namespace fs = std::filesystem;
-  const fs::path lib = fs::path(GRIT_BINARY).parent_path().parent_path() / "lib/grit";
-  fs::create_directories(folder / "own");
-  fs::copy(lib / "libgrit.so", folder / "own");
-  fs::copy(lib / "studies", folder / "own/studies");
-  const auto own_grit = [&](const std::string& command) {
-    return Program({"env", "LD_LIBRARY_PATH=" + (folder / "own").string(), "GRIT_PLUGIN_PATH=" + lib.string(),
-                    GRIT_BINARY, command, std::string(GRIT_SOURCE_DIR) + "/sims/column/quick.json"},
-                   folder.path())
-        .finish();
-  };
-  const auto whole = own_grit("advise");
+/// A grit that came with studies of its own.
+class ShippedStudies : public Studies {
+ protected:
+  ShippedStudies() {
+    std::filesystem::create_directories(folder / "own");
+    std::filesystem::copy(lib / "libgrit.so", folder / "own");
+    std::filesystem::copy(lib / "studies", folder / "own/studies");
+  }
+  Outcome column(const std::string& command, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"env",
+                                   "LD_LIBRARY_PATH=" + (folder / "own").string(),
+                                   "GRIT_PLUGIN_PATH=" + lib.string(),
+                                   GRIT_BINARY,
+                                   command,
+                                   std::string(GRIT_SOURCE_DIR) + "/sims/column/quick.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return Program(words, folder.path()).finish();
+  }
+  const std::filesystem::path lib = std::filesystem::path(GRIT_BINARY).parent_path().parent_path() / "lib/grit";
+};
+
+TEST_F(ShippedStudies, ThatCannotBeReadAreLeftOutByName) {
+  const auto whole = column("advise");
   EXPECT_EQ(whole.status, 0) << whole.err;
   EXPECT_EQ(whole.err, "");
   folder.write("own/studies/broken.json", R"({"title": "half a)");
   for (const char* command : {"check", "advise"}) {
-    const auto outcome = own_grit(command);
+    const auto outcome = column(command);
     EXPECT_EQ(outcome.status, 0) << command << ": " << outcome.err;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("left out: " + (folder / "own/studies/broken.json").string()),
                                    HasSubstr("is no chart.json"), Not(HasSubstr("column.json"))));
     if (command == std::string("advise")) EXPECT_EQ(outcome.out, whole.out);
   }
+}
+
+TEST_F(ShippedStudies, SayWhereADepthIsMoreThanShows) {
+  const std::string file = "own/studies/column.json";
+  // What the least depth came to, against the usual one: all figures alike.
+  const auto changes_by = [&](double error, double standard_error) {
+    auto chart = json::parse(text_of(folder / file));
+    for (auto& effect : chart.at("effects"))
+      if (effect.at("setting") == "depth")
+        for (auto& figure : effect.at("figures")) figure["error"] = error, figure["standard_error"] = standard_error;
+    folder.write(file, chart.dump());
+  };
+  const auto check = [&](const std::string& depth, int count) {
+    const auto outcome =
+        column("check", {"--set", "/domain/high/1=" + depth, "--set", "/bodies/sand/grains/high/1=" + depth, "--set",
+                         "/bodies/sand/grains/count=" + std::to_string(count)});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  constexpr auto told = "samples scatter";
+  changes_by(0.01, 0.01);
+  EXPECT_THAT(check("20 mm", 3000),
+              HasSubstr("  /domain/high/1: 20 mm deep; by \"A column under gravity: what the settings cost and what "
+                        "they change\" 6 mm changes "));
+  EXPECT_THAT(check("20 mm", 3000), HasSubstr(" by 1.0 ± 1.0 %, which is within what samples scatter, and is "));
+  EXPECT_THAT(check("10 mm", 1500), Not(HasSubstr(told))) << "less than twice as much";
+  changes_by(0.02, 0.005);
+  EXPECT_THAT(check("20 mm", 3000), Not(HasSubstr(told))) << "it shows";
+  changes_by(0.02, 0.1);
+  EXPECT_THAT(check("20 mm", 3000), Not(HasSubstr(told))) << "nobody can tell";
 }
 
 }  // namespace
