@@ -99,6 +99,8 @@ TEST_F(Clearances, AreNegativeBehindWalls) {
   expect("block", {2, 2, 6.2}, -0.2, {0, 0, 1});
 }
 
+TEST_F(Clearances, AreOfTheRimAHairBesideIt) { expect("sheet", {4 + 1e-8, 2, 1.5}, 0.5, {-1e-8, 0, 0.5}); }
+
 TEST_F(Clearances, AreNoneOutOfReach) {
   EXPECT_TRUE(world_->clearance(index("block"), {2, 2, 3.001}, 3));
   EXPECT_FALSE(world_->clearance(index("block"), {2, 2, 3}, 3));

@@ -17,6 +17,8 @@ auto key(const auto& t) { return std::tuple(t.wall, t.body, t.feature); }
 
 /// A gap between walls that is narrower, in radii, is closed.
 constexpr double no_gap = 1e-8;
+/// By which the normal of an edge in such a gap may be tilted.
+constexpr double tilted_by_rounding = 4 * no_gap;
 /// Cosine between normals of one surface that goes on in another wall or face.
 constexpr double goes_on = 0.9;
 
@@ -32,6 +34,16 @@ void stand_still_in_valley(WallTouch& touch, const Row& body, const Row& body_ve
 }
 
 static_assert(offsetof(Sphere, radius) == offsetof(Row, w));
+
+/// Which of two touches that are as deep is the deeper is rounding: beside the joint of two faces it may be the edge,
+/// whose normal, however little tilted, would push the sphere further aside. Takes the face's.
+void straighten(WallTouch& touch, std::span<const WallSurface> walls) {
+  const WallSurface& wall = walls[touch.wall];
+  if (!wall.geometry->flat()) return;
+  const Vec3 normal = wall.pose.turn * wall.geometry->normal();
+  const Vec3 into = std::copysign(1.0, touch.normal.dot(normal)) * normal;
+  if ((touch.normal - into).norm() <= tilted_by_rounding) touch.normal = into;
+}
 
 }  // namespace
 
@@ -209,9 +221,14 @@ void WallContacts::leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies&
         return !hide[other] && hidden(chunk.touch[other], chunk.touch[one], body, walls, work);
       };
       const double deeper_by = chunk.touch[deeper].overlap - chunk.touch[lesser].overlap;
-      if (hides(deeper, lesser)) any = hide[lesser] = true;
-      // Which of two that are as deep is the deeper is rounding: beside a joint the edge may be, not the face.
-      else if (deeper_by <= no_gap * body.w && !hide[lesser] && hides(lesser, deeper)) any = hide[deeper] = true;
+      const bool alike = deeper_by <= no_gap * body.w;
+      if (hides(deeper, lesser)) {
+        any = hide[lesser] = true;
+        if (alike) straighten(chunk.touch[deeper], walls);
+      } else if (alike && !hide[lesser] && hides(lesser, deeper)) {
+        any = hide[deeper] = true;
+        straighten(chunk.touch[lesser], walls);
+      }
     }
   }
   if (!any) return;

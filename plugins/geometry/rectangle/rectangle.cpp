@@ -2,18 +2,10 @@
 #include "rectangle.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "grit/plugin.hpp"
 
 namespace grit {
-namespace {
-
-/// A centre that is beyond an edge by no more radii is above the face: beside the joint of two rectangles it is for
-/// rounding to say which is nearer, and an edge's normal, however little tilted, would push the sphere further aside.
-constexpr double above_face = 2e-8;
-
-}  // namespace
 
 void Rectangle::declare(Parameters& p) {
   sheet_.declare(p);
@@ -34,7 +26,7 @@ void Rectangle::touch(const Pose& pose, std::span<const Sphere> spheres, std::ve
   for (const Sphere& sphere : spheres) {
     const Vec3 away = offset(at, sphere.centre);
     if (!(away.squaredNorm() < sphere.radius * sphere.radius)) continue;
-    if (std::max(std::abs(away.x()), std::abs(away.y())) <= above_face * sphere.radius) {
+    if (away.x() == 0 && away.y() == 0) {
       const double side = two_sided_ && away.z() < 0 ? -1 : 1;
       touches.push_back({-side * at.axes.col(2), sphere.radius - side * away.z(), sphere.body, 0});
     } else {
