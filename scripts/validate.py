@@ -17,7 +17,7 @@ fall as it says; `build/tests/test_physics --gtest_filter=NAME` repeats one, or 
 
 Contacts are evaluated in SIMD lanes. Of every law, force, moment and memory of a contact agree with those of a scalar twin within 1e-14 (1 + 0.1 size / overlap) of the
 force, with the sum of the radii and the longest component of the branch for size: an overlap is a small difference of large numbers.
-[tests/contracts/contact_law.hpp](../tests/contracts/contact_law.hpp) holds that.
+[tests/contracts/contact_law.cpp](../tests/contracts/contact_law.cpp) holds that.
 
 | test | figure | closed form | found | error | allowed |
 | --- | --- | --- | --- | --- | --- |

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
-#include <regex>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,8 +24,9 @@ inline std::string wall_stem(std::string name) {
 
 /// Whether it can be a channel's name, or begin one.
 inline bool is_snake_case(const std::string& text) {
-  static const std::regex pattern("[a-z][a-z0-9_]*");
-  return std::regex_match(text, pattern);
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto fits = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !text.empty() && letter(text.front()) && std::all_of(text.begin(), text.end(), fits);
 }
 
 /// The name with the fewest single-letter edits (Levenshtein) between it and `name`; empty if there are no names.

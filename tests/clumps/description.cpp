@@ -6,7 +6,7 @@
 #include "support/program.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::description_tests {
 namespace {
 
 using testing::EndsWith;
@@ -87,4 +87,4 @@ TEST_F(ClumpDescription, OfAFileNamesFileAndLine) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::description_tests

@@ -7,7 +7,7 @@
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::motion_tests {
 namespace {
 
 const Description stuff{{"density", 2600}, {"contact_modulus", 1e7}};
@@ -215,4 +215,4 @@ TEST(ClumpMotion, IsTheSameAcrossThePeriodicSides) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::motion_tests

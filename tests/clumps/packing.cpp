@@ -10,7 +10,7 @@
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::packing_tests {
 namespace {
 
 const Description stuff{{"density", 2600}, {"contact_modulus", 1e8}, {"friction_angle", 0.5}};
@@ -149,4 +149,4 @@ TEST(ClumpPacking, RefusesACellInWhichAClumpWouldMeetItself) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::packing_tests

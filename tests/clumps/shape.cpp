@@ -11,7 +11,7 @@
 #include "scene/random.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::shape_tests {
 namespace {
 
 using std::numbers::pi;
@@ -270,4 +270,4 @@ TEST(ClumpShape, IsRefusedWhereItIsNoBody) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::shape_tests

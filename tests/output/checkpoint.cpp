@@ -9,7 +9,7 @@
 #include "grit/error.hpp"
 #include "output/hdf5.hpp"
 
-namespace grit {
+namespace grit::checkpoint_tests {
 namespace {
 
 using testing::AllOf;
@@ -126,4 +126,4 @@ TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::checkpoint_tests

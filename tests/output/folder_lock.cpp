@@ -6,7 +6,7 @@
 
 #include "support/program.hpp"
 
-namespace grit {
+namespace grit::folder_lock_tests {
 namespace {
 
 TEST(FolderLocks, AreForOneAtATime) {
@@ -31,4 +31,4 @@ TEST(FolderLocks, LastAsLongAsWhatWasStartedMeanwhile) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::folder_lock_tests

@@ -12,7 +12,7 @@
 #include "support/scene.hpp"
 #include "support/stl_file.hpp"
 
-namespace grit {
+namespace grit::frames_tests {
 namespace {
 
 using testing::DoubleEq;
@@ -213,4 +213,4 @@ TEST(Frames, GoOnFromACount) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::frames_tests

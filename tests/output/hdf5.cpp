@@ -7,7 +7,7 @@
 #include "folder.hpp"
 #include "grit/error.hpp"
 
-namespace grit {
+namespace grit::hdf5_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -105,4 +105,4 @@ TEST(Hdf5, SaysThatTheDiskIsFull) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::hdf5_tests

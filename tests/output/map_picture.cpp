@@ -10,7 +10,7 @@
 
 #include "svg_elements.hpp"
 
-namespace grit {
+namespace grit::map_picture_tests {
 namespace {
 
 using testing::Contains;
@@ -298,4 +298,4 @@ TEST(MapPicture, CopesWithNothing) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::map_picture_tests

@@ -13,7 +13,7 @@
 #include "output/scale.hpp"
 #include "svg_elements.hpp"
 
-namespace grit {
+namespace grit::picture_tests {
 namespace {
 
 using testing::AnyOf;
@@ -536,4 +536,4 @@ TEST(GrainView, CutsWallsAtMidDepthWhereTheyHaveMovedTo) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::picture_tests

@@ -11,7 +11,7 @@
 #include "grit/error.hpp"
 #include "scene/packing_file.hpp"
 
-namespace grit {
+namespace grit::results_folder_tests {
 namespace {
 
 using nlohmann::json;
@@ -235,4 +235,4 @@ TEST(ResultsFolder, KnowsTheChannelsOfThePicture) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::results_folder_tests

@@ -8,7 +8,7 @@
 #include "folder.hpp"
 #include "grit/error.hpp"
 
-namespace grit {
+namespace grit::series_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -139,4 +139,4 @@ TEST(Series, SurvivesSigkill) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::series_tests

@@ -29,7 +29,7 @@ extern "C" int ftruncate(int file, off_t size) noexcept {
   return result;
 }
 
-namespace grit {
+namespace grit::series_being_written_tests {
 namespace {
 
 using namespace std::chrono_literals;
@@ -179,4 +179,4 @@ TEST(WritingMark, GoesWithItsWriter) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::series_being_written_tests

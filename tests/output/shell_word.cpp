@@ -6,7 +6,7 @@
 
 #include "support/program.hpp"
 
-namespace grit {
+namespace grit::shell_word_tests {
 namespace {
 
 TEST(ShellWord, StaysAsItIsWhereAShellTakesItSo) {
@@ -29,4 +29,4 @@ TEST(ShellWord, IsReadBackByAShell) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::shell_word_tests

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace grit {
+namespace grit::strays_tests {
 namespace {
 
 /// 0, 1, … 100 along x, all at one height.
@@ -55,4 +55,4 @@ TEST(Strays, AreNoneAmongFew) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::strays_tests

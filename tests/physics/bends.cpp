@@ -10,7 +10,7 @@
 #include "support/stl_file.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::bends_tests {
 namespace {
 
 // So heavy that the ball presses its way 7e-4 of its radius into the floor; gravity leans, so that friction is asked
@@ -139,4 +139,4 @@ INSTANTIATE_TEST_SUITE_P(All, Bends,
                                           testing::Values(0.001, 0.01, 0.05, -0.001, -0.01, -0.05)));
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::bends_tests

@@ -11,7 +11,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::closed_cycle_tests {
 namespace {
 
 using std::numbers::pi;
@@ -261,4 +261,4 @@ TEST(ClosedCycle, NoOrderOfPressingAndShearingGainsEnergy) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::closed_cycle_tests

@@ -7,7 +7,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::collision_tests {
 namespace {
 
 using std::numbers::pi;
@@ -182,4 +182,4 @@ INSTANTIATE_TEST_SUITE_P(Collision, Restitution,
                          [](const auto& info) { return std::string(info.index == 0 ? "Linear" : "Hertz"); });
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::collision_tests

@@ -4,7 +4,7 @@
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::conservation_tests {
 namespace {
 
 struct Momenta {
@@ -47,4 +47,4 @@ TEST(Conservation, CloudKeepsMomentumAndAngularMomentum) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::conservation_tests

@@ -9,7 +9,7 @@
 #include "support/rebound.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::contact_springs_tests {
 namespace {
 
 using std::numbers::pi;
@@ -175,4 +175,4 @@ TEST(ContactSprings, HertzAndMindlinsThatStickFollowTheirEquations) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::contact_springs_tests

@@ -7,7 +7,7 @@
 
 #include "support/curves.hpp"
 
-namespace grit::test {
+namespace grit::test::direct_shear_tests {
 namespace {
 
 struct Sheared : Curves {
@@ -58,4 +58,4 @@ TEST(DirectShear, LooseSandHardensAndContracts) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::direct_shear_tests

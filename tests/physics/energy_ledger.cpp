@@ -7,7 +7,7 @@
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::energy_ledger_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, safety = 0.02;
@@ -281,4 +281,4 @@ TEST(EnergyLedger, DoesNotForgetWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::energy_ledger_tests

@@ -6,7 +6,7 @@
 #include "support/scene.hpp"
 #include "support/stl_file.hpp"
 
-namespace grit::test {
+namespace grit::test::faceted_tests {
 namespace {
 
 struct Faceted {
@@ -115,4 +115,4 @@ TEST(Faceted, ASawToothIsTouchedLikeItsMesh) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::faceted_tests

@@ -8,7 +8,7 @@
 #include "support/stl_file.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::faceting_error_tests {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -123,4 +123,4 @@ TEST(FacetingError, OnWavesFallsAtSecondOrder) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::faceting_error_tests

@@ -4,7 +4,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::force_servo_tests {
 namespace {
 
 TEST(ForceServo, PressesABallByAnyGeometry) {
@@ -34,4 +34,4 @@ TEST(ForceServo, PressesABallByAnyGeometry) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::force_servo_tests

@@ -7,7 +7,7 @@
 
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::grooved_void_ratio_tests {
 namespace {
 
 constexpr double diameter = 1e-3;
@@ -100,4 +100,4 @@ TEST(GroovedVoidRatio, IsThatInsideOfACylinderAndAFunnel) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::grooved_void_ratio_tests

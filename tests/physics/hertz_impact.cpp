@@ -8,7 +8,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::hertz_impact_tests {
 namespace {
 
 struct Impact {
@@ -93,4 +93,4 @@ INSTANTIATE_TEST_SUITE_P(Hertz, ChungOoi,
                          [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::hertz_impact_tests

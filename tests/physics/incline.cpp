@@ -8,7 +8,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::incline_tests {
 namespace {
 
 constexpr double g = 9.81, radius = 0.01, density = 2500, modulus = 1e8, young = 1e11, poisson = 0.3;
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(Incline, RollingResistance, testing::Values("linear-rol
                          [](const auto& info) { return std::string(info.index == 0 ? "Linear" : "Hertz"); });
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::incline_tests

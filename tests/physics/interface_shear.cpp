@@ -7,7 +7,7 @@
 
 #include "support/curves.hpp"
 
-namespace grit::test {
+namespace grit::test::interface_shear_tests {
 namespace {
 
 TEST(InterfaceShear, OnAFlatSurfaceSlidesAtItsFrictionAngle) {
@@ -26,4 +26,4 @@ TEST(InterfaceShear, OnAFlatSurfaceSlidesAtItsFrictionAngle) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::interface_shear_tests

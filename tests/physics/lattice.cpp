@@ -9,7 +9,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::lattice_tests {
 namespace {
 
 constexpr double radius = 5e-4, diameter = 2 * radius, density = 2500;
@@ -259,4 +259,4 @@ TEST(Lattice, SixSpheresBetweenWallsAreAsStrongAsThorntonSays) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::lattice_tests

@@ -11,7 +11,7 @@
 #include "support/rebound.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::oblique_impact_tests {
 namespace {
 
 using std::numbers::pi;
@@ -422,4 +422,4 @@ TEST(ObliqueImpact, LinearLawsSlideAsCoulombSays) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::oblique_impact_tests

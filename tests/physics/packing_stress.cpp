@@ -7,7 +7,7 @@
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::packing_stress_tests {
 namespace {
 
 constexpr double side_length = 6e-3;
@@ -207,4 +207,4 @@ TEST(PackingStress, IsTheSameInSinglePrecision) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::packing_stress_tests

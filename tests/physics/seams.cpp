@@ -9,7 +9,7 @@
 #include "support/stl_file.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::seams_tests {
 namespace {
 
 // So heavy that the ball presses its way 7e-4 of its radius into the floor.
@@ -251,4 +251,4 @@ TEST(Gaps, AreClosedByAWallBetween) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::seams_tests

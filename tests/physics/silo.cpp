@@ -14,7 +14,7 @@
 #include "support/curves.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::silo_tests {
 namespace {
 
 constexpr double wide = 10e-3, across = std::numbers::pi * wide * wide / 4, g = 9.81, slice = 2.5e-3;
@@ -205,4 +205,4 @@ TEST(PlaneSilo, RougherWallsCarryMore) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::silo_tests

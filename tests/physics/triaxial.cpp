@@ -9,7 +9,7 @@
 #include "support/curves.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::triaxial_tests {
 namespace {
 
 struct Compressed : Curves {
@@ -106,4 +106,4 @@ TEST(Triaxial, LooseSandHardensAndContractsWhereDenseSandPeaksAndDilates) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::triaxial_tests

@@ -9,7 +9,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::turning_springs_tests {
 namespace {
 
 using std::numbers::pi;
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Turning{"hertz-mindlin", "rolling", false}, Turning{"hertz-mindlin", "rolling", true}));
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::turning_springs_tests

@@ -9,7 +9,7 @@
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test {
+namespace grit::test::vibrating_wall_tests {
 namespace {
 
 constexpr double radius = 1e-3, gravity = 9.81, frequency = 40, omega = 2 * std::numbers::pi * frequency;
@@ -126,4 +126,4 @@ TEST(VibratingWall, ThatIsTooFastForTheStepIsRefused) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::vibrating_wall_tests

@@ -9,7 +9,7 @@
 #include "report/report_page.hpp"
 #include "results.hpp"
 
-namespace grit {
+namespace grit::cell_maps_tests {
 namespace {
 
 using nlohmann::json;
@@ -203,4 +203,4 @@ TEST(CellMaps, AreDrawnWithoutABrowser) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::cell_maps_tests

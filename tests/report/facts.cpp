@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace grit {
+namespace grit::facts_tests {
 namespace {
 
 Fact fact(const std::vector<Fact>& facts, const std::string& name) {
@@ -132,4 +132,4 @@ TEST(Facts, WaitForTheFirstStageToEnd) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::facts_tests

@@ -9,7 +9,7 @@
 #include "report/report_page.hpp"
 #include "results.hpp"
 
-namespace grit {
+namespace grit::layers_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -118,4 +118,4 @@ TEST(Layers, AreNotDrawnOfTheFrameTheyAreOf) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::layers_tests

@@ -8,7 +8,7 @@
 #include "report/live_page.hpp"
 #include "results.hpp"
 
-namespace grit {
+namespace grit::live_tests {
 namespace {
 
 using nlohmann::json;
@@ -167,4 +167,4 @@ TEST(LivePage, TellsWhatCannotBeReadInAFolderThatChangesOnlyIfItLasts) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::live_tests

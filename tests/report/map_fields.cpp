@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace grit {
+namespace grit::map_fields_tests {
 namespace {
 
 Field field(const std::string& name, const std::string& unit, const std::string& doc, std::size_t width = 1,
@@ -48,4 +48,4 @@ TEST(MapFields, LeaveOutWhatOnlyCounts) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::map_fields_tests

@@ -7,7 +7,7 @@
 
 #include "results.hpp"
 
-namespace grit {
+namespace grit::packed_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -65,4 +65,4 @@ TEST(DataElements, KeepTheNumbersOfWhatIsTheSame) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::packed_tests

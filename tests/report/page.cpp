@@ -7,7 +7,7 @@
 #include "report/report_page.hpp"
 #include "results.hpp"
 
-namespace grit {
+namespace grit::page_tests {
 namespace {
 
 using nlohmann::json;
@@ -353,4 +353,4 @@ TEST(ReportPage, PutsRunsSideBySide) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::page_tests

@@ -11,7 +11,7 @@
 #include "report/report_page.hpp"
 #include "results.hpp"
 
-namespace grit {
+namespace grit::pictures_tests {
 namespace {
 
 using testing::Contains;
@@ -271,4 +271,4 @@ TEST(MapPictures, HaveWallsAxesAndTheirFieldsPalette) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::pictures_tests

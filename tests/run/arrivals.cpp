@@ -12,7 +12,7 @@
 #include "support/notes.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::arrivals_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -460,4 +460,4 @@ TEST(Arrivals, OfASecondLayerWeighOnTheFloorWithTheFirst) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::arrivals_tests

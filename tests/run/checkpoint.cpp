@@ -9,7 +9,7 @@
 #include "support/packing.hpp"
 #include "support/tape.hpp"
 
-namespace grit::test {
+namespace grit::test::checkpoint_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -339,4 +339,4 @@ TEST(Checkpoint, KeepsWhatEnginesRemember) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::checkpoint_tests

@@ -5,7 +5,7 @@
 
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::critical_step_tests {
 namespace {
 
 constexpr double radius = 5e-4;
@@ -60,4 +60,4 @@ TEST(CriticalStep, KeepsUpWithContactsBetweenSearches) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::critical_step_tests

@@ -9,7 +9,7 @@
 #include "support/clump.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::departures_tests {
 namespace {
 
 const Description stuff{{"density", 2600}, {"contact_modulus", 1e7}};
@@ -157,4 +157,4 @@ TEST(Departures, ThroughAnotherSideAreAnError) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::departures_tests

@@ -10,7 +10,7 @@
 #include "support/notes.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::growth_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -279,4 +279,4 @@ TEST(Growth, IsRefusedWhereItMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::growth_tests

@@ -10,7 +10,7 @@
 #include "grit/error.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::guards_tests {
 namespace {
 
 using testing::HasSubstr;
@@ -325,4 +325,4 @@ TEST(Guards, CountTheWorkOfAServoByTheForcesAtBothEndsOfAStep) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::guards_tests

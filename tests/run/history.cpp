@@ -4,7 +4,7 @@
 #include "support/memories.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::history_tests {
 namespace {
 
 Description packing(double speed = 0.1) {
@@ -101,4 +101,4 @@ TEST(History, SearchingAtEveryStepOrRarelyGivesTheSameWay) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::history_tests

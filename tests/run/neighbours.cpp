@@ -7,7 +7,7 @@
 
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::neighbours_tests {
 namespace {
 
 using Pair = std::tuple<std::uint32_t, std::uint32_t, int>;  // a < b by index, image of b
@@ -198,4 +198,4 @@ TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::neighbours_tests

@@ -3,7 +3,7 @@
 
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::periodic_tests {
 namespace {
 
 const Vec3 period(6e-3, 7e-3, 8e-3);
@@ -133,4 +133,4 @@ TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::periodic_tests

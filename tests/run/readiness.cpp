@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace grit {
+namespace grit::readiness_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -39,4 +39,4 @@ TEST_F(Evaluation, BeginsAnew) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::readiness_tests

@@ -6,7 +6,7 @@
 
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::same_bits_tests {
 namespace {
 
 const Description sand{{"contact_modulus", 1e6}, {"density", 2600}};
@@ -130,4 +130,4 @@ TEST(SameBits, AreToldFromOthers) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::same_bits_tests

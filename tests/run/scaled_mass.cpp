@@ -6,7 +6,7 @@
 #include "grit/error.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::scaled_mass_tests {
 namespace {
 
 constexpr double small = 0.5e-3, large = 1e-3, density = 2600;
@@ -57,4 +57,4 @@ TEST(ScaledMass, IsRefusedUnderGravity) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::scaled_mass_tests

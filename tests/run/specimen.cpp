@@ -5,7 +5,7 @@
 
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::specimen_tests {
 namespace {
 
 Region specimen_between(const Description& low, const Description& high) {
@@ -114,4 +114,4 @@ TEST_F(Clearances, EnvelopeReachesToTheFarSidesOfWalls) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::specimen_tests

@@ -10,7 +10,7 @@
 #include "support/notes.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::stages_tests {
 namespace {
 
 using testing::ElementsAre;
@@ -456,4 +456,4 @@ TEST(Reports, AnInterruptedRunEndsAtOnceAndWhole) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::stages_tests

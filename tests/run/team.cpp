@@ -5,7 +5,7 @@
 #include <atomic>
 #include <stdexcept>
 
-namespace grit {
+namespace grit::team_tests {
 namespace {
 
 TEST(Team, HandsOnWhatWorkThrowsAndWorksOn) {
@@ -33,4 +33,4 @@ TEST(Team, TakesEachChunkOnce) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::team_tests

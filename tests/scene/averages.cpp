@@ -7,7 +7,7 @@
 #include "scene/random.hpp"
 #include "support/fake_world.hpp"
 
-namespace grit {
+namespace grit::averages_tests {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -181,4 +181,4 @@ TEST(Unrest, LeavesOutBodiesThatCannotMove) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::averages_tests

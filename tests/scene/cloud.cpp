@@ -10,7 +10,7 @@
 #include "grit/error.hpp"
 #include "scene/sizes.hpp"
 
-namespace grit {
+namespace grit::cloud_tests {
 namespace {
 
 const Cell open_cell{Vec3::Constant(-1), Vec3::Constant(1)};
@@ -181,4 +181,4 @@ TEST(Cloud, RefusesBoxesThatCannotWork) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::cloud_tests

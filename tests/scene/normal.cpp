@@ -9,7 +9,7 @@
 #include "scene/random.hpp"
 #include "scene/same_bits.hpp"
 
-namespace grit {
+namespace grit::normal_tests {
 namespace {
 
 double share_by_library(double z) {
@@ -72,4 +72,4 @@ TEST(Normal, GivesTheSameBitsAsAnIndependentProgram) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::normal_tests

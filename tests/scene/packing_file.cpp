@@ -12,7 +12,7 @@
 #include "grit/error.hpp"
 #include "scene/random.hpp"
 
-namespace grit {
+namespace grit::packing_file_tests {
 namespace {
 
 class PackingFile : public testing::Test {
@@ -153,4 +153,4 @@ TEST_F(PackingFile, SaysThatTheDiskIsFull) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::packing_file_tests

@@ -10,7 +10,7 @@
 
 #include "scene/normal.hpp"
 
-namespace grit {
+namespace grit::random_tests {
 namespace {
 
 /// Σ (found − expected)² / expected; its mean is the number of classes less one, its deviation √(2 mean).
@@ -123,4 +123,4 @@ TEST(Random, GivesTheSameNumbersForTheSameSeedOnly) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::random_tests

@@ -10,7 +10,7 @@
 
 #include "grit/error.hpp"
 
-namespace grit {
+namespace grit::sizes_tests {
 namespace {
 
 /// The largest distance between a sample's curve and the wanted one; each grain weighs d^power.
@@ -129,4 +129,4 @@ TEST(Sizes, SayWhatIsWrongWithASieveCurve) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::sizes_tests

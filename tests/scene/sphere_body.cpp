@@ -5,7 +5,7 @@
 #include <memory>
 #include <numbers>
 
-namespace grit {
+namespace grit::sphere_body_tests {
 namespace {
 
 TEST(SphereBody, HasTheVolumeAndInertiaOfASphere) {
@@ -22,4 +22,4 @@ TEST(SphereBody, HasTheVolumeAndInertiaOfASphere) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::sphere_body_tests

@@ -9,7 +9,7 @@
 #include "grit/world.hpp"
 #include "scene/random.hpp"
 
-namespace grit {
+namespace grit::sphere_box_tests {
 namespace {
 
 using std::numbers::pi;
@@ -175,4 +175,4 @@ TEST(SphereBox, BoxesThatFillSpaceFillTheSphere) {
 }
 
 }  // namespace
-}  // namespace grit
+}  // namespace grit::sphere_box_tests

@@ -8,7 +8,7 @@
 #include "support/packing.hpp"
 #include "support/touching.hpp"
 
-namespace grit::test {
+namespace grit::test::bullet_tests {
 namespace {
 
 constexpr double spacing = 1e-3, dt = 2e-7;
@@ -58,4 +58,4 @@ TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::bullet_tests

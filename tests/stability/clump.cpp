@@ -9,7 +9,7 @@
 #include "support/mapped.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::clump_tests {
 namespace {
 
 constexpr double size = 1e-3, modulus = 1e7, trembling = 1e-9;
@@ -58,4 +58,4 @@ TEST(Clump, HeldAtOneEndStartsToGrowWhereItsMassAndInertiaSay) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::clump_tests

@@ -7,7 +7,7 @@
 #include "support/mapped.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::convergence_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, speed = 0.1;
@@ -104,4 +104,4 @@ TEST_P(Convergence, OfAnObliqueCollisionInTheTimeStep) {
 INSTANTIATE_TEST_SUITE_P(All, Convergence, testing::Range(std::size_t{0}, laws().size()));
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::convergence_tests

@@ -4,7 +4,7 @@
 #include "support/mapped.hpp"
 #include "support/notes.hpp"
 
-namespace grit::test {
+namespace grit::test::false_alarms_tests {
 namespace {
 
 /// Returns how many grains there were. The guard of energies goes by what is stored, or by the ledger.
@@ -41,4 +41,4 @@ INSTANTIATE_TEST_SUITE_P(All, FalseAlarms, testing::Bool(),
                          [](const auto& info) { return info.param ? "by_the_ledger" : "by_what_is_stored"; });
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::false_alarms_tests

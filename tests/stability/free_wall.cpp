@@ -11,7 +11,7 @@
 #include "support/growth.hpp"
 #include "support/mapped.hpp"
 
-namespace grit::test {
+namespace grit::test::free_wall_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius;
@@ -100,4 +100,4 @@ TEST(FreeWall, EnergyGuardTripsBeyondTheLimit) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::free_wall_tests

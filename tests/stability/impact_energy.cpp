@@ -13,7 +13,7 @@
 #include "support/mapped.hpp"
 #include "support/rebound.hpp"
 
-namespace grit::test {
+namespace grit::test::impact_energy_tests {
 namespace {
 
 using std::numbers::pi;
@@ -204,4 +204,4 @@ TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
 INSTANTIATE_TEST_SUITE_P(All, ImpactEnergy, testing::Values("linear-frictional", "linear-rolling", "hertz-mindlin"));
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::impact_energy_tests

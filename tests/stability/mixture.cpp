@@ -7,7 +7,7 @@
 #include "support/mapped.hpp"
 #include "support/touching.hpp"
 
-namespace grit::test {
+namespace grit::test::mixture_tests {
 namespace {
 
 constexpr double small = 0.25e-3;
@@ -48,4 +48,4 @@ TEST(Mixture, MissesNoContactUpToOneToAHundred) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::mixture_tests

@@ -10,7 +10,7 @@
 #include "support/mapped.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::overlap_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, modulus = 1e7;
@@ -101,4 +101,4 @@ TEST(Overlap, EnergyThatAppearsIsThatOfTheSpring) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::overlap_tests

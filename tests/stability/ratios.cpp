@@ -8,7 +8,7 @@
 #include "support/growth.hpp"
 #include "support/mapped.hpp"
 
-namespace grit::test {
+namespace grit::test::ratios_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, shear_ratio = 0.3;
@@ -131,4 +131,4 @@ TEST(Ratios, SoftGrainBetweenStiffPlates) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::ratios_tests

@@ -12,7 +12,7 @@
 #include "support/growth.hpp"
 #include "support/mapped.hpp"
 
-namespace grit::test {
+namespace grit::test::servo_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius;
@@ -189,4 +189,4 @@ TEST(Servo, GuardTripsWhereAnUnstableStepWasAskedFor) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::servo_tests

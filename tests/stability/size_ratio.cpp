@@ -7,7 +7,7 @@
 #include "support/mapped.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::size_ratio_tests {
 namespace {
 
 constexpr double large = 10e-3, speed = 0.1;
@@ -88,4 +88,4 @@ TEST_P(SizeRatio, NeitherMakesGrainsStickNorGainEnergy) {
 INSTANTIATE_TEST_SUITE_P(All, SizeRatio, testing::Values("linear-frictional", "linear-rolling", "hertz-mindlin"));
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::size_ratio_tests

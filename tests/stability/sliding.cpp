@@ -8,7 +8,7 @@
 #include "support/mapped.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::sliding_tests {
 namespace {
 
 constexpr double g = 9.81, radius = 0.01, density = 2500, modulus = 1e8;
@@ -92,4 +92,4 @@ INSTANTIATE_TEST_SUITE_P(All, Sliding,
                          [](const auto& info) { return "case" + std::to_string(info.index); });
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::sliding_tests

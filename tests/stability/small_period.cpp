@@ -9,7 +9,7 @@
 #include "support/mapped.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::small_period_tests {
 namespace {
 
 constexpr double radius = 1e-3;
@@ -145,4 +145,4 @@ TEST(SmallPeriod, CellThatShrinksStopsBeforeItIsTooShort) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::small_period_tests

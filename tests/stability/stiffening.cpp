@@ -9,7 +9,7 @@
 #include "support/mapped.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::stiffening_tests {
 namespace {
 
 using std::numbers::pi;
@@ -203,4 +203,4 @@ TEST(Stiffening, PackingThatIsPressedPushesBackAsAtATenthOfTheStep) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::stiffening_tests

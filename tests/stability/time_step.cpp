@@ -11,7 +11,7 @@
 #include "support/mapped.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::time_step_tests {
 namespace {
 
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius, shear_ratio = 0.3;
@@ -228,4 +228,4 @@ TEST(TimeStep, AtTheDefaultSafetyNothingGrows) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::time_step_tests

@@ -9,7 +9,7 @@
 #include "support/mapped.hpp"
 #include "support/scene.hpp"
 
-namespace grit::test {
+namespace grit::test::tunnelling_tests {
 namespace {
 
 constexpr double radius = 1e-3, dt = 1e-6;
@@ -86,4 +86,4 @@ TEST(Tunnelling, IsStoppedByTheGuardFortyTimesEarlier) {
 }
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::tunnelling_tests

@@ -40,7 +40,7 @@ std::vector<std::string> lacks(const std::vector<std::string>& these, const std:
 }
 
 /// What tells a description from a study's scene.
-std::string differences(const ChartedStudy& study, const std::vector<std::string>& parts) {
+std::string unlike_parts(const ChartedStudy& study, const std::vector<std::string>& parts) {
   std::vector<std::string> all;
   for (const auto& part : lacks(parts, study.parts)) all.push_back("here is no \"" + part + '"');
   for (const auto& part : lacks(study.parts, parts)) all.push_back("there is no \"" + part + '"');
@@ -56,7 +56,7 @@ std::string nearest_scene(const std::vector<ChartedStudy>& studies, const std::v
   for (const ChartedStudy& one : studies)
     if (one.advice && !one.parts.empty() && (nearest == nullptr || apart(one) < apart(*nearest))) nearest = &one;
   if (nearest == nullptr) return "";
-  return fmt::format(" (the nearest is of \"{}\": {})", nearest->title, differences(*nearest, parts));
+  return fmt::format(" (the nearest is of \"{}\": {})", nearest->title, unlike_parts(*nearest, parts));
 }
 
 std::string kind_of(const std::string& scenario) {
@@ -74,9 +74,9 @@ std::string relation(const ChartedStudy& study, const std::string& file, const s
                     study.file.string(), kind_of(study.scenario), file, kind_of(scenario),
                     study.scenario != scenario ? ""
                     : study.parts.empty() ? ": it does not say what its scene is made of, which 'grit chart' now does"
-                                          : " (" + differences(study, parts) + ')'));
+                                          : " (" + unlike_parts(study, parts) + ')'));
   return fmt::format("whose scene is of the same scenario{}",
-                     study.parts.empty() ? "" : ", but not of the same parts: " + differences(study, parts));
+                     study.parts.empty() ? "" : ", but not of the same parts: " + unlike_parts(study, parts));
 }
 
 /// The studies that came with grit for scenes like this. Throws UsageError if there is none.

@@ -27,7 +27,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using asio::ip::tcp;
 using boost::system::error_code;
-using Clock = std::chrono::steady_clock;
+using Steady = std::chrono::steady_clock;
 using Response = http::response<http::string_body>;
 using namespace std::chrono_literals;
 
@@ -106,15 +106,15 @@ class PageServer {
     asio::steady_timer timer(io_);
     for (;;) {
       const std::clock_t began = std::clock();  // of the processor: to wait for one is no work
-      const auto now = Clock::now();
+      const auto now = Steady::now();
       std::erase_if(readers_, [now](const auto& reader) { return now - reader.second > reader_gone_after; });
-      std::erase_if(opened_, [now](Clock::time_point then) { return now - then > asks_within; });
+      std::erase_if(opened_, [now](Steady::time_point then) { return now - then > asks_within; });
       if (!readers_.empty() && !ended_) {
         page_.refresh();
         news_.cancel();
       }
       const std::chrono::duration<double> worked(static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
-      timer.expires_after(std::max<Clock::duration>(1s, std::chrono::duration_cast<Clock::duration>(10 * worked)));
+      timer.expires_after(std::max<Steady::duration>(1s, std::chrono::duration_cast<Steady::duration>(10 * worked)));
       co_await timer.async_wait(asio::use_awaitable);
     }
   }
@@ -173,7 +173,7 @@ class PageServer {
     }
     if (target == "/") {
       page_.refresh();
-      if (opened_.size() < most_sessions) opened_.push_back(Clock::now());
+      if (opened_.size() < most_sessions) opened_.push_back(Steady::now());
       co_return say(http::status::ok, html, page_.html());
     }
     if (!target.starts_with("/new?")) co_return say(http::status::not_found, plain, "there is nothing here but /\n");
@@ -190,16 +190,16 @@ class PageServer {
   /// Waits for something that the reader does not know.
   asio::awaitable<Description> news_for(std::size_t since, const std::string reader) {
     if (!opened_.empty() && !readers_.contains(reader)) opened_.erase(opened_.begin());
-    if (readers_.size() < most_sessions) readers_[reader] = Clock::now();
+    if (readers_.size() < most_sessions) readers_[reader] = Steady::now();
     const std::string progress = progress_;
-    const auto until = Clock::now() + answer_within;
-    while (page_.since() == since && progress_ == progress && !ended_ && Clock::now() < until) {
+    const auto until = Steady::now() + answer_within;
+    while (page_.since() == since && progress_ == progress && !ended_ && Steady::now() < until) {
       error_code woken;
       co_await news_.async_wait(into(woken));
     }
     Description news = page_.news(since);
     news["progress"] = progress_, news["ended"] = ended_;
-    if (const auto known = readers_.find(reader); known != readers_.end()) known->second = Clock::now();
+    if (const auto known = readers_.find(reader); known != readers_.end()) known->second = Steady::now();
     co_return news;
   }
 
@@ -207,9 +207,9 @@ class PageServer {
   tcp::acceptor acceptor_;
   asio::local::stream_protocol::socket control_;
   LivePage& page_;
-  asio::steady_timer news_{io_, Clock::time_point::max()};  ///< cancelled to wake those who wait
-  std::map<std::string, Clock::time_point> readers_;        ///< pages that are open, and when they asked last
-  std::vector<Clock::time_point> opened_;                   ///< when pages were sent that have not asked yet
+  asio::steady_timer news_{io_, Steady::time_point::max()};  ///< cancelled to wake those who wait
+  std::map<std::string, Steady::time_point> readers_;        ///< pages that are open, and when they asked last
+  std::vector<Steady::time_point> opened_;                   ///< when pages were sent that have not asked yet
   std::string progress_;
   bool ended_ = false;
   std::size_t sessions_ = 0;

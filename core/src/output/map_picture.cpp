@@ -19,8 +19,8 @@
 namespace grit {
 namespace {
 
-constexpr double widest = Heading::widest - 2 * Heading::margin, axis_wide = 58, axis_high = 50, colour_bar = 92,
-                 between = 20, tallest = 480,
+constexpr double inner_width = Heading::widest - 2 * Heading::margin, axis_wide = 58, axis_high = 50, colour_bar = 92,
+                 panel_gap = 20, tallest = 480,
                  label_letter = 8.4;                 // px
 constexpr int few = 4;                               // of panels that stand below each other where they are wide
 constexpr int most_columns = 3, large_enough = 200;  // of panels; px of the longer side
@@ -28,7 +28,7 @@ constexpr double share_shown = 0.98;  // of the cells, in the middle: the rest i
 constexpr double gap_closed = 0.75;   // of a cell: what is wider between two is a place without cells
 constexpr double wall_reach = 0.2;    // of the longer side of the cells' box
 constexpr double wall_room = 0.02;    // of the longer side of the plot, about walls: none lies on the frame
-constexpr const char* style =
+constexpr const char* sheet =
     ".label{font-size:14px;font-weight:600;fill:#222}.axis{font-size:13px;fill:#222}.m{text-anchor:middle}\n"
     ".e{text-anchor:end}.small{font-size:11px;fill:#666}.frame{fill:none;stroke:#8a8a86;stroke-width:1}\n"
     ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.cells rect{shape-rendering:crispEdges}\n";
@@ -66,7 +66,7 @@ struct Plot {
   double down(double y) const { return (high_y - y) * scale; }
 };
 
-struct Range {
+struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double value) { low = std::min(low, value), high = std::max(high, value); }
   /// Never so small that places within it have no digits left [m].
@@ -88,19 +88,19 @@ std::vector<MapCell> near_cells(const std::vector<MapCell>& cells) {
 }
 
 /// Of so many columns [px].
-double room_of_a_panel(int columns) { return (widest - between * (columns - 1)) / columns; }
+double room_of_a_panel(int columns) { return (inner_width - panel_gap * (columns - 1)) / columns; }
 
 /// In so many columns, of which each has room for axes and the scale of colours.
 Plot plot_of(const MapPicture& picture, int columns) {
-  Range x, y;
+  Extent x, y;
   for (const MapCell& cell : picture.cells)
     if (std::isfinite(cell.x + cell.y + cell.wide + cell.high))
       for (const double side : {-0.5, 0.5}) x.add(cell.x + side * cell.wide), y.add(cell.y + side * cell.high);
   if (!std::isfinite(x.low)) x = y = {0, 1};
   const double reach = wall_reach * std::max(x.span(), y.span());
-  const Range cells_x = x, cells_y = y;
+  const Extent cells_x = x, cells_y = y;
   bool walls = false;
-  const auto near = [&](double a, double b, const Range& range) {
+  const auto near = [&](double a, double b, const Extent& range) {
     return std::max(a, b) > range.low - reach && std::min(a, b) < range.high + reach;
   };
   for (const Segment& wall : picture.walls) {
@@ -296,20 +296,20 @@ std::string draw(const MapPicture& whole) {
     if (const Plot smaller = plot_of(picture, more); std::max(smaller.wide, smaller.high) >= large_enough &&
                                                      panel_wide(smaller) <= room_of_a_panel(more) + 1)  // whole pixels
       plot = smaller, columns = more;
-  const Heading heading(picture.title, picture.facts, columns * (panel_wide(plot) + between) - between);
+  const Heading heading(picture.title, picture.facts, columns * (panel_wide(plot) + panel_gap) - panel_gap);
   const double first = std::round(Heading::margin + axis_wide +
-                                  0.5 * (heading.inner() + between - columns * (panel_wide(plot) + between)));
+                                  0.5 * (heading.inner() + panel_gap - columns * (panel_wide(plot) + panel_gap)));
   const double panel_high = std::max<double>(plot.high, 150) + axis_high + 44;
   const double bottom = heading.bottom() + panel_high * ((count + columns - 1) / columns);
   const double span_x = plot.wide / plot.scale, span_y = plot.high / plot.scale;
   const std::vector<Tile> tiles = tiles_of(cells_by_pixel(picture.cells, plot), plot);
 
-  Svg svg(heading.width(), bottom, picture.title, std::string(Heading::style) + style);
+  Svg svg(heading.width(), bottom, picture.title, std::string(Heading::style) + sheet);
   svg.rectangle({0, 0}, heading.width(), bottom, "fill=\"#fff\"");
   heading.draw(svg);
   for (std::size_t panel = 0; panel < panels.size(); ++panel) {
     const int row = static_cast<int>(panel) / columns, column = static_cast<int>(panel) % columns;
-    const double left = first + std::round(column * (panel_wide(plot) + between)),
+    const double left = first + std::round(column * (panel_wide(plot) + panel_gap)),
                  top = std::round(heading.bottom() + 22 + panel_high * row);
     const auto& [colours, unit, title] = panels[panel];
     svg.text({left, top - 12}, title, "class=\"label\"");

@@ -94,7 +94,7 @@ bool has_choice(const Condition& condition) {
   return all && std::ranges::any_of(all->of, [](const auto& one) { return has_choice(*one); });
 }
 
-struct Progress {
+struct ShareReached {
   const Simulation& simulation;
   const StageStart& start;
 
@@ -173,7 +173,7 @@ std::optional<double> time_without_a_step(const Condition& condition, const Simu
 }
 
 std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  const auto raw = std::visit(Progress{simulation, start}, condition.is.value());
+  const auto raw = std::visit(ShareReached{simulation, start}, condition.is.value());
   return raw ? std::optional(std::clamp(*raw, 0.0, 1.0)) : std::nullopt;
 }
 
