@@ -50,11 +50,9 @@ It looks now and then, not at every step, and trips at gains alone: a loss of an
 its account anew.
 
 - **Without an `energy` probe** it holds what is stored against the work of walls, so that dissipation hides as much as it takes. It does not
-  look where bodies grow or gravity acts along a periodic axis.
+  look where bodies grow, a cell deforms, bodies are held, engines push them, or gravity acts along a periodic axis.
 - **With one**, from its first sample on, it takes the error of the ledger's closure, and its limit is a share of the largest energy and of what was
-  dissipated. Growth and gravity along a periodic axis are reckoned with.
-- It does not look at all while a cell deforms, bodies are held, or engines push them, with a probe or without; after that, a
-  ledger that had begun before stays open, and the guard goes on without it.
+  dissipated. All of these are reckoned with.
 
 ## Limits found by halving
 Where limits are looked for by halving, what is found is one limit. Two Hertz grains that begin inside each other have several, since

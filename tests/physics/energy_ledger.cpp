@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 
+#include "grit/plugin.hpp"
+#include "support/clump.hpp"
 #include "support/packing.hpp"
 #include "support/verified.hpp"
 
@@ -249,35 +252,331 @@ TEST(EnergyLedger, OfAPackingClosesBetterWithShorterSteps) {
   EXPECT_LE(fine, 0.5 * coarse);
 }
 
-TEST(EnergyLedger, KnowsWhatItDoesNotKnow) {
-  Description d = grains("linear-rolling", {}, {{Vec3::Constant(3e-3), radius}});
-  d["domain"] = {
-      {"low", {0, 0, 0}}, {"high", {6e-3, 6e-3, 6e-3}}, {"periodic", {true, true, true}}, {"strain_rate", {1, 0, 0}}};
-  d["time_step"]["value"] = 1e-6;
-  EXPECT_TRUE(std::isnan(Kept(d).world().energies().closure_error));
-  d["domain"]["strain_rate"] = {0, 0, 0};
-  EXPECT_EQ(Kept(d).world().energies().closure_error, 0);
-  d["engines"]["hold"] = {{"type", "hold"}};
-  EXPECT_TRUE(std::isnan(Kept(d).world().energies().closure_error));
+Description periodic(const std::string& law, const Description& material, const std::vector<Grain>& list,
+                     const Vec3& size, const Vec3& strain_rate) {
+  Description d = grains(law, material, list);
+  d["domain"] = {{"low", {0, 0, 0}},
+                 {"high", vector(size)},
+                 {"periodic", {true, true, true}},
+                 {"strain_rate", vector(strain_rate)}};
+  return d;
 }
 
-TEST(EnergyLedger, DoesNotForgetWhatItDoesNotKnow) {
-  Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius, {1, 0, 0}}});
-  d["engines"]["hold"] = {{"type", "hold"}};
-  d["time_step"]["value"] = 1e-6;
+double turnover(const EnergyLedger& now) {
+  return std::abs(now.walls) + std::abs(now.cell) + std::abs(now.engines) + now.dissipated() + now.elastic();
+}
+double closure_share(const EnergyLedger& now) { return std::abs(now.closure_error) / turnover(now); }
+
+// All spheres go with the mean flow, so that each contact is as deep as the cell says.
+TEST(EnergyLedger, ACellsWorkIsStoredInALattice) {
+  constexpr int side = 3;
+  const double spacing = 1.99 * radius, modulus = 1e8;
+  std::vector<Grain> list;
+  for (int x = 0; x < side; ++x)
+    for (int y = 0; y < side; ++y)
+      for (int z = 0; z < side; ++z) list.push_back({spacing * Vec3(x + 0.25, y + 0.25, z + 0.25), radius});
+  Kept lattice(
+      periodic("linear-rolling", {{"contact_modulus", modulus}}, list, Vec3::Constant(side * spacing), {-40, 0, 10}));
+  const double kinetic = lattice.world().energies().kinetic;
+  lattice.step(2000);
+  const EnergyLedger now = lattice.world().energies();
+  const Cell& cell = lattice.world().cell();
+  double stored = 0;
+  const auto spring = [&](double apart) { return 0.5 * modulus * radius * std::pow(2 * radius - apart, 2); };
+  for (int k = 0; k < 3; ++k)
+    stored += side * side * side * (spring((cell.high[k] - cell.low[k]) / side) - spring(spacing));
+  ASSERT_GT(stored, 500 * kinetic);
+  verify("work of a cell that squeezes a lattice, less its motion's, over what its springs store",
+         (now.cell - (now.kinetic - kinetic)) / stored, 1, 1e-9);
+  EXPECT_LE(std::abs(now.closure_error), 1e-9 * stored);
+}
+
+// Apart from each other, they go with the mean flow, and on at the other side with what flows there.
+TEST(EnergyLedger, ACellsWorkMovesWhatGoesThroughIt) {
+  for (const bool clumped : {false, true}) {
+    SCOPED_TRACE(clumped);
+    Description d = periodic("linear-rolling", {}, {{Vec3::Constant(0.012), radius, {3, -2, 1}, {20, 30, 10}}},
+                             Vec3::Constant(0.02), {-20, 30, 10});
+    if (clumped) make_clumps(d, boomerang());
+    d["time_step"]["value"] = 1e-6;
+    Kept one(d);
+    const double before = one.world().energies().kinetic;
+    for (int round = 0; round < 20; ++round) one.world().search_next(), one.step(1000);
+    const EnergyLedger now = one.world().energies();
+    EXPECT_GT(std::abs(now.kinetic - before), 0.01 * before);
+    EXPECT_LE(std::abs(now.closure_error), 2e-8 * now.kinetic);
+  }
+}
+
+/// A packing in a cell that is pressed along two axes and stretched along the third.
+EnergyLedger strained_packing(double share_of_critical, bool clumped, double friction, double damping = 0) {
+  Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", friction}},
+                           jumble({6, 6, 6}, 1e-3, 0.005, 5), Vec3::Constant(6e-3), {-40, -30, 20});
+  if (friction == 0) d["materials"]["grain"]["rolling_limit"] = 0;
+  if (clumped) make_clumps(d, boomerang());
+  if (damping > 0) d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", damping}};
+  d["time_step"]["safety"] = share_of_critical;
+  d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
+  Kept cell(d);
+  while (cell.world().time() < 1.5e-3) cell.step();
+  return cell.world().energies();
+}
+
+TEST(EnergyLedger, OfAStrainedPackingClosesBetterWithShorterSteps) {
+  for (const bool clumped : {false, true}) {
+    const std::string of = clumped ? "clumps" : "spheres";
+    const double smooth = closure_share(strained_packing(0.05, clumped, 0, 0.2));
+    verify("closure error of smooth " + of + " in a cell that strains, over all that is turned over", smooth, 0, 1e-3,
+           1.0);
+    const EnergyLedger rough = strained_packing(0.05, clumped, 0.3);
+    EXPECT_GT(std::abs(rough.cell), 0.3 * turnover(rough));
+    EXPECT_GT(rough.friction, 0.1 * turnover(rough));
+    // What is left is the law's, of the order of overlap over radius.
+    verify("closure error of rough " + of + " in a cell that strains, over all that is turned over",
+           closure_share(rough), 0, 5e-3, 1.0);
+    if (clumped) continue;
+    verify("closure error of smooth spheres in a cell that strains, over that at half of the step",
+           closure_share(strained_packing(0.2, false, 0, 0.2)) / closure_share(strained_packing(0.1, false, 0, 0.2)), 4,
+           0.1);
+  }
+}
+
+// Along a slow strain, bodies are in balance.
+TEST(EnergyLedger, ACellsWorkIsThatOfItsStresses) {
+  Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},
+                           jumble({6, 6, 6}, 1e-3, 0, 5), Vec3::Constant(6e-3), {-8, -6, 4});
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
+  d["time_step"]["safety"] = 0.4;
+  d["guards"]["overlap"] = 0.9;
+  Kept cell(d);
+  const auto power = [&] {
+    const Cell& now = cell.world().cell();
+    const Mat3 stress = mean_stress(cell.world(), {now.low, now.high});
+    return -(now.high - now.low).prod() * now.strain_rate.dot(stress.diagonal());
+  };
+  while (cell.world().time() < 1e-3) cell.step();
+  const double before = cell.world().energies().cell;
+  double work = 0;
+  for (double last = power(); cell.world().time() < 6e-3;) {
+    const double from = cell.world().time();
+    cell.step();
+    const double now = power();
+    work += 0.5 * (last + now) * (cell.world().time() - from), last = now;
+  }
+  verify("work of a cell that strains slowly over that of its stresses", (cell.world().energies().cell - before) / work,
+         1, 0.01);
+}
+
+TEST(EnergyLedger, AChangeOfTheStrainRateIsPutInBySettings) {
+  for (const bool clumped : {false, true}) {
+    std::vector<Grain> apart = jumble({6, 6, 6}, 1e-3, 0.05, 5);
+    for (Grain& grain : apart) grain.radius *= 0.85;
+    Description d = periodic("linear-frictional", {{"contact_modulus", 1e7}, {"friction_angle", 0}}, apart,
+                             Vec3::Constant(6e-3), Vec3::Zero());
+    if (clumped) make_clumps(d, boomerang());
+    d["time_step"]["safety"] = 0.1;
+    d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
+    const auto stage = [&](const std::string& name, const Vec3& rate) {
+      d["stages"].push_back({{"name", name},
+                             {"change", {{"domain", {{"strain_rate", vector(rate)}}}}},
+                             {"until", {{"type", "steps"}, {"value", 1}}},
+                             {"limit", 1}});
+    };
+    stage("fast", {-40, 30, 0}), stage("slow", {4, 0, -3});
+    Kept cell(d);
+    for (const int next : {1, 2}) {
+      cell.step(300);
+      const EnergyLedger before = cell.world().energies();
+      cell.world().begin_stage(next == 1 ? "fast" : "slow", *cell.scene().stages.at(next).start);
+      cell.world().find_forces();
+      const EnergyLedger now = cell.world().energies();
+      const double scale = now.kinetic + turnover(now);
+      EXPECT_NEAR(now.closure_error, before.closure_error, 1e-6 * scale);
+      EXPECT_NEAR(now.kinetic - before.kinetic, now.settings - before.settings, 1e-3 * scale);
+      EXPECT_GT(std::abs(now.settings - before.settings), 0.05 * scale);
+    }
+    cell.step(300);
+    const EnergyLedger now = cell.world().energies();
+    EXPECT_LE(std::abs(now.closure_error), 2e-3 * (now.kinetic + turnover(now)));
+  }
+}
+
+Description hold(bool translation, bool rotation) {
+  return {{"type", "hold"}, {"translation", translation}, {"rotation", rotation}};
+}
+
+TEST(EnergyLedger, WhatHoldsGrainsPressesTheirSpring) {
+  const double speed = 0.1, modulus = 1e8;
+  Description d = grains("linear-rolling", {{"contact_modulus", modulus}},
+                         {{Vec3::Zero(), radius, {speed, 0, 0}}, {{2 * radius, 0, 0}, radius, {-speed, 0, 0}}});
+  d["engines"]["hold"] = hold(true, true);
+  Kept pair(d);
+  pair.step(1000);
+  const EnergyLedger now = pair.world().energies();
+  const double overlap = 2 * speed * pair.world().time(), stored = 0.5 * modulus * radius * overlap * overlap;
+  EXPECT_EQ(now.kinetic, 2 * kinetic_at(speed)) << "they do not feel the spring";
+  verify("work of what holds two grains at their speeds over what their spring stores", now.engines / stored, 1, 1e-9);
+  EXPECT_LE(std::abs(now.closure_error), 1e-9 * stored);
+}
+
+TEST(EnergyLedger, WhatHoldsAGrainLiftsIt) {
+  for (const bool clumped : {false, true}) {
+    Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius, {0.5, 0, 2}}});
+    if (clumped) make_clumps(d, boomerang());
+    d["engines"]["gravity"] = {{"type", "gravity"}};
+    d["engines"]["hold"] = hold(true, false);
+    d["time_step"]["value"] = fall_step;
+    Kept lift(d);
+    lift.step(1000);
+    const EnergyLedger now = lift.world().energies();
+    const double height = 2 * lift.world().time();
+    EXPECT_NEAR(now.engines, lift.mass(0) * 9.81 * height, 1e-10 * now.engines);
+    EXPECT_LE(std::abs(now.closure_error), 1e-10 * now.engines);
+  }
+}
+
+TEST(EnergyLedger, WhatHoldsASpinRubs) {
+  const double overlap = 1e-5 * radius, spin = 50, angle = 0.2, modulus = 1e8, shear = 0.3;
+  Description d =
+      grains("linear-frictional",
+             {{"contact_modulus", modulus}, {"friction_angle", angle}, {"shear_to_normal_stiffness", shear}},
+             {{{0, 0, radius - overlap}, radius, Vec3::Zero(), {0, spin, 0}}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["hold"] = hold(true, true);
+  Kept rub(d);
+  rub.step(3000);
+  const EnergyLedger now = rub.world().energies();
+  const double stiffness = modulus * radius, limit = std::tan(angle) * stiffness * overlap;
+  const double way = spin * radius * rub.world().time(), loaded = limit / (shear * stiffness);
+  ASSERT_GT(way, 10 * loaded);
+  verify("work of what holds a spin against friction", now.engines, limit * (way - 0.5 * loaded), 1e-3);
+  EXPECT_GT(now.friction, 0.9 * now.engines);
+  verify("closure error over the work of what holds a spin against friction", now.closure_error / now.engines, 0, 1e-4,
+         1.0);
+}
+
+// As it is held, it turns on while its momentum stays, and presses and rubs with one sphere after the other.
+TEST(EnergyLedger, WhatHoldsAClumpPressesAndRubs) {
+  for (const double friction : {0.0, 0.2}) {
+    Description d = grains("linear-frictional", {{"contact_modulus", 1e7}, {"friction_angle", friction}},
+                           {{{0, 0, 0.66 * radius}, radius, {0.3, 0, -0.01}, {20, 30, 40}}});
+    make_clumps(d, boomerang());
+    d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+    d["engines"]["hold"] = hold(true, true);
+    d["time_step"]["value"] = 1e-6;
+    d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
+    Kept clump(d);
+    clump.step(4000);
+    const EnergyLedger now = clump.world().energies();
+    EXPECT_GT(now.elastic(), 0.1 * now.engines);
+    if (friction > 0) EXPECT_GT(now.friction, 0.1 * now.engines);
+    verify(std::string("closure error over the work of what holds a clump on a ") +
+               (friction > 0 ? "rough" : "smooth") + " floor",
+           now.closure_error / now.engines, 0, friction > 0 ? 5e-3 : 1e-4, 1.0);
+  }
+}
+
+TEST(EnergyLedger, IsWholeAfterBodiesAreLetGo) {
+  Description d = grains("linear-rolling", {},
+                         {{Vec3::Zero(), radius, {0.1, 0, 0}}, {{1.995 * radius, 0, 0}, radius, {-0.1, 0.05, 0}}});
+  d["engines"]["hold"] = hold(true, true);
   d["stages"].push_back({{"name", "free"},
                          {"change", {{"engines", {{"hold", nullptr}}}}},
                          {"until", {{"type", "steps"}, {"value", 1}}},
                          {"limit", 1}});
-  Trial held(d, 1, BodyState::energy), freed(d, 1, BodyState::energy);
-  held.world().energies();
-  for (Trial* trial : {&held, &freed}) {
-    trial->step(3);
-    trial->world().begin_stage("free", *trial->scene().stages.at(1).start);
-    trial->world().find_forces();
+  Kept pair(d);
+  pair.step(100);
+  const EnergyLedger held = pair.world().energies();
+  pair.world().begin_stage("free", *pair.scene().stages.at(1).start);
+  pair.world().find_forces();
+  pair.step(3000);
+  const EnergyLedger now = pair.world().energies();
+  EXPECT_GT(held.engines, 0.1 * held.elastic());
+  EXPECT_NEAR(now.engines, held.engines, 0.05 * held.engines) << "half a step of the last hundred";
+  EXPECT_LE(closure_share(now), 1e-3);
+}
+
+TEST(EnergyLedger, WhatHoldsBodiesAtRestDoesNothing) {
+  Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius}, {{1.99 * radius, 0, 0}, radius}});
+  d["engines"]["hold"] = hold(true, true);
+  Kept pair(d);
+  pair.step(100);
+  const EnergyLedger now = pair.world().energies();
+  EXPECT_GT(now.elastic(), 0);
+  EXPECT_EQ(now.engines, 0);
+  EXPECT_EQ(now.kinetic, 0);
+  EXPECT_EQ(now.closure_error, 0);
+}
+
+/// Pushes bodies by what a test says.
+struct Push final : Engine {
+  using Act = std::function<void(const World&, std::span<Row> force, std::span<Row> moment)>;
+  static inline Act act;
+  void declare(Parameters&) override {}
+  Phase phase() const override { return Phase::forces; }
+  void forces(const World& world, std::span<Row> force, std::span<Row> moment) const override {
+    act(world, force, moment);
   }
-  EXPECT_TRUE(std::isnan(held.world().energies().closure_error)) << "it began before the grain was let go";
-  EXPECT_EQ(freed.world().energies().closure_error, 0);
+};
+void pushed(Description& d, Push::Act act) {
+  static const PluginInfo info = [] {
+    PluginInfo push;
+    push.kind = "engine", push.name = "push", push.version = "1.0.0", push.doc = "for tests";
+    push.make_engine = []() -> Engine* { return new Push; };
+    return push;
+  }();
+  installed().add(info);
+  Push::act = std::move(act);
+  d["engines"]["push"] = {{"type", "push"}};
+}
+
+TEST(EnergyLedger, AConstantForceDoesItsWorkAlongTheWay) {
+  const Vec3 push(2e-3, -1e-3, 3e-3);
+  Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius, {0, 0.1, 0}}});
+  d["time_step"]["value"] = fall_step;
+  pushed(d, [=](const World&, std::span<Row> force, std::span<Row>) {
+    for (Row& one : force) one += Row{push.x(), push.y(), push.z(), 0};
+  });
+  Kept way(d);
+  way.step(1000);
+  const EnergyLedger now = way.world().energies();
+  verify("work of an engine's constant force over force times way", now.engines / push.dot(way.position(0)), 1, 1e-12);
+  EXPECT_LE(std::abs(now.closure_error), 1e-12 * now.engines);
+}
+
+/// A body in an engine's spring that is turned on and off: closure over the largest work.
+double closure_in_a_spring(double dt, bool clumped, const Vec3& strain_rate = Vec3::Zero()) {
+  const double stiffness = 1, frequency = 300;
+  Description d = periodic("linear-rolling", {}, {{Vec3(0.0196, 0.01, 0.01), radius, {0.5, 0, 1}, {100, 200, -300}}},
+                           Vec3::Constant(0.02), strain_rate);
+  if (clumped) make_clumps(d, boomerang());
+  d["time_step"]["value"] = dt;
+  d["guards"]["travel"] = 0.2;
+  pushed(d, [=](const World& world, std::span<Row> force, std::span<Row> moment) {
+    const double now = stiffness * (1 + 0.5 * std::sin(frequency * world.time()));
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      if (world.ids()[i] != 0) continue;  // of a clump, one sphere alone
+      const Vec3 pull = now * (Vec3::Constant(0.01) - xyz(world.positions()[i]));
+      force[i] = {pull.x(), pull.y(), pull.z(), 0}, moment[i] = {1e-9, -2e-9, 3e-9, 0};
+    }
+  });
+  Kept swing(d);
+  double largest = 0;
+  while (swing.world().time() < 0.02) swing.step(), largest = std::max(largest, swing.world().energies().engines);
+  return std::abs(swing.world().energies().closure_error) / largest;
+}
+
+TEST(EnergyLedger, ClosesAroundAnEnginesSpring) {
+  for (const bool clumped : {false, true})
+    for (const bool strained : {false, true}) {
+      const Vec3 rate = strained ? Vec3(-20, 15, 10) : Vec3::Zero();
+      const double coarse = closure_in_a_spring(2e-6, clumped, rate), fine = closure_in_a_spring(1e-6, clumped, rate);
+      const std::string what = std::string(clumped ? "a clump" : "a sphere") + " in an engine's spring" +
+                               (strained ? ", in a cell that strains" : "");
+      verify("closure error of " + what + ", over the engine's work", fine, 0, 1e-6, 1.0);
+      if (strained) EXPECT_LE(fine, 0.4 * coarse);
+      else verify("closure error of " + what + ", over that at half of the step", coarse / fine, 4, 0.05);
+    }
 }
 
 }  // namespace

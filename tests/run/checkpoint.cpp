@@ -37,6 +37,7 @@ Description cell() {
                  {"strain_rate", {-20, -20, 15}}};
   d["stages"] = {stage("fast", steps(150)), stage("slow", steps(160))};
   report(d, 11);
+  d["probes"]["energy"] = {{"type", "energy"}, {"every_steps", 11}};
   return d;
 }
 

@@ -246,25 +246,25 @@ TEST(Guards, EnergyFromNowhereWhereItIsPulledAlongAPeriodicAxis) {
   EXPECT_EQ(complaint_by_ledger(d, 3000), "");
 }
 
-TEST(Guards, EnergyFromNowhereAfterTheLedgerGaveUp) {
-  // Held at first, so that the ledger never closes; what is stored tells.
-  Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
-                              {{{0, 0, 1.01e-3}, 1e-3}});
-  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
-  d["engines"] = {{"gravity", {{"type", "gravity"}}}, {"hold", {{"type", "hold"}}}};
-  const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
-  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
-  d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
-  d["stages"].push_back({{"name", "free"},
-                         {"change", {{"engines", {{"hold", nullptr}}}}},
-                         {"until", {{"type", "steps"}, {"value", 1}}},
-                         {"limit", 1}});
-  Trial t(d, 1, BodyState::energy);
-  t.world().energies();
-  t.step(3);
-  t.world().begin_stage("free", *t.scene().stages.at(1).start);
-  t.world().find_forces();
-  EXPECT_THROW(t.step(3000), NumericsError);
+TEST(Guards, EnergyFromNowhereWhileACellDoesWorkOrBodiesAreHeld) {
+  // ω dt = 2.2, as above.
+  for (const bool held : {false, true}) {
+    Description d =
+        description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
+                    {{{0.05, 0, 1.01e-3}, 1e-3}});
+    d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+    d["domain"] = {{"low", {0, -1, -1}}, {"high", {0.1, 1, 1e3}}, {"periodic", {true, false, false}}};
+    d["engines"]["gravity"] = {{"type", "gravity"}};
+    if (held) d["engines"]["hold"] = {{"type", "hold"}};
+    else d["domain"]["strain_rate"] = {0.1, 0, 0};
+    const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
+    d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
+    d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
+    EXPECT_EQ(complaint(d, 3000), "") << "nobody asked for the ledger";
+    EXPECT_THAT(complaint_by_ledger(d, 3000), HasSubstr("energy came from nowhere"));
+    d["time_step"]["value"] = 0.1 * dt;
+    EXPECT_EQ(complaint_by_ledger(d, 3000), "");
+  }
 }
 
 TEST(Guards, NotANumber) {

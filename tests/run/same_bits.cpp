@@ -75,8 +75,9 @@ void expect_ledger_changes_nothing(const Description& d) {
   EXPECT_TRUE(same_bits(without.world(), with.world()));
   const EnergyLedger a = with.world().energies(), b = other.world().energies();
   EXPECT_GT(a.friction, 0);
-  for (const auto entry : {&EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::viscosity,
-                           &EnergyLedger::local_damping, &EnergyLedger::gravitational, &EnergyLedger::walls})
+  for (const auto entry :
+       {&EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::viscosity, &EnergyLedger::local_damping,
+        &EnergyLedger::gravitational, &EnergyLedger::walls, &EnergyLedger::cell, &EnergyLedger::engines})
     EXPECT_EQ(a.*entry, b.*entry);
 }
 
@@ -84,6 +85,9 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
   expect_ledger_changes_nothing(boxed());
   expect_ledger_changes_nothing(periodic());
   expect_ledger_changes_nothing(stiffening());
+  Description held = periodic();
+  held["engines"]["hold"] = {{"type", "hold"}};
+  expect_ledger_changes_nothing(held);
 }
 
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }

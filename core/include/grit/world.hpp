@@ -116,15 +116,16 @@ struct Departure {
 
 /// Where the energy is, and what came in and went out since a component first asked [J].
 struct EnergyLedger {
-  double kinetic = 0;                                                  ///< translation and rotation
-  double elastic_normal = 0, elastic_shear = 0, elastic_rolling = 0;   ///< in contacts; rolling with twisting
-  double gravitational = 0;                                            ///< against the first instant
-  double walls = 0;                                                    ///< work done by walls
-  double settings = 0;                                                 ///< put in by changes of the description
+  double kinetic = 0;                                                 ///< translation and rotation
+  double elastic_normal = 0, elastic_shear = 0, elastic_rolling = 0;  ///< in contacts; rolling with twisting
+  double gravitational = 0;                                           ///< against the first instant
+  double walls = 0;                                                   ///< work done by walls
+  double cell = 0;                                                    ///< work done by the straining of a periodic cell
+  double engines = 0;                                                 ///< of added forces, and of what holds bodies
+  double settings = 0;                                                ///< put in by changes of the description
   double friction = 0, rolling = 0, viscosity = 0, local_damping = 0;  ///< dissipated
   /// What there is and was dissipated, less what there was and was put in: made by errors of the time step and of the
-  /// law. NaN where something takes part whose work is not kept: a deforming cell, engines that add forces, held
-  /// bodies.
+  /// law.
   double closure_error = 0;
 
   double elastic() const { return elastic_normal + elastic_shear + elastic_rolling; }

@@ -52,14 +52,23 @@ class ContactTable {
   /// What an evaluated instant's contacts do, one after the other: use(candidate, row).
   template <class Use>
   void each_touching(const Instant& at, Use use) const {
-    std::vector<ContactRow> rows;
-    for (std::size_t block = 0, last; block < touching_.size(); block = last) {
-      // Many blocks have none that touches, most of them side by side.
-      for (last = block; last < touching_.size() && last < block + blocks_at_once && touching_[last] != 0;) ++last;
-      if (last > block) evaluate_again(block, last, at, rows);
-      else ++last;
-      each_touching(block, last, [&](std::size_t c) { use(c, rows[c - block * block_size]); });
-    }
+    each_touching(
+        {0, 0, static_cast<std::uint32_t>(touching_.size())}, at,
+        [this](std::size_t block) { return touching_[block] != 0; }, use);
+  }
+  /// The same of those of one chunk that reach across a periodic boundary.
+  template <class Use>
+  void each_crossing(std::size_t chunk, const Instant& at, Use use) const {
+    if (image_.empty()) return;
+    const auto crosses = [this](std::size_t block) {
+      bool any = false;
+      each_touching(block, block + 1, [&](std::size_t c) { any = any || image_[c] != 0; });
+      return any;
+    };
+    for (const Blocks blocks : {chunks_[chunk].within, chunks_[chunk].across})
+      each_touching(blocks, at, crosses, [&](std::size_t c, const ContactRow& row) {
+        if (image_[c] != 0) use(c, row);
+      });
   }
   /// The same with what they remember: use(candidate, memory).
   template <class Use>
@@ -162,6 +171,21 @@ class ContactTable {
     for (std::size_t block = first_block; block < last_block; ++block)
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1)
         use(block * block_size + static_cast<std::size_t>(std::countr_zero(mask)));
+  }
+  /// Calls use(candidate, row) for those that touch in the blocks that are wanted.
+  template <class Wanted, class Use>
+  void each_touching(Blocks blocks, const Instant& at, Wanted wanted, Use use) const {
+    std::vector<ContactRow> rows;
+    for (std::size_t block = blocks.first, last; block < blocks.last; block = last) {
+      // Many blocks are not, most of them side by side.
+      for (last = block; last < blocks.last && last < block + blocks_at_once && wanted(last);) ++last;
+      if (last > block) {
+        evaluate_again(block, last, at, rows);
+        each_touching(block, last, [&](std::size_t c) { use(c, rows[c - block * block_size]); });
+      } else {
+        ++last;
+      }
+    }
   }
   PairBatch batch(Blocks blocks, const Instant& at, std::uint32_t last_body) const;
   void evaluate_again(std::size_t first_block, std::size_t last_block, const Instant& at,

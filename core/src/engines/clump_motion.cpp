@@ -123,21 +123,27 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
     fetch(bodies.clumps.clump[std::min(c + ahead, last - 1)], bodies, sum);
     Clump& clump = bodies.clumps.clump[c];
     const ClumpLoad load = load_of(clump, bodies, sum);
-    clump.velocity += (step.flowed * step.strain_rate).cwiseProduct(clump.velocity);
+    const Vec3 before = clump.velocity, carried = (step.flowed * step.strain_rate).cwiseProduct(before);
+    clump.velocity += carried;
     const Vec3 flow = step.strain_rate.cwiseProduct(clump.centre - step.centre);
     Vec3 push = step.kick * free.cwiseProduct(clump.inverse_mass * load.force + settings.gravity);
     Vec3 twist = step.kick * turns.cwiseProduct(load.moment);
     if (settings.local_damping > 0) {
       const Vec3 pushed = damped(push, clump.velocity - flow, settings.local_damping);
       const Vec3 twisted = damped(twist, clump.spin, settings.local_damping);
-      if (step.energies)
-        motion.damped += (push - pushed).dot(clump.velocity + 0.5 * pushed) / clump.inverse_mass +
+      if (step.energies) {
+        motion.damped += (push - pushed).dot(clump.velocity - flow + 0.5 * pushed) / clump.inverse_mass +
                          (twist - twisted).dot(clump.spin_of(clump.momentum + 0.5 * twisted));
+        motion.carried -= (push - pushed).dot(flow) / clump.inverse_mass;
+      }
       push = pushed, twist = twisted;
     }
     clump.velocity += push, clump.momentum += twist;
     clump.centre += step.drift * clump.velocity;
-    if (step.energies) motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
+    if (step.energies) {
+      motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
+      motion.carried += 0.5 * carried.dot(before + clump.velocity) / clump.inverse_mass;
+    }
     turn_freely(clump, step.drift);
     for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step);
   }

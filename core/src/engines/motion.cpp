@@ -28,7 +28,7 @@ double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] 
 
 /// What of the bodies' energies is kept. Constants for the compiler: it would divide by what may not be needed, for
 /// every body, and a division by body is what a ledger costs most.
-enum class Ledger { none, without_weight, with_weight };
+enum class Ledger { none, without_weight, with_weight, with_flow };
 
 /// Not inlined: all of them in one function would have their constants in memory.
 template <Ledger ledger, bool Clumps>
@@ -44,9 +44,9 @@ template <Ledger ledger, bool Clumps>
   const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
-  constexpr bool falls = ledger == Ledger::with_weight;
+  constexpr bool flows = ledger == Ledger::with_flow, falls = flows || ledger == Ledger::with_weight;
   const Quad weight = quad(settings.gravity);
-  Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{};
+  Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
   double fastest_carried = 0;
   // What is stored might be the arrays' own pointers for all that the compiler knows.
   Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
@@ -63,6 +63,7 @@ template <Ledger ledger, bool Clumps>
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
     const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
+    const Quad before = v;
     v += growth * v;
     const Quad flow = rate * (x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
@@ -71,7 +72,9 @@ template <Ledger ledger, bool Clumps>
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
       if constexpr (ledger != Ledger::none) {
-        damped_power += taken(falls ? force + weight * mass : force, push, v - flow) * (v + 0.5 * pushed);
+        const Quad less = taken(falls ? force + weight * mass : force, push, v - flow);
+        damped_power += less * (v - flow + 0.5 * pushed);
+        if constexpr (flows) flow_power -= less * flow;
         damped_turning += taken(moment, twist, w) * (w + 0.5 * twisted);
       }
       push = pushed, twist = twisted;
@@ -79,6 +82,7 @@ template <Ledger ledger, bool Clumps>
     v += push, w += twist;
     x += v * drift;
     if constexpr (falls) momentum += v * mass;
+    if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;
@@ -91,7 +95,8 @@ template <Ledger ledger, bool Clumps>
   const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
   return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
           damping * (product(damped_power, kick) + product(damped_turning, turn_kick)),
-          step.drift * product(momentum, quad(settings.gravity))};
+          step.drift * product(momentum, quad(settings.gravity)),
+          damping * product(flow_power, kick) + product(flow_work, Quad{1, 1, 1, 0})};
 }
 
 }  // namespace
@@ -113,6 +118,7 @@ Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const 
                                 : move<ledger, true>(chunk, bodies, sum, step);
   };
   if (!step.energies) return with.operator()<Ledger::none>();
+  if (step.flows()) return with.operator()<Ledger::with_flow>();
   return step.settings.gravity.isZero(0.0) ? with.operator()<Ledger::without_weight>()
                                            : with.operator()<Ledger::with_weight>();
 }

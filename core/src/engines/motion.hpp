@@ -20,6 +20,7 @@ struct MotionStep {
   Vec3 period_growth;  ///< m/s
   bool energies;       ///< whether Motion's are asked for
 
+  bool flows() const { return !strain_rate.isZero(0.0); }
   /// 1 along axes along, or about, which bodies are free to move, 0 along others.
   Vec3 free_translation() const;
   Vec3 free_rotation() const;
@@ -31,6 +32,7 @@ struct Motion {
   bool finite = true;        ///< no velocity is inf or NaN
   double damped = 0;         ///< what local damping took away [J]
   double fallen = 0;         ///< work of gravity [J]
+  double carried = 0;        ///< work of what has bodies go with the mean flow of a deforming cell [J]
 };
 
 /// Moves the bodies of one chunk under `sum`, by index; those of clumps are where these have moved them.

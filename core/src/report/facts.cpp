@@ -64,9 +64,7 @@ std::optional<Fact> closure_fact(const RunResults& run) {
   if (const auto closure = largest(run, "closure_share"))
     return Fact{"energy closure", fmt::format("{:.2g} %", 100 * std::abs(*closure)),
                 "of all energy turned over, in the last stage", std::abs(*closure) > 0.01};
-  if (has_channel(run, "closure_share"))
-    return Fact{"energy closure", "unknown",
-                "not told in the last stage, or something takes part whose work is not kept", false};
+  if (has_channel(run, "closure_share")) return Fact{"energy closure", "unknown", "not told in the last stage", false};
   if (!run.at("/description").is_object() || !has_ended_a_stage(run)) return std::nullopt;
   return Fact{"energy closure", "not kept",
               R"(--set '/probes/energy={"type": "energy", "every_steps": 1000}' keeps a ledger)", false};

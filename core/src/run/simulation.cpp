@@ -13,6 +13,7 @@
 #include "grit/error.hpp"
 #include "run/number.hpp"
 #include "run/stopwatch.hpp"
+#include "scene/kinetic_energy.hpp"
 #include "scene/make_bodies.hpp"
 
 namespace grit {
@@ -84,6 +85,11 @@ void Simulation::apply(const SceneDescription& scene) {
   take_settings(scene);
   if (flows_.begun) flows_.settings += elastic_energy().total() - elastic_before;
   growth_rate_ = growth_rate_of(stage_), grown_ = 0;
+  const auto moving = [this] {
+    net_step_ = clump_step_ = ~0ull;
+    return flows_.begun ? grit::kinetic_energy(*this, 0) : 0;
+  };
+  const double kinetic_before = moving();
   if (settings_.flat) flatten(*settings_.flat);
   // Bodies take part in the mean flow of a deforming cell from its first instant.
   const Vec3 change_of_rate = scene.domain.strain_rate - clock_.cell.strain_rate;
@@ -107,9 +113,9 @@ void Simulation::apply(const SceneDescription& scene) {
     for (int k = 0; k < 3; ++k)
       if (clock_.cell.periodic[k]) clock_.period_before[k] -= clock_.last_time_step * change_of_rate[k] * period[k];
   }
+  if (flows_.begun) flows_.settings += moving() - kinetic_before;
   tell_walls_of_specimen();
   energy_ = {};
-  flows_.complete = flows_.complete && all_work_is_kept();
   time_step_now_ = true;
   soft_until_ = overlap_of_soft_springs();
   net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
@@ -378,12 +384,15 @@ void Simulation::take_loads() {
 void Simulation::find_forces() {
   const bool look = springs_may_stiffen();
   sum_forces(prepare());
+  added_force_.clear(), added_moment_.clear();
   if (!force_engines_.empty()) {
     std::vector<Row> force(bodies_.count()), moment(bodies_.count());
     for (const auto& engine : force_engines_) engine->forces(*this, force, moment);
     for (std::size_t i = 0; i < bodies_.count(); ++i) sum_[i].force += force[i], sum_[i].moment += moment[i];
+    added_force_.swap(force), added_moment_.swap(moment);
     net_step_ = clump_step_ = ~0ull;  // engines may have asked for forces, without their own
   }
+  if (bodies_.energies() && clock_.cell_deforms()) find_crossing();
   take_loads();
   if (look && stiffer_than_stepped(clock_.overlap)) set_time_step();
   else if (walls_.demand().more_than(clock_.wall_demand)) choose_time_step(clock_.contact_demand);
@@ -419,6 +428,11 @@ void Simulation::and_show_forces(Work work) {
 
 void Simulation::advance() {
   const MotionStep next = next_motion();
+  // Half of what the cell and engines do in a step by the forces at its start, half by those at its end.
+  const bool engines = next.energies && engines_do_work(), cell = next.energies && next.flows();
+  const double half_before = 0.5 * clock_.last_time_step, half_after = 0.5 * next.drift;
+  double by_engines = engines ? half_before * power_of_engines() : 0;
+  double by_cell = cell ? half_before * power_of_cell(clock_.growth_of_period()) : 0;
   if (growth_rate_ > 0) grow();
   const std::size_t clumps = bodies_.clumps.clump.size();
   if (clumps > 0)
@@ -431,13 +445,18 @@ void Simulation::advance() {
     move(chunk, sum_.data(), next);
     laps(chunk_[chunk].seconds[motion]);
   });
+  if (engines) by_engines += half_after * power_of_engines();
+  if (cell) by_cell += half_after * power_of_cell(next.period_growth);
+  flows_.engines += by_engines, flows_.cell += by_cell;
   and_show_forces([this] { end_step(); });
 }
 
-/// Forces decide on nothing that bodies must wait for: neither the time step, nor what engines add.
+/// Forces decide on nothing that bodies must wait for: neither the time step, nor what engines add. Nor does the ledger
+/// ask what they do to bodies before these move and after.
 bool Simulation::in_one_pass() const {
   const bool free_walls = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& wall) { return wall.free; });
-  return growth_rate_ == 0 && force_engines_.empty() && bodies_.clumps.none() && !free_walls &&
+  const bool work_of_forces = is_kept(flows_, bodies_) && (clock_.cell_deforms() || bodies_are_held());
+  return growth_rate_ == 0 && force_engines_.empty() && bodies_.clumps.none() && !free_walls && !work_of_forces &&
          !energy_check_is_due() && !springs_may_stiffen();
 }
 
@@ -478,10 +497,12 @@ void Simulation::step_on() {
 }
 
 void Simulation::show_forces() {
+  added_force_.clear(), added_moment_.clear();
   const bool finite = std::all_of(chunk_.begin(), chunk_.end(), [](const Chunk& c) { return c.motion.finite; });
   if (finite) {
     update_surfaces();
     sum_forces(true);
+    if (bodies_.energies() && clock_.cell_deforms()) find_crossing();
   } else {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     const Row row{unknown, unknown, unknown, unknown};
@@ -502,6 +523,7 @@ void Simulation::end_step() {
     const Motion of_clumps = std::exchange(chunk.clumps, {});
     flows_.damped += chunk.motion.damped + of_clumps.damped;
     flows_.fallen += chunk.motion.fallen + of_clumps.fallen;
+    flows_.cell += chunk.motion.carried + of_clumps.carried;
   }
   double fastest = 0;
   bool finite = true;

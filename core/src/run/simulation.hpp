@@ -51,6 +51,10 @@ struct Clock {
   double stepped_overlap = 0;  ///< the one that the time step was set for; only where springs stiffen
   double stepped_speed = 0;    ///< at which something may come closer before it must be set anew [m/s]; the same
 
+  bool cell_deforms() const { return !cell.strain_rate.isZero(0.0); }
+  /// How fast the cell's periods change, half a step ago as the velocities; 0 along axes that are not periodic [m/s].
+  Vec3 growth_of_period() const;
+
   void remember(Memory& memory);
 };
 
@@ -71,15 +75,15 @@ struct EnergyBook {
 /// What has gone in and out since a component first asked [J].
 struct EnergyFlows {
   bool begun = false;
-  bool complete = true;  ///< whether all work was kept all the time
   double at_start = 0;
   Losses lost;
   double damped = 0, fallen = 0;
-  double walls = 0;  ///< but for half of the last step
+  double walls = 0, cell = 0, engines = 0;  ///< but for half of the last step
   double settings = 0;
 
   void remember(Memory& memory) {
-    memory(begun, complete, at_start, lost.friction, lost.rolling, lost.viscosity, damped, fallen, walls, settings);
+    memory(begun, at_start, lost.friction, lost.rolling, lost.viscosity, damped, fallen, walls, cell, engines,
+           settings);
   }
 };
 
@@ -248,19 +252,27 @@ class Simulation final : public World {
   void update_surfaces();
   void check_overlap(double largest) const;
   void check_periods() const;
-  /// Only gains trip. By the ledger where one is kept and complete, else by what is stored, so that what is dissipated
-  /// hides what appears. Without a ledger it does not look where work is done that is not reckoned at each step.
+  /// Only gains trip. By the ledger where one is kept, else by what is stored, so that what is dissipated hides what
+  /// appears. Without a ledger it does not look where work is done that is not reckoned at each step.
   void check_energy();
-  bool ledger_is_complete() const { return flows_.begun && flows_.complete; }
   bool energy_check_is_due() const;
   ElasticEnergy elastic_energy() const;
   /// At time(), by the forces that act there.
   double kinetic_energy() const;
-  /// Whether all work is reckoned with: not that of a deforming cell, of engines that add forces and of held bodies.
-  bool all_work_is_kept() const;
   double gravitational() const;
   /// What walls do by the forces on them as they moved last [W].
   double power_of_walls() const;
+  bool bodies_are_held() const { return settings_.hold_rotation || settings_.hold_translation; }
+  bool engines_do_work() const { return !force_engines_.empty() || bodies_are_held(); }
+  /// What engines do to the bodies of a chunk, and to as many clumps, by the forces on them as they moved last [W].
+  double power_of_engines(std::size_t chunk) const;
+  /// The same of all, shared among the threads.
+  double power_of_engines();
+  /// What contacts take up as the cell's periods grow so fast [W].
+  double power_of_cell(const Vec3& growth) const { return -crossing_.dot(growth); }
+  /// What has bodies go with the mean flow of a deforming cell [W].
+  double power_of_flow() const;
+  void find_crossing();
   /// Which side of the surfaces of walls that bodies are not inside of the specimen ends at.
   enum class Side { near, far };
   Region region(double margin, Side side_of_walls = Side::near) const;
@@ -291,6 +303,10 @@ class Simulation final : public World {
   CriticalStep critical_;
 
   LargeArray<BodySum> sum_;
+  std::vector<Row> added_force_, added_moment_;  // by engines; empty without any
+  /// Along each axis, of all that reaches over its periodic boundary, by how many periods and with what force on the
+  /// far end [N]. Only where a ledger is asked for and the cell deforms.
+  Vec3 crossing_ = Vec3::Zero();
   LargeArray<Row> reference_;  // positions at the last search
   Cell reference_cell_;
   std::vector<ImageShift> shifts_;
@@ -303,6 +319,8 @@ class Simulation final : public World {
     double overlap = 0;
     Losses losses;
     Motion motion, clumps;
+    Vec3 crossing = Vec3::Zero();
+    double power = 0;
     bool moved = false;
     std::array<double, part_count> seconds{};
   };

@@ -9,16 +9,16 @@
 #include "run/simulation.hpp"
 
 namespace grit {
-namespace {
 
-/// How fast the periods change [m/s], half a step ago as the velocities.
-Vec3 growth_of_period(const Clock& clock) {
-  const Vec3 period = clock.cell.high - clock.cell.low;
-  if (clock.last_time_step == 0) return period.cwiseProduct(clock.cell.strain_rate);
-  return (period - clock.period_before) / clock.last_time_step;
+Vec3 Clock::growth_of_period() const {
+  Vec3 growth = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    if (!cell.periodic[k]) continue;
+    const double period = cell.high[k] - cell.low[k];
+    growth[k] = last_time_step == 0 ? period * cell.strain_rate[k] : (period - period_before[k]) / last_time_step;
+  }
+  return growth;
 }
-
-}  // namespace
 
 void Simulation::take_stock(std::size_t first, std::size_t first_clump) {
   for (std::size_t i = first; i < bodies_.count(); ++i) {
@@ -70,7 +70,11 @@ void Simulation::admit() {
   }
   for (Clump& clump : bodies.clumps.clump) clump.velocity += change(clump.centre);
 
-  const auto stored = [this] { return flows_.begun ? kinetic_energy() + elastic_energy().total() : 0; };
+  const auto stored = [this] {
+    if (!flows_.begun) return 0.0;
+    const EnergyLedger now = energies();
+    return now.kinetic + now.elastic() - now.walls - now.cell - now.engines;
+  };
   const double put_in = flows_.settings - stored();  // but for what is stored; bodies may also leave in a search
   const std::size_t first = bodies_.count(), first_clump = bodies_.clumps.clump.size();
   const Bodies bodies_before = bodies_;
@@ -152,7 +156,7 @@ void Simulation::check_newcomers() const {
 }
 
 void Simulation::update_shifts() {
-  const Vec3 period = clock_.cell.high - clock_.cell.low, growth = growth_of_period(clock_);
+  const Vec3 period = clock_.cell.high - clock_.cell.low, growth = clock_.growth_of_period();
   for (std::uint8_t image = 0; image < 27; ++image) {
     const auto shift = image_shift(image);
     double position[3], velocity[3];
@@ -171,10 +175,17 @@ bool Simulation::may_leave(int axis, bool high) const {
 
 std::vector<bool> Simulation::wrap() {
   const Cell& cell = clock_.cell;
-  const Vec3 period = cell.high - cell.low, growth = growth_of_period(clock_);
+  const Vec3 period = cell.high - cell.low, growth = clock_.growth_of_period();
   std::vector<bool> leaves(bodies_.count(), false);
   const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
   const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
+  // What goes on at the other side goes with the mean flow there.
+  double gained = 0;
+  const auto jump = [](double& speed, double by, double inverse_mass) {
+    const double before = speed;
+    speed -= by;
+    return 0.5 / inverse_mass * (speed * speed - before * before);
+  };
   // A clump leaves as a whole, by its centre.
   for (Clump& clump : bodies_.clumps.clump)
     for (int k = 0; k < 3; ++k) {
@@ -185,7 +196,8 @@ std::vector<bool> Simulation::wrap() {
       }
       const double periods = periods_off(clump.centre, k);
       if (periods == 0) continue;
-      clump.centre[k] -= periods * period[k], clump.velocity[k] -= periods * growth[k];
+      clump.centre[k] -= periods * period[k];
+      gained += jump(clump.velocity[k], periods * growth[k], clump.inverse_mass);
       for (std::uint32_t s = clump.first; s < clump.last; ++s)
         bodies_.clumps.of_body[bodies_.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
             static_cast<std::int8_t>(periods);
@@ -207,7 +219,9 @@ std::vector<bool> Simulation::wrap() {
       }
       const double periods = periods_off(x, k);
       if (periods == 0) continue;
-      x[k] -= periods * period[k], v[k] -= periods * growth[k];
+      x[k] -= periods * period[k];
+      const double own = jump(v[k], periods * growth[k], bodies_.velocity[i].w);
+      if (!in_clump) gained += own;
       if (in_clump) bodies_.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
       else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
       moved = true;
@@ -216,6 +230,7 @@ std::vector<bool> Simulation::wrap() {
     bodies_.position[i] = {x.x(), x.y(), x.z(), bodies_.position[i].w};
     bodies_.velocity[i] = {v.x(), v.y(), v.z(), bodies_.velocity[i].w};
   }
+  if (flows_.begun) flows_.cell += gained;
   return leaves;
 }
 

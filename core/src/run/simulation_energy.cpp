@@ -1,7 +1,9 @@
 // Where the energy is, and where it went.
-#include <limits>
+#include <algorithm>
 
+#include "engines/clump_motion.hpp"
 #include "run/simulation.hpp"
+#include "run/stopwatch.hpp"
 #include "scene/kinetic_energy.hpp"
 
 namespace grit {
@@ -36,7 +38,11 @@ ElasticEnergy Simulation::elastic_energy() const {
   return all;
 }
 
-double Simulation::kinetic_energy() const { return grit::kinetic_energy(*this, 0.5 * clock_.last_time_step); }
+double Simulation::kinetic_energy() const {
+  const MotionStep next = next_motion();
+  return grit::kinetic_energy(*this, 0.5 * clock_.last_time_step,
+                              {next.free_translation(), next.free_rotation(), next.strain_rate});
+}
 
 double Simulation::power_of_walls() const {
   double power = 0;
@@ -44,9 +50,65 @@ double Simulation::power_of_walls() const {
   return power;
 }
 
-bool Simulation::all_work_is_kept() const {
-  return clock_.cell.strain_rate.isZero(0.0) && force_engines_.empty() && !settings_.hold_rotation &&
-         !settings_.hold_translation;
+double Simulation::power_of_engines(std::size_t chunk) const {
+  const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+  double power = 0;
+  if (!added_force_.empty())
+    for (std::size_t i = first; i < last; ++i)
+      power += xyz(added_force_[i]).dot(xyz(bodies_.velocity[i])) + xyz(added_moment_[i]).dot(xyz(bodies_.spin[i]));
+  if (!bodies_are_held()) return power;
+  // What holds bodies takes up what acts on them.
+  const double translation = settings_.hold_translation ? 1 : 0, rotation = settings_.hold_rotation ? 1 : 0;
+  for (std::size_t i = first; i < last; ++i) {
+    if (bodies_.clumps.clump_of(i) != no_clump) continue;
+    const Vec3 force = xyz(sum_[i].force) + settings_.gravity / bodies_.velocity[i].w;
+    power -=
+        translation * force.dot(xyz(bodies_.velocity[i])) + rotation * xyz(sum_[i].moment).dot(xyz(bodies_.spin[i]));
+  }
+  for (std::size_t c = first; c < std::min(bodies_.clumps.clump.size(), first + chunk_bodies); ++c) {
+    const Clump& clump = bodies_.clumps.clump[c];
+    const ClumpLoad load = load_of(clump, bodies_, sum_.data());
+    const Vec3 force = load.force + settings_.gravity / clump.inverse_mass;
+    power -= translation * force.dot(clump.velocity) + rotation * load.moment.dot(clump.spin);
+  }
+  return power;
+}
+
+double Simulation::power_of_flow() const {
+  const Vec3 rate = clock_.cell.strain_rate;
+  double power = 0;
+  for (const Clump& clump : bodies_.clumps.clump) power += rate.dot(clump.velocity.cwiseAbs2()) / clump.inverse_mass;
+  for (std::size_t i = 0; i < bodies_.count(); ++i)
+    if (bodies_.clumps.clump_of(i) == no_clump)
+      power += rate.dot(xyz(bodies_.velocity[i]).cwiseAbs2()) / bodies_.velocity[i].w;
+  return power;
+}
+
+double Simulation::power_of_engines() {
+  const Stopwatch watch(phases_[motion].seconds);
+  team_.each(chunk_.size(), [this](std::size_t chunk) { chunk_[chunk].power = power_of_engines(chunk); });
+  double power = 0;
+  for (const Chunk& chunk : chunk_) power += chunk.power;
+  return power;
+}
+
+void Simulation::find_crossing() {
+  const Stopwatch watch(phases_[pair_contacts].seconds);
+  team_.each(chunk_.size(), [this](std::size_t chunk) {
+    Vec3& crossing = chunk_[chunk].crossing = Vec3::Zero();
+    const auto over = [](const auto& periods, const Row& force) -> Vec3 {
+      return Vec3(periods[0], periods[1], periods[2]).cwiseProduct(xyz(force));
+    };
+    pairs_.each_crossing(chunk, instant(true), [&](std::size_t c, const ContactRow& row) {
+      crossing += over(image_shift(pairs_.image(c)), row.force);
+    });
+    if (bodies_.clumps.none()) return;
+    // Spheres that have been put back into the cell pull at clumps at the other side.
+    const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+    for (std::size_t i = first; i < last; ++i) crossing -= over(bodies_.clumps.of_body[i].periods, sum_[i].force);
+  });
+  crossing_ = Vec3::Zero();
+  for (const Chunk& chunk : chunk_) crossing_ += chunk.crossing;
 }
 
 EnergyLedger Simulation::energies() const {
@@ -56,18 +118,24 @@ EnergyLedger Simulation::energies() const {
   now.kinetic = kinetic_energy();
   now.elastic_normal = elastic.normal, now.elastic_shear = elastic.shear, now.elastic_rolling = elastic.rolling;
   // The half of the last step's work that the forces at its end do.
-  const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
-  if (!flows_.begun) {
-    flows_ = {
-        .begun = true, .complete = all_work_is_kept(), .at_start = now.kinetic + elastic.total(), .walls = -last_half};
-  }
+  const double half_step = 0.5 * clock_.last_time_step;
+  double engines = 0, cell = 0;
+  for (std::size_t chunk = 0; engines_do_work() && chunk < chunk_.size(); ++chunk) engines += power_of_engines(chunk);
+  if (clock_.cell_deforms()) cell = power_of_cell(clock_.growth_of_period()) + power_of_flow();
+  const double by_walls = half_step * power_of_walls(), by_cell = half_step * cell, by_engines = half_step * engines;
+  if (!flows_.begun)
+    flows_ = {.begun = true,
+              .at_start = now.kinetic + elastic.total(),
+              .walls = -by_walls,
+              .cell = -by_cell,
+              .engines = -by_engines};
   now.gravitational = -flows_.fallen;
-  now.walls = flows_.walls + last_half, now.settings = flows_.settings;
+  now.walls = flows_.walls + by_walls, now.cell = flows_.cell + by_cell, now.engines = flows_.engines + by_engines;
+  now.settings = flows_.settings;
   now.friction = flows_.lost.friction, now.rolling = flows_.lost.rolling, now.viscosity = flows_.lost.viscosity;
   now.local_damping = flows_.damped;
-  now.closure_error =
-      now.kinetic + now.elastic() + now.gravitational + now.dissipated() - flows_.at_start - now.walls - now.settings;
-  if (!flows_.complete) now.closure_error = std::numeric_limits<double>::quiet_NaN();
+  now.closure_error = now.kinetic + now.elastic() + now.gravitational + now.dissipated() - flows_.at_start - now.walls -
+                      now.cell - now.engines - now.settings;
   return now;
 }
 

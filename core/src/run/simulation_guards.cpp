@@ -59,9 +59,9 @@ bool Simulation::energy_check_is_due() const {
 }
 
 void Simulation::check_energy() {
-  const bool begins = std::exchange(energy_.begins, false), by_ledger = ledger_is_complete();
-  // Without a ledger, what growth puts in is not reckoned at each step.
-  bool kept = by_ledger || (all_work_is_kept() && growth_rate_ == 0);
+  const bool begins = std::exchange(energy_.begins, false), by_ledger = flows_.begun;
+  // Without a ledger, what growth, the cell and engines put in is not reckoned at each step.
+  bool kept = by_ledger || (growth_rate_ == 0 && !clock_.cell_deforms() && !engines_do_work());
   // Nor is there a potential along a periodic axis.
   for (int k = 0; k < 3 && !by_ledger; ++k) kept = kept && !(clock_.cell.periodic[k] && settings_.gravity[k] != 0);
   if (!kept) {  // nor would what is not a number ever be too much

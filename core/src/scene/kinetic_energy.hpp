@@ -5,7 +5,13 @@
 
 namespace grit {
 
+/// What forces do not say of accelerations.
+struct Accelerating {
+  Vec3 free_translation = Vec3::Ones(), free_rotation = Vec3::Ones();  ///< 0 along, or about, axes that are held
+  Vec3 strain_rate = Vec3::Zero();  ///< of a cell whose mean flow bodies go with [1/s]
+};
+
 /// Translation and rotation [J], velocities brought on by `half_step` [s] with the accelerations that act now.
-double kinetic_energy(const World& world, double half_step);
+double kinetic_energy(const World& world, double half_step, const Accelerating& how = {});
 
 }  // namespace grit

@@ -20,6 +20,9 @@ constexpr Entry entries[] = {
     {"elastic_rolling", "stored in rolling and twisting springs", &EnergyLedger::elastic_rolling},
     {"gravitational", "against the first sample, higher is more", &EnergyLedger::gravitational},
     {"work_of_walls", "done by walls since the first sample", &EnergyLedger::walls},
+    {"work_of_cell", "done by the straining of a periodic cell since the first sample", &EnergyLedger::cell},
+    {"work_of_engines", "done by engines that add forces, and by what holds bodies, since the first sample",
+     &EnergyLedger::engines},
     {"settings", "put in by changes of the description since the first sample", &EnergyLedger::settings},
     {"friction", "dissipated by slip since the first sample", &EnergyLedger::friction},
     {"rolling", "dissipated by rolling and twisting beyond their limits since the first sample",
@@ -47,7 +50,8 @@ void EnergyProbe::sample(const World& world, std::span<const std::span<double>> 
   auto value = values.begin();
   for (const Entry& entry : entries) *(value++)->data() = ledger.*entry.member;
   const double turnover = ledger.kinetic + ledger.elastic() + std::abs(ledger.gravitational) + std::abs(ledger.walls) +
-                          std::abs(ledger.settings) + ledger.dissipated();
+                          std::abs(ledger.cell) + std::abs(ledger.engines) + std::abs(ledger.settings) +
+                          ledger.dissipated();
   *value->data() = turnover > 0 ? ledger.closure_error / turnover : 0;
 }
 
