@@ -25,7 +25,8 @@ struct Channel {
 
 /// One table of an instant, of any length: contacts, cells, chains. A probe that has fields "centre" [m, width 3: where
 /// a cell is now] and "size" [m, width 3: what it fills on a map] says by them that its fields of as many rows are
-/// maps.
+/// maps. A map parts its colours at zero for every component but those on the diagonal of a tensor in Pa; for a single
+/// number where its doc says "positive" or "clockwise", unless its unit is Pa.
 struct Field {
   std::string name;  ///< snake_case
   std::string unit, doc;
