@@ -166,6 +166,8 @@ class World {
 
   /// All touching pairs and touches of walls, pairs first, in a fixed order.
   virtual std::span<const Contact> contacts() const = 0;
+  /// The touches of walls among them, found without a list of the others.
+  virtual std::span<const Contact> contacts_with_walls() const;
   /// Mean normal force of all contacts [N], 0 without any; found without a list of them.
   virtual double mean_contact_force() const;
   virtual std::span<const WallView> walls() const = 0;

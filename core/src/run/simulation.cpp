@@ -118,7 +118,7 @@ void Simulation::apply(const SceneDescription& scene) {
   energy_ = {};
   time_step_now_ = true;
   soft_until_ = overlap_of_soft_springs();
-  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+  forget_views();
 }
 
 void Simulation::take_settings(const SceneDescription& scene) {
@@ -313,7 +313,7 @@ void Simulation::choose_time_step(const Demand& contacts) {
 }
 
 bool Simulation::prepare() {
-  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+  forget_views();
   update_shifts();
   update_surfaces();
   {
@@ -508,7 +508,7 @@ void Simulation::show_forces() {
     const Row row{unknown, unknown, unknown, unknown};
     sum_.assign(sum_.size(), {row, row});
   }
-  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+  forget_views();
 }
 
 void Simulation::end_step() {

@@ -170,6 +170,7 @@ class Simulation final : public World {
   std::span<const Row> forces() const override;
   std::span<const Row> moments() const override;
   std::span<const Contact> contacts() const override;
+  std::span<const Contact> contacts_with_walls() const override;
   double mean_contact_force() const override;
   std::span<const WallView> walls() const override;
   std::optional<Clearance> clearance(std::size_t wall, const Vec3& point, double reach) const override;
@@ -278,6 +279,8 @@ class Simulation final : public World {
   Region region(double margin, Side side_of_walls = Side::near) const;
   void tell_walls_of_specimen();
   Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
+  /// Has what probes ask for be worked out anew.
+  void forget_views() { net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = ~0ull; }
   /// `what` ends with advice.
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(const std::string& what, const std::string& advice) const;
@@ -345,9 +348,9 @@ class Simulation final : public World {
   mutable std::vector<ClumpView> clump_views_;
   mutable std::vector<Vec3> arms_of_bodies_;
   mutable std::uint64_t clump_step_ = ~0ull;
-  mutable std::vector<Contact> contact_list_;
+  mutable std::vector<Contact> contact_list_, wall_contact_list_;
   mutable std::vector<WallView> wall_views_;
-  mutable std::uint64_t net_step_ = ~0ull, contact_step_ = ~0ull, wall_step_ = ~0ull;
+  mutable std::uint64_t net_step_ = ~0ull, contact_step_ = ~0ull, wall_contact_step_ = ~0ull, wall_step_ = ~0ull;
 };
 
 }  // namespace grit

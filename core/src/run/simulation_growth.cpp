@@ -38,7 +38,7 @@ void Simulation::grow() {
   stock_.mass += gained, stock_.solids += gained / stock_.solid_density;
   stock_.diameters *= factor, stock_.mean_diameter *= factor;
   stock_.largest_radius *= factor, stock_.smallest_radius *= factor;
-  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+  forget_views();
   flows_.settings += stored() - before;
 }
 

@@ -31,7 +31,7 @@ void Simulation::restore(const SceneDescription& scene, Memory& memory) {
   sum_.assign(bodies_.count() + 1, {});
   readiness_.build(pairs_.reached());
   tell_walls_of_specimen();
-  net_step_ = contact_step_ = wall_step_ = clump_step_ = ~0ull;
+  forget_views();
 }
 
 /// But for walls, which come first, and for what is worked out anew in every step: sums, loads, surfaces. Newcomers are

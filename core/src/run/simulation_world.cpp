@@ -90,21 +90,30 @@ std::span<const Contact> Simulation::contacts() const {
                              .normal_force = row.force.w,
                              .overlap = row.moment.w});
   });
-  wall_contacts_.each([&](const WallContacts::Touching& t) {
-    const double arm = bodies_.position[t.touch->body].w - t.touch->overlap;
-    contact_list_.push_back({.a = t.touch->body,
-                             .b = t.touch->wall,
-                             .with_wall = true,
-                             .feature = t.touch->feature,
-                             .branch = arm * t.touch->normal,
-                             .normal = t.touch->normal,
-                             .force = xyz(t.row->force),
-                             .moment = xyz(t.row->moment),
-                             .normal_force = t.row->force.w,
-                             .overlap = t.touch->overlap});
-  });
+  const auto with_walls = contacts_with_walls();
+  contact_list_.insert(contact_list_.end(), with_walls.begin(), with_walls.end());
   contact_step_ = clock_.step;
   return contact_list_;
+}
+
+std::span<const Contact> Simulation::contacts_with_walls() const {
+  if (wall_contact_step_ == clock_.step) return wall_contact_list_;
+  wall_contact_list_.clear();
+  wall_contacts_.each([&](const WallContacts::Touching& t) {
+    const double arm = bodies_.position[t.touch->body].w - t.touch->overlap;
+    wall_contact_list_.push_back({.a = t.touch->body,
+                                  .b = t.touch->wall,
+                                  .with_wall = true,
+                                  .feature = t.touch->feature,
+                                  .branch = arm * t.touch->normal,
+                                  .normal = t.touch->normal,
+                                  .force = xyz(t.row->force),
+                                  .moment = xyz(t.row->moment),
+                                  .normal_force = t.row->force.w,
+                                  .overlap = t.touch->overlap});
+  });
+  wall_contact_step_ = clock_.step;
+  return wall_contact_list_;
 }
 
 double Simulation::mean_contact_force() const {

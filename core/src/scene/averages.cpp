@@ -53,6 +53,11 @@ double World::mean_contact_force() const {
   return contacts().empty() ? 0 : sum / static_cast<double>(contacts().size());
 }
 
+std::span<const Contact> World::contacts_with_walls() const {
+  const auto all = contacts();
+  return {std::ranges::find_if(all, &Contact::with_wall), all.end()};
+}
+
 double kinetic_energy_of(const ClumpView& clump, double later) {
   const Vec3 velocity = clump.velocity + later / clump.mass * clump.force;
   const Vec3 momentum = clump.axes.transpose() * (clump.momentum + later * clump.moment);

@@ -61,8 +61,8 @@ void Interface::sample(const World& world, std::span<const std::span<double>> va
   const int along = layer.along(), across = layer.across();
   const double face = layer.face(world);
   double force = 0, couple = 0;
-  for (const Contact& contact : world.contacts()) {
-    if (!contact.with_wall || contact.b != layer.index()) continue;
+  for (const Contact& contact : world.contacts_with_walls()) {
+    if (contact.b != layer.index()) continue;
     const double point = xyz(world.positions()[contact.a])[across] + contact.branch[across];
     force += contact.force[along];
     couple += contact.moment.dot(about) + (point - face) * normal[across] * contact.force[along];

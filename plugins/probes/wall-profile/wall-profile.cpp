@@ -60,8 +60,8 @@ void WallProfile::sample(const World& world, std::span<const std::span<double>> 
   for (std::size_t s = 0; s < static_cast<std::size_t>(strips); ++s)
     values[0][s] = end.low + (static_cast<double>(s) + 0.5) * height, values[1][s] = values[2][s] = 0;
   double normal = 0, shear = 0;
-  for (const Contact& contact : world.contacts()) {
-    if (!contact.with_wall || !chosen_[contact.b]) continue;
+  for (const Contact& contact : world.contacts_with_walls()) {
+    if (!chosen_[contact.b]) continue;
     const double pressing = -contact.force.dot(world.walls()[contact.b].normal), hanging = -contact.force[axis()];
     normal += pressing, shear += hanging;
     const double place = xyz(world.positions()[contact.a])[axis()] + contact.branch[axis()];
