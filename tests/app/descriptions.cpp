@@ -111,6 +111,33 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
                      R"(/stages/0/change={"engines": {"damping": {"coefficient": 0.3}}})"}),
               testing::Not(HasSubstr("without effect")))
       << "a stage switches it on";
+  EXPECT_THAT(check({"/time_step/allow_unstable=true"}), HasSubstr("  /time_step/allow_unstable: with this safety"));
+  EXPECT_THAT(check({"/time_step/allow_unstable=true", "/time_step/safety=1.1"}),
+              testing::Not(HasSubstr("without effect")));
+  const std::string planar = R"(/engines/planar={"type": "planar", "normal": "z"})";
+  const auto gravity = [](const std::string& g) {
+    return R"(/engines/weight={"type": "gravity", "acceleration": )" + g + '}';
+  };
+  EXPECT_THAT(check({planar, gravity("[0, 0, -9.81]")}),
+              HasSubstr("  /engines/weight: bodies are held along the axis that it acts along\n"));
+  EXPECT_THAT(check({planar, gravity("[0, -1, -9.81]")}), testing::Not(HasSubstr("without effect")));
+
+  const std::string rolling = "/contacts/type=linear-rolling", steel = "/materials/steel={}";
+  constexpr auto idle_value = ": no contact depends on it";
+  const auto told = [&](const std::string& pointer) { return HasSubstr("  " + pointer + idle_value); };
+  EXPECT_THAT(check({rolling, "/materials/sand/friction_angle=0.3", "/materials/sand/shear_to_normal_stiffness=0"}),
+              told("/materials/sand/friction_angle"));
+  const auto smooth_and_rough = [&](const std::string& friction, const std::string& more) {
+    return check({rolling, steel, floor, "/materials/sand/friction_angle=0.3",
+                  "/materials/steel/friction_angle=" + friction, "/materials/steel/contact_modulus=1e9", more});
+  };
+  EXPECT_THAT(smooth_and_rough("1", "/seed=1"),
+              AllOf(told("/materials/steel/friction_angle"), told("/materials/steel/contact_modulus"),
+                    testing::Not(told("/materials/sand/friction_angle"))));
+  EXPECT_THAT(smooth_and_rough("0.1", "/seed=1"), testing::Not(told("/materials/steel/friction_angle")));
+  EXPECT_THAT(smooth_and_rough("1", R"(/stages/0/change={"materials": {"sand": {"friction_angle": 1.2}}})"),
+              testing::Not(told("/materials/steel/friction_angle")))
+      << "a stage makes sand rougher still";
 }
 
 TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {

@@ -64,6 +64,7 @@ class Law final : public ContactLaw {
   void evaluate_walls(WallBatch&) const noexcept override {}
   void evaluate_pairs_reference(PairBatch&) const noexcept override {}
   Stiffness stiffness(const PairSize&, std::size_t, std::size_t) const override { return {}; }
+  std::vector<double> mixed(std::size_t, std::size_t, bool) const override { return {}; }
   ElasticEnergy energy(const PairSize&, std::size_t, std::size_t, std::span<const double>) const override { return {}; }
 
  private:

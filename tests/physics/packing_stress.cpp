@@ -171,6 +171,7 @@ class ScalarTwin final : public ContactLaw {
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
     return law_->stiffness(pair, a, b);
   }
+  std::vector<double> mixed(std::size_t a, std::size_t b, bool wall) const override { return law_->mixed(a, b, wall); }
   ElasticEnergy energy(const PairSize& pair, std::size_t a, std::size_t b,
                        std::span<const double> state) const override {
     return law_->energy(pair, a, b, state);

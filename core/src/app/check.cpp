@@ -7,6 +7,7 @@
 #include <map>
 #include <thread>
 
+#include "app/idle_materials.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
@@ -125,6 +126,22 @@ void check_one(const std::string& file, const Options& options, const Registry& 
     all.insert(all.end(), more.begin(), more.end());
     return resolved(*load_scene(file, all, registry).description) == now;
   };
+  const Description written = Document::load(file).json();
+  const auto is_written = [&](const std::string& pointer) {
+    return written.contains(Description::json_pointer(pointer)) ||
+           std::ranges::any_of(sets, [&](const std::string& set) { return set.starts_with(pointer + '='); });
+  };
+  const auto with = [&](const std::string& set) {
+    auto all = sets;
+    all.push_back(set);
+    return load_scene(file, all, registry);
+  };
+  for (const std::string& line : idle_materials(scene, is_written, with)) {
+    // Some are known already, and why.
+    const std::string pointer = line.substr(0, line.find(": ") + 2);
+    if (std::ranges::none_of(idle, [&](const std::string& other) { return other.starts_with(pointer); }))
+      idle.push_back(line);
+  }
   if (auto line = too_deep(scene, simulation, scenario_type(Document::load(file)), same)) idle.push_back(*line);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';

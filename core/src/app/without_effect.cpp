@@ -127,6 +127,14 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
     if (engine.engine->phase() == Phase::settings && same(own, {}) && !is_changed(scene, "engines", name))
       say("/engines/" + name, "with these values it does nothing");
   }
+  for (const auto& [name, engine] : scene.engines) {
+    MotionSettings own;
+    engine.engine->settings(own);
+    if (!all.flat || own.gravity[*all.flat] == 0 || is_changed(scene, "engines", name)) continue;
+    Vec3 in_plane = own.gravity;
+    in_plane[*all.flat] = 0;
+    if (in_plane.isZero(0.0)) say("/engines/" + name, "bodies are held along the axis that it acts along");
+  }
   const bool never_turn = all.hold_rotation && std::ranges::none_of(scene.engines, [&](const auto& engine) {
                             return is_changed(scene, "engines", engine.first);
                           });
@@ -176,6 +184,8 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
     say("/time_step/safety", "the step is given by /time_step/value");
   if (scene.time_step.value && scene.time_step.steps_per_impact != TimeStepDescription().steps_per_impact)
     say("/time_step/steps_per_impact", "the step is given by /time_step/value");
+  if (scene.time_step.allow_unstable && !scene.time_step.value && scene.time_step.safety <= 1)
+    say("/time_step/allow_unstable", "with this safety the step is not above the critical one");
   for (const auto& [name, material] : scene.materials)
     if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall is of it");
   for (const auto& [a, b] : scene.interfaces)

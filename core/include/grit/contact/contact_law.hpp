@@ -75,6 +75,8 @@ class ContactLaw {
   /// The same by plain scalars, for tests.
   virtual void evaluate_pairs_reference(PairBatch& batch) const noexcept = 0;
   virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
+  /// All numbers that materials and interfaces come to where a body of the first meets one, or a wall, of the second.
+  virtual std::vector<double> mixed(std::size_t material_a, std::size_t material_b, bool wall) const = 0;
   /// Stored in one contact with the given memory (as many numbers as state()).
   virtual ElasticEnergy energy(const PairSize& pair, std::size_t material_a, std::size_t material_b,
                                std::span<const double> state) const = 0;
