@@ -126,7 +126,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     return 0;
   }
   work.before.clear();
-  for (const WallTouch& t : chunk.touch) work.before.push_back({t.normal, t.body, t.wall, t.feature, t.material});
+  for (const WallTouch& t : chunk.touch)
+    work.before.push_back({t.normal, t.body, t.wall, t.feature, t.material, t.overlap});
   chunk.touch.clear();
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
     const WallSurface& wall = walls[w];
@@ -154,6 +155,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
 
   leave_out_hidden(chunk, work, bodies, walls);
   hand_on_memories(chunk, work, bodies, dt);
+  if (losses != nullptr) part(work, law, bodies, *losses);
   chunk.row.resize(chunk.touch.size());
   WallBatch batch{.position = bodies.position.data(),
                   .velocity = bodies.velocity.data(),
@@ -252,6 +254,7 @@ bool WallContacts::hidden(const WallTouch& lesser, const WallTouch& deeper, cons
 void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const {
   // What was touched is touched still, but for few steps.
   const auto same = [](const WallTouch& now, const Before& before) { return key(now) == key(before); };
+  work.gone.clear();
   if (std::ranges::equal(chunk.touch, work.before, same)) {
     for (std::size_t i = 0; i < chunk.touch.size(); ++i) chunk.touch[i].normal_before = work.before[i].normal;
     return;
@@ -264,7 +267,7 @@ void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies&
     for (std::size_t f = 0; f < fields; ++f) chunk.state[to * fields + f] = work.state_before[from * fields + f];
   };
   auto &fresh = work.fresh, &gone = work.gone;
-  fresh.clear(), gone.clear();
+  fresh.clear();
   std::uint32_t old = 0;
   for (std::uint32_t i = 0; i < chunk.touch.size(); ++i) {
     const auto own = key(chunk.touch[i]);
@@ -272,7 +275,6 @@ void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies&
     if (old < work.before.size() && key(work.before[old]) == own) hand_on(old++, i);
     else fresh.push_back(i);
   }
-  if (fresh.empty()) return;
   for (; old < work.before.size(); ++old) gone.push_back(old);
   // What goes on in another wall's surface remembers what it did on the one that it left.
   for (const std::uint32_t i : fresh) {
@@ -288,6 +290,23 @@ void WallContacts::hand_on_memories(Chunk& chunk, Workspace& work, const Bodies&
     hand_on(*best, i);
     stand_still_in_valley(chunk.touch[i], bodies.position[t.body], bodies.velocity[t.body], dt);
     gone.erase(best);
+  }
+}
+
+void WallContacts::part(const Workspace& work, const ContactLaw& law, const Bodies& bodies, Losses& losses) const {
+  const std::size_t fields = fields_.size();
+  for (const std::uint32_t g : work.gone) {
+    const Before& left = work.before[g];
+    const double radius = bodies.position[left.body].w;
+    const ElasticEnergy held =
+        law.energy({.radius_a = radius,
+                    .radius_b = radius,
+                    .inverse_mass_a = bodies.velocity[left.body].w,
+                    .inverse_mass_b = 0,
+                    .overlap = left.overlap,
+                    .wall = true},
+                   bodies.material[left.body], left.material, std::span(work.state_before).subspan(g * fields, fields));
+    losses.friction += held.shear, losses.rolling += held.rolling;
   }
 }
 

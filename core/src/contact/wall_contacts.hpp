@@ -109,6 +109,7 @@ class WallContacts {
   struct Before {
     Vec3 normal;
     std::uint32_t body, wall, feature, material;
+    double overlap;
   };
   /// What evaluate() works with. One for all chunks of a thread, so that it stays in the cache.
   struct Workspace {
@@ -126,8 +127,10 @@ class WallContacts {
   /// Whether the wall of the deeper touch is also where the lesser one is.
   static bool hidden(const WallTouch& lesser, const WallTouch& deeper, const Row& body,
                      std::span<const WallSurface> walls, Workspace& work);
-  /// From the touches of the last step to those of this one.
+  /// From the touches of the last step to those of this one. Leaves in work.gone those that none takes over.
   void hand_on_memories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const;
+  /// What springs of touches that are gone held is lost.
+  void part(const Workspace& work, const ContactLaw& law, const Bodies& bodies, Losses& losses) const;
 
   std::vector<Chunk> chunks_;
   std::vector<StateField> fields_;

@@ -234,6 +234,35 @@ class Waiting {
   ContactRow row_[most];
 };
 
+/// Two bodies touch no more: what their springs held, of which friction and rolling had not yet taken all, is lost.
+template <class Law, unsigned Features>
+[[gnu::noinline]] void part(const PairBatch& batch, const typename Law::template Pair<double>* table,
+                            std::size_t materials, std::size_t place) {
+  constexpr std::size_t fields = Law::fields_used(Features);
+  const std::uint32_t a = batch.a[place], b = batch.b[place];
+  Vec3 between = xyz(batch.position[b]) - xyz(batch.position[a]),
+       apart = xyz(batch.velocity[b]) - xyz(batch.velocity[a]);
+  if (batch.image != nullptr && batch.image[place] != 0) {
+    const ImageShift& shift = batch.shifts[batch.image[place]];
+    between += xyz(shift.position), apart += xyz(shift.velocity);
+  }
+  const double radius_a = batch.position[a].w, radius_b = batch.position[b].w;
+  // As it was when they touched.
+  const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
+  typename Law::template State<double> state{};
+  for (std::size_t f = 0; f < fields; ++f)
+    member<double>(state, f) = batch.state[(place / block_size * fields + f) * block_size + place % block_size];
+  const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
+  const ElasticEnergy held = Law::energy({.radius_a = radius_a,
+                                          .radius_b = radius_b,
+                                          .inverse_mass_a = batch.velocity[a].w,
+                                          .inverse_mass_b = batch.velocity[b].w,
+                                          .overlap = std::max(0.0, overlap),
+                                          .wall = false},
+                                         table[kind], state);
+  batch.losses->friction += held.shear, batch.losses->rolling += held.rolling;
+}
+
 /// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the reference twin. Flattened: a call
 /// left in it would pass lanes through memory, which was seen to cost a factor of two. Not inlined, so that
 /// tests/vectorisation finds it. Begins with block `from` and goes on until `waiting` is full, if it is given; returns
@@ -294,9 +323,13 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const auto length = [&] { return sqrt(in_precision<L>(square)); };
       double* const state_at = batch.state + block * fields * block_size + sub;
       touching_now |= now << sub;
+      constexpr std::uint32_t all = (1u << width) - 1u;
+      const std::uint32_t parted = before >> sub & all & ~now;
+      if constexpr (Ledger && fields > 0)
+        for (std::uint32_t gone = parted; gone != 0; gone &= gone - 1)
+          part<Law, Features>(batch, table, materials, first + static_cast<std::size_t>(std::countr_zero(gone)));
       if (now == 0 || (waiting != nullptr && std::popcount(now) < few)) {
-        constexpr std::uint32_t all = (1u << width) - 1u;
-        for (std::uint32_t gone = before >> sub & all & ~now; gone != 0; gone &= gone - 1) {
+        for (std::uint32_t gone = parted; gone != 0; gone &= gone - 1) {
           const auto k = static_cast<std::size_t>(std::countr_zero(gone));
           for (std::size_t f = 0; f < fields; ++f) state_at[f * block_size + k] = 0;
           if (batch.row != nullptr) batch.row[first - first_row + k] = {};
@@ -603,6 +636,10 @@ class LawPlugin final : public ContactLaw {
   }
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
     return Law::stiffness(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b]);
+  }
+  std::vector<double> mixed(std::size_t a, std::size_t b, bool wall) const override {
+    const auto* const numbers = reinterpret_cast<const double*>(&(wall ? wall_table_ : table_)[a * count_ + b]);
+    return {numbers, numbers + detail::member_count<Pair, double>};
   }
   ElasticEnergy energy(const PairSize& pair, std::size_t a, std::size_t b,
                        std::span<const double> state) const override {
