@@ -31,10 +31,10 @@ class ModelOfARun : public testing::Test {
 
 TEST_F(ModelOfARun, HasNoMemoryOfRollingWhereNothingResistsIt) {
   const json with = of({"/contacts/type=linear-rolling"});
-  EXPECT_THAT(with.at("law_parts"), ElementsAre("rolling"));
+  EXPECT_THAT(with.at("law_parts"), ElementsAre("shear", "rolling"));
   EXPECT_EQ(with.at("contact_state").size(), 6u);
   const json without = of({"/contacts/type=linear-rolling", "/materials/sand/rolling_limit=0"});
-  EXPECT_THAT(without.at("law_parts"), IsEmpty());
+  EXPECT_THAT(without.at("law_parts"), ElementsAre("shear"));
   EXPECT_EQ(without.at("contact_state").size(), 3u);
   EXPECT_LT(without.at("bytes"), with.at("bytes"));
 }
@@ -46,11 +46,11 @@ TEST_F(ModelOfARun, IsNotOfMaterialsThatNothingIsOf) {
   const json alone = of({law, smooth});
   const json beside = of({law, smooth, first, last});
   EXPECT_THAT(beside.at("materials"), ElementsAre("sand", "rock", "steel"));
-  EXPECT_THAT(beside.at("law_parts"), IsEmpty());
+  EXPECT_THAT(beside.at("law_parts"), ElementsAre("shear"));
   EXPECT_EQ(beside.at("contact_state"), alone.at("contact_state"));
   EXPECT_EQ(beside.at("bytes"), alone.at("bytes"));
   const json floor = of({law, first, R"(/walls/floor={"type": "plane", "material": "rock", "point": [0, 0, -1]})"});
-  EXPECT_THAT(floor.at("law_parts"), ElementsAre("rolling"));
+  EXPECT_THAT(floor.at("law_parts"), ElementsAre("shear", "rolling"));
 }
 
 TEST_F(ModelOfARun, KnowsAMaterialThatAStageGivesAWall) {
@@ -58,15 +58,24 @@ TEST_F(ModelOfARun, KnowsAMaterialThatAStageGivesAWall) {
                          R"(/materials/steel={"density": 7800})", R"(/interfaces/sand+steel={"rolling_limit": 0.3})",
                          R"(/walls/floor={"type": "plane", "material": "sand", "point": [0, 0, -1]})",
                          R"(/stages/0/change={"walls": {"floor": {"material": "steel"}}})"});
-  EXPECT_THAT(later.at("law_parts"), ElementsAre("rolling"));
+  EXPECT_THAT(later.at("law_parts"), ElementsAre("shear", "rolling"));
 }
 
 TEST_F(ModelOfARun, HasNoHistoryWithoutFriction) {
-  const json with = of({"/contacts/type=linear-frictional"});
-  EXPECT_THAT(with.at("contact_state"), ElementsAre("shear_x", "shear_y", "shear_z"));
-  const json without = of({"/contacts/type=linear-frictional", "/materials/sand/friction_angle=0"});
-  EXPECT_THAT(without.at("contact_state"), IsEmpty());
-  EXPECT_LT(without.at("bytes"), with.at("bytes"));
+  for (const std::string law : {"linear-frictional", "linear-rolling"}) {
+    const std::string type = "/contacts/type=" + law, no_rolling = "/materials/sand/rolling_stiffness=0";
+    const auto sets = [&](const std::string& more) {
+      return law == "linear-rolling" ? std::vector<std::string>{type, no_rolling, more}
+                                     : std::vector<std::string>{type, more};
+    };
+    const json with = of(sets("/seed=1"));
+    EXPECT_THAT(with.at("contact_state"), ElementsAre("shear_x", "shear_y", "shear_z")) << law;
+    for (const char* off : {"/materials/sand/friction_angle=0", "/materials/sand/shear_to_normal_stiffness=0"}) {
+      const json without = of(sets(off));
+      EXPECT_THAT(without.at("contact_state"), IsEmpty()) << law << off;
+      EXPECT_LT(without.at("bytes"), with.at("bytes")) << law << off;
+    }
+  }
 }
 
 TEST_F(ModelOfARun, TurnsAndMovesAreKeptOnlyWhereSomethingAsks) {

@@ -86,15 +86,18 @@ struct LinearRolling {
   }
 
   static constexpr bool single_precision = true;
-  static constexpr unsigned feature_bits = 2;
-  static constexpr unsigned with_rolling = 1, with_twisting = 2;
-  static constexpr const char* feature_names[] = {"rolling", "twisting"};
+  static constexpr unsigned feature_bits = 3;
+  static constexpr unsigned with_shear = 1, with_rolling = 2, with_twisting = 4;
+  static constexpr const char* feature_names[] = {"shear", "rolling", "twisting"};
   static unsigned features(const Pair<double>& pair) {
-    return (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u) |
+    return (pair.friction > 0 ? with_shear : 0u) | (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u) |
            (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u);
   }
   static constexpr std::size_t fields_used(unsigned features) {
-    return (features & with_twisting) != 0 ? 7 : (features & with_rolling) != 0 ? 6 : 3;
+    return (features & with_twisting) != 0  ? 7
+           : (features & with_rolling) != 0 ? 6
+           : (features & with_shear) != 0   ? 3
+                                            : 0;
   }
 
   /// A wall lends its strength only: stiffness, like the radius, is the grain's.
@@ -132,11 +135,15 @@ struct LinearRolling {
     Response<L> response;
     response.normal_force = kn * at.overlap;
 
-    const Vec<L> shear = stretched(at, {state.shear_x, state.shear_y, state.shear_z}, ks, at.velocity);
-    response.shear = shortened(shear, pair.friction * response.normal_force);
-    state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
+    if constexpr ((Features & with_shear) != 0) {
+      const Vec<L> shear = stretched(at, {state.shear_x, state.shear_y, state.shear_z}, ks, at.velocity);
+      response.shear = shortened(shear, pair.friction * response.normal_force);
+      state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
+    } else {
+      state.shear_x = state.shear_y = state.shear_z = L(0.0);
+    }
 
-    if constexpr (Features != 0) {
+    if constexpr ((Features & (with_rolling | with_twisting)) != 0) {
       const L arm = limiting_radius(at, pair) * response.normal_force;
       const L angular = ks * at.radius_a * at.radius_b;
       if constexpr ((Features & with_rolling) != 0) {
@@ -169,9 +176,11 @@ struct LinearRolling {
   [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
                                                const State<L>& after, const Response<L>& response) {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
-    const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
-    const L slid =
-        slipped(at.turn(shear), stretched(at, shear, ks, at.velocity), pair.friction * response.normal_force);
+    L slid(0.0);
+    if constexpr ((Features & with_shear) != 0) {
+      const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
+      slid = slipped(at.turn(shear), stretched(at, shear, ks, at.velocity), pair.friction * response.normal_force);
+    }
     const L angular = ks * at.radius_a * at.radius_b, rolling_stiffness = pair.rolling * angular;
     // Of rolling, where it is on; one division serves both springs.
     L other(1.0), rolled(0.0);
@@ -186,7 +195,7 @@ struct LinearRolling {
     // What a spring held when it was switched off is booked with that.
     const auto where_on = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
-    loss.friction = where_on(pair.friction, slid * (half * other));
+    if constexpr ((Features & with_shear) != 0) loss.friction = where_on(pair.friction, slid * (half * other));
     if constexpr ((Features & with_rolling) != 0) loss.rolling = where_on(pair.rolling_limit, rolled * (half * ks));
     if constexpr ((Features & with_twisting) != 0) {
       const L stiffness = pair.twisting * angular;
