@@ -25,8 +25,8 @@ class Law(NamedTuple):
     fields: int  # numbers that a contact remembers
 
 
-# Rolling; shear and damping, in the box damping of shear too; shear and damping.
-LAWS = {'linear-rolling': Law(1, 1, 6), 'linear-frictional': Law(3, 7, 3), 'hertz-mindlin': Law(3, 3, 4)}
+# Shear and rolling; shear and damping, in the box damping of shear too; shear and damping.
+LAWS = {'linear-rolling': Law(3, 3, 6), 'linear-frictional': Law(3, 7, 3), 'hertz-mindlin': Law(3, 3, 4)}
 
 
 def plugins_of(program):

@@ -244,7 +244,7 @@ struct Silo {
       // Said for the pair, as low friction between grains while they fall would lower it.
       d["interfaces"][std::string(name) + "+wall"] = {{"friction_angle", wall_friction_angle}};
     }
-    d["materials"]["wall"] = {{"friction_angle", wall_friction_angle}, {"rolling_limit", rolling_limit}};
+    d["materials"]["wall"] = {{"rolling_limit", rolling_limit}};
     d["materials"]["smooth"] = {{"friction_angle", 0.0}, {"rolling_limit", 0.0}};
 
     const double reach = overhang() + width;

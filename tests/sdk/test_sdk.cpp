@@ -42,7 +42,7 @@ TEST(Sdk, LoadsAPluginFromOutside) {
 }
 
 TEST(Sdk, LoadsAnInstalledPlugin) {
-  EXPECT_EQ(Registry({INSTALLED_PLUGINS}).make<ContactLaw>("linear-rolling")->state().size(), 3u);
+  EXPECT_EQ(Registry({INSTALLED_PLUGINS}).make<ContactLaw>("linear-rolling")->loop().precision, "double");
 }
 
 }  // namespace

@@ -37,6 +37,7 @@
 #include <bit>
 #include <limits>
 #include <map>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -204,6 +205,7 @@ class Waiting {
       image_[k] = used && from.image != nullptr ? from.image[place_[k]] : 0;
       for (std::size_t f = 0; f < Fields; ++f) memory(state_, k, f) = used ? memory(from.state, place_[k], f) : 0;
     }
+    std::fill_n(touching_, blocks, std::uint8_t{0});  // none parts here
     PairBatch own = from;
     own.a = a_, own.b = b_, own.image = from.image != nullptr ? image_ : nullptr;
     own.first_block = 0, own.last_block = own.last_near = blocks, own.next_count = 0;
@@ -234,11 +236,34 @@ class Waiting {
   ContactRow row_[most];
 };
 
-/// Two bodies touch no more: what their springs held, of which friction and rolling had not yet taken all, is lost.
-template <class Law, unsigned Features>
-[[gnu::noinline]] void part(const PairBatch& batch, const typename Law::template Pair<double>* table,
-                            std::size_t materials, std::size_t place) {
-  constexpr std::size_t fields = Law::fields_used(Features);
+/// Pairs that touch no more, and what they remembered, out of the loop: what follows of them is rare.
+template <std::size_t Fields>
+class Parted {
+ public:
+  bool has_room_for_a_block() const { return count_ + block_size <= most; }
+  void add(std::size_t place, const double* state) {
+    place_[count_] = place;
+    for (std::size_t f = 0; f < Fields; ++f) state_[count_ * Fields + f] = state[f * block_size];
+    ++count_;
+  }
+  /// Calls use(place, state) for each; none are left.
+  template <class Use>
+  void take(Use use) {
+    for (std::size_t k = 0; k < count_; ++k) use(place_[k], std::span<const double>(state_ + k * Fields, Fields));
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t most = 64;
+  std::size_t count_ = 0;
+  std::size_t place_[most];
+  double state_[most * Fields + 1];
+};
+
+/// What springs of two bodies that touch no more held, of which friction and rolling had not yet taken all, is lost.
+template <class Law>
+void lose_springs(const PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials,
+                  std::size_t place, std::span<const double> remembered) {
   const std::uint32_t a = batch.a[place], b = batch.b[place];
   Vec3 between = xyz(batch.position[b]) - xyz(batch.position[a]),
        apart = xyz(batch.velocity[b]) - xyz(batch.velocity[a]);
@@ -250,8 +275,7 @@ template <class Law, unsigned Features>
   // As it was when they touched.
   const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
   typename Law::template State<double> state{};
-  for (std::size_t f = 0; f < fields; ++f)
-    member<double>(state, f) = batch.state[(place / block_size * fields + f) * block_size + place % block_size];
+  for (std::size_t f = 0; f < remembered.size(); ++f) member<double>(state, f) = remembered[f];
   const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
   const ElasticEnergy held = Law::energy({.radius_a = radius_a,
                                           .radius_b = radius_b,
@@ -265,13 +289,14 @@ template <class Law, unsigned Features>
 
 /// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the reference twin. Flattened: a call
 /// left in it would pass lanes through memory, which was seen to cost a factor of two. Not inlined, so that
-/// tests/vectorisation finds it. Begins with block `from` and goes on until `waiting` is full, if it is given; returns
-/// the block that comes next. All pairs take the one way through the arithmetic, so that one has the same bits wherever
-/// it stands.
+/// tests/vectorisation finds it. Begins with block `from` and goes on until `waiting` or `parted` is full, if they are
+/// given; returns the block that comes next. All pairs take the one way through the arithmetic, so that one has the
+/// same bits wherever it stands.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
-                                                      Waiting<Law::fields_used(Features)>* waiting) {
+                                                      Waiting<Law::fields_used(Features)>* waiting,
+                                                      Parted<Law::fields_used(Features)>* parted) {
   constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
   using State = typename Law::template State<L>;
   const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
@@ -293,6 +318,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   std::size_t block = from;
   for (; block < batch.last_block; ++block) {
     if (waiting != nullptr && !waiting->has_room_for_a_block()) break;
+    if (Ledger && parted != nullptr && !parted->has_room_for_a_block()) break;
     ahead(block);
     const std::uint32_t before = batch.touching[block];
     if (before == 0 && batch.asleep_until != nullptr && batch.closing < batch.asleep_until[block]) continue;
@@ -324,12 +350,14 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       double* const state_at = batch.state + block * fields * block_size + sub;
       touching_now |= now << sub;
       constexpr std::uint32_t all = (1u << width) - 1u;
-      const std::uint32_t parted = before >> sub & all & ~now;
+      const std::uint32_t gone_now = before >> sub & all & ~now;
       if constexpr (Ledger && fields > 0)
-        for (std::uint32_t gone = parted; gone != 0; gone &= gone - 1)
-          part<Law, Features>(batch, table, materials, first + static_cast<std::size_t>(std::countr_zero(gone)));
+        for (std::uint32_t gone = gone_now; gone != 0; gone &= gone - 1) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(gone));
+          parted->add(first + k, state_at + k);
+        }
       if (now == 0 || (waiting != nullptr && std::popcount(now) < few)) {
-        for (std::uint32_t gone = parted; gone != 0; gone &= gone - 1) {
+        for (std::uint32_t gone = gone_now; gone != 0; gone &= gone - 1) {
           const auto k = static_cast<std::size_t>(std::countr_zero(gone));
           for (std::size_t f = 0; f < fields; ++f) state_at[f * block_size + k] = 0;
           if (batch.row != nullptr) batch.row[first - first_row + k] = {};
@@ -455,13 +483,19 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
 void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
   constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind, Ledger>;
   Waiting<Law::fields_used(Features)> waiting;
+  Parted<Law::fields_used(Features)> parted;
   double largest = 0;
   for (std::size_t next = batch.first_block; next < batch.last_block;) {
-    next = loop(batch, table, materials, next, &waiting);
+    next = loop(batch, table, materials, next, &waiting, &parted);
+    if constexpr (Ledger)
+      parted.take([&](std::size_t place, std::span<const double> state) {
+        lose_springs<Law>(batch, table, materials, place, state);
+      });
     largest = std::max(largest, batch.largest_overlap);
-    if (waiting.none()) continue;
+    // Where only `parted` was full, those that wait go on waiting: a ledger does not change the order of sums.
+    if (waiting.none() || (next < batch.last_block && waiting.has_room_for_a_block())) continue;
     PairBatch together = waiting.take(batch);
-    loop(together, table, materials, 0, nullptr);
+    loop(together, table, materials, 0, nullptr, nullptr);
     waiting.put_back(batch);
     largest = std::max(largest, together.largest_overlap);
   }
