@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/order.hpp"
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
@@ -58,17 +59,6 @@ Hit collide(const Description& d) {
   hit.speed = -closing_speed(t);
   hit.duration = t.world().time() + hit.first_outside / hit.speed;  // back along the straight way since they parted
   return hit;
-}
-
-/// Slope of log |error| over log dt, by least squares.
-double order(const std::vector<double>& dt, const std::vector<double>& error) {
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  const auto n = static_cast<double>(dt.size());
-  for (std::size_t i = 0; i < dt.size(); ++i) {
-    const double x = std::log(dt[i]), y = std::log(std::abs(error[i]));
-    sx += x, sy += y, sxx += x * x, sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 TEST(Collision, LastsHalfAPeriodOfTheSpring) {

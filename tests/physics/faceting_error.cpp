@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/order.hpp"
 #include "support/scene.hpp"
 #include "support/stl_file.hpp"
 #include "support/verified.hpp"
@@ -45,17 +46,6 @@ Difference difference(const std::vector<Vec3>& found, const std::vector<Vec3>& k
   }
   const auto n = static_cast<double>(known.size());
   return {std::sqrt(sum.strength / n), std::sqrt(sum.direction / n)};
-}
-
-/// Slope of the straight line through the logarithms, by least squares.
-double order(const std::vector<double>& sizes, const std::vector<double>& errors) {
-  double x = 0, y = 0, xx = 0, xy = 0;
-  const auto n = static_cast<double>(sizes.size());
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const double u = std::log(sizes[i]), v = std::log(errors[i]);
-    x += u, y += v, xx += u * u, xy += u * v;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
 }
 
 void add_strip(std::vector<Vec3>& corners, const Vec3& a, const Vec3& b, const Vec3& along) {

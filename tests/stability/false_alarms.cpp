@@ -24,7 +24,10 @@ std::size_t expect_done(const std::string& file, const std::vector<std::string>&
 
 class FalseAlarms : public testing::TestWithParam<bool> {};
 
-TEST_P(FalseAlarms, NoneInTheColumn) { expect_done("column/quick.json", {}, GetParam()); }
+TEST_P(FalseAlarms, NoneInTheColumn) {
+  expect_done("column/quick.json", {}, GetParam());
+  figure("overlap that the usual guard allows, in radii", GuardsDescription().overlap);
+}
 TEST_P(FalseAlarms, NoneInTheOedometer) { expect_done("oedometer/quick.json", {}, GetParam()); }
 TEST_P(FalseAlarms, NoneInDirectShear) {
   // A small box, dense and loose.
