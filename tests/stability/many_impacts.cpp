@@ -17,7 +17,7 @@
 #include "support/mapped.hpp"
 #include "support/packing.hpp"
 
-namespace grit::test {
+namespace grit::test::many_impacts_tests {
 namespace {
 
 using std::numbers::pi;
@@ -212,4 +212,4 @@ INSTANTIATE_TEST_SUITE_P(All, ManyImpacts,
                          [](const auto& info) { return std::string(info.index == 0 ? "linear" : "hertz"); });
 
 }  // namespace
-}  // namespace grit::test
+}  // namespace grit::test::many_impacts_tests
