@@ -166,8 +166,9 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   folder.write("probe.json", changed.dump());
   const auto probe = grit({"chart", "probe.json"});
   EXPECT_EQ(probe.status, 2);
-  EXPECT_THAT(probe.err, HasSubstr("probe.json: /figures/energy/of: found the probe \"walls\", which the scene lacks; "
-                                   "allowed is one of packing"));
+  EXPECT_THAT(probe.err,
+              HasSubstr("probe.json:1: /figures/energy/of: found the probe \"walls\", which the scene lacks; "
+                        "allowed is one of packing"));
   changed["figures"]["energy"] = {
       {"type", "curve"}, {"of", "packing/kinetic_energy"}, {"curve", {{"file", "none.csv"}, {"x", "x"}, {"y", "y"}}}};
   folder.write("file.json", changed.dump());
@@ -194,15 +195,41 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   EXPECT_THAT(both.err, HasSubstr("--draw does none: give one of them"));
 }
 
-TEST_F(Studies, SayWhichChannelThereIs) {
+TEST_F(Studies, SayBeforeAnyRunWhichChannelThereIs) {
   auto changed = json::parse(study);
-  changed["figures"]["energy"]["of"] = "packing/energy";
+  changed["figures"]["energy"]["of"] = "packing/kinetic_enrgy";
+  changed["figures"]["late"] = {{"type", "last"}, {"of", "packing/kinetic_energy"}, {"against", "packing/tme"}};
+  folder.write("study.json", changed.dump(2));
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(ContainsRegex("study.json:[0-9]+: /figures/energy/of: found \"packing/kinetic_enrgy\", a channel "
+                          "that the probe lacks; did you mean \"packing/kinetic_energy\"\\? Allowed is one of"),
+            HasSubstr("/figures/late/against: found \"packing/tme\""), HasSubstr("did you mean \"packing/time\"?")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  changed["figures"].erase("late");
+  changed["figures"]["energy"]["of"] = "packing/stress";
   folder.write("study.json", changed.dump());
-  const auto outcome = grit({"chart", "study.json", "--jobs", "1"});
-  EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("has no channel \"energy\""), HasSubstr("kinetic_energy")));
-  EXPECT_THAT(grit({"chart", "study.json", "--dry"}).out, Not(HasSubstr("0 of 8 runs are missing")))
-      << "the first run shows it";
+  const auto wide = grit({"chart", "study.json"});
+  EXPECT_EQ(wide.status, 2);
+  EXPECT_THAT(wide.err, HasSubstr("/figures/energy/of: found \"packing/stress\", which has several numbers a sample"));
+}
+
+TEST_F(Studies, RunAgainWhatHasLostItsSeries) {
+  ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
+  const std::string run = "results/study/runs/usual/seed-1";
+  std::filesystem::remove(folder / (run + "/series.h5"));
+  const auto drawn = grit({"chart", "study.json", "--draw"});
+  EXPECT_EQ(drawn.status, 5);
+  EXPECT_THAT(drawn.err, AllOf(HasSubstr(run + ": is a run that is done, whose series.h5 is gone"),
+                               HasSubstr("the same command without --draw")));
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr(run + ": is a run that is done, whose series.h5 is gone or cannot be read: "
+                                                 "it is run again"),
+                                 HasSubstr("1 of 8 runs to do")));
+  EXPECT_THAT(grit({"chart", "study.json", "--dry"}).out, HasSubstr("0 of 8 runs are missing"));
 }
 
 TEST_F(Studies, AreInterruptedAndGoOn) {
