@@ -51,6 +51,7 @@ TEST_F(Studies, AreRunChartedAndNotRunAgain) {
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_THAT(first.err, HasSubstr("8 of 8 runs to do"));
   EXPECT_THAT(first.out, AllOf(HasSubstr("  usual: "), HasSubstr("  safety=0.1: "), HasSubstr("within 1.0 %"),
+                               HasSubstr("Nothing is random in this scene: the seed changes nothing"),
                                HasSubstr("chart: results/study/chart.html")));
   const auto all = chart();
   ASSERT_EQ(all.at("variants").size(), 4u);
