@@ -51,6 +51,7 @@ TEST_F(Studies, AreRunChartedAndNotRunAgain) {
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_THAT(first.err, HasSubstr("8 of 8 runs to do"));
   EXPECT_THAT(first.out, AllOf(HasSubstr("  usual: "), HasSubstr("  safety=0.1: "), HasSubstr("within 1.0 %"),
+                               HasSubstr("Nothing is random in this scene: the seed changes nothing"),
                                HasSubstr("chart: results/study/chart.html")));
   const auto all = chart();
   ASSERT_EQ(all.at("variants").size(), 4u);
@@ -166,8 +167,9 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   folder.write("probe.json", changed.dump());
   const auto probe = grit({"chart", "probe.json"});
   EXPECT_EQ(probe.status, 2);
-  EXPECT_THAT(probe.err, HasSubstr("probe.json: /figures/energy/of: found the probe \"walls\", which the scene lacks; "
-                                   "allowed is one of packing"));
+  EXPECT_THAT(probe.err,
+              HasSubstr("probe.json:1: /figures/energy/of: found the probe \"walls\", which the scene lacks; "
+                        "allowed is one of packing"));
   changed["figures"]["energy"] = {
       {"type", "curve"}, {"of", "packing/kinetic_energy"}, {"curve", {{"file", "none.csv"}, {"x", "x"}, {"y", "y"}}}};
   folder.write("file.json", changed.dump());
@@ -194,15 +196,147 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   EXPECT_THAT(both.err, HasSubstr("--draw does none: give one of them"));
 }
 
-TEST_F(Studies, SayWhichChannelThereIs) {
+TEST_F(Studies, SayBeforeAnyRunWhichChannelThereIs) {
   auto changed = json::parse(study);
-  changed["figures"]["energy"]["of"] = "packing/energy";
+  changed["figures"]["energy"]["of"] = "packing/kinetic_enrgy";
+  changed["figures"]["late"] = {{"type", "last"}, {"of", "packing/kinetic_energy"}, {"against", "packing/tme"}};
+  folder.write("study.json", changed.dump(2));
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(
+      outcome.err,
+      AllOf(ContainsRegex("study.json:[0-9]+: /figures/energy/of: found \"packing/kinetic_enrgy\", a channel "
+                          "that the probe lacks; did you mean \"packing/kinetic_energy\"\\? Allowed is one of"),
+            HasSubstr("/figures/late/against: found \"packing/tme\""), HasSubstr("did you mean \"packing/time\"?")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  changed["figures"].erase("late");
+  changed["figures"]["energy"]["of"] = "packing/stress";
   folder.write("study.json", changed.dump());
-  const auto outcome = grit({"chart", "study.json", "--jobs", "1"});
-  EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("has no channel \"energy\""), HasSubstr("kinetic_energy")));
-  EXPECT_THAT(grit({"chart", "study.json", "--dry"}).out, Not(HasSubstr("0 of 8 runs are missing")))
-      << "the first run shows it";
+  const auto wide = grit({"chart", "study.json"});
+  EXPECT_EQ(wide.status, 2);
+  EXPECT_THAT(wide.err, HasSubstr("/figures/energy/of: found \"packing/stress\", which has several numbers a sample"));
+}
+
+TEST_F(Studies, RunAgainWhatHasLostItsSeries) {
+  ASSERT_EQ(grit({"chart", "study.json", "--quiet"}).status, 0);
+  const std::string run = "results/study/runs/usual/seed-1";
+  std::filesystem::remove(folder / (run + "/series.h5"));
+  const auto drawn = grit({"chart", "study.json", "--draw"});
+  EXPECT_EQ(drawn.status, 5);
+  EXPECT_THAT(drawn.err, AllOf(HasSubstr(run + ": is a run that is done, whose series.h5 is gone"),
+                               HasSubstr("the same command without --draw")));
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr(run + ": is a run that is done, whose series.h5 is gone or cannot be read: "
+                                                 "it is run again"),
+                                 HasSubstr("1 of 8 runs to do")));
+  EXPECT_THAT(grit({"chart", "study.json", "--dry"}).out, HasSubstr("0 of 8 runs are missing"));
+}
+
+/// The study's chart with costs and, by level of the safety, errors of our own.
+class Advised : public Studies {
+ protected:
+  void make(json changed) {
+    folder.write("study.json", changed.dump());
+    const auto outcome = grit({"chart", "study.json", "--quiet"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    charted = chart();
+    // Such short runs cost nothing but noise.
+    for (auto& effect : charted["effects"])
+      effect["cost"] = effect["setting"] == "damping" ? 1.25
+                       : effect["level"] == "0.8"     ? 0.01
+                                                      : 0.1,
+      effect["cost_standard_error"] = 0.0;
+    folder.write("results/study/chart.json", charted.dump());
+  }
+  std::string advise(const std::vector<std::string>& more) {
+    std::vector<std::string> words{"advise",  "two.json",
+                                   "--study", "results/study/chart.json",
+                                   "--set",   R"(/stages/0/until={"type": "time", "value": "20 us"})"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto outcome = grit(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  }
+  json charted;
+};
+
+TEST_F(Advised, ByWhatIsFinerAndCheaperWhateverStays) {
+  make(json::parse(study));
+  const std::vector<std::string> coarse{"--set", "/time_step/safety=0.8", "--set", "/engines/damping/coefficient=0.5"};
+  EXPECT_THAT(
+      advise(coarse),
+      AllOf(
+          HasSubstr("    → 0: finer and 1.25 ± 0.00 times cheaper, is the finest that was tried\n"),
+          HasSubstr("beyond the tolerance as it is: damping 0.5; 0, which is finer, is within it and 1.25 ± 0.00 times "
+                    "cheaper\n"),
+          ContainsRegex("beyond the tolerance as it is: safety 0.8; 0.1?1?, which is finer, is within it and 10+.00 ± "
+                        "0.00 times dearer\n"),
+          HasSubstr("nothing coarser that the study tried is known to be cheaper\n"),
+          HasSubstr("together about 1.2 times cheaper\n"), HasSubstr("too much\n"), Not(HasSubstr("costs more"))));
+  // A pointer stands once in the command, with its last value.
+  EXPECT_THAT(advise(coarse), HasSubstr(" --set /time_step/safety=0.8 --set /engines/damping/coefficient=0\n"));
+}
+
+TEST_F(Advised, OfWhatItTakesWhereNothingMayBeRelaxed) {
+  auto changed = json::parse(study);
+  changed["figures"]["grains"] = {{"type", "last"}, {"of", "packing/time"}};
+  make(changed);
+  for (auto& effect : charted["effects"]) {
+    if (effect["setting"] != "safety") continue;
+    const bool fine = effect["level"] == "0.1";
+    effect["figures"]["energy"] = {{"error", fine ? 0.1 : 0.4}, {"standard_error", 0.012}};
+    effect["figures"]["grains"] = {{"error", fine ? 0.005 : 0.3}, {"standard_error", 0.02}};
+  }
+  folder.write("results/study/chart.json", charted.dump());
+  const auto out = advise({"--set", "/time_step/safety=0.01", "--tolerance", "1%"});
+  EXPECT_THAT(out,
+              AllOf(HasSubstr("nothing that the study tried may be relaxed\n  what decides against coarser levels, "
+                              "each by itself: energy (2)\n"),
+                    ContainsRegex("--study results/study/chart.json --tolerance 12%\n      safety 0.1\n"),
+                    ContainsRegex("--figure energy --tolerance 12%\n      safety 0.1\n"),
+                    ContainsRegex("--figure grains --tolerance 3%\n      safety 0.1\n")));
+  EXPECT_THAT(advise({"--set", "/time_step/safety=0.01", "--tolerance", "3%", "--figure", "grains"}),
+              HasSubstr("    → 0.1: 10.00 ± 0.00 times cheaper"))
+      << "as it says";
+  // What stays takes all of the tolerance.
+  charted["effects"][0]["cost"] = 0.8;
+  folder.write("results/study/chart.json", charted.dump());
+  EXPECT_THAT(
+      advise({"--set", "/time_step/safety=0.01", "--set", "/engines/damping/coefficient=0.5", "--tolerance", "15%"}),
+      AllOf(HasSubstr("within the tolerance by itself, but not with what the other settings change: safety 0.1\n"),
+            ContainsRegex("the largest of these is that of damping 0.5, which changes energy by ")));
+}
+
+TEST_F(Advised, TellsWhatOfFiguresAndSamplesIsNotTold) {
+  auto changed = json::parse(study);
+  changed["figures"]["begin"] = {{"type", "minimum"}, {"of", "packing/kinetic_energy"}};
+  changed["figures"]["lab"] = {{"type", "last"}, {"of", "packing/kinetic_energy"}, {"value", 1000}};
+  const std::vector<std::string> fine{"--set", "/time_step/safety=0.01"};
+  make(changed);
+  const auto two = advise(fine);
+  EXPECT_THAT(two,
+              AllOf(HasSubstr("nothing is known of begin, which counts but could not be charted: its reference is 0"),
+                    HasSubstr("lab is at every level further than the tolerance from the reference of its own, 100.0 % "
+                              "± 0.0 % at best"),
+                    HasSubstr("Nothing is random in this scene: the seed changes nothing, samples are alike")));
+  EXPECT_THAT(advise({"--set", "/time_step/safety=0.01", "--figure", "energy"}),
+              AllOf(Not(HasSubstr("begin")), Not(HasSubstr("lab"))))
+      << "they do not count";
+  // One sample says as much.
+  changed["seeds"]["values"] = {1};
+  make(changed);
+  const auto one = advise(fine);
+  EXPECT_THAT(one, HasSubstr("Nothing is random in this scene: one sample is all that figures need."));
+  const auto from = [](const std::string& out) { return out.substr(out.find("\n\n")); };
+  EXPECT_EQ(from(one), from(two));
+}
+
+TEST_F(Studies, ThatAdviseNothingSayWhyAndWhatToDo) {
+  const auto outcome = grit({"advise", std::string(GRIT_SOURCE_DIR) + "/sims/triaxial/quick.json"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("triaxial.json: its settings are what is modelled, not how it is computed"),
+                                 HasSubstr("run a study of your scene that varies how it is computed")));
 }
 
 TEST_F(Studies, AreInterruptedAndGoOn) {
@@ -355,14 +489,15 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_THAT(fine.out, AllOf(HasSubstr("safety: 0.01 here"), HasSubstr("→ 0.1: 10.00 ± 0.00 times cheaper"),
                               HasSubstr(" --set /time_step/safety=0.1\n"), HasSubstr("too much"), HasSubstr(chart)));
   const auto coarse = advise({"--set", "/time_step/safety=0.8", "--tolerance", "0.01"});
-  EXPECT_THAT(coarse.out,
-              AllOf(HasSubstr("nothing cheaper was tried"), HasSubstr("nothing that the study tried may be relaxed")));
+  EXPECT_THAT(coarse.out, AllOf(HasSubstr("nothing cheaper was tried"),
+                                HasSubstr("nothing coarser that the study tried is known to be cheaper")));
   EXPECT_THAT(advise({"--set", "/time_step/safety=0.3"}).out,
               HasSubstr("a value that the study did not try; it tried 0.8, 0.1, 0.01"));
   EXPECT_THAT(fine.out, HasSubstr("grit run two.json --set '/stages/0/until="))
       << "what was set for the advice belongs to the command";
   EXPECT_THAT(advise({"--set", "/engines/damping/coefficient=0.5"}).out,
-              HasSubstr("beyond the tolerance as it is: damping, safety;"));
+              AllOf(HasSubstr("beyond the tolerance as it is: damping 0.5; "),
+                    HasSubstr("beyond the tolerance as it is: safety 0.8; ")));
   // Of what is there as of what is cheaper: too much is not what cannot be told.
   const auto with_safety = [&](json of_coarse, json of_fine) {
     auto changed = charted;
@@ -379,12 +514,16 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_THAT(with_safety(untold, little),
               AllOf(ContainsRegex("safety: 0.8 here; changes .* by 3.0 % ± 6.0 %, cannot be told"),
                     HasSubstr("cannot be told of as it is: safety;"), Not(HasSubstr("beyond the tolerance"))));
-  EXPECT_THAT(with_safety(much, little),
-              AllOf(ContainsRegex("safety: 0.8 here; changes .* by 3.0 % ± 0.1 %, too much\n"),
-                    HasSubstr("beyond the tolerance as it is: safety;"), Not(HasSubstr("cannot be told"))));
+  EXPECT_THAT(
+      with_safety(much, little),
+      AllOf(ContainsRegex("safety: 0.8 here; changes .* by 3.0 % ± 0.1 %, too much\n"),
+            HasSubstr("beyond the tolerance as it is: safety 0.8; 0.1, which is finer, is within it and 10.00 ± "
+                      "0.00 times dearer\n"),
+            Not(HasSubstr("cannot be told"))));
   EXPECT_THAT(with_safety(untold, much),
               AllOf(ContainsRegex("0.8 here; changes .* by 3.0 % ± 6.0 %, too much: 0.1, which is finer, changes"),
-                    HasSubstr("beyond the tolerance as it is: safety;"), Not(HasSubstr("cannot be told"))));
+                    HasSubstr("beyond the tolerance as it is: safety 0.8; 0.01, which is finer"),
+                    Not(HasSubstr("cannot be told of as it is"))));
   EXPECT_EQ(advise({"--tolerance", "much"}).status, 1);
   EXPECT_EQ(advise({"--tolerance", "5"}).status, 1) << "500 %";
   EXPECT_EQ(advise({"--tolerance", "-2%"}).status, 1);
@@ -392,7 +531,7 @@ TEST_F(Studies, GiveAdvice) {
   EXPECT_THAT(grit({"advise", "it's two.json", "--study", chart, "--set", "/time_step/safety=0.01", "--tolerance", "1%",
                     "--set", "/title=it's"})
                   .out,
-              HasSubstr("grit run \"it's two.json\" --set /time_step/safety=0.01 --set \"/title=it's\""));
+              HasSubstr("grit run \"it's two.json\" --set \"/title=it's\" --set /time_step/safety=0.1\n"));
   EXPECT_THAT(fine.out, HasSubstr("whose scene has the same parts"));
   const auto other = advise({"--set", R"(/engines/gravity={"type": "gravity"})"});
   EXPECT_EQ(other.status, 2);
@@ -408,7 +547,7 @@ TEST_F(Studies, GiveAdvice) {
   folder.write("sand.json", charted.dump());
   const auto sand = grit({"advise", "two.json", "--study", "sand.json"});
   EXPECT_EQ(sand.status, 1);
-  EXPECT_THAT(sand.err, HasSubstr("its settings are what is modelled, not how"));
+  EXPECT_THAT(sand.err, HasSubstr("its settings are what is modelled, not how it is computed"));
   charted.erase("title");
   folder.write("half.json", charted.dump());
   for (const char* no_chart : {"two.json", "half.json", "none.json", "results"}) {

@@ -169,6 +169,55 @@ TEST_F(AdviceOf, ALevelIsWithinTheToleranceOnlyIfAllFinerOnesAre) {
   EXPECT_EQ(advice(0.05)[0].best->level, "4") << "what failed says nothing";
 }
 
+TEST_F(AdviceOf, WhatIsFinerAndCheaperIsTakenWhateverStays) {
+  // The rate stays beyond the tolerance, whatever the size does.
+  chart["effects"][2] = effect("size", "big", 1.25, 0.3, 0.001);
+  const auto some = advice(0.05, "/4", "/big");
+  EXPECT_EQ(some[0].taken, nullptr);
+  ASSERT_EQ(some[1].taken, some[1].finer);
+  EXPECT_EQ(some[1].taken->level, "small");
+  EXPECT_FALSE(some[1].is_relaxed());
+  EXPECT_DOUBLE_EQ(together(some).cost, 0.8);
+  EXPECT_NEAR(together(some).findings[0].error, 0.08, 1e-15);
+  chart["effects"][2]["cost_standard_error"] = 0.2;
+  EXPECT_EQ(advice(0.05, "/4", "/big")[1].taken, nullptr) << "times scatter by more";
+  // Finer and cheaper, but further off.
+  chart["effects"][0] = effect("rate", "4", 2.5, 0.08, 0.001);
+  chart["effects"][1] = effect("rate", "2", 0.5, 0.2, 0.001);
+  EXPECT_EQ(advice(0.05, "/4")[0].taken->level, "1");
+  chart["effects"][0]["cost"] = 0.9;
+  EXPECT_EQ(advice(0.05, "/4")[0].taken, nullptr);
+}
+
+TEST_F(AdviceOf, TheFinerLevelThatIsWithinTheToleranceIsTheCheapest) {
+  advice(0.05);
+  const auto& levels = study.settings.at("rate");
+  EXPECT_EQ(within_and_finer(levels, levels[0], 0.05)->level, "2");
+  EXPECT_EQ(within_and_finer(levels, levels[0], 0.01)->level, "1");
+  EXPECT_EQ(within_and_finer(levels, levels[2], 0.05), nullptr);
+}
+
+TEST_F(AdviceOf, FiguresThatNothingIsKnownOfAreKept) {
+  chart["figures"]["small"] = {{"reference", "finest"}, {"not_charted", "its reference is 0"}};
+  chart["figures"]["peak"] = {{"reference", "value"}, {"not_charted", nullptr}};
+  const auto variant = [](const char* name, double error, double standard_error) {
+    return json{{"name", name}, {"figures", {{"peak", {{"error", error}, {"standard_error", standard_error}}}}}};
+  };
+  chart["variants"] = {
+      variant("usual", 0.9, 0.01), variant("finest", 0.4, 0.01), {{"name", "failed"}, {"figures", json::object()}}};
+  advice(0.05);
+  EXPECT_EQ(study.uncharted, (std::map<std::string, std::string>{{"small", "its reference is 0"}}));
+  EXPECT_EQ(study.figures, std::vector<std::string>{"peak"});
+  const auto far = far_off(study, 0.05);
+  ASSERT_EQ(far.size(), 1u);
+  EXPECT_EQ(far[0].figure, "peak");
+  EXPECT_EQ(far[0].error, 0.4);
+  EXPECT_THAT(far_off(study, 0.5), IsEmpty());
+  chart["variants"][0] = variant("usual", 0.9, 0.5);
+  advice(0.05);
+  EXPECT_THAT(far_off(study, 0.05), IsEmpty()) << "of one it cannot be told";
+}
+
 TEST_F(AdviceOf, AChartWithoutErrorsIsNone) {
   const auto refused = [&](const std::vector<std::string>& figures) {
     try {

@@ -8,6 +8,7 @@
 #include "made_runs.hpp"
 #include "study/chart_page.hpp"
 #include "study/chart_words.hpp"
+#include "study/parts.hpp"
 #include "support/program.hpp"
 
 namespace grit {
@@ -123,7 +124,7 @@ TEST_F(Charts, CurvesAreComparedWhereBothAre) {
        {std::pair("usual", 0.5), std::pair("rate=slow", 0.0), std::pair("size=1", 0.0), std::pair("finest", 0.0)})
     for (const char* seed : {"/seed-1", "/seed-2"}) {
       const auto run = folder / ("runs/" + std::string(variant) + seed);
-      make_run_json(run, 1);
+      make_run_json(run, seed == std::string("/seed-1") ? 1 : 1.1);
       // y = 2 x + offset on other samples, and further than the reference.
       if (offset == 0) make_series(run, {0, 1, 4}, {0, 2, 8});
       else make_series(run, {0, 3, 5}, {offset, 6 + offset, 10 + offset});
@@ -264,7 +265,7 @@ TEST_F(Charts, AFigureWithoutANumberIsNotChartedUnlessOnlyOtherRunsLackIt) {
 
 TEST_F(Charts, AVariantIsWithinTheToleranceOnlyIfAllFinerOnesAre) {
   // At the usual rate and size the errors cancel: each alone, made finer, is 40 % off.
-  make("usual", 1, 1.01, 1.01);
+  make("usual", 1, 1.0101, 1.0099);  // a seed that changes nothing tells nothing
   make("rate=slow", 3, 1.4, 1.4);
   make("size=1", 2, 0.6, 0.6);
   make("finest", 6, 1, 1);
@@ -297,6 +298,51 @@ TEST_F(Charts, OneSampleHasNoScatter) {
   const Chart one = chart();
   EXPECT_TRUE(std::isnan(one.variants[0].of_worst().scatter));
   EXPECT_EQ(to_json(one)["variants"][0]["figures"]["end"]["scatter"], nullptr);
+}
+
+TEST_F(Charts, SamplesThatAreAlikeCountAsOneUnlessNothingIsRandom) {
+  const auto make_alike = [&](const char* grains) {
+    make("usual", 1, 1.3, 1.3), make("rate=slow", 3, 1.1, 1.1), make("size=1", 2, 1.2, 1.2), make("finest", 6, 1, 1);
+    nlohmann::json run = nlohmann::json::parse(text_of(folder / "runs/usual/seed-1/run.json"));
+    run["description"]["bodies"]["g"] = {{"type", "sphere"}, {"grains", {{"type", grains}}}};
+    folder.write("runs/usual/seed-1/run.json", run.dump());
+  };
+  const auto of_usual = [](const Chart& chart) { return chart.variants[0].of_worst(); };
+  make_alike("cloud");
+  const Chart drawn = chart(value_figure, R"(, "tolerance": 0.5)");
+  EXPECT_TRUE(std::isnan(of_usual(drawn).standard_error));
+  EXPECT_TRUE(std::isnan(drawn.effects[0].deviations.at("end").standard_error));
+  EXPECT_TRUE(std::isnan(drawn.variants[0].values.at("end").scatter));
+  EXPECT_EQ(drawn.variants[0].within, Confidence::untold);
+  EXPECT_THAT(verdict(drawn), HasSubstr("Samples are alike to the last digit though something is random in this scene: "
+                                        "the seed at /seed changes nothing"));
+  EXPECT_THAT(verdict(drawn), Not(HasSubstr("more seeds")));
+  make_alike("list");
+  const Chart given = chart(value_figure, R"(, "tolerance": 0.5)");
+  EXPECT_EQ(of_usual(given).standard_error, 0);
+  EXPECT_EQ(given.variants[0].within, Confidence::certain);
+  EXPECT_THAT(verdict(given),
+              HasSubstr("Nothing is random in this scene: the seed changes nothing, samples are alike"));
+  EXPECT_EQ(to_json(given)["of_samples"], of_samples(given));
+  seeds = "[1]";
+  const Chart single = chart(value_figure, R"(, "tolerance": 0.5)");
+  EXPECT_EQ(of_usual(single).standard_error, 0) << "as of two";
+  EXPECT_EQ(single.variants[0].within, Confidence::certain);
+  EXPECT_EQ(of_samples(single), "Nothing is random in this scene: one sample is all that figures need.");
+  seeds = "[1, 2]";
+  make_run(folder / "runs/size=1/seed-2", 2, 1.2000001);
+  EXPECT_EQ(of_samples(chart()), "") << "something differs";
+}
+
+TEST(WhatIsRandom, IsWhatASeedDecides) {
+  const auto random = [](const char* kind, const char* grains) {
+    return is_random({{"bodies", {{"g", {{"type", kind}, {"grains", {{"type", grains}}}}}}}});
+  };
+  EXPECT_TRUE(random("sphere", "cloud"));
+  EXPECT_FALSE(random("sphere", "list"));
+  EXPECT_FALSE(random("sphere", "file"));
+  EXPECT_FALSE(random("clump", "list"));
+  EXPECT_TRUE(random("clump", "file")) << "a file has no orientations";
 }
 
 TEST_F(Charts, FailuresAreToldAndCountNowhere) {

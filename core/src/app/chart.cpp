@@ -22,6 +22,10 @@
 #include "output/read_results.hpp"
 #include "output/run_facts.hpp"
 #include "plugins/build_facts.hpp"
+#include "plugins/nearest.hpp"
+#include "run/observer.hpp"
+#include "run/simulation.hpp"
+#include "scene/make_bodies.hpp"
 #include "study/batch.hpp"
 #include "study/chart.hpp"
 #include "study/chart_page.hpp"
@@ -46,6 +50,7 @@ std::string text_of(const std::filesystem::path& path) {
 enum class Progressed {
   nothing,  ///< or by another description, another grit or another build of a plugin
   begun,    ///< interrupted or killed, and it can go on
+  lost,     ///< done, and its series is gone or cannot be read
   ended,    ///< a failure of its numerics counts
 };
 
@@ -70,6 +75,15 @@ bool can_go_on(const std::filesystem::path& folder, const RunFacts& facts) {
   }
 }
 
+bool has_series(const std::filesystem::path& folder) {
+  try {
+    const SeriesFile series(folder);
+    return true;
+  } catch (const FileError&) {
+    return false;
+  }
+}
+
 /// What a folder has of what this program would make of this description with these plugins.
 Progressed progressed(const std::filesystem::path& folder, const Description& description,
                       const std::vector<PluginUsed>& plugins) {
@@ -81,7 +95,8 @@ Progressed progressed(const std::filesystem::path& folder, const Description& de
   if (says("/description") != description || says("/grit/revision") != build_facts().revision ||
       !says("/plugins").is_array() || builds(says("/plugins")) != builds(used))
     return Progressed::nothing;
-  if (says("/status") == "done" || says("/status") == "failed") return Progressed::ended;
+  if (says("/status") == "failed") return Progressed::ended;
+  if (says("/status") == "done") return has_series(folder) ? Progressed::ended : Progressed::lost;
   // Of a run that was killed run.json still says that it runs.
   const bool stopped = says("/status") == "interrupted" || says("/status") == "running";
   return stopped && can_go_on(folder, {.description = description, .plugins = plugins}) ? Progressed::begun
@@ -99,10 +114,18 @@ bool has_all_of(const Description& now, const Description& then) {
   return now == then;
 }
 
-/// For a chart of runs that are there, of whatever revision. Throws Error if one is of another description.
+std::string lost_series(const std::filesystem::path& folder) {
+  return folder.string() + ": is a run that is done, whose series.h5 is gone or cannot be read";
+}
+
+/// For a chart of runs that are there, of whatever revision. Throws Error if one is of another description, FileError
+/// if one has lost what it came to.
 void expect_same(const std::filesystem::path& folder, const Description& description) {
   const auto run = read_run_json(folder);
-  if (!run || !run->contains("description") || has_all_of(description, run->at("description"))) return;
+  if (!run || !run->contains("description")) return;
+  if (run->value("status", "") == "done" && !has_series(folder))
+    throw FileError(lost_series(folder) + "; run it again: the same command without --draw");
+  if (has_all_of(description, run->at("description"))) return;
   throw Error(folder.string() +
               ": holds a run of another description:" + differences(description, run->at("description")) +
               "\n  remove it, or run it again: the same command without --draw");
@@ -123,20 +146,69 @@ std::shared_ptr<const SceneDescription> scene_of(const StudyDescription& study, 
   }
 }
 
+std::string pointer_of(const std::string& figure, const std::string& key) {
+  return "/figures/" + pointer_token(figure) + '/' + key;
+}
+
+/// `; did you mean "color"? Allowed is one of color, view`
+std::string meant(const std::string& found, const std::vector<std::string>& names) {
+  const auto name = nearest(found, names);
+  return fmt::format("{} is one of {}", name ? fmt::format("; did you mean \"{}\"? Allowed", *name) : "; allowed",
+                     fmt::join(names, ", "));
+}
+
 /// Sees before hours of runs what of the figures cannot be. Throws DescriptionError, FileError.
-void check_figures(const StudyDescription& study, const std::filesystem::path& file, const SceneDescription& scene) {
+void check_figures(const StudyDescription& study, const Document& written, const SceneDescription& scene) {
   std::vector<Problem> problems;
+  const auto probes = std::views::keys(scene.probes);
   for (const auto& [name, figure] : study.figures) {
     if (figure.curve) read_reference(*figure.curve);
     for (const auto& [key, channel] : {std::pair("of", &figure.of), std::pair("against", &figure.against)}) {
       const std::string probe = channel->substr(0, channel->find('/'));
       if (probe.empty() || scene.probes.contains(probe)) continue;
-      problems.push_back({file.string(), 0, "/figures/" + name + '/' + key,
-                          fmt::format("found the probe \"{}\", which the scene lacks; allowed is one of {}", probe,
-                                      fmt::join(std::views::keys(scene.probes), ", "))});
+      problems.push_back(
+          written.problem(pointer_of(name, key), fmt::format("found the probe \"{}\", which the scene lacks", probe) +
+                                                     meant(probe, {probes.begin(), probes.end()})));
     }
   }
   if (!problems.empty()) throw DescriptionError(std::move(problems));
+}
+
+/// The same of channels, which probes tell only once they have seen a world.
+void check_channels(const StudyDescription& study, const Document& written, const SceneDescription& scene) try {
+  const Simulation simulation(scene, make_bodies(scene, run_state(scene)), 1);
+  std::vector<std::string> all;
+  std::set<std::string> wide;  // several numbers a sample
+  for (const auto& [name, probe] : scene.probes) {
+    for (const char* channel : {"time", "step"}) all.push_back(name + '/' + channel);
+    for (const Channel& channel : Observer(name, probe, simulation).group().channels) {
+      all.push_back(name + '/' + channel.name);
+      if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; })) wide.insert(all.back());
+    }
+  }
+  std::vector<Problem> problems;
+  for (const auto& [name, figure] : study.figures) {
+    const bool profile = std::holds_alternative<ProfileFigure>(figure.what.value());
+    for (const auto& [key, channel] : {std::pair("of", figure.of), std::pair("against", figure.against)}) {
+      if (channel.empty()) continue;
+      const std::string probe = channel.substr(0, channel.find('/') + 1);
+      std::vector<std::string> own;
+      std::ranges::copy_if(all, std::back_inserter(own), [&](const auto& one) { return one.starts_with(probe); });
+      if (std::ranges::find(own, channel) == own.end())
+        problems.push_back(written.problem(
+            pointer_of(name, key),
+            fmt::format("found \"{}\", a channel that the probe lacks", channel) + meant(channel, own)));
+      else if (!profile && wide.contains(channel))
+        problems.push_back(
+            written.problem(pointer_of(name, key),
+                            fmt::format("found \"{}\", which has several numbers a sample; allowed is one with one "
+                                        "number, or the type profile",
+                                        channel)));
+    }
+  }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+} catch (const NumericsError&) {
+  // Where the usual settings fail at once, other variants may not.
 }
 
 /// The runs that are missing; counts all. With --draw none, but those that are there have to be of the study. Throws
@@ -147,6 +219,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
   std::vector<Run> runs;
   std::set<std::filesystem::path> folders;
   const unsigned threads = options.threads();
+  const Document written = Document::load(file);
   for (const Variant& variant : variants(study))
     for (const double seed : study.seeds.values) {
       const auto sets = sets_of(study, variant, seed);
@@ -157,15 +230,17 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                          "; give their levels labels that differ in "
                          "more than punctuation");
       const auto scene = scene_of(study, file, variant, sets, registry);
-      check_figures(study, file, *scene);
+      check_figures(study, written, *scene);
       // As run.json has it, whose numbers went through text.
       const auto description = Description::parse(resolved(*scene).dump());
+      if (all == 1 && !options.has("draw")) check_channels(study, written, *scene);
       if (options.has("draw")) {
         expect_same(folder, description);
         continue;
       }
       const Progressed so_far = progressed(folder, description, plugins_used(*scene, registry));
       if (so_far == Progressed::ended) continue;
+      if (so_far == Progressed::lost) std::cerr << "grit: " << lost_series(folder) << ": it is run again" << std::endl;
       Run run{variant.name + ", seed " + std::to_string(static_cast<long long>(seed)), folder, {}};
       run.job.log = folder / "log.txt";
       run.job.words = {boost::dll::program_location().string(),

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "study/parts.hpp"
+
 namespace grit {
 namespace {
 
@@ -167,9 +169,7 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
   if (smooth && values.at("contacts").value("shear_damping", false))
     say("/contacts/shear_damping", "without friction there is no shear force to damp");
 
-  const bool random = std::ranges::any_of(
-      scene.bodies, [](const auto& group) { return std::holds_alternative<CloudGrains>(group.second.grains.value()); });
-  if (!random && scene.seed != 1) say("/seed", "nothing is random: all grains are given");
+  if (!is_random(values) && scene.seed != 1) say("/seed", "nothing is random: all grains are given");
   const auto radii = world.positions();
   const auto smallest = std::ranges::min_element(radii, {}, &Row::w);
   for (const auto& [name, group] : scene.bodies)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <ranges>
+#include <utility>
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
@@ -15,13 +16,31 @@ namespace {
 
 double number_or_nan(const Description& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
 
-/// Of the figures that count.
+/// Of the figures that are wanted.
 std::vector<Finding> findings_of(const Description& deviations, const std::vector<std::string>& figures) {
   std::vector<Finding> all;
   for (const auto& [name, one] : deviations.items())
-    if (figures.empty() || std::ranges::find(figures, name) != figures.end())
+    if (std::ranges::find(figures, name) != figures.end())
       all.push_back({name, number_or_nan(one.at("error")), number_or_nan(one.at("standard_error"))});
   return all;
+}
+
+/// Sorts the figures that count by whether they are charted; all count if none is named.
+void read_figures(ChartedStudy& study, const Description& json, const std::vector<std::string>& wanted) {
+  std::vector<std::string> with_reference;
+  for (const auto& [name, figure] : json.at("figures").items()) {
+    if (!wanted.empty() && std::ranges::find(wanted, name) == wanted.end()) continue;
+    const Description why = figure.value("not_charted", Description());
+    if (why.is_string()) study.uncharted[name] = why.get<std::string>();
+    else study.figures.push_back(name);
+    if (figure.value("reference", "finest") != "finest") with_reference.push_back(name);
+  }
+  if (with_reference.empty()) return;
+  for (const auto& variant : json.at("variants"))
+    if (!variant.at("figures").empty())
+      study.beside_references.push_back({.level = variant.at("name").get<std::string>(),
+                                         .sets = {},
+                                         .findings = findings_of(variant.at("figures"), with_reference)});
 }
 
 /// Throws Description::exception if the chart lacks something.
@@ -39,7 +58,8 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
                      json.value("parts", std::vector<std::string>()),
                      json.value("advice", true),
                      json.at("samples").get<std::size_t>(),
-                     {}};
+                     json.value("of_samples", "")};
+  read_figures(study, json, figures);
   bool told = false;
   for (const auto& [name, setting] : json.at("settings").items()) {
     auto& levels = study.settings[name];
@@ -54,7 +74,7 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
       if (effect != json.at("effects").end()) {
         evidence.cost = effect->at("cost").get<double>();
         evidence.cost_error = number_or_nan(effect->value("cost_standard_error", Description()));
-        evidence.findings = findings_of(effect->at("figures"), figures);
+        evidence.findings = findings_of(effect->at("figures"), study.figures);
       }
       evidence.known = &level == &all.back() || !evidence.findings.empty();
       told |= std::ranges::any_of(evidence.findings, [](const Finding& one) { return std::isfinite(one.error); });
@@ -66,6 +86,14 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
                     "'grit chart' makes it anew",
                     file.string(), figures.empty() ? "any figure" : fmt::format("{}", fmt::join(figures, ", "))));
   return study;
+}
+
+/// Of a finer level: whether no figure is changed by more than another level changes it.
+bool changes_no_more(const Evidence& finer, const Evidence& than) {
+  return std::ranges::all_of(finer.findings, [&](const Finding& one) {
+    const auto other = std::ranges::find(than.findings, one.figure, &Finding::figure);
+    return other != than.findings.end() && one.error <= other->error;
+  });
 }
 
 }  // namespace
@@ -97,6 +125,20 @@ const Evidence& least_sure(const std::vector<Evidence>& levels, const Evidence& 
   return *found;
 }
 
+std::vector<Finding> far_off(const ChartedStudy& study, double tolerance) {
+  std::map<std::string, Finding> nearest;
+  std::vector<std::string> reached;
+  for (const Evidence& variant : study.beside_references)
+    for (const Finding& one : variant.findings) {
+      if (confidence(one.error, one.standard_error, tolerance) != Confidence::impossible) reached.push_back(one.figure);
+      if (const auto [found, is_new] = nearest.emplace(one.figure, one); !is_new && one.error < found->second.error)
+        found->second = one;
+    }
+  for (const auto& figure : reached) nearest.erase(figure);
+  const auto all = std::views::values(nearest);
+  return {all.begin(), all.end()};
+}
+
 const Finding* Evidence::decisive(double tolerance) const {
   const Finding* found = nullptr;
   for (const Finding& one : findings) {
@@ -108,6 +150,15 @@ const Finding* Evidence::decisive(double tolerance) const {
 
 bool saves(const Evidence& level, const Evidence& than) {
   return level.cost + 2 * std::hypot(level.cost_error, than.cost_error) < than.cost;
+}
+
+const Evidence* within_and_finer(const std::vector<Evidence>& levels, const Evidence& level, double tolerance) {
+  const Evidence* found = nullptr;
+  for (const Evidence& one : levels)
+    if (&one > &level && one.known && least_sure(levels, one, tolerance).confidence(tolerance) <= Confidence::likely &&
+        (found == nullptr || one.cost < found->cost))
+      found = &one;
+  return found;
 }
 
 Evidence together(const std::vector<Advice>& advices) {
@@ -153,14 +204,18 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
       if (!level.known && &level < advice.now) advice.cheaper.push_back(&level);
       if (!level.known || !(level.cost < advice.now->cost)) continue;
       advice.cheaper.push_back(&level);
-      if (!saves(level, *advice.now) || least_sure(levels, level, tolerance).confidence(tolerance) > Confidence::likely)
-        continue;
+      if (!saves(level, *advice.now)) continue;
+      if (&level > advice.now && changes_no_more(level, *advice.now) &&
+          (advice.finer == nullptr || level.cost < advice.finer->cost))
+        advice.finer = &level;
+      if (least_sure(levels, level, tolerance).confidence(tolerance) > Confidence::likely) continue;
       if (advice.best == nullptr || level.cost < advice.best->cost) advice.best = &level;
     }
+    advice.taken = advice.finer;
   }
   std::vector<Advice*> wanted;
   for (Advice& advice : all)
-    if (advice.best != nullptr) wanted.push_back(&advice);
+    if (advice.best != nullptr && advice.best->cost < advice.then()->cost) wanted.push_back(&advice);
   const auto worth = [](const Advice* a) {
     double largest = 1e-12;
     for (const Finding& one : a->best->findings) largest = std::max(largest, one.error);
@@ -168,8 +223,8 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
   };
   std::ranges::sort(wanted, std::greater(), worth);
   for (Advice* advice : wanted) {
-    advice->taken = true;
-    advice->taken = together(all).confidence(tolerance) <= Confidence::likely;
+    const Evidence* before = std::exchange(advice->taken, advice->best);
+    if (together(all).confidence(tolerance) > Confidence::likely) advice->taken = before;
   }
   return all;
 }

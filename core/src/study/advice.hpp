@@ -38,12 +38,21 @@ struct ChartedStudy {
   std::vector<std::string> parts;  ///< of its scene, as parts_of() says them
   bool advice = true;              ///< whether its settings are of the method, not of what is modelled
   std::size_t samples = 0;
-  std::map<std::string, std::vector<Evidence>> settings;  ///< from the cheapest level to the finest
+  std::string of_samples = {};                                 ///< what there is to say of them; may be empty
+  std::map<std::string, std::vector<Evidence>> settings = {};  ///< from the cheapest level to the finest
+  std::vector<std::string> figures = {};                       ///< those that count and are charted
+  std::map<std::string, std::string> uncharted = {};           ///< those that count as well, and why they are not
+  /// Variants beside the references that figures have of their own.
+  std::vector<Evidence> beside_references = {};
 };
 
 /// `figures`: those that count; none: all. Throws FileError, also if the chart tells nothing of them, and Error if a
 /// figure is unknown.
 ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures);
+
+/// The nearest that any variant gets to the reference that a figure has of its own, for each figure where all are too
+/// far from it.
+std::vector<Finding> far_off(const ChartedStudy& study, double tolerance);
 
 /// One setting.
 struct Advice {
@@ -51,11 +60,15 @@ struct Advice {
   std::string found;               ///< why there is no level; empty if there is one
   const Evidence* now = nullptr;   ///< level that the description has
   const Evidence* best = nullptr;  ///< the cheapest within the tolerance that is cheaper than that, certain or likely
+  /// The cheapest that is cheaper than that and finer, and changes no figure by more: nothing speaks against it.
+  const Evidence* finer = nullptr;
   std::vector<const Evidence*> cheaper;  ///< all that are cheaper than now, or are coarser and failed
-  bool taken = false;                    ///< part of what is advised together
+  const Evidence* taken = nullptr;       ///< one of these that is part of what is advised together
 
   /// What the setting has once the advice is taken.
-  const Evidence* then() const { return taken ? best : now; }
+  const Evidence* then() const { return taken != nullptr ? taken : now; }
+  /// Levels stand from the cheapest to the finest.
+  bool is_relaxed() const { return taken != nullptr && taken < now; }
 };
 
 /// What decides whether a level is within the tolerance: the level itself, or the finest of those finer ones of its
@@ -67,9 +80,13 @@ bool saves(const Evidence& level, const Evidence& than);
 
 /// `same(sets)`: whether the description stays the same with these. Settings are taken together as long as the
 /// tolerance holds for what all of them change, those that stay as they are included; those first that save the most
-/// for their error.
+/// for their error. What is finer and cheaper is taken whatever the others change.
 std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
                            const std::function<bool(const std::vector<std::string>&)>& same);
+
+/// The cheapest finer level that is within the tolerance, certain or likely; nothing for the finest. `levels`: all of
+/// the setting, as in ChartedStudy.
+const Evidence* within_and_finer(const std::vector<Evidence>& levels, const Evidence& level, double tolerance);
 
 /// What all settings of a description change once the advice is taken, if they do not act on each other: errors of a
 /// figure add up. The cost is over what it is without the advice.

@@ -8,6 +8,7 @@
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "output/read_results.hpp"
+#include "study/chart_words.hpp"
 #include "study/parts.hpp"
 
 namespace grit {
@@ -109,7 +110,8 @@ std::optional<std::vector<double>> shared_places(const std::vector<const Figure*
 
 /// Sample by sample, so that what samples of one seed have in common is not taken for scatter of the difference. A
 /// reference from elsewhere is one for all samples.
-Deviation deviation(const std::vector<const Figure*>& from, const std::vector<const Figure*>& reference, double scale) {
+Deviation deviation(const Chart& chart, const std::vector<const Figure*>& from,
+                    const std::vector<const Figure*>& reference, double scale) {
   const auto x = shared_places(from, reference).value();
   const Sampled own = sampled(values_at(from, x));
   auto differences = values_at(from, x);
@@ -120,8 +122,9 @@ Deviation deviation(const std::vector<const Figure*>& from, const std::vector<co
   const Sampled difference = sampled(differences);
   return {.mean = own.mean.size() == 1 ? own.mean.front() : root_mean_square(own.mean),
           .error = root_mean_square(difference.mean) / scale,
-          .standard_error = std::sqrt(mean_of(difference.variance) / static_cast<double>(from.size())) / scale,
-          .scatter = std::sqrt(mean_of(own.variance)) / scale};
+          .standard_error =
+              chart.scatter(std::sqrt(mean_of(difference.variance) / static_cast<double>(from.size())) / scale),
+          .scatter = chart.scatter(std::sqrt(mean_of(own.variance)) / scale)};
 }
 
 std::string of_the_finest(const Sample& sample, const std::string& why) {
@@ -204,6 +207,27 @@ void find_short_curves(Chart& chart) {
   }
 }
 
+/// Whether two samples came to the same in all figures, in as many steps.
+bool are_alike(const Sample& one, const Sample& other) {
+  return one.steps == other.steps && std::ranges::equal(one.figures, other.figures, [](const auto& a, const auto& b) {
+           return a.first == b.first && a.second.x == b.second.x && a.second.y == b.second.y;
+         });
+}
+
+void find_alike(Chart& chart) {
+  bool compared = chart.study.seeds.values.size() == 1;
+  for (const VariantResult& result : chart.variants) {
+    const auto is_done = [](const Sample& sample) { return sample.status == "done"; };
+    const auto first = std::ranges::find_if(result.samples, is_done);
+    for (const Sample& sample : result.samples) {
+      if (!is_done(sample) || &sample == &*first) continue;
+      compared = true;
+      if (!are_alike(*first, sample)) chart.alike = false;
+    }
+  }
+  if (!compared) chart.alike = false;
+}
+
 /// Means over the samples that are done.
 void find_costs(VariantResult& result) {
   std::vector<double> costs;
@@ -228,15 +252,16 @@ double cost_ratio_error(const VariantResult& own, const VariantResult& other) {
   return std::sqrt(sampled({residuals}).variance.front() / static_cast<double>(residuals.size())) / other.core_seconds;
 }
 
-void find_values(const StudyDescription& study, VariantResult& result) {
+void find_values(const Chart& chart, VariantResult& result) {
   if (!all_done(result)) return;
-  for (const auto& [name, figure] : study.figures) {
+  for (const auto& [name, figure] : chart.study.figures) {
     if (figure.is_curve() ||
         std::ranges::any_of(result.samples, [&](const Sample& s) { return s.lacks.contains(name); }))
       continue;
     const auto figures = figures_of(result, name);
     const Sampled values = sampled(values_at(figures, {}));
-    result.values[name] = {values.mean.front(), std::sqrt(values.variance.front()), figures.front()->unit};
+    const double scatter = chart.scatter(std::sqrt(values.variance.front()));
+    result.values[name] = {values.mean.front(), scatter, figures.front()->unit};
   }
 }
 
@@ -273,7 +298,8 @@ void find_deviations(Chart& chart) {
       const auto& figure = chart.study.figures.at(name);
       const bool exact = figure.value || figure.curve;
       const auto others = exact ? std::vector<const Figure*>{&reference} : figures_of(chart.finest(), name);
-      Deviation& own = result.deviations[name] = deviation(figures_of(result, name), others, chart.scale.at(name));
+      Deviation& own = result.deviations[name] =
+          deviation(chart, figures_of(result, name), others, chart.scale.at(name));
       // The finest is the reference, and no further from it than its samples scatter.
       if (!exact && &result == &chart.finest()) own.error = 0, own.standard_error = 0;
     }
@@ -299,7 +325,7 @@ void find_effects(Chart& chart) {
       Effect effect{
           name, setting.label(level), own->core_seconds / finest->core_seconds, cost_ratio_error(*own, *finest), {}};
       for (const auto& [figure, scale] : chart.scale)
-        effect.deviations[figure] = deviation(figures_of(*own, figure), figures_of(*finest, figure), scale);
+        effect.deviations[figure] = deviation(chart, figures_of(*own, figure), figures_of(*finest, figure), scale);
       chart.effects.push_back(std::move(effect));
     }
     ++k;
@@ -360,6 +386,8 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
+double Chart::scatter(double computed) const { return !alike ? computed : random ? unknown : 0; }
+
 Confidence VariantResult::confidence(double tolerance) const {
   Confidence worst = Confidence::certain;
   for (const auto& [name, one] : deviations)
@@ -379,12 +407,13 @@ Chart make_chart(StudyDescription study, const std::filesystem::path& folder) {
       const Sample& sample = result.samples.emplace_back(read_sample(chart.study, seed, own));
       if (!sample.revision.empty()) chart.revisions.insert(sample.revision);
       if (const auto run = chart.parts.empty() ? read_run_json(own) : std::nullopt; run && run->contains("description"))
-        chart.parts = parts_of(run->at("description"));
+        chart.parts = parts_of(run->at("description")), chart.random = is_random(run->at("description"));
     }
   }
   find_lacks(chart);
   find_short_curves(chart);
-  for (VariantResult& result : chart.variants) find_costs(result), find_values(chart.study, result);
+  find_alike(chart);
+  for (VariantResult& result : chart.variants) find_costs(result), find_values(chart, result);
   find_references(chart);
   find_deviations(chart);
   find_effects(chart);
@@ -402,6 +431,7 @@ Description to_json(const Chart& chart) {
       {"tolerance", chart.study.tolerance},
       {"advice", chart.study.advice},
       {"samples", chart.study.seeds.values.size()},
+      {"of_samples", of_samples(chart)},
       {"revisions", chart.revisions},
       {"settings", Description::object()},
       {"figures", Description::object()},

@@ -76,6 +76,8 @@ struct Chart {
   std::string scenario;                 ///< of the scene; empty if it has none
   std::vector<std::string> parts;       ///< of the scene, as parts_of() says them; none without a run
   std::set<std::string> revisions;      ///< of the grit that made the runs
+  bool random = true;                   ///< whether a seed decides anything of the scene
+  bool alike = true;                    ///< whether no seed made any difference to the last digit
   std::vector<VariantResult> variants;  ///< the finest last
   std::map<std::string, Figure> reference;
   std::map<std::string, double> scale;           ///< what errors are divided by
@@ -84,6 +86,9 @@ struct Chart {
   std::optional<std::size_t> cheapest;  ///< variant of least cost that is within the tolerance, certain or likely
 
   const VariantResult& finest() const { return variants.back(); }
+  /// Of what was computed from samples: 0 where nothing is random, so that there is none, and NaN where something is
+  /// and the seeds did not change it, so that all samples are one.
+  double scatter(double computed) const;
 };
 
 /// Reads what is in the runs' folders below `folder`. Throws FileError if a run that is done lacks a channel.

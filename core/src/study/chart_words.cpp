@@ -66,7 +66,7 @@ std::string finer_that_is_not(const Chart& chart, const VariantResult& one) {
   return "";
 }
 
-std::string verdict(const Chart& chart) {
+std::string verdict_of_figures(const Chart& chart) {
   if (chart.reference.empty()) {
     const bool failed = std::ranges::any_of(chart.finest().samples, [](const auto& s) { return s.status != "done"; });
     return failed ? "The finest settings have no result, so that there is nothing to compare with."
@@ -81,7 +81,9 @@ std::string verdict(const Chart& chart) {
     return one.complete() && &one != &chart.finest() && one.within == Confidence::untold;
   });
   const std::string more =
-      (scattered ? " Of some it cannot be told: samples scatter by more than that; more seeds would tell." : "") +
+      (!scattered     ? ""
+       : !chart.alike ? " Of some it cannot be told: samples scatter by more than that; more seeds would tell."
+                      : " Of some it cannot be told: nobody knows how samples scatter.") +
       passed_over(chart);
   if (!chart.cheapest) return text + "No variant was found to keep all figures within " + tolerance + "." + more;
   const VariantResult& best = chart.variants[*chart.cheapest];
@@ -105,6 +107,25 @@ std::string verdict(const Chart& chart) {
   else if (best.within != Confidence::certain)
     text += fmt::format(" It is not certain, for {}, which is finer, is not; more seeds would tell.", best.decided_by);
   return text + passed_over(chart);
+}
+
+std::string of_samples(const Chart& chart) {
+  const bool several = chart.study.seeds.values.size() > 1;
+  if (!chart.alike) return "";
+  if (!chart.random)
+    return several ? "Nothing is random in this scene: the seed changes nothing, samples are alike to the last digit, "
+                     "and one is all that figures need."
+                   : "Nothing is random in this scene: one sample is all that figures need.";
+  if (!several) return "";
+  return fmt::format(
+      "Samples are alike to the last digit though something is random in this scene: the seed at {} changes nothing, "
+      "so that they count as one, whose scatter is unknown.",
+      chart.study.seeds.pointer);
+}
+
+std::string verdict(const Chart& chart) {
+  const std::string samples = of_samples(chart);
+  return verdict_of_figures(chart) + (samples.empty() ? "" : ' ' + samples);
 }
 
 }  // namespace grit

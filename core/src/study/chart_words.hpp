@@ -25,6 +25,9 @@ std::vector<std::string> not_charted(const Chart& chart);
 /// though its own error may be; empty where that is not so.
 std::string finer_that_is_not(const Chart& chart, const VariantResult& one);
 
+/// What there is to say where seeds changed nothing; empty elsewhere.
+std::string of_samples(const Chart& chart);
+
 /// Some sentences: the cheapest variant that is good enough, what it saves, and what is unsure of that.
 std::string verdict(const Chart& chart);
 

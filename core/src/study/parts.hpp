@@ -12,4 +12,8 @@ namespace grit {
 /// the domain repeats. `resolved` has all its defaults, as that of run.json.
 std::vector<std::string> parts_of(const Description& resolved);
 
+/// Whether a seed decides anything of it: places and sizes of a cloud, orientations of clumps that a file has places
+/// of.
+bool is_random(const Description& resolved);
+
 }  // namespace grit
