@@ -299,7 +299,8 @@ class InABrowser(unittest.TestCase):
 
     def test_a_run_that_fails_is_shown_to_who_looks(self):
         # Grains never come to such a rest within so short a time.
-        stages = [dict(SHORT[0], until={"type": "time", "value": "0.5 s"}),
+        # It goes on for longer than a browser that was just started takes to ask.
+        stages = [dict(SHORT[0], until={"type": "time", "value": "20 s"}, limit="100 s"),
                   {"name": "rest", "until": {"type": "unbalanced-force", "below": 1e-15}, "limit": "10 ms"}]
         with WatchedRun(self.folder, "failing", stages=stages) as run:
             self.browser.open(run.address)
