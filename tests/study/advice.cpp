@@ -58,11 +58,11 @@ class AdviceOf : public testing::Test {
 
 TEST_F(AdviceOf, ATolerancePicksTheCheapestLevelWithin) {
   const auto narrow = advice(0.01);
-  EXPECT_EQ(narrow[0].best, nullptr);
-  EXPECT_EQ(narrow[1].best, nullptr);
-  EXPECT_EQ(advice(0.05)[0].best->level, "2");
-  EXPECT_EQ(advice(0.2)[0].best->level, "4");
-  EXPECT_EQ(advice(0.05)[0].best->decisive(0.05)->figure, "peak");
+  EXPECT_THAT(narrow[0].within, IsEmpty());
+  EXPECT_THAT(narrow[1].within, IsEmpty());
+  EXPECT_EQ(advice(0.05)[0].within.at(0)->level, "2");
+  EXPECT_EQ(advice(0.2)[0].within.at(0)->level, "4");
+  EXPECT_EQ(advice(0.05)[0].within.at(0)->decisive(0.05)->figure, "peak");
 }
 
 TEST_F(AdviceOf, ErrorsOfSettingsTakenTogetherAddUpToNoMoreThanTheTolerance) {
@@ -72,10 +72,33 @@ TEST_F(AdviceOf, ErrorsOfSettingsTakenTogetherAddUpToNoMoreThanTheTolerance) {
   EXPECT_TRUE(advice(0.06)[0].taken && advice(0.06)[1].taken);
 }
 
+TEST_F(AdviceOf, TheCheapestCombinationIsTaken) {
+  // rate 4 does not fit with anything else, rate 2 and the size do, which save more than it.
+  chart["effects"][0] = effect("rate", "4", 0.3, 0.06, 0.001);
+  const auto both = advice(0.07);
+  ASSERT_TRUE(both[0].taken && both[1].taken);
+  EXPECT_EQ(both[0].taken->level, "2");
+  EXPECT_DOUBLE_EQ(together(both).cost, 0.25);
+  // And the other way round, though the size saves more for what it changes.
+  chart["effects"][2] = effect("size", "big", 0.7, 0.011, 0.001);
+  const auto one = advice(0.065);
+  ASSERT_TRUE(one[0].taken);
+  EXPECT_EQ(one[0].taken->level, "4");
+  EXPECT_FALSE(one[1].taken);
+}
+
+TEST_F(AdviceOf, ACoarserLevelHasToSaveBesideAFinerOne) {
+  for (const int k : {0, 1}) chart["effects"][k]["cost_standard_error"] = 0.01;
+  chart["effects"][0]["cost"] = 0.48;
+  EXPECT_EQ(advice(0.2)[0].taken->level, "2");
+  chart["effects"][0]["cost"] = 0.46;
+  EXPECT_EQ(advice(0.2)[0].taken->level, "4");
+}
+
 TEST_F(AdviceOf, NothingCheaperThanWhatIsThereIsAdvised) {
   const auto some = advice(0.2, "/2", "/big");
   EXPECT_EQ(some[0].now->level, "2");
-  EXPECT_EQ(some[0].best->level, "4");
+  EXPECT_EQ(some[0].within.at(0)->level, "4");
   EXPECT_THAT(some[1].cheaper, IsEmpty());
 }
 
@@ -86,14 +109,14 @@ TEST_F(AdviceOf, ADescriptionMayHaveWhatTheStudyDidNotTry) {
 }
 
 TEST_F(AdviceOf, FiguresThatDoNotCountDoNotForbid) {
-  EXPECT_EQ(advice(0.01, "/1", "/small", {"small"})[0].best->level, "4");
+  EXPECT_EQ(advice(0.01, "/1", "/small", {"small"})[0].within.at(0)->level, "4");
   EXPECT_THROW(advice(0.01, "/1", "/small", {"big"}), Error);
 }
 
 TEST_F(AdviceOf, LevelsThatFailedAreToldAndNeverTaken) {
   chart["effects"].erase(0);
   const auto some = advice(0.9);
-  EXPECT_EQ(some[0].best->level, "2");
+  EXPECT_EQ(some[0].within.at(0)->level, "2");
   ASSERT_EQ(some[0].cheaper.size(), 2u);
   EXPECT_EQ(some[0].cheaper[0]->level, "4");
   EXPECT_FALSE(some[0].cheaper[0]->known);
@@ -105,7 +128,7 @@ TEST_F(AdviceOf, LevelsThatFailedAreToldAndNeverTaken) {
 TEST_F(AdviceOf, SettingsThatStayCountInTheSum) {
   // The rate changes 2 % already: with the 3 % of the size it would be 5 %.
   const auto some = advice(0.04, "/2");
-  EXPECT_EQ(some[1].best->level, "big");
+  EXPECT_EQ(some[1].within.at(0)->level, "big");
   EXPECT_FALSE(some[1].taken);
   const Evidence all = together(some);
   ASSERT_EQ(all.findings.size(), 2u);
@@ -129,44 +152,44 @@ TEST_F(AdviceOf, EachFigureHasItsOwnSum) {
 
 TEST_F(AdviceOf, EvidenceThatScattersByMoreThanTheToleranceIsNone) {
   chart["effects"][0]["figures"]["peak"] = {{"error", 0.017}, {"standard_error", 0.111}};
-  EXPECT_EQ(advice(0.03)[0].best->level, "2");
+  EXPECT_EQ(advice(0.03)[0].within.at(0)->level, "2");
   EXPECT_EQ(advice(0.03)[0].cheaper[0]->confidence(0.03), Confidence::untold);
   for (auto& effect : chart["effects"])
     for (auto& figure : effect["figures"]) figure["standard_error"] = nullptr;
-  EXPECT_EQ(advice(0.03)[0].best, nullptr) << "one sample tells nothing";
+  EXPECT_THAT(advice(0.03)[0].within, IsEmpty()) << "one sample tells nothing";
 }
 
 TEST_F(AdviceOf, ASavingWithinTheScatterOfTimesIsNone) {
   chart["effects"][1]["cost"] = 0.86;
-  EXPECT_EQ(advice(0.05)[0].best->level, "2");
+  EXPECT_EQ(advice(0.05)[0].within.at(0)->level, "2");
   for (const json& error : {json(0.08), json()}) {
     chart["effects"][1]["cost_standard_error"] = error;
     const auto some = advice(0.05);
-    EXPECT_EQ(some[0].best, nullptr);
+    EXPECT_THAT(some[0].within, IsEmpty());
     ASSERT_EQ(some[0].cheaper.size(), 2u) << "it is told all the same";
     EXPECT_FALSE(saves(*some[0].cheaper[1], *some[0].now));
   }
   // Both scatter where the description does not have the finest.
   chart["effects"][0]["cost"] = 0.7, chart["effects"][0]["cost_standard_error"] = 0.05;
   chart["effects"][1]["cost_standard_error"] = 0.07;
-  EXPECT_EQ(advice(0.2, "/2")[0].best, nullptr);
-  EXPECT_EQ(advice(0.2, "/1")[0].best->level, "4");
+  EXPECT_THAT(advice(0.2, "/2")[0].within, IsEmpty());
+  EXPECT_EQ(advice(0.2, "/1")[0].within.at(0)->level, "4");
 }
 
 TEST_F(AdviceOf, ALevelIsWithinTheToleranceOnlyIfAllFinerOnesAre) {
   chart["effects"][0] = effect("rate", "4", 0.25, 0.001, 0.001);
   chart["effects"][1] = effect("rate", "2", 0.5, 0.06, 0.001);
   const auto some = advice(0.05);
-  EXPECT_EQ(some[0].best, nullptr) << "its error is small, but grows where it is made finer";
+  EXPECT_THAT(some[0].within, IsEmpty()) << "its error is small, but grows where it is made finer";
   const auto& levels = study.settings.at("rate");
   EXPECT_EQ(least_sure(levels, levels[0], 0.05).level, "2");
   EXPECT_EQ(least_sure(levels, levels[1], 0.05).level, "2");
   EXPECT_EQ(least_sure(levels, levels[2], 0.05).level, "1");
-  EXPECT_EQ(advice(0.1)[0].best->level, "4");
+  EXPECT_EQ(advice(0.1)[0].within.at(0)->level, "4");
   chart["effects"][1] = effect("rate", "2", 0.5, 0.01, 0.06);
-  EXPECT_EQ(advice(0.05)[0].best, nullptr) << "of the finer one it cannot be told";
+  EXPECT_THAT(advice(0.05)[0].within, IsEmpty()) << "of the finer one it cannot be told";
   chart["effects"].erase(1);
-  EXPECT_EQ(advice(0.05)[0].best->level, "4") << "what failed says nothing";
+  EXPECT_EQ(advice(0.05)[0].within.at(0)->level, "4") << "what failed says nothing";
 }
 
 TEST_F(AdviceOf, WhatIsFinerAndCheaperIsTakenWhateverStays) {
@@ -248,7 +271,7 @@ TEST_F(AdviceOf, AStudyMaySayThatItAdvisesNothing) {
 TEST_F(AdviceOf, TheFigureThatIsLeastSureDecides) {
   chart["effects"][0]["figures"]["small"]["standard_error"] = 0.2;
   const auto some = advice(0.1);
-  EXPECT_EQ(some[0].best->level, "2");
+  EXPECT_EQ(some[0].within.at(0)->level, "2");
   EXPECT_EQ(some[0].cheaper[0]->confidence(0.1), Confidence::untold);
   EXPECT_EQ(some[0].cheaper[0]->decisive(0.1)->figure, "small");
   EXPECT_EQ(some[0].cheaper[1]->decisive(0.1)->figure, "peak") << "as sure as the other, and more";

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <ranges>
-#include <utility>
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
@@ -96,6 +96,70 @@ bool changes_no_more(const Evidence& finer, const Evidence& than) {
   });
 }
 
+/// With the changes of one more setting: errors of a figure add up.
+void add(Evidence& sum, const Evidence& one) {
+  sum.cost *= one.cost;
+  for (const Finding& finding : one.findings) {
+    auto own = std::ranges::find(sum.findings, finding.figure, &Finding::figure);
+    if (own == sum.findings.end()) own = sum.findings.insert(own, {finding.figure});
+    own->error += finding.error;
+    own->standard_error = std::hypot(own->standard_error, finding.standard_error);
+  }
+}
+
+double largest_error(const Evidence& one) {
+  return one.findings.empty() ? 0 : std::ranges::max(std::views::transform(one.findings, &Finding::error));
+}
+
+/// The cheapest combination of levels within the tolerance. Goes through all but those that begin like one that is
+/// beyond it, or that cannot be cheaper than one found before: errors only add up.
+class Cheapest {
+ public:
+  Cheapest(std::vector<Advice>& advices, double tolerance) : tolerance_(tolerance) {
+    for (Advice& advice : advices)
+      if (advice.now != nullptr) settings_.push_back(&advice);
+    least_cost_.assign(settings_.size() + 1, 1);
+    for (std::size_t k = settings_.size(); k-- > 0;) {
+      const Advice& one = *settings_[k];
+      const double least = one.within.empty() ? one.then()->cost : std::min(one.within[0]->cost, one.then()->cost);
+      least_cost_[k] = least_cost_[k + 1] * least;
+    }
+  }
+
+  /// Takes it, if there is any.
+  void take() {
+    choose({});
+    for (std::size_t k = 0; k < best_.size(); ++k)
+      if (best_[k] != settings_[k]->then()) settings_[k]->taken = best_[k];
+  }
+
+ private:
+  void choose(const Evidence& sum) {
+    const std::size_t k = chosen_.size();
+    if (sum.confidence(tolerance_) > Confidence::likely || sum.cost * least_cost_[k] > best_cost_) return;
+    if (k == settings_.size()) {
+      if (sum.cost == best_cost_ && largest_error(sum) >= best_error_) return;
+      best_ = chosen_, best_cost_ = sum.cost, best_error_ = largest_error(sum);
+      return;
+    }
+    const auto go_on_with = [&](const Evidence* level) {
+      Evidence more = sum;
+      add(more, *level);
+      chosen_.push_back(level);
+      choose(more);
+      chosen_.pop_back();
+    };
+    for (const Evidence* level : settings_[k]->within) go_on_with(level);
+    go_on_with(settings_[k]->then());
+  }
+
+  double tolerance_;
+  std::vector<Advice*> settings_;
+  std::vector<double> least_cost_;  ///< of each setting and those after it
+  std::vector<const Evidence*> chosen_, best_;
+  double best_cost_ = std::numeric_limits<double>::infinity(), best_error_ = 0;
+};
+
 }  // namespace
 
 ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures) {
@@ -163,17 +227,11 @@ const Evidence* within_and_finer(const std::vector<Evidence>& levels, const Evid
 
 Evidence together(const std::vector<Advice>& advices) {
   Evidence all;
-  std::map<std::string, Finding> sums;
   for (const Advice& advice : advices) {
     if (advice.now == nullptr) continue;
-    all.cost *= advice.then()->cost / advice.now->cost;
-    for (const Finding& one : advice.then()->findings) {
-      Finding& sum = sums[one.figure];
-      sum.figure = one.figure, sum.error += one.error;
-      sum.standard_error = std::hypot(sum.standard_error, one.standard_error);
-    }
+    add(all, *advice.then());
+    all.cost /= advice.now->cost;
   }
-  for (const auto& [name, sum] : sums) all.findings.push_back(sum);
   return all;
 }
 
@@ -200,7 +258,7 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
       advice.now = nullptr;
       continue;
     }
-    for (const Evidence& level : levels) {
+    for (const Evidence& level : std::views::reverse(levels)) {
       if (!level.known && &level < advice.now) advice.cheaper.push_back(&level);
       if (!level.known || !(level.cost < advice.now->cost)) continue;
       advice.cheaper.push_back(&level);
@@ -209,23 +267,16 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
           (advice.finer == nullptr || level.cost < advice.finer->cost))
         advice.finer = &level;
       if (least_sure(levels, level, tolerance).confidence(tolerance) > Confidence::likely) continue;
-      if (advice.best == nullptr || level.cost < advice.best->cost) advice.best = &level;
+      if (std::ranges::all_of(advice.within, [&](const Evidence* finer) {
+            return saves(level, *finer) || !changes_no_more(*finer, level);
+          }))
+        advice.within.push_back(&level);
     }
+    std::ranges::reverse(advice.cheaper);
+    std::ranges::stable_sort(advice.within, {}, &Evidence::cost);
     advice.taken = advice.finer;
   }
-  std::vector<Advice*> wanted;
-  for (Advice& advice : all)
-    if (advice.best != nullptr && advice.best->cost < advice.then()->cost) wanted.push_back(&advice);
-  const auto worth = [](const Advice* a) {
-    double largest = 1e-12;
-    for (const Finding& one : a->best->findings) largest = std::max(largest, one.error);
-    return std::log(a->now->cost / a->best->cost) / largest;
-  };
-  std::ranges::sort(wanted, std::greater(), worth);
-  for (Advice* advice : wanted) {
-    const Evidence* before = std::exchange(advice->taken, advice->best);
-    if (together(all).confidence(tolerance) > Confidence::likely) advice->taken = before;
-  }
+  Cheapest(all, tolerance).take();
   return all;
 }
 

@@ -57,9 +57,11 @@ std::vector<Finding> far_off(const ChartedStudy& study, double tolerance);
 /// One setting.
 struct Advice {
   std::string setting;
-  std::string found;               ///< why there is no level; empty if there is one
-  const Evidence* now = nullptr;   ///< level that the description has
-  const Evidence* best = nullptr;  ///< the cheapest within the tolerance that is cheaper than that, certain or likely
+  std::string found;              ///< why there is no level; empty if there is one
+  const Evidence* now = nullptr;  ///< level that the description has
+  /// Those cheaper than that which are within the tolerance by themselves, certain or likely, but for those that save
+  /// nothing beside a finer one and change no figure by less; the cheapest first.
+  std::vector<const Evidence*> within;
   /// The cheapest that is cheaper than that and finer, and changes no figure by more: nothing speaks against it.
   const Evidence* finer = nullptr;
   std::vector<const Evidence*> cheaper;  ///< all that are cheaper than now, or are coarser and failed
@@ -78,9 +80,9 @@ const Evidence& least_sure(const std::vector<Evidence>& levels, const Evidence& 
 /// Whether a level costs less than another by more than their times scatter.
 bool saves(const Evidence& level, const Evidence& than);
 
-/// `same(sets)`: whether the description stays the same with these. Settings are taken together as long as the
-/// tolerance holds for what all of them change, those that stay as they are included; those first that save the most
-/// for their error. What is finer and cheaper is taken whatever the others change.
+/// `same(sets)`: whether the description stays the same with these. Of all combinations of levels the cheapest is taken
+/// for which the tolerance holds with what all settings change, those that stay as they are included. What is finer and
+/// cheaper is taken whatever the others change.
 std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
                            const std::function<bool(const std::vector<std::string>&)>& same);
 
