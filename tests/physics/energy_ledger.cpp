@@ -117,6 +117,23 @@ TEST(EnergyLedger, ABallThatSlidesUntilItRollsLosesTwoSevenths) {
   }
 }
 
+TEST(EnergyLedger, FrictionOfDeepContactsIsWhatMotionLoses) {
+  // Slip is told with the radii as arms, but forces act at the middle of the overlap: of slip times force the bodies
+  // feel less by the overlap over the sum of the radii, 5 % at the start.
+  const Vec3 apart(1.9 * radius, 0, 0), across(0, 2, 0);
+  Description d =
+      grains("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.02}, {"rolling_stiffness", 0}},
+             {{Vec3::Zero(), radius, across}, {apart, radius, -across}});
+  d["time_step"]["safety"] = 0.1 * safety;
+  Kept slide(d);
+  while (slide.world().pair_count() > 0) slide.step(10);
+  const EnergyLedger now = slide.world().energies();
+  EXPECT_GT(now.friction, 0.001 * now.kinetic);
+  EXPECT_EQ(now.elastic(), 0);
+  verify("ledger of two that slide and overlap by 0.1 of the radius, what friction took over what is lacking",
+         now.friction / (now.friction - now.closure_error), 1, 1e-3);
+}
+
 TEST(EnergyLedger, RollingResistanceTakesWhatIsLeft) {
   const double speed = 0.1;
   Description d = grains("linear-rolling", {{"friction_angle", 0.5}, {"rolling_limit", 0.01}},

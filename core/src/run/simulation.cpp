@@ -433,7 +433,7 @@ void Simulation::advance() {
   const double half_before = 0.5 * clock_.last_time_step, half_after = 0.5 * next.drift;
   double by_engines = engines ? half_before * power_of_engines() : 0;
   double by_cell = cell ? half_before * power_of_cell(clock_.growth_of_period()) : 0;
-  if (growth_rate_ > 0) grow();
+  if (growth_rate_ > 0 || flows_.grown > 0) grow();
   const std::size_t clumps = bodies_.clumps.clump.size();
   if (clumps > 0)
     pass([&](std::size_t chunk, Laps& laps) {
@@ -456,8 +456,8 @@ void Simulation::advance() {
 bool Simulation::in_one_pass() const {
   const bool free_walls = std::any_of(surfaces_.begin(), surfaces_.end(), [](const auto& wall) { return wall.free; });
   const bool work_of_forces = is_kept(flows_, bodies_) && (clock_.cell_deforms() || bodies_are_held());
-  return growth_rate_ == 0 && force_engines_.empty() && bodies_.clumps.none() && !free_walls && !work_of_forces &&
-         !energy_check_is_due() && !springs_may_stiffen();
+  return growth_rate_ == 0 && flows_.grown == 0 && force_engines_.empty() && bodies_.clumps.none() && !free_walls &&
+         !work_of_forces && !energy_check_is_due() && !springs_may_stiffen();
 }
 
 void Simulation::step_on() {

@@ -79,11 +79,12 @@ struct EnergyFlows {
   Losses lost;
   double damped = 0, fallen = 0;
   double walls = 0, cell = 0, engines = 0;  ///< but for half of the last step
-  double settings = 0;
+  double settings = 0;                      ///< but for half of what bodies grew by in the last step
+  double grown = 0;                         ///< logarithm of that
 
   void remember(Memory& memory) {
-    memory(begun, at_start, lost.friction, lost.rolling, lost.viscosity, damped, fallen, walls, cell, engines,
-           settings);
+    memory(begun, at_start, lost.friction, lost.rolling, lost.viscosity, damped, fallen, walls, cell, engines, settings,
+           grown);
   }
 };
 
@@ -257,7 +258,10 @@ class Simulation final : public World {
   /// appears. Without a ledger it does not look where work is done that is not reckoned at each step.
   void check_energy();
   bool energy_check_is_due() const;
-  ElasticEnergy elastic_energy() const;
+  /// Of springs as they stand, with bodies `factor` times as large.
+  ElasticEnergy elastic_energy(double factor = 1) const;
+  /// What springs take up for the logarithm of what bodies grow by [J].
+  double elastic_by_growth() const;
   /// At time(), by the forces that act there.
   double kinetic_energy() const;
   double gravitational() const;

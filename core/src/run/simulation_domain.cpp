@@ -73,7 +73,7 @@ void Simulation::admit() {
   const auto stored = [this] {
     if (!flows_.begun) return 0.0;
     const EnergyLedger now = energies();
-    return now.kinetic + now.elastic() - now.walls - now.cell - now.engines;
+    return now.kinetic + now.elastic() - now.walls - now.cell - now.engines - (now.settings - flows_.settings);
   };
   const double put_in = flows_.settings - stored();  // but for what is stored; bodies may also leave in a search
   const std::size_t first = bodies_.count(), first_clump = bodies_.clumps.clump.size();

@@ -8,34 +8,49 @@
 
 namespace grit {
 
-ElasticEnergy Simulation::elastic_energy() const {
+ElasticEnergy Simulation::elastic_energy(double factor) const {
   ElasticEnergy all;
-  const auto add = [&](const ElasticEnergy& one) {
-    all.normal += one.normal, all.shear += one.shear, all.rolling += one.rolling;
+  const auto add = [&](const PairSize& size, std::size_t material_a, std::size_t material_b,
+                       std::span<const double> memory) {
+    const ElasticEnergy one = law_->energy(size, material_a, material_b, memory);
+    all.normal += one.normal, all.shear += size.work_share() * one.shear, all.rolling += one.rolling;
+  };
+  // How far spheres of clumps go as their clump grows.
+  const auto outward = [&](std::uint32_t body) -> Vec3 {
+    const std::uint32_t c = bodies_.clumps.clump_of(body);
+    if (factor == 1 || c == no_clump) return Vec3::Zero();
+    return (factor - 1) * (bodies_.clumps.clump[c].axes * bodies_.clumps.of_body[body].place);
   };
   pairs_.each_memory([&](std::size_t c, std::span<const double> memory) {
     const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
-    const double overlap =
-        bodies_.position[a].w + bodies_.position[b].w - pairs_.branch(c, bodies_, shifts_.data()).norm();
-    add(law_->energy({.radius_a = bodies_.position[a].w,
-                      .radius_b = bodies_.position[b].w,
-                      .inverse_mass_a = bodies_.velocity[a].w,
-                      .inverse_mass_b = bodies_.velocity[b].w,
-                      .overlap = overlap},
-                     bodies_.material[a], bodies_.material[b], memory));
+    const double radius_a = factor * bodies_.position[a].w, radius_b = factor * bodies_.position[b].w;
+    const Vec3 branch = pairs_.branch(c, bodies_, shifts_.data()) + outward(b) - outward(a);
+    const double overlap = std::max(0.0, radius_a + radius_b - branch.norm());  // springs do not pull
+    add({.radius_a = radius_a,
+         .radius_b = radius_b,
+         .inverse_mass_a = bodies_.velocity[a].w,
+         .inverse_mass_b = bodies_.velocity[b].w,
+         .overlap = overlap},
+        bodies_.material[a], bodies_.material[b], memory);
   });
   wall_contacts_.each([&](const WallContacts::Touching& t) {
     const std::uint32_t a = t.touch->body;
-    const double r = bodies_.position[a].w;
-    add(law_->energy({.radius_a = r,
-                      .radius_b = r,
-                      .inverse_mass_a = bodies_.velocity[a].w,
-                      .inverse_mass_b = 0,
-                      .overlap = t.touch->overlap,
-                      .wall = true},
-                     bodies_.material[a], t.touch->material, t.state));
+    const double own = bodies_.position[a].w, r = factor * own;
+    const double overlap = std::max(0.0, t.touch->overlap + (factor - 1) * own + t.touch->normal.dot(outward(a)));
+    add({.radius_a = r,
+         .radius_b = r,
+         .inverse_mass_a = bodies_.velocity[a].w,
+         .inverse_mass_b = 0,
+         .overlap = overlap,
+         .wall = true},
+        bodies_.material[a], t.touch->material, t.state);
   });
   return all;
+}
+
+double Simulation::elastic_by_growth() const {
+  constexpr double share = 1e-6;
+  return (elastic_energy(1 + share).total() - elastic_energy(1 - share).total()) / (2 * share);
 }
 
 double Simulation::kinetic_energy() const {
@@ -123,15 +138,18 @@ EnergyLedger Simulation::energies() const {
   for (std::size_t chunk = 0; engines_do_work() && chunk < chunk_.size(); ++chunk) engines += power_of_engines(chunk);
   if (clock_.cell_deforms()) cell = power_of_cell(clock_.growth_of_period()) + power_of_flow();
   const double by_walls = half_step * power_of_walls(), by_cell = half_step * cell, by_engines = half_step * engines;
+  const double by_growth = flows_.grown > 0 ? 0.5 * flows_.grown * elastic_by_growth() : 0;
   if (!flows_.begun)
     flows_ = {.begun = true,
               .at_start = now.kinetic + elastic.total(),
               .walls = -by_walls,
               .cell = -by_cell,
-              .engines = -by_engines};
+              .engines = -by_engines,
+              .settings = -by_growth,
+              .grown = flows_.grown};
   now.gravitational = -flows_.fallen;
   now.walls = flows_.walls + by_walls, now.cell = flows_.cell + by_cell, now.engines = flows_.engines + by_engines;
-  now.settings = flows_.settings;
+  now.settings = flows_.settings + by_growth;
   now.friction = flows_.lost.friction, now.rolling = flows_.lost.rolling, now.viscosity = flows_.lost.viscosity;
   now.local_damping = flows_.damped;
   now.closure_error = now.kinetic + now.elastic() + now.gravitational + now.dissipated() - flows_.at_start - now.walls -

@@ -16,8 +16,12 @@ double Simulation::growth_rate_of(const std::string& stage) const {
 }
 
 void Simulation::grow() {
-  if (bodies_.count() == 0) return;
-  const double factor = std::exp(growth_rate_ * clock_.time_step);
+  // Half of what growth puts into springs in a step by those at its start, half by those at its end.
+  const double grows = growth_rate_ * clock_.time_step, half_by_now = 0.5 * (flows_.grown + grows);
+  if (flows_.begun) flows_.settings += half_by_now * elastic_by_growth();
+  flows_.grown = grows;
+  if (grows == 0 || bodies_.count() == 0) return;
+  const double factor = std::exp(grows);
   double furthest = stock_.largest_radius;
   for (const Clump& clump : bodies_.clumps.clump) furthest = std::max(furthest, clump.furthest);
   grown_ = (factor - 1) * furthest;
@@ -25,9 +29,8 @@ void Simulation::grow() {
     fail("the largest body grows by " + number(grown_ / stock_.smallest_radius) +
              " of the smallest radius in one step, more than /guards/travel " + number(scene_->guards.travel),
          "let bodies grow more slowly, by a smaller rate of the stage's growth");
-  // Contacts are those of this instant, so that what growth puts into their springs can be told.
-  const auto stored = [this] { return flows_.begun ? kinetic_energy() + elastic_energy().total() : 0; };
-  const double before = stored();
+  const auto moving = [this] { return flows_.begun ? kinetic_energy() : 0; };
+  const double before = moving();
   {
     const Stopwatch watch(phases_[motion].seconds);
     team_.each(chunk_.size(), [&](std::size_t chunk) { grow_bodies(chunk, bodies_, factor); });
@@ -39,7 +42,7 @@ void Simulation::grow() {
   stock_.diameters *= factor, stock_.mean_diameter *= factor;
   stock_.largest_radius *= factor, stock_.smallest_radius *= factor;
   forget_views();
-  flows_.settings += stored() - before;
+  flows_.settings += moving() - before;
 }
 
 }  // namespace grit

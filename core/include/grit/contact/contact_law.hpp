@@ -27,6 +27,10 @@ struct PairSize {
   double inverse_mass_a, inverse_mass_b;  ///< 1/kg
   double overlap;                         ///< m; the largest that is expected, never below zero
   bool wall = inverse_mass_b == 0 && radius_b == radius_a;
+
+  /// What the forces do on a path along which laws stretch shear springs, over what springs take up on it: paths are
+  /// told with the radii as arms, forces act at the middle of the overlap.
+  double work_share() const { return wall ? 1 : 1 - overlap / (radius_a + radius_b); }
 };
 
 /// What is stored in one contact [J].

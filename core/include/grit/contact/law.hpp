@@ -86,7 +86,7 @@ struct Response {
   Vec<L> moment{};   ///< N m, on b; the opposite acts on a
 };
 
-/// What one contact has dissipated in the step that led here [J].
+/// What one contact has dissipated in the step that led here [J], by the way that `velocity` tells.
 template <class L>
 struct Loss {
   L friction{}, rolling{}, viscosity{};
@@ -277,14 +277,14 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
   typename Law::template State<double> state{};
   for (std::size_t f = 0; f < remembered.size(); ++f) member<double>(state, f) = remembered[f];
   const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
-  const ElasticEnergy held = Law::energy({.radius_a = radius_a,
-                                          .radius_b = radius_b,
-                                          .inverse_mass_a = batch.velocity[a].w,
-                                          .inverse_mass_b = batch.velocity[b].w,
-                                          .overlap = std::max(0.0, overlap),
-                                          .wall = false},
-                                         table[kind], state);
-  batch.losses->friction += held.shear, batch.losses->rolling += held.rolling;
+  const PairSize size{.radius_a = radius_a,
+                      .radius_b = radius_b,
+                      .inverse_mass_a = batch.velocity[a].w,
+                      .inverse_mass_b = batch.velocity[b].w,
+                      .overlap = std::max(0.0, overlap),
+                      .wall = false};
+  const ElasticEnergy held = Law::energy(size, table[kind], state);
+  batch.losses->friction += held.shear * size.work_share(), batch.losses->rolling += held.rolling;
 }
 
 /// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the reference twin. Flattened: a call
@@ -425,7 +425,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const L zero(0.0);
       if constexpr (Ledger) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
-        left.friction = left.friction - widened(select(touches, own.friction, zero));
+        const L work_share = L(1.0) - at.overlap / (at.radius_a + at.radius_b);  // as PairSize tells it
+        left.friction = left.friction - widened(select(touches, own.friction * work_share, zero));
         left.rolling = left.rolling - widened(select(touches, own.rolling, zero));
         left.viscosity = left.viscosity - widened(select(touches, own.viscosity, zero));
       }
