@@ -130,7 +130,7 @@ TEST(EnergyLedger, FrictionOfDeepContactsIsWhatMotionLoses) {
   const EnergyLedger now = slide.world().energies();
   EXPECT_GT(now.friction, 0.001 * now.kinetic);
   EXPECT_EQ(now.elastic(), 0);
-  verify("ledger of two that slide and overlap by 0.1 of the radius, what friction took over what is lacking",
+  verify("friction of two that slide and overlap by 0.1 of the radius, over what motion lost",
          now.friction / (now.friction - now.closure_error), 1, 1e-3);
 }
 
