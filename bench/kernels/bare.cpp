@@ -37,7 +37,7 @@ struct Meeting {
 };
 struct Answer {
   Triple force, lever, shear;  // on b; of moments; to be remembered
-  double half;                 // of the overlap
+  double share;                // of the radii that are arms
 };
 
 constexpr double modulus = 300e6, shear_ratio = 0.3;  // as dense.hpp's material has them
@@ -65,7 +65,7 @@ const double friction = std::tan(18 * std::numbers::pi / 180), damping = damping
   const Triple trial = turned - (shear_ratio * time_step * m.stiffness) * (slip - closing * normal);
   const double length = std::sqrt(dot(trial, trial)), limit = friction * force;
   const Triple shear = (length > limit ? limit / length : 1.0) * trial;
-  return {force * normal + shear, cross(normal, shear), shear, 0.5 * overlap};
+  return {force * normal + shear, cross(normal, shear), shear, distance / m.radii};
 }
 
 /// The dense grains, filed along a space-filling curve, with lists of neighbours as near as Dense has them.
@@ -115,11 +115,11 @@ class Bare {
         continue;
       }
       ++touching;
-      const auto [force, lever, shear, half] =
+      const auto [force, lever, shear, share] =
           law({branch, three(b.velocity - a.velocity), three(ra * a.spin + rb * b.spin), three(a.spin + b.spin),
                ra + rb, pair.stiffness, pair.dashpot, three(memory_[p])});
       memory_[p] = Four{shear.x, shear.y, shear.z, 0};
-      add(pair, Four{force.x, force.y, force.z, ra - half}, Four{lever.x, lever.y, lever.z, rb - half});
+      add(pair, Four{force.x, force.y, force.z, share * ra}, Four{lever.x, lever.y, lever.z, share * rb});
     }
     return touching;
   }
@@ -167,7 +167,7 @@ class Bare {
         const Answer answer =
             law({branch.at(k), velocity.at(k), arms.at(k), spins.at(k), radii, stiffness[k], dashpot[k], memory.at(k)});
         memory.set(k, answer.shear), force.set(k, answer.force), lever.set(k, answer.lever);
-        force.w[k] = 0.5 * (radii - difference) - answer.half, lever.w[k] = 0.5 * (radii + difference) - answer.half;
+        force.w[k] = 0.5 * answer.share * (radii - difference), lever.w[k] = 0.5 * answer.share * (radii + difference);
       }
       for (std::size_t k = 0; k < count; k += 4) {
         Four rows[3][4];

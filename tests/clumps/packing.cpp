@@ -49,7 +49,7 @@ TEST(ClumpPacking, RestsWithItsWeightOnTheFloor) {
   d["engines"]["gravity"] = {{"type", "gravity"}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
   Trial trial(d);
-  trial.step(60000);
+  trial.step(80000);
   double weight = 0;
   for (const ClumpView& clump : trial.world().clumps()) weight += 9.81 * clump.mass;
   verify("force on the floor below two clumps at rest over their weight",

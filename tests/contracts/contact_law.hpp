@@ -108,7 +108,9 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
   /// The moment that the law itself gives to b, without the arm of the shear force.
   Vec3 law_moment(Pairs& pairs, std::size_t c) {
     const Vec3 n = branch(pairs, c).normalized(), force = vec(pairs.row(c).force);
-    return vec(pairs.row(c).moment) + (pairs.position(pairs.b(c)).w - 0.5 * pairs.overlap(c)) * n.cross(force);
+    const double radius_a = pairs.position(pairs.a(c)).w, radius_b = pairs.position(pairs.b(c)).w;
+    const double arm = radius_b * branch(pairs, c).norm() / (radius_a + radius_b);
+    return vec(pairs.row(c).moment) + arm * n.cross(force);
   }
   Vec3 shear(Pairs& pairs, std::size_t c) {
     const Vec3 n = branch(pairs, c).normalized(), force = vec(pairs.row(c).force);

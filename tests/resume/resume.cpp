@@ -28,7 +28,7 @@ constexpr auto falling = R"({
     "type": "cloud", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "20 mm"], "count": 60,
     "sizes": {"type": "uniform", "smallest": "2 mm", "largest": "2.5 mm"}}}},
   "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "30 mm"], "open": ["z_high"], "material": "sand"}},
-  "engines": {"gravity": {"type": "gravity"}},
+  "engines": {"gravity": {"type": "gravity"}, "damping": {"type": "local-damping", "coefficient": 0.05}},
   "stages": [
     {"name": "fall", "until": {"type": "steps", "value": 400000}, "limit": "10 h"},
     {"name": "on", "until": {"type": "steps", "value": 40000}, "limit": "10 h"}],

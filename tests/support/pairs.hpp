@@ -206,6 +206,8 @@ class WallPair {
   void change(const ContactLaw& law) { law_ = &law, state_.resize(law.state().size(), 0.0); }
   void clear() { state_.assign(state_.size(), 0.0); }
   std::vector<double>& state() { return state_; }
+  /// The moment that the law itself gives to the wall, without the lever of the shear force.
+  Vec3 law_moment() const { return vec(row.moment) - touch.overlap * touch.normal.cross(vec(row.force)); }
 
   Row position, velocity, spin;
   WallTouch touch{.normal = -Vec3::UnitZ(),

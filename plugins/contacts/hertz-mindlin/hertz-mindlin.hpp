@@ -185,10 +185,12 @@ struct HertzMindlin {
   }
   static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
-    const Stiffness k = stiffness_at(size, pair, std::sqrt(radius * size.overlap));
+    // Those of shear and rolling as they are loaded: as the area changes, losses() takes what they hold less.
+    const Stiffness k = stiffness_at(size, pair, state.contact_radius);
     const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
     const Vec<double> rolling{state.rolling_x, state.rolling_y, state.rolling_z};
-    return {.normal = 4.0 / 15 * k.normal * size.overlap * size.overlap,
+    const double kn = stiffness_at(size, pair, std::sqrt(radius * size.overlap)).normal;
+    return {.normal = 4.0 / 15 * kn * size.overlap * size.overlap,
             .shear = spring_energy(dot(shear, shear), k.shear),
             .rolling = spring_energy(dot(rolling, rolling), k.rolling)};
   }

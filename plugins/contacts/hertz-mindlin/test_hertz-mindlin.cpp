@@ -179,7 +179,7 @@ TEST(HertzMindlin, InterfaceOverridesTheSmallerOfTwo) {
     WallPair wall(*law, {.radius = 0.5, .spin = {0, -1e6, 0}}, 1e-3);
     wall.touch.overlap = 0.01, wall.touch.material = 1;
     wall.evaluate();
-    return -wall.row.moment.y / (0.5 * wall.row.force.w);
+    return -wall.law_moment().y() / (0.5 * wall.row.force.w);
   };
   EXPECT_NEAR(rolled({}), 0.1, 1e-12);
   EXPECT_NEAR(rolled({{{0, 1}, {{"rolling_limit", 0.7}}}}), 0.7, 1e-12);

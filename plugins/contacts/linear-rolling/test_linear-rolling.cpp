@@ -61,7 +61,7 @@ Vec3 most(const ContactLaw& law, const Vec3& spin) {
   WallPair wall(law, {.radius = 0.5, .spin = spin}, 1e-3);
   wall.touch.overlap = 0.01, wall.touch.material = 1;
   wall.evaluate();
-  return vec(wall.row.moment) / (0.5 * wall.row.force.w);
+  return wall.law_moment() / (0.5 * wall.row.force.w);
 }
 
 TEST(LinearRolling, SmallerLimitCountsUnlessTheInterfaceSaysOtherwise) {

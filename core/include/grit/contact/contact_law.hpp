@@ -28,8 +28,8 @@ struct PairSize {
   double overlap;                         ///< m; the largest that is expected, never below zero
   bool wall = inverse_mass_b == 0 && radius_b == radius_a;
 
-  /// What the forces do on a path along which laws stretch shear springs, over what springs take up on it: paths are
-  /// told with the radii as arms, forces act at the middle of the overlap.
+  /// What shear does to the bodies on a path along which laws stretch its spring, over what the spring takes up on it:
+  /// paths are told with the radii as arms, and the arms of forces add up to the branch.
   double work_share() const { return wall ? 1 : 1 - overlap / (radius_a + radius_b); }
 };
 

@@ -422,10 +422,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         pair = load_pair<Law, L>(table, kind);
       }
       const Response<L> response = Law::template evaluate<Features>(at, pair, state);
-      const L zero(0.0);
+      const L zero(0.0), work_share = L(1.0) - at.overlap / (at.radius_a + at.radius_b);  // as PairSize tells it
       if constexpr (Ledger) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
-        const L work_share = L(1.0) - at.overlap / (at.radius_a + at.radius_b);  // as PairSize tells it
         left.friction = left.friction - widened(select(touches, own.friction * work_share, zero));
         left.rolling = left.rolling - widened(select(touches, own.rolling, zero));
         left.viscosity = left.viscosity - widened(select(touches, own.viscosity, zero));
@@ -433,15 +432,14 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
 
-      // The force acts at the middle of the overlap, so that the arms add up to the branch: no angular momentum is
-      // made.
+      // The arms add up to the branch, so that no angular momentum is made, and are as the radii, so that shear does
+      // the same share of its work on all motions: laws tell slip with the radii as arms.
       const Vec<L> none{zero, zero, zero};
-      const L half = L(0.5) * at.overlap;
       const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
       const Vec<L> lever = cross(normal, select(touches, response.shear, none));
       const Vec<L> moment = select(touches, response.moment, none);
-      const Vec<L> moment_a = -moment - (at.radius_a - half) * lever;
-      const Vec<L> moment_b = moment - (at.radius_b - half) * lever;
+      const Vec<L> moment_a = -moment - (work_share * at.radius_a) * lever;
+      const Vec<L> moment_b = moment - (work_share * at.radius_b) * lever;
       const L normal_force = select(touches, response.normal_force, zero);
       const L shown_overlap = select(touches, at.overlap, zero);
 
@@ -577,8 +575,9 @@ template <class Law, unsigned Features, class L, bool Ledger>
       left.viscosity = left.viscosity - select(counts, own.viscosity, L(0.0));
     }
 
-    const Vec<L> force = response.normal_force * normal + response.shear;
-    const Vec<L> moment_a = -response.moment - (pa.w - at.overlap) * cross(normal, response.shear);
+    // Shear acts where slip is told, at the sphere's surface, which is as far behind the wall's as they overlap.
+    const Vec<L> force = response.normal_force * normal + response.shear, lever = cross(normal, response.shear);
+    const Vec<L> moment_a = -response.moment - pa.w * lever, moment_wall = response.moment + at.overlap * lever;
     for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
       store_rows(member<L>(state, f), member<L>(state, f + 1), member<L>(state, f + 2), member<L>(state, f + 3),
                  [&](std::size_t k, const Quad& numbers) {
@@ -592,10 +591,9 @@ template <class Law, unsigned Features, class L, bool Ledger>
       store(on_wall, batch.row[first + k].force);
       batch.sum[touch(k).body].force -= on_wall;
     });
-    store_rows(response.moment.x, response.moment.y, response.moment.z, at.overlap,
-               [&](std::size_t k, const Quad& on_wall) {
-                 if (k < used) store(on_wall, batch.row[first + k].moment);
-               });
+    store_rows(moment_wall.x, moment_wall.y, moment_wall.z, at.overlap, [&](std::size_t k, const Quad& on_wall) {
+      if (k < used) store(on_wall, batch.row[first + k].moment);
+    });
     store_rows(moment_a.x, moment_a.y, moment_a.z, L(0.0), [&](std::size_t k, const Quad& on_body) {
       if (k < used) batch.sum[touch(k).body].moment += on_body;
     });
