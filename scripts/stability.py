@@ -98,7 +98,10 @@ its account anew.
 - **Without an `energy` probe** it holds what is stored against the work of walls, so that dissipation hides as much as it takes. It does not
   look where bodies grow, a cell deforms, bodies are held, engines push them, or gravity acts along a periodic axis.
 - **With one**, from its first sample on, it takes the error of the ledger's closure, and its limit is a share of the largest energy and of what was
-  dissipated. All of these are reckoned with.
+  dissipated. All of these are reckoned with. No description of sims/ but those that ask for the probe keeps a ledger: it costs a third of the contacts' time.
+- What the law and the step make of energy it takes for none's: shear of deep contacts along curved walls and edges (see the [probe](../plugins/probes/energy/README.md)), and many impacts without damping,
+  which heat. With friction they do as well: 120 elastic grains in a box at the chosen step gained up to 0.7% of all that was turned over (linear, 60°) and 3.0% (Hertz, 70°) (taken once). Over long times such a
+  scene may trip the guard: take a shorter step there, or what dissipates.
 
 ## Limits found by halving
 Where limits are looked for by halving, what is found is one limit. Two Hertz grains that begin inside each other have several, since
@@ -107,25 +110,46 @@ the step in which they are fastest is another one at another safety; their curve
 '''
 
 
-def ticks(low, high):
-    """Powers of ten, or 1, 2, 5 where there are few."""
-    first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
-    leads = (1,) if last - first > 3 else (1, 2, 5)
-    return [lead * 10.0 ** power for power in range(first, last + 1) for lead in leads
-            if low * 0.999 <= lead * 10.0 ** power <= high * 1.001]
+class Axis:
+    """Along one of the picture's sides: logarithmic, but linear where values span less than a decade, so that small
+    differences show, or are angles."""
+
+    def __init__(self, values, title, margin, begin, end):
+        low, high = min(values), max(values)
+        self.linear, self.begin, self.end = '°' in title or low > 0.1 * high, begin, end
+        if self.linear:
+            room = 0.05 * (high - low) or 0.5 * abs(high) or 1
+            self.low, self.high = low - room, high + room
+        else:
+            self.low, self.high = low / margin, high * margin
+
+    def place(self, value):
+        along = ((value - self.low) / (self.high - self.low) if self.linear else
+                 math.log(value / self.low) / math.log(self.high / self.low))
+        return self.begin + along * (self.end - self.begin)
+
+    def ticks(self):
+        """Powers of ten, or 1, 2, 5 where there are few; steps of 1, 2 or 5 where it is linear."""
+        if self.linear:
+            power = 10.0 ** math.floor(math.log10((self.high - self.low) / 4))
+            step = next(lead * power for lead in (1, 2, 5, 10) if (self.high - self.low) / (lead * power) <= 6)
+            return [round(k * step, 12) for k in range(math.ceil(self.low / step), math.floor(self.high / step) + 1)]
+        first, last = math.floor(math.log10(self.low)), math.ceil(math.log10(self.high))
+        leads = (1,) if last - first > 3 else (1, 2, 5)
+        return [lead * 10.0 ** power for power in range(first, last + 1) for lead in leads
+                if self.low * 0.999 <= lead * 10.0 ** power <= self.high * 1.001]
 
 
 def picture(title, series):
-    """Curves over logarithmic axes; those that are predicted are dashed and have no marks. Where there are more than
-    colours, the others are dotted with open marks, so that no two look alike, and one below another shows."""
+    """Curves; those that are predicted are dashed and have no marks. Where there are more than colours, the others are
+    dotted with open marks, so that no two look alike, and one below another shows."""
     y_title, x_title = title.split('|')
     points = [p for curve in series.values() for p in curve if p[1] > 0]
     own = [p for name, curve in series.items() if not name.startswith('predicted') or name.startswith('predicted bound')
            for p in curve if p[1] > 0]
-    low_x, high_x = min(p[0] for p in points) / 1.15, max(p[0] for p in points) * 1.15
-    low_y, high_y = min(p[1] for p in own) / 2, max(p[1] for p in own) * 2
-    across = lambda x: LEFT + math.log(x / low_x) / math.log(high_x / low_x) * (RIGHT - LEFT)
-    down = lambda y: BOTTOM - math.log(y / low_y) / math.log(high_y / low_y) * (BOTTOM - TOP)
+    x_axis = Axis([p[0] for p in points], x_title, 1.15, LEFT, RIGHT)
+    y_axis = Axis([p[1] for p in own], y_title, 2, BOTTOM, TOP)
+    across, down = x_axis.place, y_axis.place
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}">',
            f'<title>{html.escape(y_title)}</title>',
            '<style>text{font:12px "Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;fill:#222}'
@@ -133,10 +157,10 @@ def picture(title, series):
            '.c{fill:none;stroke-width:1.8}.o{stroke-dasharray:2 3}.p{fill:none;stroke:#8a8a86;stroke-dasharray:5 4}</style>',
            f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>',
            f'<clipPath id="frame"><rect x="{LEFT}" y="{TOP}" width="{RIGHT - LEFT}" height="{BOTTOM - TOP}"/></clipPath>']
-    for x in ticks(low_x, high_x):
+    for x in x_axis.ticks():
         out.append(f'<line class="g" x1="{across(x):.1f}" x2="{across(x):.1f}" y1="{TOP}" y2="{BOTTOM}"/>'
                    f'<text class="m" x="{across(x):.1f}" y="{BOTTOM + 18}">{x:g}</text>')
-    for y in ticks(low_y, high_y):
+    for y in y_axis.ticks():
         out.append(f'<line class="g" y1="{down(y):.1f}" y2="{down(y):.1f}" x1="{LEFT}" x2="{RIGHT}"/>'
                    f'<text class="e" x="{LEFT - 8}" y="{down(y) + 4:.1f}">{y:g}</text>')
     out.append(f'<line class="f" x1="{LEFT}" x2="{RIGHT}" y1="{BOTTOM}" y2="{BOTTOM}"/>'

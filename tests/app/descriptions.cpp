@@ -64,7 +64,8 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   const auto idle =
       check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})", R"(/engines/hold={"type": "hold"})",
              "/seed=7", "/bodies/grains/heavier_below=2 mm", "/bodies/grains/overlap=0.02", "/time_step/value=1e-9",
-             "/time_step/safety=0.5", "/materials/steel={}", R"(/probes/idle={"type": "packing"})",
+             "/time_step/safety=0.5", "/materials/steel={}", "/materials/steel/density=7800",
+             R"(/probes/idle={"type": "packing"})",
              R"(/output/picture={"x": "packing/time", "y": ["packing/kinetic_energy"]})"});
   EXPECT_THAT(
       idle, AllOf(HasSubstr("\nwithout effect\n"), HasSubstr("  /engines/damping: with these values it does nothing\n"),
@@ -74,6 +75,7 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
                   HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
                   HasSubstr("  /probes/idle: it never looks")));
   EXPECT_THAT(idle, testing::Not(HasSubstr("/engines/hold")));
+  EXPECT_THAT(idle, testing::Not(HasSubstr("/materials/steel/"))) << "told with the material";
   const std::string turning = R"(/probes/turns={"type": "rotations", "every_time": "3 s"})";
   const std::string smooth = "/materials/sand/friction_angle=0", law = "/contacts/type=linear-frictional";
   EXPECT_THAT(check({turning, smooth}),

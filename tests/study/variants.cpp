@@ -69,7 +69,7 @@ TEST(Studies, SayWhatIsWrong) {
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1]}})"), HasSubstr("/settings/r/values"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 1]}})"), HasSubstr("the level \"1\" twice"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "usual": "3"}})"),
-              HasSubstr("/settings/r/usual: found \"3\"; allowed is one of the labels"));
+              HasSubstr("/settings/r/usual: found \"3\"; allowed is one of the labels: 1, 2"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r", "/s"], "values": [[1, 2], 3]}})"),
               HasSubstr("/settings/r/values/1: found 3; allowed is a list of 2 values"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "labels": ["a"]}})"), HasSubstr("1 labels"));

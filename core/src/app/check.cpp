@@ -137,9 +137,12 @@ void check_one(const std::string& file, const Options& options, const Registry& 
     return load_scene(file, all, registry);
   };
   for (const std::string& line : idle_materials(scene, is_written, with)) {
-    // Some are known already, and why.
-    const std::string pointer = line.substr(0, line.find(": ") + 2);
-    if (std::ranges::none_of(idle, [&](const std::string& other) { return other.starts_with(pointer); }))
+    // Some are known already, and why, or are part of what is.
+    const std::string pointer = line.substr(0, line.find(": "));
+    if (std::ranges::none_of(idle, [&](const std::string& other) {
+          const std::string known = other.substr(0, other.find(": "));
+          return known == pointer || pointer.starts_with(known + '/');
+        }))
       idle.push_back(line);
   }
   if (auto line = too_deep(scene, simulation, scenario_type(Document::load(file)), same)) idle.push_back(*line);

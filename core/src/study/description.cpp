@@ -99,7 +99,11 @@ void SettingDescription::declare(Parameters& p) {
         for (std::size_t i = 0; i < levels(); ++i)
           for (std::size_t k = 0; k < i; ++k)
             if (label(i) == label(k)) complain("values", "the level \"" + label(i) + "\" twice", "different levels");
-        if (!usual.empty() && usual_level() == levels()) complain("usual", '"' + usual + '"', "one of the labels");
+        if (!usual.empty() && usual_level() == levels()) {
+          std::vector<std::string> all;
+          for (std::size_t i = 0; i < levels(); ++i) all.push_back(label(i));
+          complain("usual", '"' + usual + '"', fmt::format("one of the labels: {}", fmt::join(all, ", ")));
+        }
       },
       {"pointers", "values", "labels", "usual"});
 }
