@@ -116,7 +116,8 @@ class Axis:
 
     def __init__(self, values, title, margin, begin, end):
         low, high = min(values), max(values)
-        self.linear, self.begin, self.end = '°' in title or low > 0.1 * high, begin, end
+        self.linear = '°' in title or 'degrees' in title or low > 0.1 * high
+        self.begin, self.end = begin, end
         if self.linear:
             room = 0.05 * (high - low) or 0.5 * abs(high) or 1
             self.low, self.high = low - room, high + room
@@ -141,8 +142,8 @@ class Axis:
 
 
 def picture(title, series):
-    """Curves; those that are predicted are dashed and have no marks. Where there are more than colours, the others are
-    dotted with open marks, so that no two look alike, and one below another shows."""
+    """Curves, each thinner than the one before, so that one below another shows. Those that are predicted are dashed and
+    have no marks; they have the colour of what was found of the same name."""
     y_title, x_title = title.split('|')
     points = [p for curve in series.values() for p in curve if p[1] > 0]
     own = [p for name, curve in series.items() if not name.startswith('predicted') or name.startswith('predicted bound')
@@ -154,7 +155,7 @@ def picture(title, series):
            f'<title>{html.escape(y_title)}</title>',
            '<style>text{font:12px "Helvetica Neue",Helvetica,Arial,"Liberation Sans",sans-serif;fill:#222}'
            '.m{text-anchor:middle}.e{text-anchor:end}.g{stroke:#e4e4e0}.f{stroke:#8a8a86}'
-           '.c{fill:none;stroke-width:1.8}.o{stroke-dasharray:2 3}.p{fill:none;stroke:#8a8a86;stroke-dasharray:5 4}</style>',
+           '.c{fill:none}.o{stroke-dasharray:2 3}.p{fill:none;stroke-dasharray:5 4}</style>',
            f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#fff"/>',
            f'<clipPath id="frame"><rect x="{LEFT}" y="{TOP}" width="{RIGHT - LEFT}" height="{BOTTOM - TOP}"/></clipPath>']
     for x in x_axis.ticks():
@@ -167,22 +168,24 @@ def picture(title, series):
                f'<line class="f" x1="{LEFT}" x2="{LEFT}" y1="{TOP}" y2="{BOTTOM}"/>'
                f'<text x="{LEFT - 60}" y="{TOP - 12}">{html.escape(y_title)}</text>'
                f'<text class="m" x="{(LEFT + RIGHT) / 2}" y="{BOTTOM + 42}">{html.escape(x_title)}</text>')
-    colour, row = 0, 0
-    for name, curve in series.items():
+    found = [name for name in series if not name.startswith('predicted')]
+    tints = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(found)}
+    for row, (name, curve) in enumerate(series.items()):
         curve = sorted(set(p for p in curve if p[1] > 0))
         line = ' '.join(f'{across(x):.1f},{down(y):.1f}' for x, y in curve)
-        predicted = name.startswith('predicted')
-        tint, again = COLOURS[colour % len(COLOURS)], colour >= len(COLOURS)
-        look = 'class="p"' if predicted else f'class="c{" o" if again else ""}" stroke="{tint}"'
-        out.append(f'<polyline {look} clip-path="url(#frame)" points="{line}"/>')
-        if not predicted:
-            mark = f'r="5.5" fill="none" stroke="{tint}" stroke-width="1.4"' if again else f'r="3.5" fill="{tint}"'
-            out += [f'<circle cx="{across(x):.1f}" cy="{down(y):.1f}" {mark}/>' for x, y in curve]
-            colour += 1
+        tint = tints.get(name.removeprefix('predicted').lstrip(', '), '#8a8a86')
+        if name in found:
+            order = found.index(name)
+            size, dots = max(2.5, 7 - 1.2 * order), order >= len(COLOURS)
+            look = f'class="c{" o" if dots else ""}" stroke="{tint}" stroke-width="{0.6 * size:.1f}"'
+            mark = f'fill="none" stroke="{tint}" stroke-width="1.4"' if dots else f'fill="{tint}"'
+            marks = [f'<circle cx="{across(x):.1f}" cy="{down(y):.1f}" r="{size:.1f}" {mark}/>' for x, y in curve]
+        else:
+            look, marks = f'class="p" stroke="{tint}"', []
+        out += [f'<polyline {look} clip-path="url(#frame)" points="{line}"/>'] + marks
         y = TOP + 14 + 20 * row
         out.append(f'<line {look} x1="{RIGHT + 16}" x2="{RIGHT + 40}" y1="{y - 4}" y2="{y - 4}"/>'
                    f'<text x="{RIGHT + 46}" y="{y}">{html.escape(name)}</text>')
-        row += 1
     return '\n'.join(out + ['</svg>', ''])
 
 
