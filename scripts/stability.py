@@ -98,10 +98,9 @@ its account anew.
 - **Without an `energy` probe** it holds what is stored against the work of walls, so that dissipation hides as much as it takes. It does not
   look where bodies grow, a cell deforms, bodies are held, engines push them, or gravity acts along a periodic axis.
 - **With one**, from its first sample on, it takes the error of the ledger's closure, and its limit is a share of the largest energy and of what was
-  dissipated. All of these are reckoned with. No description of sims/ but those that ask for the probe keeps a ledger: it costs a third of the contacts' time.
-- What the law and the step make of energy it takes for none's: shear of deep contacts along curved walls and edges (see the [probe](../plugins/probes/energy/README.md)), and many impacts without damping,
-  which heat. With friction they do as well: 120 elastic grains in a box at the chosen step gained up to 0.7% of all that was turned over (linear, 60°) and 3.0% (Hertz, 70°) (taken once). Over long times such a
-  scene may trip the guard: take a shorter step there, or what dissipates.
+  dissipated. All of these are reckoned with. A ledger is kept only where a description asks for the probe, whose README says what it costs.
+- **It may also take for wrong what is known**: shear of deep contacts along curved walls and edges (see the [probe](../plugins/probes/energy/README.md)), and [many impacts](#many-impacts) without damping,
+  which heat, with friction too. Over long times such a scene may trip it: take a shorter step there, or something that dissipates.
 
 ## Limits found by halving
 Where limits are looked for by halving, what is found is one limit. Two Hertz grains that begin inside each other have several, since
