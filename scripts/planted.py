@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes docs/planted.md: which tests of
-physics turn red.
+"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes which tests of physics turn red:
+docs/planted.md, with which docs/validation.md ends.
 
   planted.py [--only PART] [BUILD]      BUILD is build unless given; exit status 1 if a plant leaves all tests green, or
                                         if tests are red without one; with --only the rows of one of the PARTS below are made anew
@@ -185,6 +185,16 @@ def tried(build, part):
             os.replace(kept, library)
 
 
+def write(page, text):
+    """The page, and the end of the page of all figures, which it is."""
+    whole = page.with_name('validation.md')
+    before = page.read_text(encoding='utf-8') if page.is_file() else ''
+    figures = whole.read_text(encoding='utf-8')
+    if before and figures.endswith(before):
+        whole.write_text(figures.removesuffix(before) + text, encoding='utf-8')
+    page.write_text(text, encoding='utf-8')
+
+
 def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was exchanged is put back
     words = sys.argv[1:]
@@ -210,7 +220,7 @@ def main():
         lines = page.read_text(encoding='utf-8').splitlines(True) if page.is_file() else []
         rows = {other: [line for line in lines if line.startswith(f'| {other} |')] for other in PARTS}
         rows[part] = [f'| {part} | {what} | {", ".join(tests) or "none"} |\n' for _, what, tests in found]
-        page.write_text(HEAD + ''.join(line for other in PARTS for line in rows[other]), encoding='utf-8')
+        write(page, HEAD + ''.join(line for other in PARTS for line in rows[other]))
     return 1 if green else 0
 
 
