@@ -12,7 +12,7 @@ namespace grit {
 inline constexpr std::size_t block_size = 8;
 
 /// What one contact does, 64 bytes: force on b [N] and its normal part (> 0 in compression), moment on b about b's
-/// centre [N m] and the overlap [m]. Zero where the pair does not touch.
+/// centre [N m] and the overlap [m]. Zero where the pair does not touch. Of a wall: see WallBatch.
 struct alignas(64) ContactRow {
   Row force;   // w: normal force
   Row moment;  // w: overlap
@@ -91,7 +91,9 @@ struct WallBatch {
   const WallTouch* touch;
   double dt;
   double* state;    ///< [touch][field]
-  ContactRow* row;  ///< [touch]: force on the wall, moment on the wall about the point of contact
+  ContactRow* row;  ///< [touch]: force on the wall and moment about the point of contact, which lies on the wall. Shear
+                    ///< acts at the sphere's surface, the overlap behind it: normal force alone has no moment there,
+                    ///< shear has overlap · normal × shear beside what the law says
   BodySum* sum;     ///< [body]
   double largest_overlap;
   Losses* losses;  ///< added to; null where nobody asks

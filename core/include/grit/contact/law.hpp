@@ -104,6 +104,14 @@ template <class Law, unsigned Features, class L>
   else return {};
 }
 
+/// Of both: by one division where it is what takes time, each by its own where digits are few.
+template <class L>
+[[gnu::always_inline]] inline std::pair<L, L> inverses(const L& a, const L& b) {
+  if constexpr (is_single<L>) return {L(1.0) / a, L(1.0) / b};
+  const L of_product = L(1.0) / (a * b);
+  return {of_product * b, of_product * a};
+}
+
 /// `turns` is 1; 0 leaves out the change of normal.
 template <class L>
 [[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
@@ -377,7 +385,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       }
       const Vec<L> branch = in_precision<L>(between), velocity = in_precision<L>(apart);
       const L distance = max(length(), L(tiny<L>));
-      const Vec<L> normal = (L(1.0) / distance) * branch;
+      const auto [per_distance, per_reach] = inverses(distance, reach);
+      const Vec<L> normal = per_distance * branch;
       const Vec<L> way = dt * velocity, branch_before = branch - way;
       const L distance_before = max(sqrt(dot(branch_before, branch_before)), L(tiny<L>));
       L overlap, overlap_before;
@@ -397,6 +406,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       ContactPoint<L> at;
       at.normal = normal;
       at.overlap = max(overlap, L(0.0));
+      const L work_share = L(1.0) - at.overlap * per_reach;  // as PairSize tells it
       at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
       at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
       at.turn =
@@ -422,7 +432,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         pair = load_pair<Law, L>(table, kind);
       }
       const Response<L> response = Law::template evaluate<Features>(at, pair, state);
-      const L zero(0.0), work_share = L(1.0) - at.overlap / (at.radius_a + at.radius_b);  // as PairSize tells it
+      const L zero(0.0);
       if constexpr (Ledger) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
         left.friction = left.friction - widened(select(touches, own.friction * work_share, zero));
