@@ -191,6 +191,13 @@ TEST_F(Studies, BeginNothingThatCannotBeRun) {
   EXPECT_THAT(twice.err, HasSubstr("/settings/safety/pointers/0: found /time_step/safety, of which "
                                    "/settings/damping/pointers/0 changes /time_step/safety"));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+  changed = json::parse(study);
+  changed["settings"]["duration"] = {{"pointers", {"/stages/0/until/value"}}, {"values", {"20 us", "0.02 ms"}}};
+  folder.write("same.json", changed.dump());
+  const auto same = grit({"chart", "same.json", "--dry"});
+  EXPECT_EQ(same.status, 2);
+  EXPECT_THAT(same.err, HasSubstr("same.json:1: /settings: found usual and duration=0.02 ms, which run the same; "
+                                  "allowed are levels that differ in more than how they are written"));
   const auto both = grit({"chart", "study.json", "--dry", "--draw"});
   EXPECT_EQ(both.status, 1);
   EXPECT_THAT(both.err, HasSubstr("--draw does none: give one of them"));

@@ -104,6 +104,15 @@ TEST_F(Charts, VerdictSaysWhatItCannotBeSureOf) {
   EXPECT_THAT(verdict(chart(value_figure, R"(, "tolerance": 0.9)")), Not(HasSubstr("more seeds would tell")));
 }
 
+TEST_F(Charts, VerdictSaysWhichLevelsMayBeInTheWrongOrder) {
+  make_all();
+  EXPECT_THAT(verdict(chart()), Not(HasSubstr("levels go from")));
+  make("usual", 9, 1.4, 1.6);
+  EXPECT_THAT(verdict(chart()),
+              HasSubstr("rate=fast costs 3.0 times as much as slow, which stands last and so is taken "
+                        "for the finest: levels go from the cheapest to the finest."));
+}
+
 TEST_F(Charts, CertaintyIsOfEveryFigureNotOfTheFurthest) {
   // The usual's x ends at 1.1 in both samples, surely 10 % off; its y is right on average, but scatters.
   make_all();

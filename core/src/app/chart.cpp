@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <ranges>
 #include <set>
@@ -218,10 +219,15 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                               std::size_t& all) {
   std::vector<Run> runs;
   std::set<std::filesystem::path> folders;
+  std::map<std::string, std::string> described;  // the variants, by what their first sample runs
   const unsigned threads = options.threads();
   const Document written = Document::load(file);
-  for (const Variant& variant : variants(study))
+  const auto asked = variants(study);
+  ProgressLine line;
+  for (const Variant& variant : asked)
     for (const double seed : study.seeds.values) {
+      if (!options.has("quiet") && all > 0 && line.is_due())
+        line.show(fmt::format("{} of {} runs looked at", all, asked.size() * study.seeds.values.size()));
       const auto sets = sets_of(study, variant, seed);
       const auto folder = out / folder_of(variant, seed);
       ++all;
@@ -232,7 +238,14 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
       const auto scene = scene_of(study, file, variant, sets, registry);
       check_figures(study, written, *scene);
       // As run.json has it, whose numbers went through text.
-      const auto description = Description::parse(resolved(*scene).dump());
+      const std::string text = resolved(*scene).dump();
+      const auto description = Description::parse(text);
+      if (seed == study.seeds.values.front())
+        if (const auto [other, is_new] = described.emplace(text, variant.name); !is_new)
+          throw DescriptionError({written.problem(
+              "/settings", fmt::format("found {} and {}, which run the same; allowed are levels that differ in more "
+                                       "than how they are written",
+                                       other->second, variant.name))});
       if (all == 1 && !options.has("draw")) check_channels(study, written, *scene);
       if (options.has("draw")) {
         expect_same(folder, description);
@@ -258,6 +271,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
         run.job.words.insert(run.job.words.end(), {"--plugin-path", path});
       runs.push_back(std::move(run));
     }
+  line.end();
   return runs;
 }
 

@@ -12,6 +12,8 @@ namespace grit {
 class ProgressLine {
  public:
   ProgressLine();
+  ~ProgressLine() { end(); }
+  ProgressLine(const ProgressLine&) = delete;
   /// Whether it is time for a line; at a terminal it always is.
   bool is_due() const;
   void show(const std::string& text);

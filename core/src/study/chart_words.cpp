@@ -123,9 +123,27 @@ std::string of_samples(const Chart& chart) {
       chart.study.seeds.pointer);
 }
 
+std::string of_order(const Chart& chart) {
+  constexpr double suspicious = 1.5;
+  std::string text;
+  for (const auto& [name, setting] : chart.study.settings) {
+    const auto first = std::ranges::find_if(chart.effects, [&](const Effect& effect) {
+      return effect.setting == name && effect.level == setting.label(0);
+    });
+    if (first == chart.effects.end() || first->cost <= suspicious) continue;
+    text += fmt::format(
+        "{}{}={} costs {} times as much as {}, which stands last and so is taken for the finest: levels go from the "
+        "cheapest to the finest.",
+        text.empty() ? "" : " ", name, first->level, times(first->cost), setting.label(setting.finest_level()));
+  }
+  return text;
+}
+
 std::string verdict(const Chart& chart) {
-  const std::string samples = of_samples(chart);
-  return verdict_of_figures(chart) + (samples.empty() ? "" : ' ' + samples);
+  std::string text = verdict_of_figures(chart);
+  for (const std::string& more : {of_samples(chart), of_order(chart)})
+    if (!more.empty()) text += ' ' + more;
+  return text;
 }
 
 }  // namespace grit

@@ -28,6 +28,10 @@ std::string finer_that_is_not(const Chart& chart, const VariantResult& one);
 /// What there is to say where seeds changed nothing; empty elsewhere.
 std::string of_samples(const Chart& chart);
 
+/// The settings whose first level costs so much more than their last that they may be in the wrong order; empty if
+/// none.
+std::string of_order(const Chart& chart);
+
 /// Some sentences: the cheapest variant that is good enough, what it saves, and what is unsure of that.
 std::string verdict(const Chart& chart);
 
