@@ -224,9 +224,10 @@ struct Preparation {
   }
 
   /// Stages "compact" (friction leads somewhat above the wanted void ratio), "densify" (friction falls until it is
-  /// there) and "settle" (friction is the sand's own). Of all `walls`, the `pressing` ones are servo-controlled to
-  /// `pressure` [Pa] and close in `closing` [s]; `compacted` says what friction leads to. Where grains grow, "grow" and
-  /// "press" take the place of "compact", and the pressing walls, which stand until then, go by their servos after it.
+  /// there, or until it has vanished and the grains rest) and "settle" (friction is the sand's own). Of all `walls`,
+  /// the `pressing` ones are servo-controlled to `pressure` [Pa] and close in `closing` [s]; `compacted` says what
+  /// friction leads to. Where grains grow, "grow" and "press" take the place of "compact", and the pressing walls,
+  /// which stand until then, go by their servos after it.
   std::vector<Description> stages(Description& walls, const std::vector<std::string>& pressing, double pressure,
                                   double closing, std::span<const Compacted> compacted) const {
     const double settling = settling_time(pressure);
@@ -251,7 +252,13 @@ struct Preparation {
                                             {"to", 0.0},
                                             {"duration", settling},
                                             {"increments", 100}}});
-    densify["until"] = {{"type", "void-ratio"}, {"below", void_ratio}};
+    // Without friction grains that rest stay as dense as they are; whether that is near enough, "settle" says.
+    const Description without_friction = {{"type", "time"}, {"value", settling}},
+                      rest = {{"type", "unbalanced-force"}, {"below", 1e-4}};
+    densify["until"] = {
+        {"type", "any"},
+        {"of", Description::array({{{"type", "void-ratio"}, {"below", void_ratio}},
+                                   {{"type", "all"}, {"of", Description::array({without_friction, rest})}}})}};
     densify["limit"] = 5 * settling;
     settle["name"] = "settle";
     settle["change"]["materials"] = friction(friction_angle);
