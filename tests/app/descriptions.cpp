@@ -129,6 +129,9 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   const auto told = [&](const std::string& pointer) { return HasSubstr("  " + pointer + idle_value); };
   EXPECT_THAT(check({rolling, "/materials/sand/friction_angle=0.3", "/materials/sand/shear_to_normal_stiffness=0"}),
               told("/materials/sand/friction_angle"));
+  const std::string rough_steel = R"(/materials/steel={"friction_angle": 1})";
+  EXPECT_THAT(check({rolling, rough_steel, floor, "/materials/sand/friction_angle=0.3"}),
+              told("/materials/steel/friction_angle"));
   const auto smooth_and_rough = [&](const std::string& friction, const std::string& more) {
     return check({rolling, steel, floor, "/materials/sand/friction_angle=0.3",
                   "/materials/steel/friction_angle=" + friction, "/materials/steel/contact_modulus=1e9", more});

@@ -100,6 +100,18 @@ TEST(Document, ExtendingMergesAndKeepsOrigins) {
   EXPECT_EQ(document.origin("/d/new/k").source->name, (folder.path() / "base/middle.json").string());
 }
 
+TEST(Document, EntriesOfAListAreMergedByTheirNumbers) {
+  const auto merged = [](const char* patch) {
+    Document document(Description::parse(R"({"l": [{"x": 1, "y": 2}, 3]})"), "base");
+    document.merge(Document(Description::parse(patch), "patch"));
+    EXPECT_EQ(document.origin("/l/0/y").source->name, document.json()["l"].is_array() ? "base" : "patch");
+    return document.json()["l"];
+  };
+  EXPECT_EQ(merged(R"({"l": {"0": {"x": 5}, "1": [4]}})"), Description::parse(R"([{"x": 5, "y": 2}, [4]])"));
+  for (const char* other : {R"({"2": 1})", R"({"00": 1})", R"({"0": 1, "x": 1})", R"({"0": null})", "{}"})
+    EXPECT_TRUE(merged((R"({"l": )" + std::string(other) + '}').c_str()).is_object()) << other;
+}
+
 TEST(Document, CirclesAndMissingFilesAreRefused) {
   const Folder folder;
   folder.write("b.json", "{\"extends\": \"a.json\"}");

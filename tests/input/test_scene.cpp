@@ -123,6 +123,13 @@ TEST_F(SceneTest, AScenarioBecomesAPlainDescription) {
   EXPECT_EQ(std::get<CloudGrains>(good("extended_scenario").description->bodies.at("grains").grains.value()).count, 50);
 }
 
+TEST_F(SceneTest, StagesOfAScenarioAreSetByTheirNumbers) {
+  const Scene before = good("scenario"), after = good("scenario", {"/stages/0/limit=7.5"});
+  ASSERT_EQ(after.description->stages.size(), before.description->stages.size());
+  EXPECT_EQ(after.description->stages.at(0).limit, 7.5);
+  EXPECT_EQ(after.description->stages.at(0).name, before.description->stages.at(0).name);
+}
+
 TEST_F(SceneTest, NullTakesAwayWhatAScenarioWrites) {
   const Folder folder;
   const auto write = [&](const char* name, const char* text) { return folder.write(name, text); };

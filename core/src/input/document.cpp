@@ -72,6 +72,14 @@ std::optional<std::size_t> index_in(const Description& list, const std::string& 
   return index;
 }
 
+/// Whether a patch tells of entries of a list by their numbers.
+bool is_of_entries(const Description& patch, const Description& list) {
+  return patch.is_object() && !patch.empty() && list.is_array() &&
+         std::ranges::all_of(patch.items(), [&](const auto& one) {
+           return index_in(list, one.key()).has_value() && !one.value().is_null();
+         });
+}
+
 bool is_below(const std::string& pointer, const std::string& parent) {
   return pointer.size() > parent.size() && pointer[parent.size()] == '/' &&
          pointer.compare(0, parent.size(), parent) == 0;
@@ -327,6 +335,11 @@ void Document::merge(const Document& other, const std::string& from) {
 
 void Document::merge(Description& target, const std::string& at, const Description& patch, const Document& other,
                      const std::string& from) {
+  if (is_of_entries(patch, target)) {
+    for (const auto& [key, value] : patch.items())
+      merge(target[*index_in(target, key)], at + '/' + key, value, other, from + '/' + key);
+    return;
+  }
   // An object that is merged into stays where it was written, for what it holds without an entry of its own.
   if (!patch.is_object() || !target.is_object()) {
     forget(at);

@@ -53,7 +53,8 @@ class Document {
   /// Puts a value at a pointer as if it had been written at `origin`. Parents that are missing are created as objects.
   /// Returns what is wrong with the pointer; empty if nothing is.
   std::string set(const std::string& pointer, Description value, const Origin& origin);
-  /// Merges the value at `from` of a document onto the value at the root of this one (RFC 7396).
+  /// Merges the value at `from` of a document onto the value at the root of this one (RFC 7396), and objects whose keys
+  /// are numbers of entries of a list onto these entries.
   void merge(const Document& other, const std::string& from = "");
   /// Removes a value.
   void erase(const std::string& pointer);
