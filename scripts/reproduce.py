@@ -60,7 +60,7 @@ def found(series, row):
     else:
         sys.exit(f'docs/reproduction.json: found "how": "{how}"; allowed are maximum, last, mean of the last quarter, at the start, '
                  'where largest')
-    return row.get('scale', 1) * float(figure)
+    return row.get('scale', 1) * float(figure) + row.get('plus', 0)
 
 
 def state(folder):

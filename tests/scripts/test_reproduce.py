@@ -11,6 +11,7 @@ import unittest.mock
 
 try:
     import h5py
+    import numpy
 except ImportError:
     print("skipped: Python's h5py is not installed (Debian: python3-h5py)")
     sys.exit(77)
@@ -61,6 +62,10 @@ class Reproduction(unittest.TestCase):
             self.file(f'sims/{name}.json', '{}')
         self.file('docs/reproduction.md', PAGE)
         self.file('grit', '#!/bin/sh\necho "bodies: 100, touching pairs"; echo "estimated time on 2 threads: 3.00 h (3 h)"\n').chmod(0o700)
+
+    def test_figures_are_scaled_and_put_off(self):
+        row = {'of': 'y', 'how': 'last', 'scale': 10, 'plus': 180}
+        self.assertEqual(reproduce.found({'y': numpy.array([1.0, -2.5])}, row), 155)
 
     def file(self, name, text):
         path = self.root / name
