@@ -38,7 +38,7 @@ class Dense {
       : scene_(test::scene_of(test::description(law, material(law), {{Vec3::Zero(), spacing}}))), team_(1) {
     law_ = scene_.description->contacts.get();
     const std::array<std::string, 1> names{"grain"};
-    law_->mix(names);
+    law_->mix(names, names.size());
     for (const test::Grain& g : grains(about)) {
       const double mass = 2600 * 4 / 3 * std::numbers::pi * std::pow(g.radius, 3);
       bodies_.add(g.position, g.radius, mass, 0.4 * mass * g.radius * g.radius, 0, g.velocity, g.spin);

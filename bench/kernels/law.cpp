@@ -14,7 +14,7 @@ void law(benchmark::State& state, const std::string& name) {
   const test::Trial trial(plain);
   const auto& world = trial.world();
   ContactLaw& law = *trial.scene().description->contacts;
-  law.mix(std::array<std::string, 1>{"grain"});
+  law.mix(std::array<std::string, 1>{"grain"}, 1);
   test::Pairs pairs(law, time_step);
   for (std::size_t i = 0; i < world.positions().size(); ++i) {
     test::Ball ball{.position = xyz(world.positions()[i]),

@@ -49,8 +49,13 @@ TEST_F(ModelOfARun, IsNotOfMaterialsThatNothingIsOf) {
   EXPECT_THAT(beside.at("law_parts"), ElementsAre("shear"));
   EXPECT_EQ(beside.at("contact_state"), alone.at("contact_state"));
   EXPECT_EQ(beside.at("bytes"), alone.at("bytes"));
-  const json floor = of({law, first, R"(/walls/floor={"type": "plane", "material": "rock", "point": [0, 0, -1]})"});
-  EXPECT_THAT(floor.at("law_parts"), ElementsAre("shear", "rolling"));
+}
+TEST_F(ModelOfARun, IsNotOfWhatTwoWallsWouldDoToEachOther) {
+  const std::string law = "/contacts/type=linear-rolling", smooth = "/materials/sand/rolling_limit=0",
+                    rock = R"(/materials/rock={"density": 2600})",
+                    floor = R"(/walls/floor={"type": "plane", "material": "rock", "point": [0, 0, -1]})";
+  EXPECT_THAT(of({law, smooth, rock, floor}).at("law_parts"), ElementsAre("shear"));
+  EXPECT_THAT(of({law, rock, floor}).at("law_parts"), ElementsAre("shear", "rolling"));
 }
 
 TEST_F(ModelOfARun, KnowsAMaterialThatAStageGivesAWall) {

@@ -57,7 +57,7 @@ class Law final : public ContactLaw {
   void declare_interface(const std::string& a, const std::string& b, Parameters& p) override {
     interfaces_[std::minmax(a, b)].declare(p);
   }
-  void mix(std::span<const std::string>) override {}
+  void mix(std::span<const std::string>, std::size_t) override {}
   std::vector<StateField> state() const override { return {}; }
   LawLoop loop() const override { return {}; }
   void evaluate_pairs(PairBatch&) const noexcept override {}

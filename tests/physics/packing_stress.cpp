@@ -159,7 +159,7 @@ class ScalarTwin final : public ContactLaw {
   void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) override {
     law_->declare_interface(a, b, parameters);
   }
-  void mix(std::span<const std::string> materials) override { law_->mix(materials); }
+  void mix(std::span<const std::string> materials, std::size_t of_bodies) override { law_->mix(materials, of_bodies); }
   std::vector<StateField> state() const override { return law_->state(); }
   LawLoop loop() const override { return law_->loop(); }
   void evaluate_pairs(PairBatch& batch) const noexcept override {

@@ -19,7 +19,7 @@ TEST(Sdk, LoadsAPluginFromOutside) {
   ASSERT_EQ(parameters.entries().front().name(), "stiffness");
   *std::get<double*>(parameters.entries().front().target()) = 3000;
   const std::string sand[] = {"sand"};
-  law->mix(sand);
+  law->mix(sand, 1);
   EXPECT_TRUE(law->state().empty());
   EXPECT_DOUBLE_EQ(law->stiffness({1, 1, 1, 1, 0}, 0, 0).normal, 1500);
 

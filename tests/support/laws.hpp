@@ -63,7 +63,7 @@ inline std::unique_ptr<ContactLaw> make_law(const LawValues& values) {
     law->declare_interface(names[pair.first], names[pair.second], p);
     assign(p, overrides);
   }
-  law->mix(names);
+  law->mix(names, names.size());
   return law;
 }
 

@@ -16,7 +16,7 @@ constexpr double little = 0.01;
 void add_mixed(const SceneDescription& scene, std::vector<double>& all) {
   const auto names = material_names(scene);
   ContactLaw& law = *scene.contacts.get();
-  law.mix(materials_in_use(scene, names));
+  law.mix(materials_in_use(scene, names), materials_of_bodies(scene));
   const auto number = [&](const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };

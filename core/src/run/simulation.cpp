@@ -124,7 +124,7 @@ void Simulation::apply(const SceneDescription& scene) {
 void Simulation::take_settings(const SceneDescription& scene) {
   scene_ = &scene;
   law_ = scene.contacts.get();
-  law_->mix(materials_in_use(scene, material_names_));
+  law_->mix(materials_in_use(scene, material_names_), materials_of_bodies(scene));
   fields_ = law_->state();
   pairs_.set_fields(fields_), wall_contacts_.set_fields(fields_);
   settings_ = {};

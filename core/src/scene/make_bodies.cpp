@@ -22,6 +22,12 @@ Eigen::Quaterniond any_orientation(Random& random) {
   return {p * std::sin(a), p * std::cos(a), q * std::sin(b), q * std::cos(b)};
 }
 
+std::set<std::string> of_bodies(const SceneDescription& scene) {
+  std::set<std::string> names;
+  for (const auto& [name, group] : scene.bodies) names.insert(group.material);
+  return names;
+}
+
 /// Adds a group. Clouds keep clear of `there` and of what `bodies` has.
 void add_group(const SceneDescription& scene, const BodiesDescription& group, const Cell& cell,
                std::span<const Row> there, Random& random, Bodies& bodies) {
@@ -101,16 +107,15 @@ StateRequest requested_state(const SceneDescription& scene, StateRequest also) {
 std::vector<std::string> material_names(const SceneDescription& scene) {
   std::vector<std::string> names;
   for (const auto& [name, material] : scene.materials) names.push_back(name);
-  std::stable_partition(names.begin(), names.end(), [&](const std::string& name) {
-    return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                       [&](const auto& group) { return group.second.material == name; });
-  });
+  std::stable_partition(names.begin(), names.end(),
+                        [of_bodies = of_bodies(scene)](const std::string& name) { return of_bodies.contains(name); });
   return names;
 }
 
+std::size_t materials_of_bodies(const SceneDescription& scene) { return of_bodies(scene).size(); }
+
 std::vector<std::string> materials_in_use(const SceneDescription& scene, std::vector<std::string> names) {
-  std::set<std::string> used;
-  for (const auto& [name, group] : scene.bodies) used.insert(group.material);
+  std::set<std::string> used = of_bodies(scene);
   for (const auto& [name, wall] : scene.walls) used.insert(wall.material);
   if (used.empty()) return names;
   for (std::string& name : names)

@@ -19,6 +19,9 @@ StateRequest requested_state(const SceneDescription& scene, StateRequest also = 
 /// number 0 where they are of one, whatever else there is.
 std::vector<std::string> material_names(const SceneDescription& scene);
 
+/// How many of these bodies are of: the first so many.
+std::size_t materials_of_bodies(const SceneDescription& scene);
+
 /// `names` with one that is in use in place of each that no body and no wall of the scene is of: numbers stay, and what
 /// nothing is of switches no part of a contact law on.
 std::vector<std::string> materials_in_use(const SceneDescription& scene, std::vector<std::string> names);

@@ -67,8 +67,9 @@ class ContactLaw {
   virtual void declare_material(const std::string& name, Parameters& parameters) = 0;
   /// Declares what may be overridden where materials `a` and `b` meet, in either order.
   virtual void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) = 0;
-  /// Mixes all pairs of the materials, given in the order of their indices. Call again after any change.
-  virtual void mix(std::span<const std::string> materials) = 0;
+  /// Mixes all pairs of the materials, given in the order of their indices. The first `of_bodies` are those that bodies
+  /// are of: two others never meet. Call again after any change.
+  virtual void mix(std::span<const std::string> materials, std::size_t of_bodies) = 0;
 
   /// What a contact remembers with the present parameters; parts that a zero parameter switches off are left out.
   /// Always the first so many of the law's fields.

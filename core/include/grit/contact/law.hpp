@@ -636,16 +636,18 @@ class LawPlugin final : public ContactLaw {
   void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) override {
     interfaces_[std::minmax(a, b)].declare(parameters);
   }
-  void mix(std::span<const std::string> materials) override {
+  void mix(std::span<const std::string> materials, std::size_t of_bodies) override {
     count_ = materials.size();
     table_.clear(), wall_table_.clear();
     features_ = 0;
-    for (const auto& a : materials)
-      for (const auto& b : materials) {
+    for (std::size_t i = 0; i < count_; ++i)
+      for (std::size_t j = 0; j < count_; ++j) {
+        const std::string &a = materials[i], &b = materials[j];
         const auto& interface = interfaces_[std::minmax(a, b)];
         table_.push_back(Law::mix(settings_, materials_[a], materials_[b], interface, false));
         wall_table_.push_back(Law::mix(settings_, materials_[a], materials_[b], interface, true));
-        features_ |= Law::features(table_.back()) | Law::features(wall_table_.back());
+        if (i < of_bodies && j < of_bodies) features_ |= Law::features(table_.back());
+        if (i < of_bodies) features_ |= Law::features(wall_table_.back());
       }
   }
 
