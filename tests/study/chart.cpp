@@ -43,6 +43,7 @@ class Charts : public testing::Test {
   }
   OwnFolder folder;
   std::string seeds = "[1, 2]";
+  const std::string remedy = "; where a stage ends by a condition, take another abscissa or another end";
 };
 
 TEST_F(Charts, ErrorIsOfMeansAndItsStandardErrorOfDifferences) {
@@ -151,7 +152,8 @@ TEST_F(Charts, ACurveThatStopsBeforeItsReferenceIsAFailureOfThatRun) {
   const auto curve = R"({"curve": {"type": "curve", "of": "test/y", "against": "test/x"}})";
   const Chart all = chart(curve);
   EXPECT_FALSE(all.variants[0].complete());
-  EXPECT_EQ(all.variants[0].samples[1].message, "test/y is of abscissae from 0 to 0.1, its reference from 0 to 1");
+  EXPECT_EQ(all.variants[0].samples[1].message,
+            "test/y is of abscissae from 0 to 0.1, its reference from 0 to 1" + remedy);
   EXPECT_TRUE(all.variants[1].complete());
   EXPECT_TRUE(all.variants[2].complete()) << "what lacks less than a tenth is compared where both are";
   EXPECT_NE(all.cheapest, 0u);
@@ -163,9 +165,10 @@ TEST_F(Charts, ACurveThatStopsBeforeItsReferenceIsAFailureOfThatRun) {
   const auto lab = R"({"c": {"type": "curve", "of": "test/y", "against": "test/x",
     "curve": {"file": "lab.csv", "x": "x", "y": "y"}}})";
   EXPECT_EQ(chart(lab).uncharted.at("c"),
-            "of the finest settings, seed 1: test/y is of abscissae from 0 to 1, its reference from 0 to 2");
+            "of the finest settings, seed 1: test/y is of abscissae from 0 to 1, its reference from 0 to 2" + remedy);
   for (const char* seed : {"1", "2"}) make_series(folder / ("runs/finest/seed-" + std::string(seed)), {0, 2}, {0, 2});
-  EXPECT_EQ(chart(lab).variants[1].samples[0].message, "test/y is of abscissae from 0 to 1, its reference from 0 to 2");
+  EXPECT_EQ(chart(lab).variants[1].samples[0].message,
+            "test/y is of abscissae from 0 to 1, its reference from 0 to 2" + remedy);
 }
 
 TEST_F(Charts, ACurveThatEndsBeforeItsReferenceBeginsFailsThatRunOnly) {
@@ -177,7 +180,8 @@ TEST_F(Charts, ACurveThatEndsBeforeItsReferenceBeginsFailsThatRunOnly) {
   const Chart all = chart(lab);
   EXPECT_EQ(all.variants[0].samples[0].status, "done");
   EXPECT_EQ(all.variants[0].samples[1].status, "failed");
-  EXPECT_EQ(all.variants[0].samples[1].message, "test/y is of abscissae from 0 to 0.1, its reference from 0.5 to 1");
+  EXPECT_EQ(all.variants[0].samples[1].message,
+            "test/y is of abscissae from 0 to 0.1, its reference from 0.5 to 1" + remedy);
   EXPECT_TRUE(all.variants[1].complete());
   // None gets there: it is the reference that is wrong.
   folder.write("lab.csv", "x,y\n500,1\n1000,2\n");
@@ -435,6 +439,20 @@ TEST_F(Charts, TableHasOneRowAVariantAndFigure) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(csv, HasSubstr("\"rate=slow\",\"slow\",\"2\",\"end\",1.1,"));
   EXPECT_THAT(csv, HasSubstr("core_seconds,core_seconds_scatter,steps"));
+}
+
+// 7 bodies, 10 steps a core-second: whatever ran beside them.
+TEST_F(Charts, SpeedIsOfCoreSeconds) {
+  make_all();
+  for (const VariantResult& one : chart().variants) EXPECT_DOUBLE_EQ(one.particle_steps_per_core_second, 70);
+}
+
+TEST_F(Charts, CallsWhatIsModelledNoError) {
+  make_all();
+  Chart result = chart();
+  EXPECT_THAT(chart_page(result), HasSubstr("error of end"));
+  result.study.advice = false;
+  EXPECT_THAT(chart_page(result), testing::AllOf(HasSubstr("difference of end"), Not(HasSubstr("error of"))));
 }
 
 }  // namespace

@@ -31,9 +31,8 @@ inline void make_series(const std::filesystem::path& folder, const std::vector<d
 inline void make_run_json(const std::filesystem::path& folder, double cost, const std::string& status = "done",
                           const std::string& message = "") {
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "run.json") << nlohmann::json{{"status", status}, {"message", message},
-                                                       {"cpu_s", cost},    {"steps", 10 * cost},
-                                                       {"bodies", 7},      {"particle_steps_per_s", 70.0}};
+  std::ofstream(folder / "run.json") << nlohmann::json{
+      {"status", status}, {"message", message}, {"cpu_s", cost}, {"steps", 10 * cost}, {"bodies", 7}};
 }
 
 /// A run whose only figure is a value.

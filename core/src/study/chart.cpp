@@ -33,8 +33,7 @@ Sample read_sample(const StudyDescription& study, double seed, const std::filesy
   if (const auto revision = run->value(Description::json_pointer("/grit/revision"), Description());
       revision.is_string())
     sample.revision = revision.get<std::string>();
-  sample.core_seconds = number("cpu_s"), sample.steps = number("steps");
-  sample.particle_steps_per_second = number("particle_steps_per_s"), sample.bodies = number("bodies");
+  sample.core_seconds = number("cpu_s"), sample.steps = number("steps"), sample.bodies = number("bodies");
   if (sample.status != "done") return sample;
   for (const auto& [name, figure] : study.figures) try {
       sample.figures[name] = take_figure(figure, folder);
@@ -195,9 +194,10 @@ void find_short_curves(Chart& chart) {
         const double reach = std::min(own.x.back(), range->to) - std::max(own.x.front(), range->from);
         shared |= reach >= 0;
         if (reach >= least_reach * (range->to - range->from)) continue;
-        short_ones.emplace_back(&sample, fmt::format("{} is of abscissae from {:g} to {:g}, its reference from {:g} to "
-                                                     "{:g}",
-                                                     figure.of, own.x.front(), own.x.back(), range->from, range->to));
+        short_ones.emplace_back(
+            &sample, fmt::format("{} is of abscissae from {:g} to {:g}, its reference from {:g} to {:g}; where a stage "
+                                 "ends by a condition, take another abscissa or another end",
+                                 figure.of, own.x.front(), own.x.back(), range->from, range->to));
         if (&result == &chart.finest()) chart.uncharted.emplace(name, of_the_finest(sample, short_ones.back().second));
       }
     if (!shared && !short_ones.empty())
@@ -234,13 +234,13 @@ void find_costs(VariantResult& result) {
   for (const Sample& sample : result.samples) {
     if (sample.status != "done") continue;
     costs.push_back(sample.core_seconds), result.steps += sample.steps;
-    result.particle_steps_per_second += sample.particle_steps_per_second;
+    result.particle_steps_per_core_second += sample.particle_steps_per_core_second();
   }
   if (costs.empty()) return;
   const Sampled cost = sampled({costs});
   result.core_seconds = cost.mean.front(), result.cost_scatter = std::sqrt(cost.variance.front());
   result.steps /= static_cast<double>(costs.size());
-  result.particle_steps_per_second /= static_cast<double>(costs.size());
+  result.particle_steps_per_core_second /= static_cast<double>(costs.size());
 }
 
 /// The standard error of the ratio of two variants' mean costs, seed by seed.
@@ -468,13 +468,13 @@ Description to_json(const Chart& chart) {
                          {"core_seconds", sample.core_seconds},
                          {"steps", sample.steps},
                          {"bodies", sample.bodies},
-                         {"particle_steps_per_s", sample.particle_steps_per_second}});
+                         {"particle_steps_per_core_s", sample.particle_steps_per_core_second()}});
     json["variants"].push_back({{"name", one.variant.name},
                                 {"levels", levels},
                                 {"core_seconds", one.core_seconds},
                                 {"core_seconds_scatter", or_null(one.cost_scatter)},
                                 {"steps", one.steps},
-                                {"particle_steps_per_s", one.particle_steps_per_second},
+                                {"particle_steps_per_core_s", one.particle_steps_per_core_second},
                                 {"worst_figure", one.worst},
                                 {"on_front", one.on_front},
                                 {"within_tolerance", one.complete() ? Description(word_of(one.within)) : Description()},
@@ -496,7 +496,8 @@ std::string to_csv(const Chart& chart) {
   std::string text = "variant";
   for (const auto& [name, setting] : chart.study.settings) text += ',' + quoted(name);
   text +=
-      ",figure,mean,error,standard_error,scatter,core_seconds,core_seconds_scatter,steps,particle_steps_per_s,samples_"
+      ",figure,mean,error,standard_error,scatter,core_seconds,core_seconds_scatter,steps,particle_steps_per_core_s,"
+      "samples_"
       "done,samples\n";
   for (const VariantResult& one : chart.variants) {
     std::string head = quoted(one.variant.name);
@@ -510,7 +511,7 @@ std::string to_csv(const Chart& chart) {
       if (const auto value = one.values.find(name); value != one.values.end()) figures.mean = value->second.mean;
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted(name), figures.mean, figures.error,
                           figures.standard_error, figures.scatter, one.core_seconds, one.cost_scatter, one.steps,
-                          one.particle_steps_per_second, done, one.samples.size());
+                          one.particle_steps_per_core_second, done, one.samples.size());
     }
   }
   return text;

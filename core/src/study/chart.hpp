@@ -24,9 +24,12 @@ struct Sample {
                        ///< get to where a curve's reference goes
   std::string message;   ///< why it failed
   std::string revision;  ///< of the grit that ran it
-  double core_seconds = 0, steps = 0, particle_steps_per_second = 0, bodies = 0;
+  double core_seconds = 0, steps = 0, bodies = 0;
   std::map<std::string, Figure> figures;
   std::map<std::string, std::string> lacks;  ///< figures that could not be taken of it, and why
+
+  /// Of the whole run; what runs beside it hardly changes it, as it does the wall clock's.
+  double particle_steps_per_core_second() const { return core_seconds > 0 ? bodies * steps / core_seconds : 0; }
 };
 
 /// A figure of a variant beside the reference. Shares are of the figure's scale; NaN where it cannot be told: the
@@ -49,7 +52,7 @@ struct Value {
 struct VariantResult {
   Variant variant;
   std::vector<Sample> samples;
-  double core_seconds = 0, steps = 0, particle_steps_per_second = 0;  ///< means of the samples that are done
+  double core_seconds = 0, steps = 0, particle_steps_per_core_second = 0;  ///< means of the samples that are done
   double cost_scatter = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of core_seconds between them
   std::map<std::string, Value> values;                             ///< by figure of one value; empty if a sample failed
   std::map<std::string, Deviation> deviations;                     ///< by figure; empty if a sample failed

@@ -23,8 +23,9 @@ std::string variants_table(const Chart& chart) {
   std::string html =
       "<div class=\"wide\"><table><thead><tr><th>#</th><th class=\"name\">settings that differ from the "
       "usual</th><th>core-seconds</th>"
-      "<th>cheaper than the finest</th><th>steps</th><th>M particle-steps/s</th>";
-  for (const auto& [name, reference] : chart.reference) html += "<th>error of " + escaped(name) + "</th>";
+      "<th>cheaper than the finest</th><th>steps</th><th>M particle-steps a core-second</th>";
+  for (const auto& [name, reference] : chart.reference)
+    html += "<th>" + word_for_error(chart.study) + " of " + escaped(name) + "</th>";
   html += "</tr></thead><tbody>\n";
   std::vector<std::size_t> order(chart.variants.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -43,7 +44,7 @@ std::string variants_table(const Chart& chart) {
                               chart.finest().core_seconds > 0
                                   ? times(chart.finest().core_seconds / one.core_seconds) + " times"
                                   : "?",
-                              one.steps, 1e-6 * one.particle_steps_per_second)
+                              one.steps, 1e-6 * one.particle_steps_per_core_second)
                 : "<td>–</td><td>–</td><td>–</td><td>–</td>";
     for (const auto& [name, reference] : chart.reference) {
       const auto found = one.deviations.find(name);
@@ -165,10 +166,13 @@ std::string chart_page(const Chart& chart) {
   const std::string title = chart.study.title.empty() ? "speed against accuracy" : chart.study.title;
   std::string html = page_begin(title, sheet) + "<h1>" + escaped(title) + "</h1>\n";
   html += fmt::format(
-      "<p>{}, {} samples of each variant; errors ± their standard error, core-seconds ± their standard "
-      "deviation, both from the scatter between samples. By grit {}.</p>\n",
+      "<p>{}, {} samples of each variant; {}s ± their standard error, core-seconds ± their standard "
+      "deviation, both from the scatter between samples. By grit {}.{}</p>\n",
       escaped(std::filesystem::proximate(chart.study.scene).string()), chart.study.seeds.values.size(),
-      escaped(fmt::format("{}", fmt::join(chart.revisions, ", "))));
+      word_for_error(chart.study), escaped(fmt::format("{}", fmt::join(chart.revisions, ", "))),
+      chart.study.advice ? ""
+                         : " What varies is what is modelled, not how: differences are from what is called the finest, "
+                           "and none is an error.");
   html += "<p class=\"verdict\">" + escaped(verdict(chart)) + "</p>\n";
   if (!chart.reference.empty()) {
     html += "<div class=\"first\">" + error_chart(chart, "") + "</div>\n";

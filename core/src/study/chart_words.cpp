@@ -27,6 +27,8 @@ std::string passed_over(const Chart& chart) {
 
 }  // namespace
 
+std::string word_for_error(const StudyDescription& study) { return study.advice ? "error" : "difference"; }
+
 std::string percent(double share) {
   if (!std::isfinite(share)) return "?";
   const double value = 100 * share;

@@ -7,10 +7,14 @@
 namespace grit {
 
 struct Chart;
+struct StudyDescription;
 struct VariantResult;
 
 /// "2.1 %"; "?" where it cannot be told.
 std::string percent(double share);
+
+/// What a deviation from the finest is called: where what is modelled varies, not how, it is no error.
+std::string word_for_error(const StudyDescription& study);
 
 /// A ratio with three digits.
 std::string times(double ratio);

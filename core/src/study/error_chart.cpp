@@ -89,7 +89,7 @@ class ErrorChart {
     svg.text({left - 50, top - 14}, title(), "class=\"axis\"");
     svg.text({(left + right) / 2, bottom + 40}, "core-seconds of one run", "class=\"axis m\"");
     front(svg, x, y);
-    for (std::size_t i = 0; i < chart_.variants.size(); ++i) point(svg, x, y, i);
+    for (std::size_t i = chart_.variants.size(); i-- > 0;) point(svg, x, y, i);  // the usual, which is first, on top
     return std::move(svg).finish();
   }
 
@@ -109,7 +109,10 @@ class ErrorChart {
         if (figure_.empty() || figure_ == name) largest.scatter = std::max(largest.scatter, finite(one.scatter));
     return largest;
   }
-  std::string title() const { return figure_.empty() ? "largest error of all figures" : "error of " + figure_; }
+  std::string title() const {
+    const std::string error = word_for_error(chart_.study);
+    return figure_.empty() ? "largest " + error + " of all figures" : error + " of " + figure_;
+  }
 
   void front(Svg& svg, const LogAxis& x, const LogAxis& y) const {
     std::vector<const VariantResult*> all;
@@ -123,6 +126,12 @@ class ErrorChart {
       if (!points.empty()) points.push_back({x(one->core_seconds), points.back().y});
       least = of(*one).error;
       points.push_back({x(one->core_seconds), y(least)});
+    }
+    // The finest, which others are compared with, is exact and at the foot of the chart.
+    if (const VariantResult& finest = chart_.finest(); !points.empty() && finest.complete() && of(finest).error <= 0 &&
+                                                       finest.core_seconds > all.front()->core_seconds) {
+      const double across = std::max(x(finest.core_seconds), points.back().x);
+      points.push_back({across, points.back().y}), points.push_back({across, bottom});
     }
     if (points.size() > 1) svg.polyline(points, "class=\"front\"");
   }
