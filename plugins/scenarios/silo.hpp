@@ -417,7 +417,15 @@ struct Silo {
     Description walls = Description::array();
     for (const char* side : {"left", "right"})
       for (std::int64_t i = 1; i <= wall_pieces; ++i) walls.push_back(piece(side, i));
-    return {{"type", "wall-profile"}, {"walls", walls}, {"width", 2 * depth}, {"low", 0}, {"high", height}};
+    Description profile{{"type", "wall-profile"}, {"walls", walls}, {"width", 2 * depth}, {"low", 0}, {"high", height}};
+    if (groove_depth() > 0) {
+      // Whole grooves in each: a strip of flanks alone, or of lands, would have the stress of those.
+      constexpr double about = 20;
+      const double strip = std::max(1.0, std::round(height / (about * spacing()))) * spacing();
+      const double strips = std::ceil(height / strip - 1e-9);
+      profile["strips"] = static_cast<std::int64_t>(strips), profile["high"] = strips * strip;
+    }
+    return profile;
   }
 
  private:
