@@ -55,8 +55,9 @@ sides; beside it stands what is predicted, and what grit does beyond it.
 | springs that stiffen | those of the deepest contact, and of the deepest that an impact at the present speeds will make | sets the step anew as either grows, and an impact's before it begins: what is pressed from first touch on feels Hertz's force within {error of the force of what is pressed from first touch on:.1%}, a packing that of a tenth of the step within {error of the force of a packing that is pressed:.2%}; what falls rises by at most {height that is gained by a fall:.1%} of its height more than restitution says, and the ledger of what is poured closes within {closure error of what is poured:.1%}. Not seen: a packing pressed less deep than some contact was before, until it is as deep itself |
 
 Guards run with every simulation. [false_alarms.cpp](../tests/stability/false_alarms.cpp) runs the quick column and oedometer to their ends, and the
-quick direct shear, dense and loose, as boxes of some {grains in the box that is sheared:.0f} grains sheared by {way that the box is sheared, in mm:.2g} mm: no guard trips. The quick descriptions that
-[reproduction](reproduction.md) lists were run to their ends by `scripts/reproduce.py`; tests/sims runs all others for a while.
+quick direct shear, dense and loose, as boxes of some {grains in the box that is sheared:.0f} grains sheared by {way that the box is sheared, in mm:.2g} mm: no guard trips. tests/sims runs every
+quick description for a while at each change. To their ends ran, and no guard tripped, all quick ones and those full ones that [reproduction](reproduction.md) has figures of, by
+`scripts/reproduce.py`, and those of [Beverloo's law](beverloo.md), by `scripts/beverloo.py`. The other full ones were not: they are listed there, as not run or as timed for a while.
 
 These descriptions have guards of their own, and what extends them has theirs; all others run with the usual ones, an overlap of {overlap that the usual guard allows, in radii:.2g} of the
 smaller radius and a way of {way in a step that the travel guard allows, in radii:.2g} of a radius in a step:
@@ -98,7 +99,8 @@ its account anew.
 - **Without an `energy` probe** it holds what is stored against the work of walls, so that dissipation hides as much as it takes. It does not
   look where bodies grow, a cell deforms, bodies are held, engines push them, or gravity acts along a periodic axis.
 - **With one**, from its first sample on, it takes the error of the ledger's closure, and its limit is a share of the largest energy and of what was
-  dissipated. All of these are reckoned with. A ledger is kept only where a description asks for the probe, whose README says what it costs.
+  dissipated. All of these are reckoned with. A ledger is kept only where a description asks for the probe, as a quick one of each
+  test does; its README says what it costs.
 - **It may also take for wrong what is known**: shear of deep contacts along curved walls and edges (see the [probe](../plugins/probes/energy/README.md)), and [many impacts](#many-impacts) without damping,
   which heat, with friction too. Over long times such a scene may trip it: take a shorter step there, or something that dissipates.
 
