@@ -13,6 +13,7 @@ using testing::DoubleEq;
 using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::Pointwise;
 
 /// Walls at x = 0 and x = 1, and a floor; a specimen from z = 0 to 2.
@@ -85,6 +86,91 @@ TEST(WallProfile, CountsTouchesBeyondItsEndsInTheResultantsAlone) {
   EXPECT_THAT(channel_values(probe, world, "normal_force"), ElementsAre(8));
 }
 
+/// A column of grains between the walls that stands on the floor, each borne by the one below and by a wall; under
+/// gravity [m/s²], and accelerated by what it has too little support for.
+FakeWorld column(double gravity, double hangs, double presses, double support) {
+  FakeWorld world = silo();
+  constexpr std::uint32_t grains = 5;
+  std::vector<double> on{0};  // from the top down
+  for (std::uint32_t k = 0; k < grains; ++k) {
+    const auto body = world.add({k % 2 == 0 ? 0.1 : 0.9, 0.25, 0.1 + 0.2 * (grains - 1 - k)}, 0.1);
+    const double weight = gravity / world.velocity[body].w;
+    on.push_back(support * (on[k] + weight - hangs));
+    world.force[body] = {0, 0, hangs + on[k + 1] - on[k] - weight, 0};
+  }
+  for (std::uint32_t k = 0; k + 1 < grains; ++k) world.touch(k, k + 1, {0, 0, -0.2}, {0, 0, -on[k + 1]});
+  for (std::uint32_t k = 0; k < grains; ++k) {
+    const double out = k % 2 == 0 ? -1 : 1;
+    world.touch_wall(k, k % 2, {0.1 * out, 0, 0}, {presses * out, 0, -hangs});
+  }
+  world.touch_wall(grains - 1, 2, {0, 0, -0.1}, {0, 0, -on[grains]});
+  return world;
+}
+
+TEST(WallProfile, TellsWhatWallsAndBottomBearOfTheWeight) {
+  const FakeWorld world = column(10, 30, 40, 1);
+  const double mass = 5 / world.velocity[0].w, weight = 10 * mass;
+  WallProfile probe = made(4);
+  probe.bottom = {"floor"};
+  probe.prepare(world);
+  const auto value = [&](const char* name) { return channel_value(probe, world, name); };
+  EXPECT_DOUBLE_EQ(value("weight"), weight);
+  EXPECT_DOUBLE_EQ(value("bottom_force"), weight - 5 * 30);
+  EXPECT_DOUBLE_EQ(value("bottom_share"), 1 - 5 * 30 / weight);
+  EXPECT_DOUBLE_EQ(value("shear_share"), 5 * 30 / weight);
+  EXPECT_DOUBLE_EQ(value("normal_share"), 5 * 40 / weight);
+  EXPECT_DOUBLE_EQ(value("bottom_share") + value("shear_share"), 1);
+}
+
+TEST(WallProfile, TakesTheWeightOfWhatFallsToo) {
+  const FakeWorld world = column(10, 30, 40, 0.5);
+  const double weight = 10 * 5 / world.velocity[0].w;
+  WallProfile probe = made(4);
+  probe.bottom = {"floor"};
+  probe.prepare(world);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "weight"), weight);
+  EXPECT_LT(channel_value(probe, world, "bottom_share") + channel_value(probe, world, "shear_share"), 0.5);
+}
+
+// Net forces on bodies of a clump are those of contacts alone; its own has the weight.
+TEST(WallProfile, TakesTheWeightOfClumps) {
+  struct : FakeWorld {
+    std::vector<std::uint32_t> of;
+    std::vector<ClumpView> clump{1};
+    std::span<const std::uint32_t> clump_of() const override { return of; }
+    std::span<const ClumpView> clumps() const override { return clump; }
+  } world;
+  static_cast<FakeWorld&>(world) = silo();
+  for (const double z : {0.1, 0.5, 0.6}) world.add({0.5, 0.25, z}, 0.1);
+  world.of = {no_clump, 0, 0};
+  world.touch(0, 1, {0, 0, 0.2}, {0, 0, 4}), world.touch_wall(0, 2, {0, 0, -0.1}, {0, 0, -7});
+  world.force[0] = {0, 0, 7 - 4 - 2, 0}, world.force[1] = {0, 0, 4, 0};
+  world.clump[0].force = {0, 0, 4 - 5};
+  WallProfile probe = made(4);
+  probe.prepare(world);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "weight"), 2 + 5);
+}
+
+TEST(WallProfile, HasNoSharesWithoutWeight) {
+  WallProfile probe = made(4);
+  probe.bottom = {"floor"};
+  // A third of a newton is no binary number: rounding is left.
+  const FakeWorld weightless = column(0, -1.0 / 3, 40, 1), nobody = silo(), upwards = column(-10, -30, 40, 1);
+  for (const FakeWorld* world : {&weightless, &nobody, &upwards}) {
+    probe.prepare(*world);
+    for (const char* name : {"weight", "bottom_share", "shear_share", "normal_share"})
+      EXPECT_TRUE(std::isnan(channel_value(probe, *world, name))) << name;
+  }
+  probe.prepare(weightless);
+  EXPECT_DOUBLE_EQ(channel_value(probe, weightless, "bottom_force"), 5.0 / 3);
+  EXPECT_EQ(channel_value(probe, nobody, "bottom_force"), 0);
+}
+
+TEST(WallProfile, HasNoBottomUnlessItIsNamed) {
+  const WallProfile probe = made(4);
+  for (const Channel& channel : probe.channels()) EXPECT_THAT(channel.name, Not(HasSubstr("bottom")));
+}
+
 std::string refusal(WallProfile probe, const FakeWorld& world) {
   try {
     probe.prepare(world);
@@ -98,6 +184,12 @@ TEST(WallProfile, RefusesWallsThatDoNotStand) {
   WallProfile probe = made(4);
   probe.walls = {"left", "flor"};
   EXPECT_THAT(refusal(probe, silo()), HasSubstr("probe wall-profile, /walls: there is no wall \"flor\"; the nearest"));
+  WallProfile bottomless = made(4);
+  bottomless.bottom = {"flor"};
+  EXPECT_THAT(refusal(bottomless, silo()), HasSubstr("wall-profile, /bottom: there is no wall \"flor\"; the nearest"));
+  bottomless.bottom = {"floor", "right"};
+  EXPECT_EQ(complaints(bottomless),
+            "bottom: found \"right\", which is one of walls, allowed: walls that are not among walls\n");
   probe.walls = {"floor"};
   EXPECT_EQ(refusal(probe, silo()),
             "probe wall-profile, /walls: wall \"floor\" does not stand along z; name another, or another axis");
@@ -107,7 +199,12 @@ TEST(WallProfile, RefusesWallsThatDoNotStand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(WallProfile, ProbeContract,
-                         testing::Values(ProbeCase{"silo", [] { return std::make_shared<WallProfile>(made(7)); },
+                         testing::Values(ProbeCase{"silo",
+                                                   [] {
+                                                     auto probe = std::make_shared<WallProfile>(made(7));
+                                                     probe->bottom = {"floor"};
+                                                     return probe;
+                                                   },
                                                    [] {
                                                      FakeWorld world = silo();
                                                      for (int k = 0; k < 30; ++k)

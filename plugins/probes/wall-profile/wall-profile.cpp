@@ -1,6 +1,8 @@
 #include "wall-profile.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "../specimen.hpp"
@@ -8,9 +10,16 @@
 #include "grit/plugin.hpp"
 
 namespace grit {
+namespace {
+
+/// Of the sum of all contact forces: more than what rounding leaves of them where nothing has weight.
+constexpr double negligible = 1e-10;
+
+}  // namespace
 
 void WallProfile::declare(Parameters& p) {
   p.add("walls", walls).required().entries(1).doc("names of walls that stand upright; their forces are added up");
+  p.add("bottom", bottom).doc("names of walls that bear the bodies from below; left out: no bottom_force");
   p.add("along", along).one_of({"x", "y", "z"}).doc("axis of the height");
   p.add("width", width).unit("m").required().above(0).doc("of all walls together, across their height");
   p.add("low", low).unit("m").doc("where the profile begins; left out: at the specimen's lower side");
@@ -22,11 +31,18 @@ void WallProfile::declare(Parameters& p) {
           complain("high", std::to_string(*high) + " m", "above low, " + std::to_string(*low) + " m");
       },
       {"low", "high"});
+  p.check(
+      [this](const Complain& complain) {
+        for (const auto& name : bottom)
+          if (std::ranges::find(walls, name) != walls.end())
+            complain("bottom", '"' + name + "\", which is one of walls", "walls that are not among walls");
+      },
+      {"walls", "bottom"});
 }
 
 void WallProfile::prepare(const World& world) {
   const std::string who = "probe wall-profile, /walls";
-  chosen_.assign(world.walls().size(), false);
+  chosen_.assign(world.walls().size(), false), below_ = chosen_;
   for (const auto& name : walls) {
     const std::size_t index = wall_index(world, name, who);
     const Vec3& normal = world.walls()[index].normal;
@@ -36,17 +52,27 @@ void WallProfile::prepare(const World& world) {
       throw Error(who + ": wall \"" + name + "\" does not stand along " + along + "; name another, or another axis");
     chosen_[index] = true;
   }
+  for (const auto& name : bottom) below_[wall_index(world, name, "probe wall-profile, /bottom")] = true;
 }
 
 std::vector<Channel> WallProfile::channels() const {
   const std::vector<std::size_t> each{static_cast<std::size_t>(strips)};
-  return {{"place", "m", "middle of each strip, along " + along, each},
-          {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each, "place"},
-          {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on",
-           each, "place"},
-          {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
-          {"shear_force", "N", "against " + along + ", of all touches", {}},
-          {"friction_angle", "degree", "mobilised: atan of the latter over the former; 0 without touches", {}}};
+  const std::string share = " over weight, of all walls together; NaN without weight";
+  std::vector<Channel> all{
+      {"place", "m", "middle of each strip, along " + along, each},
+      {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each, "place"},
+      {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on", each,
+       "place"},
+      {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
+      {"shear_force", "N", "against " + along + ", of all touches", {}},
+      {"friction_angle", "degree", "mobilised: atan of shear_force over normal_force; 0 without touches", {}},
+      {"weight", "N", "G of all bodies that are there, against " + along + "; NaN without any", {}},
+      {"shear_share", "1", "T/G: shear_force" + share, {}},
+      {"normal_share", "1", "N/G: normal_force" + share, {}}};
+  if (bottom.empty()) return all;
+  all.push_back({"bottom_force", "N", "P on the bottom, positive against " + along, {}});
+  all.push_back({"bottom_share", "1", "P/G: bottom_force over weight; NaN without weight", {}});
+  return all;
 }
 
 WallProfile::Ends WallProfile::ends(const World& world) const {
@@ -54,15 +80,31 @@ WallProfile::Ends WallProfile::ends(const World& world) const {
   return {low.value_or(box.low[axis()]), high.value_or(box.high[axis()])};
 }
 
+// Net forces are without local damping, and forces between bodies add up to nothing: less those of walls, weight is
+// what is left.
+double WallProfile::weight(const World& world) const {
+  double down = 0;
+  const auto clump_of = world.clump_of();
+  for (std::size_t i = 0; i < world.forces().size(); ++i)
+    if (clump_of.empty() || clump_of[i] == no_clump) down -= xyz(world.forces()[i])[axis()];
+  for (const ClumpView& clump : world.clumps()) down -= clump.force[axis()];
+  for (const Contact& contact : world.contacts_with_walls()) down -= contact.force[axis()];
+  // A body has some contacts, so that this is less than their sum.
+  const double rounding = negligible * world.mean_contact_force() * static_cast<double>(world.positions().size());
+  return down > rounding ? down : std::numeric_limits<double>::quiet_NaN();
+}
+
 void WallProfile::sample(const World& world, std::span<const std::span<double>> values) {
   const Ends end = ends(world);
   const double height = (end.high - end.low) / static_cast<double>(strips);
   for (std::size_t s = 0; s < static_cast<std::size_t>(strips); ++s)
     values[0][s] = end.low + (static_cast<double>(s) + 0.5) * height, values[1][s] = values[2][s] = 0;
-  double normal = 0, shear = 0;
+  double normal = 0, shear = 0, borne = 0;
   for (const Contact& contact : world.contacts_with_walls()) {
+    const double hanging = -contact.force[axis()];
+    if (below_[contact.b]) borne += hanging;
     if (!chosen_[contact.b]) continue;
-    const double pressing = -contact.force.dot(world.walls()[contact.b].normal), hanging = -contact.force[axis()];
+    const double pressing = -contact.force.dot(world.walls()[contact.b].normal);
     normal += pressing, shear += hanging;
     const double place = xyz(world.positions()[contact.a])[axis()] + contact.branch[axis()];
     if (!(place >= end.low && place < end.high)) continue;
@@ -72,6 +114,9 @@ void WallProfile::sample(const World& world, std::span<const std::span<double>> 
   }
   values[3][0] = normal, values[4][0] = shear;
   values[5][0] = normal == 0 && shear == 0 ? 0 : std::atan2(shear, normal) * 180 / std::numbers::pi;
+  const double whole = weight(world);
+  values[6][0] = whole, values[7][0] = shear / whole, values[8][0] = normal / whole;
+  if (!bottom.empty()) values[9][0] = borne, values[10][0] = borne / whole;
 }
 
 }  // namespace grit
