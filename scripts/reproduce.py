@@ -5,7 +5,8 @@
 
 docs/reproduction.json has the figures. Each description of sims/ whose finished run lies in FOLDER/TEST/NAME (results/reproduce
 unless given) gets its rows. Of one without, what docs/reproduction.md has stays, as long as docs/reproduction.json asks for the
-same figures; the others are listed with the time they would take. --run runs those that GLOB fits and
+same figures; the others are listed with the time they would take. All sims/*/quick*.json have a line that says how they ended, from
+FOLDER or, without a run there, as the page has it. --run runs those that GLOB fits and
 that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100, and --samples as many packings of each:
 the second's run, of seed 2, lies in FOLDER/TEST/NAME-sample-2. Rows of several samples have their mean and the standard
 deviation of one of them. --for interrupts a run that has taken so many core-seconds, so that it is timed; it goes on where it
@@ -43,23 +44,39 @@ if it goes on at that speed. What was timed is sand that falls; once it lies eac
 | description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
 | --- | --- | --- | --- | --- |'''
 
+IN_SECTION = 'see its section'
+QUICK = 'All quick descriptions, run to their ends'
+HEAD_OF_QUICK = f'''## {QUICK}
+Each of `sims/*/quick*.json` once, with the seed of the description: how its run ended, and some of what it came to. Where there is no reference, or only that of another size, figures stand alone.
+Of those that have a section above it has the figures. Ends of curves are means of their last quarter, peaks the highest samples.
 
-def found(series, row):
-    """The figure that a row asks for."""
+| description | ended | steps | core-seconds | commit | figures |
+| --- | --- | --- | --- | --- | --- |'''
+
+
+def found(series, row, ends=None):
+    """The figure that a row asks for; `ends` has the step at which each stage ended."""
     of, how = series[row['of']][:], row['how']
+    if 'component' in row:
+        of = of[:, row['component']]
     if how == 'maximum':
-        figure = of.max()
+        figure = numpy.nanmax(of)
+    elif how == 'minimum':
+        figure = numpy.nanmin(of)
     elif how == 'last':
         figure = of[-1]
     elif how == 'mean of the last quarter':
         figure = of[-max(1, len(of) // 4):].mean()
     elif how == 'at the start':  # the last sample before the test moves
         figure = of[numpy.nonzero(series[row['before']][:] <= 0)[0][-1]]
+    elif how == 'at the end of a stage':
+        steps = series[f"{row['of'].rpartition('/')[0]}/step"][:]
+        figure = of[numpy.nonzero(steps <= ends[row['stage']])[0][-1]]
     elif how == 'where largest':
         figure = series[row['against']][of.argmax()]
     else:
-        sys.exit(f'docs/reproduction.json: found "how": "{how}"; allowed are maximum, last, mean of the last quarter, at the start, '
-                 'where largest')
+        sys.exit(f'docs/reproduction.json: found "how": "{how}"; allowed are maximum, minimum, last, mean of the last quarter, at the start, '
+                 'at the end of a stage, where largest')
     return row.get('scale', 1) * float(figure) + row.get('plus', 0)
 
 
@@ -166,6 +183,34 @@ def part(run, course, grains):
     return f"{100 * done / all_of_it:.1f} %, {words} | {1e-6 * rate:.1f} | {all_of_it / rate / 3600:.1f} |"
 
 
+def short(name, results, wanted, section, older):
+    """The line of a quick description: of its run, or else as the page has it, or as its section says."""
+    run = state(results / name) or {}
+    if run.get('status') in ('done', 'failed'):
+        ended = 'done' if run['status'] == 'done' else f"failed: {run['message'].splitlines()[0]}"
+        words = []
+        if section:
+            words = [IN_SECTION]
+        elif run['status'] == 'done':
+            ends = {stage['name']: stage['step'] for stage in run.get('stages', [])}
+            with h5py.File(results / name / 'series.h5') as series:
+                for row in (row for group in wanted if any(fnmatch.fnmatch(name, glob) for glob in group['descriptions'])
+                            for row in group['figures']):
+                    if channel := lacks(series, row):
+                        sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
+                                 f'{results / name / "series.h5"} lacks; correct it, or run {name} again')
+                    words.append(f"{row['figure']}: {found(series, row, ends):#.3g}")
+        return f"{ended} | {run['steps']:,} | {run.get('cpu_s', run['wall_s']):.0f} | {run['grit'].get('revision') or 'unknown'} | {'; '.join(words)} |"
+    if older and (section or IN_SECTION not in older):
+        return older
+    if section:
+        text = '\n'.join(section)
+        steps, seconds = re.search(r'([0-9,]+) steps, (\d+) core-seconds', text).groups()
+        commit = re.search(r'by commits? ([0-9a-f, ]+)\.', text)
+        return f"done | {steps} | {seconds} | {commit[1] if commit else 'unknown'} | {IN_SECTION} |"
+    return 'not run | | | | |'
+
+
 def start(words, most):
     """Runs, and interrupts what has taken so many core-seconds."""
     with subprocess.Popen(words) as process:
@@ -202,7 +247,8 @@ def main():
     page = ROOT / 'docs' / 'reproduction.md'
     old = sections(page.read_text(encoding='utf-8'))
     timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| (.*)$', old.get(UNFINISHED, ''), re.MULTILINE))
-    lines, missing = [], []
+    ended = dict(re.findall(r'^\| (\S+) \| (.*)$', old.get(QUICK, ''), re.MULTILINE))
+    lines, missing, told = [], [], {}
     for name in names:
         figures = [row for row in reference['figures'] if row['description'] == name]
         description = ROOT / 'sims' / f'{name}.json'
@@ -211,12 +257,17 @@ def main():
         else:
             section = kept(old.get(name, ''), figures) if description.exists() else []
         if section:
+            told[name] = section
             note = reference['notes'].get(name)
             lines += [f'## {name}', *section, *(['', note] if note else []), '']
         else:
             hours, grains = estimate(given.grit, description)
             run, course = state(given.results / name), reference['courses'].get(name)
             missing.append(f"| {name} | {hours} | {part(run, course, grains) or timed.get(name, '| | |')}")
+    quick = sorted(str(path.relative_to(ROOT / 'sims').with_suffix('')) for path in (ROOT / 'sims').glob('*/quick*.json'))
+    if quick:
+        lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name))}"
+                                   for name in quick), '']
     if missing:
         lines += [HEAD_OF_UNFINISHED, *missing]
     page.write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')

@@ -42,6 +42,11 @@ As it was.
 | --- | --- | --- | --- | --- |
 | peak | 2 ± 0.5 | 1 | -1 | outside |
 
+## All quick descriptions, run to their ends
+| description | ended | steps | core-seconds | commit | figures |
+| --- | --- | --- | --- | --- | --- |
+| shear/quick-long-ago | done | 9,000 | 7 | 111111111111 | peak: 3.50 |
+
 ## Not run to their ends
 | description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
 | --- | --- | --- | --- | --- |
@@ -57,7 +62,7 @@ class Reproduction(unittest.TestCase):
         self.root = pathlib.Path(self.folder.name)
         self.given = {'figures': [{'description': name, 'figure': 'peak', 'of': 'test/y', 'how': 'maximum', 'reference': 2, 'allowed': 0.5}
                                   for name in NAMES],
-                      'courses': {}, 'older': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
+                      'courses': {}, 'older': [], 'quick': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
         for name in NAMES:
             self.file(f'sims/{name}.json', '{}')
         self.file('docs/reproduction.md', PAGE)
@@ -66,6 +71,15 @@ class Reproduction(unittest.TestCase):
     def test_figures_are_scaled_and_put_off(self):
         row = {'of': 'y', 'how': 'last', 'scale': 10, 'plus': 180}
         self.assertEqual(reproduce.found({'y': numpy.array([1.0, -2.5])}, row), 155)
+
+    def test_a_figure_may_be_a_component(self):
+        row = {'of': 'force', 'how': 'last', 'component': 2}
+        self.assertEqual(reproduce.found({'force': numpy.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])}, row), 6)
+
+    def test_a_figure_may_be_of_the_end_of_a_stage(self):
+        series = {'test/y': numpy.array([1.0, 2.0, 3.0]), 'test/step': numpy.array([10, 20, 21])}
+        row = {'of': 'test/y', 'how': 'at the end of a stage', 'stage': 'settle'}
+        self.assertEqual(reproduce.found(series, row, {'fill': 10, 'settle': 20, 'discharge': 90}), 2)
 
     def file(self, name, text):
         path = self.root / name
@@ -137,6 +151,45 @@ class Reproduction(unittest.TestCase):
     def test_a_description_that_is_gone_is_listed_as_not_run(self):
         (self.root / 'sims/shear/run-long-ago.json').unlink()
         self.expect_not_run()
+
+    def quick(self, name):
+        """What the table of quick descriptions says of one, or None."""
+        lines = [line for line in self.written()[0].get(reproduce.QUICK, '').splitlines() if line.startswith(f'| {name} | ')]
+        return lines[0].removeprefix(f'| {name} | ') if lines else None
+
+    def test_a_quick_run_has_its_line_with_the_figures_of_its_kind(self):
+        self.file('sims/shear/quick.json', '{}')
+        self.given['quick'] = [{'descriptions': ['shear/quick*'], 'figures': [{'figure': 'peak', 'of': 'test/y', 'how': 'maximum', 'scale': 2},
+                                                                              {'figure': 'least', 'of': 'test/y', 'how': 'minimum'}]},
+                               {'descriptions': ['silo/*'], 'figures': [{'figure': 'not of this one', 'of': 'test/z', 'how': 'last'}]}]
+        self.assertEqual(self.quick('shear/quick'), 'not run | | | | |')
+        self.ran('shear/quick', 'interrupted', '222222222222')
+        self.assertEqual(self.quick('shear/quick'), 'not run | | | | |')
+        self.ran('shear/quick', 'done', '222222222222')
+        self.assertEqual(self.quick('shear/quick'), 'done | 5,000 | 4 | 222222222222 | peak: 5.00; least: 1.00 |')
+        self.assertIsNone(self.quick('shear/run-now'))
+
+    def test_a_quick_run_that_failed_says_why(self):
+        self.file('sims/shear/quick.json', '{}')
+        self.ran('shear/quick', 'failed', '222222222222', message='grain 7 is gone\nlook at frame 3')
+        self.assertEqual(self.quick('shear/quick'), 'failed: grain 7 is gone | 5,000 | 4 | 222222222222 |  |')
+
+    def test_of_a_quick_run_that_is_not_at_hand_the_line_stays_while_there_is_its_description(self):
+        description = self.file('sims/shear/quick-long-ago.json', '{}')
+        self.assertEqual(self.quick('shear/quick-long-ago'), 'done | 9,000 | 7 | 111111111111 | peak: 3.50 |')
+        self.assertEqual(self.quick('shear/quick-long-ago'), 'done | 9,000 | 7 | 111111111111 | peak: 3.50 |')
+        description.unlink()
+        self.assertIsNone(self.quick('shear/quick-long-ago'))
+
+    def test_a_quick_run_with_a_section_is_told_there(self):
+        self.file('sims/shear/quick.json', '{}')
+        self.file('docs/reproduction.md', PAGE.replace('## shear/run-long-ago\n\n100 bodies, by', '## shear/quick\n\n100 bodies, 8,000 steps, '
+                                                       '60 core-seconds on 2 threads, by'))
+        figures = self.given['figures']
+        figures.append({**figures[0], 'description': 'shear/quick'})
+        self.assertEqual(self.quick('shear/quick'), 'done | 8,000 | 60 | 111111111111 | see its section |')
+        figures[-1]['reference'] = 3
+        self.assertEqual(self.quick('shear/quick'), 'not run | | | | |')
 
     def expect_not_run(self):
         sections, page = self.written()
