@@ -148,6 +148,23 @@ TEST_F(Reports, ShowTheOthersWhereAFolderIsBad) {
   EXPECT_FALSE(exists("none.html"));
 }
 
+TEST_F(Reports, FailWhereNothingOfARunCanBeRead) {
+  folder.write("results/half/run.json", "{");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"report", "--png", "results/half"}, {"report", "results/half"}}) {
+    const auto outcome = grit(words);
+    EXPECT_EQ(outcome.status, 5);
+    EXPECT_THAT(outcome.err, HasSubstr("results/half/run.json: is not the JSON of a run, and there is neither"));
+    EXPECT_EQ(outcome.out, "");
+  }
+  folder.write("results/half/series.h5", "");
+  const auto outcome = grit({"report", "--png", "results/half"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: results/half: nothing that can be read of it is drawn\n"),
+                                 HasSubstr("grit: left out: results/half/run.json: is not the JSON of a run\n"),
+                                 HasSubstr("grit: left out: results/half/series.h5")));
+}
+
 TEST_F(Reports, DrawTheOtherPicturesWhereAFrameIsDamaged) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   // Its attributes are there, which tell where layers begin.

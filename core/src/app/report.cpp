@@ -73,7 +73,12 @@ ExitStatus make_pictures(const std::vector<std::filesystem::path>& folders) {
   for (const auto& folder : folders) attempt([&] { runs.push_back(read_results(folder)); });
   tell_apart(runs);
   for (RunResults& run : runs) {
-    attempt([&] { write_pictures(run.folder, pictures_of(run)); });
+    attempt([&] {
+      const auto pictures = pictures_of(run);
+      if (pictures.empty() && !run.problems.empty())
+        throw FileError(run.folder.string() + ": nothing that can be read of it is drawn");
+      write_pictures(run.folder, pictures);
+    });
     for (const std::string& problem : run.problems) std::cerr << "grit: left out: " << problem << '\n';
   }
   if (runs.size() > 1)

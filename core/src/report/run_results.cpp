@@ -59,7 +59,12 @@ RunResults read_results(const std::filesystem::path& folder, std::chrono::millis
     throw FileError(folder.string() +
                     ": holds no run: there is neither run.json nor series.h5 nor a frame; give a folder that 'grit "
                     "run' has written");
-  if (auto json = read_run_json(folder)) results.json = std::move(*json);
+  auto json = read_run_json(folder);
+  if (!json && !std::filesystem::exists(folder / "series.h5", none) && results.frames.empty())
+    throw FileError((folder / "run.json").string() +
+                    ": is not the JSON of a run, and there is neither series.h5 nor a frame; give a folder that 'grit "
+                    "run' has written");
+  if (json) results.json = std::move(*json);
   else
     results.problems.push_back((folder / "run.json").string() +
                                (has_json ? ": is not the JSON of a run" : ": there is no such file"));
