@@ -392,6 +392,24 @@ TEST(VoidRatio, LeavesCellsOutThatAreMostlyBehindWalls) {
   EXPECT_TRUE(std::isnan(channel_value(probe, world, "largest")));
 }
 
+TEST(VoidRatio, IsNoneOfCellsThatAreMostlyBehindWallsOnMapsEither) {
+  FakeWorld world = cubic(6);
+  for (Row& row : world.position)
+    if (row.z < 4) row.z += 100;
+  world.add({3.5, 3.5, 3.85}, 0.1), world.add({3.5, 2.5, 3.85}, 0.1);
+  add_plane(world, {0, 0, 3.7}, {0, 0, 1});
+  VoidRatio probe;
+  probe.averaging.cell_size = 2 / world.mean_diameter(), probe.averaging.cell_step = 1 / world.mean_diameter();
+  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_share");
+  ASSERT_EQ(ratios.size(), 125u);
+  int rim = 0;
+  for (std::size_t n = 0; n < ratios.size(); ++n) {
+    EXPECT_EQ(std::isnan(ratios[n]), shares[n] < 0.5) << n << ' ' << shares[n];
+    rim += shares[n] > 0.1 && shares[n] < 0.2;
+  }
+  EXPECT_EQ(rim, 25) << "cells from 2 to 4, of which four have solids";
+}
+
 // Grains that a wall has left behind it take room that is none: neither −1 nor anything above says something there.
 TEST(VoidRatio, IsUnknownBehindWalls) {
   FakeWorld world = cubic(6);

@@ -44,9 +44,9 @@ std::vector<Volumes> volumes(const World& world, const AveragingCells& cells) {
   return cells.sum_up(parts);
 }
 
-/// Whether enough of a cell is before the walls for its void ratio to say something.
-bool tells(const Volumes& cell, const Region& box) {
-  return std::isfinite(void_ratio(cell, box)) && cell.free >= 0.5 * box.volume();
+/// The same of a cell. NaN where too little of it is before the walls for it to say something.
+double void_ratio_of_cell(const Volumes& in, const Region& cell) {
+  return in.free >= 0.5 * cell.volume() ? void_ratio(in, cell) : std::numeric_limits<double>::quiet_NaN();
 }
 
 struct Spread {
@@ -88,7 +88,8 @@ void VoidRatio::sample(const World& world, std::span<const std::span<double>> va
   std::vector<double> ratios;
   const auto of_cells = volumes(world, cells);
   for (std::size_t n = 0; n < of_cells.size(); ++n)
-    if (tells(of_cells[n], cells.cell(n))) ratios.push_back(void_ratio(of_cells[n], cells.cell(n)));
+    if (const double ratio = void_ratio_of_cell(of_cells[n], cells.cell(n)); std::isfinite(ratio))
+      ratios.push_back(ratio);
   const Spread of = spread(ratios);
   values[1][0] = of.smallest, values[2][0] = of.largest, values[3][0] = of.mean;
   values[4][0] = of.standard_deviation;
@@ -106,11 +107,16 @@ void VoidRatio::sample(const World& world, std::span<const std::span<double>> va
 std::vector<Field> VoidRatio::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.envelope()), world));
   std::vector<Field> fields = map_of(cells);
-  Field ratio{"void_ratio", "1", "up to the surface of walls; infinite without solids, NaN behind walls", 1, {}};
+  Field ratio{
+      "void_ratio",
+      "1",
+      "up to the surface of walls; infinite without solids, NaN where less than half of the cell is before them",
+      1,
+      {}};
   Field share{"free_share", "1", "of the cell's volume, what lies on the bodies' side of all walls", 1, {}};
   const auto each = volumes(world, cells);
   for (std::size_t n = 0; n < each.size(); ++n) {
-    ratio.values.push_back(void_ratio(each[n], cells.cell(n)));
+    ratio.values.push_back(void_ratio_of_cell(each[n], cells.cell(n)));
     share.values.push_back(each[n].free / cells.cell(n).volume());
   }
   fields.push_back(std::move(ratio)), fields.push_back(std::move(share));
