@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -15,6 +16,12 @@ constexpr double flat = 1e-10;      // height of a triangle over its longest sid
 constexpr double rounding = 1e-15;  // of coordinates; and of directions, of which more may add up:
 constexpr double slack_of_radius = 1e-12;
 constexpr double one_point = 1e3;  // slacks: points no farther apart are one
+// What rounding leaves between corners that should be one: in text of six digits 5e-6 of a coordinate, in floats 6e-8.
+constexpr double no_gap = 1e-5;         // of the surface's largest side
+constexpr double long_as_a_seam = 100;  // such gaps: edges that part at 0.6 degrees or more are no seam
+// Sine of the angle from which on two faces make a valley. At 15 degrees a sphere over one of them reaches the rim of
+// the other where it overlaps by 1 - cos(15 degrees), 3 % of its radius.
+constexpr double valley = 0.2588;
 
 auto coordinates(const Vec3& v) { return std::tuple(v.x(), v.y(), v.z()); }
 
@@ -66,6 +73,7 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
   }
   index_.emplace(boxes);
   size_ = std::max(bounds_.low.cwiseAbs().maxCoeff(), bounds_.high.cwiseAbs().maxCoeff());
+  if (!closed_) check_seams();
   // That of a tube is zero but for its corners' rounding, in STL to floats.
   if (closed_ || !oriented_ || area_vector_.norm() <= 1e-6 * total_area) area_vector_.setZero();
 }
@@ -299,6 +307,97 @@ void Surface::gather_corners() {
   for (std::uint32_t e = 0; e < edges_.size(); ++e)
     for (Vertex* vertex : {&vertices_[edges_[e].from], &vertices_[edges_[e].to]})
       vertex_edges_[vertex->end_edge++] = e, vertex->rim = vertex->rim || edges_[e].rim;
+}
+
+/// Rims that lie on other facets are no rims: corners were not merged, or a facet ends on the middle of another.
+void Surface::check_seams() {
+  const double gap = no_gap * (bounds_.high - bounds_.low).maxCoeff();
+  std::vector<std::uint32_t> near;
+  std::vector<std::size_t> facets;
+  std::optional<Seam> first;
+  double merge = 0;
+  bool split = false;
+  for (const Edge& edge : edges_) {
+    if (!edge.rim) continue;
+    const Side& side = sides_[edge.first_side];
+    const Vec3 &a = vertices_[edge.from].place, &b = vertices_[edge.to].place;
+    index_->meeting({a.cwiseMin(b) - Vec3::Constant(gap), a.cwiseMax(b) + Vec3::Constant(gap)}, near);
+    for (const std::uint32_t other : near) {
+      const auto found = seam(side, other, gap);
+      if (!found) continue;
+      facets.insert(facets.end(), {side.facet, other});
+      if (!first) first = found;
+      if (found->mergeable) merge = std::max(merge, found->gap);
+      else split = true;
+    }
+  }
+  if (!first) return;
+  std::ranges::sort(facets);
+  facets.erase(std::ranges::unique(facets).begin(), facets.end());
+  const auto metres = [](double length) { return (std::ostringstream() << std::setprecision(2) << length).str(); };
+  std::string mend;
+  if (merge > 0)
+    mend = "say \"merge\": " + metres(1.1 * merge) + " or more, in m, which joins corners that should be one";
+  if (split)
+    mend += std::string(mend.empty() ? "" : ", and ") +
+            "split facets in the file where corners of others lie on them, so that both have these corners";
+  defects_.push_back(
+      {"edges of one facet alone that lie on other facets, where a body would be pushed twice: the first "
+       "of facet " +
+           std::to_string(first->facet + 1) + " on facet " + std::to_string(first->other + 1) + ", from " +
+           text(first->from) + " to " + text(first->to) + " m, " + metres(first->gap) + " m apart; of facets " +
+           facet_numbers(facets),
+       "facets that share the edges where one goes on in another; " + mend});
+}
+
+/// Where a facet's rim lies on another facet over some length, no farther away than `gap`, and both would be touched
+/// where a surface that is joined there is touched once: all but sharp valleys.
+std::optional<Surface::Seam> Surface::seam(const Side& side, std::uint32_t number, double gap) const {
+  const Facet &facet = facets_[side.facet], &other = facets_[number];
+  const Edge& edge = edges_[facet.edges[side.edge]];
+
+  // The part of the edge that is beside or above the other, at first as seen along the edge alone.
+  const Vec3& start = vertices_[edge.from].place;
+  const auto along = [&](std::size_t i) { return edge.along.dot(corner(other, i) - start); };
+  double from = std::max(0.0, std::min({along(0), along(1), along(2)})),
+         to = std::min(edge.length, std::max({along(0), along(1), along(2)}));
+  const auto clip = [&](double at_start, double slope) {  // to where at_start + slope x ≥ −gap
+    if (slope > 0) from = std::max(from, (-gap - at_start) / slope);
+    else if (slope < 0) to = std::min(to, (-gap - at_start) / slope);
+    else if (at_start < -gap) to = from;
+  };
+  for (const double sign : {1.0, -1.0}) clip(sign * height(other, start), sign * other.normal.dot(edge.along));
+  for (std::uint32_t i = 0; i < 3; ++i) clip(inside_edge({number, i}, start), other.inward[i].dot(edge.along));
+  if (!(to - from > long_as_a_seam * gap)) return {};
+
+  const auto at = [&](double share) -> Vec3 { return start + (from + share * (to - from)) * edge.along; };
+  std::uint32_t nearest = 0;
+  for (std::uint32_t i = 1; i < 3; ++i)
+    if (inside_edge({number, i}, at(0.5)) < inside_edge({number, nearest}, at(0.5))) nearest = i;
+  const Vec3 &mine = facet.inward[side.edge], &its = other.inward[nearest];
+  const bool at_its_edge = inside_edge({number, nearest}, at(0.5)) <= gap;
+  // The facet that has the edge, and in a fan of narrow ones about a corner those after it.
+  const auto has = [&](std::uint32_t corner) { return std::ranges::count(other.corners, corner) > 0; };
+  if (at_its_edge && (has(edge.from) || has(edge.to)) && mine.dot(its) > 0.5) return {};
+
+  const double rises = other.normal.dot(mine);
+  if (at_its_edge && edges_[other.edges[nearest]].rim) {
+    // From two sides the sharpest valley is a convex edge as well.
+    if (!two_sided_ && rises >= valley && facet.normal.dot(its) >= valley && mine.dot(its) > -like_) return {};
+  } else if ((two_sided_ ? std::abs(rises) : rises) >= valley) {
+    return {};  // stands on the other's front
+  }
+
+  double farthest = 0;  // of this edge's ends from the other's corners
+  for (const std::uint32_t end : {edge.from, edge.to}) {
+    double closest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) closest = std::min(closest, (corner(other, i) - vertices_[end].place).norm());
+    farthest = std::max(farthest, closest);
+  }
+  const bool mergeable = farthest <= 2 * gap;
+  double apart = mergeable ? farthest : std::max(distance(number, at(0.25)), distance(number, at(0.75)));
+  if (apart <= one_point * rounding * size_) apart = 0;
+  return Seam{side.facet, number, at(0), at(1), apart, mergeable};
 }
 
 std::vector<Vec3> Surface::triangles() const {

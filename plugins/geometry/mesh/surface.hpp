@@ -88,6 +88,14 @@ class Surface {
   void check_volumes(bool inside);
   void find_regions();
   void gather_corners();
+  struct Seam {
+    std::uint32_t facet, other;
+    Vec3 from, to;
+    double gap;      // m
+    bool mergeable;  // whether corners as far apart as the gap are all that is between them
+  };
+  void check_seams();
+  std::optional<Seam> seam(const Side& side, std::uint32_t other, double gap) const;
   template <class Joins>
   std::vector<std::uint32_t> groups(Joins joins) const;
   std::vector<std::size_t> inverted() const;

@@ -324,6 +324,134 @@ TEST(Mesh, RefusesARimUnlessItIsMeant) {
   EXPECT_EQ(complaint(without_top(), {{"open", true}}), "");
 }
 
+/// What a test of seams calls refused, with `open` and with `two_sided` beside it.
+bool both_refuse_a_seam(const Corners& corners) {
+  const std::string why = "edges of one facet alone that lie on other facets, where a body would be pushed twice";
+  const auto refused = [&](const Settings& more) { return complaint(corners, more).find(why) != std::string::npos; };
+  return refused({{"open", true}}) && refused({{"open", true}, {"two_sided", true}});
+}
+bool both_accept(const Corners& corners) {
+  return complaint(corners, {{"open", true}}).empty() &&
+         complaint(corners, {{"open", true}, {"two_sided", true}}).empty();
+}
+Corners joined(Corners corners, const Corners& more) {
+  corners.insert(corners.end(), more.begin(), more.end());
+  return corners;
+}
+Corners quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  Corners corners;
+  add_quad(corners, a, b, c, d);
+  return corners;
+}
+
+TEST(Mesh, RefusesAFacetThatEndsOnTheMiddleOfAnotherEvenWhereARimIsMeant) {
+  const Corners junction{{0, 0, 0}, {1, 0, 0},     {1, 1, 0}, {0, 0, 0}, {0.5, 0.5, 0},
+                         {0, 1, 0}, {0.5, 0.5, 0}, {1, 1, 0}, {0, 1, 0}};
+  EXPECT_EQ(complaint(junction, {{"open", true}}),
+            "path: found edges of one facet alone that lie on other facets, where a body would be pushed twice: the "
+            "first of facet 1 on facet 2, from (0, 0, 0) to (0.5, 0.5, 0) m, 0 m apart; of facets 1, 2, 3, allowed: "
+            "facets that share the edges where one goes on in another; split facets in the file where corners of "
+            "others lie on them, so that both have these corners; ");
+  EXPECT_TRUE(both_refuse_a_seam(junction));
+  EXPECT_TRUE(both_refuse_a_seam(turned(junction, askew, {3, 4, 5})));
+  Corners near = junction;
+  near[4] = near[6] = Vec3(0.5, 0.5 + 4e-6, 3e-6);
+  EXPECT_TRUE(both_refuse_a_seam(near)) << "what six digits leave";
+  near[4] = near[6] = Vec3(0.5, 0.52, 0);
+  EXPECT_TRUE(both_accept(near)) << "a notch";
+  const auto apart = [](double gap) {
+    return joined(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+                  quad({0, 1 + gap, 0}, {1, 1 + gap, 0}, {1, 2, 0}, {0, 2, 0}));
+  };
+  EXPECT_TRUE(both_refuse_a_seam(apart(1e-5)));
+  EXPECT_TRUE(both_accept(apart(3e-5))) << "a gap";
+  EXPECT_TRUE(both_refuse_a_seam(joined(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+                                        quad({0.3, 1, 0}, {1.3, 1, 0}, {1.3, 2, 0}, {0.3, 2, 0}))))
+      << "staggered";
+  EXPECT_TRUE(both_refuse_a_seam(joined(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
+                                        quad({0.3, 0.8, 0}, {1.3, 0.8, 0}, {1.3, 2, 0}, {0.3, 2, 0}))))
+      << "one over the other";
+}
+
+TEST(Mesh, RefusesCornersThatAreNotMergedEvenWhereARimIsMeant) {
+  const Corners apart{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1e-9, 0, 0}, {1, 1 + 1e-9, 0}, {0, 1, 0}};
+  EXPECT_THAT(complaint(apart, {{"open", true}}),
+              HasSubstr("pushed twice: the first of facet 1 on facet 2, from (5e-10, 5e-10, 0) to (1, 1, 0) m, 1e-09 m "
+                        "apart; of facets 1, 2, allowed: facets that share the edges where one goes on in another; say "
+                        "\"merge\": 1.1e-09 or more, in m, which joins corners that should be one; "));
+  EXPECT_TRUE(both_refuse_a_seam(apart));
+  EXPECT_EQ(complaint(apart, {{"open", true}, {"merge", 1.1e-9}}), "");
+
+  Corners crack{{0, 0, 0}, {1, 0, 0},  {0, 1, 0},  {0, 0, 0}, {0, 1, 0},  {-1, 0, 0},
+                {0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 0}, {0, -1, 0}, {1, 1e-9, 0}};
+  EXPECT_TRUE(both_refuse_a_seam(crack)) << "one corner is shared";
+}
+
+TEST(Mesh, RefusesSeamsByTheAngleAtWhichTheyWouldBeFelt) {
+  // Two sheets whose edges lie along each other, bent upwards by an angle; the second is not as long.
+  const auto bent = [](double angle) {
+    const Vec3 on(std::cos(angle * degree), 0, std::sin(angle * degree));
+    return joined(quad({-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}),
+                  quad({0, 0.1, 0}, Vec3(0, 0.1, 0) + on, Vec3(0, 0.9, 0) + on, {0, 0.9, 0}));
+  };
+  for (const double angle : {-90, -30, -1, 0, 1, 14}) EXPECT_TRUE(both_refuse_a_seam(bent(angle))) << angle;
+  for (const double angle : {16, 45, 90, 120}) {
+    EXPECT_EQ(complaint(bent(angle), {{"open", true}}), "") << angle << ", a valley";
+    EXPECT_THAT(complaint(bent(angle), {{"open", true}, {"two_sided", true}}), HasSubstr("twice")) << angle;
+  }
+  EXPECT_THAT(complaint(bent(45), {{"open", true}, {"crease", 50 * degree}}), HasSubstr("twice"));
+  const auto valley = mesh(bent(90), {{"open", true}});
+  EXPECT_THAT(touches_of(*valley, {-0.099, 0.5, 0.09}, 0.1), SizeIs(2));
+  EXPECT_THAT(touches_of(*valley, {-0.099, 0.5, 0.11}, 0.1), SizeIs(1));
+}
+
+TEST(Mesh, AcceptsABaffleThatStandsOnAWall) {
+  const Corners wall = quad({0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0});
+  const Corners baffle = quad({0.3, 0.5, 0}, {0.3, 1.2, 0}, {0.3, 1.2, 1}, {0.3, 0.5, 1});
+  EXPECT_TRUE(both_accept(joined(wall, baffle)));
+  EXPECT_TRUE(both_accept(turned(joined(wall, baffle), askew, {3, 4, 5})));
+  const auto tee = mesh(joined(wall, baffle), {{"open", true}, {"two_sided", true}});
+  for (const double x : {0.201, 0.399}) {
+    EXPECT_THAT(touches_of(*tee, {x, 0.9, 0.099}, 0.1), SizeIs(2)) << "each face once";
+    EXPECT_THAT(touches_of(*tee, {x + (x - 0.3), 0.9, 0.099}, 0.1), SizeIs(1));
+  }
+  EXPECT_TRUE(both_accept(joined(wall, quad({0.5, 0.5, 0}, {1.5, 1.5, 0}, {1.5, 1.5, 1}, {0.5, 0.5, 1}))))
+      << "on an edge of two facets";
+  const Corners behind = quad({0.3, 0.5, 0}, {0.3, 1.2, 0}, {0.3, 1.2, -1}, {0.3, 0.5, -1});
+  EXPECT_THAT(complaint(joined(wall, behind), {{"open", true}}), HasSubstr("twice")) << "its edge would be felt";
+  EXPECT_EQ(complaint(joined(wall, behind), {{"open", true}, {"two_sided", true}}), "");
+  EXPECT_TRUE(both_refuse_a_seam(joined(wall, quad({0.3, 0.5, 0}, {0.3, 1.2, 0}, {1.3, 1.2, 0.2}, {1.3, 0.5, 0.2}))))
+      << "a shallow ramp";
+}
+
+TEST(Mesh, AcceptsHonestRims) {
+  Corners hopper;  // of 24 narrow sides, whose upper and lower rims go up and down
+  const auto at = [](int i, double radius, double z) {
+    const double angle = 2 * std::numbers::pi * (i % 24) / 24;
+    return Vec3(radius * std::cos(angle), radius * std::sin(angle), z + 0.05 * (i % 2));
+  };
+  for (int i = 0; i < 24; ++i) add_quad(hopper, at(i, 0.2, 0), at(i + 1, 0.2, 0), at(i + 1, 1, 1), at(i, 1, 1));
+  EXPECT_TRUE(both_accept(hopper));
+
+  Corners teeth;  // a floor below 0 and a row of teeth above it, whose tips nearly reach it
+  add_quad(teeth, {0, -1, 0}, {10, -1, 0}, {10, 0, 0}, {0, 0, 0});
+  for (int i = 0; i < 10; ++i) {
+    const double x = i;
+    teeth.insert(teeth.end(), {{x + 0.5, 1e-7, 0}, {x + 1, 1, 0}, {x, 1, 0}});
+  }
+  EXPECT_TRUE(both_accept(teeth));
+
+  Corners fan;  // facets as narrow as 0.01 degrees, as round flanges are cut into, whose rims are all but one line
+  for (int i = 0; i < 5; ++i) {
+    const double a = 1e-4 * i * i, b = 1e-4 * (i + 1) * (i + 1);
+    fan.insert(fan.end(), {Vec3::Zero(), {std::cos(a), std::sin(a), 0}, {std::cos(b), std::sin(b), 0}});
+  }
+  EXPECT_TRUE(both_accept(fan));
+  Corners strip;  // one straight rim
+  for (int i = 0; i < 5; ++i) strip.insert(strip.end(), {Vec3(i, 0, 0), Vec3(i + 1, 0, 0), Vec3(2, 0.01, 0)});
+  EXPECT_TRUE(both_accept(strip));
+}
+
 TEST(Mesh, RefusesInvertedFacetsUnlessItHasTwoSides) {
   Corners corners = box(low, high);
   std::swap(corners[3 * 6 + 1], corners[3 * 6 + 2]);
