@@ -206,7 +206,7 @@ def short(name, results, wanted, section, older):
     if section:
         text = '\n'.join(section)
         steps, seconds = re.search(r'([0-9,]+) steps, (\d+) core-seconds', text).groups()
-        commit = re.search(r'by commits? ([0-9a-f, ]+)\.', text)
+        commit = re.search(r'by commits? (.+)\.$', text, re.MULTILINE)
         return f"done | {steps} | {seconds} | {commit[1] if commit else 'unknown'} | {IN_SECTION} |"
     return 'not run | | | | |'
 
