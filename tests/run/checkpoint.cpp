@@ -70,6 +70,14 @@ Description servo(const std::string& law = "linear-rolling") {
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", 2e-5}};
   return d;
 }
+/// A lid that is so fast for what it shall press with that it has to brake before what it meets.
+Description braking() {
+  Description d = servo();
+  auto& height = d["walls"]["lid"]["corner"][2];
+  height = height.get<double>() + 0.2 * spacing;
+  d["stages"][0]["ramps"][0]["from"] = 100;
+  return d;
+}
 /// Springs whose stiffness, and with it the time step, follows the overlaps.
 Description stiffening() {
   Description d = servo("hertz-mindlin");
@@ -241,8 +249,9 @@ TEST_P(Resume, ByTheClockChangesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Of, Resume,
                          testing::Values(Case{"cell", cell}, Case{"servo", [] { return servo(); }},
-                                         Case{"stiffening", stiffening}, Case{"loose_walls", loose},
-                                         Case{"clumps", clumps}, Case{"silo", silo}, Case{"every_probe", every_probe}),
+                                         Case{"braking_servo", braking}, Case{"stiffening", stiffening},
+                                         Case{"loose_walls", loose}, Case{"clumps", clumps}, Case{"silo", silo},
+                                         Case{"every_probe", every_probe}),
                          [](const auto& info) { return info.param.name; });
 
 /// At the steps around a search, where lists are new or worn out.

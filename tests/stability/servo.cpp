@@ -1,5 +1,6 @@
 // A servo-controlled wall on a stack of grains: the gain and the step at which the two together start to grow, found
-// from both sides; and how fast it may come to press on few or stiff grains.
+// from both sides; and how hard it presses on few or stiff grains that it closes on, however fast.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -20,18 +21,18 @@ const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radiu
 constexpr double squeeze = 1e-3;                          // of the radius
 constexpr double habit_steps = 30, dashpots_counted = 3;  // as engines/walls has them
 
-/// Grains one on the other between the floor and a lid that presses them together by `squeeze`; `gap` [m] to the lid.
-Description stack(int grains, double gain, double gap = 0, double max_velocity = 1e3, double restitution = 1) {
+/// Grains one on the other between the floor and a lid that presses them together by `squeeze`.
+Description stack(int grains, double gain, double restitution = 1) {
   const Description m{
       {"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}, {"restitution", restitution}};
   const double speed = 1e-9 * squeeze * radius * std::sqrt(2 * stiffness / mass);
-  const double pressed = gap > 0 ? 0 : squeeze * radius;
+  constexpr double pressed = squeeze * radius;
   std::vector<Grain> list;
   for (int i = 0; i < grains; ++i)
     list.push_back({Vec3(0, 0, radius - pressed + i * (2 * radius - pressed)), radius, {0, 0, i % 2 ? -speed : speed}});
   Description d = description("linear-frictional", m, list);
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
-  const double top = list.back().position.z() + radius - pressed + gap;
+  const double top = list.back().position.z() + radius - pressed;
   d["walls"]["lid"] = {{"type", "rectangle"},
                        {"corner", {-radius, radius, top}},
                        {"edge_a", {2 * radius, 0, 0}},
@@ -39,7 +40,7 @@ Description stack(int grains, double gain, double gap = 0, double max_velocity =
                        {"material", "grain"}};
   d["walls"]["lid"]["motion"]["servo"] = {{"axis", "z"},
                                           {"pressure", stiffness * squeeze * radius / (4 * radius * radius)},
-                                          {"max_velocity", max_velocity},
+                                          {"max_velocity", 1e3},
                                           {"gain", gain}};
   return d;
 }
@@ -106,7 +107,7 @@ TEST(Servo, OnDashpotsStartsToGrowWhereItsEigenvaluesSay) {
           (grains == 1 ? "lone grain" : "stack of 3") + std::string(", gain ") + (gain < 1 ? "0.3" : "1");
       for (const double restitution : {0.95, 0.8, 0.6, 0.4, 0.2, 0.05}) {
         SCOPED_TRACE(name + ", restitution " + std::to_string(restitution));
-        const Description d = stack(grains, gain, 0, 1e3, restitution);
+        const Description d = stack(grains, gain, restitution);
         const double limit = predicted_limit(grains, gain, restitution), said = critical(d);
         const double found = found_limit(d, limit);
         EXPECT_NEAR(found / limit, 1, 1e-2);
@@ -124,7 +125,7 @@ TEST(Servo, KeepsItsForceOnDashpotsAtAnyStep) {
     for (const double gain : {0.3, 1.0})
       for (const double safety : {0.8, 0.2, 0.05}) {
         SCOPED_TRACE(testing::Message() << "restitution " << restitution << ", gain " << gain << ", safety " << safety);
-        Description d = stack(3, gain, 0, 1e3, restitution);
+        Description d = stack(3, gain, restitution);
         d["walls"]["lid"]["motion"]["servo"]["pressure"] =
             1.1 * d["walls"]["lid"]["motion"]["servo"]["pressure"].get<double>();
         d["time_step"] = {{"safety", safety}};
@@ -140,17 +141,19 @@ TEST(Servo, KeepsItsForceOnDashpotsAtAnyStep) {
       }
 }
 
+/// One square metre, on what is below.
+struct Plate : Geometry {
+  void declare(Parameters&) override {}
+  Bounds bounds() const override { return {Vec3::Zero(), Vec3(1, 1, 0)}; }
+  double area() const override { return 1; }
+  Vec3 normal() const override { return -Vec3::UnitZ(); }
+  void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+  bool near(const Pose&, const Vec3&, double) const override { return false; }
+  std::vector<Vec3> triangles() const override { return {}; }
+};
+
 /// The share of the force's error that is left after so many steps, on a spring without a mass.
 double left(double gain, int steps) {
-  struct Plate : Geometry {
-    void declare(Parameters&) override {}
-    Bounds bounds() const override { return {Vec3::Zero(), Vec3(1, 1, 0)}; }
-    double area() const override { return 1; }
-    Vec3 normal() const override { return -Vec3::UnitZ(); }
-    void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
-    bool near(const Pose&, const Vec3&, double) const override { return false; }
-    std::vector<Vec3> triangles() const override { return {}; }
-  };
   constexpr double spring = 1e4, pressure = 100, dt = 1e-3;
   Walls walls;
   MotionDescription motion;
@@ -186,6 +189,175 @@ TEST(Servo, GuardTripsWhereAnUnstableStepWasAskedFor) {
   ASSERT_GT(d["time_step"]["value"].get<double>(), predicted_limit(1, 1));
   Trial t(d);
   EXPECT_THROW(t.step(100000), NumericsError);
+}
+
+// What a lid presses with that closes, over what it shall keep. Ways of a step are told in overlaps that one grain has
+// under that force: with linear springs max_velocity · dt · k / F.
+const std::string closing_map =
+    "peak of the force of a servo that closes, over the one that it keeps|"
+    "way in a step at max_velocity over the overlap under that force";
+constexpr double overlap_kept = 1e-4 * radius, force_kept = stiffness * overlap_kept;
+/// Of its last step's way, what a lid has gone when it touches.
+constexpr auto starts = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99};
+
+/// On springs without a mass that end at one height.
+double peak_on_springs(int springs, double way, double start, bool brakes) {
+  constexpr double dt = 1e-3;
+  Walls walls;
+  MotionDescription motion;
+  motion.servo =
+      ServoDescription{.axis = "z", .force = -force_kept, .max_velocity = way * overlap_kept / dt, .gain = 0.3};
+  walls.apply({{"lid", std::make_shared<Plate>(), motion}});
+  const double gap = (1 + start) * way * overlap_kept;
+  const auto force = [&](const Pose& there) { return springs * stiffness * std::max(0.0, -there.shift.z() - gap); };
+  const Walls::Ahead ahead = [&](std::size_t, const Pose& there, double) { return Meeting{force(there), 0}; };
+  double peak = 0;
+  for (int step = 0; step < 1000; ++step) {
+    const double now = force(walls.pose(0));
+    peak = std::max(peak, now / force_kept);
+    walls.clear_forces();
+    if (now > 0) walls.add(0, {Vec3(0, 0, now), Vec3::Zero(), springs * stiffness, std::uint32_t(springs)});
+    walls.drive(dt, brakes ? ahead : nullptr), walls.move(dt);
+  }
+  if (brakes) EXPECT_NEAR(force(walls.pose(0)) / force_kept, 1, 1e-2);
+  return peak;
+}
+
+TEST(Servo, WouldBearAWholeStepsWayIfItDidNotBrake) {
+  for (const int springs : {1, 16}) {
+    const std::string name = (springs == 1 ? "a spring" : "16 springs") + std::string(", if it did not brake");
+    for (const double way : {0.03, 0.1, 0.3, 0.99, 1.01, 3.0, 10.0, 30.0, 100.0, 300.0}) {
+      SCOPED_TRACE(testing::Message() << springs << " springs, " << way);
+      double found = 0;
+      for (const double start : starts) {
+        found = std::max(found, peak_on_springs(springs, way, start, false));
+        EXPECT_LT(peak_on_springs(springs, way, start, true), 1.05);
+      }
+      const double predicted = std::max(1.0, springs * way);
+      EXPECT_NEAR(found / predicted, 1, 0.03);
+      map_point(closing_map, name, way, found);
+      map_point(closing_map, "predicted, " + name, way, predicted);
+    }
+  }
+}
+
+/// Grains on the floor in rows, and a lid that closes on them.
+struct Layer {
+  std::string law = "linear-frictional";
+  int a_side = 1;
+  double uneven = 0;            ///< from the highest to the lowest, over the overlap of one under the force kept
+  bool one_stands_out = false;  ///< of which the others are the lowest
+  double restitution = 1;
+  double gain = 0.3;
+};
+/// `way` of a step over the overlap under the force kept.
+Description closing(const Layer& layer, double way, double start) {
+  const double reach = way * overlap_kept, dt = 0.5 * std::sqrt(mass / stiffness);
+  Description m{{"density", density}, {"friction_angle", 0}, {"restitution", layer.restitution}};
+  // Hertz's, of two that are alike, as far away under the force kept.
+  if (layer.law == "hertz-mindlin")
+    m["young_modulus"] = 1.5 * force_kept / std::sqrt(radius * std::pow(overlap_kept, 3)), m["poisson_ratio"] = 0;
+  else m["contact_modulus"] = modulus;
+  std::vector<Grain> grains;
+  const int count = layer.a_side * layer.a_side;
+  for (int i = 0; i < count; ++i) {
+    const double low = layer.one_stands_out ? i > 0 : double(i) / std::max(1, count - 1);
+    const double r = radius - 0.5 * layer.uneven * overlap_kept * low;
+    grains.push_back({2.5 * radius * Vec3(i % layer.a_side, i / layer.a_side, 0) + r * Vec3::UnitZ(), r});
+  }
+  Description d = description(layer.law, m, grains);
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  const double side = 2.5 * radius * (layer.a_side - 1) + 2 * radius;
+  d["walls"]["lid"] = {{"type", "rectangle"},
+                       {"corner", {-radius, side - radius, 2 * radius + (2 + start) * reach}},
+                       {"edge_a", {side, 0, 0}},
+                       {"edge_b", {0, -side, 0}},
+                       {"material", "grain"}};
+  d["walls"]["lid"]["motion"]["servo"] = {
+      {"axis", "z"}, {"force", -force_kept}, {"max_velocity", reach / dt}, {"gain", layer.gain}};
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};  // Hertz's springs are asked for what it may reach
+  return d;
+}
+/// Of the force on the lid, over the one kept.
+double peak_on(const Description& d, int steps = 600) {
+  Trial t(d);
+  double peak = 0;
+  for (int step = 0; step < steps; ++step) {
+    t.step();
+    peak = std::max(peak, t.world().walls()[1].force.z() / force_kept);
+  }
+  return peak;
+}
+
+TEST(Servo, BrakesBeforeGrainsThatItClosesOn) {
+  const std::pair<const char*, Layer> layers[] = {
+      {"a grain", {}},
+      {"a grain, gain 1", {.gain = 1}},
+      {"a grain, Hertz", {.law = "hertz-mindlin"}},
+      {"a grain, restitution 0.3", {.restitution = 0.3}},
+      {"16 grains", {.a_side = 4}},
+      {"16 grains, uneven", {.a_side = 4, .uneven = 1}},
+      {"25 grains, one stands out", {.a_side = 5, .uneven = 0.5, .one_stands_out = true}},
+  };
+  double largest = 0;
+  for (const auto& [name, layer] : layers)
+    for (const double way : {0.03, 0.1, 0.3, 0.99, 1.01, 3.0, 10.0, 30.0, 100.0, 300.0}) {
+      SCOPED_TRACE(testing::Message() << name << ", " << way);
+      double found = 0;
+      for (const double start : starts) {
+        const double peak = peak_on(closing(layer, way, start));
+        EXPECT_GT(peak, 0.9) << "it arrives";
+        found = std::max(found, peak);
+      }
+      EXPECT_LT(found, 1.6);
+      map_point(closing_map, name, way, found);
+      largest = std::max(largest, found);
+    }
+  figure("peak of the force of a servo that closes, over the one that it keeps", largest);
+}
+
+TEST(Servo, ClosesAsFastAsItMayWhereNothingWouldBearTooMuch) {
+  const Layer layer{.a_side = 4};
+  for (const double way : {0.9 / 16, 1.8 / 16}) {
+    Trial t(closing(layer, way, 0.1));
+    const double fastest = t.scene().description->walls.at("lid").motion.servo->max_velocity;
+    bool braked = false;
+    while (t.world().walls()[1].touches == 0) {
+      t.step();
+      braked = braked || t.world().walls()[1].velocity.z() != -fastest;
+    }
+    EXPECT_EQ(braked, way > 1.0 / 16);
+  }
+}
+
+TEST(Servo, GuardStopsALidThatGoesTooFarInAStep) {
+  const double travel = 0.05 * radius / overlap_kept;
+  for (const double start : {0.0, 0.5, 0.9}) {
+    EXPECT_LT(peak_on(closing({}, 0.99 * travel, start)), 1.3);
+    try {
+      peak_on(closing({}, 1.01 * travel, start));
+      ADD_FAILURE() << "no guard trips";
+    } catch (const NumericsError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("wall \"lid\" moves 0.0505 of the smallest radius in one step"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("make it slower"));
+    }
+    // Allowed to go further than neighbours are known, it looks for them.
+    Description far = closing({}, 10 * travel, start);
+    far["guards"]["travel"] = 1;
+    EXPECT_LT(peak_on(far), 1.3);
+  }
+}
+
+TEST(Servo, BrakesTheSameOnAnyNumberOfThreads) {
+  const Description d = closing({.a_side = 20, .uneven = 30}, 100, 0.3);
+  Trial one(d), two(d, 2);
+  for (int times = 0; times < 30; ++times) {
+    one.step(10), two.step_on(10);
+    const WallView &a = one.world().walls()[1], &b = two.world().walls()[1];
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.force, b.force);
+  }
+  EXPECT_GT(one.world().walls()[1].touches, 1);
 }
 
 }  // namespace

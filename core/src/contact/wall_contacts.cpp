@@ -35,6 +35,16 @@ void stand_still_in_valley(WallTouch& touch, const Row& body, const Row& body_ve
 
 static_assert(offsetof(Sphere, radius) == offsetof(Row, w));
 
+PairSize at_wall(const Bodies& bodies, std::uint32_t body, double overlap) {
+  const double radius = bodies.position[body].w;
+  return {.radius_a = radius,
+          .radius_b = radius,
+          .inverse_mass_a = bodies.velocity[body].w,
+          .inverse_mass_b = 0,
+          .overlap = overlap,
+          .wall = true};
+}
+
 /// Which of two touches that are as deep is the deeper is rounding: beside the joint of two faces it may be the edge,
 /// whose normal, however little tilted, would push the sphere further aside. Takes the face's.
 void straighten(WallTouch& touch, std::span<const WallSurface> walls) {
@@ -185,12 +195,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
                         px * force.y - py * force.x + moment.z);
     ++load.touches;
     if (!walls[t.wall].gives_way) continue;
-    const PairSize size{.radius_a = x.w,
-                        .radius_b = x.w,
-                        .inverse_mass_a = bodies.velocity[t.body].w,
-                        .inverse_mass_b = 0,
-                        .overlap = t.overlap,
-                        .wall = true};
+    const PairSize size = at_wall(bodies, t.body, t.overlap);
     const Stiffness k = law.stiffness(size, bodies.material[t.body], t.material);
     load.stiffness += k.normal;
     load.spring += std::max(k.normal, k.shear);
@@ -297,15 +302,8 @@ void WallContacts::part(const Workspace& work, const ContactLaw& law, const Bodi
   const std::size_t fields = fields_.size();
   for (const std::uint32_t g : work.gone) {
     const Before& left = work.before[g];
-    const double radius = bodies.position[left.body].w;
-    const ElasticEnergy held =
-        law.energy({.radius_a = radius,
-                    .radius_b = radius,
-                    .inverse_mass_a = bodies.velocity[left.body].w,
-                    .inverse_mass_b = 0,
-                    .overlap = left.overlap,
-                    .wall = true},
-                   bodies.material[left.body], left.material, std::span(work.state_before).subspan(g * fields, fields));
+    const ElasticEnergy held = law.energy(at_wall(bodies, left.body, left.overlap), bodies.material[left.body],
+                                          left.material, std::span(work.state_before).subspan(g * fields, fields));
     losses.friction += held.shear, losses.rolling += held.rolling;
   }
 }
@@ -329,7 +327,33 @@ void WallContacts::loads(std::span<WallLoad> loads) const {
       loads[w].force += chunk.load[w].force, loads[w].moment += chunk.load[w].moment;
       loads[w].stiffness += chunk.load[w].stiffness, loads[w].touches += chunk.load[w].touches;
       loads[w].spring += chunk.load[w].spring, loads[w].dashpot += chunk.load[w].dashpot;
+      loads[w].near += chunk.candidate_start[w + 1] - chunk.candidate_start[w];
     }
+}
+
+Meeting WallContacts::meeting(std::size_t wall, const WallSurface& surface, const Pose& there, const ContactLaw& law,
+                              const Bodies& bodies, bool all) const {
+  Meeting sum;
+  std::vector<Sphere> spheres;
+  std::vector<Touch> found;
+  const auto look_at = [&](std::uint32_t body) {
+    const Row& x = bodies.position[body];
+    spheres.push_back({xyz(x), x.w, body});
+  };
+  if (all)
+    for (std::uint32_t body = 0; body < bodies.count(); ++body) look_at(body);
+  else
+    for (const Chunk& chunk : chunks_)
+      for (std::uint32_t n = chunk.candidate_start[wall]; n < chunk.candidate_start[wall + 1]; ++n)
+        look_at(chunk.candidate[n]);
+  if (!spheres.empty()) surface.geometry->touch(there, spheres, found);
+  for (const Touch& touch : found) {
+    const PairSize size = at_wall(bodies, touch.body, touch.overlap);
+    const Stiffness k = law.stiffness(size, bodies.material[touch.body], surface.material);
+    sum.force += k.normal * touch.overlap;
+    sum.dashpot += 2 * k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a);
+  }
+  return sum;
 }
 
 std::size_t WallContacts::touching_count() const {

@@ -23,6 +23,10 @@ constexpr double habit_steps = 30;
 /// and it sees them a step late: counted once, a gain of 1 chatters on dashpots that are stable by themselves; three
 /// times, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
 constexpr double dashpots_counted = 3;
+/// Of the force that a servo keeps, what a step may add however little is wanting.
+constexpr double always_added = 0.25;
+/// Halvings after which a step's way is as good as none.
+constexpr int most_halvings = 50;
 /// Fewest steps to a period of an oscillation: by then the mean velocity of a step differs from the one at its middle
 /// by (ω dt)²/24, 0.4 %.
 constexpr double steps_to_a_period = 20;
@@ -96,19 +100,45 @@ double facing(const WallSetup& setup, const Pose& pose) {
   return along;
 }
 
+/// A servo sees what a step has done when it is done: one grain that is stiff, or many of one height, would bear a
+/// multiple of what is wanted in the step in which it comes to touch them. So it goes no further in a step than to
+/// where they bear what is wanting; `velocity` is what it wishes.
+double braked(double velocity, std::size_t wall, int axis, double wanted, const WallState& state, double dt,
+              const Walls::Ahead& ahead) {
+  if (ahead == nullptr || !(velocity * wanted > 0)) return velocity;
+  const double most = std::abs(wanted), borne = -std::copysign(1.0, wanted) * state.force[axis],
+               may_add = std::max(most - borne, always_added * most);
+  const auto adds = [](const Meeting& meeting, double speed) { return meeting.force + speed * meeting.dashpot; };
+  // Costs nothing, and says for nearly all steps that all that is near, as stiff as what touches, would not be too
+  // much.
+  if ((state.stiffness * dt + state.dashpot) * std::abs(velocity) * state.near < always_added * most * state.touches)
+    return velocity;
+  const Meeting now = ahead(wall, state.pose, 0);
+  for (int halving = 0; halving < most_halvings; ++halving) {
+    const double speed = std::abs(velocity);
+    Pose there = state.pose;
+    there.shift[axis] += velocity * dt;
+    if (adds(ahead(wall, there, speed * dt), speed) - adds(now, speed) <= may_add) break;
+    velocity *= 0.5;
+  }
+  return velocity;
+}
+
 /// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
 /// in one step if the touches are springs, less where they damp, and leaves no error behind when the specimen swells or
 /// shrinks steadily.
-double servo_velocity(const WallSetup& setup, int axis, double area, WallState& state, double dt) {
+double servo_velocity(const WallSetup& setup, std::size_t wall, int axis, double area, WallState& state, double dt,
+                      const Walls::Ahead& ahead) {
   const ServoDescription& servo = *setup.motion.servo;
   const double wanted = servo.force ? *servo.force : *servo.pressure * area * facing(setup, state.pose);
   if (state.touches == 0 || !(state.stiffness > 0)) {  // nothing to press on yet: close
     state.habit = 0;
-    return wanted != 0 ? std::copysign(servo.max_velocity, wanted) : 0;
+    return wanted != 0 ? braked(std::copysign(servo.max_velocity, wanted), wall, axis, wanted, state, dt, ahead) : 0;
   }
   const double wished = state.habit + servo.gain * (state.force[axis] + wanted) /
                                           (state.stiffness * dt + dashpots_counted * state.dashpot);
-  const double velocity = std::clamp(wished, -servo.max_velocity, servo.max_velocity);
+  const double velocity =
+      braked(std::clamp(wished, -servo.max_velocity, servo.max_velocity), wall, axis, wanted, state, dt, ahead);
   state.habit += servo.gain / habit_steps * (velocity - state.habit);
   return velocity;
 }
@@ -238,7 +268,7 @@ void Walls::clear_forces() {
     state.force.setZero();
     state.moment.setZero();
     state.stiffness = state.spring = state.dashpot = 0;
-    state.touches = 0;
+    state.touches = state.near = 0;
   }
 }
 
@@ -247,10 +277,10 @@ void Walls::add(std::size_t wall, const WallLoad& load) {
   state.force += load.force;
   state.moment += load.moment;
   state.stiffness += load.stiffness, state.spring += load.spring, state.dashpot += load.dashpot;
-  state.touches += load.touches;
+  state.touches += load.touches, state.near += load.near;
 }
 
-void Walls::drive(double dt) {
+void Walls::drive(double dt, const Ahead& ahead) {
   for (const std::size_t wall : order_) {
     const MotionDescription& motion = setups_[wall].motion;
     const Drive& how = drives_[wall];
@@ -264,7 +294,7 @@ void Walls::drive(double dt) {
           dt;
     for (int axis = 0; axis < 3; ++axis) {
       double& velocity = state.velocity[axis];
-      if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], axis, area(wall), state, dt);
+      if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], wall, axis, area(wall), state, dt, ahead);
       else if (how.follow[axis]) velocity = states_[how.leader].velocity[axis];
       else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
       else {

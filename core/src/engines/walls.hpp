@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct WallState {
   double swing_lead = 0;                              ///< periods by which changes of frequency have set it ahead
   double swing_frequency = 0, swing_phase = 0;        ///< of the oscillation that goes on [Hz, rad]; 0 Hz: none
   std::uint32_t touches = 0;
+  std::uint32_t near = 0;  ///< bodies that may come to touch it before the next search
 };
 template <>
 inline constexpr bool plain_numbers<WallState> = true;
@@ -79,8 +81,11 @@ class Walls {
   bool presses_on_specimen() const;
   /// Lengths of the specimen as it is now [m].
   void set_specimen(const Vec3& lengths) { specimen_ = lengths; }
-  /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them.
-  void drive(double dt);
+  /// What bodies, where they are now, would press on a wall with, were it there after a step of this way [m].
+  using Ahead = std::function<Meeting(std::size_t wall, const Pose& there, double way)>;
+  /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them. With
+  /// `ahead` servos brake before what they would press too hard at once.
+  void drive(double dt, const Ahead& ahead = nullptr);
   /// What springs and dashpots that now touch free walls ask of them, bodies held: the largest of k/m and c/m. Added to
   /// what they ask of the bodies, walls held, it bounds what they ask of all together: of a matrix without negative
   /// eigenvalues the largest is at most the sum of those of two blocks on its diagonal.
