@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -133,6 +134,20 @@ TEST(CurvePictures, HaveNoPanelOfNothing) {
   EXPECT_FALSE(curves_picture(std::span(&run, 1)).has_value());
 }
 
+TEST(CurvePictures, HaveNoPanelOfWhatIsZeroThroughoutUnlessItIsAskedFor) {
+  const Folder folder;
+  write_test(folder / "dense", 1);
+  RunResults run = read_results(folder / "dense");
+  auto ratio = std::ranges::find(run.probes[0].channels, "ratio", &ProbeSeries::Channel::name);
+  ratio->sampled.values = {0, nan, 0, 0, 0};
+  const auto drawn = [&] { return curves_picture(std::span(&run, 1)).value_or(""); };
+  EXPECT_THAT(drawn(), HasSubstr(">ratio<")) << "named by the picture";
+  run.json["description"]["output"]["picture"].erase("y");
+  EXPECT_THAT(drawn(), testing::AllOf(HasSubstr("u [mm]"), Not(HasSubstr(">ratio<"))));
+  run.json["description"]["output"]["references"]["nothing"] = {{"of", "test/ratio"}, {"value", 0}};
+  EXPECT_THAT(drawn(), HasSubstr(">ratio<"));
+}
+
 TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   const Folder folder;
   SmallRun run(folder / "run");
@@ -140,15 +155,16 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   const std::vector<ProbeGroup> probes{{"moved",
                                         {{"place", "m", "where", {3}},
                                          {"gradient", "1", "slope", {3}, "place"},
+                                         {"still", "1", "zero", {3}, "place"},
                                          {"direction", "degree", "where to", {3}},
                                          {"force", "N", "by direction", {3}, "direction"}}},
                                        {"packing", {{"e", "1", "void ratio", {}}}}};
   results.begin(run.world, probes);
   for (int i = 0; i < 7; ++i) {
     run.world.now = i, run.world.steps = static_cast<std::uint64_t>(i);
-    const double place[] = {0, 1e-3, 2e-3}, gradient[] = {0, 1.0 * i, nan}, direction[] = {0, 90, 180},
-                 force[] = {1, 2, 3}, e[] = {0.6};
-    const std::span<const double> moved[] = {place, gradient, direction, force}, packing[] = {e};
+    const double place[] = {0, 1e-3, 2e-3}, gradient[] = {0, 1.0 * i, nan}, still[] = {0, 0, 0},
+                 direction[] = {0, 90, 180}, force[] = {1, 2, 3}, e[] = {0.6};
+    const std::span<const double> moved[] = {place, gradient, still, direction, force}, packing[] = {e};
     results.sample(0, run.world, moved), results.sample(1, run.world, packing);
   }
   results.finish(run.world, {});
@@ -157,6 +173,7 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   EXPECT_EQ(pictures[0].name, "profiles-moved");
   const auto svg = parsed(pictures[0].svg);
   EXPECT_THAT(words_of(svg), IsSupersetOf({"2 s", "4 s", "6 s", "place [mm]", "gradient"}));
+  EXPECT_THAT(words_of(svg), Not(Contains("still"))) << "0 throughout";
   std::vector<double> rises;
   for (const char* name : {"k0", "k1", "k2"}) {
     const auto lines = elements(svg, "polyline", name);

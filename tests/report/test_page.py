@@ -119,7 +119,7 @@ class Page(unittest.TestCase):
         with h5py.File(self.folder / "one/series.h5") as series:
             for probe, group in series.items():
                 for name, channel in group.items():
-                    if name in ("time", "step"):
+                    if name in ("time", "step") or not channel[()].any():  # what is 0 throughout has no chart
                         continue
                     shown = evaluate(f"""(async () => {{
                         const figure = [...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{probe}' && chart.name === '{name}');
@@ -135,7 +135,29 @@ class Page(unittest.TestCase):
                             for a, b in zip(got, wanted):
                                 self.assertTrue(float(a) == b or (a == "NaN" and b != b), f"{probe}/{name}: {a} is not {b}")
                     compared += 1
-        self.assertGreater(compared, 15)
+        self.assertGreater(compared, 10)
+
+    def test_what_is_zero_throughout_is_a_line(self):
+        self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
+        self.browser.wait("document.querySelectorAll('details.probe .charts').length === 2")
+        lines = self.browser.evaluate("Object.fromEntries([...document.querySelectorAll('details.probe')].filter((part) => part.querySelector('.zero')).map((part) => [part.charts.name, part.querySelector('.zero').textContent]))")
+        charts = self.browser.evaluate("[...document.querySelectorAll('figure.chart')].map(({chart}) => `${chart.group.name}/${chart.name}`)")
+        zero = {}
+        with h5py.File(self.folder / "one/series.h5") as series:
+            for probe, group in series.items():
+                for name, channel in group.items():
+                    if name in ("time", "step") or not numpy.isfinite(channel[()]).any():
+                        continue
+                    if (numpy.nan_to_num(channel[()]) == 0).all():
+                        zero.setdefault(probe, []).append(name)
+                        self.assertNotIn(f"{probe}/{name}", charts)
+                    else:
+                        self.assertIn(f"{probe}/{name}", charts)
+        self.assertGreater(len(zero), 0)
+        self.assertEqual(sorted(lines), sorted(zero))
+        for probe, names in zero.items():
+            self.assertTrue(lines[probe].startswith("0 throughout: "))
+            self.assertEqual(len(lines[probe].split(": ", 1)[1].split(", ")), len(names), lines[probe])
 
     def test_another_abscissa_can_be_chosen(self):
         self.browser.evaluate("""(() => { const choice = document.querySelector('.against select');

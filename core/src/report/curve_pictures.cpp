@@ -39,7 +39,9 @@ std::vector<std::string> curves_wanted(const RunResults& run) {
   if (!names.empty() || run.probes.empty()) return names;
   const ProbeSeries& probe = run.probes.front();  // "test" where there is one
   for (const auto& channel : probe.channels)
-    if (channel.width() == 1 && channel.name != "time") names.push_back(probe.name + '/' + channel.name);
+    if (const std::string name = probe.name + '/' + channel.name;
+        channel.width() == 1 && channel.name != "time" && (!channel.zero_throughout() || run.asks_for(name)))
+      names.push_back(name);
   return names;
 }
 
@@ -179,7 +181,7 @@ std::vector<NamedPicture> profile_pictures(const RunResults& run) {
     if (!time) continue;
     Picture picture{run.title(), "profiles of " + probe.name, {}, {}};
     for (const auto& channel : probe.channels) {
-      if (!is_profile(probe, channel)) continue;
+      if (!is_profile(probe, channel) || channel.zero_throughout()) continue;
       const auto& place = *probe.channel(channel.sampled.coordinate);
       Panel panel{{spelled(place.name), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false};
       const std::size_t last = std::min(channel.sampled.samples, time->sampled.values.size());

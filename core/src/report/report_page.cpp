@@ -201,6 +201,7 @@ Description channel_json(const ProbeSeries::Channel& channel, DataElements& data
           {"components", channel.sampled.components},
           {"samples", channel.sampled.samples},
           {"filled", filled},
+          {"zero", channel.zero_throughout()},
           {"data", data.add_numbers<double>(channel.sampled.values)}};
 }
 

@@ -1,6 +1,7 @@
 #include "report/run_results.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
@@ -29,6 +30,16 @@ std::vector<ProbeSeries> read_probes(const SeriesFile& series, std::vector<std::
 
 }  // namespace
 
+bool ProbeSeries::Channel::zero_throughout() const {
+  bool finite = false;
+  for (const double value : sampled.values) {
+    if (!std::isfinite(value)) continue;
+    if (value != 0) return false;
+    finite = true;
+  }
+  return finite;
+}
+
 const ProbeSeries::Channel* ProbeSeries::channel(const std::string& wanted) const {
   const auto found = std::ranges::find(channels, wanted, &Channel::name);
   return found == channels.end() ? nullptr : &*found;
@@ -43,6 +54,14 @@ const Description& RunResults::at(const std::string& pointer) const {
 std::string RunResults::title() const {
   const Description& title = at("/description/title");
   return title.is_string() && !title.get_ref<const std::string&>().empty() ? title.get<std::string>() : name;
+}
+
+bool RunResults::asks_for(const std::string& curve) const {
+  for (const Description& name : at("/description/output/picture/y"))
+    if (name == curve) return true;
+  for (const Description& reference : at("/description/output/references"))
+    if (reference.is_object() && reference.contains("of") && reference["of"] == curve) return true;
+  return false;
 }
 
 RunResults read_results(const std::filesystem::path& folder, std::chrono::milliseconds patience) {

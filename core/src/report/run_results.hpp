@@ -17,6 +17,8 @@ struct ProbeSeries {
     SampledChannel sampled;
     /// Numbers a sample; 1 where there is no sample.
     std::size_t width() const { return sampled.samples == 0 ? 1 : sampled.values.size() / sampled.samples; }
+    /// Whether there are finite numbers, and all of them are 0.
+    bool zero_throughout() const;
   };
   std::string name;
   std::vector<Channel> channels;  ///< "time" first
@@ -35,6 +37,8 @@ struct RunResults {
   /// What is at a JSON pointer of run.json; null where there is nothing.
   const Description& at(const std::string& pointer) const;
   std::string title() const;  ///< of the description, or the folder's name
+  /// Whether the description asks for a curve, "probe/channel": its picture names it, or a reference is beside it.
+  bool asks_for(const std::string& curve) const;
 };
 
 /// What cannot be read is among the problems. Throws FileError where nothing in the folder is of a run.

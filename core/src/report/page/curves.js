@@ -370,8 +370,15 @@ class ProbeCharts {
     this.shown = here(report.runs.flatMap(({ picture }) => picture?.y ?? []));
     const rank = (one) => (this.shown.includes(one) ? this.shown.indexOf(one) : this.shown.length);
     const sampled = (one) => this.channelsNamed(one).some(({ channel }) => channel.filled);
-    this.ordered = this.names.filter((one) => one !== "time" && sampled(one) && !this.isCoordinate(one)).sort((a, b) => rank(a) - rank(b));
+    const seen = this.names.filter((one) => one !== "time" && sampled(one) && !this.isCoordinate(one)).sort((a, b) => rank(a) - rank(b));
+    this.zero = seen.filter((one) => this.isZero(one));
+    this.ordered = seen.filter((one) => !this.zero.includes(one));
     this.choice?.read(this.channelsNamed("time"));
+  }
+  /** Whether it is 0 throughout, and no description asks for its curve. */
+  isZero(name) {
+    const full = `${this.name}/${name}`, asked = this.shown.includes(name) || report.runs.some(({ references }) => references.some(({ of }) => of === full));
+    return !asked && this.channelsNamed(name).every(({ channel }) => channel.zero || !channel.filled);
   }
   /** The channel that says where each number of a list is; "place" does so in results of older programs too. */
   coordinateOf({ name, coordinate, width }) {
@@ -416,6 +423,7 @@ class ProbeCharts {
       parent.append(this.choice.controls);
     }
     parent.append(this.grid, this.more);
+    if (this.zero.length > 0) parent.append(make("p", { className: "zero" }, `0 throughout: ${this.zero.map((one) => this.channelsNamed(one)[0].channel.label).join(", ")}`));
     this.turn(this.against);
   }
   /** What the description's picture names is seen at once; many others when they are asked for. */
@@ -446,11 +454,11 @@ function showCurves(section) {
   section.append(make("h2", {}, "Curves"));
   for (const charts of groups) {
     const { name } = charts;
-    if (charts.ordered.length === 0) {
+    const count = charts.ordered.length + charts.zero.length;
+    if (count === 0) {
       section.append(make("p", { className: "probe" }, make("b", {}, name), make("small", {}, " no sample")));
       continue;
     }
-    const count = charts.ordered.length;
     const part = make("details", { className: "probe" }, make("summary", {}, name, make("small", {}, ` ${count} channel${count === 1 ? "" : "s"}`)));
     part.addEventListener("toggle", () => part.open && !charts.grid && charts.fill(part));
     part.charts = charts;

@@ -69,10 +69,10 @@ class Follower {
     document.title = place.querySelector("h1").textContent;
   }
   async showCurves(section) {
-    const parts = [...section.querySelectorAll("details.probe")], names = (charts) => charts.ordered.join();
+    const parts = [...section.querySelectorAll("details.probe")], names = ({ ordered, zero }) => `${ordered.join()}|${zero.join()}`;
     const before = parts.map(({ charts }) => charts.name + names(charts)).join();
     for (const { charts } of parts) charts.read();
-    const now = curveGroups().filter(({ ordered }) => ordered.length > 0);
+    const now = curveGroups().filter(({ ordered, zero }) => ordered.length + zero.length > 0);
     if (now.map((charts) => charts.name + names(charts)).join() === before)
       return Promise.all(Array.from(section.querySelectorAll("figure.chart"), ({ chart }) => chart.refresh()));
     const open = parts.filter((part) => part.open).map(({ charts }) => charts.name);
