@@ -159,6 +159,16 @@ class Page(unittest.TestCase):
             self.assertTrue(lines[probe].startswith("0 throughout: "))
             self.assertEqual(len(lines[probe].split(": ", 1)[1].split(", ")), len(names), lines[probe])
 
+    def test_the_probe_of_the_picture_is_unfolded(self):
+        unfolded = "[...document.querySelectorAll('details.probe')].filter((part) => part.open).map((part) => part.charts.name)"
+        self.assertEqual(self.browser.evaluate(unfolded), ["packing"])
+        run(self.folder, "named", probes={"energy": {"type": "energy", "every_time": "5 ms"}, **SCENE["probes"]},
+            output={"picture": {"x": "packing/time", "y": ["walls/box_pressure", "packing/coordination_number"]}})
+        subprocess.run([GRIT, "report", "named"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        self.browser.open(self.folder / "named/report.html")
+        self.browser.wait("document.querySelector('details.probe')")
+        self.assertEqual(self.browser.evaluate(unfolded), ["packing", "walls"])
+
     def test_another_abscissa_can_be_chosen(self):
         self.browser.evaluate("""(() => { const choice = document.querySelector('.against select');
             choice.value = 'void_ratio'; choice.dispatchEvent(new Event('change')); })()""")

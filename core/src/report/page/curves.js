@@ -452,6 +452,7 @@ function showCurves(section) {
   const groups = curveGroups();
   if (groups.length === 0) return;
   section.append(make("h2", {}, "Curves"));
+  const isNamed = ({ names, shown }) => shown.some((one) => names.includes(one)), named = groups.filter(isNamed);
   for (const charts of groups) {
     const { name } = charts;
     const count = charts.ordered.length + charts.zero.length;
@@ -462,7 +463,7 @@ function showCurves(section) {
     const part = make("details", { className: "probe" }, make("summary", {}, name, make("small", {}, ` ${count} channel${count === 1 ? "" : "s"}`)));
     part.addEventListener("toggle", () => part.open && !charts.grid && charts.fill(part));
     part.charts = charts;
-    part.open = !section.querySelector("details");
+    part.open = named.length > 0 ? named.includes(charts) : !section.querySelector("details");
     section.append(part);
   }
 }
