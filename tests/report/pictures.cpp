@@ -187,6 +187,32 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   EXPECT_THAT(elements(svg, "text", "peak"), IsEmpty());
 }
 
+TEST(ProfilePictures, TellTheAxisAndHowFarATestHasGone) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.options.facts.description["output"] = {{"picture", {{"x", "test/u"}}}};
+  ResultsFolder results(run.options);
+  const std::vector<ProbeGroup> probes{
+      {"moved", {{"place", "m", "middle of each, along z", {2}}, {"e", "1", "", {2}, "place"}}},
+      {"test", {{"u", "m", "way", {}}}}};
+  results.begin(run.world, probes);
+  for (int i = 0; i < 7; ++i) {
+    run.world.now = i, run.world.steps = static_cast<std::uint64_t>(i);
+    const double place[] = {0, 1e-3}, e[] = {0.6, 0.7}, u[] = {i < 2 ? nan : 1e-3 * i};
+    const std::span<const double> moved[] = {place, e}, test[] = {u};
+    results.sample(0, run.world, moved);
+    if (i != 4) results.sample(1, run.world, test);
+  }
+  results.finish(run.world, {});
+  RunResults read = read_results(folder / "run");
+  EXPECT_THAT(words_of(parsed(profile_pictures(read)[0].svg)),
+              IsSupersetOf({"z [mm]", "2 s: u 2.00 mm", "4 s: u 3.00 mm", "6 s: u 6.00 mm"}));
+  read.json["description"]["output"]["picture"]["x"] = "test/time";
+  EXPECT_THAT(words_of(parsed(profile_pictures(read)[0].svg)), IsSupersetOf({"2 s", "4 s", "6 s"}));
+  const std::filesystem::path where = folder / "run";
+  EXPECT_THAT(report_page(std::span(&where, 1)).html, HasSubstr("\"label\":\"z\""));
+}
+
 /// The small run with a probe that tells of chains, its rows the contacts between grains with these forces.
 void write_chains(const std::filesystem::path& folder, const std::vector<double>& force) {
   SmallRun run(folder);

@@ -169,6 +169,27 @@ class Page(unittest.TestCase):
         self.browser.wait("document.querySelector('details.probe')")
         self.assertEqual(self.browser.evaluate(unfolded), ["packing", "walls"])
 
+    def test_profiles_tell_their_axis_and_where_the_test_was(self):
+        run(self.folder, "moving", probes={"packing": SCENE["probes"]["packing"], "moved": LISTS["moved"]},
+            output={"picture": {"x": "packing/void_ratio_overall", "y": ["moved/zone_thickness"]}})
+        subprocess.run([GRIT, "report", "moving"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
+        self.browser.open(self.folder / "moving/report.html")
+        self.browser.wait("document.querySelector('figure.chart')")
+        axis, labels = self.browser.evaluate("""(async () => {
+            const {chart} = [...document.querySelectorAll('figure.chart')].find(({chart}) => chart.group.name === 'moved' && chart.name === 'profile');
+            await chart.draw();
+            return [chart.abscissa.label, chart.series.map(({label}) => label)];
+        })()""")
+        self.assertEqual(axis, "z")
+        self.assertEqual(len(labels), 3)
+        with h5py.File(self.folder / "moving/series.h5") as series:
+            at = dict(zip(series["packing/time"][()], series["packing/void_ratio_overall"][()]))
+            times = series["moved/time"][()]
+        for label, wanted in zip(labels, (1 / 3, 2 / 3, 1)):
+            instant = times[times <= wanted * times[-1] + 1e-12][-1]
+            self.assertRegex(label, r"^[0-9.]+ ms: void ratio overall [0-9.]+$")
+            self.assertAlmostEqual(float(label.split()[-1]), at[max(t for t in at if t <= instant)], delta=1e-3)
+
     def test_another_abscissa_can_be_chosen(self):
         self.browser.evaluate("""(() => { const choice = document.querySelector('.against select');
             choice.value = 'void_ratio'; choice.dispatchEvent(new Event('change')); })()""")

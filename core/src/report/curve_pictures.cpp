@@ -148,6 +148,24 @@ std::vector<double> row(const SampledChannel& list, std::size_t sample) {
   return {first, first + static_cast<std::ptrdiff_t>(width)};
 }
 
+/// What the description's picture draws curves over, at an instant: ": settlement 3.2 mm"; nothing where that is time.
+std::string abscissa_at(const RunResults& run, double instant) {
+  const Description& wanted = run.at("/description/output/picture/x");
+  if (!wanted.is_string()) return "";
+  const Named x = find(run, wanted.get<std::string>());
+  const auto* time = x.is_scalar() && x.channel->name != "time" ? x.probe->channel("time") : nullptr;
+  if (!time) return "";
+  const auto &times = time->sampled.values, &values = x.channel->sampled.values;
+  const auto after = static_cast<std::size_t>(std::ranges::upper_bound(times, instant) - times.begin());
+  if (after == 0 || after > values.size() || !drawable(values[after - 1])) return "";
+  double largest = 0;
+  for (const double value : values)
+    if (drawable(value)) largest = std::max(largest, std::abs(value));
+  const auto [factor, unit] = readable(x.channel->sampled.unit, largest);
+  const std::string number = short_number(values[after - 1] * factor);
+  return ": " + spelled(x.channel->name) + ' ' + number + (unit == "1" ? "" : (unit == "°" ? "" : " ") + unit);
+}
+
 }  // namespace
 
 std::optional<std::string> curves_picture(std::span<RunResults> runs) {
@@ -183,15 +201,16 @@ std::vector<NamedPicture> profile_pictures(const RunResults& run) {
     for (const auto& channel : probe.channels) {
       if (!is_profile(probe, channel) || channel.zero_throughout()) continue;
       const auto& place = *probe.channel(channel.sampled.coordinate);
-      Panel panel{{spelled(place.name), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false};
+      Panel panel{{place.label(), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false};
       const std::size_t last = std::min(channel.sampled.samples, time->sampled.values.size());
       std::size_t drawn = last;
       for (const std::size_t sample : {(last - 1) / 3, 2 * (last - 1) / 3, last - 1}) {
         if (last == 0 || sample == drawn) continue;
         drawn = sample;
-        panel.curves.push_back({.name = written_time(time->sampled.values[sample]),
-                                .x = row(place.sampled, sample),
-                                .y = row(channel.sampled, sample)});
+        panel.curves.push_back(
+            {.name = written_time(time->sampled.values[sample]) + abscissa_at(run, time->sampled.values[sample]),
+             .x = row(place.sampled, sample),
+             .y = row(channel.sampled, sample)});
       }
       picture.panels.push_back(std::move(panel));
     }

@@ -192,7 +192,7 @@ Description channel_json(const ProbeSeries::Channel& channel, DataElements& data
   for (const double value : channel.sampled.values)
     if (std::isfinite(value)) largest = std::max(largest, std::abs(value)), filled = true;
   return {{"name", channel.name},
-          {"label", spelled(channel.name)},
+          {"label", channel.label()},
           {"unit", channel.sampled.unit},
           {"about", with_symbols(channel.sampled.doc)},
           {"largest", largest},

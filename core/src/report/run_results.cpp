@@ -5,6 +5,7 @@
 
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
+#include "output/scale.hpp"
 
 namespace grit {
 namespace {
@@ -29,6 +30,15 @@ std::vector<ProbeSeries> read_probes(const SeriesFile& series, std::vector<std::
 }
 
 }  // namespace
+
+std::string ProbeSeries::Channel::label() const {
+  const std::string along = ", along ", &doc = sampled.doc;
+  const std::size_t length = along.size() + 1;
+  const bool places = name == "place" && sampled.unit == "m" && doc.size() > length;
+  if (places && doc.compare(doc.size() - length, along.size(), along) == 0 && doc.back() >= 'x' && doc.back() <= 'z')
+    return {doc.back()};
+  return spelled(name);
+}
 
 bool ProbeSeries::Channel::zero_throughout() const {
   bool finite = false;

@@ -17,6 +17,8 @@ struct ProbeSeries {
     SampledChannel sampled;
     /// Numbers a sample; 1 where there is no sample.
     std::size_t width() const { return sampled.samples == 0 ? 1 : sampled.values.size() / sampled.samples; }
+    /// At an axis: x, y or z of places that its line says are along that one, else its name as people write it.
+    std::string label() const;
     /// Whether there are finite numbers, and all of them are 0.
     bool zero_throughout() const;
   };

@@ -64,6 +64,15 @@ class TimeChoice {
   }
 }
 
+/** What a description's picture has curves over, at an instant: ": settlement 3.2 mm"; nothing where that is time. */
+async function abscissaAt({ picture, probes }, seconds) {
+  const [probe, name] = (picture?.x ?? "").split("/"), channels = probes.find((one) => one.name === probe)?.channels ?? [];
+  const x = channels.find((one) => one.name === name && one.width === 1), time = channels.find((one) => one.name === "time");
+  if (!x || !time || x === time) return "";
+  const times = await numbersOf(time.data), i = lastUpTo(times, seconds), value = (await numbersOf(x.data))[i];
+  return times[i] <= seconds && Number.isFinite(value) ? `: ${x.label} ${told(value * x.factor, x)}` : "";
+}
+
 class ListChart extends Chart {
   get abscissa() {
     return this.group.coordinateOf(this.channel) ?? { label: "number", shown_unit: "1", unit: "1", factor: 1, name: "number" };
@@ -79,7 +88,7 @@ class ListChart extends Chart {
       for (const [k, wanted] of choice.times.entries()) {
         if (samples === 0) continue;
         const sample = Math.min(samples - 1, lastUpTo(instants, wanted)), row = (list) => list.slice(sample * width, (sample + 1) * width);
-        const label = `${many ? `${run.name} ` : ""}${choice.inWords(instants[sample])}`;
+        const label = `${many ? `${run.name} ` : ""}${choice.inWords(instants[sample])}${await abscissaAt(run, instants[sample])}`;
         if (series.some((one) => one.label === label)) continue;
         series.push({ run, label, x: places ? row(places) : Float64Array.from({ length: width }, (_, i) => i + 1), y: row(all), colour: many ? place + k * report.runs.length : k });
       }
