@@ -194,6 +194,24 @@ TEST(Picture, HasACurveARunAndMarksThePeak) {
   EXPECT_THAT(draw(picture), testing::AllOf(HasSubstr("shear displacement [mm]"), HasSubstr("dilation [µm]")));
 }
 
+TEST(Picture, MarksNoSpikesOfNoise) {
+  const auto labels = [](double height, int wide) {
+    Curve curve{.name = "", .x = {}, .y = {}};
+    for (int i = 0; i <= 400; ++i) {
+      curve.x.push_back(i);
+      const double round = 1 - (i - 200) * (i - 200) / 160e3;  // from 0.75 to 1 and back
+      curve.y.push_back(round + (std::abs(i - 300) <= wide ? height : 0.0));
+    }
+    Picture picture{.title = "", .facts = "", .panels = {{{"time"}, {"ratio"}, {curve}}}, .grains = {}};
+    std::vector<std::string> words;
+    for (const auto& text : elements(parsed(draw(picture)), "text", "peak")) words.push_back(text.data());
+    return words;
+  };
+  EXPECT_THAT(labels(0, 0), testing::ElementsAre("1.00"));
+  EXPECT_THAT(labels(0.2, 0), testing::IsEmpty()) << "one point of 400";
+  EXPECT_THAT(labels(0.2, 8), testing::ElementsAre("1.15")) << "a plateau of 4 %";
+}
+
 TEST(Picture, HasTicksOnBothAxesThatDoNotTouch) {
   for (const std::size_t panels : {1u, 2u, 3u, 6u}) {
     Picture picture{.title = "", .facts = "", .panels = {}, .grains = {}};

@@ -26,7 +26,8 @@ constexpr int classes = 21;                                                     
 constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#a8518a", "#7a6a00", "#555555"};
 /// Of references.
 constexpr std::array<const char*, 4> dashes{"2 4", "8 3 2 3", "6 4", "12 3"};
-constexpr double letter = 6.6;  // about how wide one is, px
+constexpr double peak_width = 0.015, peak_height = 0.05;  // of the axis along, of what the curve spans; see is_peak()
+constexpr double letter = 6.6;                            // about how wide one is, px
 
 /// About how wide a title of an axis is [px].
 double title_wide(const std::string& title) {
@@ -59,7 +60,7 @@ std::string style(const Picture& picture) {
   std::string sheet(Heading::style);
   sheet +=
       ".axis{font-size:13px;fill:#222}"
-      ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:3px;"
+      ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:7px;"
       "stroke-linejoin:round}.small{font-size:11px;fill:#666}\n"
       ".grid{stroke:#e6e6e3;stroke-width:1}.frame{stroke:#8a8a86;stroke-width:1}\n"
       ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:round}\n"
@@ -209,6 +210,29 @@ class PanelDrawing {
     finish();
   }
 
+  /// Whether the mean of the points on one side of it at least comes near it, or there are none: else it is a spike of
+  /// noise.
+  bool is_peak(const Curve& curve, std::size_t peak) const {
+    Range all;
+    const std::size_t count = std::min(curve.x.size(), curve.y.size());
+    for (std::size_t i = 0; i < count; ++i)
+      if (drawable(curve.x[i]) && drawable(curve.y[i])) all.add(curve.y[i]);
+    bool alone = true, near = false;
+    for (const int step : {-1, 1}) {
+      double sum = curve.y[peak], points = 1;
+      const auto there = [&](std::size_t i) {  // beyond the first point is a place that no curve has
+        return i < count && drawable(curve.x[i]) && drawable(curve.y[i]) &&
+               std::abs(curve.x[i] - curve.x[peak]) * x_unit_.factor <= peak_width * x_.span();
+      };
+      for (std::size_t i = peak + static_cast<std::size_t>(step); there(i); i += static_cast<std::size_t>(step))
+        sum += curve.y[i], ++points;
+      if (points == 1) continue;
+      alone = false;
+      near = near || std::abs(curve.y[peak] - sum / points) <= peak_height * all.span();
+    }
+    return alone || near;
+  }
+
   void mark_peak(const Curve& curve) {
     std::size_t peak = 0;
     bool found = false;
@@ -217,7 +241,7 @@ class PanelDrawing {
         peak = i;
         found = true;
       }
-    if (!found) return;
+    if (!found || !is_peak(curve, peak)) return;
     const auto at = place(curve, peak);
     const auto k = names_.colour_of(curve.name);
     svg_.circle(at, 3, fmt::format("class=\"f{}\"", k));

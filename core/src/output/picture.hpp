@@ -19,7 +19,8 @@ struct Axis {
 };
 
 /// Curves that share two axes, of 4 to 8 ticks each. Points that are not drawable() interrupt a curve; the value
-/// farthest from zero is marked where `peaks` says so.
+/// farthest from zero is marked where `peaks` says so, unless it is a spike: on both sides the mean over 1.5 % of the
+/// abscissa differs from it by more than 5 % of what the curve spans.
 struct Panel {
   Axis x, y;
   std::vector<Curve> curves;
