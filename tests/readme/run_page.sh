@@ -2,18 +2,47 @@
 # Runs a page of the documentation in a folder of its own: writes its ```json NAME blocks to files, runs the commands of its
 # ```sh blocks in order, and its ```python blocks where h5py is there; sees that what its links name exists.
 #   run_page.sh ROOT GRIT PAGE              PAGE is a path below ROOT
+#   run_page.sh --check ROOT GRIT PAGE…     has what would be run for minutes checked instead, and nothing in it may be without effect
 #   run_page.sh --self-test ROOT GRIT       sees that wrong pages are noticed
 set -euo pipefail
 
 # not_run COMMAND: whether a command builds, installs or edits, and so is not run from within a test.
 not_run() { [[ $1 =~ ^(cmake|ctest|sudo|git|clang-format|clang-tidy)\  || $1 =~ ^(\./)?scripts/ ]]; }
 
+# unfinished COMMAND: whether it goes on in the next line.
+unfinished() { [[ $1 == *'\' ]] || ! bash -n -c "$1" 2> /dev/null; }
+
+# checker GRIT FILE: writes a program that takes grit's command lines, and checks what grit would run.
+checker() {
+  cat > "$2" << end
+#!/usr/bin/env bash
+set -euo pipefail
+case \$1 in
+  run)
+    told=\$('$1' check "\${@:2}")
+    ! grep --after-context=9 'without effect' <<< "\$told" ;;
+  chart) '$1' "\$@" --dry ;;
+  *) '$1' "\$@" ;;
+esac
+end
+  chmod +x "$2"
+}
+
 run_page() {
-  local root=$1 grit=$2 page=$3 line language='' name='' text='' number=0 failed=0
+  local checked=''
+  if [[ $1 == --check ]]; then
+    checked=yes
+    shift
+  fi
+  local root=$1 grit=$2 page=$3 line language='' name='' text='' command='' number=0 failed=0
   place=$(mktemp -d)
   trap 'rm -rf "$place"' EXIT
   mkdir -p "$place/build/bin"
-  ln -s "$grit" "$place/build/bin/grit"
+  if [[ -n $checked ]]; then
+    checker "$grit" "$place/build/bin/grit"
+  else
+    ln -s "$grit" "$place/build/bin/grit"
+  fi
   for entry in "$root"/*; do
     [[ -e $place/$(basename "$entry") || $(basename "$entry") == build* || $(basename "$entry") == results* ]] ||
       ln -s "$entry" "$place/"
@@ -54,10 +83,15 @@ run_page() {
       read -r language name <<< "${line#\`\`\`} " || true
       language=${language:-text} text=''
     elif [[ -n $language && $line == '```' ]]; then
+      [[ -z $command ]] || run_line "$command"
       end_block
-      language='' name=''
+      language='' name='' command=''
     elif [[ $language == sh ]]; then
-      [[ $line =~ ^[[:space:]]*(#|$) ]] || run_line "$line"
+      [[ -z $command && $line =~ ^[[:space:]]*(#|$) ]] || command+=${command:+$'\n'}$line
+      if [[ -n $command ]] && ! unfinished "$command"; then
+        run_line "$command"
+        command=''
+      fi
     elif [[ -n $language ]]; then
       text+=$line$'\n'
     else
@@ -86,13 +120,33 @@ self_test() {
       failed=1
     fi
   done
+  local unchecked=(
+    $'```sh\nbuild/bin/grit run sims/column/quick.json \\\n  --set /probes/energy/stages/0=nothing\n```'
+    $'```sh\nbuild/bin/grit run sims/column/quick.json --set \'/probes/other={"type": "void-ratio",\n  "stages": ["look"]}\'\n```'
+    $'```sh\nbuild/bin/grit chart sims/column/quick.json\n```'
+    $'```sh\nbuild/bin/grit run \'sims/column/quick.json\n```'
+  )
+  ln -s "$root/sims" "$copy/sims"
+  for wrong in "${unchecked[@]}"; do
+    printf '%s\n' "$wrong" > "$copy/page.md"
+    if (run_page --check "$copy" "$grit" page.md) > /dev/null; then
+      printf 'not noticed:\n%s\n' "$wrong"
+      failed=1
+    fi
+  done
   printf '%s\n' $'```sh\nbuild/bin/grit --version  # a comment\n```\n[this](page.md) and [that](https://example.org/x)' > "$copy/page.md"
   (run_page "$copy" "$grit" page.md) || failed=1
+  printf '%s\n' $'```sh\nbuild/bin/grit run sims/column/quick.json \\\n  --set \'/probes/other={"type": "void-ratio",\n  "every_steps": 5}\'\n```' > "$copy/page.md"
+  (run_page --check "$copy" "$grit" page.md) || failed=1
   rm -rf "$copy"
   return "$failed"
 }
 
 case ${1-} in
   --self-test) self_test "$2" "$3" ;;
+  --check)
+    failed=0
+    for page in "${@:4}"; do (run_page --check "$2" "$3" "$page") || failed=1; done
+    exit "$failed" ;;
   *) run_page "$@" ;;
 esac
