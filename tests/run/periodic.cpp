@@ -84,6 +84,26 @@ TEST(Periodic, PackingMayBeShiftedAndWrapped) {
   }
 }
 
+/// Where a body is tells how far it has gone only if what it jumps by at a side is known.
+TEST(Periodic, DisplacementsGoOnAcrossSides) {
+  for (const Vec3& rate : {Vec3(0, 0, 0), Vec3(-30, 20, -10)}) {
+    // Across several sides, back and forth, past each other and changing places in memory.
+    std::vector<Grain> grains{{{2e-3, 3e-3, 3e-3}, 0.5e-3, {40, 3, -25}}, {{4.5e-3, 1e-3, 7e-3}, 0.4e-3, {-30, 0, 7}}};
+    Trial t(in_cell(grains, Vec3::Zero(), rate), 1, BodyState::displacement);
+    std::vector<Vec3> gone(2, Vec3::Zero());
+    for (int step = 0; step < 600; ++step) {
+      t.world().advance();
+      for (std::uint32_t id = 0; id < 2; ++id)
+        gone[id] += t.world().dt() * xyz(t.world().velocities()[index_of(t.world(), id)]);
+      t.world().find_forces();
+    }
+    const Vec3 sides = t.world().cell().high - t.world().cell().low;
+    EXPECT_GT(gone[0].x() / sides.x(), 5) << "it crossed sides";
+    for (std::uint32_t id = 0; id < 2; ++id)
+      EXPECT_LT((t.world().displacements()[index_of(t.world(), id)] - gone[id]).norm(), 1e-13) << rate.transpose();
+  }
+}
+
 TEST(Periodic, TakesABodyJustPastASideAndNoneFarther) {
   const auto at = [](double x) {
     Description d = in_cell({{Vec3(3e-3, 3e-3, 3e-3), 1e-3}}, Vec3::Zero());

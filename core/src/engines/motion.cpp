@@ -24,6 +24,13 @@ Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
 
 Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
+/// Adds up by how much a body turns; nothing where nobody asks for it.
+void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift) {
+  if (turned == nullptr) return;
+  const Quad angle = spin * drift;
+  for (int k = 0; k < 3; ++k) turned[body][k] += angle[k];
+}
+
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// What of the bodies' energies is kept. Constants for the compiler: it would divide by what may not be needed, for
@@ -51,6 +58,7 @@ template <Ledger ledger, bool Clumps>
   // What is stored might be the arrays' own pointers for all that the compiler knows.
   Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
              *const spin = bodies.spin.data();
+  Vec3* const turned = bodies.rotation.empty() ? nullptr : bodies.rotation.data();
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
@@ -58,6 +66,7 @@ template <Ledger ledger, bool Clumps>
                    against = v - rate * (before - centre);
         fastest_carried = std::max(fastest_carried, product(against, against));
         poison += v * 0.0 + load(spin[i]) * 0.0;
+        turn_on(turned, i, load(spin[i]), drift);
         continue;
       }
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
@@ -84,14 +93,11 @@ template <Ledger ledger, bool Clumps>
     if constexpr (falls) momentum += v * mass;
     if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
+    turn_on(turned, i, w, drift);
     const Quad speed = absolute(v - flow);
     fastest = speed > fastest ? speed : fastest;
     poison += v * 0.0 + w * 0.0;
   }
-  if (!bodies.rotation.empty())
-    for (std::size_t i = first; i < last; ++i) bodies.rotation[i] += step.drift * xyz(bodies.spin[i]);
-  if (!bodies.displacement.empty())
-    for (std::size_t i = first; i < last; ++i) bodies.displacement[i] += step.drift * xyz(bodies.velocity[i]);
   const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
   return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
           damping * (product(damped_power, kick) + product(damped_turning, turn_kick)),

@@ -67,7 +67,7 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
 
 void Simulation::begin_stage(const std::string& name, const SceneDescription& scene) {
   stage_ = name;
-  std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), Vec3::Zero());
+  bodies_.start_displacements(), displacement_step_ = ~0ull;
   walls_.apply(scene);
   apply(scene);
   admit();
@@ -250,7 +250,7 @@ void Simulation::search() {
       take_leave(leaves);
       std::erase_if(order, [&](std::uint32_t i) { return leaves[i]; });
     }
-    bodies_.reorder(order);
+    bodies_.reorder(order), displacement_step_ = ~0ull;
     sum_.resize(bodies_.count() + 1), chunk_.resize(chunks_of(bodies_.count()));
   }
   lay_on_skins();
@@ -617,7 +617,7 @@ Model Simulation::model() const {
   const auto add = [&](bool there, const char* name) {
     if (there) model.body_state.push_back(name);
   };
-  add(!bodies_.rotation.empty(), "rotation"), add(!bodies_.displacement.empty(), "displacement");
+  add(!bodies_.rotation.empty(), "rotation"), add(!bodies_.origin.empty(), "displacement");
   add(bodies_.energies(), "energy"), add(!bodies_.clumps.none(), "clump");
   model.materials = material_names_;
   model.one_material = stock_.one_material, model.periodic = periodic_, model.walls = walls_.size() > 0;
@@ -629,7 +629,7 @@ Model Simulation::model() const {
 std::size_t Simulation::memory() const {
   const std::size_t bodies =
       bodies_.count() * (4 * sizeof(Row) + sizeof(BodySum) + 5 + (bodies_.rotation.empty() ? 0 : sizeof(Vec3)) +
-                         (bodies_.displacement.empty() ? 0 : sizeof(Vec3)));
+                         (bodies_.origin.empty() ? 0 : sizeof(Vec3)));
   const Clumps& clumps = bodies_.clumps;
   return bodies + pairs_.memory() + clumps.clump.size() * sizeof(Clump) +
          clumps.of_body.size() * (sizeof(ClumpSphere) + sizeof(std::uint32_t) + sizeof(double));

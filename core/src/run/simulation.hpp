@@ -162,7 +162,7 @@ class Simulation final : public World {
   std::span<const Row> spins() const override { return {bodies_.spin.data(), bodies_.count()}; }
   std::span<const std::uint8_t> materials() const override { return {bodies_.material.data(), bodies_.count()}; }
   std::span<const Vec3> rotations() const override { return bodies_.rotation; }
-  std::span<const Vec3> displacements() const override { return bodies_.displacement; }
+  std::span<const Vec3> displacements() const override;
   std::span<const std::uint32_t> clump_of() const override;
   std::span<const ClumpView> clumps() const override;
   std::span<const Vec3> arms() const override;
@@ -350,8 +350,8 @@ class Simulation final : public World {
   mutable std::vector<Row> net_force_, net_moment_;
   mutable std::vector<std::uint32_t> clump_of_;
   mutable std::vector<ClumpView> clump_views_;
-  mutable std::vector<Vec3> arms_of_bodies_;
-  mutable std::uint64_t clump_step_ = ~0ull;
+  mutable std::vector<Vec3> arms_of_bodies_, displacements_;
+  mutable std::uint64_t clump_step_ = ~0ull, displacement_step_ = ~0ull;
   mutable std::vector<Contact> contact_list_, wall_contact_list_;
   mutable std::vector<WallView> wall_views_;
   mutable std::uint64_t net_step_ = ~0ull, contact_step_ = ~0ull, wall_contact_step_ = ~0ull, wall_step_ = ~0ull;

@@ -220,6 +220,7 @@ std::vector<bool> Simulation::wrap() {
       const double periods = periods_off(x, k);
       if (periods == 0) continue;
       x[k] -= periods * period[k];
+      if (!bodies_.origin.empty()) bodies_.origin[i][k] -= periods * period[k];
       const double own = jump(v[k], periods * growth[k], bodies_.velocity[i].w);
       if (!in_clump) gained += own;
       if (in_clump) bodies_.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);

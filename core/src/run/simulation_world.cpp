@@ -35,6 +35,15 @@ std::span<const Row> Simulation::moments() const {
   return net_moment_;
 }
 
+std::span<const Vec3> Simulation::displacements() const {
+  if (displacement_step_ == clock_.step) return displacements_;
+  displacements_.resize(bodies_.origin.size());
+  for (std::size_t i = 0; i < displacements_.size(); ++i)
+    displacements_[i] = xyz(bodies_.position[i]) - bodies_.origin[i];
+  displacement_step_ = clock_.step;
+  return displacements_;
+}
+
 std::span<const std::uint32_t> Simulation::clump_of() const {
   static_cast<void>(clumps());
   return clump_of_;

@@ -66,7 +66,12 @@ void Bodies::finish(StateRequest asked_for) {
   state = asked_for;
   if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
   if (state.has(BodyState::rotation)) rotation.assign(count(), Vec3::Zero());
-  if (state.has(BodyState::displacement)) displacement.assign(count(), Vec3::Zero());
+  if (state.has(BodyState::displacement)) origin.resize(count());
+  start_displacements();
+}
+
+void Bodies::start_displacements() {
+  for (std::size_t i = 0; i < origin.size(); ++i) origin[i] = xyz(position[i]);
 }
 
 void Bodies::append(const Bodies& others) {
@@ -77,7 +82,7 @@ void Bodies::append(const Bodies& others) {
   // In place of the padding come the others, with theirs.
   position.pop_back(), velocity.pop_back(), spin.pop_back(), material.pop_back();
   go_on(position, others.position), go_on(velocity, others.velocity), go_on(spin, others.spin);
-  go_on(material, others.material), go_on(rotation, others.rotation), go_on(displacement, others.displacement);
+  go_on(material, others.material), go_on(rotation, others.rotation), go_on(origin, others.origin);
   for (const std::uint32_t other : others.id) id.push_back(ids_given + other);
   if (!clumps.none() || !others.clumps.none()) {
     clumps.of_body.resize(before), clumps.volume_share.resize(before, 1.0);
@@ -98,7 +103,7 @@ void Bodies::reorder(std::span<const std::uint32_t> order) {
   const std::size_t before = count();
   permute(position, order, before), permute(velocity, order, before), permute(spin, order, before);
   permute(id, order, before), permute(material, order, before);
-  permute(rotation, order, before), permute(displacement, order, before);
+  permute(rotation, order, before), permute(origin, order, before);
   if (clumps.none()) return;
   permute(clumps.of_body, order, before), permute(clumps.volume_share, order, before);
   constexpr std::uint32_t gone = ~0u;
