@@ -113,6 +113,13 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
                      R"(/stages/0/change={"engines": {"damping": {"coefficient": 0.3}}})"}),
               testing::Not(HasSubstr("without effect")))
       << "a stage switches it on";
+  const std::string held = R"(/engines/hold={"type": "hold"})",
+                    damped = R"(/engines/damping={"type": "local-damping"})";
+  const auto later = [](const std::string& engines) { return R"(/stages/0/change={"engines": )" + engines + '}'; };
+  const auto turns_not = HasSubstr("  /probes/turns: it looks at rotations, which are held: all are 0\n");
+  EXPECT_THAT(check({turning, held, damped, later(R"({"damping": {"coefficient": 0.3}})")}), turns_not)
+      << "a stage changes another engine";
+  EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": false}})")}), testing::Not(turns_not));
   EXPECT_THAT(check({"/time_step/allow_unstable=true"}), HasSubstr("  /time_step/allow_unstable: with this safety"));
   EXPECT_THAT(check({"/time_step/allow_unstable=true", "/time_step/safety=1.1"}),
               testing::Not(HasSubstr("without effect")));
