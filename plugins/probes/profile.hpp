@@ -97,7 +97,7 @@ struct ShearZone {
   double thickness() const { return high - low; }
 };
 
-/// Of the places that tell; NaN where fewer than three do.
+/// Of the places that tell; NaN where fewer than three do, or all say 0.
 inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double>& profile) {
   std::vector<double> place, size;
   for (std::size_t k = 0; k < profile.size(); ++k)
@@ -106,6 +106,7 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
   if (size.size() < 3) return {unknown, unknown};
   const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const auto peak = static_cast<std::ptrdiff_t>(std::ranges::max_element(size, larger) - size.begin());
+  if (size[static_cast<std::size_t>(peak)] == 0) return {unknown, unknown};
   if (size[static_cast<std::size_t>(peak)] < 0)
     for (double& one : size) one = -one;
   const auto at = [&](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
@@ -134,7 +135,7 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
 
 /// The four channels that tell of a shear zone in `what`.
 inline std::vector<Channel> zone_channels(const std::string& what) {
-  const std::string unknown = "; NaN where fewer than three places have bodies";
+  const std::string unknown = "; NaN where fewer than three places have bodies, or none does it";
   return {{"zone_low", "m", "where the " + what + " rises to its peak the fastest" + unknown, {}},
           {"zone_high", "m", "where it falls off the fastest" + unknown, {}},
           {"zone_thickness", "m", "distance between the two, the thickness of the shear zone" + unknown, {}},

@@ -98,6 +98,15 @@ TEST(Rotations, KnowsNothingWhereThereAreNoBodies) {
   EXPECT_TRUE(std::isnan(figure(probe, world, "zone_thickness")));
 }
 
+TEST(Rotations, HaveNoZoneWhereNothingTurns) {
+  const FakeWorld world = column([](double) { return 0.0; });
+  Rotations probe;
+  probe.profile.places = 101;
+  begin(probe, world);
+  for (const char* of_zone : {"zone_low", "zone_high", "zone_thickness", "zone_diameters"})
+    EXPECT_TRUE(std::isnan(figure(probe, world, of_zone))) << of_zone;
+}
+
 TEST(Rotations, OfAZoneIsNotDrawnAwayByOneFarPlace) {
   const FakeWorld world = column(
       [](double z) { return std::exp(-0.5 * (z - 0.3) * (z - 0.3) / 0.01) + (z > 0.9 && z < 0.92 ? -0.9 : 0.0); });
