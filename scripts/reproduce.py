@@ -48,7 +48,7 @@ IN_SECTION = 'see its section'
 QUICK = 'All quick descriptions, run to their ends'
 HEAD_OF_QUICK = f'''## {QUICK}
 Each of `sims/*/quick*.json` once, with the seed of the description: how its run ended, and some of what it came to. Where there is no reference, or only that of another size, figures stand alone.
-Of those that have a section above it has the figures. Ends of curves are means of their last quarter, peaks the highest samples.
+Of those that have a section above it has the figures, but for those that stand here as well. Ends of curves are means of their last quarter, peaks the highest samples.
 
 | description | ended | steps | core-seconds | commit | figures |
 | --- | --- | --- | --- | --- | --- |'''
@@ -183,19 +183,18 @@ def part(run, course, grains):
     return f"{100 * done / all_of_it:.1f} %, {words} | {1e-6 * rate:.1f} | {all_of_it / rate / 3600:.1f} |"
 
 
-def short(name, results, wanted, section, older):
-    """The line of a quick description: of its run, or else as the page has it, or as its section says."""
+def short(name, results, wanted, section, older, figures=()):
+    """The line of a quick description: of its run, without what its section has as `figures`, or else as the page has it, or as its section says."""
     run = state(results / name) or {}
     if run.get('status') in ('done', 'failed'):
         ended = 'done' if run['status'] == 'done' else f"failed: {run['message'].splitlines()[0]}"
-        words = []
-        if section:
-            words = [IN_SECTION]
-        elif run['status'] == 'done':
+        words = [IN_SECTION] if section else []
+        if run['status'] == 'done':
+            above = {(row['of'], row['how']) for row in figures}
             ends = {stage['name']: stage['step'] for stage in run.get('stages', [])}
             with h5py.File(results / name / 'series.h5') as series:
                 for row in (row for group in wanted if any(fnmatch.fnmatch(name, glob) for glob in group['descriptions'])
-                            for row in group['figures']):
+                            for row in group['figures'] if (row['of'], row['how']) not in above):
                     if channel := lacks(series, row):
                         sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
                                  f'{results / name / "series.h5"} lacks; correct it, or run {name} again')
@@ -249,8 +248,12 @@ def main():
     timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| (.*)$', old.get(UNFINISHED, ''), re.MULTILINE))
     ended = dict(re.findall(r'^\| (\S+) \| (.*)$', old.get(QUICK, ''), re.MULTILINE))
     lines, missing, told = [], [], {}
+
+    def rows_of(name):
+        return [row for row in reference['figures'] if row['description'] == name]
+
     for name in names:
-        figures = [row for row in reference['figures'] if row['description'] == name]
+        figures = rows_of(name)
         description = ROOT / 'sims' / f'{name}.json'
         if folders := samples(given.results, name):
             section = [*table(name, folders, figures, name in reference['older'])]
@@ -266,7 +269,7 @@ def main():
             missing.append(f"| {name} | {hours} | {part(run, course, grains) or timed.get(name, '| | |')}")
     quick = sorted(str(path.relative_to(ROOT / 'sims').with_suffix('')) for path in (ROOT / 'sims').glob('*/quick*.json'))
     if quick:
-        lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name))}"
+        lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name), rows_of(name))}"
                                    for name in quick), '']
     if missing:
         lines += [HEAD_OF_UNFINISHED, *missing]

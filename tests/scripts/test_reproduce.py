@@ -4,6 +4,7 @@ What scripts/reproduce.py keeps of docs/reproduction.md, and what it writes anew
 """
 import json
 import pathlib
+import shutil
 import sys
 import tempfile
 import unittest
@@ -190,6 +191,17 @@ class Reproduction(unittest.TestCase):
         self.assertEqual(self.quick('shear/quick'), 'done | 8,000 | 60 | 111111111111-dirty | see its section |')
         figures[-1]['reference'] = 3
         self.assertEqual(self.quick('shear/quick'), 'not run | | | | |')
+
+    def test_a_quick_run_with_a_section_is_told_of_in_what_that_lacks(self):
+        self.file('sims/shear/quick.json', '{}')
+        self.given['figures'].append({**self.given['figures'][0], 'description': 'shear/quick'})
+        self.given['quick'] = [{'descriptions': ['shear/quick*'], 'figures': [{'figure': 'peak', 'of': 'test/y', 'how': 'maximum', 'scale': 2},
+                                                                              {'figure': 'least', 'of': 'test/y', 'how': 'minimum'}]}]
+        self.ran('shear/quick', 'done', '222222222222')
+        for told_by in ('the run', 'the page'):
+            with self.subTest(told_by):
+                self.assertEqual(self.quick('shear/quick'), 'done | 5,000 | 4 | 222222222222 | see its section; least: 1.00 |')
+            shutil.rmtree(self.root / 'results', ignore_errors=True)
 
     def expect_not_run(self):
         sections, page = self.written()
