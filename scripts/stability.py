@@ -24,7 +24,7 @@ WHY = {
     'beverloo/slot': 'room alone, for soft grains that fall: it fills with the usual guard too, and begins to flow',
     'interface-shear/base': 'the end wall that drives the sand wedges single grains against the teeth, with ninety times the mean force',
     'interface-shear/full-rn-025': 'a small grain between a tooth and a large one jumps out at 0.054 of its radius in a step when it slips off',
-    'interface-shear/quick-rn-100': 'driven twice as fast, a grain may for an instant be pinched between a flank and the sand',
+    'interface-shear/quick-rn-100': 'a grain may for an instant be pinched between a flank and the sand, by up to 0.3 of the smallest radius',
     'round-silo/quick': 'room alone, for soft grains that fall: it ends as well with the usual guard',
     'studies/direct-shear': 'in the gap between the frames of so small a box a grain or two is pinched by a fifth of its radius and more',
     'studies/triaxial': 'soft grains, of 20 MPa, overlap more; those that only harden still stop there in two of three samples',
