@@ -39,7 +39,7 @@ UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
 Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
 (`--for`): how much of the course they went, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
-if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so the hours are the least.
+if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so the hours are the least; what that comes to stands below the table.
 
 | description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
 | --- | --- | --- | --- | --- |'''
@@ -272,7 +272,8 @@ def main():
         lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name), rows_of(name))}"
                                    for name in quick), '']
     if missing:
-        lines += [HEAD_OF_UNFINISHED, *missing]
+        note = reference['notes'].get(UNFINISHED)
+        lines += [HEAD_OF_UNFINISHED, *missing, *(['', note] if note else [])]
     page.write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
     print(f'docs/reproduction.md: {len(names) - len(missing)} of {len(names)} descriptions')
 

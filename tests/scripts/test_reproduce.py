@@ -134,6 +134,11 @@ class Reproduction(unittest.TestCase):
         self.given['courses']['shear/timed'] = [[50, 1]]
         self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps | 0.1 | 0.0 |\n', self.written()[1])
 
+    def test_what_has_not_run_has_its_note_below_the_table(self):
+        self.given['notes'][reproduce.UNFINISHED] = 'Twice that.'
+        for _ in range(2):
+            self.assertTrue(self.written()[1].endswith('| shear/never-run | 3.00 | | | |\n\nTwice that.\n'))
+
     def test_a_note_is_the_one_of_the_figures(self):
         self.given['notes']['shear/run-long-ago'] = 'Said better.'
         section = self.written()[0]['shear/run-long-ago']
