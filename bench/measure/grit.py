@@ -96,6 +96,12 @@ def window(path, scene, folder, threads, settings=None, **more):
                   float(contacts.group(1)) if contacts else done.facts['contacts_per_body'], done.others, done.facts)
 
 
+def probes(path, scene):
+    """Names of the probes of a description, with those of its scenario."""
+    said = subprocess.run([str(path), 'expand', str(scene)], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    return list(json.loads(said)['probes'])
+
+
 def all_stages(path, scene, folder, threads, settings=None):
     """Seconds of all stages of a scene, probes and output too, and how many cores others kept busy meanwhile."""
     done = run(path, scene, folder, threads, settings)

@@ -9,6 +9,9 @@ from pathlib import Path
 if '--version' in sys.argv:
     print('grit 0.0.0 (fake)')
     sys.exit()
+if sys.argv[1] == 'expand':
+    print(json.dumps({'probes': {'test': {}, 'walls': {}, 'energy': {}}}))
+    sys.exit()
 scene, out = Path(sys.argv[2]).stem, Path(sys.argv[sys.argv.index('--out') + 1])
 fake = json.loads(os.environ.get('FAKE_GRIT', '{}'))
 given = {'revision': 'fake', 'before': 1.0, 'end': 2.0, 'run': 0.5, 'rebuilds': 2, 'fails': ''} | fake.get('*', {}) | \

@@ -80,23 +80,31 @@ class Rows(Given):
         return self.call(script('rows'), '--grit', self.fake, '--rounds', 1, *words)
 
     def test_the_row_of_probes_times_all_stages(self):
-        self.told(**{'quick': {'end': 10.0}, 'quick-every-probe': {'end': 12.0}})
+        self.told(**{'curves': {'end': 10.0}, 'every': {'end': 12.0}})
         with quiet():
             status, out, errors = self.rows('probes')
         self.assertIn('1.2 times as long', out, errors)
-        self.assertIn('10.0 and 12.0 s', out)
+        self.assertIn('10 and 12 s', out)
         self.assertIn(bounds.MISSES, out)
         self.assertEqual(status, 1)
 
+    def test_the_row_of_looks_has_no_bound(self):
+        self.told(**{'curves': {'end': 10.0}, 'every': {'end': 12.0}})
+        with quiet():
+            status, out, errors = self.rows('looks')
+        self.assertIn('10.0 and 12.0 s', out, errors)
+        self.assertNotIn(bounds.MISSES, out)
+        self.assertEqual(status, 0)
+
     def test_a_bound_that_holds(self):
-        self.told(**{'quick': {'end': 10.0}, 'quick-every-probe': {'end': 10.1}})
+        self.told(**{'curves': {'end': 10.0}, 'every': {'end': 10.1}})
         with quiet():
             status, out, _ = self.rows('probes')
         self.assertIn('| holds |', out)
         self.assertEqual(status, 0)
 
     def test_no_verdict_beside_others(self):
-        self.told(**{'quick': {'end': 10.0}, 'quick-every-probe': {'end': 12.0}})
+        self.told(**{'curves': {'end': 10.0}, 'every': {'end': 12.0}})
         with busy():
             status, out, _ = self.rows('probes')
         self.assertIn('1.2 times as long !', out)
