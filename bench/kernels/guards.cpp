@@ -1,31 +1,36 @@
 // What the guard of energies does every so many steps, beside a step.
 #include <benchmark/benchmark.h>
 
+#include <map>
+#include <memory>
+
 #include "dense.hpp"
 
 namespace grit::bench {
 namespace {
 
-/// The dense grains as a scene, whose steps take them nowhere.
-Simulation& world() {
-  static test::Trial trial = [] {
+/// The dense grains as a scene, whose steps take them nowhere, on as many threads as asked.
+Simulation& world(const benchmark::State& state) {
+  static std::map<std::int64_t, std::unique_ptr<test::Trial>> made;
+  std::unique_ptr<test::Trial>& trial = made[state.range(0)];
+  if (!trial) {
     Description d = test::description("linear-rolling", material("linear-rolling"), grains(10000));
     d["time_step"]["value"] = 1e-15;
     d["guards"] = {{"overlap", 1.0}};
-    return test::Trial(d);
-  }();
-  return trial.world();
+    trial = std::make_unique<test::Trial>(d, static_cast<unsigned>(state.range(0)));
+  }
+  return trial->world();
 }
 
 void guard(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(world().kinetic_energy_ratio());
+  for (auto _ : state) benchmark::DoNotOptimize(world(state).kinetic_energy_ratio());
 }
-BENCHMARK(guard)->Name("guards/energy");
+BENCHMARK(guard)->Name("guards/energy")->Arg(1)->Arg(2)->UseRealTime();
 
 void step(benchmark::State& state) {
-  for (auto _ : state) world().step_on();
+  for (auto _ : state) world(state).step_on();
 }
-BENCHMARK(step)->Name("guards/step");
+BENCHMARK(step)->Name("guards/step")->Arg(1)->Arg(2)->UseRealTime();
 
 }  // namespace
 }  // namespace grit::bench

@@ -129,8 +129,8 @@ def read(path):
             if one.get('run_type') != 'aggregate'}
 
 
-def kernels(program, pattern):
-    """(name → what was measured, cores that others took) of the kernels whose names fit."""
+def kernels(program, pattern, cores=1):
+    """(name → what was measured, cores that others took) of the kernels whose names fit, on so many cores."""
     built = Path(program).parent / 'bench_kernels'
     if not built.is_file():
         raise Complaint(f'{built}: no such program; build it (scripts/install-deps.sh installs Google Benchmark, then cmake '
@@ -138,7 +138,8 @@ def kernels(program, pattern):
     with tempfile.TemporaryDirectory(prefix='grit-kernels-') as folder:
         out = Path(folder) / 'kernels.json'
         try:
-            done = machine.run([built, f'--benchmark_filter={pattern}', '--benchmark_min_time=0.5', f'--benchmark_out={out}'], 1, folder)
+            done = machine.run([built, f'--benchmark_filter={pattern}', '--benchmark_min_time=0.5', f'--benchmark_out={out}'], cores,
+                               folder)
         except subprocess.CalledProcessError as error:
             raise Complaint(f'{built}: {machine.reason(error)}') from error
         times = read(out)

@@ -70,14 +70,15 @@ class ContactTable {
         if (image_[c] != 0) use(c, row);
       });
   }
-  /// The same with what they remember: use(candidate, memory).
+  /// Those of one chunk with what they remember: use(candidate, memory).
   template <class Use>
-  void each_memory(Use use) const {
+  void each_memory(std::size_t chunk, Use use) const {
     std::vector<double> memory(fields_.size());
-    each_touching(0, touching_.size(), [&](std::size_t c) {
-      for (std::size_t f = 0; f < memory.size(); ++f) memory[f] = remembered(c, f);
-      use(c, std::span<const double>(memory));
-    });
+    for (const Blocks blocks : {chunks_[chunk].within, chunks_[chunk].across})
+      each_touching(blocks.first, blocks.last, [&](std::size_t c) {
+        for (std::size_t f = 0; f < memory.size(); ++f) memory[f] = remembered(c, f);
+        use(c, std::span<const double>(memory));
+      });
   }
   /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces are
   /// nearer than `near` [m], or touch.
@@ -117,6 +118,7 @@ class ContactTable {
   /// Of each chunk the others that have a b of its candidates.
   const std::vector<std::vector<std::uint32_t>>& reached() const { return reached_; }
 
+  std::size_t chunks() const { return chunks_.size(); }
   std::size_t candidates() const { return a_.size(); }
   bool touches(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
   std::uint32_t a(std::size_t c) const { return a_[c]; }

@@ -79,9 +79,14 @@ class WallContacts {
   /// All touches, in their order.
   template <class Use>
   void each(Use use) const {
-    for (const Chunk& chunk : chunks_)
-      for (std::size_t i = 0; i < chunk.touch.size(); ++i)
-        use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
+    for (std::size_t c = 0; c < chunks_.size(); ++c) each(c, use);
+  }
+  /// Those of one chunk.
+  template <class Use>
+  void each(std::size_t c, Use use) const {
+    const Chunk& chunk = chunks_[c];
+    for (std::size_t i = 0; i < chunk.touch.size(); ++i)
+      use(Touching{&chunk.touch[i], &chunk.row[i], {chunk.state.data() + i * fields_.size(), fields_.size()}});
   }
   /// What bodies of a chunk would touch if they were larger by `near` [m], at this instant: overlaps are as much
   /// larger.

@@ -431,7 +431,11 @@ void Simulation::advance() {
   // Half of what the cell and engines do in a step by the forces at its start, half by those at its end.
   const bool engines = next.energies && engines_do_work(), cell = next.energies && next.flows();
   const double half_before = 0.5 * clock_.last_time_step, half_after = 0.5 * next.drift;
-  double by_engines = engines ? half_before * power_of_engines() : 0;
+  const auto power = [this] {
+    const Stopwatch watch(phases_[motion].seconds);
+    return power_of_engines();
+  };
+  double by_engines = engines ? half_before * power() : 0;
   double by_cell = cell ? half_before * power_of_cell(clock_.growth_of_period()) : 0;
   if (growth_rate_ > 0 || flows_.grown > 0) grow();
   const std::size_t clumps = bodies_.clumps.clump.size();
@@ -445,7 +449,7 @@ void Simulation::advance() {
     move(chunk, sum_.data(), next);
     laps(chunk_[chunk].seconds[motion]);
   });
-  if (engines) by_engines += half_after * power_of_engines();
+  if (engines) by_engines += half_after * power();
   if (cell) by_cell += half_after * power_of_cell(next.period_growth);
   flows_.engines += by_engines, flows_.cell += by_cell;
   and_show_forces([this] { end_step(); });

@@ -258,7 +258,11 @@ class Simulation final : public World {
   /// appears. Without a ledger it does not look where work is done that is not reckoned at each step.
   void check_energy();
   bool energy_check_is_due() const;
-  /// Of springs as they stand, with bodies `factor` times as large.
+  /// part(chunk), summed up one chunk after the other, worked out by all threads.
+  template <class Part>
+  auto sum_of_chunks(Part part) const;
+  /// Of springs of a chunk as they stand, with bodies `factor` times as large.
+  ElasticEnergy elastic_energy(std::size_t chunk, double factor) const;
   ElasticEnergy elastic_energy(double factor = 1) const;
   /// What springs take up for the logarithm of what bodies grow by [J].
   double elastic_by_growth() const;
@@ -271,8 +275,7 @@ class Simulation final : public World {
   bool engines_do_work() const { return !force_engines_.empty() || bodies_are_held(); }
   /// What engines do to the bodies of a chunk, and to as many clumps, by the forces on them as they moved last [W].
   double power_of_engines(std::size_t chunk) const;
-  /// The same of all, shared among the threads.
-  double power_of_engines();
+  double power_of_engines() const;
   /// What contacts take up as the cell's periods grow so fast [W].
   double power_of_cell(const Vec3& growth) const { return -crossing_.dot(growth); }
   /// What has bodies go with the mean flow of a deforming cell [W].
@@ -298,7 +301,7 @@ class Simulation final : public World {
   std::vector<std::string> material_names_;
   std::string stage_;
 
-  Team team_;
+  mutable Team team_;  // what is asked for is shared among the threads too
   Clock clock_;
   EnergyBook energy_;
   mutable EnergyFlows flows_;
@@ -327,7 +330,6 @@ class Simulation final : public World {
     Losses losses;
     Motion motion, clumps;
     Vec3 crossing = Vec3::Zero();
-    double power = 0;
     bool moved = false;
     std::array<double, part_count> seconds{};
   };

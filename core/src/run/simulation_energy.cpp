@@ -1,5 +1,7 @@
 // Where the energy is, and where it went.
 #include <algorithm>
+#include <numeric>
+#include <vector>
 
 #include "engines/clump_motion.hpp"
 #include "run/simulation.hpp"
@@ -8,7 +10,14 @@
 
 namespace grit {
 
-ElasticEnergy Simulation::elastic_energy(double factor) const {
+template <class Part>
+auto Simulation::sum_of_chunks(Part part) const {
+  std::vector<decltype(part(std::size_t{0}))> found(chunk_.size());
+  team_.each(found.size(), [&](std::size_t chunk) { found[chunk] = part(chunk); });
+  return std::accumulate(found.begin(), found.end(), decltype(part(std::size_t{0})){});
+}
+
+ElasticEnergy Simulation::elastic_energy(std::size_t chunk, double factor) const {
   ElasticEnergy all;
   const auto add = [&](const PairSize& size, std::size_t material_a, std::size_t material_b,
                        std::span<const double> memory) {
@@ -21,7 +30,7 @@ ElasticEnergy Simulation::elastic_energy(double factor) const {
     if (factor == 1 || c == no_clump) return Vec3::Zero();
     return (factor - 1) * (bodies_.clumps.clump[c].axes * bodies_.clumps.of_body[body].place);
   };
-  pairs_.each_memory([&](std::size_t c, std::span<const double> memory) {
+  pairs_.each_memory(chunk, [&](std::size_t c, std::span<const double> memory) {
     const std::uint32_t a = pairs_.a(c), b = pairs_.b(c);
     const double radius_a = factor * bodies_.position[a].w, radius_b = factor * bodies_.position[b].w;
     const Vec3 branch = pairs_.branch(c, bodies_, shifts_.data()) + outward(b) - outward(a);
@@ -33,7 +42,7 @@ ElasticEnergy Simulation::elastic_energy(double factor) const {
          .overlap = overlap},
         bodies_.material[a], bodies_.material[b], memory);
   });
-  wall_contacts_.each([&](const WallContacts::Touching& t) {
+  wall_contacts_.each(chunk, [&](const WallContacts::Touching& t) {
     const std::uint32_t a = t.touch->body;
     const double own = bodies_.position[a].w, r = factor * own;
     const double overlap = std::max(0.0, t.touch->overlap + (factor - 1) * own + t.touch->normal.dot(outward(a)));
@@ -48,6 +57,10 @@ ElasticEnergy Simulation::elastic_energy(double factor) const {
   return all;
 }
 
+ElasticEnergy Simulation::elastic_energy(double factor) const {
+  return sum_of_chunks([&](std::size_t chunk) { return elastic_energy(chunk, factor); });
+}
+
 double Simulation::elastic_by_growth() const {
   constexpr double share = 1e-6;
   return (elastic_energy(1 + share).total() - elastic_energy(1 - share).total()) / (2 * share);
@@ -55,8 +68,25 @@ double Simulation::elastic_by_growth() const {
 
 double Simulation::kinetic_energy() const {
   const MotionStep next = next_motion();
-  return grit::kinetic_energy(*this, 0.5 * clock_.last_time_step,
-                              {next.free_translation(), next.free_rotation(), next.strain_rate});
+  const Accelerating how{next.free_translation(), next.free_rotation(), next.strain_rate};
+  static_cast<void>(forces()), static_cast<void>(clumps());  // the threads find them worked out
+  return sum_of_chunks([&](std::size_t chunk) {
+    return grit::kinetic_energy(*this, 0.5 * clock_.last_time_step, how, chunk * chunk_bodies,
+                                (chunk + 1) * chunk_bodies);
+  });
+}
+
+double Simulation::gravitational() const {
+  return sum_of_chunks([&](std::size_t chunk) {
+    const std::size_t first = chunk * chunk_bodies, last = first + chunk_bodies;
+    double energy = 0;
+    for (std::size_t c = first; c < std::min(last, bodies_.clumps.clump.size()); ++c)
+      energy -= settings_.gravity.dot(bodies_.clumps.clump[c].centre) / bodies_.clumps.clump[c].inverse_mass;
+    for (std::size_t i = first; i < std::min(last, bodies_.count()); ++i)
+      if (bodies_.clumps.clump_of(i) == no_clump)
+        energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
+    return energy;
+  });
 }
 
 double Simulation::power_of_walls() const {
@@ -99,12 +129,8 @@ double Simulation::power_of_flow() const {
   return power;
 }
 
-double Simulation::power_of_engines() {
-  const Stopwatch watch(phases_[motion].seconds);
-  team_.each(chunk_.size(), [this](std::size_t chunk) { chunk_[chunk].power = power_of_engines(chunk); });
-  double power = 0;
-  for (const Chunk& chunk : chunk_) power += chunk.power;
-  return power;
+double Simulation::power_of_engines() const {
+  return sum_of_chunks([this](std::size_t chunk) { return power_of_engines(chunk); });
 }
 
 void Simulation::find_crossing() {
@@ -134,10 +160,10 @@ EnergyLedger Simulation::energies() const {
   now.elastic_normal = elastic.normal, now.elastic_shear = elastic.shear, now.elastic_rolling = elastic.rolling;
   // The half of the last step's work that the forces at its end do.
   const double half_step = 0.5 * clock_.last_time_step;
-  double engines = 0, cell = 0;
-  for (std::size_t chunk = 0; engines_do_work() && chunk < chunk_.size(); ++chunk) engines += power_of_engines(chunk);
+  double cell = 0;
   if (clock_.cell_deforms()) cell = power_of_cell(clock_.growth_of_period()) + power_of_flow();
-  const double by_walls = half_step * power_of_walls(), by_cell = half_step * cell, by_engines = half_step * engines;
+  const double by_walls = half_step * power_of_walls(), by_cell = half_step * cell,
+               by_engines = half_step * (engines_do_work() ? power_of_engines() : 0);
   const double by_growth = flows_.grown > 0 ? 0.5 * flows_.grown * elastic_by_growth() : 0;
   if (!flows_.begun)
     flows_ = {.begun = true,

@@ -43,15 +43,6 @@ double Simulation::kinetic_energy_ratio() const {
   return elastic > 0 ? kinetic_energy() / elastic : std::numeric_limits<double>::infinity();
 }
 
-double Simulation::gravitational() const {
-  double energy = 0;
-  for (const Clump& clump : bodies_.clumps.clump) energy -= settings_.gravity.dot(clump.centre) / clump.inverse_mass;
-  for (std::size_t i = 0; i < bodies_.count(); ++i)
-    if (bodies_.clumps.clump_of(i) == no_clump)
-      energy -= settings_.gravity.dot(xyz(bodies_.position[i])) / bodies_.velocity[i].w;
-  return energy;
-}
-
 bool Simulation::energy_check_is_due() const {
   const std::uint64_t since = clock_.step - energy_.first;
   return energy_.begins || clock_.step % energy_check_every == 0 ||

@@ -12,7 +12,7 @@ namespace grit {
 std::span<const Row> Simulation::forces() const {
   if (net_step_ != clock_.step) {
     net_force_.resize(bodies_.count()), net_moment_.resize(bodies_.count());
-    for (std::size_t i = 0; i < bodies_.count(); ++i) {
+    const auto find = [this](std::size_t i) {
       const bool alone = bodies_.clumps.clump_of(i) == no_clump;
       const Vec3 weight = alone ? Vec3(settings_.gravity / bodies_.velocity[i].w) : Vec3(Vec3::Zero());
       net_force_[i] = sum_[i].force, net_moment_[i] = sum_[i].moment;
@@ -24,7 +24,11 @@ std::span<const Row> Simulation::forces() const {
         const Vec3 moment = xyz(net_moment_[i]).cwiseProduct(Vec3::Unit(*settings_.flat));
         net_force_[i] = {force.x(), force.y(), force.z(), 0}, net_moment_[i] = {moment.x(), moment.y(), moment.z(), 0};
       }
-    }
+    };
+    team_.each(chunk_.size(), [&](std::size_t chunk) {
+      const std::size_t first = chunk * chunk_bodies, last = std::min(bodies_.count(), first + chunk_bodies);
+      for (std::size_t i = first; i < last; ++i) find(i);
+    });
     net_step_ = clock_.step;
   }
   return net_force_;

@@ -64,21 +64,24 @@ double kinetic_energy_of(const ClumpView& clump, double later) {
   return 0.5 * clump.mass * velocity.squaredNorm() + 0.5 * momentum.dot(momentum.cwiseQuotient(clump.inertia));
 }
 
-double kinetic_energy(const World& world, double half_step, const Accelerating& how) {
+double kinetic_energy(const World& world, double half_step, const Accelerating& how, std::size_t first,
+                      std::size_t last) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
   const Vec3 flowing = Vec3::Ones() + half_step * how.strain_rate;
   const auto energy = [half_step](const Row& velocity, const Vec3& force, const Vec3& brought_on) {
     return velocity.w > 0 ? 0.5 / velocity.w * (brought_on + half_step * velocity.w * force).squaredNorm() : 0.0;
   };
   const auto clump_of = world.clump_of();
+  const auto clumps = world.clumps();
   double sum = 0;
-  for (ClumpView clump : world.clumps()) {
+  for (std::size_t c = first; c < std::min(last, clumps.size()); ++c) {
+    ClumpView clump = clumps[c];
     clump.velocity = flowing.cwiseProduct(clump.velocity);
     clump.force = how.free_translation.cwiseProduct(clump.force);
     clump.moment = how.free_rotation.cwiseProduct(clump.moment);
     sum += kinetic_energy_of(clump, half_step);
   }
-  for (std::size_t i = 0; i < velocities.size(); ++i)
+  for (std::size_t i = first; i < std::min(last, velocities.size()); ++i)
     if (clump_of.empty() || clump_of[i] == no_clump)
       sum += energy(velocities[i], how.free_translation.cwiseProduct(xyz(forces[i])),
                     flowing.cwiseProduct(xyz(velocities[i]))) +

@@ -38,6 +38,9 @@ struct ElasticEnergy {
   double normal = 0, shear = 0;
   double rolling = 0;  ///< with twisting
   double total() const { return normal + shear + rolling; }
+  ElasticEnergy operator+(const ElasticEnergy& other) const {
+    return {normal + other.normal, shear + other.shear, rolling + other.rolling};
+  }
 };
 
 /// One number that a contact remembers.
