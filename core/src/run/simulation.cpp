@@ -67,7 +67,7 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
 
 void Simulation::begin_stage(const std::string& name, const SceneDescription& scene) {
   stage_ = name;
-  bodies_.start_displacements(), displacement_step_ = ~0ull;
+  bodies_.start_displacements();
   walls_.apply(scene);
   apply(scene);
   admit();
@@ -250,7 +250,7 @@ void Simulation::search() {
       take_leave(leaves);
       std::erase_if(order, [&](std::uint32_t i) { return leaves[i]; });
     }
-    bodies_.reorder(order), displacement_step_ = ~0ull;
+    bodies_.reorder(order);
     sum_.resize(bodies_.count() + 1), chunk_.resize(chunks_of(bodies_.count()));
   }
   lay_on_skins();

@@ -287,7 +287,9 @@ class Simulation final : public World {
   void tell_walls_of_specimen();
   Vec3 centre() const { return 0.5 * (clock_.cell.low + clock_.cell.high); }
   /// Has what probes ask for be worked out anew.
-  void forget_views() { net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = ~0ull; }
+  void forget_views() {
+    net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = ~0ull;
+  }
   /// `what` ends with advice.
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(const std::string& what, const std::string& advice) const;
