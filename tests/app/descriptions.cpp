@@ -88,6 +88,25 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   EXPECT_THAT(check({turning, smooth, late}), HasSubstr("nothing turns a sphere"));
   EXPECT_THAT(check({turning, smooth, late, spinning}), testing::Not(HasSubstr("nothing turns a sphere")))
       << "it comes with a spin";
+  const std::string bottom = R"(/walls/bottom={"type": "plane", "point": [0, 0, "-2 mm"], "material": "sand"})";
+  const auto moved = [](const std::string& motion) {
+    return R"(/stages/0/change={"walls": {"bottom": {"motion": )" + motion + "}}}";
+  };
+  EXPECT_THAT(check({turning, smooth, bottom, moved(R"({"velocity": [0, 0, 1e-3]})")}),
+              HasSubstr("nothing turns a sphere"));
+  EXPECT_THAT(check({turning, smooth, bottom, moved(R"({"spin": [0, 0, 1]})")}),
+              testing::Not(HasSubstr("nothing turns a sphere")));
+  EXPECT_THAT(
+      check({turning, smooth, R"(/materials/steel={"friction_angle": 0.5})", bottom, "/walls/bottom/material=steel"}),
+      HasSubstr("nothing turns a sphere"))
+      << "the smaller friction counts";
+  EXPECT_THAT(check({turning, smooth, R"(/stages/0/change={"materials": {"sand": {"friction_angle": 0.3}}})"}),
+              testing::Not(HasSubstr("nothing turns a sphere")));
+  EXPECT_THAT(check({turning, "/materials/sand/shear_to_normal_stiffness=0"}), HasSubstr("nothing turns a sphere"));
+  EXPECT_THAT(check({smooth, "/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0.3"}),
+              AllOf(HasSubstr("  /materials/sand/rolling_stiffness: without friction nothing turns a sphere, so that "
+                              "no moment comes of it\n"),
+                    HasSubstr("  /materials/sand/rolling_limit: without friction nothing turns a sphere")));
   EXPECT_THAT(check({law, smooth, "/contacts/shear_damping=true"}),
               HasSubstr("  /contacts/shear_damping: without friction there is no shear force to damp"));
   EXPECT_THAT(check({law, "/contacts/shear_damping=true"}), testing::Not(HasSubstr("without effect")));
@@ -116,7 +135,7 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   const std::string held = R"(/engines/hold={"type": "hold"})",
                     damped = R"(/engines/damping={"type": "local-damping"})";
   const auto later = [](const std::string& engines) { return R"(/stages/0/change={"engines": )" + engines + '}'; };
-  const auto turns_not = HasSubstr("  /probes/turns: it looks at rotations, which are held: all are 0\n");
+  const auto turns_not = HasSubstr("  /probes/turns: it looks at rotations, and rotations are held: those are all 0\n");
   EXPECT_THAT(check({turning, held, damped, later(R"({"damping": {"coefficient": 0.3}})")}), turns_not)
       << "a stage changes another engine";
   EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": false}})")}), testing::Not(turns_not));
@@ -233,6 +252,20 @@ TEST(Descriptions, CheckSaysWhereADepthHasMoreContactsThanScatterJustifies) {
   EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
   EXPECT_THAT(check("/domain/periodic=[true, true, false]"), testing::Not(HasSubstr("1/√contacts")))
       << "which of the two is its depth?";
+  // Between panes, which may not be as near to each other.
+  many["domain"] = {{"low", {0, -0.1, 0}}, {"high", {0.1, 0.2, 0.1}}};
+  many["materials"]["glass"] = {{"friction_angle", 0}};
+  many["walls"] = {
+      {"front", {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 1, 0}}, {"material", "glass"}}},
+      {"back", {{"type", "plane"}, {"point", {0, 0.1, 0}}, {"normal", {0, -1, 0}}, {"material", "glass"}}}};
+  folder.write("many.json", many.dump());
+  EXPECT_THAT(
+      check("/seed=2"),
+      HasSubstr("  /walls/back: walls \"front\" and \"back\", which bound it along y, stand still and are smooth, "
+                "and with 0.1 m there are some 100000 contacts"));
+  EXPECT_THAT(check("/materials/glass/friction_angle=0.1"), testing::Not(HasSubstr("1/√contacts")));
+  EXPECT_THAT(check("/walls/back/motion={\"velocity\": [0, 1e-3, 0]}"), testing::Not(HasSubstr("1/√contacts")));
+  EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
 }
 
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {

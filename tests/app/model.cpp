@@ -83,6 +83,21 @@ TEST_F(ModelOfARun, HasNoHistoryWithoutFriction) {
   }
 }
 
+TEST_F(ModelOfARun, RemembersOfEachSpringOnlyWhereItIs) {
+  const std::string law = "/contacts/type=linear-rolling", smooth = "/materials/sand/friction_angle=0",
+                    no_rolling = "/materials/sand/rolling_limit=0",
+                    twists = R"(/materials/sand={"twisting_stiffness": 1, "twisting_limit": 0.2})";
+  EXPECT_THAT(of({law, smooth}).at("contact_state"), ElementsAre("rolling_x", "rolling_y", "rolling_z"));
+  EXPECT_THAT(of({law, twists, no_rolling}).at("contact_state"),
+              ElementsAre("shear_x", "shear_y", "shear_z", "twisting"));
+  EXPECT_THAT(of({law, twists, no_rolling, smooth}).at("contact_state"), ElementsAre("twisting"));
+  const std::string hertz = "/contacts/type=hertz-mindlin",
+                    rolls = R"(/materials/sand={"rolling_stiffness": 1, "rolling_limit": 0.2})";
+  EXPECT_THAT(of({hertz, rolls, smooth}).at("contact_state"),
+              ElementsAre("contact_radius", "rolling_x", "rolling_y", "rolling_z"));
+  EXPECT_LT(of({law, smooth}).at("bytes"), of({law}).at("bytes"));
+}
+
 TEST_F(ModelOfARun, TurnsAndMovesAreKeptOnlyWhereSomethingAsks) {
   const json plain = of({"/seed=2"});
   EXPECT_THAT(plain.at("body_state"), IsEmpty());

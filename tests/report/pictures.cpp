@@ -185,6 +185,22 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   EXPECT_NEAR(rises[1] / rises[0], 2, 0.01);
   EXPECT_NEAR(rises[2] / rises[0], 3, 0.01);
   EXPECT_THAT(elements(svg, "text", "peak"), IsEmpty());
+
+  const auto polar = direction_pictures(read_results(folder / "run"));
+  ASSERT_THAT(polar, SizeIs(1));
+  EXPECT_EQ(polar[0].name, "directions-moved");
+  const auto round = parsed(polar[0].svg);
+  EXPECT_THAT(words_of(round), IsSupersetOf({"2 s", "4 s", "6 s", "force [N]", "0°", "90°", "180°", "270°"}));
+  const auto outline = elements(round, "polyline", "k0");
+  ASSERT_THAT(outline, SizeIs(1));
+  const auto points = numbers_in(text_of(outline[0], "points"));
+  ASSERT_THAT(points, SizeIs(2 * 16)) << "five points a direction, and back";
+  // The middles of the three directions: 1 N to the right, 2 N up, 3 N to the left of the middle.
+  const double middle_x = points[2 * 7], middle_y = points[2 * 2 + 1], newton = points[2 * 2] - middle_x;
+  EXPECT_GT(newton, 10);
+  EXPECT_NEAR(points[2 * 12 + 1], middle_y, 0.02);
+  EXPECT_NEAR((middle_y - points[2 * 7 + 1]) / newton, 2, 0.01);
+  EXPECT_NEAR((middle_x - points[2 * 12]) / newton, 3, 0.01);
 }
 
 TEST(ProfilePictures, TellTheAxisAndHowFarATestHasGone) {
@@ -241,6 +257,16 @@ TEST(LinearChainPictures, GoAlongTheLinksOfChains) {
   EXPECT_NEAR(number_of(links[0], "x2") - number_of(links[0], "x1"),
               number_of(links[0], "y1") - number_of(links[0], "y2"), 0.05);
   EXPECT_GT(number_of(links[0], "x2"), number_of(links[0], "x1"));
+}
+
+TEST(ForceChainPictures, HaveTheContactsAboveTheMean) {
+  const Folder folder;
+  write_chains(folder / "run", {4, 2});
+  RunResults run = read_results(folder / "run");
+  const auto picture = force_chains_picture(run);
+  ASSERT_TRUE(picture.has_value());
+  EXPECT_THAT(elements(parsed(*picture), "line", "link"), SizeIs(1)) << "of 4, 2 and 2 N";
+  EXPECT_THAT(*picture, HasSubstr("contacts above the mean of 2.67 N, as wide as their normal force, 4 N at most"));
 }
 
 TEST(LinearChainPictures, AreOnThePage) {

@@ -366,6 +366,25 @@ TEST(Arrivals, CountInWhatIsKnownOfAll) {
   EXPECT_EQ(trial.world().forces().size(), 3u);
 }
 
+// What turned and moved in the preparation leaves no mark on the test.
+TEST(Stages, CountRotationsAndDisplacementsAnew) {
+  Description d = first_and_late({{Vec3::Zero(), radius, {0.1, 0, 0}, {0, 20, -5}}}, {{{0, 0, 9e-3}, radius}});
+  Trial trial(d, 1, BodyState::rotation | BodyState::displacement);
+  const auto turned_by = [&](double time) {
+    EXPECT_LT((trial.world().rotations()[0] - time * Vec3(0, 20, -5)).norm(), 1e-12);
+    EXPECT_LT((trial.world().displacements()[0] - time * Vec3(0.1, 0, 0)).norm(), 1e-12);
+  };
+  trial.step(40);
+  const double first = trial.world().time();
+  turned_by(first);
+  begin_second(trial);
+  turned_by(0);
+  trial.world().find_forces();
+  trial.step(30);
+  ASSERT_GT(trial.world().time(), first);
+  turned_by(trial.world().time() - first);
+}
+
 TEST(Arrivals, BringTheirEnergy) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 5e-3}, radius, {0.1, 0, 0}, {0, 20, 0}}});
   d["engines"]["gravity"] = {{"type", "gravity"}};

@@ -76,8 +76,10 @@ void expect_ledger_changes_nothing(const Description& d) {
   const EnergyLedger a = with.world().energies(), b = other.world().energies();
   EXPECT_GT(a.friction, 0);
   for (const auto entry :
-       {&EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::viscosity, &EnergyLedger::local_damping,
-        &EnergyLedger::gravitational, &EnergyLedger::walls, &EnergyLedger::cell, &EnergyLedger::engines})
+       {&EnergyLedger::kinetic, &EnergyLedger::elastic_normal, &EnergyLedger::elastic_shear,
+        &EnergyLedger::elastic_rolling, &EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::viscosity,
+        &EnergyLedger::local_damping, &EnergyLedger::gravitational, &EnergyLedger::walls, &EnergyLedger::cell,
+        &EnergyLedger::engines, &EnergyLedger::settings, &EnergyLedger::closure_error})
     EXPECT_EQ(a.*entry, b.*entry);
 }
 

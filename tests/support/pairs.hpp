@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "grit/contact/contact_law.hpp"
+#include "grit/contact/fields.hpp"
 
 namespace grit::test {
 
@@ -43,16 +44,16 @@ class Pairs {
     a_[used_] = a, b_[used_] = b, image_[used_] = image;
     return used_++;
   }
-  /// Goes on with another law, whose leading fields they remember if it has them too.
+  /// Goes on with another law; they remember the fields that it has too.
   void change(const ContactLaw& law) {
-    const std::size_t before = fields_.size();
-    law_ = &law, fields_ = law.state();
+    const std::vector<StateField> before = std::exchange(fields_, law.state());
+    law_ = &law;
     const std::vector<double> all =
         std::exchange(state_, std::vector<double>(touching_.size() * fields_.size() * block_size, 0.0));
-    for (std::size_t block = 0; block < touching_.size(); ++block)
-      std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(block * before * block_size),
-                  std::min(before, fields_.size()) * block_size,
-                  state_.begin() + static_cast<std::ptrdiff_t>(block * fields_.size() * block_size));
+    for (const auto& [from, to] : moves_of_fields(before, fields_))
+      for (std::size_t block = 0; block < touching_.size(); ++block)
+        std::copy_n(all.begin() + static_cast<std::ptrdiff_t>((block * before.size() + from) * block_size), block_size,
+                    state_.begin() + static_cast<std::ptrdiff_t>((block * fields_.size() + to) * block_size));
   }
   /// Leaves the next place to padding.
   void skip() { pair(0, pad_); }
@@ -202,8 +203,13 @@ class WallPair {
                     .losses = nullptr};
     law_->evaluate_walls(batch);
   }
-  /// Goes on with another law, whose leading fields it remembers if it has them too.
-  void change(const ContactLaw& law) { law_ = &law, state_.resize(law.state().size(), 0.0); }
+  /// Goes on with another law; it remembers the fields that it has too.
+  void change(const ContactLaw& law) {
+    const std::vector<StateField> before = law_->state(), now = law.state();
+    const std::vector<double> all = std::exchange(state_, std::vector<double>(now.size(), 0.0));
+    for (const auto& [from, to] : moves_of_fields(before, now)) state_[to] = all[from];
+    law_ = &law;
+  }
   void clear() { state_.assign(state_.size(), 0.0); }
   std::vector<double>& state() { return state_; }
   /// The moment that the law itself gives to the wall, without the lever of the shear force.

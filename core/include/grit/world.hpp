@@ -147,8 +147,8 @@ class World {
   virtual std::span<const Row> velocities() const = 0;  ///< half a step before time() [m/s], w: 1/mass [1/kg]
   virtual std::span<const Row> spins() const = 0;  ///< half a step before time() [rad/s], w: 1/inertia [1/(kg m²)]
   virtual std::span<const std::uint8_t> materials() const = 0;
-  virtual std::span<const Vec3> rotations() const = 0;      ///< empty unless asked for
-  virtual std::span<const Vec3> displacements() const = 0;  ///< empty unless asked for
+  virtual std::span<const Vec3> rotations() const = 0;      ///< in the stage [rad]; empty unless asked for
+  virtual std::span<const Vec3> displacements() const = 0;  ///< in the stage [m]; empty unless asked for
   /// Index into clumps() of each body, or no_clump; empty where there is no clump. A body of a clump has the clump's
   /// 1/mass beside its velocity and 1 over the clump's least moment of inertia beside its spin.
   virtual std::span<const std::uint32_t> clump_of() const { return {}; }

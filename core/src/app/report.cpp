@@ -55,8 +55,10 @@ std::vector<NamedPicture> pictures_of(RunResults& run) {
   };
   draw([&] { add("curves", curves_picture(std::span(&run, 1))); });
   draw([&] { std::ranges::move(profile_pictures(run), std::back_inserter(pictures)); });
+  draw([&] { std::ranges::move(direction_pictures(run), std::back_inserter(pictures)); });
   draw([&] { add("grains", grains_picture(run)); });
   draw([&] { add("layers", layers_picture(run)); });
+  draw([&] { add("force-chains", force_chains_picture(run)); });
   draw([&] { add("linear-chains", chains_picture(run)); });
   draw([&] { std::ranges::move(map_pictures(run), std::back_inserter(pictures)); });
   return pictures;
@@ -108,8 +110,10 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   options.add()("out", po::value<std::string>()->value_name("FILE"),
                 "the page; default: report.html in the first folder that holds a run")(
       "png",
-      "instead of a page, pictures in each folder, as curves.png, profiles-PROBE.png, grains.png, layers.png, "
-      "linear-chains.png and map-PROBE-FIELD.png, and the same as SVG; of several folders curves-overlaid.png in the "
+      "instead of a page, pictures in each folder, as curves.png, profiles-PROBE.png, directions-PROBE.png, "
+      "grains.png, "
+      "layers.png, force-chains.png, linear-chains.png and map-PROBE-FIELD.png, and the same as SVG; of several "
+      "folders curves-overlaid.png in the "
       "first that holds a run");
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/shipped_studies.hpp"
+#include "scene/make_bodies.hpp"
 #include "study/parts.hpp"
 
 namespace grit {
@@ -15,7 +16,7 @@ constexpr double tolerance = 0.05;  // of a study's figures
 constexpr double far_beyond = 2;    // times as deep, or as costly, as would do
 // Of a dense packing, with five contacts each; means of them scatter between samples by about 1/√contacts.
 constexpr double contacts_a_body = 2.5, fine_scatter = 0.005;
-constexpr double fewest_diameters = 5;
+constexpr double fewest_diameters = 5, fewest_between_panes = 10;
 
 bool shows(const Evidence& level) {
   return std::ranges::any_of(level.findings, [](const Finding& one) { return !(one.error <= 2 * one.standard_error); });
@@ -50,21 +51,83 @@ std::optional<std::string> by_studies(const std::string& scenario, const std::ve
   return std::nullopt;
 }
 
-std::optional<std::string> by_contacts(const SceneDescription& scene, const Simulation& world, bool plain) {
+/// What a specimen is deep along, as nothing differs along it.
+struct Depth {
+  double length = 0;  ///< m
+  double fewest = 0;  ///< diameters that it needs
+  std::string pointer, why;
+};
+
+/// Whether a wall neither moves nor drags grains, in any stage.
+bool is_still_and_smooth(const SceneDescription& scene, const std::string& name) {
+  const WallDescription& wall = scene.walls.at(name);
+  const MotionDescription& motion = wall.motion;
+  if (!motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation || motion.servo || motion.follow ||
+      motion.free)
+    return false;
+  for (const StageDescription& stage : scene.stages)
+    if (stage.change.contains(Description::json_pointer("/walls/" + pointer_token(name))) ||
+        std::ranges::any_of(stage.ramps, [&](const RampDescription& ramp) {
+          return ramp.pointer.starts_with("/walls/" + pointer_token(name) + '/');
+        }))
+      return false;
+  const auto names = material_names(scene);
+  const auto number = [&](const std::string& material) {
+    return static_cast<std::size_t>(std::ranges::find(names, material) - names.begin());
+  };
+  return std::ranges::all_of(scene.bodies, [&](const auto& group) {
+    const PairSize grain{
+        .radius_a = 1e-3, .radius_b = 1e-3, .inverse_mass_a = 1e5, .inverse_mass_b = 0, .overlap = 1e-6, .wall = true};
+    return scene.contacts.get()->stiffness(grain, number(group.second.material), number(wall.material)).shear == 0;
+  });
+}
+
+std::optional<Depth> depth_of(const SceneDescription& scene, const Simulation& world, bool plain) {
   const auto& periodic = scene.domain.periodic;
-  if (std::ranges::count(periodic, true) != 1 || !scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
-  const auto axis = static_cast<int>(std::ranges::find(periodic, true) - periodic.begin());
-  const double depth = world.cell().high[axis] - world.cell().low[axis];
+  const std::string scenarios = "/scenario/depth";  // a scenario writes domain and walls
+  if (std::ranges::count(periodic, true) == 1) {
+    const auto axis = static_cast<int>(std::ranges::find(periodic, true) - periodic.begin());
+    return Depth{world.cell().high[axis] - world.cell().low[axis], fewest_diameters,
+                 plain ? fmt::format("/domain/high/{}", axis) : scenarios,
+                 fmt::format("the cell repeats along {}", "xyz"[axis])};
+  }
+  if (std::ranges::count(periodic, true) > 1) return std::nullopt;
+  const Region specimen = world.specimen();
+  const auto walls = world.walls();
+  for (const int axis : {1, 0}) {
+    const double size = specimen.high[axis] - specimen.low[axis];
+    if (!std::isfinite(size) || world.positions().empty()) continue;
+    Vec3 inside = xyz(world.positions().front());
+    inside[axis] = specimen.low[axis] + 0.5 * size;
+    std::string low, high;
+    double length = 0;
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      const double along = walls[w].normal[axis];
+      std::string& name = along > 0 ? low : high;
+      if (std::abs(along) < 1 - 1e-9 || !name.empty() || !is_still_and_smooth(scene, walls[w].name)) continue;
+      if (const auto clear = world.clearance(w, inside, size)) name = walls[w].name, length += clear->distance;
+    }
+    if (low.empty() || high.empty()) continue;
+    return Depth{length, fewest_between_panes, plain ? "/walls/" + high : scenarios,
+                 fmt::format("walls \"{}\" and \"{}\", which bound it along {}, stand still and are smooth", low, high,
+                             "xyz"[axis])};
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> by_contacts(const SceneDescription& scene, const Simulation& world, bool plain) {
+  if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
+  const auto depth = depth_of(scene, world, plain);
+  if (!depth || !std::isfinite(depth->length)) return std::nullopt;
   const double contacts = contacts_a_body * static_cast<double>(world.positions().size());
   const double share =
-      std::max(1 / (fine_scatter * fine_scatter) / contacts, fewest_diameters * world.mean_diameter() / depth);
+      std::max(1 / (fine_scatter * fine_scatter) / contacts, depth->fewest * world.mean_diameter() / depth->length);
   if (share * far_beyond > 1) return std::nullopt;
-  // A scenario writes the domain.
   return fmt::format(
-      "{}: the cell repeats along {}, and with {:.2g} m there are some {:.0f} contacts, whose means scatter between "
-      "samples by about 1/√contacts, {:.2g} %; {:.2g} m would give {:.2g} % for {:.2g} of the cost",
-      plain ? fmt::format("/domain/high/{}", axis) : "/scenario/depth", "xyz"[axis], depth, contacts,
-      100 / std::sqrt(contacts), share * depth, 100 / std::sqrt(share * contacts), share);
+      "{}: {}, and with {:.2g} m there are some {:.0f} contacts, whose means scatter between samples by about "
+      "1/√contacts, {:.2g} %; {:.2g} m would give {:.2g} % for {:.2g} of the cost",
+      depth->pointer, depth->why, depth->length, contacts, 100 / std::sqrt(contacts), share * depth->length,
+      100 / std::sqrt(share * contacts), share);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <span>
 
+#include "scene/make_bodies.hpp"
 #include "study/parts.hpp"
 
 namespace grit {
@@ -21,6 +23,33 @@ bool is_changed(const SceneDescription& scene, const std::string& section, const
              return ramp.pointer.starts_with('/' + section + '/' + name + '/');
            });
   });
+}
+
+/// Whether a stage changes one of these keys of a wall's motion, or its motion as a whole.
+bool motion_is_changed(const SceneDescription& scene, const std::string& wall, std::span<const char* const> keys) {
+  return std::ranges::any_of(scene.stages, [&](const StageDescription& stage) {
+    const Description::json_pointer motion("/walls/" + pointer_token(wall) + "/motion");
+    return std::ranges::any_of(keys, [&](const char* key) {
+      return stage.change.contains(motion / key) || std::ranges::any_of(stage.ramps, [&](const RampDescription& ramp) {
+               return ramp.pointer.starts_with((motion / key).to_string());
+             });
+    });
+  });
+}
+
+/// Whether the law can leave shear out, and no pair that may meet in any stage needs it.
+bool is_smooth(const Scene& described) {
+  const auto shears = [](const SceneDescription& scene) {
+    ContactLaw& law = *scene.contacts.get();
+    law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
+    return std::ranges::count(law.loop().left_out, "shear") == 0;
+  };
+  bool any = false;
+  for (const StagePlan& stage : described.stages) {
+    any = any || shears(*stage.start);
+    for (const auto& increment : stage.ramp) any = any || shears(*increment);
+  }
+  return !shears(*described.description) && !any;  // with which the law is left
 }
 
 /// Whether a parameter of contacts is 0 for all materials and interfaces, and stays so.
@@ -105,13 +134,14 @@ bool comes_spinning(const BodiesDescription& group) {
 
 /// Whether nothing could turn a sphere that does not turn, but contacts: no engine, no wall that spins, no clump.
 bool only_contacts_turn(const SceneDescription& scene) {
+  constexpr const char* turning[] = {"spin", "oscillation", "free"};
   return std::ranges::none_of(scene.engines,
                               [](const auto& one) { return one.second.engine->phase() == Phase::forces; }) &&
          std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
          std::ranges::all_of(scene.walls, [&](const auto& one) {
            const MotionDescription& motion = one.second.motion;
            return motion.spin.isZero(0.0) && !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) &&
-                  !motion.free && !is_changed(scene, "walls", one.first);
+                  !motion.free && !motion_is_changed(scene, one.first, turning);
          });
 }
 
@@ -146,19 +176,28 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
   const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
                     std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
   const Description values = resolved(scene);
-  const bool smooth = is_zero(scene, values, "friction_angle");
-  if (never_turn && !spun) {
+  const bool smooth = is_smooth(described);
+  const std::string still = spun                                  ? ""
+                            : never_turn                          ? "rotations are held"
+                            : smooth && only_contacts_turn(scene) ? "without friction nothing turns a sphere"
+                                                                  : "";
+  if (!still.empty()) {
     if (scene.output.picture && scene.output.picture->color == "rotation")
-      say("/output/picture/color", "rotations are held, so that all are 0; another colour would show something");
+      say("/output/picture/color", still + ", so that all rotations are 0; another colour would show something");
     for (const auto& [name, probe] : scene.probes)
       if (probe.probe->needs().has(BodyState::rotation))
-        say("/probes/" + name, "it looks at rotations, which are held: all are 0");
-  } else if (smooth && !spun && only_contacts_turn(scene)) {
-    for (const auto& [name, probe] : scene.probes)
-      if (probe.probe->needs().has(BodyState::rotation))
-        say("/probes/" + name, "it looks at rotations, and without friction nothing turns a sphere: all are 0");
+        say("/probes/" + name, "it looks at rotations, and " + still + ": those are all 0");
   }
   const Description& written = described.document.json();
+  if (!still.empty() && only_contacts_turn(scene))
+    for (const std::string kind : {"rolling", "twisting"})
+      for (const char* section : {"materials", "interfaces"})
+        for (const auto& [name, one] : values.at(section).items())
+          for (const char* of : {"_stiffness", "_limit"}) {
+            const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + of;
+            if (written.contains(Description::json_pointer(pointer)) && one.at(kind + of) != 0.0)
+              say(pointer, still + ", so that no moment comes of it");
+          }
   for (const std::string kind : {"rolling", "twisting"})
     for (const auto& [lacking, given] : {std::pair("_limit", "_stiffness"), std::pair("_stiffness", "_limit")}) {
       if (!is_zero(scene, values, kind + lacking)) continue;

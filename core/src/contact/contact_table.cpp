@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "grit/contact/fields.hpp"
+
 namespace grit {
 namespace {
 
@@ -214,12 +216,13 @@ void ContactTable::find_reached() {
 
 void ContactTable::set_fields(std::span<const StateField> fields) {
   const std::size_t before = fields_.size(), after = fields.size();
+  const std::vector<FieldMove> moves = moves_of_fields(fields_, fields);
+  const bool same = same_fields(fields_, fields);
   fields_.assign(fields.begin(), fields.end());
-  if (before == after) return;
+  if (same) return;
   LargeArray<StateLine> state(touching_.size() * after);
   for (std::size_t block = 0; block < touching_.size(); ++block)
-    std::copy_n(state_.begin() + static_cast<std::ptrdiff_t>(block * before), std::min(before, after),
-                state.begin() + static_cast<std::ptrdiff_t>(block * after));
+    for (const auto& [from, to] : moves) state[block * after + to] = state_[block * before + from];
   state_ = std::move(state);
 }
 

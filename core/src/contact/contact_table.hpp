@@ -33,7 +33,7 @@ class ContactTable {
   /// are not in it are gone.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
                std::span<const std::uint32_t> order, Team& team);
-  /// Makes room for another set of fields; the leading ones that both have are kept.
+  /// Makes room for another set of fields; those that both have are kept.
   void set_fields(std::span<const StateField> fields);
 
   /// What the law needs to know of an instant.
@@ -118,7 +118,6 @@ class ContactTable {
   /// Of each chunk the others that have a b of its candidates.
   const std::vector<std::vector<std::uint32_t>>& reached() const { return reached_; }
 
-  std::size_t chunks() const { return chunks_.size(); }
   std::size_t candidates() const { return a_.size(); }
   bool touches(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
   std::uint32_t a(std::size_t c) const { return a_[c]; }

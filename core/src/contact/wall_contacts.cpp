@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "grit/contact/fields.hpp"
+
 namespace grit {
 namespace {
 
@@ -116,12 +118,14 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
 
 void WallContacts::set_fields(std::span<const StateField> fields) {
   const std::size_t before = fields_.size(), after = fields.size();
+  const std::vector<FieldMove> moves = moves_of_fields(fields_, fields);
+  const bool same = same_fields(fields_, fields);
   fields_.assign(fields.begin(), fields.end());
-  if (before == after) return;
+  if (same) return;
   for (Chunk& chunk : chunks_) {
     std::vector<double> state(chunk.touch.size() * after);
     for (std::size_t i = 0; i < chunk.touch.size(); ++i)
-      for (std::size_t f = 0; f < std::min(before, after); ++f) state[i * after + f] = chunk.state[i * before + f];
+      for (const auto& [from, to] : moves) state[i * after + to] = chunk.state[i * before + from];
     chunk.state.swap(state);
   }
 }

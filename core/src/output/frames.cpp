@@ -66,15 +66,16 @@ void write_bodies(hdf5::Group group, const World& world) {
                 [rows = world.velocities()](auto i) { return xyz(rows[i]); });
   bodies.vector({"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}},
                 [rows = world.spins()](auto i) { return xyz(rows[i]); });
-  bodies.scalar<std::int32_t>({"material", "1", "number of the material, from 0: its place in /model/materials of run.json", {}},
-                              [materials = world.materials()](auto i) { return materials[i]; });
+  bodies.scalar<std::int32_t>(
+      {"material", "1", "number of the material, from 0: its place in /model/materials of run.json", {}},
+      [materials = world.materials()](auto i) { return materials[i]; });
   if (const auto clump_of = world.clump_of(); !clump_of.empty())
     bodies.scalar<std::int64_t>({"clump", "1", "id of the clump that the body is part of; -1 by itself", {}},
                                 [&, clumps = world.clumps()](auto i) -> std::int64_t {
                                   return clump_of[i] == no_clump ? -1 : std::int64_t{clumps[clump_of[i]].id};
                                 });
   if (const auto rotations = world.rotations(); !rotations.empty())
-    bodies.vector({"rotation", "rad", "cumulative rotation vector, right-handed", {}},
+    bodies.vector({"rotation", "rad", "cumulative rotation since the start of the stage, right-handed", {}},
                   [&](auto i) { return rotations[i]; });
   if (const auto displacements = world.displacements(); !displacements.empty())
     bodies.vector({"displacement", "m", "displacement since the start of the stage", {}},

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <span>
 #include <utility>
@@ -261,6 +262,70 @@ class PanelDrawing {
   ReadableUnit x_unit_, y_unit_;
 };
 
+class PolarDrawing {
+ public:
+  PolarDrawing(Svg& svg, const Panel& panel, const Names& names, Point corner, double wide, double high)
+      : svg_(svg), panel_(panel), names_(names), corner_(corner) {
+    constexpr double above = 34, around = 22;  // px: a title, names of directions
+    radius_ = 0.5 * std::min(wide, high - above) - around;
+    middle_ = {corner.x + 0.5 * wide, corner.y + above + around + radius_};
+    double most = 0;
+    for (const Curve& curve : panel.curves)
+      for (const double y : curve.y)
+        if (drawable(y)) most = std::max(most, y);
+    unit_ = readable(panel.y.unit, most);
+    rings_ = axis_ticks(0, most > 0 ? most * unit_.factor : 1, AxisEnds::whole_steps);
+    angle_ = panel.x.unit == "rad" ? 1 : degree;
+  }
+
+  void draw() {
+    constexpr double told_at = 75 * degree;
+    svg_.text({corner_.x + 6, corner_.y + 14}, axis_title(panel_.y.label, unit_.unit), "class=\"axis\"");
+    for (const double ring : rings_.marks)
+      if (ring > 0) svg_.circle(middle_, radius_ * ring / rings_.high, "class=\"grid\" fill=\"none\"");
+    for (int spoke = 0; spoke < 12; ++spoke) svg_.line(middle_, at(spoke * 30 * degree, rings_.high), "class=\"grid\"");
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const Point name = at(quarter * 90 * degree, rings_.high * (1 + 13 / radius_));
+      svg_.text({name.x, name.y + 4}, fmt::format("{}°", 90 * quarter), "class=\"m\"");
+    }
+    for (const Curve& curve : panel_.curves) draw_curve(curve);
+    for (const double ring : rings_.marks)
+      if (ring > 0) {
+        const Point told = at(told_at, ring);
+        svg_.text({told.x, told.y + 4}, tick_label(ring, rings_.step), "class=\"small m\"");
+      }
+  }
+
+ private:
+  static constexpr double degree = std::numbers::pi / 180;
+
+  Point at(double angle, double value) const {
+    const double r = radius_ * value / rings_.high;
+    return {middle_.x + r * std::cos(angle), middle_.y - r * std::sin(angle)};
+  }
+  /// Each number stands for the directions about it.
+  void draw_curve(const Curve& curve) {
+    const std::size_t count = std::min(curve.x.size(), curve.y.size());
+    if (count < 2) return;
+    const double half = 0.5 * std::abs(curve.x[1] - curve.x[0]);
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < count; ++i)
+      for (const double part : {-1.0, -0.5, 0.0, 0.5, 1.0})
+        points.push_back(at(angle_ * (curve.x[i] + part * half), std::max(0.0, curve.y[i]) * unit_.factor));
+    points.push_back(points.front());
+    if (std::ranges::all_of(curve.y, drawable))
+      svg_.polyline(points, fmt::format("class=\"curve {}\"", names_.style_of(curve.name, curve.reference)));
+  }
+
+  Svg& svg_;
+  const Panel& panel_;
+  const Names& names_;
+  Point corner_, middle_{};
+  double radius_ = 0, angle_ = 1;
+  AxisTicks rings_{};
+  ReadableUnit unit_;
+};
+
 /// Where the view of the grains goes, and what its colours mean.
 struct ViewLayout {
   Range x, y;               ///< m
@@ -445,7 +510,8 @@ std::string draw(const Picture& picture) {
   for (std::size_t i = 0; i < count; ++i) {
     const Point corner{margin + static_cast<double>(i % columns) * (panel_wide + gap),
                        panels_top + static_cast<double>(i / columns) * panel_high};
-    PanelDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
+    if (picture.panels[i].polar) PolarDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
+    else PanelDrawing(svg, picture.panels[i], names, corner, panel_wide, panel_high).draw();
   }
   if (picture.grains) {
     const double left = margin + 0.5 * (heading.inner() - view.bar - view.wide);

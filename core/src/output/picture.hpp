@@ -25,6 +25,7 @@ struct Panel {
   Axis x, y;
   std::vector<Curve> curves;
   bool peaks = true;
+  bool polar = false;  ///< x are directions, from the right towards above, round a middle where y is 0: a step a point
 };
 
 struct Disc {

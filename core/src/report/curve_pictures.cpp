@@ -135,11 +135,12 @@ std::optional<Panel> panel_of(const std::string& wanted, std::span<const RunResu
   return panel;
 }
 
-/// A list over places.
-bool is_profile(const ProbeSeries& probe, const ProbeSeries::Channel& channel) {
+/// A list over what is measured in one of these units.
+bool is_list_over(const std::vector<std::string>& units, const ProbeSeries& probe,
+                  const ProbeSeries::Channel& channel) {
   const auto* place = channel.sampled.coordinate.empty() ? nullptr : probe.channel(channel.sampled.coordinate);
   return place && place->width() == channel.width() && place->sampled.samples == channel.sampled.samples &&
-         channel.sampled.samples > 0 && place->sampled.unit == "m";
+         channel.sampled.samples > 0 && std::ranges::find(units, place->sampled.unit) != units.end();
 }
 
 std::vector<double> row(const SampledChannel& list, std::size_t sample) {
@@ -164,6 +165,35 @@ std::string abscissa_at(const RunResults& run, double instant) {
   const auto [factor, unit] = readable(x.channel->sampled.unit, largest);
   const std::string number = short_number(values[after - 1] * factor);
   return ": " + spelled(x.channel->name) + ' ' + number + (unit == "1" ? "" : (unit == "°" ? "" : " ") + unit);
+}
+
+/// A picture a probe with a panel of each of its lists over such units.
+std::vector<NamedPicture> list_pictures(const RunResults& run, const std::string& what,
+                                        const std::vector<std::string>& units, bool polar) {
+  std::vector<NamedPicture> pictures;
+  for (const ProbeSeries& probe : run.probes) {
+    const auto* time = probe.channel("time");
+    if (!time) continue;
+    Picture picture{run.title(), what + " of " + probe.name, {}, {}};
+    for (const auto& channel : probe.channels) {
+      if (!is_list_over(units, probe, channel) || channel.zero_throughout()) continue;
+      const auto& place = *probe.channel(channel.sampled.coordinate);
+      Panel panel{{place.label(), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false, polar};
+      const std::size_t last = std::min(channel.sampled.samples, time->sampled.values.size());
+      std::size_t drawn = last;
+      for (const std::size_t sample : {(last - 1) / 3, 2 * (last - 1) / 3, last - 1}) {
+        if (last == 0 || sample == drawn) continue;
+        drawn = sample;
+        panel.curves.push_back(
+            {.name = written_time(time->sampled.values[sample]) + abscissa_at(run, time->sampled.values[sample]),
+             .x = row(place.sampled, sample),
+             .y = row(channel.sampled, sample)});
+      }
+      picture.panels.push_back(std::move(panel));
+    }
+    if (!picture.panels.empty()) pictures.push_back({what + '-' + probe.name, draw(picture)});
+  }
+  return pictures;
 }
 
 }  // namespace
@@ -193,30 +223,11 @@ std::optional<std::string> curves_picture(std::span<RunResults> runs) {
 }
 
 std::vector<NamedPicture> profile_pictures(const RunResults& run) {
-  std::vector<NamedPicture> pictures;
-  for (const ProbeSeries& probe : run.probes) {
-    const auto* time = probe.channel("time");
-    if (!time) continue;
-    Picture picture{run.title(), "profiles of " + probe.name, {}, {}};
-    for (const auto& channel : probe.channels) {
-      if (!is_profile(probe, channel) || channel.zero_throughout()) continue;
-      const auto& place = *probe.channel(channel.sampled.coordinate);
-      Panel panel{{place.label(), place.sampled.unit}, {spelled(channel.name), channel.sampled.unit}, {}, false};
-      const std::size_t last = std::min(channel.sampled.samples, time->sampled.values.size());
-      std::size_t drawn = last;
-      for (const std::size_t sample : {(last - 1) / 3, 2 * (last - 1) / 3, last - 1}) {
-        if (last == 0 || sample == drawn) continue;
-        drawn = sample;
-        panel.curves.push_back(
-            {.name = written_time(time->sampled.values[sample]) + abscissa_at(run, time->sampled.values[sample]),
-             .x = row(place.sampled, sample),
-             .y = row(channel.sampled, sample)});
-      }
-      picture.panels.push_back(std::move(panel));
-    }
-    if (!picture.panels.empty()) pictures.push_back({"profiles-" + probe.name, draw(picture)});
-  }
-  return pictures;
+  return list_pictures(run, "profiles", {"m"}, false);
+}
+
+std::vector<NamedPicture> direction_pictures(const RunResults& run) {
+  return list_pictures(run, "directions", {"rad", "degree"}, true);
 }
 
 }  // namespace grit

@@ -20,4 +20,7 @@ std::optional<std::string> curves_picture(std::span<RunResults> runs);
 /// samples and at the last.
 std::vector<NamedPicture> profile_pictures(const RunResults& run);
 
+/// The same of lists over directions, as polar plots.
+std::vector<NamedPicture> direction_pictures(const RunResults& run);
+
 }  // namespace grit

@@ -132,29 +132,59 @@ std::optional<std::string> grains_picture(RunResults& run) {
   return draw(view_of(run, *frame, kept ? wanted : "speed", {}));
 }
 
-std::optional<std::string> chains_picture(RunResults& run) {
-  const auto frame = last_frame(run);
-  if (!frame || std::ranges::none_of(frame->chain, [](std::uint32_t chain) { return chain > 0; })) return std::nullopt;
-  Picture picture = view_of(run, *frame, "speed", {});
+namespace {
+
+/// Faint grains under links between them, as wide as their normal force, and the force of the widest [N].
+std::pair<Picture, double> picture_of_links(const RunResults& run, const Frame& frame,
+                                            const std::vector<std::size_t>& contacts) {
+  std::pair<Picture, double> made{view_of(run, frame, "speed", {}), 0};
+  auto& [picture, strongest] = made;
   GrainView& view = *picture.grains;
   for (Disc& disc : view.discs) disc.value = std::numeric_limits<double>::quiet_NaN();
   const std::string axes = view_wanted(run);
   const auto right = static_cast<std::size_t>(axes[0] - 'x'), up = static_cast<std::size_t>(axes[1] - 'x');
-  double strongest = 0;
-  std::uint32_t last = 0;
   std::vector<Link> links;
-  for (std::size_t k = 0; k < frame->chain.size(); ++k) {
-    if (frame->chain[k] == 0) continue;
-    last = std::max(last, frame->chain[k]);
-    const auto body = std::ranges::lower_bound(frame->id, frame->body_a[k]);
-    if (body == frame->id.end() || *body != frame->body_a[k]) continue;
-    const double* start = &frame->position[3 * static_cast<std::size_t>(body - frame->id.begin())];
-    const double* way = &frame->branch[3 * k];
-    links.push_back({start[right], start[up], start[right] + way[right], start[up] + way[up], frame->normal_force[k]});
-    if (drawable(frame->normal_force[k])) strongest = std::max(strongest, frame->normal_force[k]);
+  for (const std::size_t k : contacts) {
+    const auto body = std::ranges::lower_bound(frame.id, frame.body_a[k]);
+    if (body == frame.id.end() || *body != frame.body_a[k]) continue;
+    const double* start = &frame.position[3 * static_cast<std::size_t>(body - frame.id.begin())];
+    const double* way = &frame.branch[3 * k];
+    links.push_back({start[right], start[up], start[right] + way[right], start[up] + way[up], frame.normal_force[k]});
+    if (drawable(frame.normal_force[k])) strongest = std::max(strongest, frame.normal_force[k]);
   }
   for (Link& link : links) link.weight /= strongest > 0 ? strongest : 1;
   view.links = std::move(links);
+  return made;
+}
+
+}  // namespace
+
+std::optional<std::string> force_chains_picture(RunResults& run) {
+  const auto frame = last_frame(run);
+  if (!frame) return std::nullopt;
+  double sum = 0, count = 0;
+  for (const double force : frame->normal_force)
+    if (drawable(force)) sum += std::abs(force), ++count;
+  std::vector<std::size_t> above;
+  for (std::size_t k = 0; k < frame->normal_force.size(); ++k)
+    if (std::abs(frame->normal_force[k]) * count > sum) above.push_back(k);
+  if (above.empty()) return std::nullopt;
+  auto [picture, strongest] = picture_of_links(run, *frame, above);
+  picture.facts +=
+      fmt::format("  ·  contacts above the mean of {:.3g} N, as wide as their normal force, {:.3g} N at most",
+                  sum / count, strongest);
+  return draw(picture);
+}
+
+std::optional<std::string> chains_picture(RunResults& run) {
+  const auto frame = last_frame(run);
+  if (!frame) return std::nullopt;
+  std::vector<std::size_t> linked;
+  std::uint32_t last = 0;
+  for (std::size_t k = 0; k < frame->chain.size(); ++k)
+    if (frame->chain[k] > 0) linked.push_back(k), last = std::max(last, frame->chain[k]);
+  if (linked.empty()) return std::nullopt;
+  auto [picture, strongest] = picture_of_links(run, *frame, linked);
   picture.facts += fmt::format("  ·  {} linear chains, links as wide as their normal force, {:.3g} N at most",
                                grouped(last), strongest);
   return draw(picture);

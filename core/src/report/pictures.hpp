@@ -18,8 +18,11 @@ std::optional<std::string> grains_picture(RunResults& run);
 /// one. Nothing where there is no frame after that.
 std::optional<std::string> layers_picture(RunResults& run);
 
-/// The same, faint, under the links of the linear force chains that a probe tells of, through the whole depth. Nothing
+/// The same, faint, under the contacts above the mean normal force, through the whole depth. Nothing
 /// where there is none.
+std::optional<std::string> force_chains_picture(RunResults& run);
+
+/// The same under the links of the linear force chains that a probe tells of.
 std::optional<std::string> chains_picture(RunResults& run);
 
 /// The maps of the last frame that can be read, a picture a field with a panel a component. Seen as the description's

@@ -67,7 +67,7 @@ Simulation::Simulation(const SceneDescription& scene, Bodies bodies, unsigned th
 
 void Simulation::begin_stage(const std::string& name, const SceneDescription& scene) {
   stage_ = name;
-  bodies_.start_displacements();
+  bodies_.start_paths();
   walls_.apply(scene);
   apply(scene);
   admit();

@@ -59,9 +59,10 @@ void Simulation::check_energy() {
     if (begins) energy_.stored_at_start = std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  const double energy = kinetic_energy() + elastic_energy().total(), stored = energy + gravitational();
-  const double last_half = 0.5 * clock_.last_time_step * power_of_walls();
   const EnergyLedger ledger = by_ledger ? energies() : EnergyLedger{};
+  const double energy = by_ledger ? ledger.kinetic + ledger.elastic() : kinetic_energy() + elastic_energy().total();
+  const double stored = by_ledger ? 0 : energy + gravitational();
+  const double last_half = by_ledger ? 0 : 0.5 * clock_.last_time_step * power_of_walls();
   if (begins) {
     energy_ = {.begins = false,
                .first = clock_.step,

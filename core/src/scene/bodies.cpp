@@ -65,13 +65,14 @@ void Bodies::finish(StateRequest asked_for) {
   material.push_back(0);
   state = asked_for;
   if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
-  if (state.has(BodyState::rotation)) rotation.assign(count(), Vec3::Zero());
+  if (state.has(BodyState::rotation)) rotation.resize(count());
   if (state.has(BodyState::displacement)) origin.resize(count());
-  start_displacements();
+  start_paths();
 }
 
-void Bodies::start_displacements() {
+void Bodies::start_paths() {
   for (std::size_t i = 0; i < origin.size(); ++i) origin[i] = xyz(position[i]);
+  std::ranges::fill(rotation, Vec3::Zero());
 }
 
 void Bodies::append(const Bodies& others) {

@@ -21,8 +21,8 @@ struct Bodies {
   LargeArray<Row> spin;      ///< rad/s; w: 1/inertia [1/(kg m²)]
   std::vector<std::uint32_t> id;
   std::vector<std::uint8_t> material;
-  std::vector<Vec3> rotation;  ///< cumulative [rad]; empty unless asked for
-  std::vector<Vec3> origin;  ///< from where displacements count [m], see start_displacements(); empty unless asked for
+  std::vector<Vec3> rotation;  ///< cumulative, see start_paths() [rad]; empty unless asked for
+  std::vector<Vec3> origin;    ///< from where displacements count [m], see start_paths(); empty unless asked for
   Clumps clumps;
   StateRequest state;                                ///< that components asked for
   std::uint32_t ids_given = 0, clump_ids_given = 0;  ///< ever, to those that have left too
@@ -42,9 +42,9 @@ struct Bodies {
                  const Vec3& spin = Vec3::Zero());
   /// After the last add(): pads, and allocates the state that was asked for.
   void finish(StateRequest asked_for);
-  /// Displacements count from here on. Origins go on at the other side with their bodies, so that no step has to add up
-  /// ways.
-  void start_displacements();
+  /// Displacements and rotations count from here on. Origins go on at the other side with their bodies, so that no step
+  /// has to add up ways.
+  void start_paths();
   /// Adds other bodies after these; both are finished, with the same state. The others get the ids that come after all
   /// that were ever given away here.
   void append(const Bodies& others);

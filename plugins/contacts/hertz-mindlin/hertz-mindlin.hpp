@@ -73,8 +73,8 @@ struct HertzMindlin {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
            (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u);
   }
-  static constexpr std::size_t fields_used(unsigned features) {
-    return (features & with_rolling) != 0 ? 7 : (features & with_shear) != 0 ? 4 : 0;
+  static constexpr unsigned fields_used(unsigned features) {
+    return ((features & with_shear) != 0 ? 0b1111u : 0u) | ((features & with_rolling) != 0 ? 0b1111000u : 0u);
   }
 
   static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface& interface,
@@ -124,8 +124,6 @@ struct HertzMindlin {
       const Vec<L> stored{state.shear_x, state.shear_y, state.shear_z};
       response.shear = shortened(stretched(at, kept * stored, ks, at.velocity), pair.friction * response.normal_force);
       state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
-    } else {
-      state.shear_x = state.shear_y = state.shear_z = L(0.0);
     }
     if constexpr ((Features & with_rolling) != 0) {
       const Vec<L> stored{state.rolling_x, state.rolling_y, state.rolling_z};

@@ -31,7 +31,7 @@ std::vector<LawSetup> setups() {
         if (rolling) name += "Rolling";
         all.push_back({.name = name,
                        .values = three(friction ? 25 : 0, damping ? 0.4 : 1, rolling ? 0.5 : 0),
-                       .state_size = rolling    ? 7u
+                       .state_size = rolling    ? (friction ? 7u : 4u)
                                      : friction ? 4u
                                                 : 0u,
                        .wall_sphere = 1e6});

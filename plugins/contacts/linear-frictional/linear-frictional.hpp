@@ -66,7 +66,7 @@ struct LinearFrictional {
     return (shear ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
            (shear && pair.shear_damping > 0 ? with_shear_damping : 0u);
   }
-  static constexpr std::size_t fields_used(unsigned features) { return (features & with_shear) != 0 ? 3 : 0; }
+  static constexpr unsigned fields_used(unsigned features) { return (features & with_shear) != 0 ? 0b111u : 0u; }
 
   /// A wall lends its friction and restitution: stiffness, like the radius, is the grain's.
   static Pair<double> mix(const Settings& settings, const Material& a, const Material& b, const Interface& interface,

@@ -93,11 +93,9 @@ struct LinearRolling {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u) |
            (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u);
   }
-  static constexpr std::size_t fields_used(unsigned features) {
-    return (features & with_twisting) != 0  ? 7
-           : (features & with_rolling) != 0 ? 6
-           : (features & with_shear) != 0   ? 3
-                                            : 0;
+  static constexpr unsigned fields_used(unsigned features) {
+    return ((features & with_shear) != 0 ? 0b111u : 0u) | ((features & with_rolling) != 0 ? 0b111000u : 0u) |
+           ((features & with_twisting) != 0 ? 0b1000000u : 0u);
   }
 
   /// A wall lends its strength only: stiffness, like the radius, is the grain's.
@@ -139,8 +137,6 @@ struct LinearRolling {
       const Vec<L> shear = stretched(at, {state.shear_x, state.shear_y, state.shear_z}, ks, at.velocity);
       response.shear = shortened(shear, pair.friction * response.normal_force);
       state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
-    } else {
-      state.shear_x = state.shear_y = state.shear_z = L(0.0);
     }
 
     if constexpr ((Features & (with_rolling | with_twisting)) != 0) {
@@ -151,8 +147,6 @@ struct LinearRolling {
             stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, pair.rolling * angular, at.spin);
         response.moment = shortened(rolling, pair.rolling_limit * arm);
         state.rolling_x = response.moment.x, state.rolling_y = response.moment.y, state.rolling_z = response.moment.z;
-      } else {
-        state.rolling_x = state.rolling_y = state.rolling_z = L(0.0);
       }
       if constexpr ((Features & with_twisting) != 0) {
         state.twisting = twisted(at, state.twisting, pair.twisting * angular, pair.twisting_limit * arm);

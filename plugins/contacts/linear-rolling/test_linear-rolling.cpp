@@ -28,7 +28,7 @@ LawValues three(double rolling, double twisting) {
 std::vector<LawSetup> setups() {
   return {{"Sliding", three(0, 0), 3},
           {"Rolling", three(0.7, 0), 6},
-          {"Twisting", three(0, 0.5), 7},
+          {"Twisting", three(0, 0.5), 4},
           {"RollingTwisting", three(0.7, 0.5), 7}};
 }
 INSTANTIATE_TEST_SUITE_P(LinearRolling, ContactLawContract, testing::ValuesIn(setups()), setup_name);

@@ -43,11 +43,9 @@ std::vector<Channel> Interface::channels() const {
       {"traction_ratio", "1", "C = t d50 / m; NaN without a couple", {}}};
 }
 
-/// Mean of the layer since the first sample of the stage [rad].
-double Interface::rotation(const World& world, const Vec3& about) {
-  turned_.begin(world);
+double Interface::rotation(const World& world, const Vec3& about) const {
   double sum = 0, bodies = 0;
-  layer.for_bodies(world, [&](std::size_t i) { sum += turned_(world, i, world.rotations()[i].dot(about)), ++bodies; });
+  layer.for_bodies(world, [&](std::size_t i) { sum += world.rotations()[i].dot(about), ++bodies; });
   return bodies > 0 ? sum / bodies : 0;
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "../turned_in_stage.hpp"
 #include "../wall_layer.hpp"
 #include "grit/probe.hpp"
 
@@ -20,12 +19,10 @@ class Interface final : public Probe {
   void prepare(const World& world) override { layer.prepare(world, "probe interface"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
-  void remember(Memory& memory) override { memory(turned_); }
 
  private:
-  double rotation(const World& world, const Vec3& about);
-
-  TurnedInStage turned_;
+  /// Mean of the layer in the stage [rad].
+  double rotation(const World& world, const Vec3& about) const;
 };
 
 }  // namespace grit

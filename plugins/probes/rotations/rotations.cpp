@@ -35,15 +35,13 @@ std::vector<Channel> Rotations::channels() const {
 
 void Rotations::sample(const World& world, std::span<const std::span<double>> values) {
   const int axis = about[0] - 'x';
-  turned_.begin(world);
-  std::vector<double> turned(world.rotations().size());
-  for (std::size_t i = 0; i < turned.size(); ++i) turned[i] = turned_(world, i, world.rotations()[i][axis]);
+  const auto turned = world.rotations();
   const auto nodes = profile.nodes(world);
-  const auto lines = profile.fit(world, [&](std::size_t i) { return turned[i]; });
+  const auto lines = profile.fit(world, [&](std::size_t i) { return turned[i][axis]; });
   for (std::size_t k = 0; k < lines.value.size(); ++k) values[0][k] = nodes.at(k), values[1][k] = lines.value[k];
   double sum = 0, magnitudes = 0;
-  for (const double one : turned)
-    if (std::isfinite(one)) sum += one, magnitudes += std::abs(one);
+  for (const Vec3& body : turned)
+    if (const double one = body[axis]; std::isfinite(one)) sum += one, magnitudes += std::abs(one);
   const double count = std::max<double>(1, static_cast<double>(turned.size()));
   values[2][0] = sum / count, values[3][0] = magnitudes / count;
   fill_zone(shear_zone(nodes, lines.value), world, values.subspan(4));

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "../profile.hpp"
-#include "../turned_in_stage.hpp"
 #include "grit/probe.hpp"
 
 namespace grit {
@@ -21,10 +20,6 @@ class Rotations final : public Probe {
   void prepare(const World& world) override { profile.prepare(world, "probe rotations"); }
   std::vector<Channel> channels() const override;
   void sample(const World& world, std::span<const std::span<double>> values) override;
-  void remember(Memory& memory) override { memory(turned_); }
-
- private:
-  TurnedInStage turned_;
 };
 
 }  // namespace grit

@@ -23,12 +23,6 @@ FakeWorld column(Turn turn) {
   world.whole = {Vec3::Zero(), Vec3::Ones()};
   return world;
 }
-/// Has the probe look at the bodies before they turn.
-void begin(Rotations& probe, FakeWorld world) {
-  probe.prepare(world);
-  for (Vec3& rotation : world.rotation) rotation.setZero();
-  sampled(probe, world);
-}
 double figure(Rotations& probe, const FakeWorld& world, const std::string& channel) {
   return channel_values(probe, world, channel).at(0);
 }
@@ -37,7 +31,7 @@ TEST(Rotations, ProfileOfALinearOneIsItself) {
   const FakeWorld world = column([](double z) { return 3 * z - 1; });
   Rotations probe;
   probe.profile.places = 11;
-  begin(probe, world);
+  probe.prepare(world);
   const auto place = channel_values(probe, world, "place"), profile = channel_values(probe, world, "profile");
   for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(place[k], 0.1 * static_cast<double>(k), 1e-15);
   for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(profile[k], 3 * place[k] - 1, 1e-12) << k;
@@ -54,7 +48,7 @@ TEST(Rotations, ZoneLiesBetweenTheInflectionsOfABell) {
         column([=](double z) { return sign * std::exp(-0.5 * (z - centre) * (z - centre) / (sigma * sigma)); });
     Rotations probe;
     probe.profile.reach = 4, probe.profile.places = 101;
-    begin(probe, world);
+    probe.prepare(world);
     const double widened = std::sqrt(sigma * sigma + reach * reach / 6);
     EXPECT_NEAR(figure(probe, world, "zone_low"), centre - widened, 3e-3 * widened);
     EXPECT_NEAR(figure(probe, world, "zone_high"), centre + widened, 3e-3 * widened);
@@ -68,7 +62,7 @@ TEST(Rotations, ZoneAtASideEndsThere) {
   const FakeWorld world = column([=](double z) { return std::exp(-0.5 * z * z / (sigma * sigma)); });
   Rotations probe;
   probe.profile.places = 101;
-  begin(probe, world);
+  probe.prepare(world);
   EXPECT_EQ(figure(probe, world, "zone_low"), 0);
   EXPECT_NEAR(figure(probe, world, "zone_high"), sigma, 1e-2 * sigma);
 }
@@ -79,7 +73,7 @@ TEST(Rotations, AboutTheAxisThatIsAskedForAndBodyByBody) {
   world.rotation = {{1, 2, 3}, {-4, 5, 6}};
   Rotations probe;
   probe.about = "x";
-  begin(probe, world);
+  probe.prepare(world);
   EXPECT_THAT(channel_values(probe, world, "mean"), ElementsAre(-1.5));
   EXPECT_THAT(channel_values(probe, world, "mean_magnitude"), ElementsAre(2.5));
 }
@@ -89,7 +83,7 @@ TEST(Rotations, KnowsNothingWhereThereAreNoBodies) {
   world.whole.high.z() = 2;  // half empty
   Rotations probe;
   probe.profile.places = 101;
-  begin(probe, world);
+  probe.prepare(world);
   const auto profile = channel_values(probe, world, "profile");
   EXPECT_TRUE(std::isfinite(profile[49]));
   EXPECT_TRUE(std::isnan(profile[60]));
@@ -102,7 +96,7 @@ TEST(Rotations, HaveNoZoneWhereNothingTurns) {
   const FakeWorld world = column([](double) { return 0.0; });
   Rotations probe;
   probe.profile.places = 101;
-  begin(probe, world);
+  probe.prepare(world);
   for (const char* of_zone : {"zone_low", "zone_high", "zone_thickness", "zone_diameters"})
     EXPECT_TRUE(std::isnan(figure(probe, world, of_zone))) << of_zone;
 }
@@ -112,39 +106,8 @@ TEST(Rotations, OfAZoneIsNotDrawnAwayByOneFarPlace) {
       [](double z) { return std::exp(-0.5 * (z - 0.3) * (z - 0.3) / 0.01) + (z > 0.9 && z < 0.92 ? -0.9 : 0.0); });
   Rotations probe;
   probe.profile.places = 101, probe.profile.reach = 1;
-  begin(probe, world);
+  probe.prepare(world);
   EXPECT_NEAR(figure(probe, world, "zone_high"), 0.4, 0.01);
-}
-
-// A preparation that turned grains elsewhere, and further than the test does, leaves no mark on the test's zone.
-TEST(Rotations, CountFromTheBeginningOfEachStage) {
-  const auto bell = [](double z, double centre) { return std::exp(-0.5 * (z - centre) * (z - centre) / 0.01); };
-  const FakeWorld prepared = column([&](double z) { return 2 * bell(z, 0.8); });
-  FakeWorld sheared = column([&](double z) { return 2 * bell(z, 0.8) + bell(z, 0.4); });
-  Rotations probe;
-  probe.profile.places = 101;
-  probe.prepare(prepared);
-  EXPECT_EQ(figure(probe, prepared, "mean_magnitude"), 0);
-  EXPECT_NEAR(figure(probe, sheared, "zone_low"), 0.3, 0.01);
-  EXPECT_NEAR(figure(probe, sheared, "zone_high"), 0.5, 0.01);
-  std::swap(sheared.id[0], sheared.id[999]), std::swap(sheared.position[0], sheared.position[999]);
-  std::swap(sheared.rotation[0], sheared.rotation[999]);  // bodies in another order
-  EXPECT_NEAR(figure(probe, sheared, "zone_thickness"), 0.2, 0.02);
-  FakeWorld back = sheared;
-  back.stage_name = "back";
-  EXPECT_EQ(figure(probe, back, "mean_magnitude"), 0);
-  for (Vec3& rotation : back.rotation) rotation.y() -= 0.25;
-  EXPECT_NEAR(figure(probe, back, "mean"), -0.25, 1e-12);
-}
-
-TEST(Rotations, CountABodyFromWhenItIsThere) {
-  FakeWorld world;
-  world.add({0, 0, 0.2}, 0.1);
-  world.rotation = {{0, 1, 0}};
-  Rotations probe;
-  begin(probe, world);
-  world.add({0, 0, 0.8}, 0.1), world.rotation.push_back({0, 7, 0});
-  EXPECT_EQ(figure(probe, world, "mean"), 0.5);
 }
 
 TEST(Rotations, RefusesAnAxisWithoutSides) {

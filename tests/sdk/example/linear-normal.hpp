@@ -29,7 +29,7 @@ struct LinearNormal {
   static std::vector<grit::StateField> fields() { return {{"unused", "1", "zero", 1}}; }
   static constexpr unsigned feature_bits = 0;
   static unsigned features(const Pair<double>&) { return 0; }
-  static constexpr std::size_t fields_used(unsigned) { return 0; }
+  static constexpr unsigned fields_used(unsigned) { return 0; }
 
   static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface&, bool) {
     return {a.stiffness * b.stiffness / (a.stiffness + b.stiffness)};

@@ -51,9 +51,10 @@ struct StateField {
 
 /// The loop that evaluates a law's pairs.
 struct LawLoop {
-  std::size_t lanes = 1;             ///< pairs at once
-  std::string precision = "double";  ///< of the arithmetic, or single
-  std::vector<std::string> parts;    ///< of the law, compiled in; others were left out
+  std::size_t lanes = 1;              ///< pairs at once
+  std::string precision = "double";   ///< of the arithmetic, or single
+  std::vector<std::string> parts;     ///< of the law, compiled in
+  std::vector<std::string> left_out;  ///< those that nothing here needs
 };
 
 /// All calls come from the thread that owns the simulation, but evaluate_*, which are called from several at once on

@@ -14,7 +14,7 @@
 //     static unsigned features(const Pair<double>&);                              // which of them this pair needs
 //     static constexpr bool single_precision = true;                              // may be left out: double alone
 //     static constexpr const char* feature_names[] = {"shear"};                   // one a bit; may be left out
-//     static constexpr std::size_t fields_used(unsigned features);                // how many leading fields they need
+//     static constexpr unsigned fields_used(unsigned features);                   // which fields they need, a bit each
 //     template <unsigned Features, class L> [[gnu::always_inline]]
 //     static Response<L> evaluate(const ContactPoint<L>&, const Pair<L>&, State<L>&);
 //     static Stiffness stiffness(const PairSize&, const Pair<double>&);
@@ -25,8 +25,8 @@
 //   };
 //
 // evaluate() has no branches: it uses select(), min(), max(), sqrt(), abs() of grit/contact/lanes.hpp. It is also
-// called for lanes that do not touch; their results are discarded, so that they only must not trap. Of a feature that
-// is off it leaves zeros in memory that a later field's feature keeps: it may come on again in another stage.
+// called for lanes that do not touch; their results are discarded, so that they only must not trap. Fields that no
+// feature needs are not kept, and are 0 for it.
 // A law that says single_precision is offered in lanes of floats too: what a divisor is kept above is L(tiny<L>) there,
 // how near is as good as equal beyond_rounding<L>, and of State a number is rounded to 24 bits at every step.
 // It is asked again at an instant that it has seen, with the memory that it left, dt = 0 and a turn that turns nothing,
@@ -34,6 +34,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 #include <map>
@@ -144,6 +145,18 @@ template <class L, class Members>
 }
 template <class Members, class L>
 inline constexpr std::size_t member_count = sizeof(Members) / sizeof(L);
+
+/// Places of the bits that are set.
+template <unsigned mask>
+inline constexpr auto places_of_bits = [] {
+  std::array<std::size_t, std::popcount(mask)> places{};
+  for (std::size_t bit = 0, k = 0; k < places.size(); ++bit)
+    if ((mask >> bit & 1) != 0) places[k++] = bit;
+  return places;
+}();
+/// Where in State the fields are that contacts remember.
+template <class Law, unsigned Features>
+inline constexpr auto kept_fields = places_of_bits<Law::fields_used(Features)>;
 
 /// Parameters of the pairs of `width` contacts.
 template <class Law, class L, class Index>
@@ -269,7 +282,7 @@ class Parted {
 };
 
 /// What springs of two bodies that touch no more held, of which friction and rolling had not yet taken all, is lost.
-template <class Law>
+template <class Law, unsigned Features>
 void lose_springs(const PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials,
                   std::size_t place, std::span<const double> remembered) {
   const std::uint32_t a = batch.a[place], b = batch.b[place];
@@ -283,7 +296,8 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
   // As it was when they touched.
   const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
   typename Law::template State<double> state{};
-  for (std::size_t f = 0; f < remembered.size(); ++f) member<double>(state, f) = remembered[f];
+  for (std::size_t f = 0; f < remembered.size(); ++f)
+    member<double>(state, kept_fields<Law, Features>[f]) = remembered[f];
   const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
   const PairSize size{.radius_a = radius_a,
                       .radius_b = radius_b,
@@ -303,9 +317,10 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
-                                                      Waiting<Law::fields_used(Features)>* waiting,
-                                                      Parted<Law::fields_used(Features)>* parted) {
-  constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
+                                                      Waiting<kept_fields<Law, Features>.size()>* waiting,
+                                                      Parted<kept_fields<Law, Features>.size()>* parted) {
+  constexpr auto& kept = kept_fields<Law, Features>;
+  constexpr std::size_t width = lane_width<L>, fields = kept.size();
   using State = typename Law::template State<L>;
   const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
   using W = Wide<L>;
@@ -420,7 +435,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       largest = max(largest, at.overlap / max(min(at.radius_a, at.radius_b), L(tiny<L>)));
 
       State state{};
-      for (std::size_t f = 0; f < fields; ++f) member<L>(state, f) = load_lanes<L>(state_at + f * block_size);
+      for (std::size_t f = 0; f < fields; ++f) member<L>(state, kept[f]) = load_lanes<L>(state_at + f * block_size);
       [[maybe_unused]] const State before_step = state;
       typename Law::template Pair<L> pair;
       if constexpr (OneKind) {
@@ -440,7 +455,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         left.viscosity = left.viscosity - widened(select(touches, own.viscosity, zero));
       }
       for (std::size_t f = 0; f < fields; ++f)
-        store_lanes(select(touches, member<L>(state, f), zero), state_at + f * block_size);
+        store_lanes(select(touches, member<L>(state, kept[f]), zero), state_at + f * block_size);
 
       // The arms add up to the branch, so that no angular momentum is made, and are as the radii, so that shear does
       // the same share of its work on all motions: laws tell slip with the radii as arms.
@@ -491,14 +506,14 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
   constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind, Ledger>;
-  Waiting<Law::fields_used(Features)> waiting;
-  Parted<Law::fields_used(Features)> parted;
+  Waiting<kept_fields<Law, Features>.size()> waiting;
+  Parted<kept_fields<Law, Features>.size()> parted;
   double largest = 0;
   for (std::size_t next = batch.first_block; next < batch.last_block;) {
     next = loop(batch, table, materials, next, &waiting, &parted);
     if constexpr (Ledger)
       parted.take([&](std::size_t place, std::span<const double> state) {
-        lose_springs<Law>(batch, table, materials, place, state);
+        lose_springs<Law, Features>(batch, table, materials, place, state);
       });
     largest = std::max(largest, batch.largest_overlap);
     // Where only `parted` was full, those that wait go on waiting: a ledger does not change the order of sums.
@@ -523,7 +538,8 @@ template <std::size_t count, class Use>
 template <class Law, unsigned Features, class L, bool Ledger>
 [[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
                                                std::size_t materials) {
-  constexpr std::size_t width = lane_width<L>, fields = Law::fields_used(Features);
+  constexpr auto& kept = kept_fields<Law, Features>;
+  constexpr std::size_t width = lane_width<L>, fields = kept.size();
   using State = typename Law::template State<L>;
   const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
   const L place([](std::size_t k) { return k; });
@@ -563,11 +579,11 @@ template <class Law, unsigned Features, class L, bool Ledger>
     State state{};
     for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
       const RowLanes<L> row = load_fours<L>([&](std::size_t k) { return memory(k) + f; });
-      member<L>(state, f) = row.x, member<L>(state, f + 1) = row.y;
-      member<L>(state, f + 2) = row.z, member<L>(state, f + 3) = row.w;
+      member<L>(state, kept[f]) = row.x, member<L>(state, kept[f + 1]) = row.y;
+      member<L>(state, kept[f + 2]) = row.z, member<L>(state, kept[f + 3]) = row.w;
     });
     for (std::size_t f = 0; fields < 4 && f < fields; ++f)
-      member<L>(state, f) = gather_lanes<L>([&](std::size_t k) { return memory(k)[f]; });
+      member<L>(state, kept[f]) = gather_lanes<L>([&](std::size_t k) { return memory(k)[f]; });
     const auto kind = [&](std::size_t k) {
       const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
       return own * materials + touch(k).material;
@@ -589,13 +605,13 @@ template <class Law, unsigned Features, class L, bool Ledger>
     const Vec<L> force = response.normal_force * normal + response.shear, lever = cross(normal, response.shear);
     const Vec<L> moment_a = -response.moment - pa.w * lever, moment_wall = response.moment + at.overlap * lever;
     for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
-      store_rows(member<L>(state, f), member<L>(state, f + 1), member<L>(state, f + 2), member<L>(state, f + 3),
-                 [&](std::size_t k, const Quad& numbers) {
+      store_rows(member<L>(state, kept[f]), member<L>(state, kept[f + 1]), member<L>(state, kept[f + 2]),
+                 member<L>(state, kept[f + 3]), [&](std::size_t k, const Quad& numbers) {
                    if (k < used) std::memcpy(memory(k) + f, &numbers, sizeof numbers);
                  });
     });
     for (std::size_t k = 0; fields < 4 && k < used; ++k)
-      for (std::size_t f = 0; f < fields; ++f) memory(k)[f] = lane(member<L>(state, f), k);
+      for (std::size_t f = 0; f < fields; ++f) memory(k)[f] = lane(member<L>(state, kept[f]), k);
     store_rows(force.x, force.y, force.z, response.normal_force, [&](std::size_t k, const Quad& on_wall) {
       if (k >= used) return;
       store(on_wall, batch.row[first + k].force);
@@ -652,15 +668,20 @@ class LawPlugin final : public ContactLaw {
   }
 
   std::vector<StateField> state() const override {
-    auto fields = Law::fields();
-    fields.resize(Law::fields_used(features_));
-    return fields;
+    const auto all = Law::fields();
+    std::vector<StateField> kept;
+    for (std::size_t f = 0; f < all.size(); ++f)
+      if (keeps(f)) kept.push_back(all[f]);
+    return kept;
   }
   LawLoop loop() const override {
-    LawLoop loop{.lanes = single() ? lane_width<SingleLane> : lane_width<Lane>, .precision = precision_, .parts = {}};
+    LawLoop loop{.lanes = single() ? lane_width<SingleLane> : lane_width<Lane>,
+                 .precision = precision_,
+                 .parts = {},
+                 .left_out = {}};
     if constexpr (requires { Law::feature_names[0]; })
       for (unsigned bit = 0; bit < Law::feature_bits; ++bit)
-        if ((features_ >> bit & 1) != 0) loop.parts.push_back(Law::feature_names[bit]);
+        ((features_ >> bit & 1) != 0 ? loop.parts : loop.left_out).push_back(Law::feature_names[bit]);
     return loop;
   }
   void evaluate_pairs(PairBatch& batch) const noexcept override {
@@ -689,7 +710,8 @@ class LawPlugin final : public ContactLaw {
   ElasticEnergy energy(const PairSize& pair, std::size_t a, std::size_t b,
                        std::span<const double> state) const override {
     State numbers{};
-    for (std::size_t f = 0; f < state.size(); ++f) detail::member<double>(numbers, f) = state[f];
+    for (std::size_t f = 0, kept = 0; kept < state.size(); ++f)
+      if (keeps(f)) detail::member<double>(numbers, f) = state[kept++];
     return Law::energy(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b], numbers);
   }
 
@@ -721,6 +743,8 @@ class LawPlugin final : public ContactLaw {
       }
     });
   }
+
+  bool keeps(std::size_t field) const { return (Law::fields_used(features_) >> field & 1) != 0; }
 
   static constexpr bool has_single = requires { requires Law::single_precision; };
   bool single() const { return precision_ == "single"; }
