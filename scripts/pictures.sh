@@ -22,6 +22,8 @@ gallery interface-rn-100 sims/interface-shear/quick-rn-100.json
 gallery interface-dl-0240 sims/interface-shear/quick-dl-0240.json
 gallery silo-discharge sims/silo-discharge/quick.json
 drawn direct-shear/map-strain-strain.svg gallery/direct-shear-strain
+drawn direct-shear/force-chains.svg gallery/direct-shear-force-chains
+drawn direct-shear/directions-force-chains.svg gallery/direct-shear-directions
 drawn silo-discharge/map-flow-velocity.svg gallery/silo-discharge-velocity
 drawn silo-discharge/layers.svg gallery/silo-discharge-layers
 
