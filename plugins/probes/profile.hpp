@@ -94,6 +94,7 @@ class Profile {
 /// further out than where it has fallen to a quarter. A zone that is largest at a side of the specimen ends there.
 struct ShearZone {
   double low, high;
+  double extent;  ///< around its peak, of where it exceeds a twentieth of that [m]
   double thickness() const { return high - low; }
 };
 
@@ -103,10 +104,10 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
   for (std::size_t k = 0; k < profile.size(); ++k)
     if (std::isfinite(profile[k])) place.push_back(node.at(k)), size.push_back(profile[k]);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (size.size() < 3) return {unknown, unknown};
+  if (size.size() < 3) return {unknown, unknown, unknown};
   const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const auto peak = static_cast<std::ptrdiff_t>(std::ranges::max_element(size, larger) - size.begin());
-  if (size[static_cast<std::size_t>(peak)] == 0) return {unknown, unknown};
+  if (size[static_cast<std::size_t>(peak)] == 0) return {unknown, unknown, unknown};
   if (size[static_cast<std::size_t>(peak)] < 0)
     for (double& one : size) one = -one;
   const auto at = [&](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
@@ -130,20 +131,33 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
     }
     return place[at(best)] + part * (place[at(best + way)] - place[at(best)]);
   };
-  return {.low = end(-1), .high = end(1)};
+  const auto faint = [&](std::ptrdiff_t way) {
+    const auto last = way < 0 ? std::ptrdiff_t{0} : static_cast<std::ptrdiff_t>(size.size()) - 1;
+    const double least = size[at(peak)] / 20;
+    for (std::ptrdiff_t k = peak; k != last; k += way)
+      if (const double here = size[at(k)], next = size[at(k + way)]; next < least)
+        return std::lerp(place[at(k)], place[at(k + way)], (here - least) / (here - next));
+    return place[at(last)];
+  };
+  return {.low = end(-1), .high = end(1), .extent = faint(1) - faint(-1)};
 }
 
-/// The four channels that tell of a shear zone in `what`.
+/// The channels that tell of a shear zone in `what`.
 inline std::vector<Channel> zone_channels(const std::string& what) {
   const std::string unknown = "; NaN where fewer than three places have bodies, or none does it";
   return {{"zone_low", "m", "where the " + what + " rises to its peak the fastest" + unknown, {}},
           {"zone_high", "m", "where it falls off the fastest" + unknown, {}},
           {"zone_thickness", "m", "distance between the two, the thickness of the shear zone" + unknown, {}},
-          {"zone_diameters", "1", "the same over the mean diameter" + unknown, {}}};
+          {"zone_diameters", "1", "the same over the mean diameter" + unknown, {}},
+          {"zone_extent_diameters",
+           "1",
+           "how wide the " + what + " exceeds a twentieth of its peak, over the mean diameter" + unknown,
+           {}}};
 }
+inline constexpr std::size_t zone_channel_count = 5;
 inline void fill_zone(const ShearZone& zone, const World& world, std::span<const std::span<double>> values) {
   values[0][0] = zone.low, values[1][0] = zone.high, values[2][0] = zone.thickness();
-  values[3][0] = zone.thickness() / world.mean_diameter();
+  values[3][0] = zone.thickness() / world.mean_diameter(), values[4][0] = zone.extent / world.mean_diameter();
 }
 
 }  // namespace grit

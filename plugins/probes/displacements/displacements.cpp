@@ -104,8 +104,8 @@ void Displacements::sample(const World& world, std::span<const std::span<double>
     values[0][k] = nodes.at(k), values[1][k] = lines.value[k], values[2][k] = lines.slope[k];
     values[3][k] = std::sqrt(squares[k] < 0 ? 0 : squares[k]);
   }
-  fill_zone(shear_zone(nodes, lines.slope), world, values.subspan(4, 4));
-  fill_strips(world, values.subspan(8));
+  fill_zone(shear_zone(nodes, lines.slope), world, values.subspan(4, zone_channel_count));
+  fill_strips(world, values.subspan(4 + zone_channel_count));
 }
 
 std::vector<Field> Displacements::fields(const World& world) {

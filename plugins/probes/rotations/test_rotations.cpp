@@ -54,6 +54,8 @@ TEST(Rotations, ZoneLiesBetweenTheInflectionsOfABell) {
     EXPECT_NEAR(figure(probe, world, "zone_high"), centre + widened, 3e-3 * widened);
     EXPECT_NEAR(figure(probe, world, "zone_thickness"), 2 * widened, 3e-3 * 2 * widened);
     EXPECT_NEAR(figure(probe, world, "zone_diameters"), 2 * widened / 0.01, 3e-3 * 2 * widened / 0.01);
+    const double extent = 2 * widened * std::sqrt(2 * std::log(20)) / 0.01;
+    EXPECT_NEAR(figure(probe, world, "zone_extent_diameters"), extent, 5e-3 * extent);
   }
 }
 
@@ -65,6 +67,7 @@ TEST(Rotations, ZoneAtASideEndsThere) {
   probe.prepare(world);
   EXPECT_EQ(figure(probe, world, "zone_low"), 0);
   EXPECT_NEAR(figure(probe, world, "zone_high"), sigma, 1e-2 * sigma);
+  EXPECT_NEAR(figure(probe, world, "zone_extent_diameters"), sigma * std::sqrt(2 * std::log(20)) / 0.01, 0.2);
 }
 
 TEST(Rotations, AboutTheAxisThatIsAskedForAndBodyByBody) {
@@ -97,7 +100,7 @@ TEST(Rotations, HaveNoZoneWhereNothingTurns) {
   Rotations probe;
   probe.profile.places = 101;
   probe.prepare(world);
-  for (const char* of_zone : {"zone_low", "zone_high", "zone_thickness", "zone_diameters"})
+  for (const char* of_zone : {"zone_low", "zone_high", "zone_thickness", "zone_diameters", "zone_extent_diameters"})
     EXPECT_TRUE(std::isnan(figure(probe, world, of_zone))) << of_zone;
 }
 
