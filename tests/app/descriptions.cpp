@@ -252,20 +252,28 @@ TEST(Descriptions, CheckSaysWhereADepthHasMoreContactsThanScatterJustifies) {
   EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
   EXPECT_THAT(check("/domain/periodic=[true, true, false]"), testing::Not(HasSubstr("1/√contacts")))
       << "which of the two is its depth?";
-  // Between panes, which may not be as near to each other.
-  many["domain"] = {{"low", {0, -0.1, 0}}, {"high", {0.1, 0.2, 0.1}}};
-  many["materials"]["glass"] = {{"friction_angle", 0}};
-  many["walls"] = {
-      {"front", {{"type", "plane"}, {"point", {0, 0, 0}}, {"normal", {0, 1, 0}}, {"material", "glass"}}},
-      {"back", {{"type", "plane"}, {"point", {0, 0.1, 0}}, {"normal", {0, -1, 0}}, {"material", "glass"}}}};
-  folder.write("many.json", many.dump());
-  EXPECT_THAT(
-      check("/seed=2"),
-      HasSubstr("  /walls/back: walls \"front\" and \"back\", which bound it along y, stand still and are smooth, "
-                "and with 0.1 m there are some 100000 contacts"));
-  EXPECT_THAT(check("/materials/glass/friction_angle=0.1"), testing::Not(HasSubstr("1/√contacts")));
-  EXPECT_THAT(check("/walls/back/motion={\"velocity\": [0, 1e-3, 0]}"), testing::Not(HasSubstr("1/√contacts")));
-  EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
+  // More that come later count as well.
+  EXPECT_THAT(check(R"(/bodies/late={"type": "sphere", "material": "sand", "stage": "part", "grains": {"type": "cloud",
+      "low": [0, 0, 0], "high": [0.1, 0.1, 0.1], "count": 40000,
+      "sizes": {"type": "uniform", "smallest": "0.9 mm", "largest": "1 mm"}}})"),
+              HasSubstr("200000 contacts"));
+}
+
+TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
+  const std::string file = GRIT_SOURCE_DIR "/sims/direct-shear/quick.json";
+  const OwnFolder folder;
+  const auto check = [&](std::vector<std::string> sets) {
+    std::vector<std::string> words{"check", file};
+    for (const auto& set : sets) words.insert(words.end(), {"--set", set});
+    return grit_in(folder.path(), words).out;
+  };
+  EXPECT_THAT(check({"/scenario/depth=60 mm"}),
+              HasSubstr("  /scenario/depth: walls \"front\" and \"back\", which bound it along y, stand still and are "
+                        "smooth, and with 0.06 m there are some "));
+  EXPECT_THAT(check({"/scenario/depth=10 mm"}), testing::Not(HasSubstr("1/√contacts")));
+  EXPECT_THAT(check({"/scenario/depth=60 mm", "/materials/sand/rolling_limit=0.4", "/walls/front/material=sand"}),
+              testing::Not(HasSubstr("1/√contacts")))
+      << "it drags grains";
 }
 
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {

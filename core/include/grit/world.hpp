@@ -15,7 +15,7 @@ namespace grit {
 
 /// State of bodies that exists only where a component asks for it.
 enum class BodyState : unsigned {
-  rotation = 1,      ///< cumulative rotation vector [rad]
+  rotation = 1,      ///< rotation vector, cumulative since the start of the stage [rad]
   displacement = 2,  ///< displacement since the start of the stage [m], unwrapped
   energy = 4,        ///< the ledger of energies, of all bodies together
 };

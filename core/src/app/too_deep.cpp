@@ -91,35 +91,36 @@ std::optional<Depth> depth_of(const SceneDescription& scene, const Simulation& w
                  plain ? fmt::format("/domain/high/{}", axis) : scenarios,
                  fmt::format("the cell repeats along {}", "xyz"[axis])};
   }
-  if (std::ranges::count(periodic, true) > 1) return std::nullopt;
+  // Of walls of a scenario it is known that nothing differs from one to the other.
+  constexpr int axis = 1;
   const Region specimen = world.specimen();
+  const double size = specimen.high[axis] - specimen.low[axis];
+  if (plain || std::ranges::count(periodic, true) > 0 || !std::isfinite(size) || world.positions().empty())
+    return std::nullopt;
+  Vec3 inside = xyz(world.positions().front());
+  inside[axis] = specimen.low[axis] + 0.5 * size;
+  std::string low, high;
+  double length = 0;
   const auto walls = world.walls();
-  for (const int axis : {1, 0}) {
-    const double size = specimen.high[axis] - specimen.low[axis];
-    if (!std::isfinite(size) || world.positions().empty()) continue;
-    Vec3 inside = xyz(world.positions().front());
-    inside[axis] = specimen.low[axis] + 0.5 * size;
-    std::string low, high;
-    double length = 0;
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-      const double along = walls[w].normal[axis];
-      std::string& name = along > 0 ? low : high;
-      if (std::abs(along) < 1 - 1e-9 || !name.empty() || !is_still_and_smooth(scene, walls[w].name)) continue;
-      if (const auto clear = world.clearance(w, inside, size)) name = walls[w].name, length += clear->distance;
-    }
-    if (low.empty() || high.empty()) continue;
-    return Depth{length, fewest_between_panes, plain ? "/walls/" + high : scenarios,
-                 fmt::format("walls \"{}\" and \"{}\", which bound it along {}, stand still and are smooth", low, high,
-                             "xyz"[axis])};
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const double along = walls[w].normal[axis];
+    std::string& name = along > 0 ? low : high;
+    if (std::abs(along) < 1 - 1e-9 || !name.empty() || !is_still_and_smooth(scene, walls[w].name)) continue;
+    if (const auto clear = world.clearance(w, inside, size)) name = walls[w].name, length += clear->distance;
   }
-  return std::nullopt;
+  if (low.empty() || high.empty()) return std::nullopt;
+  return Depth{length, fewest_between_panes, scenarios,
+               fmt::format("walls \"{}\" and \"{}\", which bound it along y, stand still and are smooth", low, high)};
 }
 
 std::optional<std::string> by_contacts(const SceneDescription& scene, const Simulation& world, bool plain) {
   if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
   const auto depth = depth_of(scene, world, plain);
   if (!depth || !std::isfinite(depth->length)) return std::nullopt;
-  const double contacts = contacts_a_body * static_cast<double>(world.positions().size());
+  std::size_t bodies = world.positions().size();
+  for (const auto& [name, group] : scene.bodies)
+    if (!group.stage.empty()) bodies += body_count(group);
+  const double contacts = contacts_a_body * static_cast<double>(bodies);
   const double share =
       std::max(1 / (fine_scatter * fine_scatter) / contacts, depth->fewest * world.mean_diameter() / depth->length);
   if (share * far_beyond > 1) return std::nullopt;

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <span>
 
 #include "scene/make_bodies.hpp"
 #include "study/parts.hpp"
@@ -25,31 +24,25 @@ bool is_changed(const SceneDescription& scene, const std::string& section, const
   });
 }
 
-/// Whether a stage changes one of these keys of a wall's motion, or its motion as a whole.
-bool motion_is_changed(const SceneDescription& scene, const std::string& wall, std::span<const char* const> keys) {
-  return std::ranges::any_of(scene.stages, [&](const StageDescription& stage) {
-    const Description::json_pointer motion("/walls/" + pointer_token(wall) + "/motion");
-    return std::ranges::any_of(keys, [&](const char* key) {
-      return stage.change.contains(motion / key) || std::ranges::any_of(stage.ramps, [&](const RampDescription& ramp) {
-               return ramp.pointer.starts_with((motion / key).to_string());
-             });
-    });
-  });
+/// Whether all that a run goes by, from its start to its end, is so.
+template <class Is>
+bool always(const Scene& described, Is is) {
+  return is(*described.description) && std::ranges::all_of(described.stages, [&](const StagePlan& stage) {
+           return is(*stage.start) &&
+                  std::ranges::all_of(stage.ramp, [&](const auto& increment) { return is(*increment); });
+         });
 }
 
 /// Whether the law can leave shear out, and no pair that may meet in any stage needs it.
 bool is_smooth(const Scene& described) {
-  const auto shears = [](const SceneDescription& scene) {
+  const auto without_shear = [](const SceneDescription& scene) {
     ContactLaw& law = *scene.contacts.get();
     law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
-    return std::ranges::count(law.loop().left_out, "shear") == 0;
+    return std::ranges::count(law.loop().left_out, "shear") > 0;
   };
-  bool any = false;
-  for (const StagePlan& stage : described.stages) {
-    any = any || shears(*stage.start);
-    for (const auto& increment : stage.ramp) any = any || shears(*increment);
-  }
-  return !shears(*described.description) && !any;  // with which the law is left
+  const bool smooth = always(described, without_shear);
+  static_cast<void>(without_shear(*described.description));  // with which the law is left
+  return smooth;
 }
 
 /// Whether a parameter of contacts is 0 for all materials and interfaces, and stays so.
@@ -133,16 +126,17 @@ bool comes_spinning(const BodiesDescription& group) {
 }
 
 /// Whether nothing could turn a sphere that does not turn, but contacts: no engine, no wall that spins, no clump.
-bool only_contacts_turn(const SceneDescription& scene) {
-  constexpr const char* turning[] = {"spin", "oscillation", "free"};
-  return std::ranges::none_of(scene.engines,
-                              [](const auto& one) { return one.second.engine->phase() == Phase::forces; }) &&
-         std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
-         std::ranges::all_of(scene.walls, [&](const auto& one) {
-           const MotionDescription& motion = one.second.motion;
-           return motion.spin.isZero(0.0) && !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) &&
-                  !motion.free && !motion_is_changed(scene, one.first, turning);
-         });
+bool only_contacts_turn(const Scene& described) {
+  return always(described, [](const SceneDescription& scene) {
+    return std::ranges::none_of(scene.engines,
+                                [](const auto& one) { return one.second.engine->phase() == Phase::forces; }) &&
+           std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
+           std::ranges::all_of(scene.walls, [](const auto& one) {
+             const MotionDescription& motion = one.second.motion;
+             return motion.spin.isZero(0.0) && !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) &&
+                    !motion.free;
+           });
+  });
 }
 
 }  // namespace
@@ -177,10 +171,10 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
                     std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
   const Description values = resolved(scene);
   const bool smooth = is_smooth(described);
-  const std::string still = spun                                  ? ""
-                            : never_turn                          ? "rotations are held"
-                            : smooth && only_contacts_turn(scene) ? "without friction nothing turns a sphere"
-                                                                  : "";
+  const std::string still = spun                                      ? ""
+                            : never_turn                              ? "rotations are held"
+                            : smooth && only_contacts_turn(described) ? "without friction nothing turns a sphere"
+                                                                      : "";
   if (!still.empty()) {
     if (scene.output.picture && scene.output.picture->color == "rotation")
       say("/output/picture/color", still + ", so that all rotations are 0; another colour would show something");
@@ -189,7 +183,7 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
         say("/probes/" + name, "it looks at rotations, and " + still + ": those are all 0");
   }
   const Description& written = described.document.json();
-  if (!still.empty() && only_contacts_turn(scene))
+  if (!still.empty() && only_contacts_turn(described))
     for (const std::string kind : {"rolling", "twisting"})
       for (const char* section : {"materials", "interfaces"})
         for (const auto& [name, one] : values.at(section).items())

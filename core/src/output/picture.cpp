@@ -62,7 +62,7 @@ std::string style(const Picture& picture) {
   sheet +=
       ".axis{font-size:13px;fill:#222}"
       ".m{text-anchor:middle}.e{text-anchor:end}.peak{font-weight:600;paint-order:stroke;stroke:#fff;stroke-width:7px;"
-      "stroke-linejoin:round}.small{font-size:11px;fill:#666}\n"
+      "stroke-linejoin:round}.small{font-size:11px;fill:#666}.ring{paint-order:stroke;stroke:#fff;stroke-width:4px}\n"
       ".grid{stroke:#e6e6e3;stroke-width:1}.frame{stroke:#8a8a86;stroke-width:1}\n"
       ".curve{fill:none;stroke-width:1.8;stroke-linejoin:round;stroke-linecap:round}\n"
       ".wall{stroke:#1c1c1c;stroke-width:2;stroke-linecap:round}.scale{stroke:#222;stroke-width:2}\n"
@@ -292,7 +292,7 @@ class PolarDrawing {
     for (const double ring : rings_.marks)
       if (ring > 0) {
         const Point told = at(told_at, ring);
-        svg_.text({told.x, told.y + 4}, tick_label(ring, rings_.step), "class=\"small m\"");
+        svg_.text({told.x, told.y + 4}, tick_label(ring, rings_.step), "class=\"small ring m\"");
       }
   }
 
