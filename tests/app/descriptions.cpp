@@ -139,6 +139,14 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   EXPECT_THAT(check({turning, held, damped, later(R"({"damping": {"coefficient": 0.3}})")}), turns_not)
       << "a stage changes another engine";
   EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": false}})")}), testing::Not(turns_not));
+  const std::string second = R"(/engines/other={"type": "local-damping", "coefficient": 0})";
+  EXPECT_THAT(check({damped, second}), testing::Not(HasSubstr("/engines/other"))) << "the last one counts";
+  EXPECT_THAT(
+      check({"/time_step/value=1e-9", "/time_step/safety=0.5", R"(/stages/0/change={"time_step": {"value": null}})"}),
+      testing::Not(HasSubstr("/time_step/safety")));
+  EXPECT_THAT(check({"/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0",
+                     R"(/stages/0/change={"interfaces": {"sand+sand": {"rolling_limit": 0.3}}})"}),
+              testing::Not(HasSubstr("no moment comes of it")));
   EXPECT_THAT(check({"/time_step/allow_unstable=true"}), HasSubstr("  /time_step/allow_unstable: with this safety"));
   EXPECT_THAT(check({"/time_step/allow_unstable=true", "/time_step/safety=1.1"}),
               testing::Not(HasSubstr("without effect")));
@@ -149,6 +157,8 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   EXPECT_THAT(check({planar, gravity("[0, 0, -9.81]")}),
               HasSubstr("  /engines/weight: bodies are held along the axis that it acts along\n"));
   EXPECT_THAT(check({planar, gravity("[0, -1, -9.81]")}), testing::Not(HasSubstr("without effect")));
+  EXPECT_THAT(check({planar, gravity("[0, 0, -9.81]"), later(R"({"planar": {"normal": "y"}})")}),
+              testing::Not(HasSubstr("without effect")));
 
   const std::string rolling = "/contacts/type=linear-rolling", steel = "/materials/steel={}";
   constexpr auto idle_value = ": no contact depends on it";
@@ -252,11 +262,15 @@ TEST(Descriptions, CheckSaysWhereADepthHasMoreContactsThanScatterJustifies) {
   EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
   EXPECT_THAT(check("/domain/periodic=[true, true, false]"), testing::Not(HasSubstr("1/√contacts")))
       << "which of the two is its depth?";
-  // More that come later count as well.
-  EXPECT_THAT(check(R"(/bodies/late={"type": "sphere", "material": "sand", "stage": "part", "grains": {"type": "cloud",
-      "low": [0, 0, 0], "high": [0.1, 0.1, 0.1], "count": 40000,
-      "sizes": {"type": "uniform", "smallest": "0.9 mm", "largest": "1 mm"}}})"),
-              HasSubstr("200000 contacts"));
+  EXPECT_THAT(check("/bodies/grains/grains/high/1=0.05"), testing::Not(HasSubstr("1/√contacts"))) << "a heap";
+  EXPECT_THAT(check(R"(/engines/weight={"type": "gravity", "acceleration": [0, -9.81, 0]})"),
+              testing::Not(HasSubstr("1/√contacts")));
+  EXPECT_THAT(check(R"(/walls/floor={"type": "plane", "point": [0, 0, 0], "material": "sand"})"),
+              HasSubstr("1/√contacts"));
+  EXPECT_THAT(check(R"(/walls/floor={"type": "rectangle", "corner": [0, 0, 0], "edge_a": [0.1, 0, 0],
+      "edge_b": [0, 0.04, 0], "material": "sand"})"),
+              testing::Not(HasSubstr("1/√contacts")))
+      << "a floor that ends";
 }
 
 TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
@@ -274,6 +288,17 @@ TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
   EXPECT_THAT(check({"/scenario/depth=60 mm", "/materials/sand/rolling_limit=0.4", "/walls/front/material=sand"}),
               testing::Not(HasSubstr("1/√contacts")))
       << "it drags grains";
+  EXPECT_THAT(check({"/scenario/depth=60 mm", "/stages/0/change/materials/smooth={\"friction_angle\": 0.4}"}),
+              testing::Not(HasSubstr("1/√contacts")))
+      << "in a stage";
+}
+
+TEST(Descriptions, CheckCountsGrainsOfAllLayersInADepth) {
+  const OwnFolder folder;
+  const auto outcome = grit_in(
+      folder.path(),
+      {"check", GRIT_SOURCE_DIR "/sims/silo-quasistatic/quick-very-rough-layers.json", "--set", "/scenario/depth=0.2"});
+  EXPECT_THAT(outcome.out, HasSubstr("some 2368")) << outcome.err;
 }
 
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {

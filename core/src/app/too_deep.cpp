@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/shipped_studies.hpp"
-#include "scene/make_bodies.hpp"
+#include "app/stages.hpp"
 #include "study/parts.hpp"
 
 namespace grit {
@@ -59,43 +60,65 @@ struct Depth {
 };
 
 /// Whether a wall neither moves nor drags grains, in any stage.
-bool is_still_and_smooth(const SceneDescription& scene, const std::string& name) {
-  const WallDescription& wall = scene.walls.at(name);
-  const MotionDescription& motion = wall.motion;
-  if (!motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation || motion.servo || motion.follow ||
-      motion.free)
-    return false;
-  for (const StageDescription& stage : scene.stages)
-    if (stage.change.contains(Description::json_pointer("/walls/" + pointer_token(name))) ||
-        std::ranges::any_of(stage.ramps, [&](const RampDescription& ramp) {
-          return ramp.pointer.starts_with("/walls/" + pointer_token(name) + '/');
-        }))
-      return false;
-  const auto names = material_names(scene);
-  const auto number = [&](const std::string& material) {
-    return static_cast<std::size_t>(std::ranges::find(names, material) - names.begin());
-  };
-  return std::ranges::all_of(scene.bodies, [&](const auto& group) {
+bool is_still_and_smooth(const Scene& described, const std::string& name) {
+  return always_by_law(described, [&](const SceneDescription& scene, const ContactLaw& law) {
+    if (!scene.walls.contains(name)) return false;
+    const WallDescription& wall = scene.walls.at(name);
+    const MotionDescription& motion = wall.motion;
+    const auto names = material_names(scene);
+    const auto number = [&](const std::string& material) {
+      return static_cast<std::size_t>(std::ranges::find(names, material) - names.begin());
+    };
     const PairSize grain{
         .radius_a = 1e-3, .radius_b = 1e-3, .inverse_mass_a = 1e5, .inverse_mass_b = 0, .overlap = 1e-6, .wall = true};
-    return scene.contacts.get()->stiffness(grain, number(group.second.material), number(wall.material)).shear == 0;
+    return motion.velocity.isZero(0.0) && motion.spin.isZero(0.0) && !motion.oscillation && !motion.servo &&
+           !motion.follow && !motion.free && std::ranges::all_of(scene.bodies, [&](const auto& group) {
+             return law.stiffness(grain, number(group.second.material), number(wall.material)).shear == 0;
+           });
   });
 }
 
-std::optional<Depth> depth_of(const SceneDescription& scene, const Simulation& world, bool plain) {
+bool weighs_along(const Scene& described, int axis) {
+  return !always(described, [&](const SceneDescription& scene) {
+    MotionSettings settings;
+    for (const auto& [name, engine] : scene.engines) engine.engine->settings(settings);
+    return settings.gravity[axis] == 0;
+  });
+}
+
+/// Whether grains lie from one end of the cell to the other, between planes that go on along this axis, from the start.
+/// Of a scenario it is known.
+bool is_alike_along(const SceneDescription& scene, const Simulation& world, int axis) {
+  const auto walls = world.walls();
+  const bool planes =
+      std::ranges::all_of(scene.walls, [](const auto& wall) { return wall.second.geometry.type() == "plane"; }) &&
+      std::ranges::all_of(walls, [&](const WallView& wall) { return std::abs(wall.normal[axis]) < 1e-9; });
+  const bool later =
+      std::ranges::any_of(scene.bodies, [](const auto& group) { return !group.second.stage.empty(); }) ||
+      std::ranges::any_of(scene.stages, [](const auto& stage) { return stage.change.contains("walls"); });
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Row& x : world.positions())
+    low = std::min(low, xyz(x)[axis] - x.w), high = std::max(high, xyz(x)[axis] + x.w);
+  const double room = 2 * world.mean_diameter();
+  return planes && !later && low < world.cell().low[axis] + room && high > world.cell().high[axis] - room;
+}
+
+std::optional<Depth> depth_of(const Scene& described, const Simulation& world, bool plain) {
+  const SceneDescription& scene = *described.description;
   const auto& periodic = scene.domain.periodic;
   const std::string scenarios = "/scenario/depth";  // a scenario writes domain and walls
   if (std::ranges::count(periodic, true) == 1) {
     const auto axis = static_cast<int>(std::ranges::find(periodic, true) - periodic.begin());
+    if (weighs_along(described, axis) || (plain && !is_alike_along(scene, world, axis))) return std::nullopt;
     return Depth{world.cell().high[axis] - world.cell().low[axis], fewest_diameters,
                  plain ? fmt::format("/domain/high/{}", axis) : scenarios,
                  fmt::format("the cell repeats along {}", "xyz"[axis])};
   }
-  // Of walls of a scenario it is known that nothing differs from one to the other.
   constexpr int axis = 1;
   const Region specimen = world.specimen();
   const double size = specimen.high[axis] - specimen.low[axis];
-  if (plain || std::ranges::count(periodic, true) > 0 || !std::isfinite(size) || world.positions().empty())
+  if (plain || std::ranges::count(periodic, true) > 0 || !std::isfinite(size) || world.positions().empty() ||
+      weighs_along(described, axis))
     return std::nullopt;
   Vec3 inside = xyz(world.positions().front());
   inside[axis] = specimen.low[axis] + 0.5 * size;
@@ -105,7 +128,7 @@ std::optional<Depth> depth_of(const SceneDescription& scene, const Simulation& w
   for (std::size_t w = 0; w < walls.size(); ++w) {
     const double along = walls[w].normal[axis];
     std::string& name = along > 0 ? low : high;
-    if (std::abs(along) < 1 - 1e-9 || !name.empty() || !is_still_and_smooth(scene, walls[w].name)) continue;
+    if (std::abs(along) < 1 - 1e-9 || !name.empty() || !is_still_and_smooth(described, walls[w].name)) continue;
     if (const auto clear = world.clearance(w, inside, size)) name = walls[w].name, length += clear->distance;
   }
   if (low.empty() || high.empty()) return std::nullopt;
@@ -113,9 +136,10 @@ std::optional<Depth> depth_of(const SceneDescription& scene, const Simulation& w
                fmt::format("walls \"{}\" and \"{}\", which bound it along y, stand still and are smooth", low, high)};
 }
 
-std::optional<std::string> by_contacts(const SceneDescription& scene, const Simulation& world, bool plain) {
+std::optional<std::string> by_contacts(const Scene& described, const Simulation& world, bool plain) {
+  const SceneDescription& scene = *described.description;
   if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
-  const auto depth = depth_of(scene, world, plain);
+  const auto depth = depth_of(described, world, plain);
   if (!depth || !std::isfinite(depth->length)) return std::nullopt;
   std::size_t bodies = world.positions().size();
   for (const auto& [name, group] : scene.bodies)
@@ -138,7 +162,7 @@ std::optional<std::string> too_deep(const Scene& described, const Simulation& wo
   const SceneDescription& scene = *described.description;
   bool tried = false;
   auto line = by_studies(scenario, parts_of(resolved(scene)), same, tried);
-  if (!line && !tried) line = by_contacts(scene, world, scenario.empty());
+  if (!line && !tried) line = by_contacts(described, world, scenario.empty());
   return line;
 }
 

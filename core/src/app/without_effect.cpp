@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/make_bodies.hpp"
+#include "app/stages.hpp"
 #include "study/parts.hpp"
 
 namespace grit {
@@ -24,38 +24,35 @@ bool is_changed(const SceneDescription& scene, const std::string& section, const
   });
 }
 
-/// Whether all that a run goes by, from its start to its end, is so.
-template <class Is>
-bool always(const Scene& described, Is is) {
-  return is(*described.description) && std::ranges::all_of(described.stages, [&](const StagePlan& stage) {
-           return is(*stage.start) &&
-                  std::ranges::all_of(stage.ramp, [&](const auto& increment) { return is(*increment); });
-         });
-}
-
 /// Whether the law can leave shear out, and no pair that may meet in any stage needs it.
 bool is_smooth(const Scene& described) {
-  const auto without_shear = [](const SceneDescription& scene) {
-    ContactLaw& law = *scene.contacts.get();
-    law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
+  return always_by_law(described, [](const SceneDescription&, const ContactLaw& law) {
     return std::ranges::count(law.loop().left_out, "shear") > 0;
-  };
-  const bool smooth = always(described, without_shear);
-  static_cast<void>(without_shear(*described.description));  // with which the law is left
-  return smooth;
+  });
 }
 
 /// Whether a parameter of contacts is 0 for all materials and interfaces, and stays so.
-bool is_zero(const SceneDescription& scene, const Description& values, const std::string& key) {
+bool is_zero(const Scene& described, const std::string& key) {
   bool found = false;
-  for (const char* section : {"materials", "interfaces"})
-    for (const auto& [name, one] : values.at(section).items()) {
-      if (is_changed(scene, section, name)) return false;
-      if (!one.contains(key) || one.at(key).is_null()) continue;
-      if (one.at(key) != 0.0) return false;
-      found = true;
-    }
-  return found;
+  const bool zero = always(described, [&](const SceneDescription& scene) {
+    const Description values = resolved(scene);
+    for (const char* section : {"materials", "interfaces"})
+      for (const auto& [name, one] : values.at(section).items()) {
+        if (!one.contains(key) || one.at(key).is_null()) continue;
+        if (one.at(key) != 0.0) return false;
+        found = true;
+      }
+    return true;
+  });
+  return zero && found;
+}
+
+/// How bodies move by all engines, but for the one of this name.
+MotionSettings settings_of(const SceneDescription& scene, const std::string& left_out = "") {
+  MotionSettings settings;
+  for (const auto& [name, engine] : scene.engines)
+    if (name != left_out) engine.engine->settings(settings);
+  return settings;
 }
 
 /// Whether no grain that stays in the domain ever comes near a wall that stands still. Spheres that cover the domain
@@ -146,20 +143,21 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
   std::vector<std::string> lines;
   const auto say = [&](const std::string& pointer, const std::string& why) { lines.push_back(pointer + ": " + why); };
 
-  MotionSettings all;
-  for (const auto& [name, engine] : scene.engines) {
-    MotionSettings own;
-    engine.engine->settings(own), engine.engine->settings(all);
-    if (engine.engine->phase() == Phase::settings && same(own, {}) && !is_changed(scene, "engines", name))
+  for (const auto& [engine, component] : scene.engines) {
+    const std::string& name = engine;
+    // Where it is; elsewhere it does nothing anyway.
+    const auto idle = [&](auto is) {
+      return component.engine->phase() == Phase::settings && always(described, [&](const SceneDescription& now) {
+               return !now.engines.contains(name) || is(settings_of(now), settings_of(now, name));
+             });
+    };
+    if (idle([](const MotionSettings& with, const MotionSettings& without) { return same(with, without); }))
       say("/engines/" + name, "with these values it does nothing");
-  }
-  for (const auto& [name, engine] : scene.engines) {
-    MotionSettings own;
-    engine.engine->settings(own);
-    if (!all.flat || own.gravity[*all.flat] == 0 || is_changed(scene, "engines", name)) continue;
-    Vec3 in_plane = own.gravity;
-    in_plane[*all.flat] = 0;
-    if (in_plane.isZero(0.0)) say("/engines/" + name, "bodies are held along the axis that it acts along");
+    else if (idle([](const MotionSettings& with, MotionSettings without) {
+               if (with.flat) without.gravity[*with.flat] = with.gravity[*with.flat];
+               return with.flat && same(with, without);
+             }))
+      say("/engines/" + name, "bodies are held along the axis that it acts along");
   }
   // A stage that changes other engines lets nothing turn.
   const bool never_turn = std::ranges::any_of(scene.engines, [&](const auto& one) {
@@ -194,7 +192,7 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
           }
   for (const std::string kind : {"rolling", "twisting"})
     for (const auto& [lacking, given] : {std::pair("_limit", "_stiffness"), std::pair("_stiffness", "_limit")}) {
-      if (!is_zero(scene, values, kind + lacking)) continue;
+      if (!is_zero(described, kind + lacking)) continue;
       for (const char* section : {"materials", "interfaces"})
         for (const auto& [name, one] : values.at(section).items()) {
           const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + given;
@@ -216,11 +214,13 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
     if (group.stage.empty() && group.overlap != BodiesDescription::usual_overlap)
       say("/bodies/" + name + "/overlap", "it is looked at where bodies appear in a stage, and these are there before");
 
-  if (scene.time_step.value && scene.time_step.safety != TimeStepDescription().safety)
+  const bool given = always(described, [](const SceneDescription& now) { return now.time_step.value.has_value(); });
+  if (given && scene.time_step.safety != TimeStepDescription().safety)
     say("/time_step/safety", "the step is given by /time_step/value");
-  if (scene.time_step.value && scene.time_step.steps_per_impact != TimeStepDescription().steps_per_impact)
+  if (given && scene.time_step.steps_per_impact != TimeStepDescription().steps_per_impact)
     say("/time_step/steps_per_impact", "the step is given by /time_step/value");
-  if (scene.time_step.allow_unstable && !scene.time_step.value && scene.time_step.safety <= 1)
+  if (scene.time_step.allow_unstable &&
+      always(described, [](const SceneDescription& now) { return !now.time_step.value && now.time_step.safety <= 1; }))
     say("/time_step/allow_unstable", "with this safety the step is not above the critical one");
   for (const auto& [name, material] : scene.materials)
     if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall is of it");
