@@ -159,12 +159,7 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
              }))
       say("/engines/" + name, "bodies are held along the axis that it acts along");
   }
-  // A stage that changes other engines lets nothing turn.
-  const bool never_turn = std::ranges::any_of(scene.engines, [&](const auto& one) {
-    MotionSettings own;
-    one.second.engine->settings(own);
-    return own.hold_rotation && !is_changed(scene, "engines", one.first);
-  });
+  const bool never_turn = always(described, [](const SceneDescription& now) { return settings_of(now).hold_rotation; });
   const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
                     std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
   const Description values = resolved(scene);
