@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 
 #include "input/scene.hpp"
 #include "scene/make_bodies.hpp"
@@ -28,6 +29,19 @@ bool always_by_law(const Scene& described, Is is) {
   const bool so = always(described, [&](const SceneDescription& scene) { return is(scene, mixed(scene)); });
   mixed(*described.description);
   return so;
+}
+
+/// How bodies move by all engines, but for the one of this name.
+inline MotionSettings settings_of(const SceneDescription& scene, const std::string& left_out = "") {
+  MotionSettings settings;
+  for (const auto& [name, engine] : scene.engines)
+    if (name != left_out) engine.engine->settings(settings);
+  return settings;
+}
+
+inline bool stands_still(const MotionDescription& motion) {
+  return motion.velocity.isZero(0.0) && motion.spin.isZero(0.0) && !motion.oscillation && !motion.servo &&
+         !motion.follow && !motion.free;
 }
 
 }  // namespace grit

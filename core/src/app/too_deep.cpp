@@ -64,26 +64,20 @@ bool is_still_and_smooth(const Scene& described, const std::string& name) {
   return always_by_law(described, [&](const SceneDescription& scene, const ContactLaw& law) {
     if (!scene.walls.contains(name)) return false;
     const WallDescription& wall = scene.walls.at(name);
-    const MotionDescription& motion = wall.motion;
     const auto names = material_names(scene);
     const auto number = [&](const std::string& material) {
       return static_cast<std::size_t>(std::ranges::find(names, material) - names.begin());
     };
     const PairSize grain{
         .radius_a = 1e-3, .radius_b = 1e-3, .inverse_mass_a = 1e5, .inverse_mass_b = 0, .overlap = 1e-6, .wall = true};
-    return motion.velocity.isZero(0.0) && motion.spin.isZero(0.0) && !motion.oscillation && !motion.servo &&
-           !motion.follow && !motion.free && std::ranges::all_of(scene.bodies, [&](const auto& group) {
+    return stands_still(wall.motion) && std::ranges::all_of(scene.bodies, [&](const auto& group) {
              return law.stiffness(grain, number(group.second.material), number(wall.material)).shear == 0;
            });
   });
 }
 
 bool weighs_along(const Scene& described, int axis) {
-  return !always(described, [&](const SceneDescription& scene) {
-    MotionSettings settings;
-    for (const auto& [name, engine] : scene.engines) engine.engine->settings(settings);
-    return settings.gravity[axis] == 0;
-  });
+  return !always(described, [&](const SceneDescription& scene) { return settings_of(scene).gravity[axis] == 0; });
 }
 
 /// Whether grains lie from one end of the cell to the other, between planes that go on along this axis, from the start.

@@ -47,20 +47,11 @@ bool is_zero(const Scene& described, const std::string& key) {
   return zero && found;
 }
 
-/// How bodies move by all engines, but for the one of this name.
-MotionSettings settings_of(const SceneDescription& scene, const std::string& left_out = "") {
-  MotionSettings settings;
-  for (const auto& [name, engine] : scene.engines)
-    if (name != left_out) engine.engine->settings(settings);
-  return settings;
-}
-
 /// Whether no grain that stays in the domain ever comes near a wall that stands still. Spheres that cover the domain
 /// stand for all places.
 bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std::size_t wall,
                      const std::string& name) {
   const DomainDescription& domain = scene.domain;
-  const MotionDescription& motion = scene.walls.at(name).motion;
   const bool deforms = !domain.strain_rate.isZero(0.0) || std::ranges::any_of(scene.stages, [](const auto& stage) {
     return stage.change.contains("domain") || stage.growth ||
            std::ranges::any_of(stage.ramps, [](const auto& ramp) { return ramp.pointer.starts_with("/domain/"); });
@@ -68,9 +59,7 @@ bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std
   if (!domain.low || !domain.high || deforms || !domain.open_sides.empty() ||
       std::ranges::any_of(scene.bodies, [](const auto& group) { return !group.second.stage.empty(); }))
     return false;
-  if (!motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation || motion.servo || motion.follow ||
-      motion.free || is_changed(scene, "walls", name))
-    return false;
+  if (!stands_still(scene.walls.at(name).motion) || is_changed(scene, "walls", name)) return false;
   const auto bodies = world.positions();
   if (bodies.empty()) return false;
   constexpr int cells = 16;

@@ -18,8 +18,8 @@ std::optional<std::string> grains_picture(RunResults& run);
 /// one. Nothing where there is no frame after that.
 std::optional<std::string> layers_picture(RunResults& run);
 
-/// The same, faint, under the contacts above the mean normal force, through the whole depth. Nothing
-/// where there is none.
+/// The same, faint, under the contacts above the mean normal force, through the whole depth. Nothing where
+/// there is none.
 std::optional<std::string> force_chains_picture(RunResults& run);
 
 /// The same under the links of the linear force chains that a probe tells of.

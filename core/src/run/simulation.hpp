@@ -263,7 +263,7 @@ class Simulation final : public World {
   auto sum_of_chunks(Part part) const;
   /// Of springs of a chunk as they stand, with bodies `factor` times as large.
   ElasticEnergy elastic_energy(std::size_t chunk, double factor) const;
-  ElasticEnergy elastic_energy(double factor = 1) const;
+  ElasticEnergy elastic_energy(double factor = 1) const;  ///< of all
   /// What springs take up for the logarithm of what bodies grow by [J].
   double elastic_by_growth() const;
   /// At time(), by the forces that act there.
@@ -275,7 +275,7 @@ class Simulation final : public World {
   bool engines_do_work() const { return !force_engines_.empty() || bodies_are_held(); }
   /// What engines do to the bodies of a chunk, and to as many clumps, by the forces on them as they moved last [W].
   double power_of_engines(std::size_t chunk) const;
-  double power_of_engines() const;
+  double power_of_engines() const;  ///< of all
   /// What contacts take up as the cell's periods grow so fast [W].
   double power_of_cell(const Vec3& growth) const { return -crossing_.dot(growth); }
   /// What has bodies go with the mean flow of a deforming cell [W].
