@@ -13,7 +13,7 @@ VERIFIED, BESIDE = 'verified: ', 'beside: '
 HEAD = '''# Validation
 Written by `scripts/validate.py` from what the tests in [tests/physics](../tests/physics) and [tests/clumps](../tests/clumps) find. Do not edit. Each row is a figure with a closed
 form; the error is relative to it unless the row says otherwise. Errors are those of the time step that the test takes, and
-fall as it says; `build/tests/test_physics --gtest_filter=NAME` repeats one, or `test_clumps`.
+fall as it says; `build/tests/test_physics --gtest_filter=NAME` repeats one, or `test_clumps`. Whole tests of sand beside those of a reference work stand in [reproduction](reproduction.md).
 
 Contacts are evaluated in SIMD lanes. Of every law, force, moment and memory of a contact agree with those of a scalar twin within 1e-14 (1 + 0.1 size / overlap) of the
 force, with the sum of the radii and the longest component of the branch for size: an overlap is a small difference of large numbers.

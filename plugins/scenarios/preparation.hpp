@@ -125,7 +125,8 @@ struct Preparation {
   void declare_void_ratio(Parameters& p) {
     p.add("void_ratio", void_ratio)
         .symbol("e_0")
-        .above(0)
+        .at_least(0.2)
+        .at_most(2)
         .doc("of the interior, one mean diameter or more off the walls, before shear; reached within 0.01 or failed");
   }
   void declare_course(Parameters& p) {

@@ -138,7 +138,8 @@ struct Silo {
     p.add("filling_damping", filling_damping).at_least(0).below(1).doc("local damping until the filling rests");
     p.add("void_ratio", void_ratio)
         .symbol("e")
-        .above(0)
+        .at_least(0.2)
+        .at_most(2)
         .doc("that the filling is expected to come to: with the height it says how many grains there are");
     p.add("filling_friction_angle", filling_friction_angle)
         .unit("rad")

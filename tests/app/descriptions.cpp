@@ -50,6 +50,21 @@ TEST(Descriptions, EveryProblemIsToldAtOnceWithItsPlace) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
+TEST(Descriptions, AStudyIsToldFromADescription) {
+  const OwnFolder folder;
+  folder.write("study.json", R"({
+  "scene": "two.json",
+  "settings": {"density": {"pointers": ["/materials/sand/density"], "values": [1000, 2000], "usual": "1000"}}
+}
+)");
+  for (const char* command : {"run", "check", "expand"}) {
+    const auto outcome = grit_in(folder.path(), {command, "study.json"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study, of which this is the scene; allowed is a "
+                                       "description. 'grit chart study.json' runs a study"));
+  }
+}
+
 TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

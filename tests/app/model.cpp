@@ -139,7 +139,7 @@ TEST_F(ModelOfARun, IsToldBeforehandHowFarOffClumpsMayBe) {
   const auto outcome = grit_in(folder.path(), {"check", "two.json", "--set", R"(/bodies/grains/type="clump")", "--set",
                                                R"(/bodies/grains/shape={"type": "rod", "count": 3})"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, testing::HasSubstr("clumps grains: 3 spheres each; mass to "));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("clumps grains: 2 of 3 spheres each; mass to "));
 }
 
 TEST_F(ModelOfARun, IsOfOneMaterialHoweverWallsAreCalled) {

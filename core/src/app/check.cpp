@@ -84,8 +84,9 @@ void check_one(const std::string& file, const Options& options, const Registry& 
     if (coming.contains(stage.name))
       std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';
   for (const auto& [name, clump] : clumps_of(description))
-    std::cout << "clumps " << name << ": " << clump.spheres << " spheres each; mass to " << std::setprecision(2)
-              << clump.errors.mass << ", centre to " << clump.errors.centre << " of the enclosing radius, inertia to "
+    std::cout << "clumps " << name << ": " << body_count(description.bodies.at(name)) / clump.spheres << " of "
+              << clump.spheres << " spheres each; mass to " << std::setprecision(2) << clump.errors.mass
+              << ", centre to " << clump.errors.centre << " of the enclosing radius, inertia to "
               << clump.errors.inertia << std::setprecision(6) << '\n';
   const TimeStepDescription& wish = description.time_step;
   const double safe = wish.safety * simulation.clock().critical_time_step;

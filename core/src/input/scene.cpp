@@ -140,6 +140,10 @@ std::string scenario_type(const Document& document) {
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
                        const Registry& registry) {
   Document document = Document::load(path);
+  if (document.json().contains("scene") && document.json().contains("settings"))
+    throw DescriptionError({document.problem(
+        "/scene", "found a study, of which this is the scene; allowed is a description. 'grit chart " + path.string() +
+                      "' runs a study, with --dry it says what would be run")});
   for (const auto& assignment : sets) document.set(assignment);
   return document.json().contains("scenario") ? expanded(document, registry) : document;
 }

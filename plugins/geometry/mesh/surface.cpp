@@ -185,10 +185,12 @@ void Surface::join_edges(const SurfaceOptions& options) {
       if (single.empty()) first_single = text(vertices_[from].place) + " to " + text(vertices_[to].place);
       single.push_back(first.facet);
     }
-    if (sides > 2) crowded.push_back(first.facet);
+    if (sides > 2)
+      for (std::uint32_t k = begin; k < edge.end_side; ++k) crowded.push_back(sides_[k].facet);
     edges_.back().turns = sides == 2 && forwards != 1;
   }
   std::ranges::sort(single), std::ranges::sort(crowded);
+  crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
   const auto turned = inverted();
   closed_ = single.empty(), oriented_ = crowded.empty() && turned.empty();
 

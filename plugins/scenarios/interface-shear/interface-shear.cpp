@@ -83,6 +83,13 @@ void InterfaceShear::declare(Parameters& p) {
                                2 * groove_depth() / std::tan(groove_inclination()));
       },
       {"groove_spacing", "roughness", "groove_inclination", "surface"});
+  p.check(
+      [this](const Complain& complain) {
+        if (gap_ >= height_)
+          complain("gap", std::to_string(gap_ * 1e3) + " mm",
+                   "less than the height of the specimen, " + std::to_string(height_ * 1e3) + " mm");
+      },
+      {"gap", "height"});
 }
 
 VoidRatioRange InterfaceShear::reachable() const { return reachable_in_a_box; }

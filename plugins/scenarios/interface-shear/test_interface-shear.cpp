@@ -134,6 +134,9 @@ TEST(InterfaceShear, SaysWhatIsWrong) {
   EXPECT_EQ(problem(spaced("0.9 mm", "sinusoidal")), "");
   EXPECT_THAT(problem({{"groove_spacing", 0}}), HasSubstr("/groove_spacing"));
   EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
+  EXPECT_THAT(problem({{"gap", "20 mm"}}), HasSubstr("/gap found 20.0"));
+  EXPECT_EQ(problem({{"gap", "19 mm"}}), "");
+  EXPECT_THAT(problem({{"void_ratio", 0.1}, {"grain", "clump"}}), HasSubstr("/void_ratio"));
   EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
   EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio is 0.9"));
   EXPECT_THAT(refusal<InterfaceShear>({{"depth", "2.9 mm"}}), HasSubstr("four of the largest grains"));
