@@ -3,9 +3,9 @@
 
   reproduce.py [--run GLOB]… [--samples N] [--for SECONDS] [--threads N] [--results FOLDER] [--grit FILE]
 
-docs/reproduction.json has the figures. Each description of sims/ whose finished run lies in FOLDER/TEST/NAME (results/reproduce
-unless given) gets its rows. Of one without, what docs/reproduction.md has stays, as long as docs/reproduction.json asks for the
-same figures; the others are listed with the time they would take. All sims/*/quick*.json have a line that says how they ended, from
+docs/reproduction.json has the figures. Each quick and full description of sims/ whose finished run lies in FOLDER/TEST/NAME
+(results/reproduce unless given) gets its rows. Of one without, what docs/reproduction.md has stays, as long as docs/reproduction.json
+asks for the same figures; the other full ones are listed with the time they would take. All sims/*/quick*.json have a line that says how they ended, from
 FOLDER or, without a run there, as the page has it. --run runs those that GLOB fits and
 that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100, and --samples as many packings of each:
 the second's run, of seed 2, lies in FOLDER/TEST/NAME-sample-2. Rows of several samples have their mean and the standard
@@ -39,10 +39,11 @@ UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
 Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
 (`--for`): how much of the course they went, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
-if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so the hours are the least; what that comes to stands below the table.
+if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so these hours are the least; the last column has those with sand that lies,
+by what stands below the table.
 
-| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
-| --- | --- | --- | --- | --- |'''
+| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that, at least | with sand that lies |
+| --- | --- | --- | --- | --- | --- |'''
 
 IN_SECTION = 'see its section'
 QUICK = 'All quick descriptions, run to their ends'
@@ -183,6 +184,12 @@ def part(run, course, grains):
     return f"{100 * done / all_of_it:.1f} %, {words} | {1e-6 * rate:.1f} | {all_of_it / rate / 3600:.1f} |"
 
 
+def resting(columns, slower):
+    """`columns` of part() and one more: the core-hours once sand lies, of which each step takes `slower` times as long in the mean; None: not known."""
+    hours = re.fullmatch(r'.*\| ([0-9.]+) \|', columns)
+    return f"{columns} {f'{slower * float(hours[1]):.0f} ' if hours and slower else ''}|"
+
+
 def short(name, results, wanted, section, older, figures=()):
     """The line of a quick description: of its run, without what its section has as `figures`, or else as the page has it, or as its section says."""
     run = state(results / name) or {}
@@ -231,7 +238,9 @@ def main():
     parser.add_argument('--grit', default=ROOT / 'build' / 'bin' / 'grit')
     given = parser.parse_args()
     reference = json.loads((ROOT / 'docs' / 'reproduction.json').read_text(encoding='utf-8'))
-    names = list(dict.fromkeys([*(row['description'] for row in reference['figures']), *reference['courses']]))
+    of_size = {size: sorted(str(path.relative_to(ROOT / 'sims').with_suffix('')) for path in (ROOT / 'sims').glob(f'*/{size}*.json'))
+               for size in ('quick', 'full')}
+    names = list(dict.fromkeys([*(row['description'] for row in reference['figures']), *reference['courses'], *of_size['full'], *of_size['quick']]))
 
     for name in names:
         if not any(fnmatch.fnmatch(name, glob) for glob in given.run):
@@ -245,7 +254,7 @@ def main():
 
     page = ROOT / 'docs' / 'reproduction.md'
     old = sections(page.read_text(encoding='utf-8'))
-    timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| (.*)$', old.get(UNFINISHED, ''), re.MULTILINE))
+    timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| ((?:[^|\n]*\|){3})', old.get(UNFINISHED, ''), re.MULTILINE))
     ended = dict(re.findall(r'^\| (\S+) \| (.*)$', old.get(QUICK, ''), re.MULTILINE))
     lines, missing, told = [], [], {}
 
@@ -254,6 +263,8 @@ def main():
 
     for name in names:
         figures = rows_of(name)
+        if not figures and name in of_size['quick']:
+            continue
         description = ROOT / 'sims' / f'{name}.json'
         if folders := samples(given.results, name):
             section = [*table(name, folders, figures, name in reference['older'])]
@@ -266,16 +277,16 @@ def main():
         else:
             hours, grains = estimate(given.grit, description)
             run, course = state(given.results / name), reference['courses'].get(name)
-            missing.append(f"| {name} | {hours} | {part(run, course, grains) or timed.get(name, '| | |')}")
-    quick = sorted(str(path.relative_to(ROOT / 'sims').with_suffix('')) for path in (ROOT / 'sims').glob('*/quick*.json'))
-    if quick:
+            slower = next((times for glob, times in reference['resting'].items() if fnmatch.fnmatch(name, glob)), None)
+            missing.append(f"| {name} | {hours} | {resting(part(run, course, grains) or timed.get(name, '| | |'), slower)}")
+    if of_size['quick']:
         lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name), rows_of(name))}"
-                                   for name in quick), '']
+                                   for name in of_size['quick']), '']
     if missing:
         note = reference['notes'].get(UNFINISHED)
         lines += [HEAD_OF_UNFINISHED, *missing, *(['', note] if note else [])]
     page.write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
-    print(f'docs/reproduction.md: {len(names) - len(missing)} of {len(names)} descriptions')
+    print(f'docs/reproduction.md: {len(told)} descriptions with figures, {len(missing)} not run')
 
 
 if __name__ == '__main__':

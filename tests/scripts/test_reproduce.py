@@ -49,10 +49,10 @@ As it was.
 | shear/quick-long-ago | done | 9,000 | 7 | 111111111111 | peak: 3.50 |
 
 ## Not run to their ends
-| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that |
-| --- | --- | --- | --- | --- |
-| shear/timed | 9.00 | 1.6 %, 21,766 steps | 25.7 | 2.6 |
-| shear/never-run | 9.00 | | | |
+| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that, at least | with sand that lies |
+| --- | --- | --- | --- | --- | --- |
+| shear/timed | 9.00 | 1.6 %, 21,766 steps | 25.7 | 2.6 | 8 |
+| shear/never-run | 9.00 | | | | |
 '''
 
 
@@ -63,7 +63,7 @@ class Reproduction(unittest.TestCase):
         self.root = pathlib.Path(self.folder.name)
         self.given = {'figures': [{'description': name, 'figure': 'peak', 'of': 'test/y', 'how': 'maximum', 'reference': 2, 'allowed': 0.5}
                                   for name in NAMES],
-                      'courses': {}, 'older': [], 'quick': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
+                      'courses': {}, 'resting': {'shear/timed': 3}, 'older': [], 'quick': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
         for name in NAMES:
             self.file(f'sims/{name}.json', '{}')
         self.file('docs/reproduction.md', PAGE)
@@ -110,7 +110,7 @@ class Reproduction(unittest.TestCase):
         sections, page = self.written()
         was = reproduce.sections(PAGE)
         self.assertEqual({name: sections[name] for name in was if name in NAMES}, {name: was[name] for name in was if name in NAMES})
-        self.assertIn('| shear/timed | 3.00 | 1.6 %, 21,766 steps | 25.7 | 2.6 |\n| shear/never-run | 3.00 | | | |\n', page)
+        self.assertIn('| shear/timed | 3.00 | 1.6 %, 21,766 steps | 25.7 | 2.6 | 8 |\n| shear/never-run | 3.00 | | | | |\n', page)
         self.assertEqual(self.written()[1], page)
 
     def test_a_finished_run_has_its_section_written_anew_and_names_its_commit(self):
@@ -132,12 +132,18 @@ class Reproduction(unittest.TestCase):
     def test_a_newer_timing_counts(self):
         self.ran('shear/timed', 'interrupted', '222222222222')
         self.given['courses']['shear/timed'] = [[50, 1]]
-        self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps | 0.1 | 0.0 |\n', self.written()[1])
+        self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps | 0.1 | 0.0 | 0 |\n', self.written()[1])
+
+    def test_full_descriptions_without_figures_are_listed_too(self):
+        self.file('sims/shear/full-other.json', '{}')
+        self.assertIn('| shear/full-other | 3.00 | | | | |\n', self.written()[1])
+        self.ran('shear/full-other', 'done', '222222222222')
+        self.assertNotIn('| shear/full-other |', self.written()[1])
 
     def test_what_has_not_run_has_its_note_below_the_table(self):
         self.given['notes'][reproduce.UNFINISHED] = 'Twice that.'
         for _ in range(2):
-            self.assertTrue(self.written()[1].endswith('| shear/never-run | 3.00 | | | |\n\nTwice that.\n'))
+            self.assertTrue(self.written()[1].endswith('| shear/never-run | 3.00 | | | | |\n\nTwice that.\n'))
 
     def test_a_note_is_the_one_of_the_figures(self):
         self.given['notes']['shear/run-long-ago'] = 'Said better.'
@@ -211,7 +217,7 @@ class Reproduction(unittest.TestCase):
     def expect_not_run(self):
         sections, page = self.written()
         self.assertNotIn('shear/run-long-ago', sections)
-        self.assertIn('| shear/run-long-ago | 3.00 | | | |\n', page)
+        self.assertIn('| shear/run-long-ago | 3.00 | | | | |\n', page)
         self.assertIn('shear/run-now', sections)
 
 
