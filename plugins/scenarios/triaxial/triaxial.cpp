@@ -12,7 +12,7 @@ namespace {
 // Measured under 200 kPa, see README.md.
 constexpr std::array<Compacted, 7> compacted{{{0, 0.560},
                                               {2 * degree, 0.622},
-                                              {5 * degree, 0.668},
+                                              {5 * degree, 0.670},
                                               {10 * degree, 0.735},
                                               {18 * degree, 0.814},
                                               {30 * degree, 0.964},
