@@ -141,6 +141,8 @@ def table(name, folders, figures, older):
     several = f'{len(folders)} packings; the first: ' if len(folders) > 1 else ''
     yield (f"{several}{run['bodies']:,} bodies, {run['steps']:,} steps, {run.get('cpu_s', run['wall_s']):.0f} core-seconds on {run['threads']} "
            f"thread{'s' if run['threads'] > 1 else ''}, {run['bodies'] * run['steps'] / run.get('cpu_s', run['wall_s']) / 1e6:.1f} M particle-steps a core-second, {commits(folders)}.\n")
+    if not figures:
+        return
     yield '| figure | reference | grit | deviation | |'
     yield '| --- | --- | --- | --- | --- |'
     yield from rows(name, folders, figures, older)
@@ -154,6 +156,8 @@ def sections(page):
 def kept(section, figures):
     """The lines that table() once made of a section, if its figures are those that are asked for; else none."""
     lines = section.splitlines()
+    if not figures:
+        return lines[:next((i + 2 for i, line in enumerate(lines) if ' core-seconds on ' in line), 0)]
     at = [i for i, line in enumerate(lines) if line.startswith('| ')]
     told = [lines[i] for i in at[2:]]
     same = len(told) == len(figures) and all(line.startswith(asked(row)) for line, row in zip(told, figures))

@@ -138,7 +138,11 @@ class Reproduction(unittest.TestCase):
         self.file('sims/shear/full-other.json', '{}')
         self.assertIn('| shear/full-other | 3.00 | | | | |\n', self.written()[1])
         self.ran('shear/full-other', 'done', '222222222222')
-        self.assertNotIn('| shear/full-other |', self.written()[1])
+        sections, page = self.written()
+        self.assertNotIn('| shear/full-other |', page)
+        self.assertIn('by commit 222222222222.', sections['shear/full-other'])
+        shutil.rmtree(self.root / 'results')
+        self.assertEqual(self.written()[1], page)
 
     def test_what_has_not_run_has_its_note_below_the_table(self):
         self.given['notes'][reproduce.UNFINISHED] = 'Twice that.'
