@@ -308,6 +308,22 @@ TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
       << "in a stage";
 }
 
+TEST(Descriptions, CheckSaysWhichParametersOfAScenarioChangeNothing) {
+  const OwnFolder folder;
+  const auto check = [&](const std::string& file, std::vector<std::string> sets) {
+    std::vector<std::string> words{"check", GRIT_SOURCE_DIR "/sims/interface-shear/" + file};
+    for (const auto& set : sets) words.insert(words.end(), {"--set", set});
+    return grit_in(folder.path(), words).out;
+  };
+  EXPECT_THAT(check("quick-flat.json", {}), testing::Not(HasSubstr("without effect")));
+  EXPECT_THAT(check("quick-flat.json", {"/scenario/roughness=0.5", "/scenario/wavelength=15 mm"}),
+              AllOf(HasSubstr("\nwithout effect\n  /scenario/roughness: the scene is the same with 1 % more or less of "
+                              "it\n  /scenario/wavelength: "),
+                    testing::Not(HasSubstr("/scenario/width"))));
+  EXPECT_THAT(check("quick-flat.json", {"/scenario/roughness=0.5", "/scenario/surface=saw-tooth"}),
+              testing::Not(HasSubstr("without effect")));
+}
+
 TEST(Descriptions, CheckCountsGrainsOfAllLayersInADepth) {
   const OwnFolder folder;
   const auto outcome = grit_in(

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/idle_materials.hpp"
+#include "app/idle_scenario.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
@@ -146,6 +147,7 @@ void check_one(const std::string& file, const Options& options, const Registry& 
         }))
       idle.push_back(line);
   }
+  std::ranges::move(idle_scenario(written, same), std::back_inserter(idle));
   if (auto line = too_deep(scene, simulation, scenario_type(Document::load(file)), same)) idle.push_back(*line);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';
