@@ -13,12 +13,11 @@ namespace {
 void triad(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0)) / (3 * sizeof(double));
   LargeArray<double> a(count, 0.0), b(count, 1.0), c(count, 2.0);
-  double* to = a.data();
+  double* __restrict to = a.data();
   const double *from_b = b.data(), *from_c = c.data();
   double scale = 1;
   for (auto _ : state) {
     benchmark::DoNotOptimize(scale);
-#pragma GCC ivdep
     for (std::size_t i = 0; i < count; ++i) to[i] = from_b[i] + scale * from_c[i];
     benchmark::ClobberMemory();
   }

@@ -296,10 +296,12 @@ ReportContent report_content(std::span<const std::filesystem::path> folders, con
 }
 
 ReportContent empty_content(const std::string& title, const std::string& words) {
-  return {title,
-          "<header>\n<h1>" + escaped(title) + "</h1>\n<p>" + escaped(words) + "</p>\n</header>\n",
-          {{"colours", {{"series", series_colours}, {"diverging", diverging_colours}}}, {"runs", Description::array()}},
-          {}};
+  ReportContent content;
+  content.title = title;
+  content.head = "<header>\n<h1>" + escaped(title) + "</h1>\n<p>" + escaped(words) + "</p>\n</header>\n";
+  content.json = {{"colours", {{"series", series_colours}, {"diverging", diverging_colours}}},
+                  {"runs", Description::array()}};
+  return content;
 }
 
 std::string report_html(const ReportContent& content, const DataElements& data, Reach reach) {

@@ -87,7 +87,7 @@ TEST(SiloDischarge, TellsSmallSharesApart) {
 }
 
 TEST(SiloDischarge, GivesSandTheTimeToComeToRestHoweverLittleLeaves) {
-  for (const Description shares : {Description({0.1, 0.101}), Description({0.2, 0.9, 1})}) {
+  for (const Description& shares : {Description({0.1, 0.101}), Description({0.2, 0.9, 1})}) {
     const Description stages = expanded({{"shares", shares}})["stages"];
     EXPECT_GE(stages.back()["limit"].get<double>(), stages[1]["limit"].get<double>()) << "as it has to settle";
   }
