@@ -30,36 +30,38 @@ def figures(name):
 
 
 class Shape(unittest.TestCase):
-    def grows_and_levels_off(self, names, figure, at, allowed, level=True):
-        """From one of the names to the next, up to `at`; then it changes by less than half of its last step, or than two packings that may each be off by `allowed`, if it is level."""
+    def grows_and_levels_off(self, names, figure, at, level=True):
+        """From one of the names to the next, up to `at`; then it changes by less than half of its last step, or twice its scatter, if it is level."""
         values = [figures(name)[figure] for name in names]
         last = names.index(at)
         for (name, (low, _)), (_, (high, _)) in itertools.pairwise(list(zip(names, values))[:last + 1]):
             self.assertLess(low, high, f'{figure} after {name}')
         top = values[last][0]
-        for name, (value, _) in list(zip(names, values))[last + 1:] if level else ():
-            self.assertLess(abs(value - top), max(0.5 * (top - values[last - 1][0]), 2 ** 0.5 * allowed), f'{figure} of {name}')
+        for name, (value, scatter) in list(zip(names, values))[last + 1:] if level else ():
+            self.assertLess(abs(value - top), max(0.5 * (top - values[last - 1][0]), 2 * scatter), f'{figure} of {name}')
 
     def test_friction_grows_with_roughness_and_levels_off(self):
         for kind in ('quick', 'quick-clumps'):
             names = [name for name in (f'interface-shear/{kind}-rn-{roughness}' for roughness in ROUGHNESSES) if name in sections()]
             self.assertGreater(len(names), 5)
-            self.grows_and_levels_off(names, PEAK, f'interface-shear/{kind}-rn-075', 2)
+            self.grows_and_levels_off(names, PEAK, f'interface-shear/{kind}-rn-075')
             # A single packing of clumps loses sand, and with it some degrees of the residual angle.
-            self.grows_and_levels_off(names, RESIDUAL, f'interface-shear/{kind}-rn-075', 2, level=kind == 'quick')
+            self.grows_and_levels_off(names, RESIDUAL, f'interface-shear/{kind}-rn-075', level=kind == 'quick')
 
     def test_a_surface_without_roughness_is_slid_along(self):
-        for name in ('interface-shear/quick-rn-001', 'interface-shear/quick-clumps-rn-001'):
+        # Clumps rock as they slide: over the length of a groove the angle wanders between 17.2 and 18.5 degrees, and single samples are higher.
+        for name, of_peak, of_residual in (('interface-shear/quick-rn-001', 0.6, 0.2), ('interface-shear/quick-clumps-rn-001', 1, 0.6)):
             of = figures(name)
-            self.assertAlmostEqual(of[PEAK][0], 18, delta=1.2)  # the highest of 400 samples
-            self.assertAlmostEqual(of[RESIDUAL][0], 18, delta=0.2)
+            self.assertAlmostEqual(of[PEAK][0], 18, delta=of_peak)
+            self.assertAlmostEqual(of[RESIDUAL][0], 18, delta=of_residual)
             self.assertGreaterEqual(of['slip, %'][0], 85)
 
     def test_friction_grows_with_the_depth_of_waves_and_levels_off(self):
         names = [f'interface-shear/quick-{depth}' for depth in DEPTHS]
-        for figure in ('peak coefficient of friction', 'residual coefficient of friction'):
+        # Residuals of single packings scatter by 0.02 to 0.03, as much as the reference's differ from 0.240 on.
+        for figure, at in (('peak coefficient of friction', '0333'), ('residual coefficient of friction', '0240')):
             self.assertAlmostEqual(figures(names[0])[figure][0] / math.tan(math.radians(16)), 1, delta=0.01)
-            self.grows_and_levels_off(names, figure, 'interface-shear/quick-dl-0333', 0.04)
+            self.grows_and_levels_off(names, figure, f'interface-shear/quick-dl-{at}')
 
     def test_peaks_of_direct_shear_fall_with_stress_and_void_ratio(self):
         page = (ROOT / 'docs' / 'reproduction.md').read_text(encoding='utf-8')
