@@ -73,7 +73,7 @@ TEST_F(ClumpDescription, OfAFileNamesFileAndLine) {
   EXPECT_EQ(file("0 0 0 1\n1 0 0 1\n"), "");
   EXPECT_EQ(file("# x y z radius\n0 0 0 1\n1 0 0\n1 0 x 1\n0 0 0 -1\n"),
             place + path +
-                ":3: found 3 numbers; a grain is four: x y z radius, in m; allowed is a file with a line a "
+                ":3: found 3 numbers; a grain is four: x y z radius; allowed is a file with a line a "
                 "sphere: x y z radius\n" +
                 place + path + ":4: z is \"x\", not a number; allowed is a file with a line a sphere: x y z radius\n" +
                 place + path +

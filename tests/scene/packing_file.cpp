@@ -87,9 +87,9 @@ TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
   const auto found =
       problems("# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -4\n1e999 2 3 4\n");
   const std::pair<int, const char*> wanted[] = {
-      {3, "found 3 numbers; a grain is four: x y z radius, in m"},
+      {3, "found 3 numbers; a grain is four: x y z radius"},
       {4, "z is \"x3\", not a number"},
-      {5, "found 5 numbers; a grain is four: x y z radius, in m"},
+      {5, "found 5 numbers; a grain is four: x y z radius"},
       {6, "y is \"nan\", not a finite number in double's range"},
       {7, "radius is \"inf\", not a finite number in double's range"},
       {8, "radius is 0.000000 m; it must be above 0"},

@@ -62,7 +62,7 @@ std::string read_grain(std::string_view line, Row& grain) {
     return std::string(names[found]) + " is \"" + std::string(word.substr(0, 40)) + "\", not a " +
            (number ? "finite number in double's range" : "number");
   }
-  if (found != 4) return "found " + std::to_string(found) + " numbers; a grain is four: x y z radius, in m";
+  if (found != 4) return "found " + std::to_string(found) + " numbers; a grain is four: x y z radius";
   if (!(grain.w > 0)) return "radius is " + std::to_string(grain.w) + " m; it must be above 0";
   return "";
 }

@@ -15,6 +15,13 @@ void SiloQuasistatic::declare(Parameters& p) {
   silo_.declare(p);
   p.add("settlement", settlement_).unit("m").above(0).doc("by which the bottom is lowered");
   p.add("velocity", velocity_).unit("m/s").above(0).doc("of the bottom");
+  p.check(
+      [this](const Complain& complain) {
+        if (settlement_ >= silo_.height)
+          complain("settlement", std::to_string(settlement_ * 1e3) + " mm",
+                   "less than the height of the filling, " + std::to_string(silo_.height * 1e3) + " mm");
+      },
+      {"settlement", "height"});
 }
 
 Description SiloQuasistatic::expand() const {
