@@ -29,7 +29,7 @@ import numpy
 ROOT = Path(__file__).resolve().parents[1]
 HEAD = '''# Reproduction
 Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's (A. Grabowski, doctoral dissertation,
-Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, sheared faster, to show order and
+Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, mostly sheared faster, to show order and
 shape, and differ as the notes below them say. A figure is of one packing, or the mean of several ± the standard deviation of one; so is the
 reference's of one packing. A section stays until its test is run again, and says which commit of grit ran it, where that was kept.
 
@@ -188,10 +188,10 @@ def part(run, course, grains):
     return f"{100 * done / all_of_it:.1f} %, {words} | {1e-6 * rate:.1f} | {all_of_it / rate / 3600:.1f} |"
 
 
-def resting(columns, slower):
-    """`columns` of part() and one more: the core-hours once sand lies, of which each step takes `slower` times as long in the mean; None: not known."""
-    hours = re.fullmatch(r'.*\| ([0-9.]+) \|', columns)
-    return f"{columns} {f'{slower * float(hours[1]):.0f} ' if hours and slower else ''}|"
+def resting(columns, speed):
+    """`columns` of part() and one more: the core-hours at the `speed` of sand that lies, in M particle-steps a core-second; None: not known."""
+    timed = re.fullmatch(r'.*\| ([0-9.]+) \| ([0-9.]+) \|', columns)
+    return f"{columns} {f'{float(timed[1]) * float(timed[2]) / speed:.0f} ' if timed and speed else ''}|"
 
 
 def short(name, results, wanted, section, older, figures=()):
@@ -281,8 +281,8 @@ def main():
         else:
             hours, grains = estimate(given.grit, description)
             run, course = state(given.results / name), reference['courses'].get(name)
-            slower = next((times for glob, times in reference['resting'].items() if fnmatch.fnmatch(name, glob)), None)
-            missing.append(f"| {name} | {hours} | {resting(part(run, course, grains) or timed.get(name, '| | |'), slower)}")
+            speed = next((speed for glob, speed in reference['resting'].items() if fnmatch.fnmatch(name, glob)), None)
+            missing.append(f"| {name} | {hours} | {resting(part(run, course, grains) or timed.get(name, '| | |'), speed)}")
     if of_size['quick']:
         lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name), rows_of(name))}"
                                    for name in of_size['quick']), '']
@@ -290,7 +290,7 @@ def main():
         note = reference['notes'].get(UNFINISHED)
         lines += [HEAD_OF_UNFINISHED, *missing, *(['', note] if note else [])]
     page.write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
-    print(f'docs/reproduction.md: {len(told)} descriptions with figures, {len(missing)} not run')
+    print(f'docs/reproduction.md: {len(told)} descriptions run, {len(missing)} not run')
 
 
 if __name__ == '__main__':

@@ -30,14 +30,14 @@ def figures(name):
 
 
 class Shape(unittest.TestCase):
-    def grows_and_levels_off(self, names, figure, at, level=True):
-        """From one of the names to the next, up to `at`; then it changes by less than half of its last step, or twice its scatter, if it is level."""
+    def grows_and_levels_off(self, names, figure, at):
+        """From one of the names to the next, up to `at`; then it changes by less than half of its last step, or twice its scatter."""
         values = [figures(name)[figure] for name in names]
         last = names.index(at)
         for (name, (low, _)), (_, (high, _)) in itertools.pairwise(list(zip(names, values))[:last + 1]):
             self.assertLess(low, high, f'{figure} after {name}')
         top = values[last][0]
-        for name, (value, scatter) in list(zip(names, values))[last + 1:] if level else ():
+        for name, (value, scatter) in list(zip(names, values))[last + 1:]:
             self.assertLess(abs(value - top), max(0.5 * (top - values[last - 1][0]), 2 * scatter), f'{figure} of {name}')
 
     def test_friction_grows_with_roughness_and_levels_off(self):
@@ -45,8 +45,7 @@ class Shape(unittest.TestCase):
             names = [name for name in (f'interface-shear/{kind}-rn-{roughness}' for roughness in ROUGHNESSES) if name in sections()]
             self.assertGreater(len(names), 5)
             self.grows_and_levels_off(names, PEAK, f'interface-shear/{kind}-rn-075')
-            # A single packing of clumps loses sand, and with it some degrees of the residual angle.
-            self.grows_and_levels_off(names, RESIDUAL, f'interface-shear/{kind}-rn-075', level=kind == 'quick')
+            self.grows_and_levels_off(names, RESIDUAL, f'interface-shear/{kind}-rn-075')
 
     def test_a_surface_without_roughness_is_slid_along(self):
         # Clumps rock as they slide: over the length of a groove the angle wanders between 17.2 and 18.5 degrees, and single samples are higher.
@@ -54,7 +53,7 @@ class Shape(unittest.TestCase):
             of = figures(name)
             self.assertAlmostEqual(of[PEAK][0], 18, delta=of_peak)
             self.assertAlmostEqual(of[RESIDUAL][0], 18, delta=of_residual)
-            self.assertGreaterEqual(of['slip, %'][0], 85)
+            self.assertGreaterEqual(of['slip, %'][0], 94)
 
     def test_friction_grows_with_the_depth_of_waves_and_levels_off(self):
         names = [f'interface-shear/quick-{depth}' for depth in DEPTHS]
