@@ -115,7 +115,7 @@ struct Silo {
         .doc("between grains and the surface of walls and bottom");
     p.add("wall_pieces", wall_pieces)
         .at_least(1)
-        .at_most(1000)
+        .at_most(100)  // formulas add up the forces of all, and take no longer ones than of some hundred
         .doc("of equal height into which each wall is cut, for stresses by height");
     p.add("smallest_diameter", smallest_diameter).unit("m").symbol("d_min").above(0).doc("of the grains");
     p.add("largest_diameter", largest_diameter)

@@ -308,6 +308,25 @@ TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
       << "in a stage";
 }
 
+TEST(Descriptions, AreRefusedWhereAStageAddsOrTakesAwayAWall) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const std::string bottom = R"(/walls/bottom={"type": "plane", "point": [0, 0, "-2 mm"], "material": "sand"})";
+  const auto outcome = [&](const std::string& walls) {
+    return grit_in(folder.path(),
+                   {"check", "two.json", "--set", bottom, "--set", "/stages/0/change={\"walls\": " + walls + '}'});
+  };
+  const auto taken = outcome(R"({"bottom": null})"), all = outcome("null"),
+             added = outcome(R"({"a": {"type": "plane", "point": [0, 0, "-3 mm"], "material": "sand"}})");
+  EXPECT_EQ(taken.status, 2);
+  EXPECT_THAT(taken.err, HasSubstr("/stages/0/change/walls/bottom: found null, which would take a wall away; allowed"));
+  EXPECT_EQ(all.status, 2);
+  EXPECT_THAT(all.err, HasSubstr("/stages/0/change/walls: found null, which would take a wall away"));
+  EXPECT_EQ(added.status, 2);
+  EXPECT_THAT(added.err, HasSubstr("/stages/0/change/walls/a: found a wall that the run does not begin with"));
+  EXPECT_EQ(outcome(R"({"bottom": {"point": [0, 0, "-3 mm"]}})").status, 0);
+}
+
 TEST(Descriptions, CheckSaysWhichParametersOfAScenarioChangeNothing) {
   const OwnFolder folder;
   const auto check = [&](const std::string& file, std::vector<std::string> sets) {

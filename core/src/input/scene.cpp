@@ -1,6 +1,7 @@
 #include "input/scene.hpp"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "input/reader.hpp"
@@ -52,6 +53,7 @@ class Planner {
     const auto& stage = written_.json().at("stages").at(number);
     if (const auto change = stage.find("change"); change != stage.end() && change->is_object())
       now_.merge(written_, at + "/change");
+    same_walls(at + "/change/walls");
     plan.start = read_whole(now_, registry_, problems_);
     if (!plan.start) return plan;
     const auto& ramps = plan.start->stages.at(number).ramps;
@@ -63,6 +65,29 @@ class Planner {
   }
 
  private:
+  /// Probes and what a wall remembers of its contacts go by the walls that a run begins with.
+  void same_walls(const std::string& changed) {
+    const Description none = Description::object();
+    const auto walls = [&](const Document& document) -> const Description& {
+      const auto found = document.json().find("walls");
+      return found != document.json().end() && found->is_object() ? *found : none;
+    };
+    const auto refuse_of = [&](const Document& these, const Document& others, const std::string& message) {
+      for (const auto& [name, wall] : walls(these).items()) {
+        if (walls(others).contains(name) || !refused_.insert(name).second) continue;
+        const std::string at = changed + '/' + pointer_token(name);
+        const bool is_written = written_.json().contains(Description::json_pointer(at));
+        problems_.push_back(written_.problem(is_written ? at : changed, message));
+      }
+    };
+    refuse_of(now_, written_,
+              "found a wall that the run does not begin with; allowed are those of /walls: let it begin out of the "
+              "bodies' way, and let the stage say where it stands then");
+    refuse_of(written_, now_,
+              "found null, which would take a wall away; allowed is what it is from then on: let the stage say where "
+              "it stands, out of the bodies' way");
+  }
+
   /// Appends the increments of a ramp. False if there was a problem.
   bool ramp(const RampDescription& ramp, const std::string& at, const SceneDescription& before,
             std::vector<std::shared_ptr<const SceneDescription>>& increments) {
@@ -102,6 +127,7 @@ class Planner {
   Document now_;
   const Registry& registry_;
   std::vector<Problem>& problems_;
+  std::set<std::string> refused_;  ///< names of walls, each of which is told once
 };
 
 /// The plain description behind a scenario, the document's other keys merged onto it.

@@ -24,7 +24,9 @@ void SiloDischarge::declare(Parameters& p) {
   silo_.declare(p);
   p.add("outlet_positions", outlet_positions_)
       .unit("m")
-      .doc("of the middle of each outlet, from the left wall; empty: one in the middle of the bottom");
+      .doc(
+          "of the middle of each outlet, from the left wall, by which channels number them; empty: one in the middle "
+          "of the bottom");
   p.add("outlet_widths", outlet_widths_).unit("m").above(0).entries(1).doc("of each outlet; as deep as the silo");
   p.add("shares", shares_)
       .above(0)
@@ -52,7 +54,7 @@ void SiloDischarge::declare(Parameters& p) {
         for (std::size_t i = 0; i < slots.size(); ++i) {
           const auto& [low, high] = slots[i];
           const std::string from_to = "an outlet from " + std::to_string(low) + " to " + std::to_string(high) + " m";
-          if (high - low < least_outlet * silo_.largest_diameter)
+          if (high - low < least_outlet * silo_.largest_diameter - rounding)
             complain("outlet_widths", std::to_string(high - low) + " m",
                      "at least three of the largest grains, which arch over anything narrower: " +
                          std::to_string(least_outlet * silo_.largest_diameter) + " m");

@@ -135,6 +135,7 @@ TEST(SiloDischarge, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"outlet_widths", {"210 mm"}}}), HasSubstr("outlets inside the bottom, 0 to 0.2"));
   EXPECT_THAT(problem({{"outlet_positions", {"10 mm"}}}), HasSubstr("an outlet from -0.005"));
   EXPECT_THAT(problem({{"outlet_widths", {"7 mm"}}}), HasSubstr("three of the largest grains"));
+  EXPECT_EQ(problem({{"width", "36 mm"}, {"largest_diameter", "2 mm"}, {"outlet_widths", {"6 mm"}}}), "") << "rounding";
   EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.07}}, {"outlet_widths", {0.03, 0.03}}}),
               HasSubstr("overlaps or touches"));
   EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.08}}, {"outlet_widths", {0.03, 0.03}}}),
