@@ -325,6 +325,9 @@ TEST(Descriptions, AreRefusedWhereAStageAddsOrTakesAwayAWall) {
   EXPECT_EQ(added.status, 2);
   EXPECT_THAT(added.err, HasSubstr("/stages/0/change/walls/a: found a wall that the run does not begin with"));
   EXPECT_EQ(outcome(R"({"bottom": {"point": [0, 0, "-3 mm"]}})").status, 0);
+  const auto list = outcome("[]");
+  EXPECT_EQ(list.status, 2);
+  EXPECT_THAT(list.err, testing::Not(HasSubstr("take a wall away")));
 }
 
 TEST(Descriptions, CheckSaysWhichParametersOfAScenarioChangeNothing) {
