@@ -14,7 +14,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[1]
 # Diameter or width [mm]; side of the bin [mm], number of grains, height of their cloud [mm], share of the mass that leaves, samples.
-OUTLETS = {'hole': ((8, 24, 21100, 55, 0.12, 2), (10, 26, 24800, 55, 0.18, 2), (12, 28, 28700, 55, 0.25, 1), (16, 32, 46900, 69, 0.3, 1)),
+OUTLETS = {'hole': ((8, 24, 21100, 55, 0.12, 2), (10, 26, 24800, 55, 0.18, 2), (12, 28, 28700, 55, 0.25, 2), (16, 32, 46900, 69, 0.3, 2)),
            'slot': ((8, 38, 19600, 77, 0.25, 2), (12, 42, 21700, 77, 0.35, 2), (16, 46, 26400, 86, 0.38, 2), (24, 54, 41000, 113, 0.4, 2))}
 EXPONENTS = {'hole': 2.5, 'slot': 1.5}
 BOUND = 0.1
