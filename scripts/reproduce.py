@@ -38,7 +38,7 @@ reference's of one packing. A section stays until its test is run again, and say
 UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
 Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
-(`--for`): how much of the course they went, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
+(`--for`): how much of the course they went by which commit, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
 if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so these hours are the least; the last column has those with sand that lies,
 by what stands below the table.
 
@@ -182,6 +182,7 @@ def part(run, course, grains):
     done = run['particle_steps_per_s'] * run['wall_s']
     rate = done / run['cpu_s']
     words = run['message'].splitlines()[0] if run['status'] == 'failed' else f"{run['steps']:,} steps"
+    words += f" by {run['grit'].get('revision') or 'unknown'}"
     if course is None or run['status'] == 'failed':
         return f"{words} | {1e-6 * rate:.1f} | |"
     all_of_it = sum(span * share for span, share in course) / run['time_step_s'] * grains

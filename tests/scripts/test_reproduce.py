@@ -132,7 +132,7 @@ class Reproduction(unittest.TestCase):
     def test_a_newer_timing_counts(self):
         self.ran('shear/timed', 'interrupted', '222222222222')
         self.given['courses']['shear/timed'] = [[50, 1]]
-        self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps | 0.1 | 0.0 | 0 |\n', self.written()[1])
+        self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps by 222222222222 | 0.1 | 0.0 | 0 |\n', self.written()[1])
 
     def test_full_descriptions_without_figures_are_listed_too(self):
         self.file('sims/shear/full-other.json', '{}')
