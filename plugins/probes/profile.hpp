@@ -91,7 +91,8 @@ class Profile {
 };
 
 /// Where a profile that is largest in a shear zone falls off the fastest on either side: its inflection points [m], not
-/// further out than where it has fallen to a quarter. A zone that is largest at a side of the specimen ends there.
+/// further out than where it has fallen to a quarter. A zone that is largest at a side of the specimen ends there; if
+/// it falls off fastest there as well, it has no inflection point, and the other end is NaN.
 struct ShearZone {
   double low, high;
   double extent;  ///< around its peak, of where it exceeds a twentieth of that [m]
@@ -123,6 +124,7 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
       if (fall(k) > fall(best)) best = k;
       if (size[at(k + way)] < 0.25 * size[at(peak)]) break;
     }
+    if (best == peak && peak == static_cast<std::ptrdiff_t>(size.size()) - 1 - last) return unknown;
     double part = 0.5;
     if (best != peak && best + way != last) {
       const double before = fall(best - way), here = fall(best), after = fall(best + way),
@@ -144,11 +146,12 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
 
 /// The channels that tell of a shear zone in `what`.
 inline std::vector<Channel> zone_channels(const std::string& what) {
-  const std::string unknown = "; NaN where fewer than three places have bodies, or none does it";
-  return {{"zone_low", "m", "where the " + what + " rises to its peak the fastest" + unknown, {}},
-          {"zone_high", "m", "where it falls off the fastest" + unknown, {}},
-          {"zone_thickness", "m", "distance between the two, the thickness of the shear zone" + unknown, {}},
-          {"zone_diameters", "1", "the same over the mean diameter" + unknown, {}},
+  const std::string unknown = "; NaN where fewer than three places have bodies, or none does it",
+                    no_inflection = unknown + ", or it has its peak and falls off the fastest at a side";
+  return {{"zone_low", "m", "where the " + what + " rises to its peak the fastest" + no_inflection, {}},
+          {"zone_high", "m", "where it falls off the fastest" + no_inflection, {}},
+          {"zone_thickness", "m", "distance between the two, the thickness of the shear zone" + no_inflection, {}},
+          {"zone_diameters", "1", "the same over the mean diameter" + no_inflection, {}},
           {"zone_extent_diameters",
            "1",
            "how wide the " + what + " exceeds a twentieth of its peak, over the mean diameter" + unknown,

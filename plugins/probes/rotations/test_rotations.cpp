@@ -9,6 +9,7 @@ namespace {
 
 using testing::DoubleNear;
 using testing::ElementsAre;
+using testing::IsNan;
 using testing::Pointwise;
 
 /// Columns of bodies of diameter 0.01 from z = 0 to 1, a thousandth apart, whose rotation about y is turn(z).
@@ -68,6 +69,23 @@ TEST(Rotations, ZoneAtASideEndsThere) {
   EXPECT_EQ(figure(probe, world, "zone_low"), 0);
   EXPECT_NEAR(figure(probe, world, "zone_high"), sigma, 1e-2 * sigma);
   EXPECT_NEAR(figure(probe, world, "zone_extent_diameters"), sigma * std::sqrt(2 * std::log(20)) / 0.01, 0.2);
+}
+
+// What decays from a side on, as sand on a smooth surface turns, has no inflection point, however fine the profile.
+TEST(Rotations, ZoneThatFallsOffFastestAtItsSideHasNoThickness) {
+  for (const bool at_low : {true, false}) {
+    const double length = 0.1;
+    const FakeWorld world = column([=](double z) { return std::exp(-(at_low ? z : 1 - z) / length); });
+    for (const int places : {21, 101}) {
+      Rotations probe;
+      probe.profile.places = places;
+      probe.prepare(world);
+      EXPECT_EQ(figure(probe, world, at_low ? "zone_low" : "zone_high"), at_low ? 0 : 1);
+      for (const char* none : {at_low ? "zone_high" : "zone_low", "zone_thickness", "zone_diameters"})
+        EXPECT_THAT(figure(probe, world, none), IsNan()) << none;
+      EXPECT_NEAR(figure(probe, world, "zone_extent_diameters"), length * std::log(20) / 0.01, 1);
+    }
+  }
 }
 
 TEST(Rotations, AboutTheAxisThatIsAskedForAndBodyByBody) {
