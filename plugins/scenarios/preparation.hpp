@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -21,7 +22,7 @@
 
 namespace grit {
 
-inline constexpr double degree = std::numbers::pi / 180;
+inline constexpr double degree = std::numbers::pi / 180, infinity = std::numeric_limits<double>::infinity();
 
 /// Void ratios of the interior that a grading, pressure and stiffness can be brought to.
 struct VoidRatioRange {
@@ -42,7 +43,7 @@ inline constexpr std::array<Compacted, 7> compacted_in_a_box{{{0, 0.558},
                                                               {18 * degree, 0.770},
                                                               {30 * degree, 0.853},
                                                               {60 * degree, 0.919}}};
-inline constexpr VoidRatioRange reachable_in_a_box{0.57, 0.79};
+inline constexpr double loosest_in_a_box = 0.79;
 
 /// Of the same grading that grows in a cube of 12 mean diameters until it bears 200 kPa; README.md says more.
 inline constexpr std::array<Compacted, 7> grown_in_a_cube{{{0, 0.564},
@@ -52,7 +53,11 @@ inline constexpr std::array<Compacted, 7> grown_in_a_cube{{{0, 0.564},
                                                            {18 * degree, 0.736},
                                                            {30 * degree, 0.795},
                                                            {60 * degree, 0.832}}};
-inline constexpr VoidRatioRange reachable_by_growth{0.57, 0.76};
+inline constexpr double loosest_by_growth = 0.76;
+
+/// The densest that frictionless spheres of that grading come to in the interior, between walls that are so many mean
+/// diameters apart along each axis, infinity where they are periodic; README.md has what was measured.
+inline double densest_between(const Vec3& walls) { return 0.517 + 0.174 * walls.cwiseInverse().sum(); }
 
 struct Preparation {
   /// Solid fraction of the cloud that compaction starts from.
@@ -179,15 +184,19 @@ struct Preparation {
     return inertial_number * length / inertial_time(pressure);
   }
 
-  /// Throws Error for a void ratio out of the range of compaction, or of growth, unless the friction of compaction is
-  /// the user's own, or grains are not the spheres that it was measured of. `pressure` [Pa] is named.
-  void refuse_out_of(const VoidRatioRange& compacted, double pressure) const {
-    const VoidRatioRange& range = grows() ? reachable_by_growth : compacted;
+  /// What `walls` [m], as densest_between has them, keep the interior to, and `loosest`, to which compaction leads.
+  VoidRatioRange reachable(const Vec3& walls, double loosest) const {
+    return {densest_between(walls / mean_diameter()), grows() ? loosest_by_growth : loosest};
+  }
+  /// Throws Error for a void ratio out of the range, unless the friction of compaction is the user's own, or grains are
+  /// not the spheres that it was measured of. `pressure` [Pa] is named.
+  void refuse_out_of(const VoidRatioRange& range, double pressure) const {
     if (compaction_friction_angle || grain != "sphere" || (void_ratio >= range.densest && void_ratio <= range.loosest))
       return;
     std::ostringstream text;
     text.precision(3);
-    text << "/scenario/void_ratio is " << void_ratio << "; this grading can be prepared between " << range.densest
+    text << "/scenario/void_ratio is " << void_ratio
+         << "; in a specimen of this size this grading can be prepared between " << range.densest
          << " (without friction) and " << range.loosest << " (high friction, then its own) under " << pressure * 1e-3
          << " kPa; wish for one in this range";
     throw Error(text.str());

@@ -39,7 +39,9 @@ void DirectShear::declare(Parameters& p) {
   preparation_.declare_course(p);
 }
 
-VoidRatioRange DirectShear::reachable() const { return reachable_in_a_box; }
+VoidRatioRange DirectShear::reachable() const {
+  return preparation_.reachable({width_, depth_boundary_ == "periodic" ? infinity : depth_, height_}, loosest_in_a_box);
+}
 
 double DirectShear::shear_velocity() const {
   if (velocity_ > 0) return velocity_;

@@ -92,7 +92,9 @@ void InterfaceShear::declare(Parameters& p) {
       {"gap", "height"});
 }
 
-VoidRatioRange InterfaceShear::reachable() const { return reachable_in_a_box; }
+VoidRatioRange InterfaceShear::reachable() const {
+  return preparation_.reachable({width_, depth_boundary_ == "periodic" ? infinity : depth_, height_}, loosest_in_a_box);
+}
 
 double InterfaceShear::shear_velocity() const {
   return inertial_number_ * height_ / preparation_.inertial_time(normal_stress_);

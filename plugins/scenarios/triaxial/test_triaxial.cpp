@@ -81,7 +81,8 @@ TEST(Triaxial, SaysWhatIsWrong) {
               HasSubstr("with front_and_back \"intermediate-stress\" alone"));
   EXPECT_THAT(problem({{"axial_strain", 1}}), HasSubstr("/axial_strain"));
   EXPECT_THAT(problem({{"front_and_back", "free"}}), HasSubstr("confining-stress"));
-  EXPECT_THAT(refusal<Triaxial>({{"void_ratio", 0.5}}), HasSubstr("/scenario/void_ratio is 0.5; this grading"));
+  EXPECT_THAT(refusal<Triaxial>({{"void_ratio", 0.5}}),
+              HasSubstr("/scenario/void_ratio is 0.5; in a specimen of this size this grading"));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.5}, {"compaction_friction_angle", "0 deg"}}), "")
       << "who says how to compact knows what comes of it";
   EXPECT_THAT(refusal<Triaxial>({{"size", {"100 mm", "29 mm", "100 mm"}}}), HasSubstr("four of the largest grains"));
@@ -119,7 +120,7 @@ TEST(GrowthOfGrains, ComesBeforeServosAndSettling) {
 
 TEST(GrowthOfGrains, HasARangeOfItsOwn) {
   EXPECT_THAT(refusal<Triaxial>({{"preparation", "growth"}, {"void_ratio", 0.79}}),
-              HasSubstr("can be prepared between 0.57 (without friction) and 0.76 ("));
+              HasSubstr("(without friction) and 0.76 ("));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.79}}), "");
 }
 

@@ -101,7 +101,7 @@ void Triaxial::declare(Parameters& p) {
       {"front_and_back", "intermediate_stress"});
 }
 
-VoidRatioRange Triaxial::reachable() const { return {0.57, 0.80}; }
+VoidRatioRange Triaxial::reachable() const { return preparation_.reachable(size_, 0.80); }
 
 double Triaxial::strain_rate() const { return inertial_number_ / preparation_.inertial_time(confining_stress_); }
 
