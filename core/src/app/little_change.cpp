@@ -36,7 +36,7 @@ bool changes_nothing(const Description& value, const std::function<bool(const st
     try {
       idle = idle && same(other);
       tried = true;
-    } catch (const DescriptionError&) {  // beyond what is allowed, or no whole number
+    } catch (const Error&) {  // beyond what is allowed, no whole number, or the name of a file that there is not
     }
   }
   return tried && idle;
