@@ -57,7 +57,10 @@ inline constexpr double loosest_by_growth = 0.76;
 
 /// The densest that frictionless spheres of that grading come to in the interior, between walls that are so many mean
 /// diameters apart along each axis, infinity where they are periodic; README.md has what was measured.
-inline double densest_between(const Vec3& walls) { return 0.517 + 0.174 * walls.cwiseInverse().sum(); }
+inline double densest_between(const Vec3& walls) {
+  const double near_walls = walls.cwiseInverse().sum();
+  return 0.519 + 0.08 * near_walls + 0.28 * near_walls * near_walls;
+}
 
 struct Preparation {
   /// Solid fraction of the cloud that compaction starts from.

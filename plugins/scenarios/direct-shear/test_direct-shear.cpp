@@ -23,7 +23,7 @@ TEST(DirectShear, RefusesVoidRatiosOutOfReachAndSaysTheRange) {
   for (const double wish : {range.densest - 0.001, range.loosest + 0.001}) {
     const std::string text = refusal<DirectShear>({{"void_ratio", wish}, {"normal_stress", "100 kPa"}});
     EXPECT_THAT(text, HasSubstr("/scenario/void_ratio"));
-    EXPECT_THAT(text, HasSubstr("between 0.539 "));
+    EXPECT_THAT(text, HasSubstr("between 0.534 "));
     EXPECT_THAT(text, HasSubstr("and 0.79"));
     EXPECT_THAT(text, HasSubstr("100 kPa"));
   }
@@ -32,10 +32,12 @@ TEST(DirectShear, RefusesVoidRatiosOutOfReachAndSaysTheRange) {
 }
 
 TEST(DirectShear, IsTheDenserTheFartherWallsAreApart) {
-  const double full = made()->reachable().densest;
-  EXPECT_GT(made({{"width", "15 mm"}, {"height", "10 mm"}, {"depth", "3 mm"}})->reachable().densest, full + 0.01);
-  EXPECT_LT(made({{"depth_boundary", "periodic"}})->reachable().densest, full - 0.01);
-  EXPECT_NEAR(made({{"width", "1 m"}, {"height", "1 m"}, {"depth", "1 m"}})->reachable().densest, 0.517, 0.001);
+  const Description small = {{"width", "15 mm"}, {"height", "10 mm"}, {"depth", "3 mm"}};
+  EXPECT_NEAR(made(small)->reachable().densest, 0.560, 0.005) << "measured, as in README.md";
+  Description periodic = small;
+  periodic["depth_boundary"] = "periodic";
+  EXPECT_NEAR(made(periodic)->reachable().densest, 0.528, 0.005);
+  EXPECT_NEAR(made({{"width", "1 m"}, {"height", "1 m"}, {"depth", "1 m"}})->reachable().densest, 0.519, 0.001);
 }
 
 TEST(DirectShear, RefusesABoxOfAFewGrains) {
