@@ -31,7 +31,8 @@ HEAD = '''# Reproduction
 Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's (A. Grabowski, doctoral dissertation,
 Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, mostly sheared faster, to show order and
 shape, and differ as the notes below them say. A figure is of one packing, or the mean of several ± the standard deviation of one; so is the
-reference's of one packing. A section stays until its test is run again, and says which commit of grit ran it, where that was kept.
+reference's of one packing. A section stays until its test is run again, and says which commit of grit ran it, where that was kept. "none": rotation is largest at the surface
+and falls off fastest there, so that it has no inflection point.
 
 '''
 
@@ -123,8 +124,14 @@ def rows(name, folders, figures, older):
         if not values:
             yield f'{asked(row)} not recorded | | |'
             continue
-        mean = numpy.mean(values)
-        scatter = f' ± {numpy.std(values, ddof=1):.2g}' if len(values) > 1 else ''
+        told = [value for value in values if not numpy.isnan(value)]
+        if not told:
+            yield f'{asked(row)} none | | |'
+            continue
+        mean = numpy.mean(told)
+        scatter = f' ± {numpy.std(told, ddof=1):.2g}' if len(told) > 1 else ''
+        if len(told) < len(values):
+            scatter += f' in {len(told)} of {len(values)}'
         verdict = 'within' if abs(mean - reference) <= allowed else 'outside'
         yield f'{asked(row)} {mean:.3g}{scatter} | {mean - reference:+.2g} | {verdict} |'
 

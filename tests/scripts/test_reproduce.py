@@ -88,13 +88,13 @@ class Reproduction(unittest.TestCase):
         path.write_text(text, encoding='utf-8')
         return path
 
-    def ran(self, name, status, commit, **more):
+    def ran(self, name, status, commit, y=(1, 2.5, 2), **more):
         """A run's results."""
         run = {'status': status, 'grit': {'revision': commit}, 'bodies': 100, 'steps': 5000, 'threads': 2, 'wall_s': 2, 'cpu_s': 4,
                'time_step_s': 1e-3, 'particle_steps_per_s': 250000, 'message': '', **more}
         path = self.file(f'results/{name}/run.json', json.dumps(run))
         with h5py.File(path.parent / 'series.h5', 'w') as series:
-            series['test/y'] = [1, 2.5, 2]
+            series['test/y'] = y
 
     def written(self):
         """The page, as {heading: text below it}, and all of it."""
@@ -124,6 +124,15 @@ class Reproduction(unittest.TestCase):
         self.ran('shear/run-now', 'done', '222222222222')
         self.ran('shear/run-now-sample-2', 'done', '333333333333')
         self.assertIn('by commits 222222222222, 333333333333.\n', self.written()[0]['shear/run-now'])
+
+    def test_what_is_not_there_is_none_and_is_in_no_mean(self):
+        none = [numpy.nan, numpy.nan]
+        self.given['figures'][0]['how'] = 'last'
+        name = self.given['figures'][0]['description']
+        self.ran(name, 'done', '222222222222', none)
+        self.assertIn('| peak | 2 ± 0.5 | none | | |\n', self.written()[0][name])
+        self.ran(f'{name}-sample-2', 'done', '222222222222')
+        self.assertIn('| peak | 2 ± 0.5 | 2 in 1 of 2 | +0 | within |\n', self.written()[0][name])
 
     def test_a_run_that_has_not_ended_takes_no_section(self):
         self.ran('shear/run-long-ago', 'interrupted', '222222222222')
