@@ -198,7 +198,7 @@ struct Preparation {
       return;
     std::ostringstream text;
     text.precision(3);
-    text << "/scenario/void_ratio is " << void_ratio
+    text << "/scenario/void_ratio: found " << void_ratio
          << "; in a specimen of this size this grading can be prepared between " << range.densest
          << " (without friction) and " << range.loosest << " (high friction, then its own) under " << pressure * 1e-3
          << " kPa; wish for one in this range";
@@ -207,7 +207,7 @@ struct Preparation {
   /// Throws Error if the shortest side [m] of a specimen is less than four grains.
   void refuse_short(double shortest, const std::string& what) const {
     if (shortest < 4 * largest_diameter)
-      throw Error("/scenario: the " + what + " is " + std::to_string(shortest * 1e3) +
+      throw Error("the " + what + " is " + std::to_string(shortest * 1e3) +
                   " mm wide, high or deep, less than four of the largest grains; make it larger or the grains smaller");
   }
 

@@ -10,7 +10,8 @@ class Scenario {
  public:
   virtual ~Scenario() = default;
   virtual void declare(Parameters& parameters) = 0;
-  /// The plain description, numbers in SI. Throws grit::Error for wishes that cannot be had, with the range that can.
+  /// The plain description, numbers in SI. Throws grit::Error for wishes that cannot be had, with the range that can;
+  /// one that begins with "/scenario/KEY: " is told of where KEY was written.
   virtual Description expand() const = 0;
 };
 

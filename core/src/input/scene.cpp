@@ -131,6 +131,14 @@ class Planner {
   std::set<std::string> refused_;  ///< names of walls, each of which is told once
 };
 
+/// What a scenario says cannot be had: of the parameter that it names first, with a colon, or of all of it.
+Problem of_scenario(const Document& document, const std::string& name, const std::string& text) {
+  const std::size_t colon = text.find(": ");
+  if (text.starts_with("/scenario/") && colon != std::string::npos)
+    return document.problem(text.substr(0, colon), text.substr(colon + 2));
+  return document.problem("/scenario", name + ": " + text);
+}
+
 /// The plain description behind a scenario, the document's other keys merged onto it.
 Document expanded(const Document& document, const Registry& registry) {
   Component<Scenario> scenario(registry);
@@ -145,7 +153,7 @@ Document expanded(const Document& document, const Registry& registry) {
   } catch (const PluginError&) {
     throw;
   } catch (const Error& error) {
-    throw DescriptionError({document.problem("/scenario", name + ": " + error.what())});
+    throw DescriptionError({of_scenario(document, name, error.what())});
   } catch (const std::exception& error) {
     throw PluginError(name + " failed to expand: " + error.what());
   }

@@ -11,6 +11,7 @@ namespace grit {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 std::unique_ptr<DirectShear> made(const Description& keys = Description::object()) {
   return made_scenario<DirectShear>(keys);
@@ -22,7 +23,7 @@ TEST(DirectShear, RefusesVoidRatiosOutOfReachAndSaysTheRange) {
   const VoidRatioRange range = made()->reachable();
   for (const double wish : {range.densest - 0.001, range.loosest + 0.001}) {
     const std::string text = refusal<DirectShear>({{"void_ratio", wish}, {"normal_stress", "100 kPa"}});
-    EXPECT_THAT(text, HasSubstr("/scenario/void_ratio"));
+    EXPECT_THAT(text, StartsWith("/scenario/void_ratio: found 0."));
     EXPECT_THAT(text, HasSubstr("between 0.534 "));
     EXPECT_THAT(text, HasSubstr("and 0.79"));
     EXPECT_THAT(text, HasSubstr("100 kPa"));

@@ -138,7 +138,7 @@ TEST(InterfaceShear, SaysWhatIsWrong) {
   EXPECT_EQ(problem({{"gap", "19 mm"}}), "");
   EXPECT_THAT(problem({{"void_ratio", 0.1}, {"grain", "clump"}}), HasSubstr("/void_ratio"));
   EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
-  EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio is 0.9"));
+  EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio: found 0.9"));
   EXPECT_THAT(refusal<InterfaceShear>({{"depth", "2.9 mm"}}), HasSubstr("four of the largest grains"));
 }
 

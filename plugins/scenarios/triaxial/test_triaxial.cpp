@@ -82,7 +82,7 @@ TEST(Triaxial, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"axial_strain", 1}}), HasSubstr("/axial_strain"));
   EXPECT_THAT(problem({{"front_and_back", "free"}}), HasSubstr("confining-stress"));
   EXPECT_THAT(refusal<Triaxial>({{"void_ratio", 0.5}}),
-              HasSubstr("/scenario/void_ratio is 0.5; in a specimen of this size this grading"));
+              HasSubstr("/scenario/void_ratio: found 0.5; in a specimen of this size this grading"));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.5}, {"compaction_friction_angle", "0 deg"}}), "")
       << "who says how to compact knows what comes of it";
   EXPECT_THAT(refusal<Triaxial>({{"size", {"100 mm", "29 mm", "100 mm"}}}), HasSubstr("four of the largest grains"));
