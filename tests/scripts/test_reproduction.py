@@ -63,6 +63,16 @@ class Shape(unittest.TestCase):
             self.assertAlmostEqual(figures(names[0])[figure][0] / math.tan(math.radians(16)), 1, delta=0.01)
             self.grows_and_levels_off(names, figure, f'interface-shear/quick-dl-{at}')
 
+    def test_loose_sand_on_a_rough_surface_neither_peaks_nor_dilates(self):
+        page = (ROOT / 'docs' / 'reproduction.md').read_text(encoding='utf-8')
+        row = re.search(r'^\| interface-shear/quick-loose \|.*peak friction angle, deg: ([\d.]+); mean of the last quarter, deg: ([\d.]+); '
+                        r'volumetric strain at the end, %: (-?[\d.]+)', page, re.M)
+        peak, end, strain = map(float, row.groups())
+        dense = figures('interface-shear/quick-rn-100')
+        self.assertLess(peak, dense[PEAK][0])
+        self.assertLess(peak - end, 0.5 * (dense[PEAK][0] - dense[RESIDUAL][0]))
+        self.assertLess(strain, 0)
+
     def test_peaks_of_direct_shear_fall_with_stress_and_void_ratio(self):
         page = (ROOT / 'docs' / 'reproduction.md').read_text(encoding='utf-8')
         usual, less, more, loose = (float(re.search(rf'^\| direct-shear/{name} \|.*peak stress ratio: ([\d.]+)', page, re.M)[1])
