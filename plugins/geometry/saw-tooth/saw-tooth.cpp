@@ -103,7 +103,7 @@ void SawTooth::prepare() {
   }
 
   // The first period is the one that the sheet starts in. A tooth or floor of which it has but a sliver is left out.
-  const double sliver = same_length * spacing_, before = offset_ - width.rising - land;
+  const double sliver = same_length * spacing_, before = std::fmod(offset_, spacing_) - width.rising - land;
   start_ = before + spacing_ * std::floor(-before / spacing_);
   per_spacing_ = 1 / spacing_;
   first_ = 0, last_ = std::numeric_limits<int>::max();

@@ -173,6 +173,20 @@ INSTANTIATE_TEST_SUITE_P(
     case_name);
 
 // Strips and tips one by one, against which the plugin is held.
+// Grooves of 0.1 m at 45 degrees are 0.2 m apart; fmod leaves what is left of 2^70 m exactly.
+TEST(SawTooth, OffsetBeyondAllBoundsCountsByItsPartOfAGroove) {
+  Grooves part, far;
+  far.offset = 0x1p70, part.offset = std::fmod(far.offset, far.spacing());
+  const auto a_sheet = part.made(), b_sheet = far.made();
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 centre(0.013 + 0.05 * i, 0.5, 0.01);
+    const auto a = touches_of(*a_sheet, centre, 0.12), b = touches_of(*b_sheet, centre, 0.12);
+    ASSERT_EQ(a.size(), b.size()) << i;
+    ASSERT_FALSE(a.empty()) << i;
+    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].overlap, b[k].overlap) << i;
+  }
+}
+
 TEST(SawTooth, TouchesWhatSingleStripsDo) {
   std::mt19937_64 random(7);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };

@@ -36,7 +36,7 @@ void Sinusoidal::prepare() {
   wave_number_ = 2 * std::numbers::pi / wavelength_;
   steepest_ = 0.5 * depth_ * wave_number_;
   trough_radius_ = 1 / (steepest_ * wave_number_);
-  first_crest_ = offset_ - wavelength_ * std::ceil(offset_ / wavelength_ - 0.5);  // within half a wave of the corner
+  first_crest_ = std::remainder(offset_, wavelength_);  // within half a wave of the corner
   last_crest_ = std::ceil(number_at(sheet_.length_a) - 0.5);
   // In a trough beyond which the next crest rises, a sphere may touch an end and that crest.
   const double past_last = sheet_.length_a - crest(last_crest_);

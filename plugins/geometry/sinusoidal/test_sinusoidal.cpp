@@ -437,6 +437,18 @@ TEST(Sinusoidal, NumbersRiseAlongTheSheetWhereverACrestIs) {
   }
 }
 
+TEST(Sinusoidal, OffsetBeyondAllBoundsCountsByItsPartOfAWave) {
+  const double huge = 0x1p1000;
+  const auto near = Waves{.offset = std::remainder(huge, usual.wavelength)}.made(), far = Waves{.offset = huge}.made();
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 centre(0.013 + 0.05 * i, 0.5, 0.02);
+    const auto a = touches_of(*near, centre, 0.15), b = touches_of(*far, centre, 0.15);
+    ASSERT_EQ(a.size(), b.size()) << i;
+    ASSERT_FALSE(a.empty()) << i;
+    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].overlap, b[k].overlap) << i;
+  }
+}
+
 TEST(Sinusoidal, MillionthWaveIsAsExactAsTheFirst) {
   const auto sheet = Waves{.length_a = 400000}.made();
   const auto touches = touches_of(*sheet, {399999.6, 0.5, 0.07}, 0.09);
