@@ -137,8 +137,9 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
     std::vector<double> corners;
     for (const auto& corner : triangles_of(wall, shapes, world.stage()))
       corners.insert(corners.end(), corner.data(), corner.data() + 3);
-    auto triangles = put(group, {wall.name, "m", "corners of the wall's triangles where it has moved to", {}},
-                         {corners.size() / 9, 3, 3}, corners);
+    auto triangles =
+        put(group, {wall.name, "m", "corners of the wall's triangles where it has been displaced to, not turned", {}},
+            {corners.size() / 9, 3, 3}, corners);
     triangles.set_attribute("index", static_cast<std::int64_t>(index));
     triangles.set_attribute("pressure", wall.pressure);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -33,8 +33,9 @@ struct Frame {
 
   struct Wall {
     std::string name;
-    std::vector<double> corners;  ///< of its triangles where it is now: nine numbers a triangle [m]
-    Vec3 displacement;            ///< since the start of the run [m]
+    std::vector<double>
+        corners;        ///< of its triangles where it has been displaced to, not turned: nine numbers a triangle [m]
+    Vec3 displacement;  ///< since the start of the run [m]
   };
   std::vector<Wall> walls;
 };

@@ -77,7 +77,13 @@ void Triaxial::declare(Parameters& p) {
       .symbol("sigma_2")
       .above(0)
       .doc("on front and back, for a true triaxial test");
-  p.add("axial_strain", axial_strain_).symbol("eps_1").above(0).below(1).doc("at the end, over the height before");
+  p.add("axial_strain", axial_strain_)
+      .symbol("eps_1")
+      .above(0)
+      .below(1)
+      .doc(
+          "way of the platens at the end, over the height of size; the specimen is somewhat higher, and strained by as "
+          "much less");
   p.add("inertial_number", inertial_number_)
       .symbol("I")
       .above(0)
