@@ -34,7 +34,7 @@ TEST(DirectShear, RefusesVoidRatiosOutOfReachAndSaysTheRange) {
 
 TEST(DirectShear, IsTheDenserTheFartherWallsAreApart) {
   const Description small = {{"width", "15 mm"}, {"height", "10 mm"}, {"depth", "3 mm"}};
-  EXPECT_NEAR(made(small)->reachable().densest, 0.560, 0.005) << "measured, as in README.md";
+  EXPECT_NEAR(made(small)->reachable().densest, 0.560, 0.005) << "the mean of what two such specimens came to";
   Description periodic = small;
   periodic["depth_boundary"] = "periodic";
   EXPECT_NEAR(made(periodic)->reachable().densest, 0.528, 0.005);

@@ -120,7 +120,7 @@ TEST(GrowthOfGrains, ComesBeforeServosAndSettling) {
 
 TEST(GrowthOfGrains, HasARangeOfItsOwn) {
   EXPECT_THAT(refusal<Triaxial>({{"preparation", "growth"}, {"void_ratio", 0.79}}),
-              HasSubstr("(without friction) and 0.76 ("));
+              HasSubstr("can be prepared between 0.537 (without friction) and 0.76 ("));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.79}}), "");
 }
 
