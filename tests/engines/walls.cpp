@@ -111,6 +111,7 @@ TEST(Walls, PointComesBackAfterAFullTurn) {
   const Vec3 moved = about + quarter * (point - about) + Vec3(0.1 * time / 4, 0, 0);
   EXPECT_LT((walls.pose(0).to_world(point) - moved).norm(), 1e-12);
   EXPECT_LT((walls.point_velocity(0, moved) - (Vec3(0.1, 0, 0) + spin.cross(quarter * (point - about)))).norm(), 1e-11);
+  EXPECT_LT((view(walls).pose.to_world(point) - moved).norm(), 1e-11) << "as frames and pictures have it";
   for (int n = steps / 4; n < steps; ++n) step(walls, dt);
   EXPECT_LT((walls.pose(0).to_world(point) - point - Vec3(0.1 * time, 0, 0)).norm(), 1e-12);
 }

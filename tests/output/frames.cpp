@@ -111,6 +111,17 @@ TEST(Frames, DrawWallsAsTheirStageHasThem) {
   }
 }
 
+TEST(Frames, TurnWallsAboutTheirReferencePoint) {
+  const Folder folder;
+  auto world = three_grains();
+  Mat3 quarter;
+  quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  world.wall[1].pose = {Vec3(1, 0, 1), Vec3(0, 0, -0.5), quarter};
+  Frames(folder.path(), lid).write(world, {});
+  const hdf5::File file(folder / "frames/000000.h5", hdf5::Mode::read);
+  EXPECT_THAT(file.group("walls").dataset("lid").read<double>(), ElementsAre(1, -1, 0.5, 1, 0, 0.5, 0, -1, 0.5));
+}
+
 // A square of four triangles with their tips in its middle; a ball rests on the second and one on the last.
 TEST(Frames, TellTheForceOnEachFacetOfAMesh) {
   const std::vector<Vec3> corner{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};

@@ -17,7 +17,7 @@ class Probe;
 class Scenario;
 
 /// Raised whenever anything that crosses the plugin boundary changes.
-inline constexpr std::uint32_t sdk_version = 9;
+inline constexpr std::uint32_t sdk_version = 10;
 
 /// Size and alignment of a struct on the hot path.
 struct Layout {

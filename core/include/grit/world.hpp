@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "grit/geometry.hpp"
 #include "grit/vec.hpp"
 
 namespace grit {
@@ -81,6 +82,7 @@ struct WallView {
   Vec3 normal;          ///< mean unit normal, towards the bodies; zero where the geometry has none
   std::uint32_t touches = 0;
   bool flat = false;  ///< made of wide plane faces
+  Pose pose;          ///< where its shape has moved and turned to
 };
 
 /// How far a point is from the surface of a wall.

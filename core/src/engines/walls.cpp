@@ -344,6 +344,7 @@ void Walls::view(std::vector<WallView>& views) const {
     view.normal = state.pose.turn * geometry.normal();
     view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
     view.touches = state.touches;
+    view.pose = state.pose;
   }
 }
 

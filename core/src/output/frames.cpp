@@ -138,7 +138,7 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
     for (const auto& corner : triangles_of(wall, shapes, world.stage()))
       corners.insert(corners.end(), corner.data(), corner.data() + 3);
     auto triangles =
-        put(group, {wall.name, "m", "corners of the wall's triangles where it has been displaced to, not turned", {}},
+        put(group, {wall.name, "m", "corners of the wall's triangles where it has moved and turned to", {}},
             {corners.size() / 9, 3, 3}, corners);
     triangles.set_attribute("index", static_cast<std::int64_t>(index));
     triangles.set_attribute("pressure", wall.pressure);
@@ -246,7 +246,7 @@ std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> 
   if (shape == shapes.end()) shape = in("");
   if (shape == shapes.end()) return {};
   auto triangles = shape->triangles;
-  for (auto& corner : triangles) corner += wall.position;
+  for (auto& corner : triangles) corner = wall.pose.turned() ? wall.pose.to_world(corner) : corner + wall.position;
   return triangles;
 }
 
