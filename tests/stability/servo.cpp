@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engines/walls.hpp"
 #include "grit/contact/restitution.hpp"
@@ -210,7 +211,7 @@ double peak_on_springs(int springs, double way, double start, bool brakes) {
   walls.apply({{"lid", std::make_shared<Plate>(), motion}});
   const double gap = (1 + start) * way * overlap_kept;
   const auto force = [&](const Pose& there) { return springs * stiffness * std::max(0.0, -there.shift.z() - gap); };
-  const Walls::Ahead ahead = [&](std::size_t, const Pose& there, double) { return Meeting{force(there), 0}; };
+  const Walls::Ahead ahead = [&](std::size_t, const Pose& there, const Vec3&, double) { return force(there); };
   double peak = 0;
   for (int step = 0; step < 1000; ++step) {
     const double now = force(walls.pose(0));
@@ -328,6 +329,51 @@ TEST(Servo, ClosesAsFastAsItMayWhereNothingWouldBearTooMuch) {
     }
     EXPECT_EQ(braked, way > 1.0 / 16);
   }
+}
+
+TEST(Servo, BrakesBeforeDampedGrainsByHowFastItNearsThem) {
+  for (const double share : {0.0, 0.9}) {  // of the lid's speed, that they have
+    Description d = closing({.a_side = 4, .restitution = 0.3}, 0.05, 0.1);
+    const double fastest = d["walls"]["lid"]["motion"]["servo"]["max_velocity"];
+    for (Description& grain : d["bodies"]["grains"]["grains"]["grains"])
+      grain["velocity"] = vector({0, 0, -share * fastest});
+    d["walls"].erase("floor");
+    Trial t(d);
+    bool braked = false;
+    for (int step = 0; step < 100 && t.world().walls()[0].touches == 0; ++step) {
+      t.step();
+      braked = braked || t.world().walls()[0].velocity.z() != -fastest;
+    }
+    EXPECT_GT(t.world().walls()[0].touches, 0);
+    EXPECT_EQ(braked, share == 0) << "of the speed: " << share;
+  }
+}
+
+// A lid that is braked in every other step makes dashpots' losses, which see it half a step late, more than it puts in.
+TEST(Servo, DrivesACloudOfDampedGrainsBeforeItSteadily) {
+  Description d = description("linear-frictional", {{"restitution", 0.4}, {"contact_modulus", 2e7}}, {});
+  d["bodies"]["grains"]["grains"] = {
+      {"type", "cloud"}, {"low", {0, 0, 0}}, {"high", {0.012, 0.008, 0.024}}, {"count", 300}};
+  d["bodies"]["grains"]["grains"]["sizes"] = {{"type", "uniform"}, {"smallest", 1.2e-3}, {"largest", 2e-3}};
+  d["domain"] = {{"low", {0, 0, -5e-3}}, {"high", {0.012, 0.008, 0.035}}, {"periodic", {true, true, false}}};
+  d["walls"]["lid"] = {{"type", "rectangle"},
+                       {"corner", {0, 8e-3, 0.025}},
+                       {"edge_a", {0.012, 0, 0}},
+                       {"edge_b", {0, -8e-3, 0}},
+                       {"material", "grain"}};
+  d["walls"]["lid"]["motion"]["servo"] = {{"pressure", 5e3}, {"max_velocity", 0.5}};
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  double jumps = 0, before = 0;
+  constexpr int steps = 3000;
+  for (int step = 0; step < steps; ++step) {
+    t.step();
+    const double now = t.world().walls()[0].velocity.z();
+    jumps += std::abs(now - std::exchange(before, now)) / 0.5;
+  }
+  const EnergyLedger now = t.world().energies();
+  EXPECT_LT(jumps / steps, 0.02) << "of max_velocity, in a step";
+  EXPECT_NEAR(now.closure_error / now.walls, 0, 0.02);
 }
 
 TEST(Servo, GuardStopsALidThatGoesTooFarInAStep) {

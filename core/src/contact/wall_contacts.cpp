@@ -335,9 +335,8 @@ void WallContacts::loads(std::span<WallLoad> loads) const {
     }
 }
 
-Meeting WallContacts::meeting(std::size_t wall, const WallSurface& surface, const Pose& there, const ContactLaw& law,
-                              const Bodies& bodies, bool all) const {
-  Meeting sum;
+double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
+                                 const ContactLaw& law, const Bodies& bodies, bool all) const {
   std::vector<Sphere> spheres;
   std::vector<Touch> found;
   const auto look_at = [&](std::uint32_t body) {
@@ -351,11 +350,13 @@ Meeting WallContacts::meeting(std::size_t wall, const WallSurface& surface, cons
       for (std::uint32_t n = chunk.candidate_start[wall]; n < chunk.candidate_start[wall + 1]; ++n)
         look_at(chunk.candidate[n]);
   if (!spheres.empty()) surface.geometry->touch(there, spheres, found);
+  double sum = 0;
   for (const Touch& touch : found) {
     const PairSize size = at_wall(bodies, touch.body, touch.overlap);
     const Stiffness k = law.stiffness(size, bodies.material[touch.body], surface.material);
-    sum.force += k.normal * touch.overlap;
-    sum.dashpot += 2 * k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a);
+    const double dashpot = 2 * k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a),
+                 closing = touch.normal.dot(xyz(bodies.velocity[touch.body]) - velocity);
+    sum += std::max(0.0, k.normal * touch.overlap + dashpot * closing);
   }
   return sum;
 }

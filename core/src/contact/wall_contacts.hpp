@@ -42,12 +42,6 @@ struct WallLoad {
   std::uint32_t near = 0;  ///< bodies that may come to touch it before the next search
 };
 
-/// What bodies would press on a wall with where it is not yet: springs at most, and dashpots by the wall's speed.
-struct Meeting {
-  double force = 0;    ///< N
-  double dashpot = 0;  ///< N s/m
-};
-
 /// Touches are filed by the chunk of their body, then by wall, body and feature: the order in which they are found, so
 /// that memory is handed on by walking along two sorted lists.
 class WallContacts {
@@ -65,11 +59,11 @@ class WallContacts {
   void grow(const Bodies& bodies, double factor);
   /// Loads on all walls, summed chunk by chunk.
   void loads(std::span<WallLoad> loads) const;
-  /// What presses on a wall were it `there` and the bodies where they are now: of springs that stiffen no more than if
-  /// they had been as stiff from first touch on. Looks at `all` bodies, or at those alone that it may come to touch
-  /// before the next search.
-  Meeting meeting(std::size_t wall, const WallSurface& surface, const Pose& there, const ContactLaw& law,
-                  const Bodies& bodies, bool all) const;
+  /// What presses on a wall [N] were it `there`, moved at `velocity` [m/s], and were the bodies as they are now: of
+  /// springs that stiffen no more than if they had been as stiff from first touch on, and of dashpots. Looks at `all`
+  /// bodies, or at those alone that it may come to touch before the next search.
+  double force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
+                     const ContactLaw& law, const Bodies& bodies, bool all) const;
 
   struct Touching {
     const WallTouch* touch;

@@ -108,17 +108,15 @@ double braked(double velocity, std::size_t wall, int axis, double wanted, const 
   if (ahead == nullptr || !(velocity * wanted > 0)) return velocity;
   const double most = std::abs(wanted), borne = -std::copysign(1.0, wanted) * state.force[axis],
                may_add = std::max(most - borne, always_added * most);
-  const auto adds = [](const Meeting& meeting, double speed) { return meeting.force + speed * meeting.dashpot; };
   // Costs nothing, and says for nearly all steps that all that is near, as stiff as what touches, would not be too
   // much.
   if ((state.stiffness * dt + state.dashpot) * std::abs(velocity) * state.near < always_added * most * state.touches)
     return velocity;
-  const Meeting now = ahead(wall, state.pose, 0);
   for (int halving = 0; halving < most_halvings; ++halving) {
-    const double speed = std::abs(velocity);
+    const Vec3 moves = velocity * Vec3::Unit(axis);
     Pose there = state.pose;
-    there.shift[axis] += velocity * dt;
-    if (adds(ahead(wall, there, speed * dt), speed) - adds(now, speed) <= may_add) break;
+    there.shift += dt * moves;
+    if (ahead(wall, there, moves, std::abs(velocity) * dt) - ahead(wall, state.pose, moves, 0) <= may_add) break;
     velocity *= 0.5;
   }
   return velocity;
@@ -248,6 +246,10 @@ Vec3 Walls::point_velocity(std::size_t wall, const Vec3& point) const {
 
 bool Walls::presses_on_specimen() const {
   return std::ranges::any_of(setups_, [](const WallSetup& setup) { return grit::presses_on_specimen(setup.motion); });
+}
+
+bool Walls::any_servo() const {
+  return std::ranges::any_of(setups_, [](const WallSetup& setup) { return setup.motion.servo.has_value(); });
 }
 
 double Walls::area(std::size_t wall) const {

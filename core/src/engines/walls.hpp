@@ -79,10 +79,12 @@ class Walls {
   void add(std::size_t wall, const WallLoad& load);
   /// Whether some servo presses on the specimen's cross-section. Then set_specimen() must keep up.
   bool presses_on_specimen() const;
+  bool any_servo() const;
   /// Lengths of the specimen as it is now [m].
   void set_specimen(const Vec3& lengths) { specimen_ = lengths; }
-  /// What bodies, where they are now, would press on a wall with, were it there after a step of this way [m].
-  using Ahead = std::function<Meeting(std::size_t wall, const Pose& there, double way)>;
+  /// What bodies, as they are now, would press on a wall with [N], were it there after a step of this way [m] and moved
+  /// at this velocity [m/s].
+  using Ahead = std::function<double(std::size_t wall, const Pose& there, const Vec3& velocity, double way)>;
   /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them. With
   /// `ahead` servos brake before what they would press too hard at once.
   void drive(double dt, const Ahead& ahead = nullptr);

@@ -520,9 +520,9 @@ void Simulation::end_step() {
   // Half of what the walls do in a step by the forces at its start, half by those at its end: a servo moves because of
   // the former.
   const double work_at_start = 0.5 * clock_.last_time_step * power_of_walls();
-  walls_.drive(dt, [this](std::size_t wall, const Pose& there, double way) {
+  walls_.drive(dt, [this](std::size_t wall, const Pose& there, const Vec3& velocity, double way) {
     const bool beyond = clock_.skins.walls_gone() + way > clock_.skins.of_walls();
-    return wall_contacts_.meeting(wall, surfaces_[wall], there, *law_, bodies_, beyond);
+    return wall_contacts_.force_ahead(wall, surfaces_[wall], there, velocity, *law_, bodies_, beyond);
   });
   const double work = work_at_start + 0.5 * dt * power_of_walls();
   energy_.work += work, flows_.walls += work;

@@ -82,7 +82,10 @@ void Simulation::check_energy() {
     fail("energy came from nowhere: " + number(gained) + " J more than was put in, " + number(gained / scale) +
              " of the largest energy so far" + (by_ledger ? " and of what was dissipated" : "") +
              "; /guards/energy allows " + number(scene_->guards.energy),
-         "the time step may be too large for the stiffest contact; try a smaller /time_step/safety");
+         "the time step may be too large for the stiffest contact; try a smaller /time_step/safety" +
+             std::string(walls_.any_servo() && flows_.lost.viscosity > 0
+                             ? ", or a lower max_velocity of a servo that closes on grains with dashpots"
+                             : ""));
 }
 
 void Simulation::fail(const std::string& what) const {
