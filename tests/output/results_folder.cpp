@@ -4,6 +4,7 @@
 
 #include <boost/property_tree/xml_parser.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "fake_world.hpp"
@@ -157,6 +158,24 @@ TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "run/series.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5"));
   EXPECT_EQ(text_of(folder / "run/notes.txt"), "mine");
+}
+
+TEST(ResultsFolder, IsOfOneRunAtATime) {
+  const Folder folder;
+  const auto world = world_of_two();
+  std::optional<ResultsFolder> first(options(folder / "run"));
+  first->begin(world, probes);
+  const std::string before = text_of(folder / "run/run.json");
+  auto second = options(folder / "run");
+  for (const Existing existing : {Existing::refuse, Existing::overwrite, Existing::resume}) {
+    second.existing = existing;
+    EXPECT_THAT(error_of<FileError>([&] { ResultsFolder results(second); }),
+                HasSubstr("run: another run writes there now; wait for it, or choose another folder"));
+  }
+  EXPECT_EQ(text_of(folder / "run/run.json"), before);
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/series.h5"));
+  first.reset();
+  EXPECT_NO_THROW(ResultsFolder results(second));
 }
 
 TEST(ResultsFolder, GoesOnWithARun) {

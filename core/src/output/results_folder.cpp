@@ -37,12 +37,19 @@ std::string comment_on(const World& world, const std::string& title) {
   return fmt::format("{}\ncell {} {} {} to {} {} {}, m", title, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
 }
 
-/// Makes the folder, or sees to it that what is there may be used.
-std::filesystem::path prepared(const ResultsOptions& options) {
-  const auto& folder = options.folder;
+const std::filesystem::path& made(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string() + ": cannot make the folder of results: " + error.message());
+  return folder;
+}
+
+/// Sees to it that what is in the folder may be used.
+std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& lock) {
+  const auto& folder = options.folder;
+  if (!lock.held())
+    throw FileError(folder.string() + ": another run writes there now; wait for it, or choose another folder");
+  std::error_code error;
   if (options.existing == Existing::resume) return folder;
   for (const char* mark : {"run.json", "series.h5", "checkpoint.h5"})
     if (options.existing == Existing::refuse && std::filesystem::exists(folder / mark))
@@ -60,7 +67,9 @@ std::filesystem::path prepared(const ResultsOptions& options) {
 }  // namespace
 
 ResultsFolder::ResultsFolder(ResultsOptions options)
-    : options_(std::move(options)), run_json_(prepared(options_) / "run.json", options_.facts) {
+    : options_(std::move(options)),
+      lock_(made(options_.folder)),
+      run_json_(prepared(options_, lock_) / "run.json", options_.facts) {
   if (!options_.facts.description.is_null())
     write_atomically(options_.folder / "description.json", options_.facts.description.dump(2) + '\n');
 }

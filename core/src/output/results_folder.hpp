@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "output/run_json.hpp"
 #include "output/series.hpp"
@@ -45,7 +46,8 @@ struct ResultsOptions {
 /// that its status vouches for the rest. All functions throw FileError for what the disk refuses.
 class ResultsFolder final : public Recorder {
  public:
-  /// Makes the folder. Throws FileError where it cannot, or where it holds a run and `existing` says refuse.
+  /// Makes the folder. Throws FileError where it cannot, where another run writes now, or where it holds a run and
+  /// `existing` says refuse.
   explicit ResultsFolder(ResultsOptions options);
 
   /// Throws Error for a channel of the picture that no probe has, or that is not one number.
@@ -76,6 +78,7 @@ class ResultsFolder final : public Recorder {
   void draw_picture(const World& world, const RunSummary& summary) const;
 
   ResultsOptions options_;
+  FolderLock lock_;
   RunJson run_json_;
   std::optional<Series> series_;
   std::optional<Frames> frames_;
