@@ -122,6 +122,10 @@ void read_binary(std::string_view bytes, std::vector<Stl::Facet>& facets) {
     throw Defect{std::to_string(bytes.size()) + " bytes, neither \"solid\" at their beginning nor a binary header",
                  "STL, ASCII or binary"};
   const std::uint32_t count = count_of(bytes);
+  const auto is_print = [](unsigned char c) { return c >= ' ' || (c >= '\t' && c <= '\r'); };
+  if (bytes.size() != size_with(count) && std::ranges::all_of(bytes.substr(0, preamble), is_print))
+    throw Defect{"a text that begins with \"" + std::string(Words(bytes).next()) + "\" instead of \"solid\"",
+                 "STL, ASCII or binary; other formats are to be converted"};
   if (bytes.size() != size_with(count))
     throw Defect{"a binary file of " + std::to_string(bytes.size()) + " bytes that announces " + std::to_string(count) +
                      " facets, which take " + std::to_string(size_with(count)),

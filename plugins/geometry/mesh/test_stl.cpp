@@ -64,6 +64,7 @@ TEST(Stl, RefusesFilesThatAreNotWhole) {
   EXPECT_EQ(refused(binary + 'x'), "a binary file of 185 bytes that announces 2 facets, which take 184");
   EXPECT_EQ(refused(test::stl_binary(two_facets, "solid").substr(0, 150)),
             "a binary file of 150 bytes that announces 2 facets, which take 184");
+  EXPECT_EQ(refused("v 0 0 0\nv 1 0 0\n" + std::string(90, '#')), "a text that begins with \"v\" instead of \"solid\"");
   EXPECT_EQ(refused("{\"a\": 1}"), "8 bytes, neither \"solid\" at their beginning nor a binary header");
 }
 
