@@ -95,6 +95,7 @@ class PlaneShape final : public Shape {
     p.add("position", position_).unit("m").required().doc("a point of it");
     p.add("normal", normal_).doc("towards the grains");
   }
+  double area() const override { return 1; }
 
  private:
   Vec3 position_ = Vec3::Zero(), normal_ = Vec3::UnitZ();

@@ -99,7 +99,8 @@ TEST(Stage, EndsAtADisplacementInTheDirectionOfItsSign) {
     const Done done = run(d);
     EXPECT_EQ(done.summary().steps, 100u);
     EXPECT_NEAR(done.world->walls()[0].position.x(), sign * 1e-4, 1e-12);
-    d["walls"]["floor"]["motion"]["velocity"] = {-sign * 0.1, 0, 0};
+    // One that could go either way goes the other.
+    d["walls"]["floor"]["motion"] = {{"free", {{"axes", "x"}, {"mass", 1}, {"load", {-sign * 100, 0, 0}}}}};
     d["stages"][0]["limit"] = 2e-3;
     EXPECT_EQ(run(d).summary().status, "failed");
   }
@@ -222,10 +223,40 @@ TEST(Stage, ThatNeverEndsFailsLoudly) {
   EXPECT_EQ(done.summary().steps, 100u);
   EXPECT_THAT(
       done.summary().message,
-      testing::AllOf(HasSubstr("stage \"only\" did not end within its limit of 0.0009995 s"), HasSubstr("time 0.001 s"),
+      testing::AllOf(HasSubstr("stage \"only\" did not end within its limit of 0.0009995 s: 100 of 1000000 steps ("),
+                     HasSubstr("time 0.001 s"),
                      HasSubstr("give it more time (/stages/0/limit) or a condition that it can reach")));
   EXPECT_EQ(done.notes.finished, 1);
   EXPECT_THAT(done.notes.ended, testing::IsEmpty());
+}
+
+TEST(Stage, SaysWhatItStillWaitsFor) {
+  const auto told = [](Description d, const Description& until) {
+    d["stages"][0]["until"] = until, d["stages"][0]["limit"] = 0.9995e-3;
+    const std::string message = run(d).summary().message, begin = "its limit of 0.0009995 s: ";
+    return message.substr(message.find(begin) + begin.size(), message.find(" (") - message.find(begin) - begin.size());
+  };
+  const Description move{{"type", "displacement"}, {"wall", "floor"}, {"axis", "x"}, {"value", 1e-3}},
+      press{{"type", "pressure"}, {"wall", "floor"}, {"value", 5e3}, {"within", 0.02}},
+      rest{{"type", "unbalanced-force"}, {"below", 0.003}}, calm{{"type", "kinetic-energy"}, {"below", 1e-4}},
+      left{{"type", "left"}, {"share", 0.25}}, loose{{"type", "void-ratio"}, {"above", 500}, {"below", 600}},
+      stress{{"type", "mean-stress"}, {"above", 2e4}};
+  Description moving = lone(steps(1));
+  moving["walls"]["floor"]["motion"]["velocity"] = {0.2, 0, 0};
+  moving["domain"] = {{"low", {-1, -1, -1}}, {"high", {1, 1, 1}}, {"open_sides", {"-z"}}};
+  EXPECT_EQ(told(moving, move), "displacement of wall \"floor\" along x 0.0002 of 0.001 m");
+  EXPECT_EQ(told(moving, seconds(1)), "time 0.001 of 1 s");
+  EXPECT_EQ(told(moving, {{"type", "all"}, {"of", {seconds(5e-4), press, rest}}}),
+            "pressure on wall \"floor\" 0 Pa, waits for 5000 Pa ± 2 %; "
+            "no force at any contact, by which to tell the unbalanced one")
+      << "the time is over, so that nothing is said of it";
+  EXPECT_EQ(told(moving, {{"type", "any"}, {"of", {calm, left}}}),
+            "kinetic over elastic energy inf, waits for one below 0.0001 or 0 % of the mass has left, waits for 25 %");
+  EXPECT_EQ(told(shrinking(steps(1), -20), loose),
+            "void ratio of the interior 233, waits for one above 500 and below 600");
+  EXPECT_EQ(told(shrinking(steps(1), -20), stress), "mean stress 0 Pa, waits for one above 2e+04 Pa");
+  EXPECT_THAT(told(dropped(steps(1)), rest),
+              testing::MatchesRegex("unbalanced force [0-9.e-]+, waits for one below 0.003"));
 }
 
 TEST(Stage, MustReachWhatIsExpected) {

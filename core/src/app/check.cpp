@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/idle_materials.hpp"
+#include "app/idle_motions.hpp"
 #include "app/idle_scenario.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
@@ -116,11 +117,14 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   const double per_second = planning_speed * std::min(threads, std::max(1u, std::thread::hardware_concurrency()));
   const auto cost = [&](double body_seconds) { return body_seconds / dt / per_second; };
   std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
-            << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(known) / 3600
-            << " h (" << duration_text(cost(known)) << ')';
-  if (most > 0) std::cout << ", and at most " << cost(most) / 3600 << " h for stages that end by a condition";
+            << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(least) / 3600
+            << " h (" << duration_text(cost(least)) << ')';
+  if (most > least)
+    std::cout << (usual ? "" : " and what stages take that end by a condition") << ", at most " << cost(most) / 3600
+              << " h, by the limits of stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
   auto idle = without_effect(scene, simulation);
+  std::ranges::move(idle_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");
   const Description now = resolved(description);
   const auto same = [&](const std::vector<std::string>& more) {

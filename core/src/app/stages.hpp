@@ -39,9 +39,4 @@ inline MotionSettings settings_of(const SceneDescription& scene, const std::stri
   return settings;
 }
 
-inline bool stands_still(const MotionDescription& motion) {
-  return motion.velocity.isZero(0.0) && motion.spin.isZero(0.0) && !motion.oscillation && !motion.servo &&
-         !motion.follow && !motion.free;
-}
-
 }  // namespace grit

@@ -8,6 +8,7 @@
 
 #include "app/shipped_studies.hpp"
 #include "app/stages.hpp"
+#include "scene/wall_ways.hpp"
 #include "study/parts.hpp"
 
 namespace grit {

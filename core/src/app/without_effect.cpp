@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/stages.hpp"
+#include "scene/wall_ways.hpp"
 #include "study/parts.hpp"
 
 namespace grit {

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "input/never_holds.hpp"
 #include "input/reader.hpp"
 #include "input/writer.hpp"
 
@@ -56,6 +57,9 @@ class Planner {
     same_walls(at + "/change/walls");
     plan.start = read_whole(now_, registry_, problems_);
     if (!plan.start) return plan;
+    never_holds(*plan.start, number, [this](const std::string& pointer, const std::string& message) {
+      problems_.push_back(written_.problem(pointer, message));
+    });
     const auto& ramps = plan.start->stages.at(number).ramps;
     for (std::size_t i = 0; i < ramps.size(); ++i) {
       const auto& before = plan.ramp.empty() ? *plan.start : *plan.ramp.back();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "grit/error.hpp"
+#include "run/number.hpp"
 
 namespace grit {
 namespace {
@@ -22,9 +23,10 @@ struct Met {
   const Simulation& simulation;
   const StageStart& start;
   bool without_forces;
+  bool always_look = false;
 
   bool look_now(std::uint64_t every = slow_conditions_every) const {
-    return (simulation.step() - start.step) % every == 0;
+    return always_look || (simulation.step() - start.step) % every == 0;
   }
 
   // Half a step of tolerance: a stage of 1 ms at 0.1 ms a step has ten steps, whatever the rounding of the sum.
@@ -129,6 +131,68 @@ struct ShareReached {
   }
 };
 
+/// What conditions that do not hold have come to, and what they wait for; "" of one that holds.
+struct Wanting {
+  const Met met;
+
+  std::string of(const Condition& condition) const {
+    return std::visit(met, condition.is.value()) ? "" : std::visit(*this, condition.is.value());
+  }
+  static std::string between(const std::optional<double>& above, const std::optional<double>& below,
+                             const char* unit = "") {
+    std::string text;
+    if (above) text = " above " + number(*above) + unit;
+    if (below) text += (above ? " and below " : " below ") + number(*below) + unit;
+    return ", waits for one" + text;
+  }
+
+  std::string operator()(const TimeCondition& c) const {
+    return "time " + number(met.simulation.time() - met.start.time) + " of " + number(c.value) + " s";
+  }
+  std::string operator()(const StepsCondition& c) const {
+    return std::to_string(met.simulation.step() - met.start.step) + " of " + std::to_string(c.value) + " steps";
+  }
+  std::string operator()(const DisplacementCondition& c) const {
+    return "displacement of wall \"" + c.wall + "\" along " + c.axis + " " + number(stage_travel(c, met.simulation)) +
+           " of " + number(c.value) + " m";
+  }
+  std::string operator()(const UnbalancedForceCondition& c) const {
+    const Unrest now = unrest(met.simulation);
+    if (!(now.mean_contact_force > 0)) return "no force at any contact, by which to tell the unbalanced one";
+    return "unbalanced force " + number(now.unbalanced_force) + between({}, c.below);
+  }
+  std::string operator()(const KineticEnergyCondition& c) const {
+    return "kinetic over elastic energy " + number(met.simulation.kinetic_energy_ratio()) + between({}, c.below);
+  }
+  std::string operator()(const VoidRatioCondition& c) const {
+    const double e = void_ratio(met.simulation, met.simulation.interior(met.simulation.mean_diameter()));
+    return "void ratio of the interior " + number(e) + between(c.above, c.below);
+  }
+  std::string operator()(const MeanStressCondition& c) const {
+    const Mat3 stress = mean_stress(met.simulation, met.simulation.interior(met.simulation.mean_diameter()));
+    return "mean stress " + number(stress.trace() / 3) + " Pa" + between(c.above, c.below, " Pa");
+  }
+  std::string operator()(const PressureCondition& c) const {
+    return "pressure on wall \"" + c.wall + "\" " + number(wall(met.simulation, c.wall).pressure + 0.0) + " Pa, waits for " +
+           number(c.value) + " Pa ± " + number(100 * c.within) + " %";
+  }
+  std::string operator()(const LeftCondition& c) const {
+    return number(100 * met.simulation.share_left()) + " % of the mass has left, waits for " + number(100 * c.share) +
+           " %";
+  }
+  std::string operator()(const AllCondition& c) const { return joined(c.of, "; "); }
+  std::string operator()(const AnyCondition& c) const { return joined(c.of, " or "); }
+  std::string operator()(std::monostate) const { return ""; }
+
+ private:
+  std::string joined(const std::vector<std::unique_ptr<Condition>>& conditions, const char* with) const {
+    std::string text;
+    for (const auto& one : conditions)
+      if (const std::string part = of(*one); !part.empty()) text += (text.empty() ? "" : with) + part;
+    return text;
+  }
+};
+
 struct Brief {
   double half_a_step;
 
@@ -166,6 +230,11 @@ bool may_be_met(const Condition& condition, const Simulation& simulation, const 
 
 std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start) {
   return has_choice(condition) ? in_words(condition, Met{simulation, start, false}) : "";
+}
+
+std::string still_wanting(const Condition& condition, const Simulation& simulation, const StageStart& start) {
+  const std::string parts = Wanting{{simulation, start, false, true}}.of(condition);
+  return parts.empty() ? "what it waits for holds now, and did not when it was last looked at" : parts;
 }
 
 std::optional<double> time_without_a_step(const Condition& condition, const Simulation& simulation) {

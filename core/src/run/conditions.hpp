@@ -32,6 +32,9 @@ bool may_be_met(const Condition& condition, const Simulation& simulation, const 
 /// unbalanced-force"; "" where there was no choice.
 std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start);
 
+/// What a condition that did not hold has come to, and what it waits for, part by part. Looks at slow ones, too.
+std::string still_wanting(const Condition& condition, const Simulation& simulation, const StageStart& start);
+
 /// How long a stage lasts that time ends before its first step, less than half a step; nothing of another.
 std::optional<double> time_without_a_step(const Condition& condition, const Simulation& simulation);
 

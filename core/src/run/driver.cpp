@@ -106,7 +106,8 @@ class Run {
       if (stops) return false;  // here, where positions and forces are of one instant
       if (too_late(stage))
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
-                            " s; " + reached() + "; give it more time (/stages/" + std::to_string(stage_) +
+                            " s: " + still_wanting(stage.until, simulation_, start_) + " (" + reached() +
+                            "); give it more time (/stages/" + std::to_string(stage_) +
                             "/limit) or a condition that it can reach");
       step_bodies();
       report(stage);

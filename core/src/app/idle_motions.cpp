@@ -1,0 +1,71 @@
+#include "app/idle_motions.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "app/stages.hpp"
+#include "scene/wall_ways.hpp"
+
+namespace grit {
+namespace {
+
+/// Whether a wall's motion is so in all that a run goes by.
+template <class Is>
+bool always_of(const Scene& described, const std::string& wall, Is is) {
+  return always(described, [&](const SceneDescription& scene) { return is(scene, scene.walls.at(wall).motion); });
+}
+
+bool has_speed(const MotionDescription& motion) {
+  return !motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation;
+}
+
+/// The longest time that a stage lasts in which the wall has a speed; nothing where that is not known.
+std::optional<double> longest_stage(const Scene& described, const std::string& wall) {
+  double longest = 0;
+  for (std::size_t i = 0; i < described.stages.size(); ++i) {
+    if (!has_speed(described.stages[i].start->walls.at(wall).motion)) continue;
+    const StageDescription& stage = described.description->stages[i];
+    const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
+    longest = std::max(longest, time != nullptr ? std::min(time->value, stage.limit) : stage.limit);
+  }
+  return longest > 0 ? std::optional(longest) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> idle_motions(const Scene& described) {
+  std::vector<std::string> lines;
+  for (const auto& [name, wall] : described.description->walls) {
+    const MotionDescription& motion = wall.motion;
+    const auto say = [&lines, at = "/walls/" + pointer_token(name) + "/motion/"](
+                         const char* key, const std::string& why) { lines.push_back(at + key + ": " + why); };
+    const std::string& wall_name = name;
+    if (motion.ramp_time > 0) {
+      const auto longest = longest_stage(described, name);
+      if (always_of(described, name, [](const auto&, const MotionDescription& now) { return !has_speed(now); }))
+        say("ramp_time", "the wall has no velocity, spin or oscillation that could rise");
+      else if (longest && motion.ramp_time > *longest)
+        say("ramp_time", fmt::format("{:g} s is longer than a stage in which the wall moves lasts, {:g} s at most: it "
+                                     "never comes to its full speed, as the ramp begins anew with each stage",
+                                     motion.ramp_time, *longest));
+    }
+    if (motion.free)
+      for (const char axis : {'x', 'y', 'z'})
+        if (motion.free->load[axis - 'x'] != 0 && always_of(described, name, [axis](const auto&, const auto& now) {
+              return !now.free || now.free->axes.find(axis) == std::string::npos;
+            }))
+          say("free/load", std::string("it has a part along ") + axis + ", along which the wall is not free");
+    if (motion.follow && always_of(described, name, [&](const SceneDescription& scene, const MotionDescription& now) {
+          return !now.follow || std::ranges::all_of(now.follow->axes, [&](char axis) {
+            return ways(scene.walls, wall_name, axis).none();
+          });
+        }))
+      say("follow", "the wall \"" + motion.follow->wall + "\" does not move along " + motion.follow->axes +
+                        "; a turn is not followed");
+  }
+  return lines;
+}
+
+}  // namespace grit
