@@ -38,8 +38,8 @@ and falls off fastest there, so that it has no inflection point.
 
 UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
-Hours by `grit check` on two threads at 12 M particle-steps/s: without, and with the limits of stages that end by a condition. Those that were timed
-(`--for`): how much of the course they went by which commit, what is reckoned to be all of it by the smaller descriptions of the same test (docs/reproduction.json), and the core-hours that all of it takes
+Hours by `grit check` on two threads at 12 M particle-steps/s: with what stages that end by a condition take as a rule, as smaller runs of the same test found it, and with their limits. Those that were timed
+(`--for`): how much they went of what `grit check` takes for all of it, by which commit, and the core-hours that all of it takes
 if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so these hours are the least; the last column has those with sand that lies,
 by what stands below the table.
 
@@ -172,27 +172,25 @@ def kept(section, figures):
 
 
 def estimate(program, description):
-    """(hours by `grit check` without and with stages that end by a condition, grains in the end)"""
+    """(hours by `grit check`, as a rule and at most; particle-steps as a rule)"""
     words = subprocess.run([program, 'check', description], capture_output=True, text=True, check=False).stdout
-    match = re.search(r'^estimated time.*?: ([0-9.]+) h \(.*?\)(?:, and at most ([0-9.]+) h)?', words, re.M)
+    match = re.search(r'^estimated time.* at ([0-9.]+) M particle-steps/s: ([0-9.]+) h \(.*?\)[^,\n]*(?:, at most ([0-9.]+) h)?', words, re.M)
     if not match:
         return 'refused', 0
-    least, more = float(match[1]), float(match[2] or 0)
-    grains = sum(map(int, re.findall(r'^(?:bodies: | +)(\d+)(?:, | more in)', words, re.M)))
-    return f'{least:.2f}' + (f' … {least + more:.1f}' if more else ''), grains
+    usual, most = float(match[2]), float(match[3] or 0)
+    return f'{usual:.2f}' + (f' … {most:.1f}' if most else ''), 3600e6 * usual * float(match[1])
 
 
-def part(run, course, grains):
-    """Columns that say how far a run went, how fast, and the core-hours that its whole course takes at that speed; none if it was not timed."""
+def part(run, all_of_it):
+    """Columns that say how far a run went of all its particle-steps, how fast, and the core-hours that it takes at that speed; none if it was not timed."""
     if not run or not run.get('cpu_s') or not run.get('particle_steps_per_s'):
         return ''
     done = run['particle_steps_per_s'] * run['wall_s']
     rate = done / run['cpu_s']
     words = run['message'].splitlines()[0] if run['status'] == 'failed' else f"{run['steps']:,} steps"
     words += f" by {run['grit'].get('revision') or 'unknown'}"
-    if course is None or run['status'] == 'failed':
+    if not all_of_it or run['status'] == 'failed':
         return f"{words} | {1e-6 * rate:.1f} | |"
-    all_of_it = sum(span * share for span, share in course) / run['time_step_s'] * grains
     return f"{100 * done / all_of_it:.1f} %, {words} | {1e-6 * rate:.1f} | {all_of_it / rate / 3600:.1f} |"
 
 
@@ -252,7 +250,7 @@ def main():
     reference = json.loads((ROOT / 'docs' / 'reproduction.json').read_text(encoding='utf-8'))
     of_size = {size: sorted(str(path.relative_to(ROOT / 'sims').with_suffix('')) for path in (ROOT / 'sims').glob(f'*/{size}*.json'))
                for size in ('quick', 'full')}
-    names = list(dict.fromkeys([*(row['description'] for row in reference['figures']), *reference['courses'], *of_size['full'], *of_size['quick']]))
+    names = list(dict.fromkeys([*(row['description'] for row in reference['figures']), *of_size['full'], *of_size['quick']]))
 
     for name in names:
         if not any(fnmatch.fnmatch(name, glob) for glob in given.run):
@@ -287,10 +285,10 @@ def main():
             note = reference['notes'].get(name)
             lines += [f'## {name}', *section, *(['', note] if note else []), '']
         else:
-            hours, grains = estimate(given.grit, description)
-            run, course = state(given.results / name), reference['courses'].get(name)
+            hours, particle_steps = estimate(given.grit, description)
+            run = state(given.results / name)
             speed = next((speed for glob, speed in reference['resting'].items() if fnmatch.fnmatch(name, glob)), None)
-            missing.append(f"| {name} | {hours} | {resting(part(run, course, grains) or timed.get(name, '| | |'), speed)}")
+            missing.append(f"| {name} | {hours} | {resting(part(run, particle_steps) or timed.get(name, '| | |'), speed)}")
     if of_size['quick']:
         lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name), rows_of(name))}"
                                    for name in of_size['quick']), '']

@@ -259,6 +259,7 @@ struct Preparation {
     compact["change"]["materials"] = friction(loose_angle);
     compact["until"] = at_rest(0.02, 0.01);
     compact["limit"] = 3 * closing + 5 * settling;
+    compact["usual_time"] = closing;
     densify["name"] = "densify";
     densify["ramps"] = Description::array({{{"pointer", "/materials/sand/friction_angle"},
                                             {"from", loose_angle},
@@ -273,10 +274,12 @@ struct Preparation {
         {"of", Description::array({{{"type", "void-ratio"}, {"below", void_ratio}},
                                    {{"type", "all"}, {"of", Description::array({without_friction, rest})}}})}};
     densify["limit"] = 5 * settling;
+    densify["usual_time"] = 0.6 * settling;
     settle["name"] = "settle";
     settle["change"]["materials"] = friction(friction_angle);
     settle["until"] = at_rest(0.005, 2e-3);
     settle["limit"] = 15 * settling;
+    settle["usual_time"] = 0.01 * settling;
     settle["expect"] = {{"void_ratio", void_ratio}, {"within", 0.01}};
     if (!grows()) return {compact, densify, settle};
 
@@ -291,10 +294,12 @@ struct Preparation {
                      {"of", Description::array({{{"type", "void-ratio"}, {"below", aimed_at() + nearly_there}},
                                                 {{"type", "mean-stress"}, {"above", 0.1 * pressure}}})}};
     grow["limit"] = -2 * std::log(size_at_start()) / rate;
+    grow["usual_time"] = -0.8 * std::log(size_at_start()) / rate;
     press["name"] = "press";
     press["growth"]["rate"] = slow_rate;
     press["until"] = {{"type", "mean-stress"}, {"above", pressure}};
     press["limit"] = 0.2 / slow_rate;
+    press["usual_time"] = 0.025 / slow_rate;
     for (const std::string& wall : pressing) {
       densify["change"]["walls"][wall]["motion"] = walls[wall]["motion"];
       walls[wall].erase("motion");

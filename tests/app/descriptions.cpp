@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
 
 #include "scenes.hpp"
 #include "support/program.hpp"
@@ -63,6 +65,68 @@ TEST(Descriptions, AStudyIsToldFromADescription) {
     EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study, of which this is the scene; allowed is a "
                                        "description. 'grit chart study.json' runs a study"));
   }
+}
+
+TEST(Descriptions, CheckSaysWhichMotionsComeToNothing) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto check = [&](const std::string& lid, const std::string& floor = "{}", const std::string& stages = "") {
+    const std::string shape = R"({"type": "plane", "material": "sand", "point": [0, 0, "-5 mm"], "normal": [0, 0, 1]})";
+    std::vector<std::string> words{"check", "two.json",
+                                   "--set", "/walls={\"lid\": " + shape + ", \"floor\": " + shape + "}",
+                                   "--set", "/walls/lid/motion=" + lid,
+                                   "--set", "/walls/floor/motion=" + floor};
+    if (!stages.empty()) words.insert(words.end(), {"--set", stages});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string moves = R"({"velocity": [0, 0, "1 mm/s"]})",
+                    follows = R"({"follow": {"wall": "lid", "axes": "z"}})";
+  EXPECT_THAT(
+      check(R"({"ramp_time": "1 ms"})"),
+      HasSubstr("  /walls/lid/motion/ramp_time: the wall has no velocity, spin or oscillation that could rise\n"));
+  const std::string brief = R"(/stages/0/until={"type": "time", "value": "0.5 ms"})";
+  EXPECT_THAT(check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "1 ms"})", "{}", brief),
+              HasSubstr("  /walls/lid/motion/ramp_time: 0.001 s is longer than a stage in which the wall moves lasts, "
+                        "0.0005 s at most"));
+  EXPECT_THAT(check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "0.4 ms"})", "{}", brief),
+              testing::Not(HasSubstr("ramp_time")));
+  EXPECT_THAT(check(R"({"free": {"axes": "z", "mass": 1, "load": [0, "1 N", "1 N"]}})"),
+              HasSubstr("  /walls/lid/motion/free/load: it has a part along y, along which the wall is not free\n"));
+  EXPECT_THAT(
+      check(R"({"spin": [0, 0, "1 rad/s"]})", follows),
+      HasSubstr("  /walls/floor/motion/follow: the wall \"lid\" does not move along z; a turn is not followed\n"));
+  EXPECT_THAT(check(moves, follows), testing::Not(HasSubstr("/motion/")));
+  EXPECT_THAT(check("{}", follows, R"(/stages/0/change={"walls": {"lid": {"motion": )" + moves + "}}}"),
+              testing::Not(HasSubstr("/motion/")))
+      << "it moves later";
+}
+
+TEST(Descriptions, CheckEstimatesByWhatStagesUsuallyTake) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto check = [&](const std::string& set) {
+    const auto outcome = grit_in(folder.path(), {"check", "two.json", "--threads", "1", "--set",
+                                                 R"(/stages/0/until={"type": "unbalanced-force", "below": 0.01})",
+                                                 "--set", "/stages/0/limit=36000 s", "--set", set});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const auto found = [](const std::string& text, const std::string& pattern) {
+    std::smatch match;
+    EXPECT_TRUE(std::regex_search(text, match, std::regex(pattern))) << text;
+    return match.empty() ? -1.0 : std::stod(match[1]);
+  };
+  const std::string usual = check("/stages/0/usual_time=3600 s"), unusual = check("/seed=2");
+  EXPECT_THAT(usual, HasSubstr("part            usually 3600 s, "));
+  EXPECT_THAT(usual, HasSubstr(" (ends by its condition, 36000 s at most)\n"));
+  EXPECT_THAT(unusual, HasSubstr("part            at most 36000 s, "));
+  const double hours = found(usual, "particle-steps/s: ([0-9.]+) h");
+  EXPECT_GT(hours, 0);
+  EXPECT_NEAR(found(usual, "at most ([0-9.]+) h, by the limits"), 10 * hours, 0.06);
+  EXPECT_NEAR(found(unusual, "at most ([0-9.]+) h, by the limits"), 10 * hours, 0.06);
+  EXPECT_EQ(found(unusual, "particle-steps/s: ([0-9.]+) h"), 0) << "nothing is known of it";
 }
 
 TEST(Descriptions, CheckSaysWhatHasNoEffect) {

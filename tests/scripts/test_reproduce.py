@@ -63,11 +63,11 @@ class Reproduction(unittest.TestCase):
         self.root = pathlib.Path(self.folder.name)
         self.given = {'figures': [{'description': name, 'figure': 'peak', 'of': 'test/y', 'how': 'maximum', 'reference': 2, 'allowed': 0.5}
                                   for name in NAMES],
-                      'courses': {}, 'resting': {'shear/timed': 3}, 'older': [], 'quick': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
+                      'resting': {'shear/timed': 3}, 'older': [], 'quick': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
         for name in NAMES:
             self.file(f'sims/{name}.json', '{}')
         self.file('docs/reproduction.md', PAGE)
-        self.file('grit', '#!/bin/sh\necho "bodies: 100, touching pairs"; echo "estimated time on 2 threads: 3.00 h (3 h)"\n').chmod(0o700)
+        self.checks_as('3.00 h (3 h)')
 
     def test_figures_are_scaled_and_put_off(self):
         row = {'of': 'y', 'how': 'last', 'scale': 10, 'plus': 180}
@@ -81,6 +81,9 @@ class Reproduction(unittest.TestCase):
         series = {'test/y': numpy.array([1.0, 2.0, 3.0]), 'test/step': numpy.array([10, 20, 21])}
         row = {'of': 'test/y', 'how': 'at the end of a stage', 'stage': 'settle'}
         self.assertEqual(reproduce.found(series, row, {'fill': 10, 'settle': 20, 'discharge': 90}), 2)
+
+    def checks_as(self, hours):
+        self.file('grit', f'#!/bin/sh\necho "estimated time on 2 threads at 0.000463 M particle-steps/s: {hours}"\n').chmod(0o700)
 
     def file(self, name, text):
         path = self.root / name
@@ -140,8 +143,13 @@ class Reproduction(unittest.TestCase):
 
     def test_a_newer_timing_counts(self):
         self.ran('shear/timed', 'interrupted', '222222222222')
-        self.given['courses']['shear/timed'] = [[50, 1]]
         self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps by 222222222222 | 0.1 | 0.0 | 0 |\n', self.written()[1])
+
+    def test_hours_have_what_limits_allow_beside_them(self):
+        self.checks_as('3.00 h (3 h), at most 9.04 h, by the limits')
+        self.assertIn('| shear/never-run | 3.00 … 9.0 | | | | |\n', self.written()[1])
+        self.checks_as('0.00 h (0 s) and what stages take that end by a condition, at most 9.04 h, by the limits')
+        self.assertIn('| shear/never-run | 0.00 … 9.0 | | | | |\n', self.written()[1])
 
     def test_full_descriptions_without_figures_are_listed_too(self):
         self.file('sims/shear/full-other.json', '{}')

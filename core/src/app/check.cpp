@@ -31,23 +31,24 @@ constexpr double planning_speed = 6e6;
 // cloud's.
 constexpr double dense_step_share = 0.6;
 
-/// Simulated time that a stage takes, where its description tells, and at most.
+/// Simulated time that a stage takes [s]: as its description tells, or from what it takes as a rule to its limit.
 struct StageTime {
-  double expected = 0;
-  bool known = false;
+  double least = 0, most = 0;
+  bool known = false, usual = false;
 };
 
 StageTime stage_time(const StageDescription& stage, const SceneDescription& scene) {
   const auto& condition = stage.until.is.value();
-  if (const auto* time = std::get_if<TimeCondition>(&condition)) return {time->value, true};
+  if (const auto* time = std::get_if<TimeCondition>(&condition)) return {time->value, time->value, true};
   if (const auto* displacement = std::get_if<DisplacementCondition>(&condition)) {
     const MotionDescription& motion = scene.walls.at(displacement->wall).motion;
     const int axis = displacement->axis[0] - 'x';
     const double speed = motion.velocity[axis];
     const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
-    if (speed != 0 && !swings) return {std::abs(displacement->value / speed) + 0.5 * motion.ramp_time, true};
+    const double takes = std::abs(displacement->value / speed) + 0.5 * motion.ramp_time;
+    if (speed != 0 && !swings) return {takes, takes, true};
   }
-  return {stage.limit, false};
+  return {stage.usual_time.value_or(0), stage.limit, false, stage.usual_time.has_value()};
 }
 
 void check_one(const std::string& file, const Options& options, const Registry& registry) {
@@ -102,7 +103,8 @@ void check_one(const std::string& file, const Options& options, const Registry& 
 
   const bool cloud = simulation.pair_count() * 2 < bodies;
   const double dt = cloud && !wish.value ? std::min(simulation.dt(), dense_step_share * safe) : simulation.dt();
-  double known = 0, most = 0;  // s times bodies
+  double least = 0, most = 0;  // s times bodies
+  bool usual = false;
   std::size_t there = bodies;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     check_oscillations(*scene.stages[i].start, dt);
@@ -110,9 +112,17 @@ void check_one(const std::string& file, const Options& options, const Registry& 
     const StageDescription& stage = description.stages[i];
     const StageTime time = stage_time(stage, *scene.stages[i].start);
     there += coming[stage.name];
-    (time.known ? known : most) += time.expected * static_cast<double>(there);
-    std::cout << "  " << std::setw(16) << stage.name << (time.known ? "" : "at most ") << time.expected << " s, "
-              << std::llround(time.expected / dt) << " steps" << (time.known ? "" : " (ends by its condition)") << '\n';
+    least += time.least * static_cast<double>(there), most += time.most * static_cast<double>(there);
+    usual = usual || time.usual;
+    const double told = time.known || time.usual ? time.least : time.most;
+    std::cout << "  " << std::setw(16) << stage.name
+              << (time.known   ? ""
+                  : time.usual ? "usually "
+                               : "at most ")
+              << told << " s, " << std::llround(told / dt) << " steps";
+    if (!time.known)
+      std::cout << " (ends by its condition" << (time.usual ? fmt::format(", {:g} s at most", time.most) : "") << ')';
+    std::cout << '\n';
   }
   const double per_second = planning_speed * std::min(threads, std::max(1u, std::thread::hardware_concurrency()));
   const auto cost = [&](double body_seconds) { return body_seconds / dt / per_second; };

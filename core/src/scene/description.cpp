@@ -481,6 +481,10 @@ void StageDescription::declare(Parameters& p) {
   p.add("name", name).required().doc("its name, which no other stage has");
   p.add("until", until).required().doc("what ends it");
   p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage has failed");
+  p.add("usual_time", usual_time)
+      .unit("s")
+      .above(0)
+      .doc("simulated time that it takes as a rule where a condition ends it: grit check estimates by it");
   p.add("change", change)
       .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
            any_of(SceneDescription::changeable(), "").substr(7) + "; of domain only strain_rate");
@@ -501,6 +505,12 @@ void StageDescription::declare(Parameters& p) {
         }
       },
       {"change"});
+  p.check(
+      [this](const Complain& complain) {
+        if (usual_time && *usual_time > limit)
+          complain("usual_time", "a time beyond the stage's limit", "one that the stage may take");
+      },
+      {"usual_time", "limit"});
   p.check(
       [this](const Complain& complain) {
         if (name.empty()) complain("name", "an empty text", "a name");

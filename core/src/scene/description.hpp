@@ -279,7 +279,8 @@ struct ExpectDescription {
 struct StageDescription {
   std::string name;
   Condition until;
-  double limit = 0;  ///< s of simulated time after which the stage has failed
+  double limit = 0;                       ///< s of simulated time after which the stage has failed
+  std::optional<double> usual_time = {};  ///< s that it takes as a rule, for estimates
   Description change = Description::object();
   std::deque<RampDescription> ramps;
   std::optional<GrowthDescription> growth;
