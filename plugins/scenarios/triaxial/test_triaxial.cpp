@@ -75,6 +75,31 @@ TEST(Triaxial, BringsTheIntermediateStressOnBeforeCompression) {
   EXPECT_LE(load["ramps"][0]["duration"].get<double>(), load["until"]["value"].get<double>());
 }
 
+TEST(Triaxial, LetsServosKeepUpWithASpecimenThatWidens) {
+  const auto faster = [](Description keys) {
+    keys["inertial_number"] = 1e-3, keys["preparation_inertial_number"] = 1e-3;
+    const Description d = made(keys)->expand();
+    std::vector<std::pair<std::string, double>> walls;
+    for (const auto& [name, wall] : d["stages"].back()["change"]["walls"].items()) {
+      const Description& motion = wall["motion"];
+      if (motion.is_null() || motion["servo"].is_null()) continue;
+      walls.emplace_back(name, motion["servo"]["max_velocity"].get<double>() /
+                                   d["walls"][name]["motion"]["servo"]["max_velocity"].get<double>());
+    }
+    return walls;
+  };
+  using testing::Pair, testing::UnorderedElementsAre;
+  const auto times = [](double value) { return testing::DoubleNear(value, 1e-12); };
+  EXPECT_THAT(faster({{"axial_strain", 0.5}}), UnorderedElementsAre(Pair("left", times(4)), Pair("right", times(4)),
+                                                                    Pair("front", times(4)), Pair("back", times(4))));
+  EXPECT_THAT(faster({{"axial_strain", 0.5}, {"front_and_back", "held"}}),
+              UnorderedElementsAre(Pair("left", times(4)), Pair("right", times(4))));
+  EXPECT_THAT(
+      faster({{"axial_strain", 0.5}, {"front_and_back", "intermediate-stress"}, {"intermediate_stress", "300 kPa"}}),
+      UnorderedElementsAre(Pair("left", times(4)), Pair("right", times(4)), Pair("back", times(8))))
+      << "the front stands";
+}
+
 TEST(Triaxial, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"front_and_back", "intermediate-stress"}}), HasSubstr("/intermediate_stress"));
   EXPECT_THAT(problem({{"intermediate_stress", "300 kPa"}}),

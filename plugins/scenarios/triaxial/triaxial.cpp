@@ -131,17 +131,19 @@ Description Triaxial::expand() const {
   d["bodies"]["sand"] =
       preparation_.cloud(corner(-0.5 * cloud), corner(0.5 * cloud), preparation_.grains(size_.prod()));
 
+  // Two walls share the way of an axis.
+  const auto servo_speed = [&](int axis) { return 0.5 * preparation_.closing_speed(size_[axis], confining_stress_); };
   std::vector<std::string> names;
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {-1, 1}) {
       const std::string name = side < 0 ? pairs[axis].low : pairs[axis].high;
       Description wall = plane(along(axis, 0.5 * side * cloud[axis]), along(axis, -side), "wall");
       wall["extent"] = cloud.maxCoeff();
-      // Two walls share the way of an axis. Under the stress on the specimen as it is: the walls themselves are larger.
+      // Under the stress on the specimen as it is: the walls themselves are larger.
       wall["motion"]["servo"] = {{"axis", letters[axis]},
                                  {"pressure", confining_stress_},
                                  {"area", "specimen"},
-                                 {"max_velocity", 0.5 * preparation_.closing_speed(size_[axis], confining_stress_)}};
+                                 {"max_velocity", servo_speed(axis)}};
       d["walls"][name] = wall;
       names.push_back(name);
     }
@@ -174,6 +176,16 @@ Description Triaxial::expand() const {
         {"velocity", along(2, -0.5 * side * strain_rate() * size_.z())},
         {"ramp_time", start_share * duration}};
   if (front_and_back_ == "held") still(shear, "front"), still(shear, "back");
+  // Sideways it widens the faster the lower it is, at most as if all of its volume went one way.
+  const double widening = strain_rate() / std::pow(1 - axial_strain_, 2);
+  for (int axis = 0; axis < (front_and_back_ == "held" ? 1 : 2); ++axis) {
+    const bool alone = axis == 1 && intermediate_stress_;  // the front stands
+    const double needed = (alone ? 1 : 0.5) * widening * size_[axis];
+    if (needed <= servo_speed(axis)) continue;
+    for (const char* wall : {pairs[axis].low, pairs[axis].high})
+      if (!alone || wall == pairs[axis].high)
+        shear["change"]["walls"][wall]["motion"]["servo"]["max_velocity"] = needed;
+  }
   shear["until"] = {
       {"type", "displacement"}, {"wall", "top"}, {"axis", "z"}, {"value", -0.5 * axial_strain_ * size_.z()}};
   shear["limit"] = 1.1 * duration;
