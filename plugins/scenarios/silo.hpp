@@ -68,6 +68,10 @@ struct Silo {
   static constexpr double degree = std::numbers::pi / 180, gravity = closed_forms::gravity;
   /// Of the cloud that falls into the silo.
   static constexpr double cloud_solid_fraction = 0.35;
+  /// Largest way in a step, over the radius, unless a guard says otherwise.
+  static constexpr double usual_travel = 0.05;
+  /// Small grains are thrown up by large ones that fall on them: speeds to allow for, over that of the fall.
+  static constexpr double thrown = 5;
 
   double width = 200e-3, height = 500e-3, depth = 7.5e-3;
   std::string wall_surface = "saw-tooth";
@@ -217,6 +221,14 @@ struct Silo {
   double falling_time(std::int64_t first_layers) const {
     return falling_time() * std::sqrt(static_cast<double>(first_layers) / static_cast<double>(layers));
   }
+  /// What the guard on ways has to let through while grains fall.
+  double travel() const {
+    const double speed = thrown * (1 - filling_damping) * gravity * falling_time(),
+                 mass = density * std::numbers::pi / 6 * std::pow(smallest_diameter, 3),
+                 radius = 0.5 * smallest_diameter,
+                 impact = std::numbers::pi * std::sqrt(mass / (2 * contact_modulus * radius)), steps_per_impact = 7;
+    return std::max(usual_travel, speed * impact / steps_per_impact / radius);
+  }
   /// Whether gravity is taken off and put on again once the silo is filled.
   bool relieved() const { return filling_friction_angle && relieved_gravity < 1; }
   /// In which gravity changes: that of twenty waves from top to bottom at sqrt(E_c/rho), which pressure in the sand
@@ -279,6 +291,7 @@ struct Silo {
     }
     walls["front"] = plane(vector(0, 0, 0), vector(0, 1, 0), "smooth");
     walls["back"] = plane(vector(0, depth, 0), vector(0, -1, 0), "smooth");
+    d["guards"]["travel"] = travel();
     d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", vector(0, 0, -gravity)}};
     d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", filling_damping}};
     return d;
@@ -293,12 +306,13 @@ struct Silo {
   /// own. Where it was another one gravity goes down before, in "relieve", and rises while they settle: stress that
   /// came about with little friction is nearly as high sideways as downwards, and more friction leaves it so.
   std::vector<Description> filling_stages() const {
-    const auto stage = [&](const std::string& name, double after, double unbalanced) -> Description {
+    const auto stage = [&](const std::string& name, double after, double unbalanced, double usual) -> Description {
       return {{"name", name},
               {"until",
                {{"type", "all"},
                 {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}}},
-              {"limit", 20 * falling_time()}};
+              {"limit", 20 * falling_time()},
+              {"usual_time", usual}};
     };
     const auto gravity_goes = [&](double from, double to) {
       return Description::array({{{"pointer", "/engines/gravity/acceleration/2"},
@@ -308,13 +322,15 @@ struct Silo {
                                   {"increments", 50}}});
     };
     std::vector<Description> stages;
-    if (filling == "cloud") stages.push_back(stage("fill", falling_time(), 0.01));
+    if (filling == "cloud") stages.push_back(stage("fill", falling_time(), 0.01, 3.2 * falling_time()));
     else
       for (std::int64_t layer = 1; layer <= layers; ++layer)
-        stages.push_back(stage(fill(layer), falling_time(layer), 0.01));
-    Description settle = stage("settle", 0.1 * falling_time() + (relieved() ? relief_time() : 0), 1e-3);
+        stages.push_back(stage(fill(layer), falling_time(layer), 0.01, 2.6 * falling_time()));
+    const double settling = 0.1 * falling_time() + (relieved() ? relief_time() : 0);
+    Description settle = stage("settle", settling, 1e-3, settling);
     for (const char* name : {"sand", "dyed"})
       if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
+    if (travel() > usual_travel) settle["change"]["guards"]["travel"] = usual_travel;
     if (relieved()) {
       settle["ramps"] = gravity_goes(relieved_gravity, 1);
       stages.push_back({{"name", "relieve"},

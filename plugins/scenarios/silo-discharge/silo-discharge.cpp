@@ -12,6 +12,8 @@ namespace {
 constexpr int curve_samples = 400, frames_while_discharged = 10;
 // An outlet of fewer largest grains is sure to be closed by an arch.
 constexpr double least_outlet = 3;
+/// How many times as long as Beverloo's law says sand that resists rolling takes, once it flows.
+constexpr double slower = 1.7;
 
 /// Of the stage that ends when so much has left: "discharge-10" for a tenth, "discharge-0.5" for less.
 std::string discharge(double share) {
@@ -147,6 +149,7 @@ Description SiloDischarge::expand() const {
     stage["until"] = {{"type", "any"}, {"of", {left, rests}}};
     // What is left may have to come to rest first, however little should still leave.
     stage["limit"] = 10 * expected + 20 * silo_.falling_time();
+    stage["usual_time"] = slower * expected;
     stages.push_back(stage);
   }
   d["stages"] = stages;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "contracts/scenario.hpp"
 
 namespace grit {
@@ -39,6 +41,18 @@ TEST(SiloQuasistatic, CutsWallsIntoPiecesThatFollowOneAnother) {
       EXPECT_GT(end, 0.5);
     }
   }
+}
+
+TEST(SiloQuasistatic, LetsGrainsBeThrownUpWhileTheyFall) {
+  const auto travel = [](const char* height) {
+    const Description d = expanded({{"height", height}}), change = d["stages"][1]["change"];
+    EXPECT_EQ(d["stages"][1]["name"], "settle");
+    EXPECT_EQ(change.contains("guards") ? change["guards"]["travel"].get<double>() : 0.05, 0.05)
+        << "as usual from then";
+    return d["guards"]["travel"].get<double>();
+  };
+  EXPECT_NEAR(travel("800 mm") / travel("400 mm"), std::sqrt(2), 1e-12) << "as the speed of the fall";
+  EXPECT_EQ(travel("40 mm"), 0.05);
 }
 
 TEST(SiloQuasistatic, MakesWallsAsRoughAsSaid) {
