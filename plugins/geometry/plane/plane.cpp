@@ -13,7 +13,7 @@ void Plane::declare(Parameters& p) {
   p.add("point", point_).unit("m").doc("any point of the plane");
   p.add("normal", normal_).doc("towards the bodies; any length but zero");
   p.add("area", area_)
-      .unit("m2")
+      .unit("m^2")
       .symbol("A")
       .at_least(0)
       .doc("area that carries pressure; 0: none, so no servo on pressure");
