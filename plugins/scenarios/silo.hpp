@@ -330,7 +330,6 @@ struct Silo {
     Description settle = stage("settle", settling, 1e-3, settling);
     for (const char* name : {"sand", "dyed"})
       if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
-    if (travel() > usual_travel) settle["change"]["guards"]["travel"] = usual_travel;
     if (relieved()) {
       settle["ramps"] = gravity_goes(relieved_gravity, 1);
       stages.push_back({{"name", "relieve"},

@@ -266,6 +266,31 @@ TEST(ReportPage, HasWallsThatBecomeOthers) {
   EXPECT_EQ(grains.at("frames").at(2).at("walls"), json({{1, 0.375, 0, 0}}));
 }
 
+TEST(ReportPage, TurnsWallsAsLongAsThereIsRoom) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  Mat3 quarter;
+  quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  run.world.wall[0].pose.shift = run.world.wall[0].position;
+  for (int i = 0; i < 3; ++i) {
+    results.frame(run.world, {});
+    run.world.wall[0].pose.turn = quarter * run.world.wall[0].pose.turn;
+  }
+  results.finish(run.world, {});
+  auto page = page_of(folder / "run");
+  json grains = json_of(page.html).at("runs").at(0).at("grains");
+  ASSERT_THAT(grains.at("walls"), SizeIs(3));
+  EXPECT_THAT(numbers_of<float>(page.html, grains.at("walls").at(1).at("data")),
+              ElementsAre(0, 0, 0, 0, 1, 0, -1, 0, 0));
+  EXPECT_EQ(grains.at("frames").at(2).at("walls").at(0).at(0), 2);
+  page = page_of(folder / "run", {.wall_bytes = 36});
+  grains = json_of(page.html).at("runs").at(0).at("grains");
+  ASSERT_THAT(grains.at("walls"), SizeIs(1)) << "of three corners of three floats";
+  EXPECT_EQ(grains.at("frames").at(2).at("walls").at(0).at(0), 0);
+}
+
 TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
   const Folder folder;
   SmallRun run(folder / "run");

@@ -104,7 +104,7 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   const bool cloud = simulation.pair_count() * 2 < bodies;
   const double dt = cloud && !wish.value ? std::min(simulation.dt(), dense_step_share * safe) : simulation.dt();
   double least = 0, most = 0;  // s times bodies
-  bool usual = false;
+  bool unknown = false;
   std::size_t there = bodies;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     check_oscillations(*scene.stages[i].start, dt);
@@ -113,7 +113,7 @@ void check_one(const std::string& file, const Options& options, const Registry& 
     const StageTime time = stage_time(stage, *scene.stages[i].start);
     there += coming[stage.name];
     least += time.least * static_cast<double>(there), most += time.most * static_cast<double>(there);
-    usual = usual || time.usual;
+    unknown = unknown || (!time.known && !time.usual);
     const double told = time.known || time.usual ? time.least : time.most;
     std::cout << "  " << std::setw(16) << stage.name
               << (time.known   ? ""
@@ -130,7 +130,7 @@ void check_one(const std::string& file, const Options& options, const Registry& 
             << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(least) / 3600
             << " h (" << duration_text(cost(least)) << ')';
   if (most > least)
-    std::cout << (usual ? "" : " and what stages take that end by a condition") << ", at most " << cost(most) / 3600
+    std::cout << (unknown ? " and what stages take that end by a condition" : "") << ", at most " << cost(most) / 3600
               << " h, by the limits of stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
   auto idle = without_effect(scene, simulation);

@@ -21,16 +21,22 @@ bool has_speed(const MotionDescription& motion) {
   return !motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation;
 }
 
-/// The longest time that a stage lasts in which the wall has a speed; nothing where that is not known.
-std::optional<double> longest_stage(const Scene& described, const std::string& wall) {
-  double longest = 0;
+/// The first stage that a wall's ramp is longer than, if it is longer than all in which the wall moves.
+std::optional<std::string> never_at_full_speed(const Scene& described, const std::string& wall) {
+  std::string told;
   for (std::size_t i = 0; i < described.stages.size(); ++i) {
-    if (!has_speed(described.stages[i].start->walls.at(wall).motion)) continue;
+    const StagePlan& plan = described.stages[i];
+    const auto moves = [&](const auto& scene) { return has_speed(scene->walls.at(wall).motion); };
+    if (!moves(plan.start) && std::ranges::none_of(plan.ramp, moves)) continue;
     const StageDescription& stage = described.description->stages[i];
     const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
-    longest = std::max(longest, time != nullptr ? std::min(time->value, stage.limit) : stage.limit);
+    const double lasts = time != nullptr ? std::min(time->value, stage.limit) : stage.limit,
+                 ramp = plan.start->walls.at(wall).motion.ramp_time;
+    if (ramp <= lasts) return std::nullopt;
+    if (told.empty())
+      told = fmt::format("the ramp takes {:g} s, and the stage \"{}\" {:g} s at most", ramp, stage.name, lasts);
   }
-  return longest > 0 ? std::optional(longest) : std::nullopt;
+  return told.empty() ? std::nullopt : std::optional(told);
 }
 
 }  // namespace
@@ -42,15 +48,11 @@ std::vector<std::string> idle_motions(const Scene& described) {
     const auto say = [&lines, at = "/walls/" + pointer_token(name) + "/motion/"](
                          const char* key, const std::string& why) { lines.push_back(at + key + ": " + why); };
     const std::string& wall_name = name;
-    if (motion.ramp_time > 0) {
-      const auto longest = longest_stage(described, name);
-      if (always_of(described, name, [](const auto&, const MotionDescription& now) { return !has_speed(now); }))
-        say("ramp_time", "the wall has no velocity, spin or oscillation that could rise");
-      else if (longest && motion.ramp_time > *longest)
-        say("ramp_time", fmt::format("{:g} s is longer than a stage in which the wall moves lasts, {:g} s at most: it "
-                                     "never comes to its full speed, as the ramp begins anew with each stage",
-                                     motion.ramp_time, *longest));
-    }
+    if (motion.ramp_time > 0 &&
+        always_of(described, name, [](const auto&, const MotionDescription& now) { return !has_speed(now); }))
+      say("ramp_time", "the wall has no velocity, spin or oscillation that could rise");
+    else if (const auto told = never_at_full_speed(described, name))
+      say("ramp_time", "the wall never comes to its full speed: " + *told + ", and it begins anew with each stage");
     if (motion.free)
       for (const char axis : {'x', 'y', 'z'})
         if (motion.free->load[axis - 'x'] != 0 && always_of(described, name, [axis](const auto&, const auto& now) {

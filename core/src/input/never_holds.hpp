@@ -2,16 +2,20 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
+#include <vector>
 
-#include "scene/description.hpp"
+#include "input/scene.hpp"
 
 namespace grit {
 
-/// Calls complain(pointer, message) for each part of a stage's condition that cannot come true, by what the scene is
-/// when the stage begins.
-void never_holds(const SceneDescription& scene, std::size_t stage,
-                 const std::function<void(const std::string& pointer, const std::string& message)>& complain);
+/// A part of a description, and what is wrong with it.
+struct Complaint {
+  std::string pointer, message;
+};
+
+/// Why the condition of a stage cannot come true, by what the scene is then: one for each part that keeps it from it;
+/// none if it may.
+std::vector<Complaint> never_holds(const StagePlan& plan, std::size_t stage);
 
 }  // namespace grit

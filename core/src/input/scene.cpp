@@ -57,14 +57,13 @@ class Planner {
     same_walls(at + "/change/walls");
     plan.start = read_whole(now_, registry_, problems_);
     if (!plan.start) return plan;
-    never_holds(*plan.start, number, [this](const std::string& pointer, const std::string& message) {
-      problems_.push_back(written_.problem(pointer, message));
-    });
     const auto& ramps = plan.start->stages.at(number).ramps;
     for (std::size_t i = 0; i < ramps.size(); ++i) {
       const auto& before = plan.ramp.empty() ? *plan.start : *plan.ramp.back();
-      if (!ramp(ramps[i], at + "/ramps/" + std::to_string(i), before, plan.ramp)) break;
+      if (!ramp(ramps[i], at + "/ramps/" + std::to_string(i), before, plan.ramp)) return plan;
     }
+    for (const auto& [pointer, message] : never_holds(plan, number))
+      problems_.push_back(written_.problem(pointer, message));
     return plan;
   }
 

@@ -18,8 +18,7 @@ struct WallShape {
   std::string stage = {};       ///< that changes the wall into this; empty: whatever it is in no such stage
 };
 
-/// The triangles of a wall where it is now; none if no shape has its name. Its displacement counts, its turning does
-/// not: a wall that spins is drawn as it stood at the start.
+/// The triangles of a wall where it is now; none if no shape has its name.
 std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> shapes, const std::string& stage);
 
 /// Writes frames: /bodies sorted by id, /contacts, /walls/<name>, /probes/<name>/<field>; every dataset has `units` and

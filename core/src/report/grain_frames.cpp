@@ -322,11 +322,17 @@ class Writer {
       std::vector<float> corners(wall.corners.size());
       for (std::size_t i = 0; i < corners.size(); ++i)
         corners[i] = static_cast<float>(wall.corners[i] - wall.displacement[static_cast<Eigen::Index>(i % 3)]);
-      // A stage may have made another of it.
+      // A stage may have made another of it, or it has turned.
       auto known = std::ranges::find_if(
           walls_, [&](const Wall& one) { return one.name == wall.name && alike(one.corners, corners); });
-      if (known == walls_.end())
+      if (known == walls_.end() && wall_bytes_ + corners.size() * sizeof(float) > limits_.wall_bytes) {
+        const auto last = std::ranges::find(walls_.rbegin(), walls_.rend(), wall.name, &Wall::name);
+        if (last != walls_.rend()) known = std::prev(last.base());
+      }
+      if (known == walls_.end()) {
         known = walls_.insert(walls_.end(), {wall.name, data_.add_numbers<float>(corners), corners});
+        wall_bytes_ += corners.size() * sizeof(float);
+      }
       const Vec3& moved = wall.displacement;
       json["walls"].push_back(Description{known - walls_.begin(), moved.x(), moved.y(), moved.z()});
     }
@@ -337,6 +343,7 @@ class Writer {
   DataElements& data_;
   std::vector<Set> sets_;
   std::vector<Wall> walls_;
+  std::size_t wall_bytes_ = 0;
   bool clumps_ = false;
   Description frames_ = Description::array();
   std::vector<StageAndCount> instants_;

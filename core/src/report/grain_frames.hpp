@@ -16,6 +16,7 @@ struct GrainLimits {
   std::size_t bytes = 96u << 20;           ///< of all frames before deflating; frames are left out evenly beyond it
   std::size_t contacts = 20'000;           ///< a frame: the strongest above the mean normal force
   std::size_t wall_corners = 3 * 100'000;  ///< a wall; one that has more is not shown
+  std::size_t wall_bytes = 8u << 20;       ///< of all walls before deflating; beyond it they turn no further
   std::size_t map_bytes = 32u << 20;       ///< of all maps of cells before deflating
 };
 
@@ -29,7 +30,7 @@ struct GrainLimits {
 ///   stages         by name {ranges, limits}, of the frames of the stage, and only what all frames of all stages have:
 ///     ranges         {speed, rotation, displacement}: what 65535 means, from 0 for speed, from −range for the vectors
 ///     limits         {speed: one, rotation: [x, y, z], displacement: [x, y, z]}: what 98 of 100 bodies stay below
-///   walls          [{name, data}]: float32 corners of triangles, not displaced [m]; anew where a stage changes a wall
+///   walls          [{name, data}]: float32 corners of triangles, not displaced [m]; anew where a stage changes a wall, and where it turns
 ///   frames         [{time, step, stage, low, high, set, base, data, contacts, chains, strongest, mean_force, walls}]:
 ///     low, high      corners of the box of its centres [m]; not without bodies
 ///     set            place in bodies

@@ -173,15 +173,18 @@ struct Wanting {
     return "mean stress " + number(stress.trace() / 3) + " Pa" + between(c.above, c.below, " Pa");
   }
   std::string operator()(const PressureCondition& c) const {
-    return "pressure on wall \"" + c.wall + "\" " + number(wall(met.simulation, c.wall).pressure + 0.0) + " Pa, waits for " +
-           number(c.value) + " Pa ± " + number(100 * c.within) + " %";
+    return "pressure on wall \"" + c.wall + "\" " + number(wall(met.simulation, c.wall).pressure + 0.0) +
+           " Pa, waits for " + number(c.value) + " Pa ± " + number(100 * c.within) + " %";
   }
   std::string operator()(const LeftCondition& c) const {
     return number(100 * met.simulation.share_left()) + " % of the mass has left, waits for " + number(100 * c.share) +
            " %";
   }
   std::string operator()(const AllCondition& c) const { return joined(c.of, "; "); }
-  std::string operator()(const AnyCondition& c) const { return joined(c.of, " or "); }
+  std::string operator()(const AnyCondition& c) const {
+    const std::string parts = joined(c.of, " or ");
+    return c.of.size() > 1 ? "either " + parts : parts;
+  }
   std::string operator()(std::monostate) const { return ""; }
 
  private:

@@ -13,6 +13,7 @@
 namespace grit {
 namespace {
 
+constexpr std::size_t longest_word = 20;                                // in a message
 constexpr std::size_t header = 80, preamble = header + 4, record = 50;  // bytes of a binary file
 constexpr const char* whole_facets =
     "facets as \"facet normal x y z, outer loop, vertex x y z (three times), endloop, endfacet\", then \"endsolid\"; "
@@ -124,7 +125,8 @@ void read_binary(std::string_view bytes, std::vector<Stl::Facet>& facets) {
   const std::uint32_t count = count_of(bytes);
   const auto is_print = [](unsigned char c) { return c >= ' ' || (c >= '\t' && c <= '\r'); };
   if (bytes.size() != size_with(count) && std::ranges::all_of(bytes.substr(0, preamble), is_print))
-    throw Defect{"a text that begins with \"" + std::string(Words(bytes).next()) + "\" instead of \"solid\"",
+    throw Defect{"a text that begins with \"" + std::string(Words(bytes).next().substr(0, longest_word)) +
+                     "\" instead of \"solid\"",
                  "STL, ASCII or binary; other formats are to be converted"};
   if (bytes.size() != size_with(count))
     throw Defect{"a binary file of " + std::to_string(bytes.size()) + " bytes that announces " + std::to_string(count) +

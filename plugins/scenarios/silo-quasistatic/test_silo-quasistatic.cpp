@@ -45,11 +45,7 @@ TEST(SiloQuasistatic, CutsWallsIntoPiecesThatFollowOneAnother) {
 
 TEST(SiloQuasistatic, LetsGrainsBeThrownUpWhileTheyFall) {
   const auto travel = [](const char* height) {
-    const Description d = expanded({{"height", height}}), change = d["stages"][1]["change"];
-    EXPECT_EQ(d["stages"][1]["name"], "settle");
-    EXPECT_EQ(change.contains("guards") ? change["guards"]["travel"].get<double>() : 0.05, 0.05)
-        << "as usual from then";
-    return d["guards"]["travel"].get<double>();
+    return expanded({{"height", height}})["guards"]["travel"].get<double>();
   };
   EXPECT_NEAR(travel("800 mm") / travel("400 mm"), std::sqrt(2), 1e-12) << "as the speed of the fall";
   EXPECT_EQ(travel("40 mm"), 0.05);

@@ -127,7 +127,9 @@ Description Triaxial::expand() const {
   d["materials"]["sand"] = preparation_.sand();
   d["materials"]["wall"] = {{"friction_angle", 0.0}, {"rolling_limit", 0.0}};
   const auto corner = [](const Vec3& v) { return vector(v.x(), v.y(), v.z()); };
-  d["domain"] = {{"low", corner(-cloud)}, {"high", corner(cloud)}};
+  // Sideways the specimen, about the middle, may come to 1 / (1 − ε) of its length.
+  const Vec3 wide = cloud.cwiseMax(0.6 * size_ / (1 - axial_strain_));
+  d["domain"] = {{"low", corner(-wide)}, {"high", corner(wide)}};
   d["bodies"]["sand"] =
       preparation_.cloud(corner(-0.5 * cloud), corner(0.5 * cloud), preparation_.grains(size_.prod()));
 
