@@ -40,7 +40,7 @@ UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
 Hours by `grit check` on two threads at 12 M particle-steps/s: with what stages that end by a condition take as a rule, as smaller runs of the same test found it, and with their limits. Those that were timed
 (`--for`): how much they went of what `grit check` takes for all of it, by which commit, and the core-hours that all of it takes
-if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some two to three times as long, so these hours are the least; the last column has those with sand that lies,
+if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some four times as long, so these hours are the least; the last column has those with sand that lies,
 by what stands below the table.
 
 | description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that, at least | with sand that lies |

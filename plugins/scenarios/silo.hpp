@@ -70,6 +70,8 @@ struct Silo {
   static constexpr double cloud_solid_fraction = 0.35;
   /// Largest way in a step, over the radius, unless a guard says otherwise.
   static constexpr double usual_travel = 0.05;
+  /// In which sand came to rest once it had fallen, from 60 mm as from 0.5 m [s]: for estimates.
+  static constexpr double usual_rest = 0.25;
   /// Small grains are thrown up by large ones that fall on them: speeds to allow for, over that of the fall.
   static constexpr double thrown = 5;
 
@@ -322,10 +324,10 @@ struct Silo {
                                   {"increments", 50}}});
     };
     std::vector<Description> stages;
-    if (filling == "cloud") stages.push_back(stage("fill", falling_time(), 0.01, 3.2 * falling_time()));
+    if (filling == "cloud") stages.push_back(stage("fill", falling_time(), 0.01, falling_time() + usual_rest));
     else
       for (std::int64_t layer = 1; layer <= layers; ++layer)
-        stages.push_back(stage(fill(layer), falling_time(layer), 0.01, 2.6 * falling_time()));
+        stages.push_back(stage(fill(layer), falling_time(layer), 0.01, falling_time(layer) + usual_rest));
     const double settling = 0.1 * falling_time() + (relieved() ? relief_time() : 0);
     Description settle = stage("settle", settling, 1e-3, settling);
     for (const char* name : {"sand", "dyed"})
