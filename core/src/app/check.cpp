@@ -45,8 +45,10 @@ StageTime stage_time(const StageDescription& stage, const SceneDescription& scen
     const int axis = displacement->axis[0] - 'x';
     const double speed = motion.velocity[axis];
     const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
-    const double takes = std::abs(displacement->value / speed) + 0.5 * motion.ramp_time;
-    if (speed != 0 && !swings) return {takes, takes, true};
+    if (speed != 0 && !swings) {
+      const double takes = std::abs(displacement->value / speed) + 0.5 * motion.ramp_time;
+      return {takes, takes, true};
+    }
   }
   return {stage.usual_time.value_or(0), stage.limit, false, stage.usual_time.has_value()};
 }

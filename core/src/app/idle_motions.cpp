@@ -29,9 +29,7 @@ std::optional<std::string> never_at_full_speed(const Scene& described, const std
     const auto moves = [&](const auto& scene) { return has_speed(scene->walls.at(wall).motion); };
     if (!moves(plan.start) && std::ranges::none_of(plan.ramp, moves)) continue;
     const StageDescription& stage = described.description->stages[i];
-    const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
-    const double lasts = time != nullptr ? std::min(time->value, stage.limit) : stage.limit,
-                 ramp = plan.start->walls.at(wall).motion.ramp_time;
+    const double lasts = longest(stage), ramp = plan.start->walls.at(wall).motion.ramp_time;
     if (ramp <= lasts) return std::nullopt;
     if (told.empty())
       told = fmt::format("the ramp takes {:g} s, and the stage \"{}\" {:g} s at most", ramp, stage.name, lasts);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <variant>
 
 #include "input/scene.hpp"
 #include "scene/make_bodies.hpp"
@@ -29,6 +30,12 @@ bool always_by_law(const Scene& described, Is is) {
   const bool so = always(described, [&](const SceneDescription& scene) { return is(scene, mixed(scene)); });
   mixed(*described.description);
   return so;
+}
+
+/// Longest time that a stage can take [s].
+inline double longest(const StageDescription& stage) {
+  const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
+  return time != nullptr ? std::min(time->value, stage.limit) : stage.limit;
 }
 
 /// How bodies move by all engines, but for the one of this name.

@@ -99,8 +99,7 @@ double time_of_stages(const SceneDescription& scene, const std::vector<std::stri
   double sum = 0;
   for (const StageDescription& stage : scene.stages) {
     if (!names.empty() && std::ranges::find(names, stage.name) == names.end()) continue;
-    const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
-    sum += time != nullptr ? std::min(time->value, stage.limit) : stage.limit;
+    sum += longest(stage);
   }
   return sum;
 }

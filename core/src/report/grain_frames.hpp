@@ -30,7 +30,8 @@ struct GrainLimits {
 ///   stages         by name {ranges, limits}, of the frames of the stage, and only what all frames of all stages have:
 ///     ranges         {speed, rotation, displacement}: what 65535 means, from 0 for speed, from −range for the vectors
 ///     limits         {speed: one, rotation: [x, y, z], displacement: [x, y, z]}: what 98 of 100 bodies stay below
-///   walls          [{name, data}]: float32 corners of triangles, not displaced [m]; anew where a stage changes a wall, and where it turns
+///   walls          [{name, data}]: float32 corners of triangles, not displaced [m]; anew where a stage changes a wall
+///                  or it turns
 ///   frames         [{time, step, stage, low, high, set, base, data, contacts, chains, strongest, mean_force, walls}]:
 ///     low, high      corners of the box of its centres [m]; not without bodies
 ///     set            place in bodies

@@ -100,6 +100,14 @@ TEST(Triaxial, LetsServosKeepUpWithASpecimenThatWidens) {
       << "the front stands";
 }
 
+TEST(Triaxial, LeavesRoomForASpecimenThatWidens) {
+  const auto high = [](double strain) {
+    return made({{"axial_strain", strain}})->expand()["domain"]["high"][0].get<double>();
+  };
+  EXPECT_EQ(high(0.3), high(0.1)) << "the cloud is wider";
+  EXPECT_GT(high(0.8), 0.5 * 100e-3 / (1 - 0.8));
+}
+
 TEST(Triaxial, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"front_and_back", "intermediate-stress"}}), HasSubstr("/intermediate_stress"));
   EXPECT_THAT(problem({{"intermediate_stress", "300 kPa"}}),
