@@ -14,10 +14,12 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
+#include "lengths.hpp"
 #include "wall_descriptions.hpp"
 
 namespace grit {
@@ -204,11 +206,15 @@ struct Preparation {
          << " kPa; wish for one in this range";
     throw Error(text.str());
   }
-  /// Throws Error if the shortest side [m] of a specimen is less than four grains.
-  void refuse_short(double shortest, const std::string& what) const {
-    if (shortest < 4 * largest_diameter)
-      throw Error("the " + what + " is " + std::to_string(shortest * 1e3) +
-                  " mm wide, high or deep, less than four of the largest grains; make it larger or the grains smaller");
+  /// Sees to it that the sides of a specimen [m], each with its key, are four of the largest grains or more.
+  void check_box(Parameters& p, const std::vector<std::pair<std::string, const double*>>& sides) const {
+    std::vector<std::string> keys{"largest_diameter"};
+    for (const auto& [key, side] : sides) keys.push_back(key.substr(0, key.find('/')));
+    p.check(
+        [this, sides](const Complain& complain) {
+          for (const auto& [key, side] : sides) check_side(complain, key, *side, 4, largest_diameter);
+        },
+        keys);
   }
 
   /// "200 kPa, e0 = 0.6".

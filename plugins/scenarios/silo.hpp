@@ -12,6 +12,7 @@
 #include "closed_forms.hpp"
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
+#include "lengths.hpp"
 #include "wall_descriptions.hpp"
 
 namespace grit {
@@ -181,13 +182,9 @@ struct Silo {
         {"groove_spacing", "roughness", "groove_inclination", "wall_surface"});
     p.check(
         [this](const Complain& complain) {
-          const auto wide_enough = [&](const char* key, double length, double grains) {
-            if (!(length >= grains * largest_diameter))
-              complain(key, std::to_string(length) + " m",
-                       "at least " + std::to_string(static_cast<int>(grains)) + " of the largest grains, " +
-                           std::to_string(grains * largest_diameter) + " m");
-          };
-          wide_enough("width", width, 4), wide_enough("height", height, 4), wide_enough("depth", depth, 2);
+          check_side(complain, "width", width, 4, largest_diameter);
+          check_side(complain, "height", height, 4, largest_diameter);
+          check_side(complain, "depth", depth, 2, largest_diameter);
         },
         {"width", "height", "depth", "largest_diameter"});
   }

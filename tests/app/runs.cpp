@@ -1,5 +1,8 @@
 // Runs and how they end: exit status 0, 4, 5 and 130.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -99,6 +102,23 @@ TEST_F(Runs, DoNotReplaceOthersUnlessToldTo) {
   EXPECT_EQ(text_of(folder / "results/two/run.json"), before);
   EXPECT_EQ(grit({"run", "two.json", "--overwrite"}).status, 0);
   EXPECT_NE(text_of(folder / "results/two/run.json"), before);
+}
+
+TEST_F(Runs, AreRefusedWhereAnotherOneWrites) {
+  ASSERT_EQ(grit({"run", "two.json"}).status, 0);
+  const auto before = text_of(folder / "results/two/run.json");
+  const int other = ::open((folder / "results/two").c_str(), O_RDONLY | O_DIRECTORY);
+  ASSERT_EQ(::flock(other, LOCK_EX), 0);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"run", "two.json"}, {"run", "two.json", "--overwrite"}, {"run", "--resume", "results/two"}}) {
+    const auto refused = grit(words);
+    EXPECT_EQ(refused.status, 5) << words.back();
+    EXPECT_EQ(refused.err, "grit: results/two: another run writes there now; wait for it, or choose another folder\n")
+        << words.back();
+  }
+  ::close(other);
+  EXPECT_EQ(text_of(folder / "results/two/run.json"), before);
+  EXPECT_EQ(grit({"run", "two.json", "--overwrite"}).status, 0);
 }
 
 TEST_F(Runs, GoOneAfterTheOther) {

@@ -40,6 +40,15 @@ std::unique_ptr<S> made_scenario(const Description& keys = Description::object()
   return std::move(result.scenario);
 }
 
+/// "POINTER MESSAGE" of each problem that reading finds, "" if none.
+template <class S>
+std::string problems_of(const Description& keys) {
+  std::string all;
+  for (const Problem& problem : read_scenario<S>(keys).problems)
+    all += (all.empty() ? "" : "\n") + problem.pointer + ' ' + problem.message;
+  return all;
+}
+
 /// What expand() says against the wish, "" if nothing.
 template <class S>
 std::string refusal(const Description& keys) {

@@ -47,8 +47,7 @@ const std::filesystem::path& made(const std::filesystem::path& folder) {
 /// Sees to it that what is in the folder may be used.
 std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& lock) {
   const auto& folder = options.folder;
-  if (!lock.held())
-    throw FileError(folder.string() + ": another run writes there now; wait for it, or choose another folder");
+  if (!lock.held()) refuse_busy(folder);
   std::error_code error;
   if (options.existing == Existing::resume) return folder;
   for (const char* mark : {"run.json", "series.h5", "checkpoint.h5"})
@@ -65,6 +64,10 @@ std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& 
 }
 
 }  // namespace
+
+void refuse_busy(const std::filesystem::path& folder) {
+  throw FileError(folder.string() + ": another run writes there now; wait for it, or choose another folder");
+}
 
 ResultsFolder::ResultsFolder(ResultsOptions options)
     : options_(std::move(options)),

@@ -40,6 +40,9 @@ struct ResultsOptions {
   Flushing flushing = {};
 };
 
+/// Throws FileError that says so of a folder that another run keeps.
+[[noreturn]] void refuse_busy(const std::filesystem::path& folder);
+
 /// Writes, at the start: description.json, run.json; meanwhile: series.h5, frames/, frames.xdmf, run.json,
 /// checkpoint.h5, which goes when the run is done; at the end:
 /// packing.txt (`x y z radius` in m, by id, to the last bit; not for a failed run), picture.svg, and run.json last, so

@@ -37,6 +37,7 @@ void DirectShear::declare(Parameters& p) {
       .doc("during shear, with the rate velocity over height; sets the velocity");
   p.add("velocity", velocity_).unit("m/s").at_least(0).doc("of the upper frame; 0: as the inertial number says");
   preparation_.declare_course(p);
+  preparation_.check_box(p, {{"width", &width_}, {"height", &height_}, {"depth", &depth_}});
 }
 
 VoidRatioRange DirectShear::reachable() const {
@@ -50,7 +51,6 @@ double DirectShear::shear_velocity() const {
 
 Description DirectShear::expand() const {
   preparation_.refuse_out_of(reachable(), normal_stress_);
-  preparation_.refuse_short(std::min({width_, height_, depth_}), "box");
 
   const double grain = preparation_.largest_diameter, gap = grain, middle = 0.5 * height_;
   const double cloud_height = preparation_.in_cloud(height_);

@@ -10,6 +10,7 @@
 namespace grit {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -42,8 +43,11 @@ TEST(DirectShear, IsTheDenserTheFartherWallsAreApart) {
 }
 
 TEST(DirectShear, RefusesABoxOfAFewGrains) {
-  EXPECT_THAT(refusal<DirectShear>({{"depth", "2.9 mm"}}), HasSubstr("four of the largest grains"));
-  EXPECT_EQ(refusal<DirectShear>({{"depth", "3 mm"}}), "");
+  const auto problem = problems_of<DirectShear>;
+  EXPECT_THAT(problem({{"depth", "2.9 mm"}, {"width", "1 mm"}}),
+              AllOf(HasSubstr("/width found 0.001 m; allowed is at least 4 of the largest grains, 0.003 m"),
+                    HasSubstr("/depth found 0.0029 m")));
+  EXPECT_EQ(problem({{"depth", "3 mm"}}), "");
 }
 
 TEST(DirectShear, RefusesASmallestGrainThatIsLargest) {

@@ -76,6 +76,7 @@ void InterfaceShear::declare(Parameters& p) {
           "of the sand as it shears in itself, for the wall contact factor alone: left out, 44 deg; given, EN 1991-4's "
           "friction of the surface is drawn beside the curves");
   preparation_.declare_course(p);
+  preparation_.check_box(p, {{"width", &width_}, {"height", &height_}, {"depth", &depth_}});
   p.check(
       [this](const Complain& complain) {
         if (surface_ == "saw-tooth")
@@ -85,9 +86,7 @@ void InterfaceShear::declare(Parameters& p) {
       {"groove_spacing", "roughness", "groove_inclination", "surface"});
   p.check(
       [this](const Complain& complain) {
-        if (gap_ >= height_)
-          complain("gap", std::to_string(gap_ * 1e3) + " mm",
-                   "less than the height of the specimen, " + std::to_string(height_ * 1e3) + " mm");
+        if (gap_ >= height_) complain("gap", metres(gap_), "less than the height of the specimen, " + metres(height_));
       },
       {"gap", "height"});
 }
@@ -140,7 +139,6 @@ Description InterfaceShear::surface(double reach) const {
 
 Description InterfaceShear::expand() const {
   preparation_.refuse_out_of(reachable(), normal_stress_);
-  preparation_.refuse_short(std::min({width_, height_, depth_}), "box");
 
   const double grain = preparation_.largest_diameter, gap = gap_ > 0 ? gap_ : grain;
   const double area = width_ * depth_;

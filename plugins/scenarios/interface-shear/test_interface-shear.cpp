@@ -119,10 +119,7 @@ TEST(InterfaceShear, PutsTheFrictionOfEN1991BesideTheCurves) {
 }
 
 TEST(InterfaceShear, SaysWhatIsWrong) {
-  const auto problem = [](const Description& keys) {
-    const auto result = read_scenario<InterfaceShear>(keys);
-    return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
-  };
+  const auto problem = problems_of<InterfaceShear>;
   const auto spaced = [](const char* spacing, const char* form = "saw-tooth") {
     return Description{{"groove_spacing", spacing}, {"groove_inclination", "45 deg"}, {"surface", form}};
   };
@@ -134,12 +131,12 @@ TEST(InterfaceShear, SaysWhatIsWrong) {
   EXPECT_EQ(problem(spaced("0.9 mm", "sinusoidal")), "");
   EXPECT_THAT(problem({{"groove_spacing", 0}}), HasSubstr("/groove_spacing"));
   EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
-  EXPECT_THAT(problem({{"gap", "20 mm"}}), HasSubstr("/gap found 20.0"));
+  EXPECT_THAT(problem({{"gap", "20 mm"}}), HasSubstr("/gap found 0.02 m"));
   EXPECT_EQ(problem({{"gap", "19 mm"}}), "");
   EXPECT_THAT(problem({{"void_ratio", 0.1}, {"grain", "clump"}}), HasSubstr("/void_ratio"));
   EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
   EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio: found 0.9"));
-  EXPECT_THAT(refusal<InterfaceShear>({{"depth", "2.9 mm"}}), HasSubstr("four of the largest grains"));
+  EXPECT_THAT(problem({{"depth", "2.9 mm"}}), HasSubstr("/depth found 0.0029 m; allowed is at least 4 of the largest"));
 }
 
 }  // namespace

@@ -55,18 +55,17 @@ void SiloDischarge::declare(Parameters& p) {
         const double rounding = 1e-9 * silo_.width;
         for (std::size_t i = 0; i < slots.size(); ++i) {
           const auto& [low, high] = slots[i];
-          const std::string from_to = "an outlet from " + std::to_string(low) + " to " + std::to_string(high) + " m";
+          const std::string from_to = "an outlet from " + metres(low) + " to " + metres(high);
           if (high - low < least_outlet * silo_.largest_diameter - rounding)
-            complain("outlet_widths", std::to_string(high - low) + " m",
+            complain("outlet_widths", metres(high - low),
                      "at least three of the largest grains, which arch over anything narrower: " +
-                         std::to_string(least_outlet * silo_.largest_diameter) + " m");
+                         metres(least_outlet * silo_.largest_diameter));
           if (low < -rounding || high > silo_.width + rounding)
-            complain("outlet_widths", from_to, "outlets inside the bottom, 0 to " + std::to_string(silo_.width) + " m");
+            complain("outlet_widths", from_to, "outlets inside the bottom, 0 to " + metres(silo_.width));
           if (i > 0 && low < slots[i - 1].high + rounding)
-            complain(
-                "outlet_positions",
-                from_to + ", which overlaps or touches its neighbour, to " + std::to_string(slots[i - 1].high) + " m",
-                "outlets with a piece of bottom in between");
+            complain("outlet_positions",
+                     from_to + ", which overlaps or touches its neighbour, to " + metres(slots[i - 1].high),
+                     "outlets with a piece of bottom in between");
         }
       },
       {"outlet_positions", "outlet_widths", "width", "largest_diameter"});

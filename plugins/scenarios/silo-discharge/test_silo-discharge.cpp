@@ -15,10 +15,7 @@ Description expanded(const Description& keys = Description::object()) {
   return made_scenario<SiloDischarge>(keys)->expand();
 }
 
-std::string problem(const Description& keys) {
-  const auto result = read_scenario<SiloDischarge>(keys);
-  return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
-}
+std::string problem(const Description& keys) { return problems_of<SiloDischarge>(keys); }
 
 using Reach = std::pair<long, long>;
 

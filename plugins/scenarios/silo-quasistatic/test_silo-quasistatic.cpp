@@ -16,10 +16,7 @@ Description expanded(const Description& keys = Description::object()) {
   return made_scenario<SiloQuasistatic>(keys)->expand();
 }
 
-std::string problem(const Description& keys) {
-  const auto result = read_scenario<SiloQuasistatic>(keys);
-  return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
-}
+std::string problem(const Description& keys) { return problems_of<SiloQuasistatic>(keys); }
 
 TEST(SiloQuasistatic, ExpandsToTheGoldenDescription) { expect_golden(expanded(), "silo-quasistatic"); }
 

@@ -17,10 +17,7 @@ std::unique_ptr<Triaxial> made(const Description& keys = Description::object()) 
 }
 
 /// What is wrong with these parameters, one line.
-std::string problem(const Description& keys) {
-  const auto result = read_scenario<Triaxial>(keys);
-  return result.problems.empty() ? "" : result.problems[0].pointer + ' ' + result.problems[0].message;
-}
+std::string problem(const Description& keys) { return problems_of<Triaxial>(keys); }
 
 TEST(Triaxial, ExpandsToTheGoldenDescription) { expect_golden(made()->expand(), "triaxial"); }
 
@@ -118,7 +115,8 @@ TEST(Triaxial, SaysWhatIsWrong) {
               HasSubstr("/scenario/void_ratio: found 0.5; in a specimen of this size this grading"));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.5}, {"compaction_friction_angle", "0 deg"}}), "")
       << "who says how to compact knows what comes of it";
-  EXPECT_THAT(refusal<Triaxial>({{"size", {"100 mm", "29 mm", "100 mm"}}}), HasSubstr("four of the largest grains"));
+  EXPECT_THAT(problem({{"size", {"100 mm", "29 mm", "100 mm"}}}),
+              HasSubstr("/size/1 found 0.029 m; allowed is at least 4 of the largest grains, 0.03 m"));
 }
 
 // Growth, as every scenario with a preparation has it.

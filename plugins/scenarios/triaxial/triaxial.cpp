@@ -96,6 +96,7 @@ void Triaxial::declare(Parameters& p) {
       .below(std::numbers::pi / 2)
       .doc("of the sand, for Rankine's strength alone, which is drawn beside the curves; left out: none is");
   preparation_.declare_course(p);
+  preparation_.check_box(p, {{"size/0", &size_[0]}, {"size/1", &size_[1]}, {"size/2", &size_[2]}});
   p.check(
       [this](const Complain& complain) {
         const bool wanted = front_and_back_ == "intermediate-stress";
@@ -113,7 +114,6 @@ double Triaxial::strain_rate() const { return inertial_number_ / preparation_.in
 
 Description Triaxial::expand() const {
   preparation_.refuse_out_of(reachable(), confining_stress_);
-  preparation_.refuse_short(size_.minCoeff(), "specimen");
 
   const double swollen = std::cbrt(preparation_.in_cloud(1));
   const Vec3 cloud = swollen * size_;
