@@ -14,6 +14,7 @@
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
+#include "output/folder_lock.hpp"
 #include "output/read_results.hpp"
 #include "output/results_folder.hpp"
 #include "output/shell_word.hpp"
@@ -60,6 +61,7 @@ std::vector<Job> jobs_of(const Options& options) {
       if (job.folder == other.folder)
         throw UsageError(other.file + " and " + file + " would both write to " + job.folder.string() +
                          "; run them one by one, each with its own --out");
+    if (!FolderLock(job.folder).held()) refuse_busy(job.folder);  // now, not once grains are made
     if (options.has("overwrite")) job.existing = Existing::overwrite;
     else if (options.has("resume")) job.existing = Existing::resume;
     else if (std::filesystem::exists(job.folder / "run.json"))
