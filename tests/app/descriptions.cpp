@@ -285,6 +285,51 @@ TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {
   }
 }
 
+TEST(Descriptions, ProbesAndWallsThatFitNoSceneAreToldAtTheirPlaces) {
+  const OwnFolder folder;
+  folder.write("base.json", two_grains);
+  folder.write("two.json", R"({
+  "extends": "base.json",
+  "walls": {"plate": {"type": "plane", "point": [0, 0, "-1 cm"], "normal": [0, 0, 1], "material": "sand"}},
+  "probes": {
+    "force": {
+      "type": "walls",
+      "every_steps": 10,
+      "walls": ["plat"]
+    },
+    "curve": {"type": "formula", "every_steps": 10, "curves": {"speed": {
+      "formula": "2 * plate_sped"
+    }}}
+  },
+  "stages": [
+    {"name": "part", "until": {"type": "steps", "value": 200}, "limit": "1 s"},
+    {"name": "shake", "until": {"type": "steps", "value": 20}, "limit": "1 s", "change": {"walls": {"plate": {"motion": {
+      "oscillation": {"amplitude": [0, 0, "1 um"], "frequency": "1e9 Hz"}
+    }}}}}
+  ]
+})");
+  const std::string curve = R"(/probes/curve/curves/speed/formula="plate_force_x")",
+                    plate = R"(/probes/force/walls=[])";
+  const auto refusal = [&](const std::string& does, const std::vector<std::string>& sets) {
+    std::vector<std::string> words{does, "two.json"};
+    if (does == "run") words.insert(words.end(), {"--out", "out", "--overwrite"});
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 2) << does;
+    return outcome.err;
+  };
+  for (const std::string does : {"check", "run"}) {
+    EXPECT_THAT(refusal(does, {curve}),
+                HasSubstr("two.json:8: /probes/force/walls: there is no wall \"plat\"; the nearest name is \"plate\""));
+    EXPECT_THAT(refusal(does, {plate}),
+                HasSubstr("two.json:11: /probes/curve/curves/speed/formula: \"2 * plate_sped\": there is no"));
+    EXPECT_THAT(refusal(does, {plate, R"(/probes/curve/curves/speed/formula="nothing")"}),
+                HasSubstr("--set: /probes/curve/curves/speed/formula: \"nothing\": there is no"));
+    EXPECT_THAT(refusal(does, {plate, curve}),
+                HasSubstr("two.json:16: /stages/1/change/walls/plate/motion: wall \"plate\": oscillates at 1e+09 Hz"));
+  }
+}
+
 TEST(Descriptions, MayNameTheTimeOfSamplesWhereverChannelsAreNamed) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

@@ -475,10 +475,12 @@ TEST(Walls, SayWhichMotionCannotBe) {
   };
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), servo)), "");
   EXPECT_EQ(complaint(flat(0, -Vec3::UnitZ(), servo)),
-            "wall \"lid\": a servo needs an area for its pressure, and this geometry has none; give it one, take a "
-            "rectangle, or keep a force");
-  EXPECT_EQ(complaint(flat(1, Vec3::UnitX(), servo)),
-            "wall \"lid\": a servo along z, but its normal is perpendicular to that axis");
+            "wall \"lid\": found a servo's pressure on a geometry that has no area; allowed is one with an area (a "
+            "rectangle, or area where the geometry takes it), or a force in place of the pressure");
+  EXPECT_EQ(
+      complaint(flat(1, Vec3::UnitX(), servo)),
+      "wall \"lid\": found a servo's pressure along z, to which the wall's normal is perpendicular; allowed is an "
+      "axis that the normal has a part of, or a force in place of the pressure");
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "z", .pressure = 1})),
             "wall \"lid\": a servo needs a max_velocity above 0");
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "xz", .pressure = 1, .max_velocity = 1})),

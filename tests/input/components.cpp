@@ -96,6 +96,7 @@ class PlaneShape final : public Shape {
     p.add("normal", normal_).doc("towards the grains");
   }
   double area() const override { return 1; }
+  Vec3 normal() const override { return normal_; }
 
  private:
   Vec3 position_ = Vec3::Zero(), normal_ = Vec3::UnitZ();

@@ -42,7 +42,7 @@ class Probe {
   virtual ~Probe() = default;
   virtual void declare(Parameters& parameters) = 0;
   virtual StateRequest needs() const { return {}; }
-  /// Once, before the first sample. Problems with names of walls and the like are thrown as grit::Error.
+  /// Once, before the first sample. Throws Error("probe TYPE, /KEY: …") of what the world lacks: told where KEY stands.
   virtual void prepare(const World&) {}
   /// The same at every call after prepare().
   virtual std::vector<Channel> channels() const = 0;

@@ -16,6 +16,7 @@
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
 #include "grit/error.hpp"
+#include "input/places.hpp"
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
@@ -134,11 +135,10 @@ void expect_same(const std::filesystem::path& folder, const Description& descrip
 
 /// What a sample of a variant runs. Throws DescriptionError, which names the study and the variant where a value of
 /// theirs is wrong.
-std::shared_ptr<const SceneDescription> scene_of(const StudyDescription& study, const std::filesystem::path& file,
-                                                 const Variant& variant, const std::vector<std::string>& sets,
-                                                 const Registry& registry) {
+Scene scene_of(const StudyDescription& study, const std::filesystem::path& file, const Variant& variant,
+               const std::vector<std::string>& sets, const Registry& registry) {
   try {
-    return load_scene(study.scene, sets, registry).description;
+    return load_scene(study.scene, sets, registry);
   } catch (const DescriptionError& error) {
     auto problems = error.problems();
     for (Problem& problem : problems)
@@ -235,10 +235,10 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
         throw UsageError("two variants would both be kept in " + folder.string() +
                          "; give their levels labels that differ in "
                          "more than punctuation");
-      const auto scene = scene_of(study, file, variant, sets, registry);
-      check_figures(study, written, *scene);
+      const Scene scene = scene_of(study, file, variant, sets, registry);
+      check_figures(study, written, *scene.description);
       // As run.json has it, whose numbers went through text.
-      const std::string text = resolved(*scene).dump();
+      const std::string text = resolved(*scene.description).dump();
       const auto description = Description::parse(text);
       if (seed == study.seeds.values.front())
         if (const auto [other, is_new] = described.emplace(text, variant.name); !is_new)
@@ -246,12 +246,13 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
               "/settings", fmt::format("found {} and {}, which run the same; allowed are levels that differ in more "
                                        "than how they are written",
                                        other->second, variant.name))});
-      if (all == 1 && !options.has("draw")) check_channels(study, written, *scene);
+      if (all == 1 && !options.has("draw"))
+        at_its_place(scene.document, [&] { check_channels(study, written, *scene.description); });
       if (options.has("draw")) {
         expect_same(folder, description);
         continue;
       }
-      const Progressed so_far = progressed(folder, description, plugins_used(*scene, registry));
+      const Progressed so_far = progressed(folder, description, plugins_used(*scene.description, registry));
       if (so_far == Progressed::ended) continue;
       if (so_far == Progressed::lost) std::cerr << "grit: " << lost_series(folder) << ": it is run again" << std::endl;
       Run run{variant.name + ", seed " + std::to_string(static_cast<long long>(seed)), folder, {}};

@@ -16,6 +16,7 @@
 #include "app/too_deep.hpp"
 #include "app/without_effect.hpp"
 #include "grit/error.hpp"
+#include "input/places.hpp"
 #include "input/scene.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
@@ -53,8 +54,7 @@ StageTime stage_time(const StageDescription& stage, const SceneDescription& scen
   return {stage.usual_time.value_or(0), stage.limit, false, stage.usual_time.has_value()};
 }
 
-void check_one(const std::string& file, const Options& options, const Registry& registry) {
-  const Scene scene = load_scene(file, options.list("set"), registry);
+void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
   const SceneDescription& description = *scene.description;
   std::cout << file << ": " << description.title << "\n\ncomponents\n";
   for (const PluginUsed& one : plugins_used(description, registry))
@@ -109,8 +109,13 @@ void check_one(const std::string& file, const Options& options, const Registry& 
   bool unknown = false;
   std::size_t there = bodies;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
-    check_oscillations(*scene.stages[i].start, dt);
-    for (const auto& increment : scene.stages[i].ramp) check_oscillations(*increment, dt);
+    try {
+      check_oscillations(*scene.stages[i].start, dt);
+      for (const auto& increment : scene.stages[i].ramp) check_oscillations(*increment, dt);
+    } catch (PlacedError& error) {
+      error.stage = i;
+      throw;
+    }
     const StageDescription& stage = description.stages[i];
     const StageTime time = stage_time(stage, *scene.stages[i].start);
     there += coming[stage.name];
@@ -179,7 +184,10 @@ ExitStatus check_command(const std::vector<std::string>& words) {
   if (options.words().empty()) throw UsageError("no description was given; see 'grit check --help'");
   options.threads();
   const auto registry = options.registry();
-  for (const std::string& file : options.words()) check_one(file, options, *registry);
+  for (const std::string& file : options.words()) {
+    const Scene scene = load_scene(file, options.list("set"), *registry);
+    at_its_place(scene.document, [&] { check_one(file, scene, options, *registry); });
+  }
   return ExitStatus::done;
 }
 

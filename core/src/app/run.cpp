@@ -11,6 +11,7 @@
 #include "app/wall_shapes.hpp"
 #include "app/watch.hpp"
 #include "grit/error.hpp"
+#include "input/places.hpp"
 #include "input/scene.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
@@ -258,7 +259,8 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   for (const Job& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return run_one(job, options, *registry, listener, interrupted);
+        return at_its_place(job.scene.document,
+                            [&] { return run_one(job, options, *registry, listener, interrupted); });
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }

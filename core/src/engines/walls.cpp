@@ -10,13 +10,13 @@
 #include <utility>
 
 #include "grit/error.hpp"
+#include "scene/placed_error.hpp"
+#include "scene/servo_face.hpp"
 
 namespace grit {
 
 namespace {
 
-/// Below this the normal counts as perpendicular to an axis: a servo along it would have nothing to press with.
-constexpr double aslant = 1e-6;
 /// Steps, times the gain, in which a servo gets used to a velocity. A stack of some dozens of grains is slower.
 constexpr double habit_steps = 30;
 /// How often a servo counts the dashpots it touches. A change of its velocity shows in their forces at once and whole,
@@ -32,7 +32,7 @@ constexpr int most_halvings = 50;
 constexpr double steps_to_a_period = 20;
 
 [[noreturn]] void fail(const std::string& wall, const std::string& what) {
-  throw Error("wall \"" + wall + "\": " + what);
+  throw PlacedError({"walls", wall, "motion"}, "wall \"" + wall + "\": " + what);
 }
 [[noreturn]] void fail(const WallSetup& setup, const std::string& what) { fail(setup.name, what); }
 
@@ -66,8 +66,6 @@ Vec3 middle(const Geometry& geometry) {
   return middle;
 }
 
-bool presses_on_specimen(const MotionDescription& motion) { return motion.servo && motion.servo->area == "specimen"; }
-
 /// How far an oscillation of amplitude 1 has gone some time [s] after it began.
 double swing(const MotionDescription& motion, double time, double lead) {
   const OscillationDescription& how = *motion.oscillation;
@@ -89,15 +87,10 @@ void swing_on(const MotionDescription& motion, WallState& state) {
 
 /// Component of a servo's wall's normal along its axis. Throws if the servo has nothing to press with.
 double facing(const WallSetup& setup, const Pose& pose) {
-  const std::string& letter = setup.motion.servo->axis;
-  if (!presses_on_specimen(setup.motion) && !(setup.geometry->area() > 0))
-    fail(setup,
-         "a servo needs an area for its pressure, and this geometry has none; give it one, take a rectangle, or keep a "
-         "force");
-  const double along = (pose.turn * setup.geometry->normal())[letter.front() - 'x'];
-  if (std::abs(along) < aslant)
-    fail(setup, "a servo along " + letter + ", but its normal is perpendicular to that axis");
-  return along;
+  const Vec3 normal = pose.turn * setup.geometry->normal();
+  if (const std::string why = presses_with_nothing(setup.motion, *setup.geometry, normal); !why.empty())
+    fail(setup, why);
+  return normal[setup.motion.servo->axis.front() - 'x'];
 }
 
 /// A servo sees what a step has done when it is done: one grain that is stiff, or many of one height, would bear a

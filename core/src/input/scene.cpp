@@ -5,8 +5,10 @@
 #include <tuple>
 
 #include "input/never_holds.hpp"
+#include "input/places.hpp"
 #include "input/reader.hpp"
 #include "input/writer.hpp"
+#include "scene/servo_face.hpp"
 
 namespace grit {
 namespace {
@@ -64,6 +66,8 @@ class Planner {
     }
     for (const auto& [pointer, message] : never_holds(plan, number))
       problems_.push_back(written_.problem(pointer, message));
+    servos_press(*plan.start, number);
+    for (const auto& increment : plan.ramp) servos_press(*increment, number);
     return plan;
   }
 
@@ -90,6 +94,22 @@ class Planner {
     refuse_of(written_, now_,
               "found null, which would take a wall away; allowed is what it is from then on: let the stage say where "
               "it stands, out of the bodies' way");
+  }
+
+  /// What a servo of a later stage lacks would else show when that stage begins. Which way a wall faces once it has
+  /// turned, the run alone knows.
+  void servos_press(const SceneDescription& scene, std::size_t stage) {
+    for (const auto& [name, wall] : scene.walls) {
+      const MotionDescription& motion = wall.motion;
+      if (!motion.spin.isZero(0.0) || (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
+        turned_.insert(name);
+      if (!motion.servo || !motion.servo->pressure) continue;
+      const Vec3 normal = turned_.contains(name) ? Vec3(Vec3::Ones()) : wall.geometry->normal();
+      const std::string why = presses_with_nothing(motion, *wall.geometry, normal);
+      if (why.empty() || !faceless_.insert(name).second) continue;
+      const std::string at = "/walls/" + pointer_token(name) + "/motion/servo";
+      problems_.push_back(written_.problem(written_last(written_, at, stage), why));
+    }
   }
 
   /// Appends the increments of a ramp. False if there was a problem.
@@ -131,7 +151,8 @@ class Planner {
   Document now_;
   const Registry& registry_;
   std::vector<Problem>& problems_;
-  std::set<std::string> refused_;  ///< names of walls, each of which is told once
+  std::set<std::string> refused_, faceless_;  ///< names of walls, each of which is told once
+  std::set<std::string> turned_;              ///< names of walls that may face elsewhere by then
 };
 
 /// What a scenario says cannot be had: of the parameter that it names first, with a colon, or of all of it.

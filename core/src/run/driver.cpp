@@ -50,6 +50,9 @@ class Run {
         if (++stage_ == scene_.stages.size()) break;
         else begin_stage();
       if (stage_ < scene_.stages.size()) summary.status = "interrupted";
+    } catch (PlacedError& error) {
+      error.stage = stage_;
+      throw;
     } catch (const NumericsError& error) {
       summary.status = "failed", summary.message = error.what();
     }

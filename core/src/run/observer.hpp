@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "run/component_memory.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
 #include "run/stopwatch.hpp"
+#include "scene/placed_error.hpp"
 
 namespace grit {
 
@@ -19,7 +22,7 @@ class Observer {
  public:
   Observer(const std::string& name, const ProbeDescription& description, const World& world)
       : name_(name), description_(&description), schedule_(description.cadence) {
-    description.probe->prepare(world);
+    prepare(*description.probe, description.probe.type(), world);
     for (const Channel& channel : description.probe->channels()) {
       std::size_t size = 1;
       for (const std::size_t n : channel.shape) size *= n;
@@ -53,6 +56,25 @@ class Observer {
   FieldGroup fields(const World& world) const { return {name_, description_->probe->fields(world)}; }
 
  private:
+  /// What a probe says against the world begins with "probe TYPE" and, as a rule, the key that it means: ", /KEY".
+  void prepare(Probe& probe, const std::string& type, const World& world) const try {
+    probe.prepare(world);
+  } catch (const PluginError&) {
+    throw;
+  } catch (const Error& error) {
+    std::vector<std::string> keys{"probes", name_};
+    std::string what = error.what();
+    const std::size_t colon = what.find(": ");
+    if (const std::string who = "probe " + type; what.starts_with(who) && colon != std::string::npos) {
+      std::istringstream pointer(what.substr(who.size(), colon - who.size()));
+      std::string key;
+      if (std::getline(pointer, key, '/') && key == ", ")
+        while (std::getline(pointer, key, '/')) keys.push_back(key);
+      what.erase(0, colon + 2);
+    }
+    throw PlacedError(std::move(keys), what);
+  }
+
   std::string name_;
   const ProbeDescription* description_;
   Schedule schedule_;
