@@ -109,7 +109,7 @@ struct Preparation {
     p.check(
         [this](const Complain& complain) {
           if (!(smallest_diameter <= largest_diameter))
-            complain("smallest_diameter", std::to_string(smallest_diameter) + " m", "at most largest_diameter");
+            complain("smallest_diameter", metres(smallest_diameter), "at most largest_diameter");
         },
         {"smallest_diameter", "largest_diameter"});
     p.check(
@@ -123,7 +123,7 @@ struct Preparation {
             complain("sieve_diameters", std::to_string(d.size()) + " diameters",
                      "two or more, each above the one before");
           else if (!d.empty() && (d.front() != smallest_diameter || d.back() != largest_diameter))
-            complain("sieve_diameters", std::to_string(d.front()) + " m to " + std::to_string(d.back()) + " m",
+            complain("sieve_diameters", metres(d.front()) + " to " + metres(d.back()),
                      "from smallest_diameter to largest_diameter");
           else if (!d.empty() && (passing.front() != 0 || passing.back() != 1 || !std::ranges::is_sorted(passing)))
             complain("sieve_passing",

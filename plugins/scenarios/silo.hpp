@@ -171,7 +171,7 @@ struct Silo {
     p.check(
         [this](const Complain& complain) {
           if (!(smallest_diameter <= largest_diameter))
-            complain("smallest_diameter", std::to_string(smallest_diameter) + " m", "at most largest_diameter");
+            complain("smallest_diameter", metres(smallest_diameter), "at most largest_diameter");
         },
         {"smallest_diameter", "largest_diameter"});
     p.check(

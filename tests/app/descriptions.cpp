@@ -325,9 +325,18 @@ TEST(Descriptions, ProbesAndWallsThatFitNoSceneAreToldAtTheirPlaces) {
                 HasSubstr("two.json:11: /probes/curve/curves/speed/formula: \"2 * plate_sped\": there is no"));
     EXPECT_THAT(refusal(does, {plate, R"(/probes/curve/curves/speed/formula="nothing")"}),
                 HasSubstr("--set: /probes/curve/curves/speed/formula: \"nothing\": there is no"));
-    EXPECT_THAT(refusal(does, {plate, curve}),
-                HasSubstr("two.json:16: /stages/1/change/walls/plate/motion: wall \"plate\": oscillates at 1e+09 Hz"));
+    EXPECT_THAT(
+        refusal(does, {plate, curve}),
+        HasSubstr(
+            "two.json:17: /stages/1/change/walls/plate/motion/oscillation: wall \"plate\": oscillates at 1e+09 Hz"));
+    const auto ramped = refusal(
+        does, {plate, curve, R"(/walls/plate/motion/oscillation={"amplitude": [0, 0, "1 um"], "frequency": 1})",
+               R"(/stages/0/change={"walls": {"plate": {"motion": {"ramp_time": "1 us"}}}})",
+               R"(/stages/0/ramps=[{"pointer": "/walls/plate/motion/oscillation/frequency", "from": 1, "to": 1e9,)"
+               R"( "duration": 1e-4, "increments": 2}])"});
+    EXPECT_THAT(ramped, HasSubstr("--set: /stages/0/ramps/0: wall \"plate\": oscillates at 5e+08 Hz"));
   }
+  EXPECT_EQ(json::parse(text_of(folder / "out/run.json")).at("status"), "failed");
 }
 
 TEST(Descriptions, MayNameTheTimeOfSamplesWhereverChannelsAreNamed) {

@@ -133,12 +133,11 @@ void expect_same(const std::filesystem::path& folder, const Description& descrip
               "\n  remove it, or run it again: the same command without --draw");
 }
 
-/// What a sample of a variant runs. Throws DescriptionError, which names the study and the variant where a value of
-/// theirs is wrong.
-Scene scene_of(const StudyDescription& study, const std::filesystem::path& file, const Variant& variant,
-               const std::vector<std::string>& sets, const Registry& registry) {
+/// Does the work for a variant. A DescriptionError names the study and the variant where a value of theirs is wrong.
+template <class Work>
+auto of_variant(const std::filesystem::path& file, const Variant& variant, const Work& work) {
   try {
-    return load_scene(study.scene, sets, registry);
+    return work();
   } catch (const DescriptionError& error) {
     auto problems = error.problems();
     for (Problem& problem : problems)
@@ -235,7 +234,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
         throw UsageError("two variants would both be kept in " + folder.string() +
                          "; give their levels labels that differ in "
                          "more than punctuation");
-      const Scene scene = scene_of(study, file, variant, sets, registry);
+      const Scene scene = of_variant(file, variant, [&] { return load_scene(study.scene, sets, registry); });
       check_figures(study, written, *scene.description);
       // As run.json has it, whose numbers went through text.
       const std::string text = resolved(*scene.description).dump();
@@ -247,7 +246,8 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                                        "than how they are written",
                                        other->second, variant.name))});
       if (all == 1 && !options.has("draw"))
-        at_its_place(scene.document, [&] { check_channels(study, written, *scene.description); });
+        of_variant(file, variant,
+                   [&] { at_its_place(scene.document, [&] { check_channels(study, written, *scene.description); }); });
       if (options.has("draw")) {
         expect_same(folder, description);
         continue;

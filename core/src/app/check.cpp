@@ -113,7 +113,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
       check_oscillations(*scene.stages[i].start, dt);
       for (const auto& increment : scene.stages[i].ramp) check_oscillations(*increment, dt);
     } catch (PlacedError& error) {
-      error.stage = i;
+      error.begun(i + 1);
       throw;
     }
     const StageDescription& stage = description.stages[i];

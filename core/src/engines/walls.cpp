@@ -31,10 +31,13 @@ constexpr int most_halvings = 50;
 /// by (ω dt)²/24, 0.4 %.
 constexpr double steps_to_a_period = 20;
 
-[[noreturn]] void fail(const std::string& wall, const std::string& what) {
-  throw PlacedError({"walls", wall, "motion"}, "wall \"" + wall + "\": " + what);
+/// `key` is the motion's that is wrong.
+[[noreturn]] void fail(const std::string& wall, const std::string& key, const std::string& what) {
+  throw PlacedError({"walls", wall, "motion", key}, "wall \"" + wall + "\": " + what);
 }
-[[noreturn]] void fail(const WallSetup& setup, const std::string& what) { fail(setup.name, what); }
+[[noreturn]] void fail(const WallSetup& setup, const std::string& what) {
+  throw PlacedError({"walls", setup.name, "motion"}, "wall \"" + setup.name + "\": " + what);
+}
 
 std::array<bool, 3> axes_of(const WallSetup& setup, const std::string& motion, const std::string& letters) {
   std::array<bool, 3> axes{};
@@ -89,7 +92,7 @@ void swing_on(const MotionDescription& motion, WallState& state) {
 double facing(const WallSetup& setup, const Pose& pose) {
   const Vec3 normal = pose.turn * setup.geometry->normal();
   if (const std::string why = presses_with_nothing(setup.motion, *setup.geometry, normal); !why.empty())
-    fail(setup, why);
+    fail(setup.name, "servo", why);
   return normal[setup.motion.servo->axis.front() - 'x'];
 }
 
@@ -147,7 +150,7 @@ void check_oscillations(const SceneDescription& scene, double dt) {
     if (!wall.motion.oscillation) continue;
     const double frequency = wall.motion.oscillation->frequency;
     if (frequency * dt * steps_to_a_period > 1)
-      fail(name,
+      fail(name, "oscillation",
            fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
                        "more: lower the frequency, or shorten the time step by /time_step/safety or "
                        "/time_step/value",

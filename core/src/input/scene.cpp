@@ -67,7 +67,11 @@ class Planner {
     for (const auto& [pointer, message] : never_holds(plan, number))
       problems_.push_back(written_.problem(pointer, message));
     servos_press(*plan.start, number);
-    for (const auto& increment : plan.ramp) servos_press(*increment, number);
+    note_turns(*plan.start);
+    for (const auto& increment : plan.ramp) {
+      note_turns(*increment);
+      servos_press(*increment, number);
+    }
     return plan;
   }
 
@@ -96,19 +100,27 @@ class Planner {
               "it stands, out of the bodies' way");
   }
 
-  /// What a servo of a later stage lacks would else show when that stage begins. Which way a wall faces once it has
-  /// turned, the run alone knows.
+  /// Which way a wall faces once it has turned, the run alone knows.
+  void note_turns(const SceneDescription& scene) {
+    for (const auto& [name, wall] : scene.walls)
+      if (const MotionDescription& motion = wall.motion;
+          !motion.spin.isZero(0.0) || (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
+        turned_.insert(name);
+  }
+
+  /// What a servo lacks would else show when its stage begins.
   void servos_press(const SceneDescription& scene, std::size_t stage) {
     for (const auto& [name, wall] : scene.walls) {
       const MotionDescription& motion = wall.motion;
-      if (!motion.spin.isZero(0.0) || (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
-        turned_.insert(name);
       if (!motion.servo || !motion.servo->pressure) continue;
       const Vec3 normal = turned_.contains(name) ? Vec3(Vec3::Ones()) : wall.geometry->normal();
       const std::string why = presses_with_nothing(motion, *wall.geometry, normal);
       if (why.empty() || !faceless_.insert(name).second) continue;
-      const std::string at = "/walls/" + pointer_token(name) + "/motion/servo";
-      problems_.push_back(written_.problem(written_last(written_, at, stage), why));
+      const std::string at = "/walls/" + pointer_token(name);
+      std::vector<std::string> causes{at + "/motion/servo"};
+      for (const auto& [key, value] : now_.json().at(Description::json_pointer(at)).items())
+        if (key != "motion") causes.push_back(at + '/' + pointer_token(key));
+      problems_.push_back(written_.problem(written_last(written_, causes, stage + 1), why));
     }
   }
 

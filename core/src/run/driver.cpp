@@ -10,6 +10,7 @@
 #include "run/observer.hpp"
 #include "run/schedule.hpp"
 #include "run/stopwatch.hpp"
+#include "scene/placed_error.hpp"
 
 namespace grit {
 namespace {
@@ -31,7 +32,7 @@ class Run {
     phases_ = {{"probes", 0}, {"output", 0}};
   }
 
-  RunSummary operator()() {
+  RunSummary operator()() try {
     RunSummary summary;
     for (const auto& [name, probe] : scene_.description->probes) observers_.emplace_back(name, probe, simulation_);
     std::vector<ProbeGroup> groups;
@@ -50,17 +51,22 @@ class Run {
         if (++stage_ == scene_.stages.size()) break;
         else begin_stage();
       if (stage_ < scene_.stages.size()) summary.status = "interrupted";
-    } catch (PlacedError& error) {
-      error.stage = stage_;
-      throw;
     } catch (const NumericsError& error) {
       summary.status = "failed", summary.message = error.what();
+    } catch (const PlacedError& error) {
+      summary.status = "failed", summary.message = error.what();
+      fill(summary);
+      recorder_.finish(simulation_, summary);
+      throw;
     }
     observe(true);
     if (!frames_.never()) frame();
     fill(summary);
     recorder_.finish(simulation_, summary);
     return summary;
+  } catch (PlacedError& error) {
+    error.begun(stages_begun_);
+    throw;
   }
 
  private:
@@ -69,6 +75,7 @@ class Run {
   const StagePlan& plan() const { return scene_.stages[stage_]; }
 
   void begin_stage() {
+    stages_begun_ = stage_ + 1;
     simulation_.begin_stage(scene_.description->stages[stage_].name, *plan().start);
     start_ = {simulation_.time(), simulation_.step(), simulation_.share_left()};  // with what has come
     for (Observer& observer : observers_) observer.schedule().restart(simulation_);
@@ -152,6 +159,7 @@ class Run {
   void restore(const Checkpoint& checkpoint) {
     Memory memory(checkpoint.memory);
     memory(stage_, ramped_);
+    stages_begun_ = stage_ + 1;
     if (stage_ >= scene_.stages.size() || ramped_ > plan().ramp.size())
       throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
                   std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
@@ -302,6 +310,7 @@ class Run {
   std::deque<Observer> observers_;
   std::vector<Observer*> watching_;  // those that look at the stage that runs
   std::size_t stage_ = 0;            // the one that runs
+  std::size_t stages_begun_ = 0;
   StageStart start_;
   std::size_t ramped_ = 0;
   std::uint64_t last_frame_ = ~0ull, last_report_steps_ = 0, contact_samples_ = 0;

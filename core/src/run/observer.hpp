@@ -6,6 +6,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -59,9 +60,8 @@ class Observer {
   /// What a probe says against the world begins with "probe TYPE" and, as a rule, the key that it means: ", /KEY".
   void prepare(Probe& probe, const std::string& type, const World& world) const try {
     probe.prepare(world);
-  } catch (const PluginError&) {
-    throw;
   } catch (const Error& error) {
+    if (typeid(error) != typeid(Error)) throw;  // says by its kind what it is about
     std::vector<std::string> keys{"probes", name_};
     std::string what = error.what();
     const std::size_t colon = what.find(": ");

@@ -27,9 +27,7 @@ struct LargePages {
     if (bytes >= page) ::madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: refusal does no harm
     return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t count) {
-    ::operator delete(memory, alignment(whole(count * sizeof(T))));
-  }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(whole(count * sizeof(T)))); }
   template <class Other>
   bool operator==(const LargePages<Other>&) const {
     return true;
@@ -37,9 +35,7 @@ struct LargePages {
 
  private:
   /// Whole pages, unless that would be mostly waste.
-  static std::size_t whole(std::size_t bytes) {
-    return bytes < page / 8 ? bytes : (bytes + page - 1) / page * page;
-  }
+  static std::size_t whole(std::size_t bytes) { return bytes < page / 8 ? bytes : (bytes + page - 1) / page * page; }
   static std::align_val_t alignment(std::size_t bytes) {
     return std::align_val_t{bytes >= page ? page : std::max<std::size_t>(64, alignof(T))};
   }

@@ -13,14 +13,16 @@ namespace grit {
 /// Knows where in the description it stands, not in which file: `input` finds that.
 class PlacedError : public Error {
  public:
-  /// `keys` lead there from the root; what a stage changes them to may be what is wrong.
+  /// `keys` lead there from the root.
   PlacedError(std::vector<std::string> keys, const std::string& what) : Error(what), keys_(std::move(keys)) {}
   const std::vector<std::string>& keys() const { return keys_; }
-  /// The stage that it shows in, counted from 0.
-  std::size_t stage = 0;
+  /// How many stages had begun, each of which may have changed what is wrong.
+  std::size_t stages() const { return stages_; }
+  void begun(std::size_t stages) { stages_ = stages; }
 
  private:
   std::vector<std::string> keys_;
+  std::size_t stages_ = 0;
 };
 
 }  // namespace grit

@@ -18,6 +18,9 @@ inline std::string presses_with_nothing(const MotionDescription& motion, const G
   if (!presses_on_specimen(motion) && !(geometry.area() > 0))
     return "found a servo's pressure on a geometry that has no area; allowed is one with an area (a rectangle, or area "
            "where the geometry takes it), or a force in place of the pressure";
+  if (normal.isZero(0.0))
+    return "found a servo's pressure on a geometry that has no normal of its own; allowed is one that is flat or "
+           "grooved, or a force in place of the pressure";
   const std::string& axis = motion.servo->axis;
   if (std::abs(normal[axis.front() - 'x']) < aslant)
     return "found a servo's pressure along " + axis +

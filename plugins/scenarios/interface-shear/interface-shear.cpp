@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../closed_forms.hpp"
+#include "../lengths.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "../lengths.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {

@@ -1,5 +1,6 @@
 #include "silo-quasistatic.hpp"
 
+#include "../lengths.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -18,8 +19,7 @@ void SiloQuasistatic::declare(Parameters& p) {
   p.check(
       [this](const Complain& complain) {
         if (settlement_ >= silo_.height)
-          complain("settlement", std::to_string(settlement_ * 1e3) + " mm",
-                   "less than the height of the filling, " + std::to_string(silo_.height * 1e3) + " mm");
+          complain("settlement", metres(settlement_), "less than the height of the filling, " + metres(silo_.height));
       },
       {"settlement", "height"});
 }

@@ -214,7 +214,7 @@ TEST(SiloQuasistatic, PutsClosedFormsBesideTheCurves) {
 
 TEST(SiloQuasistatic, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"roughness", -0.1}}), HasSubstr("/roughness"));
-  EXPECT_THAT(problem({{"settlement", "501 mm"}}), HasSubstr("less than the height of the filling, 500"));
+  EXPECT_THAT(problem({{"settlement", "501 mm"}}), HasSubstr("less than the height of the filling, 0.5 m"));
   EXPECT_THAT(problem({{"groove_spacing", "2.9 mm"}}), HasSubstr("at least the width of a groove, 0.003"));
   EXPECT_EQ(problem({{"groove_spacing", "3 mm"}}), "") << "as wide as the groove, whatever the tangent's last digit";
   EXPECT_EQ(problem({{"groove_spacing", "2.9 mm"}, {"wall_surface", "sinusoidal"}}), "");
