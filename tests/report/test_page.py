@@ -365,7 +365,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.evaluate(f"{chart}.view.data('near').length"), 0)
         finite = int(numpy.argmax(numpy.isfinite(values)))
         self.browser.evaluate(f"{chart}.show([{finite}])")
-        self.assertEqual(self.browser.evaluate(f"{chart}.view.data('near').length"), 1)
+        self.browser.wait(f"{chart}.view.data('near').length === 1")
 
     def test_a_direction_without_a_number_is_a_gap(self):
         self.browser.open(self.folder / "lists/report.html")
