@@ -339,6 +339,31 @@ TEST(Descriptions, ProbesAndWallsThatFitNoSceneAreToldAtTheirPlaces) {
   EXPECT_EQ(json::parse(text_of(folder / "out/run.json")).at("status"), "failed");
 }
 
+TEST(Descriptions, LetALaterServoPressOnTheSpecimenWhereItsPlaneHasNoArea) {
+  const OwnFolder folder;
+  folder.write("base.json", two_grains);
+  folder.write("two.json", R"({
+  "extends": "base.json",
+  "domain": {"low": ["-1 cm", "-1 cm", "-1 cm"], "high": ["1 cm", "1 cm", "1 cm"], "periodic": [true, true, false]},
+  "walls": {"lid": {"type": "plane", "point": [0, 0, "1 cm"], "normal": [0, 0, -1], "material": "sand"}},
+  "stages": [
+    {"name": "part", "until": {"type": "steps", "value": 20}, "limit": "1 s"},
+    {"name": "press", "until": {"type": "steps", "value": 20}, "limit": "1 s", "change": {"walls": {"lid": {"motion": {
+      "servo": {"axis": "z", "pressure": "1 kPa", "max_velocity": "1 mm/s"}
+    }}}}}
+  ]
+})");
+  const auto bare = grit_in(folder.path(), {"check", "two.json"});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_THAT(bare.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo's pressure on a "
+                                  "geometry that has no area"));
+  const std::string area = R"(/stages/1/change/walls/lid/motion/servo/area="specimen")";
+  for (const std::string does : {"check", "run"}) {
+    const auto outcome = grit_in(folder.path(), {does, "two.json", "--set", area});
+    EXPECT_EQ(outcome.status, 0) << does << ": " << outcome.err;
+  }
+}
+
 TEST(Descriptions, MayNameTheTimeOfSamplesWhereverChannelsAreNamed) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);

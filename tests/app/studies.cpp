@@ -1,6 +1,7 @@
 // Speed against accuracy: `chart` runs a study, `advise` applies it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 
@@ -222,6 +223,19 @@ TEST_F(Studies, SayBeforeAnyRunWhichChannelThereIs) {
   const auto wide = grit({"chart", "study.json"});
   EXPECT_EQ(wide.status, 2);
   EXPECT_THAT(wide.err, HasSubstr("/figures/energy/of: found \"packing/stress\", which has several numbers a sample"));
+}
+
+TEST_F(Studies, TellAProbeThatFitsNoSceneWhereItIsWritten) {
+  auto scene = json::parse(text_of(folder / "two.json"));
+  scene["probes"]["force"] = {{"type", "walls"}, {"every_steps", 10}, {"walls", {"plat"}}};
+  folder.write("two.json", scene.dump(2));
+  const std::string text = text_of(folder / "two.json");
+  const auto line = 1 + std::count(text.begin(), text.begin() + text.find("\"walls\": ["), '\n');
+  const auto outcome = grit({"chart", "study.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("two.json:" + std::to_string(line) + ": /probes/force/walls: there is no wall \"plat\""));
+  EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
 TEST_F(Studies, RunAgainWhatHasLostItsSeries) {
