@@ -358,6 +358,10 @@ TEST(Descriptions, LetALaterServoPressOnTheSpecimenWhereItsPlaneHasNoArea) {
   EXPECT_THAT(bare.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo's pressure on a "
                                   "geometry that has no area"));
   const std::string area = R"(/stages/1/change/walls/lid/motion/servo/area="specimen")";
+  const auto open = grit_in(folder.path(), {"check", "two.json", "--set", area, "--set", "/domain={}"});
+  EXPECT_EQ(open.status, 2);
+  EXPECT_THAT(open.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo that presses on "
+                                  "the specimen's cross-section, which is open"));
   for (const std::string does : {"check", "run"}) {
     const auto outcome = grit_in(folder.path(), {does, "two.json", "--set", area});
     EXPECT_EQ(outcome.status, 0) << does << ": " << outcome.err;

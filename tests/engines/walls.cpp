@@ -312,8 +312,8 @@ TEST(Walls, ServoOverAnOpenSpecimenIsRefused) {
       FAIL();
     } catch (const Error& error) {
       EXPECT_STREQ(error.what(),
-                   "wall \"lid\": a servo that presses on the specimen's cross-section, which is open or empty; name "
-                   "walls in /specimen, or bound the domain, across z");
+                   "wall \"lid\": found a servo that presses on the specimen's cross-section, which is open or empty; "
+                   "allowed is one between walls that /specimen names or bounds of the domain, across z");
     }
   }
 }

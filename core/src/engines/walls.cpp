@@ -253,11 +253,7 @@ double Walls::area(std::size_t wall) const {
   if (!grit::presses_on_specimen(setup.motion)) return setup.geometry->area();
   const int axis = drives_[wall].servo_axis;
   const double across = specimen_[(axis + 1) % 3] * specimen_[(axis + 2) % 3];
-  if (!std::isfinite(across) || !(across > 0))
-    fail(setup,
-         "a servo that presses on the specimen's cross-section, which is open or empty; name walls in /specimen, "
-         "or bound the domain, across " +
-             setup.motion.servo->axis);
+  if (!std::isfinite(across) || !(across > 0)) fail(setup, lacks_cross_section(setup.motion.servo->axis));
   return across / std::abs(facing(setup, states_[wall].pose));
 }
 

@@ -114,7 +114,10 @@ class Planner {
       const MotionDescription& motion = wall.motion;
       if (!motion.servo || !motion.servo->pressure) continue;
       const Vec3 normal = turned_.contains(name) ? Vec3(Vec3::Ones()) : wall.geometry->normal();
-      const std::string why = presses_with_nothing(motion, *wall.geometry, normal);
+      const std::string& axis = motion.servo->axis;
+      const std::string why = presses_on_specimen(motion) && !specimen_ends_across(scene, axis)
+                                  ? lacks_cross_section(axis)
+                                  : presses_with_nothing(motion, *wall.geometry, normal);
       if (why.empty() || !faceless_.insert(name).second) continue;
       const std::string at = "/walls/" + pointer_token(name);
       std::vector<std::string> causes{at + "/motion/servo"};

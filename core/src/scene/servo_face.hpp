@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/description.hpp"
 
@@ -10,6 +13,24 @@ namespace grit {
 
 inline bool presses_on_specimen(const MotionDescription& motion) {
   return motion.servo && motion.servo->area == "specimen";
+}
+
+/// Whether the specimen's cross-section is known, by walls that it names and the domain's bounds.
+inline bool specimen_ends_across(const SceneDescription& scene, const std::string& axis) {
+  const auto ends = [](const std::vector<std::string>& walls, const std::optional<Vec3>& bound, std::size_t k) {
+    return (walls.size() == 3 && !walls[k].empty()) || (bound && std::isfinite((*bound)[static_cast<int>(k)]));
+  };
+  for (std::size_t k = 0; k < 3; ++k)
+    if (k != static_cast<std::size_t>(axis.front() - 'x') &&
+        !(ends(scene.specimen.low, scene.domain.low, k) && ends(scene.specimen.high, scene.domain.high, k)))
+      return false;
+  return true;
+}
+
+inline std::string lacks_cross_section(const std::string& axis) {
+  return "found a servo that presses on the specimen's cross-section, which is open or empty; allowed is one "
+         "between walls that /specimen names or bounds of the domain, across " +
+         axis;
 }
 
 /// Why a servo that keeps a pressure cannot have one, on a wall whose normal is `normal` now; "" if it can.
