@@ -15,7 +15,8 @@ inline bool presses_on_specimen(const MotionDescription& motion) {
   return motion.servo && motion.servo->area == "specimen";
 }
 
-/// Whether the specimen's cross-section is known, by walls that it names and the domain's bounds.
+/// Whether walls or the domain bound the specimen on all four sides across the axis. That a wall which it names has no
+/// end there, or that nothing lies between them, the run alone sees.
 inline bool specimen_ends_across(const SceneDescription& scene, const std::string& axis) {
   const auto ends = [](const std::vector<std::string>& walls, const std::optional<Vec3>& bound, std::size_t k) {
     return (walls.size() == 3 && !walls[k].empty()) || (bound && std::isfinite((*bound)[static_cast<int>(k)]));
