@@ -2,6 +2,7 @@
 between them, nothing but Python's own library."""
 
 import base64
+import contextlib
 import json
 import os
 import select
@@ -81,6 +82,8 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
+        # Workers have sessions of their own, and begin when these are listened to.
+        self.call("Target.setAutoAttach", autoAttach=True, waitForDebuggerOnStart=True, flatten=True)
         self.resize(width, height)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
 
@@ -103,19 +106,27 @@ class Browser:
             if not part:
                 raise PageError("the browser has ended")
             self.waiting += part
-        message, self.waiting = self.waiting.split(b"\0", 1)
-        return json.loads(message)
+        text, self.waiting = self.waiting.split(b"\0", 1)
+        message = json.loads(text)
+        if message.get("method") == "Target.attachedToTarget" and message.get("sessionId", "") == self.session:
+            for method in ("Network.enable", "Runtime.enable", "Runtime.runIfWaitingForDebugger"):
+                self.send(method, message["params"]["sessionId"])
+        return message
 
-    def call(self, method, **parameters):
+    def send(self, method, session, **parameters):
         self.number += 1
         message = {"id": self.number, "method": method, "params": parameters}
-        if self.session:
-            message["sessionId"] = self.session
+        if session:
+            message["sessionId"] = session
         os.write(self.write_end, json.dumps(message).encode() + b"\0")
+        return self.number
+
+    def call(self, method, **parameters):
+        number = self.send(method, self.session, **parameters)
         deadline = time.monotonic() + self.timeout
         while True:
             answer = self.receive(deadline)
-            if answer.get("id") == self.number:
+            if answer.get("id") == number:
                 if "error" in answer:
                     raise PageError(f"{method}: {answer['error']['message']}")
                 return answer["result"]
@@ -143,6 +154,19 @@ class Browser:
         """Until a JavaScript expression is true."""
         promise = f"new Promise((done) => {{ const look = () => ({condition}) ? done(true) : setTimeout(look, 20); look(); }})"
         return self.evaluate(promise)
+
+    @contextlib.contextmanager
+    def paused(self):
+        """Within it no script of the page goes on, but those of its workers."""
+        self.call("Debugger.enable")
+        self.send("Runtime.evaluate", self.session, expression="debugger")
+        deadline, message = time.monotonic() + self.timeout, {}
+        while message.get("method") != "Debugger.paused":
+            message = self.receive(deadline)
+            if "method" in message:
+                self.events.append(message)
+        yield
+        self.call("Debugger.disable")
 
     def complaints(self):
         """What went to the console as an error or a warning, and what was thrown."""

@@ -93,10 +93,11 @@ TEST(LivePage, MayAskWhereItCameFromAndAPageFromDiskMayNot) {
   const auto place = folder / "run";
   LivePage page(place, "1");
   ASSERT_TRUE(page.refresh());
-  EXPECT_THAT(page.html(), HasSubstr("connect-src 'self'; "));
+  EXPECT_THAT(page.html(), HasSubstr("connect-src 'self'; worker-src blob:; "));
   EXPECT_THAT(page.html(), HasSubstr("fetch("));
   const std::string closed = report_page(std::span(&place, 1)).html;
   EXPECT_THAT(closed, Not(HasSubstr("connect-src")));
+  EXPECT_THAT(closed, Not(HasSubstr("worker-src")));
   EXPECT_THAT(closed, Not(HasSubstr("class Follower")));
 }
 

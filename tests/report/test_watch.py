@@ -318,6 +318,17 @@ class InABrowser(unittest.TestCase):
             self.assertEqual(self.browser.evaluate(f"{GRAINS}.frames.count"), len(list((self.folder / "failing/frames").glob("*.h5"))))
             self.assertEqual([one for one in self.browser.complaints() if "ERR_CONNECTION_REFUSED" not in one], [], "but that it is gone")
 
+    def test_a_page_that_is_busy_when_the_run_ends_gets_the_last_state(self):
+        with WatchedRun(self.folder, "busy") as run:
+            self.browser.open(run.address)
+            self.browser.wait("document.querySelector('figure.chart[data-drawn]') && document.querySelector('figure.grains')?.grains.painted")
+            with self.browser.paused():
+                self.assertEqual(run.interrupt(), 130)
+            self.browser.wait("document.querySelector('.status.interrupted')")
+            self.browser.wait("document.querySelector('.progress').textContent.startsWith('The run has ended')")
+            with h5py.File(self.folder / "busy/series.h5") as series:
+                self.assertEqual(self.shown(), [len(series["packing/time"]), len(list((self.folder / "busy/frames").glob("*.h5")))])
+
     def test_frames_that_are_taken_back_are_taken_back(self):
         # As by a run that goes on from a checkpoint before its first frame.
         drawn = "document.querySelector('figure.grains')?.grains.painted"

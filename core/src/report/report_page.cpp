@@ -306,7 +306,8 @@ ReportContent empty_content(const std::string& title, const std::string& words) 
 
 std::string report_html(const ReportContent& content, const DataElements& data, Reach reach) {
   const bool asks = reach == Reach::server;
-  std::string html = page_begin(content.title, report_style, fmt::format(policy, asks ? "connect-src 'self'; " : ""));
+  std::string html = page_begin(content.title, report_style,
+                                fmt::format(policy, asks ? "connect-src 'self'; worker-src blob:; " : ""));
   html += "<div id=\"head\">\n" + content.head + "</div>\n";
   html +=
       "<main>\n<section id=\"curves\"></section>\n<section id=\"grains\"></section>\n<section id=\"maps\"></section>\n"

@@ -1,13 +1,51 @@
 // A page that is served while its run goes: asks for what is new, and shows it where the reader is.
 "use strict";
 
-const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+/**
+ * Asks for news one after the other, in a thread of its own: the last state is given for a few seconds alone, and the page may take longer to draw what came before.
+ * Hands over what has come in, put together, whenever the page says that it is ready; `silent`: the last question had no answer.
+ */
+function askAhead(address, page, run, since) {
+  let held = null, ready = false;
+  const handOver = () => {
+    if (!held || !ready) return;
+    postMessage(held);
+    held = null, ready = false;
+  };
+  const ask = async () => {
+    try {
+      const answer = await fetch(`${address}?since=${since}&page=${page}`);
+      return answer.ok ? await answer.json() : null;
+    } catch {
+      return null;
+    }
+  };
+  const together = (older, newer) => {
+    const all = { ...older, ...newer, silent: false, elements: { ...older?.elements, ...newer.elements } };
+    const used = new Set(all.used?.map(String));
+    for (const number of Object.keys(all.elements)) if (!used.has(number)) delete all.elements[number];
+    return all;
+  };
+  const follow = async () => {
+    for (;;) {
+      const news = await ask();
+      since = news?.since ?? since;
+      held = news ? together(held, news) : { ...held, silent: true };
+      handOver();
+      if (news && news.run !== run) return;
+      if (!news) await new Promise((done) => setTimeout(done, 2000));
+    }
+  };
+  onmessage = () => ((ready = true), handOver());
+  follow();
+}
 
 class Follower {
   constructor() {
     const { since, run } = report.live;
-    Object.assign(this, { since, run, page: Math.random().toString(36).slice(2) });
-    this.used = this.inPage();
+    Object.assign(this, { run, used: this.inPage() });
+    const page = Math.random().toString(36).slice(2), words = [new URL("new", location).href, page, run, since].map((word) => JSON.stringify(word));
+    this.asker = new Worker(URL.createObjectURL(new Blob([`(${askAhead})(${words})`])));
     this.line = make("p", { className: "progress" });
     this.line.setAttribute("role", "status");
     document.getElementById("head").before(this.line);
@@ -22,30 +60,22 @@ class Follower {
   /** Until another run is served from here. */
   async follow() {
     for (;;) {
-      const news = await this.ask();
-      if (!news) {
-        this.say(this.ended ? "The run has ended, and this page is served no longer: 'grit report' makes one that stays." : "No answer: the run has stopped, or cannot be reached.");
-        await pause(2000);
-      } else if (news.run !== this.run) {
-        return location.reload();
-      } else {
-        if (news.report) await this.take(news);
-        this.ended = news.ended;
-        this.say(news.progress);
-      }
+      const news = await this.news();
+      if ((news.run ?? this.run) !== this.run) return location.reload();
+      if (news.report) await this.take(news);
+      this.ended = news.ended ?? this.ended;
+      if (!news.silent) this.say(news.progress);
+      else this.say(this.ended ? "The run has ended, and this page is served no longer: 'grit report' makes one that stays." : "No answer: the run has stopped, or cannot be reached.");
     }
   }
-  async ask() {
-    try {
-      const answer = await fetch(`new?since=${this.since}&page=${this.page}`);
-      return answer.ok ? await answer.json() : null;
-    } catch {
-      return null;
-    }
+  news() {
+    return new Promise((done) => {
+      this.asker.onmessage = ({ data }) => done(data);
+      this.asker.postMessage("ready");
+    });
   }
 
-  async take({ since, head, report: now, elements, used }) {
-    this.since = since;
+  async take({ head, report: now, elements, used }) {
     for (const [number, text] of Object.entries(elements))
       document.body.append(make("script", { type: "application/octet-stream", id: `data-${number}`, textContent: text }));
     // What was used until now may still be being drawn.
