@@ -188,6 +188,11 @@ struct Preparation {
   double closing_speed(double length, double pressure) const {
     return inertial_number * length / inertial_time(pressure);
   }
+  /// Lets the servo of a wall that closed with `speed` [m/s] follow, in `stage`, a specimen that is driven along it
+  /// with `driven` [m/s]: up flanks of 45 degrees it rises as fast, and jerks on its way.
+  static void let_keep_up(Description& stage, const char* wall, double speed, double driven) {
+    if (speed < 2 * driven) stage["change"]["walls"][wall]["motion"]["servo"]["max_velocity"] = 2 * driven;
+  }
 
   /// What `walls` [m], as densest_between has them, keep the interior to, and `loosest`, to which compaction leads.
   VoidRatioRange reachable(const Vec3& walls, double loosest) const {

@@ -145,7 +145,7 @@ struct Silo {
     p.add("filling_damping", filling_damping).at_least(0).below(1).doc("local damping until the filling rests");
     p.add("void_ratio", void_ratio)
         .symbol("e")
-        .at_least(0.2)
+        .at_least(0.4)
         .at_most(2)
         .doc("that the filling is expected to come to: with the height it says how many grains there are");
     p.add("filling_friction_angle", filling_friction_angle)
@@ -177,9 +177,9 @@ struct Silo {
     p.check(
         [this](const Complain& complain) {
           if (wall_surface == "saw-tooth")
-            check_groove_spacing(complain, groove_spacing, 2 * groove_depth() / std::tan(groove_inclination));
+            check_groove_spacing(complain, groove_spacing, 2 * groove_depth() / std::tan(groove_inclination), height);
         },
-        {"groove_spacing", "roughness", "groove_inclination", "wall_surface"});
+        {"groove_spacing", "roughness", "groove_inclination", "wall_surface", "height"});
     p.check(
         [this](const Complain& complain) {
           check_side(complain, "width", width, 4, largest_diameter);

@@ -318,6 +318,32 @@ TEST(Walls, ServoOverAnOpenSpecimenIsRefused) {
   }
 }
 
+TEST(Walls, ServoThatFallsBehindIsTold) {
+  Spring spring({.axis = "z", .pressure = 50, .max_velocity = 0.2, .gain = 0.3}, {0, 0, -1});
+  spring.gap = 1;
+  spring.advance(), spring.advance();
+  EXPECT_EQ(spring.walls.fallen_behind(), "") << "on its way";
+  spring.gap = -3 * 100 / spring.stiffness;
+  const double swelling = 1;  // m/s
+  for (int n = 0; n < 20; ++n) {
+    spring.gap -= swelling * spring.dt;
+    spring.advance();
+  }
+  const std::string told = spring.walls.fallen_behind(),
+                    words = "servo of wall \"lid\" fell behind at its max_velocity of 0.2 m/s: ";
+  ASSERT_THAT(told, testing::StartsWith(words));
+  EXPECT_NEAR(std::stod(told.substr(words.size())), view(spring.walls).pressure, 0.05);
+  EXPECT_GT(view(spring.walls).pressure, 150);
+  EXPECT_THAT(told, testing::EndsWith(" Pa, to be kept at 50"));
+  for (int n = 0; n < 500; ++n) spring.advance();  // it stands
+  EXPECT_EQ(spring.walls.fallen_behind(), "");
+  Spring held({.axis = "z", .force = -100, .max_velocity = 0.2, .gain = 0.3}, {0, 0, -1});
+  held.gap = -1;
+  held.advance(), held.advance();
+  EXPECT_THAT(held.walls.fallen_behind(), testing::HasSubstr("m/s: -9998 N"));
+  EXPECT_THAT(held.walls.fallen_behind(), testing::EndsWith(" N, to be kept at -100"));
+}
+
 TEST(Walls, ServoNeverExceedsItsVelocity) {
   const ServoDescription servo{.axis = "z", .pressure = 50, .max_velocity = 0.2, .gain = 0.3};
   Spring spring(servo, {0, 0, -1});

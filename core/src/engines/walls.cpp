@@ -23,6 +23,8 @@ constexpr double habit_steps = 30;
 /// and it sees them a step late: counted once, a gain of 1 chatters on dashpots that are stable by themselves; three
 /// times, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
 constexpr double dashpots_counted = 3;
+/// Of the force that a servo keeps, by how much it may be off and is not told.
+constexpr double most_behind = 0.05;
 /// Of the force that a servo keeps, what a step may add however little is wanting.
 constexpr double always_added = 0.25;
 /// Halvings after which a step's way is as good as none.
@@ -299,6 +301,25 @@ void Walls::drive(double dt, const Ahead& ahead) {
     state.spin = ramp * motion.spin;
     if (motion.oscillation) state.spin += swings * motion.oscillation->angle;
   }
+}
+
+std::string Walls::fallen_behind() const {
+  std::string words;
+  for (std::size_t wall = 0; wall < size(); ++wall) {
+    const int axis = drives_[wall].servo_axis;
+    const WallState& state = states_[wall];
+    if (axis < 0 || state.touches == 0) continue;  // what does not touch is on its way
+    const ServoDescription& servo = *setups_[wall].motion.servo;
+    const double kept = servo.force ? *servo.force : *servo.pressure,
+                 pressed = -state.force[axis] / (servo.force ? 1 : area(wall) * facing(setups_[wall], state.pose));
+    if (std::abs(state.velocity[axis]) < (1 - 1e-9) * servo.max_velocity ||
+        std::abs(pressed - kept) <= most_behind * std::abs(kept))
+      continue;
+    words += fmt::format(
+        "{}servo of wall \"{}\" fell behind at its max_velocity of {:g} m/s: {:.4g} {}, to be kept at {:.4g}",
+        words.empty() ? "" : "; ", name(wall), servo.max_velocity, pressed, servo.force ? "N" : "Pa", kept);
+  }
+  return words;
 }
 
 Demand Walls::demand() const {

@@ -95,6 +95,10 @@ class Walls {
   /// Moves and turns the walls by one step of dt [s].
   void move(double dt);
 
+  /// Words for each servo whose wall touches something and is off what it keeps by more than a twentieth, though it
+  /// moves as fast as it may; empty without such. Of the forces of now, and the velocities of the step before.
+  std::string fallen_behind() const;
+
   /// What probes see. Entries of `views` are reused.
   void view(std::vector<WallView>& views) const;
 

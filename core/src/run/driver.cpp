@@ -122,9 +122,11 @@ class Run {
       step_bodies();
       report(stage);
     }
-    const std::string by = ended_by(stage.until, simulation_, start_);
+    const std::string by = ended_by(stage.until, simulation_, start_),
+                      behind = simulation_.wall_states().fallen_behind();
     simulation_.end_stage();
-    recorder_.stage_ended(simulation_, (by.empty() ? "" : "by " + by + ", ") + reached());
+    recorder_.stage_ended(simulation_,
+                          (by.empty() ? "" : "by " + by + ", ") + reached() + (behind.empty() ? "" : "; " + behind));
     if (stage.expect.void_ratio) {
       const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
       if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))

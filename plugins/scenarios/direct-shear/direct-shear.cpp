@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../homogeneity.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -118,6 +119,7 @@ Description DirectShear::expand() const {
     motion = drive;
     if (std::string(wall) != "platen") motion["follow"] = {{"wall", "platen"}, {"axes", "z"}};
   }
+  Preparation::let_keep_up(shear, "platen", preparation_speed, velocity);
   shear["until"] = {{"type", "displacement"}, {"wall", "platen"}, {"axis", "x"}, {"value", shear_displacement_}};
   shear["limit"] = 1.1 * duration;
   stages.push_back(shear);
@@ -153,6 +155,7 @@ Description DirectShear::expand() const {
                    {"y", {"test/stress_ratio", "test/volumetric_strain"}},
                    {"color", "rotation"}}},
                  {"summary", {"test/stress_ratio", "test/volumetric_strain"}}};
+  look_how_even_it_is(d, "y");
   return d;
 }
 

@@ -96,6 +96,14 @@ TEST(DirectShear, MovesTheUpperFrameAsOneAndLetsThePlatenLeadItUpAndDown) {
   }
 }
 
+TEST(DirectShear, LetsThePlatenKeepUpWithAFrameThatIsDrivenFast) {
+  const Description keys = {{"inertial_number", 1e-2}, {"preparation_inertial_number", 1e-3}};
+  const auto scenario = made(keys);
+  const Description platen = scenario->expand()["stages"].back()["change"]["walls"]["platen"];
+  EXPECT_DOUBLE_EQ(platen["motion"]["servo"]["max_velocity"], 2 * scenario->shear_velocity());
+  EXPECT_FALSE(made()->expand()["stages"].back()["change"]["walls"]["platen"]["motion"].contains("servo"));
+}
+
 TEST(DirectShear, LeavesOutFrontAndBackWhereTheDepthIsPeriodic) {
   const Description d = made({{"depth_boundary", "periodic"}})->expand();
   EXPECT_FALSE(d["walls"].contains("front") || d["walls"].contains("back"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "../closed_forms.hpp"
+#include "../homogeneity.hpp"
 #include "../lengths.hpp"
 #include "grit/plugin.hpp"
 
@@ -82,9 +83,18 @@ void InterfaceShear::declare(Parameters& p) {
       [this](const Complain& complain) {
         if (surface_ == "saw-tooth")
           check_groove_spacing(complain, groove_spacing_.value_or(0),
-                               2 * groove_depth() / std::tan(groove_inclination()));
+                               2 * groove_depth() / std::tan(groove_inclination()), width_);
       },
-      {"groove_spacing", "roughness", "groove_inclination", "surface"});
+      {"groove_spacing", "roughness", "groove_inclination", "surface", "width"});
+  p.check(
+      [this](const Complain& complain) {
+        const double of_the_sand = preparation_.friction_angle;
+        if (surface_friction_angle_ > of_the_sand)
+          complain("surface_friction_angle", quantity(surface_friction_angle_ / degree, "deg"),
+                   "at most friction_angle, " + quantity(of_the_sand / degree, "deg") +
+                       ": a contact has the smaller of both, unless /interfaces/sand+surface says otherwise");
+      },
+      {"surface_friction_angle", "friction_angle"});
   p.check(
       [this](const Complain& complain) {
         if (gap_ >= height_) complain("gap", metres(gap_), "less than the height of the specimen, " + metres(height_));
@@ -193,6 +203,7 @@ Description InterfaceShear::expand() const {
   for (const char* wall : {"left", "right", "lid"})
     shear["change"]["walls"][wall]["motion"] = {{"velocity", vector(velocity, 0, 0)},
                                                 {"ramp_time", start_share * duration}};
+  Preparation::let_keep_up(shear, "lid", preparation_speed, velocity);
   shear["until"] = {{"type", "displacement"}, {"wall", "lid"}, {"axis", "x"}, {"value", shear_displacement_}};
   shear["limit"] = 1.1 * duration;
   stages.push_back(lift), stages.push_back(shear);
@@ -237,6 +248,7 @@ Description InterfaceShear::expand() const {
                    {"y", {"test/friction_angle", "test/volumetric_strain", "slip/share"}},
                    {"color", "rotation"}}},
                  {"summary", {"test/friction_angle", "test/volumetric_strain", "slip/share"}}};
+  look_how_even_it_is(d, "y");
   if (internal_friction_angle_) {
     using namespace closed_forms;
     const double factor = usual_wall_contact_factor(groove_depth(), preparation_.mean_diameter());

@@ -99,6 +99,18 @@ TEST(InterfaceShear, DrivesTheBoxAsOneAtTheInertialNumber) {
     EXPECT_DOUBLE_EQ(wall["motion"]["velocity"][0], scenario->shear_velocity()) << name;
 }
 
+TEST(InterfaceShear, LetsTheLidKeepUpWithABoxThatIsDrivenFast) {
+  const auto fastest = [](double inertial_number) {
+    const auto scenario = made({{"inertial_number", inertial_number}, {"preparation_inertial_number", 1e-3}});
+    const Description d = scenario->expand();
+    const Description& shear = d["stages"].back()["change"]["walls"]["lid"]["motion"];
+    const Description& servo = shear.contains("servo") ? shear["servo"] : d["walls"]["lid"]["motion"]["servo"];
+    return servo["max_velocity"].get<double>() / scenario->shear_velocity();
+  };
+  EXPECT_NEAR(fastest(1e-2), 2, 1e-12);
+  EXPECT_NEAR(fastest(1e-4), 10, 1e-12) << "as fast as it closed";
+}
+
 TEST(InterfaceShear, PutsTheFrictionOfEN1991BesideTheCurves) {
   EXPECT_FALSE(made()->expand()["output"].contains("references"));
   const auto value = [](const Description& keys, const char* name, const char* of) -> double {
@@ -131,6 +143,14 @@ TEST(InterfaceShear, SaysWhatIsWrong) {
   EXPECT_EQ(problem(spaced("0.9 mm", "sinusoidal")), "");
   EXPECT_THAT(problem({{"groove_spacing", 0}}), HasSubstr("/groove_spacing"));
   EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
+  EXPECT_THAT(problem(spaced("0.11 m")),
+              HasSubstr("/groove_spacing found grooves 0.11 m apart; allowed is at least one on the wall, of 0.1 m"));
+  EXPECT_THAT(problem({{"roughness", 101}}), HasSubstr("/roughness found grooves 0.101 m apart"));
+  EXPECT_EQ(problem({{"roughness", 100}, {"groove_spacing", "100 mm"}}), "");
+  EXPECT_EQ(problem({{"roughness", 101}, {"surface", "flat"}}), "");
+  EXPECT_THAT(problem({{"surface_friction_angle", "19 deg"}}),
+              HasSubstr("/surface_friction_angle found 19 deg; allowed is at most friction_angle, 18 deg"));
+  EXPECT_EQ(problem({{"surface_friction_angle", "19 deg"}, {"friction_angle", "19 deg"}}), "");
   EXPECT_THAT(problem({{"gap", "20 mm"}}), HasSubstr("/gap found 0.02 m"));
   EXPECT_EQ(problem({{"gap", "19 mm"}}), "");
   EXPECT_THAT(problem({{"void_ratio", 0.1}, {"grain", "clump"}}), HasSubstr("/void_ratio"));

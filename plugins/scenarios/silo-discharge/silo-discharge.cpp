@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "../homogeneity.hpp"
 #include "../lengths.hpp"
 #include "grit/plugin.hpp"
 
@@ -190,6 +191,7 @@ Description SiloDischarge::expand() const {
                    {"y", {"flow/rate", "test/bottom_share", "test/wall_shear_share"}},
                    {"color", "speed"}}},
                  {"summary", {"flow/mass", "flow/rate", "test/bottom_share", "test/wall_shear_share", "test/balance"}}};
+  look_how_even_it_is(d, "y");
   auto& references = d["output"]["references"] = silo_.references();
   references["Beverloo"] = {{"of", "flow/rate"}, {"value", expected_rate()}};
   return d;

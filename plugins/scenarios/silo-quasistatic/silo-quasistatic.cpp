@@ -1,5 +1,6 @@
 #include "silo-quasistatic.hpp"
 
+#include "../homogeneity.hpp"
 #include "../lengths.hpp"
 #include "grit/plugin.hpp"
 
@@ -61,6 +62,7 @@ Description SiloQuasistatic::expand() const {
                  {"summary",
                   {"test/bottom_share", "test/wall_shear_share", "test/wall_normal_share", "test/wall_friction_angle",
                    "test/balance", "test/void_ratio"}}};
+  look_how_even_it_is(d, "y");
   auto& references = d["output"]["references"] = silo_.references();
   const auto on_the_bottom = [&](const char* name, const std::optional<SiloForm>& form, double rubbing_walls) {
     if (!form) return;

@@ -222,6 +222,8 @@ TEST(SiloQuasistatic, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"closed_forms", {{"en_1991_4", {{"stress_ratio", 0}}}}}}),
               HasSubstr("/closed_forms/en_1991_4/stress_ratio"));
   EXPECT_EQ(problem({{"groove_spacing", "2.9 mm"}, {"wall_surface", "flat"}}), "");
+  EXPECT_THAT(problem({{"groove_spacing", "501 mm"}}), HasSubstr("found grooves 0.501 m apart"));
+  EXPECT_THAT(problem({{"void_ratio", 0.3}}), HasSubstr("/void_ratio"));
   EXPECT_THAT(problem({{"width", "9 mm"}}), HasSubstr("at least 4 of the largest grains"));
   EXPECT_THAT(problem({{"depth", "4 mm"}}), HasSubstr("at least 2 of the largest grains"));
   EXPECT_THAT(problem({{"smallest_diameter", "3 mm"}}), HasSubstr("at most largest_diameter"));

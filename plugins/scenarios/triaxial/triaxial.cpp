@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "../closed_forms.hpp"
+#include "../homogeneity.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
@@ -104,8 +105,12 @@ void Triaxial::declare(Parameters& p) {
         if (!wanted && intermediate_stress_)
           complain("intermediate_stress", "a stress, and front_and_back is \"" + front_and_back_ + '"',
                    "with front_and_back \"intermediate-stress\" alone");
+        if (intermediate_stress_ && *intermediate_stress_ < confining_stress_)
+          complain(
+              "intermediate_stress", quantity(*intermediate_stress_, "Pa"),
+              "at least confining_stress, " + quantity(confining_stress_, "Pa") + ", which is to be the least stress");
       },
-      {"front_and_back", "intermediate_stress"});
+      {"front_and_back", "intermediate_stress", "confining_stress"});
 }
 
 VoidRatioRange Triaxial::reachable() const { return preparation_.reachable(size_, 0.80); }
@@ -178,8 +183,9 @@ Description Triaxial::expand() const {
         {"velocity", along(2, -0.5 * side * strain_rate() * size_.z())},
         {"ramp_time", start_share * duration}};
   if (front_and_back_ == "held") still(shear, "front"), still(shear, "back");
-  // Sideways it widens the faster the lower it is, at most as if all of its volume went one way.
-  const double widening = strain_rate() / std::pow(1 - axial_strain_, 2);
+  // Sideways it widens the faster the lower it is, at most as if all of its volume, and as much that dilation adds,
+  // went one way.
+  const double widening = 2 * strain_rate() / std::pow(1 - axial_strain_, 2);
   for (int axis = 0; axis < (front_and_back_ == "held" ? 1 : 2); ++axis) {
     const bool alone = axis == 1 && intermediate_stress_;  // the front stands
     const double needed = (alone ? 1 : 0.5) * widening * size_[axis];
@@ -222,6 +228,7 @@ Description Triaxial::expand() const {
                    {"y", {"test/sigma_1", "test/friction_angle", "test/volumetric_strain"}},
                    {"color", "rotation"}}},
                  {"summary", {"test/sigma_1", "test/friction_angle", "test/volumetric_strain"}}};
+  look_how_even_it_is(d, "");
   if (internal_friction_angle_) {
     const double strength = confining_stress_ * closed_forms::rankine_passive(*internal_friction_angle_);
     d["output"]["references"] = {
