@@ -210,5 +210,27 @@ TEST(PlaneSilo, RougherWallsCarryMore) {
   EXPECT_GT(very_rough.friction_in_motion, rough.friction_in_motion + 5);
 }
 
+// What has left and what is there is what there was, however it is counted.
+TEST(PlaneSilo, LetsAShareOfItsSandOutAndCountsIt) {
+  Curves silo;
+  run_to_the_end(
+      "sims/silo-discharge/quick.json",
+      {"/scenario/width=24e-3", "/scenario/height=20e-3", "/scenario/shares=[0.3]", "/scenario/wall_pieces=1"}, silo);
+  const auto& share = silo.channel.at("discharged_share");
+  EXPECT_EQ(share.front(), 0);
+  EXPECT_GE(share.back(), 0.3);
+  const double all = silo.channel.at("weight").front() / 9.81, left = silo.channel.at("discharged_mass").back();
+  const double largest = 2600 * std::numbers::pi / 6 * std::pow(2e-3, 3);  // kg, of a grain
+  EXPECT_LT(left, 0.3 * all + 8 * largest) << "some leave together";
+  EXPECT_NEAR(silo.channel.at("weight").back() / 9.81 + left, all, 1e-6 * all);
+  EXPECT_NEAR(silo.channel.at("flow/mass").back(), left, 1e-9 * all);
+  const double gone = silo.channel.at("flow/bodies").back(), mean = left / gone;
+  EXPECT_GT(mean, 2600 * std::numbers::pi / 6 * std::pow(1e-3, 3)) << "grains are of 1 to 2 mm";
+  EXPECT_LT(mean, largest);
+  const auto& rate = silo.channel.at("flow/rate");
+  EXPECT_GT(rate.back(), 0.25 * 0.036) << "kg/s, of which Beverloo's law says 0.036, and 0.023 flow in a larger silo";
+  EXPECT_LT(rate.back(), 0.036);
+}
+
 }  // namespace
 }  // namespace grit::test::silo_tests

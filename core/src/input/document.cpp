@@ -72,12 +72,24 @@ std::optional<std::size_t> index_in(const Description& list, const std::string& 
   return index;
 }
 
+std::string no_entry(const std::string& token, const std::string& list, std::size_t size) {
+  return "there is no entry \"" + token + "\" in " + list + ", which has " + std::to_string(size) + ", counted from 0";
+}
+
 /// Whether a patch tells of entries of a list by their numbers.
 bool is_of_entries(const Description& patch, const Description& list) {
   return patch.is_object() && !patch.empty() && list.is_array() &&
          std::ranges::all_of(patch.items(), [&](const auto& one) {
            return index_in(list, one.key()).has_value() && !one.value().is_null();
          });
+}
+
+/// The first key of a patch that can only be meant as the number of an entry, which the list has not.
+std::optional<std::string> missing_entry(const Description& patch, const Description& list) {
+  if (!patch.is_object() || !list.is_array()) return std::nullopt;
+  for (const auto& [key, value] : patch.items())
+    if (!index_in(list, key) && std::ranges::all_of(key, [](char c) { return c >= '0' && c <= '9'; })) return key;
+  return std::nullopt;
 }
 
 bool is_below(const std::string& pointer, const std::string& parent) {
@@ -308,9 +320,7 @@ std::string Document::set(const std::string& pointer, Description value, const O
         continue;
       }
       const auto index = index_in(*place, token);
-      if (!index)
-        return "there is no entry \"" + token + "\" in " + parent + ", which has " + std::to_string(place->size()) +
-               ", counted from 0";
+      if (!index) return no_entry(token, parent, place->size());
       place = &(*place)[*index];
     } else if (place->is_object()) {
       const bool is_new = !place->contains(token);
@@ -340,6 +350,8 @@ void Document::merge(Description& target, const std::string& at, const Descripti
       merge(target[*index_in(target, key)], at + '/' + key, value, other, from + '/' + key);
     return;
   }
+  if (const auto key = missing_entry(patch, target))
+    throw DescriptionError({other.problem(from + '/' + *key, no_entry(*key, at, target.size()))});
   // An object that is merged into stays where it was written, for what it holds without an entry of its own.
   if (!patch.is_object() || !target.is_object()) {
     forget(at);

@@ -54,7 +54,7 @@ class Document {
   /// Returns what is wrong with the pointer; empty if nothing is.
   std::string set(const std::string& pointer, Description value, const Origin& origin);
   /// Merges the value at `from` of a document onto the value at the root of this one (RFC 7396), and objects whose keys
-  /// are numbers of entries of a list onto these entries.
+  /// are numbers of entries of a list onto these entries. Throws DescriptionError for a number that is of none.
   void merge(const Document& other, const std::string& from = "");
   /// Removes a value.
   void erase(const std::string& pointer);

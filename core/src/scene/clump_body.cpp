@@ -28,7 +28,7 @@ struct Balls {
   }
   /// Found by search for the shape of the clumps of A. Grabowski (Gdańsk 2024): four spheres, each 0.5 to 0.6 of the
   /// clump's diameter, smallest enclosing sphere over clump 2.07, convex hull over clump 1.16, longest over shortest
-  /// diameter 1.50. This one has 2.09, 1.16 and 1.49.
+  /// diameter 1.50. This one has 2.09, 1.14 and 1.49.
   std::vector<Ball> operator()(const AsymmetricSpheres&) const {
     return {{-0.1996, -0.4369, -0.0408, 0.5179},
             {0.0197, 0.3875, 0.2250, 0.5514},
