@@ -63,7 +63,8 @@ quick description for a while at each change. To their ends ran, and no guard tr
 `scripts/reproduce.py`, and those of [Beverloo's law](beverloo.md), by `scripts/beverloo.py`. The other full ones were not: they are listed there, as not run or as timed for a while.
 
 These descriptions have guards of their own, and what extends them has theirs; all others run with the usual ones, an overlap of {overlap that the usual guard allows, in radii:.2g} of the
-smaller radius and a way of {way in a step that the travel guard allows, in radii:.2g} of a radius in a step:
+smaller radius and a way of {way in a step that the travel guard allows, in radii:.2g} of a radius in a step, but for the plane silos, whose scenario lets grains
+that are thrown up go as far as [they may](../plugins/scenarios/silo.md#filling), 0.14 of the smallest radius in the full ones:
 
 | description | guards | why |
 | --- | --- | --- |

@@ -2,6 +2,7 @@
 
 What scripts/beverloo.py concludes from rates that are given.
 """
+import re
 import sys
 import unittest
 
@@ -49,6 +50,17 @@ class Beverloo(unittest.TestCase):
         slope, start, error, left = beverloo.line([(0, 0), (1, 1), (2, 1), (3, 2)])
         for found, known in ((slope, 0.6), (start, 0.1), (error, 0.02 ** 0.5), (left, 0.2)):
             self.assertAlmostEqual(found, known, places=12)
+
+    def test_the_page_holds_by_the_rates_that_it_tells(self):
+        with open(f'{ROOT}/docs/beverloo.md', encoding='utf-8') as page:
+            text = page.read()
+        told = {'hole': [], 'slot': []}
+        for kind, size, measured in re.findall(r'^\| (hole|slot) \| (\d+) \| ([0-9., ]+) \|', text, re.MULTILINE):
+            told[kind] += [(int(size), 1e-3 * float(rate)) for rate in measured.split(', ')]
+        self.assertEqual({kind: len({size for size, _ in of}) for kind, of in told.items()}, {'hole': 4, 'slot': 4}, 'outlets of each kind')
+        k, hole, of_hole, slot, of_slot = verdicts(told)
+        self.assertEqual((of_hole, of_slot), ('holds', 'holds'))
+        self.assertIn(f'| {k} | {hole} | holds | {slot} | holds |', text, 'rates of four digits tell the exponents of the page')
 
     def test_both_free_find_what_was_put_in(self):
         for kind, n in (('hole', 2.7), ('slot', 1.6)):
