@@ -22,7 +22,7 @@ WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 830, 430, 78, 500, 30, 370
 # Why a description of sims/ has guards of its own.
 WHY = {
     'beverloo/slot': 'room alone, for soft grains that fall: it fills with the usual guard too, and begins to flow',
-    'direct-shear/full-500kPa-e060': 'as in the small box under as much; the largest overlap was 55 µm',
+    'direct-shear/full-500kPa-e060': 'as in the small box under as much; the largest overlap was 50 µm',
     'direct-shear/quick-500kPa': 'under so much a grain at the edges of the frames is pinched by a fifth of its radius and more',
     'interface-shear/base': 'the end wall that drives the sand wedges single grains against the teeth, with ninety times the mean force',
     'interface-shear/full-rn-025': 'a small grain between a tooth and a large one jumps out at 0.054 of its radius in a step when it slips off',
