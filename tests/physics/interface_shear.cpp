@@ -48,6 +48,14 @@ TEST(InterfaceShear, RougherTeethBearMoreDilateMoreAndSlipLess) {
   const auto slip = [](const Curves& curves) { return curves.mean("slip/share", 0.9, 1); };
   EXPECT_GT(slip(rough), 0.5);
   EXPECT_LT(slip(very_rough), 0.2) << "it shears in itself";
+  // What it was prepared as: looked at as it began to settle, and as it had.
+  const auto& spread = rough.channel.at("prepared-cells/standard_deviation");
+  ASSERT_EQ(spread.size(), 2u);
+  EXPECT_GT(spread.back(), 0.01);
+  EXPECT_LT(spread.back(), 0.1);
+  EXPECT_NEAR(rough.channel.at("prepared-cells/mean").back(), 0.6, 0.05) << "0.57 in the interior";
+  EXPECT_LT(rough.channel.at("prepared-chains/anisotropy").back(), 0.15);
+  EXPECT_GT(rough.channel.at("prepared-chains/chains").back(), 10);
 }
 
 // Grabowski (2024): 0.29 on the flat surface, 0.80 over waves of d/l = 0.24, residual 0.69. Found is 0.73 in the mean.

@@ -57,6 +57,20 @@ Description shrinking(const Description& until, double rate) {
 
 std::uint64_t steps_until(const Description& until) { return run(lone(until)).summary().steps; }
 
+TEST(Stage, TellsAServoThatFellBehind) {
+  Description d = lone(steps(100));
+  d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {0, 0, radius};
+  d["walls"]["floor"]["motion"]["velocity"] = {0, 0, 0.1};
+  d["walls"]["lid"] = plane(2 * radius * Vec3::UnitZ(), -Vec3::UnitZ());
+  d["walls"]["lid"]["area"] = 1e-4;
+  auto& servo = d["walls"]["lid"]["motion"]["servo"];
+  servo = {{"axis", "z"}, {"pressure", 100}, {"max_velocity", 0.01}};
+  const auto told = [&] { return run(d).notes.ended.front(); };
+  EXPECT_THAT(told(), HasSubstr("; servo of wall \"lid\" fell behind at its max_velocity of 0.01 m/s: "));
+  servo["max_velocity"] = 1;
+  EXPECT_THAT(told(), testing::Not(HasSubstr("fell behind")));
+}
+
 TEST(Stage, EndsAtATimeOrAfterSteps) {
   EXPECT_EQ(steps_until(seconds(1e-3)), 100u);
   EXPECT_EQ(steps_until(seconds(1.004e-3)), 100u);

@@ -88,7 +88,7 @@ bool is_of_entries(const Description& patch, const Description& list) {
 std::optional<std::string> missing_entry(const Description& patch, const Description& list) {
   if (!patch.is_object() || !list.is_array()) return std::nullopt;
   for (const auto& [key, value] : patch.items())
-    if (!index_in(list, key) && std::ranges::all_of(key, [](char c) { return c >= '0' && c <= '9'; })) return key;
+    if (!key.empty() && key.find_first_not_of("0123456789") == std::string::npos && !index_in(list, key)) return key;
   return std::nullopt;
 }
 
