@@ -32,7 +32,7 @@ Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not 
 Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, those of surfaces with small grains made heavier, and many sheared at another rate, as their
 descriptions say, to show order and shape, and differ as the notes below them say. A figure is of one packing, or the mean of several ± the standard deviation of one; so is the
 reference's of one packing. A section stays until its test is run again, and says which commit of grit ran it, where that was kept. "none": rotation is largest at the surface
-and falls off fastest there, so that it has no inflection point.
+and falls off fastest there, so that it has no inflection point. The triaxial tests of its table 4.1, one parameter of the sand at a time, stand in [studies](studies.md), with their deviations.
 
 '''
 
