@@ -145,16 +145,18 @@ TEST(Document, SetTakesJsonOrText) {
 
 TEST(Document, MergingRefusesANumberThatIsOfNoEntry) {
   Document list(Description::parse(R"({"l": [{"a": 1}, {"a": 2}]})"), "base");
-  Document patch(Description::parse("{}"), "test");
-  patch.set("/l/2/a=3");
-  try {
-    list.merge(patch);
-    ADD_FAILURE() << list.json();
-  } catch (const DescriptionError& error) {
-    ASSERT_EQ(error.problems().size(), 1u);
-    EXPECT_EQ(error.problems()[0].message, "there is no entry \"2\" in /l, which has 2, counted from 0");
-    EXPECT_EQ(error.problems()[0].pointer, "/l/2");
-    EXPECT_EQ(error.problems()[0].file, "--set");
+  for (const std::string number : {"2", "00"}) {
+    Document patch(Description::parse("{}"), "test");
+    patch.set("/l/" + number + "/a=3");
+    try {
+      list.merge(patch);
+      ADD_FAILURE() << list.json();
+    } catch (const DescriptionError& error) {
+      ASSERT_EQ(error.problems().size(), 1u);
+      EXPECT_EQ(error.problems()[0].message, "there is no entry \"" + number + "\" in /l, which has 2, counted from 0");
+      EXPECT_EQ(error.problems()[0].pointer, "/l/" + number);
+      EXPECT_EQ(error.problems()[0].file, "--set");
+    }
   }
   Document another(Description::parse(R"({"l": {"type": "other"}})"), "test");
   list.merge(another);

@@ -220,16 +220,14 @@ TEST(PlaneSilo, LetsAShareOfItsSandOutAndCountsIt) {
   EXPECT_EQ(share.front(), 0);
   EXPECT_GE(share.back(), 0.3);
   const double all = silo.channel.at("weight").front() / 9.81, left = silo.channel.at("discharged_mass").back();
-  const double largest = 2600 * std::numbers::pi / 6 * std::pow(2e-3, 3);  // kg, of a grain
-  EXPECT_LT(left, 0.3 * all + 8 * largest) << "some leave together";
+  const double gone = silo.channel.at("flow/bodies").back();
+  EXPECT_LT(left, 0.3 * all + 12 * left / gone) << "some leave together";
   EXPECT_NEAR(silo.channel.at("weight").back() / 9.81 + left, all, 1e-6 * all);
   EXPECT_NEAR(silo.channel.at("flow/mass").back(), left, 1e-9 * all);
-  const double gone = silo.channel.at("flow/bodies").back(), mean = left / gone;
-  EXPECT_GT(mean, 2600 * std::numbers::pi / 6 * std::pow(1e-3, 3)) << "grains are of 1 to 2 mm";
-  EXPECT_LT(mean, largest);
-  const auto& rate = silo.channel.at("flow/rate");
-  EXPECT_GT(rate.back(), 0.25 * 0.036) << "kg/s, of which Beverloo's law says 0.036, and 0.023 flow in a larger silo";
-  EXPECT_LT(rate.back(), 0.036);
+  const double mean = 2600 * std::numbers::pi / 6 * 3.75e-9;  // kg; diameters are even from 1 to 2 mm
+  EXPECT_NEAR(left / gone, mean, 0.1 * mean);
+  // kg/s; 0.0231 to 0.0240 flow in the silo of 36 mm (plugins/scenarios/silo-discharge/README.md).
+  EXPECT_NEAR(silo.mean("flow/rate", 0.75, 1), 0.0235, 0.005);
 }
 
 }  // namespace
