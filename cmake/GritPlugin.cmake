@@ -15,6 +15,9 @@ function(grit_plugin folder name)
   # Without a build type nothing would be optimised, and a law without it is slower by an order of magnitude.
   target_compile_options(${target}_objects PRIVATE -Wall -Wextra $<$<CONFIG:>:-O3>)
   target_link_libraries(${target}_objects PUBLIC grit::sdk ${arg_LIBRARIES})
+  if(TARGET grit_precompiled_hidden)  # within grit's own tree
+    target_precompile_headers(${target}_objects REUSE_FROM grit_precompiled_hidden)
+  endif()
   add_library(${target} MODULE)
   target_link_libraries(${target} PRIVATE ${target}_objects grit::grit)
   set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
