@@ -10,7 +10,7 @@ namespace grit::bench {
 namespace {
 
 /// The dense grains as a scene, whose steps take them nowhere, on as many threads as asked.
-Simulation& world(const benchmark::State& state) {
+Kernel& kernel_of(const benchmark::State& state) {
   static std::map<std::int64_t, std::unique_ptr<test::Trial>> made;
   std::unique_ptr<test::Trial>& trial = made[state.range(0)];
   if (!trial) {
@@ -19,17 +19,17 @@ Simulation& world(const benchmark::State& state) {
     d["guards"] = {{"overlap", 1.0}};
     trial = std::make_unique<test::Trial>(d, static_cast<unsigned>(state.range(0)));
   }
-  return trial->world();
+  return trial->kernel();
 }
 
 void guard(benchmark::State& state) {
-  Simulation& dense = world(state);
+  Kernel& dense = kernel_of(state);
   for (auto _ : state) benchmark::DoNotOptimize(dense.kinetic_energy_ratio());
 }
 BENCHMARK(guard)->Name("guards/energy")->Arg(1)->Arg(2)->UseRealTime();
 
 void step(benchmark::State& state) {
-  Simulation& dense = world(state);
+  Kernel& dense = kernel_of(state);
   for (auto _ : state) dense.step_on();
 }
 BENCHMARK(step)->Name("guards/step")->Arg(1)->Arg(2)->UseRealTime();

@@ -90,11 +90,11 @@ TEST(ClumpPacking, IsTheSameBitsForAnyNumberOfThreads) {
   for (const unsigned count : threads) trials.push_back(std::make_unique<Trial>(d, count));
   ASSERT_GT(trials.front()->world().ids().size(), 5 * chunk_bodies);
   for (int round = 0; round < 6; ++round) {
-    for (auto& trial : trials) trial->step(1000), trial->world().search_next();
+    for (auto& trial : trials) trial->step(1000), trial->kernel().request_rebuild();
     for (std::size_t i = 1; i < trials.size(); ++i)
-      ASSERT_TRUE(same_bits(trials[0]->world(), trials[i]->world())) << threads[i] << " threads, round " << round;
+      ASSERT_TRUE(same_bits(trials[0]->kernel(), trials[i]->kernel())) << threads[i] << " threads, round " << round;
   }
-  EXPECT_GT(trials.front()->world().pair_count(), 150u);
+  EXPECT_GT(trials.front()->kernel().state().pairs.touching_count(), 150u);
 }
 
 /// A rod between two plates, which it touches with both ends: the fastest mode is known, the bound must lie below it,
@@ -129,7 +129,7 @@ TEST(ClumpPacking, IsStableUpToItsTimeStep) {
   // Four springs k = E r: heaving 4 k / m, pitching about the middle axis 4 k a² / I, a the arm of an end.
   const double k = 1e7 * end, arm = r / 3;
   const double fastest = std::max(4 * k / clump.mass, 4 * k * arm * arm / clump.inertia[2]);
-  const double limit = 2 / std::sqrt(fastest), bound = trial.world().clock().critical_time_step;
+  const double limit = 2 / std::sqrt(fastest), bound = trial.kernel().critical_time_step();
   EXPECT_LE(bound, limit);
   EXPECT_GE(bound, 0.5 * limit);
   EXPECT_FALSE(grows(0.99 * limit));

@@ -167,11 +167,11 @@ struct Floor {
     t.world().energies();
     std::vector<Corner> corners;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-      t.world().begin_stage("side" + std::to_string(i), *t.scene().stages.at(i + 1).start);
-      t.world().find_forces();
+      t.kernel().begin_stage("side" + std::to_string(i), *t.scene().stages.at(i + 1).start);
+      t.kernel().find_forces();
       t.step(steps);
       const EnergyLedger now = t.world().energies();
-      corners.push_back({t.world().wall_states().states()[0].force.x(), now.friction, now.elastic_shear, now.elastic(),
+      corners.push_back({t.kernel().state().walls.states()[0].force.x(), now.friction, now.elastic_shear, now.elastic(),
                          now.closure_error});
     }
     return corners;

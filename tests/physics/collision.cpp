@@ -91,7 +91,7 @@ TEST(Collision, EnergyComesBackButForThePartingStep) {
   const Spring spring;
   for (const double safety : {0.1, 0.01}) {
     Trial limits(pair("linear-rolling", smooth(), 0, 1e-9));
-    const double dt = safety * limits.world().clock().critical_time_step, angle = spring.frequency * dt;
+    const double dt = safety * limits.kernel().critical_time_step(), angle = spring.frequency * dt;
     double worst = 0;
     for (int i = 0; i < 25; ++i) {
       const double gap = i / 25.0 * speed * dt;
@@ -110,7 +110,7 @@ TEST(Collision, EnergyIsKeptWhileTheyTouch) {
   const Spring spring;
   const double dt = spring.duration / 50, angle = spring.frequency * dt;
   const auto elastic = [](const Trial& t) {
-    const double ratio = t.world().kinetic_energy_ratio();
+    const double ratio = t.kernel().kinetic_energy_ratio();
     return std::isfinite(ratio) ? unrest(t.world()).kinetic_energy / ratio : 0.0;
   };
   const double energy = 0.5 * spring.reduced_mass * speed * speed;

@@ -111,7 +111,7 @@ TEST(EnergyLedger, FrictionOfDeepContactsIsWhatMotionLoses) {
       d["time_step"]["safety"] = 0.1 * safety;
       d["guards"]["overlap"] = 0.3;
       Kept slide(d);
-      while (slide.world().pair_count() > 0) slide.step(10);
+      while (slide.kernel().state().pairs.touching_count() > 0) slide.step(10);
       const EnergyLedger now = slide.world().energies();
       EXPECT_GT(now.friction, 1e-3 * now.kinetic);
       EXPECT_EQ(now.elastic(), 0);
@@ -186,7 +186,7 @@ TEST(EnergyLedger, AWallsWorkIsStored) {
   d["walls"]["lid"] = plane({0, 0, 2 * radius}, -Vec3::UnitZ());
   d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -1e-3};
   Kept press(d);
-  while (press.world().wall_states().states()[1].pose.shift.z() > -1e-5) press.step(100);
+  while (press.kernel().state().walls.states()[1].pose.shift.z() > -1e-5) press.step(100);
   const EnergyLedger now = press.world().energies();
   EXPECT_GT(now.elastic_normal, 0);
   verify("energy stored over the work of a wall that presses a grain", now.elastic_normal / now.walls, 1, 2e-6);
@@ -203,8 +203,8 @@ TEST(EnergyLedger, AChangeOfStiffnessIsPutInBySettings) {
                          {"limit", 1}});
   Kept part(d);
   const double before = part.world().energies().elastic();
-  part.world().begin_stage("stiffer", *part.scene().stages.at(1).start);
-  part.world().find_forces();
+  part.kernel().begin_stage("stiffer", *part.scene().stages.at(1).start);
+  part.kernel().find_forces();
   EnergyLedger now = part.world().energies();
   EXPECT_NEAR(now.settings, 2 * before, 1e-12 * before);
   EXPECT_NEAR(now.elastic(), 3 * before, 1e-12 * before);
@@ -258,8 +258,8 @@ TEST(EnergyLedger, WhatASpringHeldGoesWithTheSettingThatSwitchesItOff) {
       pair.step(40);
       const EnergyLedger before = pair.world().energies();
       ASSERT_GT(off.starts_with("rolling") ? before.elastic_rolling : before.elastic_shear, 0);
-      pair.world().begin_stage("without", *pair.scene().stages.at(1).start);
-      pair.world().find_forces();
+      pair.kernel().begin_stage("without", *pair.scene().stages.at(1).start);
+      pair.kernel().find_forces();
       const EnergyLedger now = pair.world().energies();
       EXPECT_LT(now.settings, 0);
       EXPECT_NEAR(now.friction + now.rolling, before.friction + before.rolling, 1e-12 * before.elastic());

@@ -44,7 +44,7 @@ TEST(EnergyLedger, ACellsWorkMovesWhatGoesThroughIt) {
     d["time_step"]["value"] = 1e-6;
     Kept one(d);
     const double before = one.world().energies().kinetic;
-    for (int round = 0; round < 20; ++round) one.world().search_next(), one.step(1000);
+    for (int round = 0; round < 20; ++round) one.kernel().request_rebuild(), one.step(1000);
     const EnergyLedger now = one.world().energies();
     EXPECT_GT(std::abs(now.kinetic - before), 0.01 * before);
     EXPECT_LE(std::abs(now.closure_error), 2e-8 * now.kinetic);
@@ -130,8 +130,8 @@ TEST(EnergyLedger, AChangeOfTheStrainRateIsPutInBySettings) {
     for (const int next : {1, 2}) {
       cell.step(300);
       const EnergyLedger before = cell.world().energies();
-      cell.world().begin_stage(next == 1 ? "fast" : "slow", *cell.scene().stages.at(next).start);
-      cell.world().find_forces();
+      cell.kernel().begin_stage(next == 1 ? "fast" : "slow", *cell.scene().stages.at(next).start);
+      cell.kernel().find_forces();
       const EnergyLedger now = cell.world().energies();
       const double scale = now.kinetic + turnover(now);
       EXPECT_NEAR(now.closure_error, before.closure_error, 1e-6 * scale);

@@ -98,8 +98,8 @@ TEST(EnergyLedger, IsWholeAfterBodiesAreLetGo) {
   Kept pair(d);
   pair.step(100);
   const EnergyLedger held = pair.world().energies();
-  pair.world().begin_stage("free", *pair.scene().stages.at(1).start);
-  pair.world().find_forces();
+  pair.kernel().begin_stage("free", *pair.scene().stages.at(1).start);
+  pair.kernel().find_forces();
   pair.step(3000);
   const EnergyLedger now = pair.world().energies();
   EXPECT_GT(held.engines, 0.1 * held.elastic());

@@ -30,7 +30,7 @@ class Parting : public testing::TestWithParam<std::tuple<std::string, bool>> {};
 TEST_P(Parting, IsBookedAsFrictionAndRolling) {
   const auto& [law, wall] = GetParam();
   Trial trial(impact(law, wall), 1, BodyState::energy);
-  Simulation& world = trial.world();
+  const World& world = trial.world();
   EnergyLedger before = world.energies();
   const auto touching = [&] { return world.contacts().size() > 0; };
   for (int steps = 0; !touching() && steps < 100000; ++steps) trial.step(1);

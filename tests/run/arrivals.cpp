@@ -38,7 +38,7 @@ Description cloud(const Vec3& low, const Vec3& high, int count, double smallest,
           {"count", count},
           {"sizes", {{"type", "uniform"}, {"smallest", smallest}, {"largest", largest}}}};
 }
-void begin_second(Trial& trial) { trial.world().begin_stage("second", *trial.scene().stages.at(1).start); }
+void begin_second(Trial& trial) { trial.kernel().begin_stage("second", *trial.scene().stages.at(1).start); }
 std::vector<std::uint32_t> sorted_ids(const World& world) {
   std::vector<std::uint32_t> ids(world.ids().begin(), world.ids().end());
   std::ranges::sort(ids);
@@ -57,7 +57,7 @@ TEST(Arrivals, FallFromTheirPlaceWithTheirVelocity) {
   EXPECT_EQ(trial.position(1), place);
   EXPECT_LT((trial.velocity(1) - start).norm(), 1e-15);
   const double began = trial.world().time();
-  trial.world().find_forces();
+  trial.kernel().find_forces();
   trial.step(500);
   const double t = trial.world().time() - began;
   EXPECT_LT((trial.position(1) - (place + start * t + 0.5 * gravity * t * t)).norm(), 1e-15);
@@ -74,10 +74,10 @@ TEST(Arrivals, GetIdsThatNobodyHad) {
   Trial trial(d);
   for (int k = 0; k < 5000 && trial.world().departures().empty(); ++k) trial.step();
   ASSERT_EQ(trial.world().departures().size(), 1u);
-  EXPECT_DOUBLE_EQ(trial.world().share_left(), 0.5);
+  EXPECT_DOUBLE_EQ(trial.kernel().state().discharged_fraction(), 0.5);
   begin_second(trial);
   EXPECT_THAT(sorted_ids(trial.world()), ElementsAre(0, 2, 3));
-  EXPECT_DOUBLE_EQ(trial.world().share_left(), 0.25) << "of all that has come";
+  EXPECT_DOUBLE_EQ(trial.kernel().state().discharged_fraction(), 0.25) << "of all that has come";
   EXPECT_EQ(trial.position(3), Vec3(0, 6e-3, 0));
 }
 
@@ -101,7 +101,7 @@ TEST(Arrivals, LeaveMemoriesToTheLastBit) {
   for (Trial* t : {&trial, &alone}) t->step(100);
   const std::vector<std::uint32_t> order(trial.world().ids().begin(), trial.world().ids().end());
   begin_second(trial), begin_second(alone);
-  alone.world().find_forces();  // which newcomers have found at once
+  alone.kernel().find_forces();  // which newcomers have found at once
   const Memories after = memories(trial), expected = memories(alone);
   ASSERT_GT(expected.size(), 400u);
   EXPECT_GT(after.size(), expected.size());
@@ -116,7 +116,7 @@ TEST(Arrivals, ElsewhereChangeNothing) {
   Description without = crowded();
   without["bodies"].erase("late");
   Trial trial(crowded()), alone(without);
-  for (Trial* t : {&trial, &alone}) t->step(100), begin_second(*t), t->world().find_forces(), t->step(50);
+  for (Trial* t : {&trial, &alone}) t->step(100), begin_second(*t), t->kernel().find_forces(), t->step(50);
   double apart = 0;
   for (std::uint32_t id = 0; id < 343; ++id)
     apart = std::max(apart, (trial.position(id) - alone.position(id)).norm() / radius);
@@ -129,10 +129,10 @@ TEST(Arrivals, AreTheSameBitsForAnyNumberOfThreads) {
   d["bodies"]["late"]["grains"] = cloud({-3e-3, -3e-3, 7.7e-3}, {9e-3, 9e-3, 20e-3}, 500, 0.8e-3, 1.2e-3);
   Trial one(d, 1), three(d, 3);
   for (Trial* t : {&one, &three}) t->step(60), begin_second(*t);
-  ASSERT_TRUE(same_bits(one.world(), three.world()));
+  ASSERT_TRUE(same_bits(one.kernel(), three.kernel()));
   EXPECT_EQ(one.world().dt(), three.world().dt());
-  for (Trial* t : {&one, &three}) t->world().find_forces(), t->step_on(120);
-  EXPECT_TRUE(same_bits(one.world(), three.world()));
+  for (Trial* t : {&one, &three}) t->kernel().find_forces(), t->step_on(120);
+  EXPECT_TRUE(same_bits(one.kernel(), three.kernel()));
   EXPECT_EQ(one.world().ids().size(), 843u);
 }
 
@@ -355,12 +355,12 @@ TEST(Arrivals, CountInWhatIsKnownOfAll) {
   Trial trial(d, 1, BodyState::rotation | BodyState::displacement);
   trial.step(3);
   const double before = trial.world().dt();
-  const std::size_t memory = trial.world().memory();
+  const std::size_t memory = trial.kernel().state().bytes();
   begin_second(trial);
   EXPECT_NEAR(trial.world().mean_diameter(), 2 * radius * 2.4 / 3, 1e-15);
   // √(m/k) goes with the radius.
   EXPECT_NEAR(trial.world().dt(), 0.4 * before, 1e-9 * before);
-  EXPECT_GT(trial.world().memory(), memory);
+  EXPECT_GT(trial.kernel().state().bytes(), memory);
   ASSERT_EQ(trial.world().rotations().size(), 3u);
   ASSERT_EQ(trial.world().displacements().size(), 3u);
   EXPECT_EQ(trial.world().forces().size(), 3u);
@@ -379,7 +379,7 @@ TEST(Stages, CountRotationsAndDisplacementsAnew) {
   turned_by(first);
   begin_second(trial);
   turned_by(0);
-  trial.world().find_forces();
+  trial.kernel().find_forces();
   trial.step(30);
   ASSERT_GT(trial.world().time(), first);
   turned_by(trial.world().time() - first);
@@ -425,7 +425,7 @@ TEST(Arrivals, MayBeClumps) {
   EXPECT_EQ(trial.world().volume_shares().size(), 7u);
   EXPECT_EQ(trial.world().mean_diameter(), always.world().mean_diameter());
   EXPECT_EQ(trial.world().clump_of()[index_of(trial.world(), 0)], no_clump);
-  trial.world().find_forces();
+  trial.kernel().find_forces();
   trial.step(400), always.step(400);
   for (std::uint32_t id = 1; id < 7; ++id)
     EXPECT_LT((trial.position(id) - always.position(id)).norm(), 1e-9 * radius) << id;
@@ -475,7 +475,7 @@ TEST(Arrivals, OfASecondLayerWeighOnTheFloorWithTheFirst) {
   EXPECT_EQ(done.summary().bodies, 160u);
   EXPECT_THAT(done.notes.values_of("weight"), ElementsAre(testing::DoubleNear(1, 1e-3), testing::DoubleNear(1, 1e-3)));
   EXPECT_THAT(done.notes.ended, ElementsAre(HasSubstr("80 bodies, "), HasSubstr("160 bodies, ")));
-  EXPECT_GT(meetings(*done.world, 80), 10u) << "the second lies on the first";
+  EXPECT_GT(meetings(done.kernel->world(), 80), 10u) << "the second lies on the first";
 }
 
 }  // namespace

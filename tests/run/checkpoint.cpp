@@ -187,7 +187,7 @@ std::string parting(const Taped& a, const Taped& b) {
       return x[i].what + " at step " + std::to_string(x[i].step) + ", " + y[i].what + " at step " +
              std::to_string(y[i].step);
   }
-  return same_bits(*a.world, *b.world) ? "" : "the worlds";
+  return same_bits(*a.kernel, *b.kernel) ? "" : "the worlds";
 }
 
 /// The same run, stopped at each of these steps or up to seven later, by one thread and by three in turn.
@@ -197,7 +197,7 @@ void expect_same_when_stopped(const Description& d, const Taped& whole, const st
   unsigned threads = 3;
   for (const std::uint64_t at : stops) {
     Taped part(
-        d, threads, [&](const World& now) { return now.step() >= at; }, from ? &*from : nullptr, std::move(before));
+        d, threads, [&](const Kernel& now) { return now.world().step() >= at; }, from ? &*from : nullptr, std::move(before));
     ASSERT_EQ(part.tape.summary.status, "interrupted") << at;
     ASSERT_FALSE(part.tape.checkpoints.empty());
     from = part.tape.checkpoints.back(), before = std::move(part.tape.entries);
@@ -259,9 +259,9 @@ TEST(Checkpoint, JustBeforeAndAfterASearch) {
   Description d = cell();
   d["probes"]["packing"]["every_steps"] = 1;  // which lets the run stop at any step
   std::vector<std::pair<std::uint64_t, std::uint64_t>> searches;
-  const Taped whole(d, 1, [&](const World& now) {
-    const auto& clock = static_cast<const Simulation&>(now).clock();
-    if (searches.empty() || searches.back().second != clock.rebuilds) searches.emplace_back(clock.step, clock.rebuilds);
+  const Taped whole(d, 1, [&](const Kernel& now) {
+    const std::uint64_t step = now.world().step(), rebuilds = now.state().lists.rebuilds();
+    if (searches.empty() || searches.back().second != rebuilds) searches.emplace_back(step, rebuilds);
     return false;
   });
   ASSERT_GT(searches.size(), 3u);
@@ -272,7 +272,7 @@ TEST(Checkpoint, JustBeforeAndAfterASearch) {
 
 TEST(Checkpoint, KeepsWhatAnInterruptedRunAddsOutOfTheNextOne) {
   const Description d = servo();
-  const Taped part(d, 1, [](const World& now) { return now.step() >= 60; });
+  const Taped part(d, 1, [](const Kernel& now) { return now.world().step() >= 60; });
   const Checkpoint& last = part.tape.checkpoints.back();
   EXPECT_EQ(part.tape.entries.back().what, "frame");
   EXPECT_EQ(part.tape.entries.back().step, last.step) << "the run shows where it stopped";
@@ -286,12 +286,12 @@ TEST(Checkpoint, IsThereWhereAStageWaitsForRest) {
   std::uint64_t third = 0;
   for (const auto& entry : whole.tape.entries)
     if (entry.what.starts_with("end of")) third = entry.step == whole.tape.summary.steps ? third : entry.step;
-  ASSERT_GT(whole.world->departures().size(), 5u);
+  ASSERT_GT(whole.kernel->world().departures().size(), 5u);
   expect_same_when_stopped(d, whole, {third + 30, third + 210});
 }
 
 TEST(Checkpoint, OfAnotherSceneIsRefused) {
-  const Taped part(servo(), 1, [](const World& now) { return now.step() >= 20; });
+  const Taped part(servo(), 1, [](const Kernel& now) { return now.world().step() >= 20; });
   const auto error_of = [&](const Description& d, Checkpoint checkpoint) -> std::string {
     try {
       Taped(d, 1, {}, &checkpoint);
@@ -342,7 +342,7 @@ TEST(Checkpoint, KeepsWhatEnginesRemember) {
   for (const bool careless : {false, true}) {
     Description d = cell();
     d["engines"]["drum"] = {{"type", careless ? "careless-drum" : "drum"}};
-    const Taped whole(d, 1), part(d, 1, [](const World&now) { return now.step() >= 60; });
+    const Taped whole(d, 1), part(d, 1, [](const Kernel& now) { return now.world().step() >= 60; });
     const Taped rest(d, 1, {}, &part.tape.checkpoints.back(), part.tape.entries);
     EXPECT_EQ(parting(whole, rest).empty(), !careless);
   }

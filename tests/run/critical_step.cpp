@@ -45,16 +45,16 @@ Description description_of(const std::vector<Grain>& grains) {
 
 TEST(CriticalStep, KeepsUpWithContactsBetweenSearches) {
   Trial t(description_of(ambush(8)));
-  const auto critical = [&] { return t.world().clock().critical_time_step; };
+  const auto critical = [&] { return t.kernel().critical_time_step(); };
   const double alone = critical();
-  while (t.world().pair_count() < 6) t.step();
+  while (t.kernel().state().pairs.touching_count() < 6) t.step();
   t.step(25);
-  ASSERT_EQ(t.world().pair_count(), 6u);
+  ASSERT_EQ(t.kernel().state().pairs.touching_count(), 6u);
   EXPECT_LT(critical(), 0.6 * alone) << "a body with six contacts, another with one: √(2/7)";
-  const std::uint64_t searches = t.world().clock().rebuilds;
-  EXPECT_DOUBLE_EQ(critical(), Trial(description_of(as_they_are(t.world()))).world().clock().critical_time_step);
-  while (t.world().pair_count() > 0) t.step();
-  EXPECT_EQ(t.world().clock().rebuilds, searches) << "no search helped";
+  const std::uint64_t searches = t.kernel().state().lists.rebuilds();
+  EXPECT_DOUBLE_EQ(critical(), Trial(description_of(as_they_are(t.world()))).kernel().critical_time_step());
+  while (t.kernel().state().pairs.touching_count() > 0) t.step();
+  EXPECT_EQ(t.kernel().state().lists.rebuilds(), searches) << "no search helped";
   t.step(25);
   EXPECT_DOUBLE_EQ(critical(), alone);
 }

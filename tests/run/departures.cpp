@@ -43,7 +43,7 @@ TEST(Departures, AreKeptAndCounted) {
   // Damping lessens what gravity adds: z = ½ (1 − λ) g t².
   EXPECT_NEAR(gone.time, std::sqrt(2 * (1e-3 - gone.position.z()) / (0.8 * 9.81)), 1e-4);
   EXPECT_EQ(trial.world().ids().size(), 3u);
-  EXPECT_NEAR(trial.world().share_left(), 0.25, 1e-12);
+  EXPECT_NEAR(trial.kernel().state().discharged_fraction(), 0.25, 1e-12);
   EXPECT_LT(std::abs(trial.world().energies().closure_error), 5e-3 * mass * 9.81 * 0.01);
 }
 
@@ -120,7 +120,7 @@ TEST(Departures, AreTheSameBitsForAnyNumberOfThreads) {
   Trial one(d, 1), three(d, 3);
   for (int round = 0; round < 6; ++round) {
     one.step(150), three.step(150);
-    ASSERT_TRUE(same_bits(one.world(), three.world()));
+    ASSERT_TRUE(same_bits(one.kernel(), three.kernel()));
     ASSERT_EQ(one.world().departures().size(), three.world().departures().size());
   }
   EXPECT_GT(one.world().departures().size(), 100u);
@@ -133,14 +133,14 @@ TEST(Departures, EndAStage) {
   std::get<LeftCondition>(condition.is.value()).share = 0.2;
   Trial trial(falling());
   const StageStart start{};
-  EXPECT_FALSE(is_met(condition, trial.world(), start));
+  EXPECT_FALSE(is_met(condition, trial.kernel(), start));
   while (trial.world().departures().empty() && trial.world().time() < 0.2) trial.step();
-  EXPECT_TRUE(is_met(condition, trial.world(), start));
+  EXPECT_TRUE(is_met(condition, trial.kernel(), start));
   // A later stage's way is from what had left before.
   std::get<LeftCondition>(condition.is.value()).share = 0.5;
-  EXPECT_NEAR(progress(condition, trial.world(), start).value(), 0.25 / 0.5, 1e-12);
-  EXPECT_NEAR(progress(condition, trial.world(), {.share_left = 0.2}).value(), 0.05 / 0.3, 1e-12);
-  EXPECT_EQ(progress(condition, trial.world(), {.share_left = 0.5}), 1) << "there before it began";
+  EXPECT_NEAR(progress(condition, trial.kernel(), start).value(), 0.25 / 0.5, 1e-12);
+  EXPECT_NEAR(progress(condition, trial.kernel(), {.share_left = 0.2}).value(), 0.05 / 0.3, 1e-12);
+  EXPECT_EQ(progress(condition, trial.kernel(), {.share_left = 0.5}), 1) << "there before it began";
 }
 
 TEST(Departures, ThroughAnotherSideAreAnError) {

@@ -104,7 +104,7 @@ TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {
     least = std::min(least, t.world().dt());
   }
   ASSERT_GT(overlap, 5e-6);
-  ASSERT_EQ(t.world().clock().rebuilds, 1u);
+  ASSERT_EQ(t.kernel().state().lists.rebuilds(), 1u);
   // k grows as the root of the overlap; the limit of a ball between plates is 2 / sqrt(2 k / m).
   const double mass = 2600 * 4 / 3 * std::numbers::pi * 1e-9, modulus = 1e8 / (1 - 0.04) / 2;
   const double k = 2 * modulus * std::sqrt(1e-3 * overlap);
@@ -146,7 +146,7 @@ TEST(Guards, LeaveTheForcesOfWhereTheRunStopped) {
   d["time_step"] = {{"safety", 0.05}};
   d["guards"] = {{"overlap", 0.02}};
   Trial t(d);
-  EXPECT_THROW(for (int i = 0; i < 1000; ++i) t.world().step_on(), NumericsError);
+  EXPECT_THROW(for (int i = 0; i < 1000; ++i) t.kernel().step_on(), NumericsError);
   const auto x = t.world().positions(), f = t.world().forces();
   const double overlap = 2 * radius - (x[1].x - x[0].x);
   ASSERT_GT(overlap, 0.02 * radius);
@@ -183,11 +183,11 @@ TEST(Guards, EnergyFromNowhereInAStageThatIsSoonOver) {
   Trial unstable(d);
   EXPECT_NO_THROW(unstable.step(30));
   EXPECT_GT(unstable.world().velocities()[0].z, 0.11);
-  EXPECT_THROW(unstable.world().end_stage(), NumericsError);
+  EXPECT_THROW(unstable.kernel().end_stage(), NumericsError);
   d["time_step"]["value"] = 0.05 * dt;
   Trial stable(d);
   stable.step(60);
-  EXPECT_NO_THROW(stable.world().end_stage());
+  EXPECT_NO_THROW(stable.kernel().end_stage());
 }
 
 std::string complaint_by_ledger(const Description& d, std::size_t steps) {
@@ -321,7 +321,7 @@ TEST(Guards, CountTheWorkOfAServoByTheForcesAtBothEndsOfAStep) {
   d["guards"] = {{"energy", 1e-4}};
   Trial t(d);
   EXPECT_NO_THROW(t.step(5000));
-  EXPECT_GT(t.world().wall_states().states()[1].force.norm(), 0.07) << "the lid presses";
+  EXPECT_GT(t.kernel().state().walls.states()[1].force.norm(), 0.07) << "the lid presses";
 }
 
 }  // namespace

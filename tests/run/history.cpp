@@ -39,10 +39,10 @@ TEST(History, OutlivesASearchAndANewOrder) {
   for (int search = 0; search < 17; ++search) {
     const Memories before = memories(t);
     const std::vector<std::uint32_t> order(t.world().ids().begin(), t.world().ids().end());
-    const std::uint64_t rebuilds = t.world().clock().rebuilds;
-    t.world().search_next();
-    t.world().find_forces();
-    ASSERT_EQ(t.world().clock().rebuilds, rebuilds + 1);
+    const std::uint64_t rebuilds = t.kernel().state().lists.rebuilds();
+    t.kernel().request_rebuild();
+    t.kernel().find_forces();
+    ASSERT_EQ(t.kernel().state().lists.rebuilds(), rebuilds + 1);
     const Memories after = memories(t);
     ASSERT_GT(before.size(), 400u);
     ASSERT_EQ(before.size(), after.size());
@@ -68,7 +68,7 @@ TEST(History, GoesAlongWhenTwoBodiesChangePlaces) {
   std::size_t now_swapped = 0, ever_swapped = 0, never_swapped = 0;
   for (int i = 0; i < 1200; ++i) {
     steady.step();
-    searching.world().search_next();
+    searching.kernel().request_rebuild();
     searching.step();
     now_swapped = 0;
     const Memories a = memories(steady), b = memories(searching, &now_swapped);
@@ -86,11 +86,11 @@ TEST(History, SearchingAtEveryStepOrRarelyGivesTheSameWay) {
   std::size_t swapped = 0;
   for (int i = 0; i < 150; ++i) {
     rarely.step();
-    always.world().search_next();
+    always.kernel().request_rebuild();
     always.step();
   }
-  EXPECT_LT(rarely.world().clock().rebuilds, 40u);
-  EXPECT_GT(always.world().clock().rebuilds, 150u);
+  EXPECT_LT(rarely.kernel().state().lists.rebuilds(), 40u);
+  EXPECT_GT(always.kernel().state().lists.rebuilds(), 150u);
   double worst = 0;
   for (std::uint32_t id = 0; id < 343; ++id)
     worst = std::max(worst, (rarely.position(id) - always.position(id)).norm() / 1e-3);

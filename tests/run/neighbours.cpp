@@ -87,16 +87,17 @@ void expect_no_missed_pair(const Description& d, std::size_t steps) {
   none.lay_on(std::vector(chunks_of(t.world().positions().size()), 0.0), 0);
   for (std::size_t i = 0; i < steps; ++i, t.step()) {
     std::set<Pair> touching;
-    const Simulation& world = t.world();
-    for (std::size_t c = 0; c < world.candidate_count(); ++c)
-      if (world.pairs().touches(c)) touching.emplace(world.pairs().a(c), world.pairs().b(c), world.pairs().image(c));
+    const World& world = t.world();
+    const ContactTable& pairs = t.kernel().state().pairs;
+    for (std::size_t c = 0; c < pairs.candidates(); ++c)
+      if (pairs.touches(c)) touching.emplace(pairs.a(c), pairs.b(c), pairs.image(c));
     // Bodies may lie beyond a periodic side until the next search; images then count from where they lie.
     ASSERT_EQ(touching, brute_force(world.positions(), world.cell(), none)) << "step " << world.step();
     std::set<std::tuple<std::uint32_t, std::uint32_t>> on_walls, on_walls_too;
     for (const Contact& c : world.contacts())
       if (c.with_wall) on_walls.emplace(c.a, c.b);
     for (std::uint32_t w = 0; w < world.walls().size(); ++w) {
-      const auto& state = world.wall_states();
+      const auto& state = t.kernel().state().walls;
       for (std::uint32_t a = 0; a < world.positions().size(); ++a) {
         std::vector<Touch> touch;
         const Sphere sphere{xyz(world.positions()[a]), world.positions()[a].w, a};
@@ -106,8 +107,8 @@ void expect_no_missed_pair(const Description& d, std::size_t steps) {
     }
     ASSERT_EQ(on_walls, on_walls_too) << "step " << world.step();
   }
-  EXPECT_GT(t.world().clock().rebuilds, 10u);
-  EXPECT_LT(t.world().clock().rebuilds, steps / 2) << "the skin is used";
+  EXPECT_GT(t.kernel().state().lists.rebuilds(), 10u);
+  EXPECT_LT(t.kernel().state().lists.rebuilds(), steps / 2) << "the skin is used";
 }
 
 const Vec3 block(3e-3, 3e-3, 3e-3);  // where a solid box turns

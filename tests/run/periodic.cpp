@@ -43,7 +43,7 @@ double apart(const Trial& a, const Trial& b, std::uint32_t bodies) {
     const Cell& cell = t.world().cell();
     const std::size_t i = index_of(t.world(), id);
     // Velocities are half a step old, and so is their flow.
-    const Vec3 v = xyz(t.world().velocities()[i]), dt = Vec3::Constant(t.world().clock().last_time_step);
+    const Vec3 v = xyz(t.world().velocities()[i]), dt = Vec3::Constant(t.kernel().state().time.previous_dt);
     const Vec3 from_middle = xyz(t.world().positions()[i]) - 0.5 * (cell.low + cell.high);
     const Vec3 before = from_middle.cwiseQuotient(Vec3::Ones() + cell.strain_rate.cwiseProduct(dt));
     return Vec3(v - cell.strain_rate.cwiseProduct(before));
@@ -60,13 +60,13 @@ TEST(Periodic, GrainsThatMeetAcrossASideFeelTheSame) {
     std::size_t touching = 0;
     for (int i = 0; i < 400; ++i) {
       middle.step(), across.step();
-      ASSERT_EQ(middle.world().pair_count(), across.world().pair_count());
-      if (middle.world().pair_count() == 0) continue;
+      ASSERT_EQ(middle.kernel().state().pairs.touching_count(), across.kernel().state().pairs.touching_count());
+      if (middle.kernel().state().pairs.touching_count() == 0) continue;
       ++touching;
       ASSERT_LT(apart(middle, across, 2), 1e-9) << middle.world().step();
     }
     EXPECT_GT(touching, 50u);
-    EXPECT_EQ(middle.world().pair_count(), 0u) << "they came and went";
+    EXPECT_EQ(middle.kernel().state().pairs.touching_count(), 0u) << "they came and went";
   }
 }
 
@@ -78,7 +78,7 @@ TEST(Periodic, PackingMayBeShiftedAndWrapped) {
     Trial one(in_cell(grains, Vec3::Zero(), rate)), other(in_cell(grains, {1.3e-3, -2.9e-3, 5.1e-3}, rate));
     EXPECT_LT(apart(one, other, bodies), 1e-12);
     one.step(60), other.step(60);
-    EXPECT_GT(one.world().pair_count(), 500u);
+    EXPECT_GT(one.kernel().state().pairs.touching_count(), 500u);
     // Sums in another order part at round-off, and colliding grains part faster.
     EXPECT_LT(apart(one, other, bodies), 1e-9) << rate.transpose();
   }
@@ -92,10 +92,10 @@ TEST(Periodic, DisplacementsGoOnAcrossSides) {
     Trial t(in_cell(grains, Vec3::Zero(), rate), 1, BodyState::displacement);
     std::vector<Vec3> gone(2, Vec3::Zero());
     for (int step = 0; step < 600; ++step) {
-      t.world().advance();
+      t.kernel().advance();
       for (std::uint32_t id = 0; id < 2; ++id)
         gone[id] += t.world().dt() * xyz(t.world().velocities()[index_of(t.world(), id)]);
-      t.world().find_forces();
+      t.kernel().find_forces();
     }
     const Vec3 sides = t.world().cell().high - t.world().cell().low;
     EXPECT_GT(gone[0].x() / sides.x(), 5) << "it crossed sides";
@@ -146,7 +146,7 @@ TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {
   faster["domain"]["strain_rate"] = {20, -40, 0};
   const Scene then = scene_of(faster);
   one.step(20), other.step(20);
-  for (Trial* t : {&one, &other}) t->world().begin_stage("then", *then.stages[0].start), t->world().find_forces();
+  for (Trial* t : {&one, &other}) t->kernel().begin_stage("then", *then.stages[0].start), t->kernel().find_forces();
   one.step(20), other.step(20);
   // The flow of the step before the change counts by its new rate: dt ε̇² over the cell, against what grains do.
   EXPECT_LT(apart(one, other, 6 * 7 * 8), 5e-5);

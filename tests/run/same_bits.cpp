@@ -53,18 +53,18 @@ void expect_same_bits(const Description& d) {
   std::deque<Trial> others;
   const std::array<unsigned, 4> threads{1, 2, 3, 7};
   for (const unsigned count : threads) others.emplace_back(d, count);
-  ASSERT_EQ(others.back().world().threads(), 7u);
+  ASSERT_EQ(others.back().kernel().threads(), 7u);
   const std::size_t steps = 250;
   for (int round = 0; round < 4; ++round) {
     asked.step(steps);
     for (std::size_t i = 0; i < threads.size(); ++i) {
       others[i].step_on(steps);
-      ASSERT_TRUE(same_bits(asked.world(), others[i].world()))
+      ASSERT_TRUE(same_bits(asked.kernel(), others[i].kernel()))
           << threads[i] << " threads, step " << asked.world().step();
     }
   }
-  EXPECT_GT(asked.world().pair_count(), 2744u) << "a packing";
-  EXPECT_GT(asked.world().clock().rebuilds, 8u) << "bodies are put in order anew in between";
+  EXPECT_GT(asked.kernel().state().pairs.touching_count(), 2744u) << "a packing";
+  EXPECT_GT(asked.kernel().state().lists.rebuilds(), 8u) << "bodies are put in order anew in between";
 }
 
 /// The ledger of energies takes loops of its own, and is summed in one order, whether or not forces are asked for.
@@ -72,7 +72,7 @@ void expect_ledger_changes_nothing(const Description& d) {
   Trial without(d, 2), with(d, 2, BodyState::energy), other(d, 7, BodyState::energy);
   for (Trial* trial : {&with, &other}) trial->world().energies();
   without.step_on(700), with.step_on(700), other.step(700);
-  EXPECT_TRUE(same_bits(without.world(), with.world()));
+  EXPECT_TRUE(same_bits(without.kernel(), with.kernel()));
   const EnergyLedger a = with.world().energies(), b = other.world().energies();
   EXPECT_GT(a.friction, 0);
   for (const auto entry :
@@ -106,7 +106,7 @@ TEST(SameBits, OfOneThatIsPressedAndShortensTheTimeStep) {
   const double first = asked.world().dt();
   while (asked.world().time() < 4e-3) {
     asked.step(3), other.step_on(3);
-    ASSERT_TRUE(same_bits(asked.world(), other.world())) << "step " << asked.world().step();
+    ASSERT_TRUE(same_bits(asked.kernel(), other.kernel())) << "step " << asked.world().step();
   }
   EXPECT_LT(asked.world().dt(), 0.8 * first);
 }
@@ -121,7 +121,7 @@ TEST(SameBits, OfOneThatFallsAndShortensTheTimeStep) {
   bool touched = false;
   while (!touched || !asked.world().contacts().empty()) {
     asked.step(3), other.step_on(3);
-    ASSERT_TRUE(same_bits(asked.world(), other.world())) << "step " << asked.world().step();
+    ASSERT_TRUE(same_bits(asked.kernel(), other.kernel())) << "step " << asked.world().step();
     ASSERT_LT(asked.world().time(), 0.1);
     touched = touched || !asked.world().contacts().empty();
   }
@@ -130,9 +130,9 @@ TEST(SameBits, OfOneThatFallsAndShortensTheTimeStep) {
 
 TEST(SameBits, AreToldFromOthers) {
   Trial one(periodic()), other(periodic());
-  EXPECT_TRUE(same_bits(one.world(), other.world()));
+  EXPECT_TRUE(same_bits(one.kernel(), other.kernel()));
   one.step();
-  EXPECT_FALSE(same_bits(one.world(), other.world()));
+  EXPECT_FALSE(same_bits(one.kernel(), other.kernel()));
 }
 
 }  // namespace

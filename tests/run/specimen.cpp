@@ -16,8 +16,8 @@ Region specimen_between(const Description& low, const Description& high) {
       {"type", "box"}, {"low", {0, 0, 2}}, {"high", {1, 2, 2.5}}, {"inside", false}, {"material", "grain"}};
   d["specimen"] = {{"low", low}, {"high", high}};
   const Scene scene = scene_of(d);
-  const Simulation world(*scene.description, make_bodies(*scene.description, {}), 1);
-  return world.specimen();
+  const Kernel kernel(*scene.description, make_bodies(*scene.description, {}), 1);
+  return kernel.world().specimen();
 }
 
 TEST(Specimen, EndsAtTheInnerFacesOfAContainer) {
@@ -55,18 +55,18 @@ class Clearances : public testing::Test {
         {"type", "box"}, {"low", {0, 0, 6}}, {"high", {4, 4, 7}}, {"inside", false}, {"material", "grain"}};
     d["specimen"] = {{"low", {"", "", "floor"}}, {"high", {"", "", "block"}}};
     scene_ = scene_of(d);
-    world_.emplace(*scene_.description, make_bodies(*scene_.description, {}), 1);
+    kernel_.emplace(*scene_.description, make_bodies(*scene_.description, {}), 1);
   }
   /// From wall `name`, which is to be nearer than 3.
   Clearance from(const std::string& name, const Vec3& point) const {
-    const auto found = world_->clearance(index(name), point, 3);
+    const auto found = kernel_->world().clearance(index(name), point, 3);
     if (!found) throw Error("too far from " + name);
     EXPECT_NEAR(found->normal.norm(), 1, 1e-15);
     return *found;
   }
   std::size_t index(const std::string& name) const {
-    for (std::size_t w = 0; w < world_->walls().size(); ++w)
-      if (world_->walls()[w].name == name) return w;
+    for (std::size_t w = 0; w < kernel_->world().walls().size(); ++w)
+      if (kernel_->world().walls()[w].name == name) return w;
     throw Error("no wall " + name);
   }
   void expect(const std::string& name, const Vec3& point, double distance, const Vec3& normal) const {
@@ -75,7 +75,7 @@ class Clearances : public testing::Test {
     EXPECT_NEAR((found.normal - normal.normalized()).norm(), 0, 1e-12) << name << ", " << point.transpose();
   }
   Scene scene_;
-  std::optional<Simulation> world_;
+  std::optional<Kernel> kernel_;
 };
 
 TEST_F(Clearances, AreDistancesInFrontOfWalls) {
@@ -102,15 +102,15 @@ TEST_F(Clearances, AreNegativeBehindWalls) {
 TEST_F(Clearances, AreOfTheRimAHairBesideIt) { expect("sheet", {4 + 1e-8, 2, 1.5}, 0.5, {-1e-8, 0, 0.5}); }
 
 TEST_F(Clearances, AreNoneOutOfReach) {
-  EXPECT_TRUE(world_->clearance(index("block"), {2, 2, 3.001}, 3));
-  EXPECT_FALSE(world_->clearance(index("block"), {2, 2, 3}, 3));
+  EXPECT_TRUE(kernel_->world().clearance(index("block"), {2, 2, 3.001}, 3));
+  EXPECT_FALSE(kernel_->world().clearance(index("block"), {2, 2, 3}, 3));
 }
 
 TEST_F(Clearances, EnvelopeReachesToTheFarSidesOfWalls) {
-  EXPECT_EQ(world_->specimen().low.z(), 0);
-  EXPECT_EQ(world_->specimen().high.z(), 6);
-  EXPECT_EQ(world_->envelope().low.z(), -0.1);
-  EXPECT_EQ(world_->envelope().high.z(), 7);
+  EXPECT_EQ(kernel_->world().specimen().low.z(), 0);
+  EXPECT_EQ(kernel_->world().specimen().high.z(), 6);
+  EXPECT_EQ(kernel_->world().envelope().low.z(), -0.1);
+  EXPECT_EQ(kernel_->world().envelope().high.z(), 7);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST(Stage, EndsAtADisplacementInTheDirectionOfItsSign) {
     d["walls"]["floor"]["motion"]["velocity"] = {sign * 0.1, 0, 0};
     const Done done = run(d);
     EXPECT_EQ(done.summary().steps, 100u);
-    EXPECT_NEAR(done.world->walls()[0].position.x(), sign * 1e-4, 1e-12);
+    EXPECT_NEAR(done.kernel->world().walls()[0].position.x(), sign * 1e-4, 1e-12);
     // One that could go either way goes the other.
     d["walls"]["floor"]["motion"] = {{"free", {{"axes", "x"}, {"mass", 1}, {"load", {-sign * 100, 0, 0}}}}};
     d["stages"][0]["limit"] = 2e-3;
@@ -128,7 +128,7 @@ TEST(Stage, EndsAtAPressureWithinItsBand) {
   const Done done = run(d);
   // E R u / A = 1e8 Pa/m · u: 980 Pa are reached 9.8 µm up, after 98 steps; rounding may take one more.
   EXPECT_NEAR(static_cast<double>(done.summary().steps), 98, 1);
-  EXPECT_NEAR(done.world->walls()[0].pressure, 980, 10.001);
+  EXPECT_NEAR(done.kernel->world().walls()[0].pressure, 980, 10.001);
   d["stages"][0]["until"]["value"] = 0;
   EXPECT_EQ(run(d).summary().steps, 0u) << "no pressure is reached at once";
 }
@@ -140,10 +140,10 @@ void expect_first_look_below(const Description& d, double limit, Measure measure
   ASSERT_EQ(done.summary().status, "done") << done.summary().message;
   ASSERT_GE(done.summary().steps, 200u);
   EXPECT_EQ(done.summary().steps % 100, 0u);
-  EXPECT_LT(measure(*done.world), limit);
+  EXPECT_LT(measure(*done.kernel), limit);
   Description shorter = d;
   shorter["stages"][0]["until"] = steps(static_cast<int>(done.summary().steps) - 100);
-  const double look_before = measure(*run(shorter).world);
+  const double look_before = measure(*run(shorter).kernel);
   EXPECT_GE(look_before, limit);
   EXPECT_LT(std::abs(look_before - limit), 0.5 * std::abs(limit)) << "slow enough to tell this limit from twice that";
 }
@@ -156,7 +156,7 @@ void expect_rest_seen(const char* type, Measure measure) {
   int records = 0;
   for (int looks = 1; records < 3; ++looks) {
     ASSERT_LT(looks, 20);
-    const double look = measure(*run(dropped(steps(100 * looks))).world);
+    const double look = measure(*run(dropped(steps(100 * looks))).kernel);
     if (look >= lowest) continue;
     lowest = look, ++records;
     const auto ends = [&](double limit) { return run(dropped({{"type", type}, {"below", limit}})).summary().steps; };
@@ -166,8 +166,8 @@ void expect_rest_seen(const char* type, Measure measure) {
 }
 
 TEST(Stage, EndsAtRest) {
-  expect_rest_seen("unbalanced-force", [](const Simulation& w) { return unrest(w).unbalanced_force; });
-  expect_rest_seen("kinetic-energy", [](const Simulation& w) { return w.kinetic_energy_ratio(); });
+  expect_rest_seen("unbalanced-force", [](const Kernel& k) { return unrest(k.world()).unbalanced_force; });
+  expect_rest_seen("kinetic-energy", [](const Kernel& k) { return k.kinetic_energy_ratio(); });
 }
 
 TEST(Stage, IsNotAtRestWithoutContacts) {
@@ -179,11 +179,11 @@ TEST(Stage, IsNotAtRestWithoutContacts) {
 }
 
 TEST(Stage, EndsAtAVoidRatio) {
-  const auto e = [](const Simulation& w) { return void_ratio(w, w.specimen()); };
+  const auto e = [](const Kernel& k) { return void_ratio(k.world(), k.world().specimen()); };
   const double start = 1e-6 / (mass / density) - 1;
   expect_first_look_below(shrinking({{"type", "void-ratio"}, {"below", 0.9 * start}}, -20), 0.9 * start, e);
   expect_first_look_below(shrinking({{"type", "void-ratio"}, {"above", 1.1 * start}}, 20), -1.1 * start,
-                          [&](const Simulation& w) { return -e(w); });
+                          [&](const Kernel& k) { return -e(k); });
 }
 
 TEST(Stage, EndsWhenAllOrAnyHold) {
@@ -208,20 +208,20 @@ TEST(Stage, TellsWhichOfItsConditionsEndedIt) {
 
 TEST(Stage, TellsHowFarItIs) {
   const Scene scene = scene_of(lone({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}}));
-  Simulation world(*scene.description, make_bodies(*scene.description, {}), 1);
-  world.find_forces();
-  for (int i = 0; i < 10; ++i) world.advance(), world.find_forces();
-  EXPECT_NEAR(*progress(scene.description->stages[0].until, world, {}), 0.2, 1e-12);
+  Kernel kernel(*scene.description, make_bodies(*scene.description, {}), 1);
+  kernel.find_forces();
+  for (int i = 0; i < 10; ++i) kernel.advance(), kernel.find_forces();
+  EXPECT_NEAR(*progress(scene.description->stages[0].until, kernel, {}), 0.2, 1e-12);
 }
 
 TEST(Stage, DoesNotTellHowFarItIsOnceItWaitsForRestAlone) {
   const Description rest = {{"type", "unbalanced-force"}, {"below", 1e-3}};
   const auto far = [&](const Description& until, int steps_gone) {
     const Scene scene = scene_of(lone(until));
-    Simulation world(*scene.description, make_bodies(*scene.description, {}), 1);
-    world.find_forces();
-    for (int i = 0; i < steps_gone; ++i) world.advance(), world.find_forces();
-    return progress(scene.description->stages[0].until, world, {});
+    Kernel kernel(*scene.description, make_bodies(*scene.description, {}), 1);
+    kernel.find_forces();
+    for (int i = 0; i < steps_gone; ++i) kernel.advance(), kernel.find_forces();
+    return progress(scene.description->stages[0].until, kernel, {});
   };
   const Description settled = {{"type", "all"}, {"of", {steps(20), rest}}};
   EXPECT_NEAR(far(settled, 10).value(), 0.5, 1e-12);
@@ -334,7 +334,7 @@ TEST(Stage, BoundaryChangesNothing) {
   const Done one = run(whole), six = run(halves);
   double largest = 0, apart = 0;
   for (std::uint32_t id = 0; id < 64; ++id) {
-    const auto row = [&](const Done& d) { return xyz(d.world->spins()[index_of(*d.world, id)]); };
+    const auto row = [&](const Done& d) { return xyz(d.kernel->world().spins()[index_of(d.kernel->world(), id)]); };
     largest = std::max(largest, row(one).norm()), apart = std::max(apart, (row(one) - row(six)).norm());
   }
   EXPECT_LT(apart, 1e-10 * largest) << "only the order of sums differs";
@@ -462,7 +462,7 @@ TEST(Reports, ChangeNoBitHoweverOftenTheyCome) {
   const Done seen = run(d);
   EXPECT_GT(seen.notes.steps_of("way").size(), 50u);
   for (std::uint32_t id = 0; id < 64; ++id) {
-    const auto row = [&](const Done& of) { return xyz(of.world->positions()[index_of(*of.world, id)]); };
+    const auto row = [&](const Done& of) { return xyz(of.kernel->world().positions()[index_of(of.kernel->world(), id)]); };
     EXPECT_EQ(row(unseen), row(seen)) << id;
   }
 }
@@ -493,8 +493,8 @@ TEST(Reports, AnInterruptedRunEndsAtOnceAndWhole) {
   EXPECT_EQ(done.notes.steps_of("stop").back(), 121u);
   EXPECT_THAT(done.notes.frames, ElementsAre(0, 121));
   EXPECT_THAT(done.notes.ended, testing::IsEmpty()) << "the stage did not end";
-  ASSERT_EQ(done.world->contacts().size(), 1u);
-  EXPECT_NEAR(done.world->contacts()[0].overlap, radius - done.world->positions()[0].z, 1e-18)
+  ASSERT_EQ(done.kernel->world().contacts().size(), 1u);
+  EXPECT_NEAR(done.kernel->world().contacts()[0].overlap, radius - done.kernel->world().positions()[0].z, 1e-18)
       << "positions and forces are of one instant";
 
   watched() = {};

@@ -112,9 +112,9 @@ TEST_P(QuickSims, RunAWhile) {
     if (document.json().at("stages")[i].contains("expect")) document.erase(stage + "/expect");
   }
   const Scene scene = read_scene(document, registry());
-  Simulation world(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
+  Kernel kernel(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
   Silent recorder;
-  run(scene, world, recorder, {});
+  run(scene, kernel, recorder, {});
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
   EXPECT_EQ(recorder.summary.steps, 50 * stages);
   ASSERT_EQ(recorder.summary.probes.size(), scene.description->probes.size());
@@ -235,7 +235,7 @@ TEST(References, OfADescriptionStandBesideClosedForms) {
 }
 
 /// A small direct shear test with these probes as it is sheared; frames ask them for their fields too.
-std::unique_ptr<Simulation> sheared(const std::map<std::string, std::string>& probes) {
+std::unique_ptr<Kernel> sheared(const std::map<std::string, std::string>& probes) {
   Document document = load_document(sims_folder / "direct-shear/quick.json",
                                     {"/scenario/width=6e-3", "/scenario/height=4e-3"}, registry());
   document.set("/probes={}");
@@ -246,13 +246,13 @@ std::unique_ptr<Simulation> sheared(const std::map<std::string, std::string>& pr
   const std::size_t last = document.json().at("stages").size() - 1;
   document.set("/stages/" + std::to_string(last) + R"(/until={"type": "steps", "value": 200})");
   const Scene scene = read_scene(document, registry());
-  auto world = std::make_unique<Simulation>(*scene.description,
+  auto kernel = std::make_unique<Kernel>(*scene.description,
                                             make_bodies(*scene.description, requested_state(*scene.description)), 2);
   Silent recorder;
-  run(scene, *world, recorder, {});
+  run(scene, *kernel, recorder, {});
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
-  EXPECT_EQ(world->stage(), "shear");
-  return world;
+  EXPECT_EQ(kernel->world().stage(), "shear");
+  return kernel;
 }
 
 TEST(Probes, AllAtOnceChangeNotOneBit) {
@@ -268,7 +268,7 @@ TEST(Probes, AllAtOnceChangeNotOneBit) {
   for (const std::string& name : registry().names("probe")) all[name] = asked.contains(name) ? asked.at(name) : "";
   EXPECT_GE(all.size(), 16u);
   const auto without = sheared({}), with = sheared(all);
-  EXPECT_GT(with->pair_count(), 100u);
+  EXPECT_GT(with->state().pairs.touching_count(), 100u);
   EXPECT_TRUE(test::same_bits(*without, *with));
 }
 

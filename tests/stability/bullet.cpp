@@ -37,7 +37,7 @@ TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
     for (int i = 0; i < steps; ++i, t.step()) {
       if (i % look != 0) continue;
       const Touching all = there(t.world());
-      compared += all.size(), missed += all == found(t.world()) ? 0 : 1;
+      compared += all.size(), missed += all == found(t.kernel()) ? 0 : 1;
     }
     EXPECT_EQ(missed, 0u) << travel;
     EXPECT_GT(compared, 5000u);
@@ -46,7 +46,7 @@ TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
     const double mean = flight.world().mean_diameter(), way = travel * 0.4 * spacing;
     const double skin = std::clamp(steps_of_skin * way, least_skin * mean, most_skin * mean);
     flight.step(static_cast<std::size_t>(20.5 * skin / way));
-    const double between = 20.5 * skin / way / static_cast<double>(flight.world().clock().rebuilds - 1);
+    const double between = 20.5 * skin / way / static_cast<double>(flight.kernel().state().lists.rebuilds() - 1);
     EXPECT_GT(between, 0.9 * (skin / way - 2)) << travel;
     EXPECT_LT(between, 1.05 * (skin / way + 1)) << travel;
     map_point(map, "found", travel, between);

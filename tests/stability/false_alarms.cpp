@@ -11,15 +11,15 @@ namespace {
 std::size_t expect_done(const std::string& file, const std::vector<std::string>& sets, bool by_ledger) {
   const StateRequest also = by_ledger ? StateRequest(BodyState::energy) : StateRequest();
   const Scene scene = load_scene(std::string(GRIT_SOURCE_DIR) + "/sims/" + file, sets, installed());
-  Simulation world(*scene.description, make_bodies(*scene.description, requested_state(*scene.description, also)), 2);
-  world.find_forces();
-  world.energies();
+  Kernel kernel(*scene.description, make_bodies(*scene.description, requested_state(*scene.description, also)), 2);
+  kernel.find_forces();
+  kernel.world().energies();
   Notes notes;
-  run(scene, world, notes, {});
+  run(scene, kernel, notes, {});
   EXPECT_EQ(notes.summary.status, "done") << notes.summary.message;
   EXPECT_EQ(notes.ended.size(), scene.stages.size());
-  EXPECT_GT(world.step(), 1000u);
-  return world.positions().size();
+  EXPECT_GT(kernel.world().step(), 1000u);
+  return kernel.world().positions().size();
 }
 
 class FalseAlarms : public testing::TestWithParam<bool> {};

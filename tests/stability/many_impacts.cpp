@@ -165,7 +165,7 @@ TEST_P(ManyImpacts, HeatAGasByTheirSum) {
   d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
   d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
   Trial t(d);
-  const Simulation& world = t.world();
+  const World& world = t.world();
   const auto energy = [&] {
     double sum = unrest(world).kinetic_energy;
     for (const Contact& c : world.contacts()) sum += c.normal_force * c.overlap / (spring.exponent + 1);

@@ -35,8 +35,8 @@ TEST(Mixture, MissesNoContactUpToOneToAHundred) {
     constexpr int steps = 600;
     for (int i = 0; i < steps; ++i, t.step()) {
       const Touching all = there(t.world());
-      compared += all.size(), missed += all == found(t.world()) ? 0 : 1;
-      looked_at += t.world().candidate_count();
+      compared += all.size(), missed += all == found(t.kernel()) ? 0 : 1;
+      looked_at += t.kernel().state().pairs.candidates();
     }
     EXPECT_EQ(missed, 0u) << ratio;
     if (missed == 0) figure("ratio of sizes up to which no contact is missed", ratio);

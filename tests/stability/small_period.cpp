@@ -24,7 +24,7 @@ Description repeating(const std::vector<Grain>& grains, const Vec3& period) {
 }
 
 /// What touches, by trying every image, a grain's own included: the contacts of this many grains with all others.
-std::size_t touches(const Simulation& world) {
+std::size_t touches(const World& world) {
   const auto x = world.positions();
   const Vec3 period = world.cell().high - world.cell().low;
   std::size_t found = 0;
@@ -49,7 +49,7 @@ std::size_t missed(double period, int steps) {
   std::size_t worst = 0, most = 0;
   for (int i = 0; i < steps; ++i, t.step()) {
     const auto there = static_cast<std::ptrdiff_t>(touches(t.world()));
-    const auto found = static_cast<std::ptrdiff_t>(t.world().pair_count());
+    const auto found = static_cast<std::ptrdiff_t>(t.kernel().state().pairs.touching_count());
     worst = std::max(worst, static_cast<std::size_t>(std::abs(there - found)));
     most = std::max(most, static_cast<std::size_t>(there));
   }

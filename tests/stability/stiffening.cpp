@@ -119,7 +119,7 @@ double closure_of_a_pour(double young, double restitution) {
   while (t.world().time() < 0.1) t.step();
   const EnergyLedger now = t.world().energies();
   EXPECT_GT(now.viscosity, 0.02 * -now.gravitational);
-  EXPECT_GT(t.world().pair_count(), 30u);
+  EXPECT_GT(t.kernel().state().pairs.touching_count(), 30u);
   return std::abs(now.closure_error / now.gravitational);
 }
 

@@ -147,7 +147,7 @@ Description packed(double friction, double shear_to_normal = shear_ratio) {
   Trial t(loose);
   while (unrest(t.world()).unbalanced_force > 1e-11 && t.world().step() < 200000) t.step(100);
   EXPECT_LT(unrest(t.world()).unbalanced_force, 1e-11);
-  EXPECT_GT(t.world().pair_count(), 2 * grains.size()) << "dense";
+  EXPECT_GT(t.kernel().state().pairs.touching_count(), 2 * grains.size()) << "dense";
   Random random(2);
   const auto about = [&] { return 1e-12 * (2 * random.uniform() - 1); };
   for (std::uint32_t i = 0; i < grains.size(); ++i)
@@ -222,7 +222,7 @@ TEST(TimeStep, AtTheDefaultSafetyNothingGrows) {
   Description packing = lattice("linear-frictional", 1);
   packing["time_step"]["steps_per_impact"] = 0;
   const Trial chosen(packing);
-  const double share = chosen.world().dt() / chosen.world().clock().critical_time_step;
+  const double share = chosen.world().dt() / chosen.kernel().critical_time_step();
   EXPECT_NEAR(share, 0.8, 1e-12);
   figure("share of the bound that is chosen", share);
 }

@@ -51,8 +51,8 @@ struct Curves : Recorder {
 /// Runs a description of the repository with `sets` ("/pointer=value") to its end on two threads.
 inline void run_to_the_end(const std::string& file, const std::vector<std::string>& sets, Curves& curves) {
   const Scene scene = load_scene(std::string(GRIT_SOURCE_DIR) + "/" + file, sets, installed());
-  Simulation world(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
-  run(scene, world, curves, {});
+  Kernel kernel(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
+  run(scene, kernel, curves, {});
   EXPECT_EQ(curves.summary.status, "done") << curves.summary.message;
 }
 

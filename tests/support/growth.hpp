@@ -47,7 +47,7 @@ inline double growth(const Description& d, double dt, int steps) {
 /// The step [s] above which grit says that the scene is not stable.
 inline double critical(Description d) {
   d["time_step"] = {{"value", 1e-9}};
-  return Trial(d).world().clock().critical_time_step;
+  return Trial(d).kernel().critical_time_step();
 }
 
 /// A mode that is known to be the fastest starts to grow between 0.5 % below and 0.5 % above this step.

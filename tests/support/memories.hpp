@@ -10,19 +10,19 @@ namespace grit::test {
 /// Memories by the ids of the two, as seen from the lower id; walls count from 1000.
 using Memories = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<double>>;
 inline Memories memories(const Trial& t, std::size_t* swapped = nullptr) {
-  const Simulation& world = t.world();
+  const State& state_now = t.kernel().state();
   const auto fields = t.scene().stages[0].start->contacts->state();
-  const auto ids = world.ids();
+  const auto ids = t.world().ids();
   Memories all;
-  for (std::size_t c = 0; c < world.candidate_count(); ++c) {
-    if (!world.pairs().touches(c)) continue;
-    const std::uint32_t a = ids[world.pairs().a(c)], b = ids[world.pairs().b(c)];
-    auto state = world.pairs().state(c);
+  for (std::size_t c = 0; c < state_now.pairs.candidates(); ++c) {
+    if (!state_now.pairs.touches(c)) continue;
+    const std::uint32_t a = ids[state_now.pairs.a(c)], b = ids[state_now.pairs.b(c)];
+    auto state = state_now.pairs.state(c);
     for (std::size_t f = 0; f < fields.size() && a > b; ++f) state[f] *= fields[f].swap;
     if (swapped != nullptr) *swapped += a > b;
     all[std::minmax(a, b)] = std::move(state);
   }
-  world.wall_contacts().each([&](const WallContacts::Touching& touch) {
+  state_now.wall_contacts.each([&](const WallContacts::Touching& touch) {
     all[{ids[touch.touch->body], 1000 + touch.touch->wall}].assign(touch.state.begin(), touch.state.end());
   });
   return all;

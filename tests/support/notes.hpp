@@ -78,9 +78,9 @@ class Watch final : public Probe {
 
 /// A description that has been run.
 struct Done {
-  Scene scene;  // the world looks at it
+  Scene scene;  // the kernel refers to it
   Notes notes;
-  std::unique_ptr<Simulation> world;
+  std::unique_ptr<Kernel> kernel;
   const RunSummary& summary() const { return notes.summary; }
 };
 
@@ -95,8 +95,8 @@ inline Done run(const Description& plain, const RunControl& control = {}) {
   Done done;
   done.scene = scene_of(plain);
   const SceneDescription& start = *done.scene.description;
-  done.world = std::make_unique<Simulation>(start, make_bodies(start, {}), 1);
-  grit::run(done.scene, *done.world, done.notes, control);
+  done.kernel = std::make_unique<Kernel>(start, make_bodies(start, {}), 1);
+  grit::run(done.scene, *done.kernel, done.notes, control);
   return done;
 }
 

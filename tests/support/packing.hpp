@@ -40,21 +40,21 @@ inline Description side(int axis, double place, const Vec3& low, const Vec3& hig
           {"material", material}};
 }
 
-/// Whether two worlds have the same bodies, contacts and memories, to the last bit and in the same order.
-inline bool same_bits(const Simulation& a, const Simulation& b) {
+/// Whether two kernels have the same bodies, contacts and memories, to the last bit and in the same order.
+inline bool same_bits(const Kernel& a, const Kernel& b) {
   const auto same = [](auto x, auto y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
   };
-  if (!same(a.ids(), b.ids()) || !same(a.positions(), b.positions()) || !same(a.velocities(), b.velocities()) ||
-      !same(a.spins(), b.spins()) || a.candidate_count() != b.candidate_count())
+  if (!same(a.world().ids(), b.world().ids()) || !same(a.world().positions(), b.world().positions()) || !same(a.world().velocities(), b.world().velocities()) ||
+      !same(a.world().spins(), b.world().spins()) || a.state().pairs.candidates() != b.state().pairs.candidates())
     return false;
-  for (std::size_t c = 0; c < a.candidate_count(); ++c)
-    if (a.pairs().touches(c) != b.pairs().touches(c) || a.pairs().a(c) != b.pairs().a(c) ||
-        a.pairs().b(c) != b.pairs().b(c) || a.pairs().state(c) != b.pairs().state(c))
+  for (std::size_t c = 0; c < a.state().pairs.candidates(); ++c)
+    if (a.state().pairs.touches(c) != b.state().pairs.touches(c) || a.state().pairs.a(c) != b.state().pairs.a(c) ||
+        a.state().pairs.b(c) != b.state().pairs.b(c) || a.state().pairs.state(c) != b.state().pairs.state(c))
       return false;
-  const auto wall_memory = [](const Simulation& s) {
+  const auto wall_memory = [](const Kernel& s) {
     std::vector<double> all;
-    s.wall_contacts().each([&](const WallContacts::Touching& t) {
+    s.state().wall_contacts.each([&](const WallContacts::Touching& t) {
       all.push_back(t.touch->body), all.push_back(t.touch->wall);
       all.insert(all.end(), t.state.begin(), t.state.end());
     });

@@ -7,7 +7,7 @@
 
 #include "engines/builtin.hpp"
 #include "input/scene.hpp"
-#include "run/simulation.hpp"
+#include "kernel/kernel.hpp"
 #include "scene/clump_body.hpp"
 #include "scene/make_bodies.hpp"
 #include "scene/sphere_body.hpp"
@@ -71,39 +71,40 @@ class Trial {
  public:
   explicit Trial(const Description& plain, unsigned threads = 1, StateRequest state = {})
       : scene_(scene_of(plain)),
-        simulation_(*scene_.stages.front().start, make_bodies(*scene_.description, state), threads) {
-    simulation_.find_forces();
+        kernel_(*scene_.stages.front().start, make_bodies(*scene_.description, state), threads) {
+    kernel_.find_forces();
   }
   void step(std::size_t steps = 1) {
-    for (; steps > 0; --steps) simulation_.advance(), simulation_.find_forces();
+    for (; steps > 0; --steps) kernel_.advance(), kernel_.find_forces();
   }
 
   /// The same to the same bits, in one pass a step.
   void step_on(std::size_t steps) {
-    simulation_.advance();
-    for (; steps > 1; --steps) simulation_.step_on();
-    simulation_.find_forces();
+    kernel_.advance();
+    for (; steps > 1; --steps) kernel_.step_on();
+    kernel_.find_forces();
   }
 
-  Simulation& world() { return simulation_; }
-  const Simulation& world() const { return simulation_; }
+  const World& world() const { return kernel_.world(); }
+  Kernel& kernel() { return kernel_; }
+  const Kernel& kernel() const { return kernel_; }
   const Scene& scene() const { return scene_; }
 
-  Vec3 position(std::uint32_t id) const { return xyz(simulation_.positions()[index_of(simulation_, id)]); }
+  Vec3 position(std::uint32_t id) const { return xyz(world().positions()[index_of(world(), id)]); }
   /// At time(), not half a step before.
-  Vec3 velocity(std::uint32_t id) const { return now(simulation_.velocities(), simulation_.forces(), id); }
-  Vec3 spin(std::uint32_t id) const { return now(simulation_.spins(), simulation_.moments(), id); }
-  double mass(std::uint32_t id) const { return 1 / simulation_.velocities()[index_of(simulation_, id)].w; }
+  Vec3 velocity(std::uint32_t id) const { return now(world().velocities(), world().forces(), id); }
+  Vec3 spin(std::uint32_t id) const { return now(world().spins(), world().moments(), id); }
+  double mass(std::uint32_t id) const { return 1 / world().velocities()[index_of(world(), id)].w; }
 
  private:
   Vec3 now(std::span<const Row> rates, std::span<const Row> pushes, std::uint32_t id) const {
-    const std::size_t i = index_of(simulation_, id);
-    const double half = simulation_.step() > 0 ? 0.5 * simulation_.clock().last_time_step : 0;
+    const std::size_t i = index_of(world(), id);
+    const double half = world().step() > 0 ? 0.5 * kernel_.state().time.previous_dt : 0;
     return xyz(rates[i]) + half * rates[i].w * xyz(pushes[i]);
   }
 
   Scene scene_;
-  Simulation simulation_;
+  Kernel kernel_;
 };
 
 }  // namespace grit::test

@@ -72,27 +72,27 @@ struct Tape final : Recorder {
 struct Taped {
   Scene scene;
   Tape tape;
-  std::unique_ptr<Simulation> world;
+  std::unique_ptr<Kernel> kernel;
 
   /// `stop` is asked at every sample and, every eighth step, between two steps.
-  Taped(const Description& plain, unsigned threads, std::function<bool(const World&)> stop = {},
+  Taped(const Description& plain, unsigned threads, std::function<bool(const Kernel&)> stop = {},
         const Checkpoint* resume = nullptr, std::vector<Tape::Entry> before = {}, double checkpoint_every = 0)
       : scene(scene_of(plain)) {
     const SceneDescription& start = *scene.description;
-    world = std::make_unique<Simulation>(start, make_bodies(start, requested_state(start)), threads);
+    kernel = std::make_unique<Kernel>(start, make_bodies(start, requested_state(start)), threads);
     tape.entries = std::move(before);
     std::atomic<bool> stops = false;
-    const auto look = [&](const World& now) {
-      if (stop && stop(now)) stops = true;
+    const auto look = [&](const World&) {
+      if (stop && stop(*kernel)) stops = true;
     };
     tape.look = look;
     RunControl control;
     control.interrupted = &stops;
-    control.progress = [&](const Progress&) { look(*world); };
+    control.progress = [&](const Progress&) { look(kernel->world()); };
     control.progress_every = 0;
     control.resume = resume;
     control.checkpoint_every = checkpoint_every;
-    grit::run(scene, *world, tape, control);
+    grit::run(scene, *kernel, tape, control);
     tape.look = {};
   }
 };

@@ -10,14 +10,14 @@ namespace grit::test {
 
 using Touching = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 
-inline Touching found(const Simulation& world) {
+inline Touching found(const Kernel& kernel) {
   Touching pairs;
-  for (std::size_t c = 0; c < world.candidate_count(); ++c)
-    if (world.pairs().touches(c)) pairs.emplace(world.pairs().a(c), world.pairs().b(c));
+  for (std::size_t c = 0; c < kernel.state().pairs.candidates(); ++c)
+    if (kernel.state().pairs.touches(c)) pairs.emplace(kernel.state().pairs.a(c), kernel.state().pairs.b(c));
   return pairs;
 }
 /// Not across periodic sides.
-inline Touching there(const Simulation& world) {
+inline Touching there(const World& world) {
   Touching pairs;
   const auto x = world.positions();
   for (std::uint32_t a = 0; a < x.size(); ++a)

@@ -49,10 +49,27 @@ class PluginError : public Error {
   using Error::Error;
 };
 
-/// The simulation went wrong: a guard tripped, a stage did not end.
+/// What stops a simulation that has gone wrong.
+enum class Guard {
+  none,          ///< a stage did not end or missed what it expected
+  overlap,       ///< a contact is too deep: /guards/overlap
+  travel,        ///< a body or wall moves too far in one step: /guards/travel
+  energy,        ///< energy was created: /guards/energy
+  finite,        ///< a velocity is not a number
+  domain,        ///< a body left through a closed side
+  period,        ///< a period is too short for the bodies
+  arrival,       ///< bodies that appear in a stage find no room
+  critical_step  ///< the prescribed time step is above the critical one
+};
+
+/// The simulation went wrong.
 class NumericsError : public Error {
  public:
-  using Error::Error;
+  explicit NumericsError(const std::string& what, Guard guard = Guard::none) : Error(what), guard_(guard) {}
+  Guard guard() const { return guard_; }
+
+ private:
+  Guard guard_;
 };
 
 /// A file or disk that does not do as asked.

@@ -18,6 +18,7 @@
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
+#include "kernel/kernel.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
@@ -26,7 +27,6 @@
 #include "plugins/build_facts.hpp"
 #include "plugins/nearest.hpp"
 #include "run/observer.hpp"
-#include "run/simulation.hpp"
 #include "scene/make_bodies.hpp"
 #include "study/batch.hpp"
 #include "study/chart.hpp"
@@ -176,12 +176,12 @@ void check_figures(const StudyDescription& study, const Document& written, const
 
 /// The same of channels, which probes tell only once they have seen a world.
 void check_channels(const StudyDescription& study, const Document& written, const SceneDescription& scene) try {
-  const Simulation simulation(scene, make_bodies(scene, run_state(scene)), 1);
+  const Kernel kernel(scene, make_bodies(scene, run_state(scene)), 1);
   std::vector<std::string> all;
   std::set<std::string> wide;  // several numbers a sample
   for (const auto& [name, probe] : scene.probes) {
     for (const char* channel : {"time", "step"}) all.push_back(name + '/' + channel);
-    for (const Channel& channel : Observer(name, probe, simulation).group().channels) {
+    for (const Channel& channel : Observer(name, probe, kernel.world()).group().channels) {
       all.push_back(name + '/' + channel.name);
       if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; })) wide.insert(all.back());
     }

@@ -18,9 +18,9 @@
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
+#include "kernel/kernel.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
-#include "run/simulation.hpp"
 #include "scene/make_bodies.hpp"
 
 namespace grit {
@@ -62,12 +62,12 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << (one.file.empty() ? "  built in" : "") << '\n';
 
   const unsigned threads = options.threads();
-  Simulation simulation(description, make_bodies(description, run_state(description)), threads);
-  simulation.find_forces();
+  Kernel kernel(description, make_bodies(description, run_state(description)), threads);
+  kernel.find_forces();
   std::vector<ProbeGroup> probes;
-  for (const auto& [name, probe] : description.probes) probes.push_back(Observer(name, probe, simulation).group());
+  for (const auto& [name, probe] : description.probes) probes.push_back(Observer(name, probe, kernel.world()).group());
   SingleChannels(probes).check(file, description.output);  // as a run does
-  const std::size_t bodies = simulation.positions().size();
+  const std::size_t bodies = kernel.world().positions().size();
 
   std::cout << "\nstate beyond position, velocity and spin\n";
   for (const std::string& line : who_asked(description)) std::cout << "  " << line << '\n';
@@ -77,7 +77,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::cout << ", probes, wall motion, integration";
   for (const auto& [name, engine] : description.engines)
     if (engine.engine->phase() == Phase::settings) std::cout << " with " << name;
-  std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << simulation.pair_count() << '\n';
+  std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << kernel.state().pairs.touching_count()
+            << '\n';
   std::map<std::string, std::size_t> coming;  // by stage
   std::size_t all_bodies = bodies;
   for (const auto& [name, group] : description.bodies) {
@@ -94,17 +95,17 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << ", centre to " << clump.errors.centre << " of the enclosing radius, inertia to "
               << clump.errors.inertia << std::setprecision(6) << '\n';
   const TimeStepDescription& wish = description.time_step;
-  const double safe = wish.safety * simulation.clock().critical_time_step;
-  std::cout << "time step: " << simulation.dt() << " s, critical " << simulation.clock().critical_time_step
+  const double safe = wish.safety * kernel.critical_time_step();
+  std::cout << "time step: " << kernel.world().dt() << " s, critical " << kernel.critical_time_step()
             << " s at the start; ";
-  if (!wish.value && simulation.dt() < safe)
+  if (!wish.value && kernel.world().dt() < safe)
     std::cout << "an impact of two takes " << wish.steps_per_impact << " steps; ";
   std::cout << "followed as contacts change\n";
-  std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(simulation.memory())) + 1 << " MB now, about "
+  std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(kernel.state().bytes())) + 1 << " MB now, about "
             << std::lround(1e-6 * 700.0 * static_cast<double>(all_bodies)) + 1 << " MB when dense\n\nstages\n";
 
-  const bool cloud = simulation.pair_count() * 2 < bodies;
-  const double dt = cloud && !wish.value ? std::min(simulation.dt(), dense_step_share * safe) : simulation.dt();
+  const bool cloud = kernel.state().pairs.touching_count() * 2 < bodies;
+  const double dt = cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_share * safe) : kernel.world().dt();
   double least = 0, most = 0;  // s times bodies
   bool unknown = false;
   std::size_t there = bodies;
@@ -140,7 +141,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << (unknown ? " and what stages take that end by a condition" : "") << ", at most " << cost(most) / 3600
               << " h, by the limits of stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
-  auto idle = without_effect(scene, simulation);
+  auto idle = without_effect(scene, kernel);
   std::ranges::move(idle_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");
   const Description now = resolved(description);
@@ -169,7 +170,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
       idle.push_back(line);
   }
   std::ranges::move(idle_scenario(written, same), std::back_inserter(idle));
-  if (auto line = too_deep(scene, simulation, scenario_type(Document::load(file)), same)) idle.push_back(*line);
+  if (auto line = too_deep(scene, kernel.world(), scenario_type(Document::load(file)), same)) idle.push_back(*line);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';
 }

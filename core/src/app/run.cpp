@@ -184,8 +184,8 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   std::optional<Watch> watch;
   if (listener) watch.emplace(*listener, folder);
 
-  Simulation simulation(description, std::move(bodies), threads);
-  say(std::to_string(simulation.positions().size()) + " bodies, " + std::to_string(threads) +
+  Kernel kernel(description, std::move(bodies), threads);
+  say(std::to_string(kernel.world().positions().size()) + " bodies, " + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
   if (checkpoint)
     say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
@@ -204,7 +204,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
       if (!quiet) bar.show(now);
       if (watch) watch->say(progress_text(now));
     };
-  const RunSummary summary = run(scene, simulation, summary_curves, control);
+  const RunSummary summary = run(scene, kernel, summary_curves, control);
   bar.end();
 
   std::cout << summary_curves.text();

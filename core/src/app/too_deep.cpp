@@ -83,7 +83,7 @@ bool weighs_along(const Scene& described, int axis) {
 
 /// Whether grains lie from one end of the cell to the other, between planes that go on along this axis, from the start.
 /// Of a scenario it is known.
-bool is_alike_along(const SceneDescription& scene, const Simulation& world, int axis) {
+bool is_alike_along(const SceneDescription& scene, const World& world, int axis) {
   const auto walls = world.walls();
   const bool planes =
       std::ranges::all_of(scene.walls, [](const auto& wall) { return wall.second.geometry.type() == "plane"; }) &&
@@ -98,7 +98,7 @@ bool is_alike_along(const SceneDescription& scene, const Simulation& world, int 
   return planes && !later && low < world.cell().low[axis] + room && high > world.cell().high[axis] - room;
 }
 
-std::optional<Depth> depth_of(const Scene& described, const Simulation& world, bool plain) {
+std::optional<Depth> depth_of(const Scene& described, const World& world, bool plain) {
   const SceneDescription& scene = *described.description;
   const auto& periodic = scene.domain.periodic;
   const std::string scenarios = "/scenario/depth";  // a scenario writes domain and walls
@@ -131,7 +131,7 @@ std::optional<Depth> depth_of(const Scene& described, const Simulation& world, b
                fmt::format("walls \"{}\" and \"{}\", which bound it along y, stand still and are smooth", low, high)};
 }
 
-std::optional<std::string> by_contacts(const Scene& described, const Simulation& world, bool plain) {
+std::optional<std::string> by_contacts(const Scene& described, const World& world, bool plain) {
   const SceneDescription& scene = *described.description;
   if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
   const auto depth = depth_of(described, world, plain);
@@ -152,7 +152,7 @@ std::optional<std::string> by_contacts(const Scene& described, const Simulation&
 
 }  // namespace
 
-std::optional<std::string> too_deep(const Scene& described, const Simulation& world, const std::string& scenario,
+std::optional<std::string> too_deep(const Scene& described, const World& world, const std::string& scenario,
                                     const std::function<bool(const std::vector<std::string>&)>& same) {
   const SceneDescription& scene = *described.description;
   bool tried = false;

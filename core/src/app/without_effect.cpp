@@ -50,8 +50,7 @@ bool is_zero(const Scene& described, const std::string& key) {
 
 /// Whether no grain that stays in the domain ever comes near a wall that stands still. Spheres that cover the domain
 /// stand for all places.
-bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std::size_t wall,
-                     const std::string& name) {
+bool is_out_of_reach(const SceneDescription& scene, const Kernel& kernel, std::size_t wall, const std::string& name) {
   const DomainDescription& domain = scene.domain;
   const bool deforms = !domain.strain_rate.isZero(0.0) || std::ranges::any_of(scene.stages, [](const auto& stage) {
     return stage.change.contains("domain") || stage.growth ||
@@ -61,13 +60,13 @@ bool is_out_of_reach(const SceneDescription& scene, const Simulation& world, std
       std::ranges::any_of(scene.bodies, [](const auto& group) { return !group.second.stage.empty(); }))
     return false;
   if (!stands_still(scene.walls.at(name).motion) || is_changed(scene, "walls", name)) return false;
-  const auto bodies = world.positions();
+  const auto bodies = kernel.world().positions();
   if (bodies.empty()) return false;
   constexpr int cells = 16;
   const Vec3 low = *domain.low, step = (*domain.high - low) / double{cells};
   // Who is outside is found at a search; what is a little beyond by then is less than a diameter away.
   const double largest = std::ranges::max_element(bodies, {}, &Row::w)->w, reach = 0.5 * step.norm() + 3 * largest;
-  const Walls& walls = world.wall_states();
+  const Walls& walls = kernel.state().walls;
   for (int x = 0; x < cells; ++x)
     for (int y = 0; y < cells; ++y)
       for (int z = 0; z < cells; ++z)
@@ -127,7 +126,8 @@ bool only_contacts_turn(const Scene& described) {
 
 }  // namespace
 
-std::vector<std::string> without_effect(const Scene& described, const Simulation& world) {
+std::vector<std::string> without_effect(const Scene& described, const Kernel& kernel) {
+  const World& world = kernel.world();
   const SceneDescription& scene = *described.description;
   std::vector<std::string> lines;
   const auto say = [&](const std::string& pointer, const std::string& why) { lines.push_back(pointer + ": " + why); };
@@ -224,7 +224,7 @@ std::vector<std::string> without_effect(const Scene& described, const Simulation
   for (std::size_t wall = 0; wall < walls.size(); ++wall)
     // What bounds the specimen, or is asked for by a probe or a condition, is of use wherever it is.
     if (const std::string& name = walls[wall].name;
-        elsewhere.find('"' + name + '"') == elsewhere.npos && is_out_of_reach(scene, world, wall, name))
+        elsewhere.find('"' + name + '"') == elsewhere.npos && is_out_of_reach(scene, kernel, wall, name))
       say("/walls/" + name, "it stands still outside the domain, further off than any grain that stays inside reaches");
   for (const auto& [name, probe] : scene.probes)
     if (probe.cadence.never())

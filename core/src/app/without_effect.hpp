@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "input/scene.hpp"
-#include "run/simulation.hpp"
+#include "kernel/kernel.hpp"
 
 namespace grit {
 
 /// One line each, with the pointer of the part and why; `world` is the scene at its start.
-std::vector<std::string> without_effect(const Scene& described, const Simulation& world);
+std::vector<std::string> without_effect(const Scene& described, const Kernel& kernel);
 
 }  // namespace grit

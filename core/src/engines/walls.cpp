@@ -62,6 +62,17 @@ void tell_from(const Vec3& about, WallState& state) {
   state.pose.shift = shift;
 }
 
+void check_oscillation(const std::string& wall, const MotionDescription& motion, double dt) {
+  if (!motion.oscillation) return;
+  const double frequency = motion.oscillation->frequency;
+  if (frequency * dt * steps_to_a_period > 1)
+    fail(wall, "oscillation",
+         fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
+                     "more: lower the frequency, or shorten the time step by /time_step/safety or "
+                     "/time_step/value",
+                     frequency, 1 / (frequency * dt), dt, steps_to_a_period));
+}
+
 /// Where a wall turns about if nothing is said: the middle of its bounds, 0 along axes where they are infinite.
 Vec3 middle(const Geometry& geometry) {
   const Bounds bounds = geometry.bounds();
@@ -148,16 +159,11 @@ std::vector<WallSetup> wall_setups(const SceneDescription& scene) {
 }
 
 void check_oscillations(const SceneDescription& scene, double dt) {
-  for (const auto& [name, wall] : scene.walls) {  // asked as often as the time step is chosen
-    if (!wall.motion.oscillation) continue;
-    const double frequency = wall.motion.oscillation->frequency;
-    if (frequency * dt * steps_to_a_period > 1)
-      fail(name, "oscillation",
-           fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
-                       "more: lower the frequency, or shorten the time step by /time_step/safety or "
-                       "/time_step/value",
-                       frequency, 1 / (frequency * dt), dt, steps_to_a_period));
-  }
+  for (const auto& [name, wall] : scene.walls) check_oscillation(name, wall.motion, dt);
+}
+
+void Walls::check_oscillations(double dt) const {
+  for (const WallSetup& setup : setups_) check_oscillation(setup.name, setup.motion, dt);
 }
 
 void Walls::apply(std::vector<WallSetup> setups) {

@@ -85,6 +85,8 @@ class Walls {
   /// What bodies, as they are now, would press on a wall with [N], were it there after a step of this way [m] and moved
   /// at this velocity [m/s].
   using Ahead = std::function<double(std::size_t wall, const Pose& there, const Vec3& velocity, double way)>;
+  /// Throws PlacedError, naming the wall, for an oscillation that steps of dt [s] cannot follow.
+  void check_oscillations(double dt) const;
   /// Sets the velocities of the coming step of dt [s] from the forces, leaders before those that follow them. With
   /// `ahead` servos brake before what they would press too hard at once.
   void drive(double dt, const Ahead& ahead = nullptr);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
-#include "run/number.hpp"
 
 namespace grit {
 namespace {
@@ -20,52 +20,52 @@ double stage_travel(const DisplacementCondition& c, const World& world) {
 }
 
 struct Met {
-  const Simulation& simulation;
+  const Kernel& kernel;
   const StageStart& start;
   bool without_forces;
   bool always_look = false;
 
   bool look_now(std::uint64_t every = slow_conditions_every) const {
-    return always_look || (simulation.step() - start.step) % every == 0;
+    return always_look || (kernel.world().step() - start.step) % every == 0;
   }
 
   // Half a step of tolerance: a stage of 1 ms at 0.1 ms a step has ten steps, whatever the rounding of the sum.
   bool operator()(const TimeCondition& c) const {
-    return simulation.time() - start.time >= c.value - 0.5 * simulation.dt();
+    return kernel.world().time() - start.time >= c.value - 0.5 * kernel.world().dt();
   }
   bool operator()(const StepsCondition& c) const {
-    return simulation.step() - start.step >= static_cast<std::uint64_t>(c.value);
+    return kernel.world().step() - start.step >= static_cast<std::uint64_t>(c.value);
   }
   bool operator()(const DisplacementCondition& c) const {
-    const double travel = stage_travel(c, simulation);
+    const double travel = stage_travel(c, kernel.world());
     return c.value > 0 ? travel >= c.value : travel <= c.value;
   }
   bool operator()(const UnbalancedForceCondition& c) const {
     if (!look_now()) return false;
     if (without_forces) return true;
-    const Unrest now = unrest(simulation);
+    const Unrest now = unrest(kernel.world());
     return now.mean_contact_force > 0 && now.unbalanced_force < c.below;
   }
   bool operator()(const KineticEnergyCondition& c) const {
-    return look_now() && (without_forces || simulation.kinetic_energy_ratio() < c.below);
+    return look_now() && (without_forces || kernel.kinetic_energy_ratio() < c.below);
   }
   bool operator()(const VoidRatioCondition& c) const {
     if (!look_now()) return false;
-    const double e = void_ratio(simulation, simulation.interior(simulation.mean_diameter()));
+    const double e = void_ratio(kernel.world(), kernel.world().interior(kernel.world().mean_diameter()));
     return (!c.below || e < *c.below) && (!c.above || e > *c.above);
   }
   bool operator()(const MeanStressCondition& c) const {
     if (!look_now(stress_condition_every)) return false;
     if (without_forces) return true;
-    const double p = mean_stress(simulation, simulation.interior(simulation.mean_diameter())).trace() / 3;
+    const double p = mean_stress(kernel.world(), kernel.world().interior(kernel.world().mean_diameter())).trace() / 3;
     return (!c.below || p < *c.below) && (!c.above || p > *c.above);
   }
   bool operator()(const PressureCondition& c) const {
     return without_forces ||
-           std::abs(wall(simulation, c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
+           std::abs(wall(kernel.world(), c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
   }
   bool operator()(const LeftCondition& c) const {
-    return simulation.share_left() >= c.share * (1 - 1e-12) || simulation.ids().empty();
+    return kernel.state().discharged_fraction() >= c.share * (1 - 1e-12) || kernel.world().ids().empty();
   }
   bool operator()(const AllCondition& c) const {
     return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one->is.value()); });
@@ -97,32 +97,34 @@ bool has_choice(const Condition& condition) {
 }
 
 struct ShareReached {
-  const Simulation& simulation;
+  const Kernel& kernel;
   const StageStart& start;
 
-  std::optional<double> operator()(const TimeCondition& c) const { return (simulation.time() - start.time) / c.value; }
+  std::optional<double> operator()(const TimeCondition& c) const {
+    return (kernel.world().time() - start.time) / c.value;
+  }
   std::optional<double> operator()(const StepsCondition& c) const {
-    return static_cast<double>(simulation.step() - start.step) / static_cast<double>(c.value);
+    return static_cast<double>(kernel.world().step() - start.step) / static_cast<double>(c.value);
   }
   std::optional<double> operator()(const DisplacementCondition& c) const {
-    return stage_travel(c, simulation) / c.value;
+    return stage_travel(c, kernel.world()) / c.value;
   }
   std::optional<double> operator()(const LeftCondition& c) const {
     if (c.share <= start.share_left) return 1;
-    return (simulation.share_left() - start.share_left) / (c.share - start.share_left);
+    return (kernel.state().discharged_fraction() - start.share_left) / (c.share - start.share_left);
   }
   std::optional<double> operator()(const AllCondition& c) const {
     std::optional<double> least;
     bool all_tell = true;
     for (const auto& one : c.of)
-      if (const auto p = progress(*one, simulation, start)) least = least ? std::min(*least, *p) : p;
+      if (const auto p = progress(*one, kernel, start)) least = least ? std::min(*least, *p) : p;
       else all_tell = false;
     return all_tell || (least && *least < 1) ? least : std::nullopt;
   }
   std::optional<double> operator()(const AnyCondition& c) const {
     std::optional<double> most;
     for (const auto& one : c.of)
-      if (const auto p = progress(*one, simulation, start)) most = most ? std::max(*most, *p) : p;
+      if (const auto p = progress(*one, kernel, start)) most = most ? std::max(*most, *p) : p;
     return most;
   }
   template <class Other>
@@ -147,38 +149,39 @@ struct Wanting {
   }
 
   std::string operator()(const TimeCondition& c) const {
-    return "time " + number(met.simulation.time() - met.start.time) + " of " + number(c.value) + " s";
+    return "time " + number(met.kernel.world().time() - met.start.time) + " of " + number(c.value) + " s";
   }
   std::string operator()(const StepsCondition& c) const {
-    return std::to_string(met.simulation.step() - met.start.step) + " of " + std::to_string(c.value) + " steps";
+    return std::to_string(met.kernel.world().step() - met.start.step) + " of " + std::to_string(c.value) + " steps";
   }
   std::string operator()(const DisplacementCondition& c) const {
-    return "displacement of wall \"" + c.wall + "\" along " + c.axis + " " + number(stage_travel(c, met.simulation)) +
-           " of " + number(c.value) + " m";
+    return "displacement of wall \"" + c.wall + "\" along " + c.axis + " " +
+           number(stage_travel(c, met.kernel.world())) + " of " + number(c.value) + " m";
   }
   std::string operator()(const UnbalancedForceCondition& c) const {
-    const Unrest now = unrest(met.simulation);
+    const Unrest now = unrest(met.kernel.world());
     if (!(now.mean_contact_force > 0)) return "no force at any contact, by which to tell the unbalanced one";
     return "unbalanced force " + number(now.unbalanced_force) + between({}, c.below);
   }
   std::string operator()(const KineticEnergyCondition& c) const {
-    return "kinetic over elastic energy " + number(met.simulation.kinetic_energy_ratio()) + between({}, c.below);
+    return "kinetic over elastic energy " + number(met.kernel.kinetic_energy_ratio()) + between({}, c.below);
   }
   std::string operator()(const VoidRatioCondition& c) const {
-    const double e = void_ratio(met.simulation, met.simulation.interior(met.simulation.mean_diameter()));
+    const double e = void_ratio(met.kernel.world(), met.kernel.world().interior(met.kernel.world().mean_diameter()));
     return "void ratio of the interior " + number(e) + between(c.above, c.below);
   }
   std::string operator()(const MeanStressCondition& c) const {
-    const Mat3 stress = mean_stress(met.simulation, met.simulation.interior(met.simulation.mean_diameter()));
+    const Mat3 stress =
+        mean_stress(met.kernel.world(), met.kernel.world().interior(met.kernel.world().mean_diameter()));
     return "mean stress " + number(stress.trace() / 3) + " Pa" + between(c.above, c.below, " Pa");
   }
   std::string operator()(const PressureCondition& c) const {
-    return "pressure on wall \"" + c.wall + "\" " + number(wall(met.simulation, c.wall).pressure + 0.0) +
+    return "pressure on wall \"" + c.wall + "\" " + number(wall(met.kernel.world(), c.wall).pressure + 0.0) +
            " Pa, waits for " + number(c.value) + " Pa ± " + number(100 * c.within) + " %";
   }
   std::string operator()(const LeftCondition& c) const {
-    return number(100 * met.simulation.share_left()) + " % of the mass has left, waits for " + number(100 * c.share) +
-           " %";
+    return number(100 * met.kernel.state().discharged_fraction()) + " % of the mass has left, waits for " +
+           number(100 * c.share) + " %";
   }
   std::string operator()(const AllCondition& c) const { return joined(c.of, "; "); }
   std::string operator()(const AnyCondition& c) const {
@@ -223,29 +226,29 @@ struct Brief {
 
 }  // namespace
 
-bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  return std::visit(Met{simulation, start, false}, condition.is.value());
+bool is_met(const Condition& condition, const Kernel& kernel, const StageStart& start) {
+  return std::visit(Met{kernel, start, false}, condition.is.value());
 }
 
-bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  return std::visit(Met{simulation, start, true}, condition.is.value());
+bool may_be_met(const Condition& condition, const Kernel& kernel, const StageStart& start) {
+  return std::visit(Met{kernel, start, true}, condition.is.value());
 }
 
-std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  return has_choice(condition) ? in_words(condition, Met{simulation, start, false}) : "";
+std::string ended_by(const Condition& condition, const Kernel& kernel, const StageStart& start) {
+  return has_choice(condition) ? in_words(condition, Met{kernel, start, false}) : "";
 }
 
-std::string still_wanting(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  const std::string parts = Wanting{{simulation, start, false, true}}.of(condition);
+std::string still_wanting(const Condition& condition, const Kernel& kernel, const StageStart& start) {
+  const std::string parts = Wanting{{kernel, start, false, true}}.of(condition);
   return parts.empty() ? "what it waits for holds now, and did not when it was last looked at" : parts;
 }
 
-std::optional<double> time_without_a_step(const Condition& condition, const Simulation& simulation) {
-  return std::visit(Brief{0.5 * simulation.dt()}, condition.is.value());
+std::optional<double> time_without_a_step(const Condition& condition, const Kernel& kernel) {
+  return std::visit(Brief{0.5 * kernel.world().dt()}, condition.is.value());
 }
 
-std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start) {
-  const auto raw = std::visit(ShareReached{simulation, start}, condition.is.value());
+std::optional<double> progress(const Condition& condition, const Kernel& kernel, const StageStart& start) {
+  const auto raw = std::visit(ShareReached{kernel, start}, condition.is.value());
   return raw ? std::optional(std::clamp(*raw, 0.0, 1.0)) : std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "run/simulation.hpp"
+#include "kernel/kernel.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
@@ -23,23 +23,23 @@ inline constexpr std::uint64_t slow_conditions_every = 100;
 inline constexpr std::uint64_t stress_condition_every = 10;
 
 /// Whether the condition holds. Between looks, slow conditions count as not met.
-bool is_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
+bool is_met(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
 /// The same without looking at forces: false where the condition surely does not hold.
-bool may_be_met(const Condition& condition, const Simulation& simulation, const StageStart& start);
+bool may_be_met(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
 /// Which of several conditions ended a stage whose condition holds, "any" at any depth opened: "left", or "time and
 /// unbalanced-force"; "" where there was no choice.
-std::string ended_by(const Condition& condition, const Simulation& simulation, const StageStart& start);
+std::string ended_by(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
 /// What a condition that did not hold has come to, and what it waits for, part by part. Looks at slow ones, too.
-std::string still_wanting(const Condition& condition, const Simulation& simulation, const StageStart& start);
+std::string still_wanting(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
 /// How long a stage lasts that time ends before its first step, less than half a step; nothing of another.
-std::optional<double> time_without_a_step(const Condition& condition, const Simulation& simulation);
+std::optional<double> time_without_a_step(const Condition& condition, const Kernel& kernel);
 
 /// How far on the way the stage is, 0 … 1, where the condition tells: not where all that can be told has come true and
 /// it waits for something else.
-std::optional<double> progress(const Condition& condition, const Simulation& simulation, const StageStart& start);
+std::optional<double> progress(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
 }  // namespace grit

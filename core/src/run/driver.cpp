@@ -4,12 +4,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
+#include "kernel/stopwatch.hpp"
 #include "run/conditions.hpp"
-#include "run/number.hpp"
 #include "run/observer.hpp"
 #include "run/schedule.hpp"
-#include "run/stopwatch.hpp"
 #include "scene/placed_error.hpp"
 
 namespace grit {
@@ -23,9 +23,9 @@ constexpr double most_for_checkpoints = 0.01;
 
 class Run {
  public:
-  Run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control)
+  Run(const Scene& scene, Kernel& kernel, Recorder& recorder, const RunControl& control)
       : scene_(scene),
-        simulation_(simulation),
+        kernel_(kernel),
         recorder_(recorder),
         control_(control),
         frames_(scene.description->output.frames) {
@@ -34,17 +34,17 @@ class Run {
 
   RunSummary operator()() try {
     RunSummary summary;
-    for (const auto& [name, probe] : scene_.description->probes) observers_.emplace_back(name, probe, simulation_);
+    for (const auto& [name, probe] : scene_.description->probes) observers_.emplace_back(name, probe, world_);
     std::vector<ProbeGroup> groups;
     for (const Observer& observer : observers_) groups.push_back(observer.group());
     const bool resumes = control_.resume != nullptr;
     if (resumes) restore(*control_.resume);
-    recorder_.begin(simulation_, groups);
+    recorder_.begin(world_, groups);
     summary.status = "done";
     saved_ = std::chrono::steady_clock::now();
     try {
       if (!resumes) {
-        simulation_.find_forces();
+        kernel_.find_forces();
         begin_stage();
       }
       while (go_through_stage())
@@ -56,13 +56,13 @@ class Run {
     } catch (const PlacedError& error) {
       summary.status = "failed", summary.message = error.what();
       fill(summary);
-      recorder_.finish(simulation_, summary);
+      recorder_.finish(world_, summary);
       throw;
     }
     observe(true);
     if (!frames_.never()) frame();
     fill(summary);
-    recorder_.finish(simulation_, summary);
+    recorder_.finish(world_, summary);
     return summary;
   } catch (PlacedError& error) {
     error.begun(stages_begun_);
@@ -76,10 +76,10 @@ class Run {
 
   void begin_stage() {
     stages_begun_ = stage_ + 1;
-    simulation_.begin_stage(scene_.description->stages[stage_].name, *plan().start);
-    start_ = {simulation_.time(), simulation_.step(), simulation_.share_left()};  // with what has come
-    for (Observer& observer : observers_) observer.schedule().restart(simulation_);
-    frames_.restart(simulation_);
+    kernel_.begin_stage(scene_.description->stages[stage_].name, *plan().start);
+    start_ = {world_.time(), world_.step(), kernel_.state().discharged_fraction()};  // with what has come
+    for (Observer& observer : observers_) observer.schedule().restart(kernel_);
+    frames_.restart(kernel_);
     ramped_ = 0;
   }
 
@@ -90,8 +90,8 @@ class Run {
     for (Observer& observer : observers_)
       if (observer.watches(stage.name)) watching_.push_back(&observer);
     wall_start_ = last_report_ = std::chrono::steady_clock::now();
-    last_report_steps_ = simulation_.step();
-    begun_at_ = control_.progress ? progress(stage.until, simulation_, start_).value_or(0) : 0;
+    last_report_steps_ = world_.step();
+    begun_at_ = control_.progress ? progress(stage.until, kernel_, start_).value_or(0) : 0;
 
     for (;;) {
       // Asked once a step: what is saved is where the run stops.
@@ -99,7 +99,7 @@ class Run {
       if (stops || checkpoint_is_due()) save();
       ramp(stage);
       // Asked before forces, whose time step may be another: a stage ends the same, whoever looks.
-      const bool may_end = may_be_met(stage.until, simulation_, start_);
+      const bool may_end = may_be_met(stage.until, kernel_, start_);
       ask_who_looks();
       if (!may_end && !stops && !is_looked_at(stage)) {
         step_on();
@@ -107,7 +107,7 @@ class Run {
         continue;
       }
       step_forces();
-      const bool met = may_end && is_met(stage.until, simulation_, start_);
+      const bool met = may_end && is_met(stage.until, kernel_, start_);
       observe(met);
       if (met) {
         refuse_without_a_step(stage);
@@ -116,19 +116,18 @@ class Run {
       if (stops) return false;  // here, where positions and forces are of one instant
       if (too_late(stage))
         throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
-                            " s: " + still_wanting(stage.until, simulation_, start_) + " (" + reached() +
+                            " s: " + still_wanting(stage.until, kernel_, start_) + " (" + reached() +
                             "); give it more time (/stages/" + std::to_string(stage_) +
                             "/limit) or a condition that it can reach");
       step_bodies();
       report(stage);
     }
-    const std::string by = ended_by(stage.until, simulation_, start_),
-                      behind = simulation_.wall_states().fallen_behind();
-    simulation_.end_stage();
-    recorder_.stage_ended(simulation_,
+    const std::string by = ended_by(stage.until, kernel_, start_), behind = kernel_.state().walls.fallen_behind();
+    kernel_.end_stage();
+    recorder_.stage_ended(world_,
                           (by.empty() ? "" : "by " + by + ", ") + reached() + (behind.empty() ? "" : "; " + behind));
     if (stage.expect.void_ratio) {
-      const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
+      const double e = void_ratio(world_, world_.interior(world_.mean_diameter()));
       if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
         throw NumericsError("stage \"" + stage.name + "\" was to end at a void ratio of " +
                             number(*stage.expect.void_ratio) + " ± " + number(stage.expect.within) + " and reached " +
@@ -151,9 +150,9 @@ class Run {
       recorder_.flush();
       Memory memory;
       memory(stage_, ramped_);
-      simulation_.save(memory);
+      kernel_.save(memory);
       remember(memory);
-      recorder_.checkpoint({simulation_.stage(), simulation_.time(), simulation_.step(), memory.bytes()});
+      recorder_.checkpoint({world_.stage(), world_.time(), world_.step(), memory.bytes()});
     }
     saved_ = std::chrono::steady_clock::now(), saving_ = seconds_since(began);
   }
@@ -165,7 +164,7 @@ class Run {
     if (stage_ >= scene_.stages.size() || ramped_ > plan().ramp.size())
       throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
                   std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
-    simulation_.restore(ramped_ > 0 ? *plan().ramp[ramped_ - 1] : *plan().start, memory);
+    kernel_.restore(ramped_ > 0 ? *plan().ramp[ramped_ - 1] : *plan().start, memory);
     remember(memory);
     if (!memory.at_end()) throw Error("a checkpoint has more in it than the run remembers");
   }
@@ -179,18 +178,18 @@ class Run {
   }
 
   void refuse_without_a_step(const StageDescription& stage) const {
-    if (simulation_.step() > start_.step) return;
-    if (const auto lasts = time_without_a_step(stage.until, simulation_))
+    if (world_.step() > start_.step) return;
+    if (const auto lasts = time_without_a_step(stage.until, kernel_))
       throw NumericsError("stage \"" + stage.name + "\" lasts " + number(*lasts) +
-                          " s, less than half of the time step of " + number(simulation_.dt()) +
+                          " s, less than half of the time step of " + number(world_.dt()) +
                           " s, so that it would take no step; give it more time (/stages/" + std::to_string(stage_) +
                           "/until) or a shorter step (/time_step)");
   }
-  bool too_late(const StageDescription& stage) const { return simulation_.time() - start_.time > stage.limit; }
-  bool is_time_to_count() const { return simulation_.step() % contacts_counted_every == 0; }
+  bool too_late(const StageDescription& stage) const { return world_.time() - start_.time > stage.limit; }
+  bool is_time_to_count() const { return world_.step() % contacts_counted_every == 0; }
   void ask_who_looks() {
-    frames_.ask(simulation_);
-    for (Observer* observer : watching_) observer->schedule().ask(simulation_);
+    frames_.ask(kernel_);
+    for (Observer* observer : watching_) observer->schedule().ask(kernel_);
   }
   /// Whether somebody may ask for the forces of this instant.
   bool is_looked_at(const StageDescription& stage) {
@@ -200,20 +199,20 @@ class Run {
 
   void step_on() {
     const Stopwatch watch(stepping_);
-    simulation_.step_on();
+    kernel_.step_on();
   }
   void step_forces() {
     const Stopwatch watch(stepping_);
-    simulation_.find_forces();
+    kernel_.find_forces();
   }
   void step_bodies() {
     const Stopwatch watch(stepping_);
-    simulation_.advance();
+    kernel_.advance();
   }
 
   /// Applies the increments of the stage's ramps that are due; ramps follow one another.
   void ramp(const StageDescription& stage) {
-    double since = simulation_.time() - start_.time;
+    double since = world_.time() - start_.time;
     std::size_t due = 0;
     for (const RampDescription& one : stage.ramps) {
       const auto increments = static_cast<double>(one.increments);
@@ -224,7 +223,7 @@ class Run {
     }
     if (due == ramped_) return;
     ramped_ = due;
-    simulation_.change(*plan().ramp[due - 1]);
+    kernel_.change(*plan().ramp[due - 1]);
   }
 
   void observe(bool all) {
@@ -236,76 +235,78 @@ class Run {
     const Stopwatch watch(phases_[0].seconds);
     for (std::size_t i = 0; i < observers_.size(); ++i) {
       Observer& observer = observers_[i];
-      if (!observer.watches(simulation_.stage())) continue;
-      if (all || observer.schedule().is_due()) observer.sample(i, simulation_, recorder_);
+      if (!observer.watches(world_.stage())) continue;
+      if (all || observer.schedule().is_due()) observer.sample(i, world_, recorder_);
     }
-    if (is_time_to_count() && simulation_.positions().size() > 0)
-      contact_sum_ +=
-          2.0 * static_cast<double>(simulation_.pair_count()) / static_cast<double>(simulation_.positions().size()),
+    if (is_time_to_count() && world_.positions().size() > 0)
+      contact_sum_ += 2.0 * static_cast<double>(kernel_.state().pairs.touching_count()) /
+                      static_cast<double>(world_.positions().size()),
           ++contact_samples_;
   }
 
   void frame() {
-    if (last_frame_ == simulation_.step()) return;
-    last_frame_ = simulation_.step();
+    if (last_frame_ == world_.step()) return;
+    last_frame_ = world_.step();
     const Stopwatch watch(phases_[1].seconds);
     std::vector<FieldGroup> fields;
     for (const Observer& observer : observers_)
-      if (observer.in_frames() && observer.watches(simulation_.stage())) fields.push_back(observer.fields(simulation_));
-    recorder_.frame(simulation_, fields);
+      if (observer.in_frames() && observer.watches(world_.stage())) fields.push_back(observer.fields(world_));
+    recorder_.frame(world_, fields);
   }
 
   void report(const StageDescription& stage) {
-    if (!control_.progress || simulation_.step() % 8 != 0) return;
+    if (!control_.progress || world_.step() % 8 != 0) return;
     const double since = seconds_since(last_report_);
     if (since < control_.progress_every) return;
     Progress now;
     now.stage = stage.name, now.stage_number = stage_ + 1, now.stages = scene_.stages.size();
-    now.fraction = progress(stage.until, simulation_, start_);
+    now.fraction = progress(stage.until, kernel_, start_);
     const double wall = seconds_since(wall_start_);
     if (const double gone = now.fraction.value_or(0) - begun_at_; gone > 1e-3)
       now.seconds_left = wall * (1 - *now.fraction) / gone;
-    now.time = simulation_.time();
-    now.particle_steps_per_second = static_cast<double>(simulation_.step() - last_report_steps_) *
-                                    static_cast<double>(simulation_.positions().size()) / since;
-    last_report_ = std::chrono::steady_clock::now(), last_report_steps_ = simulation_.step();
+    now.time = world_.time();
+    now.particle_steps_per_second = static_cast<double>(world_.step() - last_report_steps_) *
+                                    static_cast<double>(world_.positions().size()) / since;
+    last_report_ = std::chrono::steady_clock::now(), last_report_steps_ = world_.step();
     control_.progress(now);
   }
 
   /// What the specimen is like, in words.
   std::string reached() const {
-    const Unrest now = unrest(simulation_);
+    const Unrest now = unrest(world_);
     std::string text = "unbalanced force " + number(now.unbalanced_force);
-    const double e = void_ratio(simulation_, simulation_.interior(simulation_.mean_diameter()));
-    const double overall = void_ratio(simulation_, simulation_.specimen());
+    const double e = void_ratio(world_, world_.interior(world_.mean_diameter()));
+    const double overall = void_ratio(world_, world_.specimen());
     if (std::isfinite(e) && std::isfinite(overall))
       text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
     const auto comes_later = [](const auto& group) { return !group.second.stage.empty(); };
     if (std::ranges::any_of(scene_.description->bodies, comes_later))
-      text = std::to_string(simulation_.positions().size()) + " bodies, " + text;
-    if (simulation_.share_left() > 0) text += ", " + number(100 * simulation_.share_left()) + " % of the mass has left";
-    return text + ", time " + number(simulation_.time() - start_.time) + " s";
+      text = std::to_string(world_.positions().size()) + " bodies, " + text;
+    if (kernel_.state().discharged_fraction() > 0)
+      text += ", " + number(100 * kernel_.state().discharged_fraction()) + " % of the mass has left";
+    return text + ", time " + number(world_.time() - start_.time) + " s";
   }
 
   void fill(RunSummary& summary) const {
-    const std::size_t bodies = simulation_.positions().size();
-    summary.stage = simulation_.stage();
-    summary.time = simulation_.time(), summary.steps = simulation_.step();
-    summary.time_step = simulation_.dt(), summary.critical_time_step = simulation_.clock().critical_time_step;
+    const std::size_t bodies = world_.positions().size();
+    summary.stage = world_.stage();
+    summary.time = world_.time(), summary.steps = world_.step();
+    summary.time_step = world_.dt(), summary.critical_time_step = kernel_.critical_time_step();
     summary.bodies = bodies;
     summary.contacts_per_body = contact_samples_ > 0 ? contact_sum_ / static_cast<double>(contact_samples_) : 0;
     summary.wall_seconds = stepping_;
-    summary.particle_steps_per_second = stepping_ > 0 ? simulation_.body_steps() / stepping_ : 0;
-    summary.rebuilds = simulation_.clock().rebuilds;
-    summary.threads = simulation_.threads();
-    summary.model = simulation_.model();
-    summary.phases = simulation_.phases();
+    summary.particle_steps_per_second = stepping_ > 0 ? kernel_.body_steps() / stepping_ : 0;
+    summary.rebuilds = kernel_.state().lists.rebuilds();
+    summary.threads = kernel_.threads();
+    summary.model = kernel_.model();
+    summary.phases = kernel_.phases();
     summary.phases.insert(summary.phases.end(), phases_.begin(), phases_.end());
     for (const Observer& observer : observers_) summary.probes.push_back(observer.cost());
   }
 
   const Scene& scene_;
-  Simulation& simulation_;
+  Kernel& kernel_;
+  const World& world_ = kernel_.world();
   Recorder& recorder_;
   const RunControl& control_;
   Schedule frames_;
@@ -325,8 +326,8 @@ class Run {
 
 }  // namespace
 
-RunSummary run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control) {
-  return Run(scene, simulation, recorder, control)();
+RunSummary run(const Scene& scene, Kernel& kernel, Recorder& recorder, const RunControl& control) {
+  return Run(scene, kernel, recorder, control)();
 }
 
 }  // namespace grit

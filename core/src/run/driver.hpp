@@ -8,8 +8,8 @@
 #include <string>
 
 #include "input/scene.hpp"
+#include "kernel/kernel.hpp"
 #include "run/recorder.hpp"
-#include "run/simulation.hpp"
 
 namespace grit {
 
@@ -35,6 +35,6 @@ struct RunControl {
 /// end, an expectation that was not met; the message says which); in all three cases everything was recorded, the last
 /// instant included. Other errors are thrown. A run that is interrupted has saved a checkpoint; one that goes on from
 /// it gives the same bits as one that was never stopped, apart from what was recorded after the checkpoint.
-RunSummary run(const Scene& scene, Simulation& simulation, Recorder& recorder, const RunControl& control);
+RunSummary run(const Scene& scene, Kernel& kernel, Recorder& recorder, const RunControl& control);
 
 }  // namespace grit

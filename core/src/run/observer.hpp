@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "run/component_memory.hpp"
+#include "kernel/stopwatch.hpp"
+#include "plugins/component_memory.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
-#include "run/stopwatch.hpp"
 #include "scene/placed_error.hpp"
 
 namespace grit {

@@ -10,6 +10,7 @@
 #include "grit/memory.hpp"
 #include "grit/probe.hpp"
 #include "grit/world.hpp"
+#include "kernel/model.hpp"
 
 namespace grit {
 
@@ -25,29 +26,11 @@ struct FieldGroup {
   std::vector<Field> fields;
 };
 
-/// What a phase of the step cost.
-struct PhaseTime {
-  std::string name;
-  double seconds = 0;
-};
-
 /// What the samples of a probe cost.
 struct ProbeTime {
   std::string name;
   std::uint64_t samples = 0;
   double seconds = 0;  ///< of all of them together, without writing them
-};
-
-/// What was stored and computed; the rest was left out, because nothing asked for it.
-struct Model {
-  std::size_t lanes = 1;                   ///< pairs that the contact law's loop takes at once
-  std::string precision;                   ///< of its arithmetic
-  std::vector<std::string> law_parts;      ///< of the contact law, compiled into that loop
-  std::vector<std::string> contact_state;  ///< what each contact remembers
-  std::vector<std::string> body_state;     ///< of bodies, beyond position, velocity and spin
-  std::vector<std::string> materials;      ///< in the order of their numbers
-  bool one_material = true, periodic = false, walls = false, gravity = false, local_damping = false;
-  std::size_t bytes = 0;  ///< held by bodies and contacts
 };
 
 /// How a run ended.

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "grit/memory.hpp"
-#include "run/simulation.hpp"
+#include "kernel/kernel.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
@@ -15,13 +15,13 @@ namespace grit {
 class Schedule {
  public:
   explicit Schedule(const Cadence& cadence) : cadence_(cadence) {}
-  void restart(const Simulation& now) {
-    first_time_ = now.time(), first_step_ = now.step(), first_left_ = now.share_left();
+  void restart(const Kernel& now) {
+    first_time_ = now.world().time(), first_step_ = now.world().step(), first_left_ = now.state().discharged_fraction();
     count_ = 0, level_ = 0, began_ = true, due_ = false;
   }
   /// Decides about this step, and goes on to the next time. To be asked once a step, before forces, which may change
   /// the time step and let bodies leave: then it is due at the same steps, whoever else looks.
-  void ask(const Simulation& now) {
+  void ask(const Kernel& now) {
     const bool by_time = due_by_time(now), by_mass = due_by_mass(now), by_displacement = due_by_displacement(now);
     due_ = by_time || by_mass || by_displacement || due_by_steps(now);
     if (by_time) ++count_;
@@ -34,27 +34,30 @@ class Schedule {
 
  private:
   // Counted, not summed up, so that the instants do not drift.
-  bool due_by_time(const Simulation& now) const {
-    return cadence_.every_time &&
-           now.time() >= first_time_ + static_cast<double>(count_) * *cadence_.every_time - 0.5 * now.dt();
+  bool due_by_time(const Kernel& now) const {
+    return cadence_.every_time && now.world().time() >= first_time_ +
+                                                            static_cast<double>(count_) * *cadence_.every_time -
+                                                            0.5 * now.world().dt();
   }
-  bool due_by_steps(const Simulation& now) const {
+  bool due_by_steps(const Kernel& now) const {
     return cadence_.every_steps > 0 &&
-           (now.step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
+           (now.world().step() - first_step_) % static_cast<std::uint64_t>(cadence_.every_steps) == 0;
   }
-  bool due_by_mass(const Simulation& now) const {
+  bool due_by_mass(const Kernel& now) const {
     return cadence_.every_left && shares(now) >= static_cast<double>(count_);
   }
-  bool due_by_displacement(const Simulation& now) const {
+  bool due_by_displacement(const Kernel& now) const {
     return cadence_.every_displacement && (began_ || std::abs(beyond(now)) >= 1);
   }
 
   /// Whole and part shares of the mass that have left since the stage began; a hair more, for rounding.
-  double shares(const Simulation& now) const { return (now.share_left() - first_left_) / *cadence_.every_left + 1e-9; }
+  double shares(const Kernel& now) const {
+    return (now.state().discharged_fraction() - first_left_) / *cadence_.every_left + 1e-9;
+  }
   /// Displacements since the last time, in its direction; a hair more, for rounding.
-  double beyond(const Simulation& now) const {
+  double beyond(const Kernel& now) const {
     const auto& [wall, axis, value] = *cadence_.every_displacement;
-    const Walls& walls = now.wall_states();  // asked at each step, for which views of all walls would be made
+    const Walls& walls = now.state().walls;  // asked at each step, for which views of all walls would be made
     std::size_t w = 0;
     while (walls.name(w) != wall) ++w;
     const WallState& state = walls.states()[w];

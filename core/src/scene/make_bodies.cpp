@@ -142,7 +142,7 @@ Newcomers make_newcomers(const SceneDescription& scene, const std::string& stage
   Random random = random_of(scene, stage);
   for (const auto& [name, group] : scene.bodies) {
     if (group.stage.empty() || group.stage != stage) continue;
-    newcomers.groups.push_back({name, newcomers.bodies.ids_given});
+    newcomers.groups.push_back({name, newcomers.bodies.ids_given, group.overlap});
     try {
       add_group(scene, group, cell, there, random, newcomers.bodies);
       check_inside(cell, newcomers.bodies);

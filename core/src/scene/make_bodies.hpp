@@ -35,6 +35,7 @@ struct Newcomers {
   struct Group {
     std::string name;
     std::uint32_t first_id;
+    double overlap;  ///< with bodies and walls that are there, at most, over the smaller radius
   };
   Bodies bodies;
   std::vector<Group> groups;  ///< in the order of their names

@@ -1,0 +1,97 @@
+#include "domain/boundaries.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grit {
+namespace {
+
+bool may_leave(const std::vector<std::string>& open_sides, int axis, bool high) {
+  const std::string side = std::string(high ? "+" : "-") + "xyz"[axis];
+  return std::ranges::find(open_sides, side) != open_sides.end();
+}
+
+}  // namespace
+
+Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::vector<std::string>& open_sides,
+             const std::function<void(std::size_t body, int axis, bool high)>& escaped) {
+  const Vec3 period = cell.high - cell.low;
+  Wrapped result{std::vector<bool>(bodies.count(), false)};
+  const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
+  const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
+  // A body that re-enters goes with the mean flow there.
+  const auto jump = [](double& speed, double by, double inverse_mass) {
+    const double before = speed;
+    speed -= by;
+    return 0.5 / inverse_mass * (speed * speed - before * before);
+  };
+  // A clump leaves as a whole, by its centre.
+  for (Clump& clump : bodies.clumps.clump)
+    for (int k = 0; k < 3; ++k) {
+      if (!cell.periodic[k]) {
+        if (!outside(clump.centre, k) || !may_leave(open_sides, k, clump.centre[k] > cell.high[k])) continue;
+        for (std::uint32_t s = clump.first; s < clump.last; ++s) result.leaves[bodies.clumps.spheres[s]] = true;
+        continue;
+      }
+      const double periods = periods_off(clump.centre, k);
+      if (periods == 0) continue;
+      clump.centre[k] -= periods * period[k];
+      result.energy_gained += jump(clump.velocity[k], periods * growth[k], clump.inverse_mass);
+      for (std::uint32_t s = clump.first; s < clump.last; ++s)
+        bodies.clumps.of_body[bodies.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
+            static_cast<std::int8_t>(periods);
+    }
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    Vec3 x = xyz(bodies.position[i]), v = xyz(bodies.velocity[i]);
+    const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
+    bool moved = false;
+    for (int k = 0; k < 3; ++k) {
+      if (!cell.periodic[k]) {
+        const bool high = x[k] > cell.high[k];
+        if (!outside(x, k)) continue;
+        if (!may_leave(open_sides, k, high)) escaped(i, k, high);
+        if (!in_clump) result.leaves[i] = true;
+        continue;
+      }
+      const double periods = periods_off(x, k);
+      if (periods == 0) continue;
+      x[k] -= periods * period[k];
+      if (!bodies.origin.empty()) bodies.origin[i][k] -= periods * period[k];
+      const double own = jump(v[k], periods * growth[k], bodies.velocity[i].w);
+      if (!in_clump) result.energy_gained += own;
+      if (in_clump) bodies.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
+      else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
+      moved = true;
+    }
+    if (!moved) continue;
+    bodies.position[i] = {x.x(), x.y(), x.z(), bodies.position[i].w};
+    bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
+  }
+  return result;
+}
+
+std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time, const Vec3& gravity) {
+  std::vector<Leaving> all;
+  const auto add = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass, double turning) {
+    all.push_back(
+        {{.id = bodies.id[i], .material = bodies.material[i], .time = time, .mass = 1 / inverse_mass, .position = x},
+         0.5 / inverse_mass * v.squaredNorm() + turning,
+         -gravity.dot(x) / inverse_mass});
+  };
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < bodies.count(); ++i)
+    if (leaves[i]) indices.push_back(i);
+  std::ranges::sort(indices, {}, [&](std::size_t i) { return bodies.id[i]; });
+  for (const std::size_t i : indices) {
+    const std::uint32_t c = bodies.clumps.clump_of(i);
+    if (c == no_clump) {
+      add(i, xyz(bodies.position[i]), xyz(bodies.velocity[i]), bodies.velocity[i].w,
+          0.5 / bodies.spin[i].w * xyz(bodies.spin[i]).squaredNorm());
+    } else if (const Clump& clump = bodies.clumps.clump[c]; bodies.clumps.spheres[clump.first] == i) {
+      add(i, clump.centre, clump.velocity, clump.inverse_mass, 0.5 * clump.momentum.dot(clump.spin));
+    }
+  }
+  return all;
+}
+
+}  // namespace grit

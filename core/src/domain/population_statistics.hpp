@@ -1,0 +1,31 @@
+// Sizes and masses of all bodies that ever entered the domain.
+#pragma once
+
+#include <cstddef>
+
+#include "grit/memory.hpp"
+#include "scene/bodies.hpp"
+
+namespace grit {
+
+/// A clump counts as one particle, of the diameter of its enclosing sphere.
+struct PopulationStatistics {
+  std::size_t particles = 0;                       ///< single spheres and clumps
+  double mass = 0, diameters = 0, solids = 0;      ///< sums over particles: kg, m, m³
+  double mean_diameter = 0, solid_density = 0;     ///< m, kg/m³
+  double largest_radius = 0, smallest_radius = 0;  ///< of spheres [m]
+  double heaviest = 0;  ///< largest mass over radius cubed of a sphere, or of its clump [kg/m³]
+  bool one_material = true;
+
+  /// Counts the bodies from `first` on, and the clumps from `first_clump` on.
+  void add(const Bodies& bodies, std::size_t first, std::size_t first_clump);
+  /// All lengths have grown by `factor`; `mass_inside` [kg] has grown by its cube.
+  void grow(double factor, double mass_inside);
+
+  void remember(Memory& memory) {
+    memory(particles, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius, heaviest,
+           one_material);
+  }
+};
+
+}  // namespace grit

@@ -1,0 +1,90 @@
+#include "kernel/arrivals.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "format/number.hpp"
+#include "kernel/failure.hpp"
+
+namespace grit {
+namespace {
+
+struct Overlap {
+  double share = 0;  // over the smaller radius
+  std::uint32_t body = 0, other = 0;
+  bool with_wall = false;
+};
+
+/// Calls use(Overlap) for every overlap of a new body with an old one or a wall.
+template <class IsNew, class Use>
+void each_overlap(const State& state, const World& world, IsNew is_new, Use use) {
+  const Bodies& bodies = state.bodies;
+  Skins none;
+  none.lay_on(std::vector<double>(chunks_of(bodies.count()), 0.0), 0);
+  NeighbourSearch search;
+  search.build(bodies, state.cell.cell(), none);
+  std::vector<Candidate> found;
+  for (std::uint32_t body = 0; body < bodies.count(); ++body) {
+    found.clear();
+    search.neighbours(bodies, body, found);
+    for (const Candidate& c : found) {
+      if (!c.touching() || is_new(c.a) == is_new(c.b)) continue;
+      const Row &a = bodies.position[c.a], &b = bodies.position[c.b];
+      const double distance = (xyz(b) - xyz(a) + xyz(state.cell.images()[c.image].position)).norm();
+      const double share = (a.w + b.w - distance) / std::min(a.w, b.w);
+      use(Overlap{share, is_new(c.a) ? c.a : c.b, is_new(c.a) ? c.b : c.a, false});
+    }
+    if (!is_new(body)) continue;
+    const Row& x = bodies.position[body];
+    for (std::uint32_t wall = 0; wall < state.walls.size(); ++wall)
+      if (const auto near = world.clearance(wall, xyz(x), x.w))
+        use(Overlap{(x.w - near->distance) / x.w, body, wall, true});
+  }
+}
+
+}  // namespace
+
+void match_velocities(Bodies& arriving, const State& state) {
+  const Vec3 fall = 0.5 * state.time.previous_dt *
+                    state.next_motion(false).free_translation().cwiseProduct(state.settings.motion.gravity);
+  const auto change = [&](const Vec3& place) -> Vec3 {
+    return state.cell.deforms() ? Vec3(state.cell.mean_flow(place) - fall) : Vec3(-fall);
+  };
+  for (std::size_t i = 0; i < arriving.count(); ++i) {
+    const std::uint32_t c = arriving.clumps.clump_of(i);
+    const Vec3 v = change(c == no_clump ? xyz(arriving.position[i]) : arriving.clumps.clump[c].centre);
+    arriving.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
+  }
+  for (Clump& clump : arriving.clumps.clump) clump.velocity += change(clump.centre);
+}
+
+void check_arrivals(const State& state, const World& world, const std::vector<Newcomers::Group>& groups) {
+  const Bodies& bodies = state.bodies;
+  const auto group_of = [&](std::uint32_t body) -> const Newcomers::Group& {
+    const auto next = std::ranges::upper_bound(groups, bodies.id[body], {}, &Newcomers::Group::first_id);
+    return *std::prev(next);
+  };
+  Overlap deepest;
+  std::size_t count = 0;
+  each_overlap(
+      state, world, [&](std::uint32_t body) { return bodies.id[body] >= groups.front().first_id; },
+      [&](const Overlap& one) {
+        if (!(one.share > group_of(one.body).overlap)) return;
+        ++count;
+        if (one.share > deepest.share) deepest = one;
+      });
+  if (count == 0) return;
+  const Newcomers::Group& group = group_of(deepest.body);
+  fail_at_body(state, Guard::arrival, deepest.body,
+               "of the group \"" + group.name + "\" appears inside " +
+                   (deepest.with_wall ? "wall \"" + state.walls.name(deepest.other) + "\""
+                                      : "body " + std::to_string(bodies.id[deepest.other])) +
+                   ": they overlap by " + number(deepest.share) + " of " + (deepest.with_wall ? "its" : "the smaller") +
+                   " radius, more than /bodies/" + group.name + "/overlap " + number(group.overlap) +
+                   (count > 1 ? ", the deepest of " + std::to_string(count) + " such pairs" : ""),
+               deepest.with_wall
+                   ? "place it in front of the wall; the box of a cloud must be clear of walls"
+                   : "place it where nothing is, let it come in another stage, or take a cloud, which keeps clear");
+}
+
+}  // namespace grit

@@ -1,0 +1,91 @@
+// Where the energy is, and where it came from and went.
+#pragma once
+
+#include "grit/world.hpp"
+#include "kernel/passes.hpp"
+#include "kernel/state.hpp"
+
+namespace grit {
+
+/// Energies of a state, and the balance of what came in and went out since a component first asked. Until then the
+/// balance costs nothing. All energies in J, all powers in W.
+class EnergyBalance {
+ public:
+  EnergyBalance(const State& state, const World& world, Passes& passes)
+      : state_(state), world_(world), passes_(passes) {}
+
+  /// Of contacts, with bodies `factor` times as large.
+  ElasticEnergy elastic(double factor = 1) const;
+  /// At the present instant, by the forces that act there.
+  double kinetic() const;
+  double gravitational() const;
+  /// Power of the walls by the forces on them, as they moved last.
+  double power_of_walls() const;
+  /// All terms. The first call begins the balance.
+  EnergyLedger terms();
+
+  bool begun() const { return flows_.begun; }
+  /// Whether the terms of steps are summed up.
+  bool is_kept() const { return state_.bodies.energies() && flows_.begun; }
+  double dissipated_by_dashpots() const { return flows_.lost.viscosity; }
+
+  /// Runs `change`, which changes settings, and books the change of elastic or kinetic energy as put in by settings.
+  template <class Change>
+  void book_elastic(Change change) {
+    const double before = flows_.begun ? elastic().total() : 0;
+    change();
+    if (flows_.begun) flows_.settings += elastic().total() - before;
+  }
+  void add_settings(double energy) {
+    if (flows_.begun) flows_.settings += energy;
+  }
+  void add_cell(double energy) {
+    if (flows_.begun) flows_.cell += energy;
+  }
+  /// Energy put in by settings less all that is stored, so that bodies can enter: what they store is booked as put in.
+  double settings_less_stored();
+  void set_settings_less_stored(double value);
+
+  /// After an evaluation, while contacts across periodic boundaries are at hand.
+  void find_crossing();
+  void add_losses();
+  /// Before bodies grow by the logarithm `grown` of a factor in this step.
+  void before_growth(double grown);
+  bool has_growth() const { return flows_.grown > 0; }
+  /// Work of engines and of the cell in a step, half by the forces at its start, half by those at its end: call before
+  /// and after bodies move.
+  void before_motion(const MotionStep& step);
+  void after_motion(const MotionStep& step);
+  /// After walls were driven: `work` of the walls in the step, and what chunks report of the motion.
+  void add_step(double work_of_walls);
+
+  void remember(Memory& memory);
+
+ private:
+  struct Flows {
+    bool begun = false;
+    double at_start = 0;
+    Losses lost;
+    double damped = 0, fallen = 0;
+    double walls = 0, cell = 0, engines = 0;  // but for half of the last step
+    double settings = 0;                      // but for half of the growth in the last step
+    double grown = 0;                         // logarithm of that
+  };
+  ElasticEnergy elastic(std::size_t chunk, double factor) const;
+  /// Change of elastic energy with the logarithm of the growth factor.
+  double elastic_by_growth() const;
+  double power_of_engines(std::size_t chunk) const;
+  double power_of_engines() const;
+  double power_of_cell(const Vec3& growth) const { return -crossing_.dot(growth); }
+  double power_of_flow() const;
+
+  const State& state_;
+  const World& world_;
+  Passes& passes_;
+  Flows flows_;
+  double engines_in_step_ = 0, cell_in_step_ = 0;
+  /// Sum over contacts across periodic boundaries: periods along each axis times the force on the far end [N].
+  Vec3 crossing_ = Vec3::Zero();
+};
+
+}  // namespace grit

@@ -1,0 +1,66 @@
+#include "kernel/energy_guard.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "format/number.hpp"
+#include "kernel/failure.hpp"
+
+namespace grit {
+namespace {
+
+// Energies are checked so often, and at 64, 128 and 256 steps after a change, so that the largest is known.
+constexpr std::uint64_t check_every = 500, first_check = 64;
+
+/// Whether all that changes the stored energy is summed up at each step, though no balance is kept.
+bool all_work_is_known(const State& state) {
+  const Settings& settings = state.settings;
+  bool known = settings.growth_rate == 0 && !state.cell.deforms() && !settings.engines_do_work();
+  // There is no potential along a periodic axis.
+  for (int k = 0; k < 3; ++k) known = known && !(state.cell.cell().periodic[k] && settings.motion.gravity[k] != 0);
+  return known;
+}
+
+}  // namespace
+
+bool EnergyGuard::due(std::uint64_t step) const {
+  const std::uint64_t since = step - first_;
+  return begins_ || step % check_every == 0 ||
+         (since >= first_check && since < check_every && std::has_single_bit(since));
+}
+
+void EnergyGuard::check(const State& state, EnergyBalance& balance) {
+  const bool begins = std::exchange(begins_, false), by_balance = balance.begun();
+  if (!by_balance && !all_work_is_known(state)) {
+    if (begins) stored_at_start_ = std::numeric_limits<double>::quiet_NaN();  // nothing exceeds that
+    return;
+  }
+  const EnergyLedger terms = by_balance ? balance.terms() : EnergyLedger{};
+  const double energy = by_balance ? terms.kinetic + terms.elastic() : balance.kinetic() + balance.elastic().total();
+  const double stored = by_balance ? 0 : energy + balance.gravitational();
+  const double last_half = by_balance ? 0 : 0.5 * state.time.previous_dt * balance.power_of_walls();
+  if (begins) {
+    first_ = state.time.step, stored_at_start_ = stored, work_ = -last_half, largest_ = energy;
+    closure_at_start_ = terms.closure_error, dissipated_at_start_ = terms.dissipated();
+    return;
+  }
+  largest_ = std::max(largest_, energy);
+  const double gained =
+      by_balance ? terms.closure_error - closure_at_start_ : stored - stored_at_start_ - (work_ + last_half);
+  // A balance may be wrong by a fraction of the energy that went through.
+  const double scale = largest_ + (terms.dissipated() - dissipated_at_start_);
+  const double allowed = state.settings.guards.energy;
+  if (gained > allowed * scale)
+    fail(state, Guard::energy,
+         "energy came from nowhere: " + number(gained) + " J more than was put in, " + number(gained / scale) +
+             " of the largest energy so far" + (by_balance ? " and of what was dissipated" : "") +
+             "; /guards/energy allows " + number(allowed),
+         "the time step may be too large for the stiffest contact; try a smaller /time_step/safety" +
+             std::string(state.walls.any_servo() && balance.dissipated_by_dashpots() > 0
+                             ? ", or a lower max_velocity of a servo that closes on grains with dashpots"
+                             : ""));
+}
+
+}  // namespace grit

@@ -1,0 +1,37 @@
+// Stops a simulation in which energy is created.
+#pragma once
+
+#include <cstdint>
+
+#include "kernel/energy_balance.hpp"
+
+namespace grit {
+
+/// Only gains trip the guard. It goes by the energy balance where one is kept, else by the stored energy, so that
+/// dissipation hides gains. Without a balance it does not check where work is done that is not summed up at each step.
+class EnergyGuard {
+ public:
+  /// Starts again with the next forces, as settings have changed.
+  void restart() { *this = {}; }
+  /// Whether this step is one of those that are checked.
+  bool due(std::uint64_t step) const;
+  /// Throws NumericsError if more energy appeared than /guards/energy allows.
+  void check(const State& state, EnergyBalance& balance);
+  void add_work_of_walls(double work) { work_ += work; }
+  /// A body with this kinetic and potential energy has left [J].
+  void discharged(double energy) { stored_at_start_ -= energy; }
+
+  void remember(Memory& memory) {
+    memory(begins_, first_, stored_at_start_, work_, largest_, closure_at_start_, dissipated_at_start_);
+  }
+
+ private:
+  bool begins_ = true;
+  std::uint64_t first_ = 0;                                // step at which it started
+  double stored_at_start_ = 0;                             // kinetic, elastic and gravitational [J]
+  double work_ = 0;                                        // by walls since then, but for half of the last step [J]
+  double largest_ = 0;                                     // kinetic and elastic energy since then [J]
+  double closure_at_start_ = 0, dissipated_at_start_ = 0;  // of the balance [J]
+};
+
+}  // namespace grit

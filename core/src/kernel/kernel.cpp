@@ -1,0 +1,229 @@
+#include "kernel/kernel.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "grit/error.hpp"
+#include "kernel/arrivals.hpp"
+#include "kernel/failure.hpp"
+#include "kernel/guards.hpp"
+#include "kernel/specimen.hpp"
+#include "plugins/component_memory.hpp"
+#include "scene/kinetic_energy.hpp"
+#include "scene/make_bodies.hpp"
+
+namespace grit {
+
+template <>
+inline constexpr bool plain_numbers<Departure> = true;
+
+namespace {
+
+Cell cell_of(const DomainDescription& domain) {
+  const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
+  return {domain.low.value_or(-open), domain.high.value_or(open), domain.periodic, Vec3::Zero()};
+}
+
+bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high == b.high; }
+
+}  // namespace
+
+Kernel::Kernel(const SceneDescription& scene, Bodies bodies, unsigned threads)
+    : state_(cell_of(scene.domain)),
+      passes_(threads),
+      view_(state_, passes_),
+      balance_(state_, view_, passes_),
+      stepper_(state_, passes_, view_, balance_, guard_) {
+  view_.set_balance(balance_);
+  state_.materials = material_names(scene);
+  state_.bodies = std::move(bodies);
+  count_in(0, 0);
+  check_periods(state_);
+  state_.walls.apply(scene);
+  apply(scene);
+}
+
+void Kernel::begin_stage(const std::string& name, const SceneDescription& scene) {
+  state_.stage = name;
+  state_.bodies.start_paths();
+  state_.walls.apply(scene);
+  apply(scene);
+  admit(scene);
+}
+
+void Kernel::change(const SceneDescription& scene) {
+  state_.walls.change(scene);
+  apply(scene);
+}
+
+void Kernel::apply(const SceneDescription& scene) {
+  balance_.book_elastic([&] { take_settings(scene); });
+  const auto kinetic = [this] {
+    view_.invalidate_forces();
+    return balance_.begun() ? kinetic_energy(view_, 0) : 0;
+  };
+  const double kinetic_before = kinetic();
+  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
+  change_strain_rate(state_.settings.strain_rate);
+  balance_.add_settings(kinetic() - kinetic_before);
+  update_cross_section(state_);
+  guard_.restart();
+  stepper_.settings_changed();
+  view_.invalidate();
+}
+
+void Kernel::take_settings(const SceneDescription& scene) {
+  state_.settings = settings_of(scene, state_.stage, state_.materials);
+  state_.pairs.set_fields(state_.settings.fields), state_.wall_contacts.set_fields(state_.settings.fields);
+  take_walls(scene);
+}
+
+void Kernel::take_walls(const SceneDescription& scene) {
+  state_.surfaces.resize(state_.walls.size());
+  for (std::size_t w = 0; w < state_.walls.size(); ++w) {
+    const WallDescription& wall = scene.walls.at(state_.walls.name(w));
+    WallSurface& surface = state_.surfaces[w];
+    // Candidates stay what they are, unless a wall has become another.
+    if (surface.geometry == nullptr || !same(surface.geometry->bounds(), wall.geometry.get()->bounds()))
+      state_.lists.request_rebuild();
+    surface.geometry = wall.geometry.get();
+    surface.gives_way = wall.motion.servo || wall.motion.free;
+    surface.free = bool(wall.motion.free);
+    surface.material =
+        static_cast<std::uint32_t>(std::ranges::find(state_.materials, wall.material) - state_.materials.begin());
+  }
+}
+
+void Kernel::flatten(int axis) {
+  if (state_.settings.may_clump)
+    throw Error("clumps turn about all axes, so that they cannot move in a plane; leave out the engine \"planar\"");
+  Bodies& bodies = state_.bodies;
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    Vec3 v = xyz(bodies.velocity[i]), w = xyz(bodies.spin[i]);
+    v[axis] = 0, w = w.cwiseProduct(Vec3::Unit(axis));
+    bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
+    bodies.spin[i] = {w.x(), w.y(), w.z(), bodies.spin[i].w};
+  }
+}
+
+void Kernel::change_strain_rate(const Vec3& rate) {
+  const Vec3 change = rate - state_.cell.cell().strain_rate;
+  if (change.isZero(0.0)) return;
+  Bodies& bodies = state_.bodies;
+  const Vec3 centre = state_.cell.centre(), period = state_.cell.lengths();
+  const auto flow = [&](const Vec3& place) -> Vec3 { return change.cwiseProduct(place - centre); };
+  for (Clump& clump : bodies.clumps.clump) clump.velocity += flow(clump.centre);
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    Vec3 v = flow(xyz(bodies.position[i]));
+    if (const std::uint32_t c = bodies.clumps.clump_of(i); c != no_clump) {
+      const auto& periods = bodies.clumps.of_body[i].periods;
+      v = flow(bodies.clumps.clump[c].centre);
+      for (int k = 0; k < 3; ++k)
+        if (state_.cell.cell().periodic[k]) v[k] -= periods[static_cast<std::size_t>(k)] * change[k] * period[k];
+    }
+    bodies.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
+  }
+  state_.cell.set_strain_rate(rate, state_.time.previous_dt);
+}
+
+void Kernel::count_in(std::size_t first, std::size_t first_clump) {
+  state_.statistics.add(state_.bodies, first, first_clump);
+  state_.sum.resize(state_.bodies.count() + 1);
+  std::fill(state_.sum.begin() + static_cast<std::ptrdiff_t>(first), state_.sum.end(), BodySum{});
+  passes_.resize(state_.bodies.count());
+}
+
+void Kernel::admit(const SceneDescription& scene) {
+  Newcomers arriving;
+  try {
+    arriving = make_newcomers(scene, state_.stage, view_.cell(), view_.positions(), state_.bodies.state);
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    fail(state_, Guard::arrival, error.what(), "");
+  }
+  if (arriving.bodies.count() == 0) return;
+  match_velocities(arriving.bodies, state_);
+
+  const double settings_less_stored = balance_.settings_less_stored();  // bodies may also leave in a search
+  const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
+  const Bodies bodies_before = state_.bodies;
+  const PopulationStatistics statistics_before = state_.statistics;
+  for (auto& group : arriving.groups) group.first_id += state_.bodies.ids_given;
+  stepper_.expect(std::move(arriving.groups));
+  state_.bodies.append(arriving.bodies);
+  count_in(first, first_clump);
+  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
+  stepper_.bodies_changed();
+  state_.lists.request_rebuild();
+  try {
+    stepper_.find_forces();
+  } catch (const NumericsError&) {
+    if (!stepper_.expects_arrivals()) {  // they are there, and a guard tripped
+      stepper_.show_forces();
+      balance_.set_settings_less_stored(settings_less_stored);
+    } else {  // they were turned away, and what was there before stays whole
+      state_.bodies = bodies_before, state_.statistics = statistics_before;
+      state_.sum.resize(state_.bodies.count() + 1), passes_.resize(state_.bodies.count());
+      stepper_.bodies_changed();
+      stepper_.expect({});
+    }
+    throw;
+  }
+  balance_.set_settings_less_stored(settings_less_stored);
+}
+
+double Kernel::kinetic_energy_ratio() const {
+  const double elastic = balance_.elastic().total();
+  return elastic > 0 ? balance_.kinetic() / elastic : std::numeric_limits<double>::infinity();
+}
+
+Model Kernel::model() const {
+  Model model;
+  const Settings& settings = state_.settings;
+  const Bodies& bodies = state_.bodies;
+  const LawLoop loop = settings.law->loop();
+  model.lanes = loop.lanes, model.precision = loop.precision, model.law_parts = loop.parts;
+  for (const StateField& field : settings.fields) model.contact_state.push_back(field.name);
+  const auto add = [&](bool there, const char* name) {
+    if (there) model.body_state.push_back(name);
+  };
+  add(!bodies.rotation.empty(), "rotation"), add(!bodies.origin.empty(), "displacement");
+  add(bodies.energies(), "energy"), add(!bodies.clumps.none(), "clump");
+  model.materials = state_.materials;
+  model.one_material = state_.statistics.one_material, model.periodic = state_.cell.periodic();
+  model.walls = state_.walls.size() > 0;
+  model.gravity = !settings.motion.gravity.isZero(0.0), model.local_damping = settings.motion.local_damping > 0;
+  model.bytes = state_.bytes();
+  return model;
+}
+
+void Kernel::save(Memory& memory) {
+  memory(state_.walls);
+  remember(memory);
+}
+
+void Kernel::restore(const SceneDescription& scene, Memory& memory) {
+  memory(state_.walls);
+  state_.walls.change(scene);  // as they stand and move now
+  take_settings(scene);
+  remember(memory);
+  state_.settings.growth_rate = growth_rate(scene, state_.stage);
+  state_.sum.assign(state_.bodies.count() + 1, {});
+  stepper_.restored();
+  update_cross_section(state_);
+  view_.invalidate();
+}
+
+/// But for walls, which come first, and for what each step computes anew: sums, loads, surfaces.
+void Kernel::remember(Memory& memory) {
+  memory(state_.stage, state_.time, state_.cell, state_.bodies, state_.statistics, state_.lists);
+  memory(state_.pairs, state_.wall_contacts, state_.departures, state_.discharged_mass, state_.overlap);
+  memory(balance_, guard_, stepper_);
+  passes_.remember(memory, state_.bodies.count());
+  for (const auto& [name, engine] : state_.settings.engines)
+    remember_by_itself("engine \"" + name + '"', *engine, memory);
+}
+
+}  // namespace grit

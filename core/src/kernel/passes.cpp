@@ -1,0 +1,26 @@
+#include "kernel/passes.hpp"
+
+namespace grit {
+
+Passes::Passes(unsigned threads)
+    : team_(threads), phases_{{"search", 0}, {"contacts", 0}, {"walls", 0}, {"motion", 0}} {}
+
+std::vector<PhaseTime> Passes::phases() const {
+  std::array<double, step_phases> timed{};
+  for (const ChunkResult& chunk : chunks_)
+    for (std::size_t phase = 0; phase < step_phases; ++phase) timed[phase] += chunk.seconds[phase];
+  const double all = std::accumulate(timed.begin(), timed.end(), 0.0);
+  auto phases = phases_;
+  for (std::size_t phase = 0; phase < step_phases && all > 0; ++phase)
+    phases[phase].seconds += seconds_ * timed[phase] / all;
+  return phases;
+}
+
+void Passes::remember(Memory& memory, std::size_t bodies) {
+  memory(seconds_);
+  for (PhaseTime& phase : phases_) memory(phase.seconds);
+  resize(bodies);
+  for (ChunkResult& chunk : chunks_) memory(chunk.seconds);
+}
+
+}  // namespace grit

@@ -1,0 +1,83 @@
+// Passes over chunks of bodies: the threads that share them, what each chunk gave, and the time it took.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "contact/chunks.hpp"
+#include "contact/team.hpp"
+#include "engines/motion.hpp"
+#include "grit/contact/batch.hpp"
+#include "kernel/model.hpp"
+#include "kernel/stopwatch.hpp"
+
+namespace grit {
+
+enum class StepPhase : std::size_t { search, contacts, walls, motion };
+inline constexpr std::size_t step_phases = 4;
+
+/// What the last pass found of one chunk, and the time it took where that was measured.
+struct alignas(64) ChunkResult {
+  double overlap = 0;  ///< largest, over a radius
+  Losses losses;
+  Motion motion, clumps;
+  Vec3 crossing = Vec3::Zero();  ///< see EnergyBalance
+  bool moved = false;
+  std::array<double, step_phases> seconds{};
+
+  double& time_of(StepPhase phase) { return seconds[static_cast<std::size_t>(phase)]; }
+};
+
+class Passes {
+ public:
+  explicit Passes(unsigned threads);
+
+  Team& team() { return team_; }
+  unsigned threads() const { return team_.threads(); }
+  std::vector<ChunkResult>& chunks() { return chunks_; }
+  const std::vector<ChunkResult>& chunks() const { return chunks_; }
+  void resize(std::size_t bodies) { chunks_.resize(chunks_of(bodies)); }
+
+  /// Shares work(chunk, laps) among the threads; times one chunk in eight.
+  template <class Work>
+  void each(std::uint64_t step, Work work) {
+    const Stopwatch watch(seconds_);
+    team_.each(chunks_.size(), [&](std::size_t chunk) {
+      Laps laps((chunk + step) % timed_every == 0);
+      work(chunk, laps);
+    });
+  }
+  /// part(chunk), evaluated by all threads and summed in the order of the chunks.
+  template <class Part>
+  auto sum(Part part) {
+    std::vector<decltype(part(std::size_t{0}))> found(chunks_.size());
+    team_.each(found.size(), [&](std::size_t chunk) { found[chunk] = part(chunk); });
+    return std::accumulate(found.begin(), found.end(), decltype(part(std::size_t{0})){});
+  }
+  /// Seconds of a phase outside passes, to be added to.
+  double& time_of(StepPhase phase) { return phases_[static_cast<std::size_t>(phase)].seconds; }
+  /// All phases; the time of passes is shared out by the chunks that were timed.
+  std::vector<PhaseTime> phases() const;
+
+  void remember(Memory& memory, std::size_t bodies);
+
+ private:
+  // Reading the clock takes some 30 ns, a chunk some 20 µs.
+  static constexpr std::uint64_t timed_every = 8;
+
+  Team team_;
+  std::vector<ChunkResult> chunks_;
+  std::vector<PhaseTime> phases_;
+  double seconds_ = 0;  // of all passes
+};
+
+/// First body of a chunk, and one past its last.
+struct ChunkRange {
+  std::size_t first, last;
+  ChunkRange(std::size_t chunk, std::size_t count)
+      : first(std::min(count, chunk * chunk_bodies)), last(std::min(count, first + chunk_bodies)) {}
+};
+
+}  // namespace grit

@@ -1,0 +1,33 @@
+#include "kernel/settings.hpp"
+
+#include <algorithm>
+
+#include "scene/make_bodies.hpp"
+
+namespace grit {
+
+double growth_rate(const SceneDescription& scene, const std::string& stage) {
+  const auto found = std::ranges::find(scene.stages, stage, &StageDescription::name);
+  return found != scene.stages.end() && found->growth ? found->growth->rate : 0;
+}
+
+Settings settings_of(const SceneDescription& scene, const std::string& stage,
+                     const std::vector<std::string>& materials) {
+  Settings now;
+  now.law = scene.contacts.get();
+  now.law->mix(materials_in_use(scene, materials), materials_of_bodies(scene));
+  now.fields = now.law->state();
+  for (const auto& [name, engine] : scene.engines) {
+    now.engines[name] = engine.engine.get();
+    if (engine.engine->phase() == Phase::settings) engine.engine->settings(now.motion);
+    else now.force_engines.push_back(engine.engine.get().get());
+  }
+  now.strain_rate = scene.domain.strain_rate, now.open_sides = scene.domain.open_sides;
+  now.specimen = scene.specimen, now.time_step = scene.time_step, now.guards = scene.guards;
+  now.growth_rate = growth_rate(scene, stage);
+  now.may_clump =
+      std::ranges::any_of(scene.bodies, [](const auto& group) { return group.second.kind->clump() != nullptr; });
+  return now;
+}
+
+}  // namespace grit

@@ -1,0 +1,41 @@
+// What the kernel goes by until it is given something else: the present values of a description.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grit/contact/contact_law.hpp"
+#include "grit/engine.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+struct Settings {
+  std::shared_ptr<ContactLaw> law;
+  std::vector<StateField> fields;                          ///< contact history that the law keeps
+  std::map<std::string, std::shared_ptr<Engine>> engines;  ///< by name
+  std::vector<Engine*> force_engines;                      ///< those of phase `forces`, by name
+  MotionSettings motion;
+  Vec3 strain_rate = Vec3::Zero();      ///< of the cell [1/s]
+  std::vector<std::string> open_sides;  ///< of the domain, as "-x", "+z"
+  SpecimenDescription specimen;
+  TimeStepDescription time_step;
+  GuardsDescription guards;
+  double growth_rate = 0;  ///< of radii in this stage [1/s]
+  bool may_clump = false;  ///< some group of bodies, present or to come, has clumps
+
+  bool holds_bodies() const { return motion.hold_rotation || motion.hold_translation; }
+  /// Whether engines change the energy of bodies: by forces, or by holding them.
+  bool engines_do_work() const { return !force_engines.empty() || holds_bodies(); }
+};
+
+/// The settings of a scene in a stage; mixes the law's materials. `materials` are all names by index.
+Settings settings_of(const SceneDescription& scene, const std::string& stage,
+                     const std::vector<std::string>& materials);
+/// Rate at which radii grow in a stage [1/s]; 0 where none is given.
+double growth_rate(const SceneDescription& scene, const std::string& stage);
+
+}  // namespace grit

@@ -1,0 +1,53 @@
+// All that is simulated, at one instant. The parts of the kernel work on it; what a part alone needs it keeps itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "contact/contact_table.hpp"
+#include "contact/wall_contacts.hpp"
+#include "domain/deforming_cell.hpp"
+#include "domain/population_statistics.hpp"
+#include "engines/motion.hpp"
+#include "engines/walls.hpp"
+#include "kernel/neighbour_lists.hpp"
+#include "kernel/settings.hpp"
+#include "kernel/step_time.hpp"
+#include "scene/bodies.hpp"
+
+namespace grit {
+
+struct State {
+  explicit State(const Cell& box) : cell(box) {}
+
+  StepTime time;
+  std::string stage;  ///< empty before the first
+  Settings settings;
+  std::vector<std::string> materials;  ///< names by index
+  DeformingCell cell;
+  Bodies bodies;
+  PopulationStatistics statistics;    ///< of all bodies that ever entered
+  std::vector<Departure> departures;  ///< bodies that left through open sides
+  double discharged_mass = 0;         ///< of these [kg]
+  NeighbourLists lists;
+  ContactTable pairs;
+  WallContacts wall_contacts;
+  Walls walls;
+  std::vector<WallSurface> surfaces;           ///< of the walls, as the contact pass needs them
+  LargeArray<BodySum> sum;                     ///< contact forces and moments by body
+  std::vector<Row> added_force, added_moment;  ///< by engines; empty without any
+  double overlap = 0;                          ///< largest over a radius, at the last evaluation
+
+  /// What the contact pass needs; `again` if this instant has been evaluated before.
+  ContactTable::Instant instant(bool again) const {
+    return {*settings.law, bodies, statistics.one_material, cell.images(), time.previous_dt, lists.skins(), again};
+  }
+  /// The coming step of the leap-frog. `energies`: work is summed up.
+  MotionStep next_motion(bool energies) const;
+  /// Mass discharged over all mass that entered.
+  double discharged_fraction() const { return statistics.mass > 0 ? discharged_mass / statistics.mass : 0; }
+  /// Bytes held by bodies and contacts.
+  std::size_t bytes() const;
+};
+
+}  // namespace grit

@@ -1,0 +1,296 @@
+#include "kernel/stepper.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "domain/boundaries.hpp"
+#include "engines/clump_motion.hpp"
+#include "engines/growth.hpp"
+#include "kernel/arrivals.hpp"
+#include "kernel/failure.hpp"
+#include "kernel/guards.hpp"
+#include "kernel/specimen.hpp"
+
+namespace grit {
+
+void Stepper::settings_changed() {
+  loads_.resize(state_.walls.size());
+  bounds_.resize_walls(state_.walls.size());
+  bounds_.grown(0);
+  time_step_.request();
+  time_step_.update_stiffening(state_);
+}
+
+void Stepper::update_surfaces() {
+  for (std::size_t w = 0; w < state_.surfaces.size(); ++w) {
+    const WallState& wall = state_.walls.states()[w];
+    state_.surfaces[w].pose = wall.pose;
+    state_.surfaces[w].velocity = wall.velocity, state_.surfaces[w].spin = wall.spin;
+  }
+}
+
+void Stepper::rebuild() {
+  check_periods(state_);
+  Bodies& bodies = state_.bodies;
+  const DeformingCell& cell = state_.cell;
+  const Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt),
+                               state_.settings.open_sides, [this](std::size_t body, int axis, bool high) {
+                                 fail_at_body(state_, Guard::domain, body,
+                                              "left the domain through its " + std::string(high ? "upper" : "lower") +
+                                                  " " + "xyz"[axis] + " side",
+                                              "close the domain there with a wall, make it larger, or name the side "
+                                              "in /domain/open_sides");
+                               });
+  balance_.add_cell(wrapped.energy_gained);
+  if (!arrivals_.empty()) check_arrivals(state_, view_, arrivals_);
+  const bool some_leave = std::ranges::find(wrapped.leaves, true) != wrapped.leaves.end();
+  std::vector<std::uint32_t> order;
+  if (state_.lists.sorts() || some_leave || !arrivals_.empty()) {
+    order = spatial_order(bodies, cell.cell());
+    if (some_leave) {
+      for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, state_.settings.motion.gravity)) {
+        state_.departures.push_back(one.departure);
+        state_.discharged_mass += one.departure.mass;
+        balance_.add_settings(-one.kinetic);
+        guard_.discharged(one.kinetic + one.potential);
+      }
+      std::erase_if(order, [&](std::uint32_t i) { return wrapped.leaves[i]; });
+    }
+    bodies.reorder(order);
+    state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
+  }
+  state_.lists.rebuild(bodies, cell, state_.statistics, state_.time.dt, bounds_.wall_speed(), passes_);
+  state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.team());
+  readiness_.build(state_.pairs.reached());
+  state_.wall_contacts.rebuild(bodies, state_.surfaces, state_.lists.skins(), state_.settings.fields, order);
+  bounds_.rebuild(state_);
+  arrivals_.clear();
+  time_step_.set(state_, bounds_, passes_.team());
+}
+
+bool Stepper::prepare() {
+  view_.invalidate();
+  state_.cell.update_images(state_.time.previous_dt);
+  update_surfaces();
+  {
+    const Stopwatch watch(passes_.time_of(StepPhase::search));
+    if (state_.lists.due(state_.bodies, state_.cell)) rebuild();
+    else time_step_.follow(state_, bounds_, passes_.team());
+  }
+  // Contact history advances once a step, however often forces are asked for: a stage asks again.
+  const bool again = forces_step_ == state_.time.step;
+  forces_step_ = state_.time.step;
+  return again;
+}
+
+void Stepper::evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps) {
+  ChunkResult& own = passes_.chunks()[chunk];
+  const ChunkRange range(chunk, state_.bodies.count());
+  std::fill(sum + range.first, sum + range.last, BodySum{});
+  own.losses = {};
+  Losses* const losses = balance_.is_kept() ? &own.losses : nullptr;
+  own.overlap = state_.pairs.evaluate(chunk, state_.instant(again), sum, losses);
+  laps(own.time_of(StepPhase::contacts));
+  if (state_.surfaces.empty()) return;
+  own.overlap = std::max(own.overlap, state_.wall_contacts.evaluate(chunk, *state_.settings.law, state_.bodies,
+                                                                    state_.statistics.one_material, state_.surfaces,
+                                                                    again ? 0 : state_.time.previous_dt, sum, losses));
+  laps(own.time_of(StepPhase::walls));
+}
+
+void Stepper::move(std::size_t chunk, const BodySum* sum, const MotionStep& step) {
+  passes_.chunks()[chunk].motion = move_bodies(chunk, state_.bodies, sum, step);
+}
+
+void Stepper::sum_forces(bool again) {
+  BodySum* const sum = state_.sum.data();
+  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) { evaluate(chunk, again, sum, laps); });
+  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+    state_.pairs.gather(chunk, sum);
+    laps(passes_.chunks()[chunk].time_of(StepPhase::motion));
+  });
+}
+
+void Stepper::add_forces_of_engines() {
+  state_.added_force.clear(), state_.added_moment.clear();
+  if (state_.settings.force_engines.empty()) return;
+  const std::size_t count = state_.bodies.count();
+  std::vector<Row> force(count), moment(count);
+  for (const Engine* engine : state_.settings.force_engines) engine->forces(view_, force, moment);
+  for (std::size_t i = 0; i < count; ++i) state_.sum[i].force += force[i], state_.sum[i].moment += moment[i];
+  state_.added_force.swap(force), state_.added_moment.swap(moment);
+  view_.invalidate_forces();  // engines may have asked for forces, without their own
+}
+
+void Stepper::take_loads() {
+  if (!state_.surfaces.empty()) {
+    state_.wall_contacts.loads(loads_);
+    state_.walls.clear_forces();
+    for (std::size_t w = 0; w < loads_.size(); ++w) state_.walls.add(w, loads_[w]);
+  }
+  state_.overlap = 0;
+  for (const ChunkResult& chunk : passes_.chunks()) state_.overlap = std::max(state_.overlap, chunk.overlap);
+  balance_.add_losses();
+  check_overlap(state_, view_);
+}
+
+void Stepper::find_forces() {
+  const bool may_stiffen = time_step_.may_stiffen(state_, bounds_);
+  sum_forces(prepare());
+  add_forces_of_engines();
+  balance_.find_crossing();
+  take_loads();
+  time_step_.react(may_stiffen, state_, bounds_, passes_.team());
+  if (guard_.due(state_.time.step)) guard_.check(state_, balance_);
+}
+
+template <class Work>
+void Stepper::and_show_forces(Work work) {
+  try {
+    work();
+  } catch (const NumericsError&) {
+    show_forces();
+    throw;
+  }
+}
+
+void Stepper::grow() {
+  const double grows = state_.settings.growth_rate * state_.time.dt;
+  balance_.before_growth(grows);
+  if (grows == 0 || state_.bodies.count() == 0) return;
+  const double factor = std::exp(grows);
+  double furthest = state_.statistics.largest_radius;
+  for (const Clump& clump : state_.bodies.clumps.clump) furthest = std::max(furthest, clump.furthest);
+  const double distance = (factor - 1) * furthest;
+  bounds_.grown(distance);
+  check_growth(state_, distance);
+  const double kinetic_before = balance_.begun() ? balance_.kinetic() : 0;
+  {
+    const Stopwatch watch(passes_.time_of(StepPhase::motion));
+    passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) { grow_bodies(chunk, state_.bodies, factor); });
+    grow_clumps(state_.bodies, factor);
+    state_.wall_contacts.grow(state_.bodies, factor);
+  }
+  const double mass_before = state_.statistics.mass;
+  state_.statistics.grow(factor, mass_before - state_.discharged_mass);
+  view_.invalidate();
+  balance_.add_settings((balance_.begun() ? balance_.kinetic() : 0) - kinetic_before);
+}
+
+void Stepper::move_clumps_of_chunks(const MotionStep& step) {
+  const std::size_t clumps = state_.bodies.clumps.clump.size();
+  if (clumps == 0) return;
+  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+    const ChunkRange range(chunk, clumps);
+    ChunkResult& own = passes_.chunks()[chunk];
+    own.clumps = move_clumps(range.first, range.last, state_.bodies, state_.sum.data(), step);
+    laps(own.time_of(StepPhase::motion));
+  });
+}
+
+void Stepper::advance() {
+  const MotionStep step = state_.next_motion(balance_.is_kept());
+  balance_.before_motion(step);
+  if (state_.settings.growth_rate > 0 || balance_.has_growth()) grow();
+  move_clumps_of_chunks(step);
+  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+    move(chunk, state_.sum.data(), step);
+    laps(passes_.chunks()[chunk].time_of(StepPhase::motion));
+  });
+  balance_.after_motion(step);
+  and_show_forces([this] { end_step(); });
+}
+
+/// Whether bodies need not wait for the forces on others: neither the time step nor engines depend on all forces, and
+/// the energy balance does not ask for the power of forces before and after the motion.
+bool Stepper::can_move_at_once() const {
+  const Settings& settings = state_.settings;
+  const bool free_walls = std::ranges::any_of(state_.surfaces, &WallSurface::free);
+  const bool power_of_forces = balance_.is_kept() && (state_.cell.deforms() || settings.holds_bodies());
+  return settings.growth_rate == 0 && !balance_.has_growth() && settings.force_engines.empty() &&
+         state_.bodies.clumps.none() && !free_walls && !power_of_forces && !guard_.due(state_.time.step) &&
+         !time_step_.may_stiffen(state_, bounds_);
+}
+
+void Stepper::step_on() {
+  if (!can_move_at_once()) {
+    find_forces();
+    advance();
+    return;
+  }
+  const bool again = prepare();
+  const MotionStep step = state_.next_motion(balance_.is_kept());
+  readiness_.restart();
+  const auto gather_and_move = [&](std::size_t chunk, BodySum* sum) {
+    state_.pairs.gather(chunk, sum);
+    move(chunk, sum, step);
+  };
+  passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
+    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all: what the pointer
+    // would be for body 0 lies before the array and is never read, which no machine that grit runs on minds.
+    alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
+    const ChunkRange range(chunk, state_.bodies.count());
+    const std::uintptr_t of_body_0 = reinterpret_cast<std::uintptr_t>(here.data()) - range.first * sizeof(BodySum);
+    BodySum* const own = reinterpret_cast<BodySum*>(of_body_0);
+    evaluate(chunk, again, own, laps);
+    ChunkResult& result = passes_.chunks()[chunk];
+    result.moved = readiness_.evaluated(chunk);
+    if (result.moved) gather_and_move(chunk, own);
+    else std::copy(own + range.first, own + range.last, state_.sum.data() + range.first);
+    laps(result.time_of(StepPhase::motion));
+  });
+  late_.clear();
+  for (std::size_t chunk = 0; chunk < passes_.chunks().size(); ++chunk)
+    if (!passes_.chunks()[chunk].moved) late_.push_back(chunk);
+  if (!late_.empty()) {
+    const Stopwatch watch(passes_.time_of(StepPhase::motion));
+    passes_.team().each(late_.size(), [&](std::size_t k) { gather_and_move(late_[k], state_.sum.data()); });
+  }
+  and_show_forces([this] { take_loads(), end_step(); });
+}
+
+void Stepper::show_forces() {
+  state_.added_force.clear(), state_.added_moment.clear();
+  const auto& chunks = passes_.chunks();
+  if (std::ranges::all_of(chunks, [](const ChunkResult& chunk) { return chunk.motion.finite; })) {
+    update_surfaces();
+    sum_forces(true);
+    balance_.find_crossing();
+  } else {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    const Row row{unknown, unknown, unknown, unknown};
+    state_.sum.assign(state_.sum.size(), {row, row});
+  }
+  view_.invalidate();
+}
+
+void Stepper::end_step() {
+  const double dt = state_.time.dt;
+  // Half of the walls' work in a step by the forces at its start, half by those at its end: a servo moves because of
+  // the former.
+  const double work_at_start = 0.5 * state_.time.previous_dt * balance_.power_of_walls();
+  state_.walls.drive(dt, [this](std::size_t wall, const Pose& there, const Vec3& velocity, double distance) {
+    const Skins& skins = state_.lists.skins();
+    const bool beyond = skins.walls_gone() + distance > skins.of_walls();
+    return state_.wall_contacts.force_ahead(wall, state_.surfaces[wall], there, velocity, *state_.settings.law,
+                                            state_.bodies, beyond);
+  });
+  const double work = work_at_start + 0.5 * dt * balance_.power_of_walls();
+  guard_.add_work_of_walls(work);
+  balance_.add_step(work);
+  state_.walls.move(dt);
+  state_.time.time += dt;
+  ++state_.time.step;
+  body_steps_ += static_cast<double>(state_.bodies.count());
+  state_.cell.advance(dt);
+  state_.time.previous_dt = dt;
+  update_cross_section(state_);
+  bounds_.advance(state_, passes_);
+}
+
+void Stepper::remember(Memory& memory) { memory(time_step_, bounds_, forces_step_, body_steps_); }
+
+}  // namespace grit

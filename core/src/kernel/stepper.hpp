@@ -1,0 +1,80 @@
+// One step: neighbours, forces, motion.
+#pragma once
+
+#include <vector>
+
+#include "contact/readiness.hpp"
+#include "kernel/displacement_bounds.hpp"
+#include "kernel/energy_guard.hpp"
+#include "kernel/time_step_control.hpp"
+#include "kernel/world_view.hpp"
+#include "scene/make_bodies.hpp"
+
+namespace grit {
+
+class Stepper {
+ public:
+  Stepper(State& state, Passes& passes, WorldView& view, EnergyBalance& balance, EnergyGuard& guard)
+      : state_(state), passes_(passes), view_(view), balance_(balance), guard_(guard) {}
+
+  /// Forces at the present instant, after a neighbour search if one is due. Throws NumericsError if a guard trips.
+  void find_forces();
+  /// One step; find_forces() must have been called at this instant. Throws NumericsError if a guard trips.
+  void advance();
+  /// find_forces() and advance(), to the same bits, in one pass over the bodies where nothing needs the forces of all
+  /// bodies in between. Forces are then unknown until find_forces() is called again. Throws NumericsError if a guard
+  /// trips, with forces of where it stopped.
+  void step_on();
+  /// Forces of where the bodies are, after a guard tripped.
+  void show_forces();
+
+  /// Settings or bodies have changed: the time step and what follows from material pairs are found again.
+  void settings_changed();
+  void bodies_changed() { time_step_.update_stiffening(state_); }
+  /// Bodies of these groups have been appended; the next search checks and sorts them.
+  void expect(std::vector<Newcomers::Group> arrivals) { arrivals_ = std::move(arrivals); }
+  bool expects_arrivals() const { return !arrivals_.empty(); }
+  const TimeStepControl& time_step() const { return time_step_; }
+  /// Steps of bodies, summed over all bodies.
+  double body_steps() const { return body_steps_; }
+
+  void remember(Memory& memory);
+  /// After remember() has restored the state.
+  void restored() { readiness_.build(state_.pairs.reached()); }
+
+ private:
+  /// All that comes before contacts. Returns whether this instant has been evaluated before.
+  bool prepare();
+  void rebuild();
+  void update_surfaces();
+  /// Contacts of one chunk with others and with walls.
+  void evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps);
+  void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
+  void sum_forces(bool again);
+  void add_forces_of_engines();
+  /// What chunks found, for walls and guards.
+  void take_loads();
+  bool can_move_at_once() const;
+  void grow();
+  void move_clumps_of_chunks(const MotionStep& step);
+  /// All that comes after the motion of bodies.
+  void end_step();
+  template <class Work>
+  void and_show_forces(Work work);
+
+  State& state_;
+  Passes& passes_;
+  WorldView& view_;
+  EnergyBalance& balance_;
+  EnergyGuard& guard_;
+  TimeStepControl time_step_;
+  DisplacementBounds bounds_;
+  Readiness readiness_;
+  std::vector<Newcomers::Group> arrivals_;  // since the last rebuild, with their first ids
+  std::vector<std::size_t> late_;           // chunks that could not move at once
+  std::vector<WallLoad> loads_;
+  std::uint64_t forces_step_ = ~0ull;  // at which contacts were last brought up to date
+  double body_steps_ = 0;
+};
+
+}  // namespace grit

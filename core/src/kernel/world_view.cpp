@@ -1,0 +1,172 @@
+#include "kernel/world_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engines/clump_motion.hpp"
+#include "kernel/energy_balance.hpp"
+#include "kernel/specimen.hpp"
+
+namespace grit {
+
+void WorldView::invalidate() {
+  net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = never;
+}
+
+void WorldView::find_net_forces(std::size_t chunk) const {
+  const Bodies& bodies = state_.bodies;
+  const MotionSettings& motion = state_.settings.motion;
+  const ChunkRange range(chunk, bodies.count());
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const bool single = bodies.clumps.clump_of(i) == no_clump;
+    const Vec3 weight = single ? Vec3(motion.gravity / bodies.velocity[i].w) : Vec3(Vec3::Zero());
+    net_force_[i] = state_.sum[i].force, net_moment_[i] = state_.sum[i].moment;
+    net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
+    net_force_[i].w = net_moment_[i].w = 0;
+    if (motion.flat) {
+      Vec3 force = xyz(net_force_[i]);
+      force[*motion.flat] = 0;
+      const Vec3 moment = xyz(net_moment_[i]).cwiseProduct(Vec3::Unit(*motion.flat));
+      net_force_[i] = {force.x(), force.y(), force.z(), 0}, net_moment_[i] = {moment.x(), moment.y(), moment.z(), 0};
+    }
+  }
+}
+
+std::span<const Row> WorldView::forces() const {
+  if (net_step_ != step()) {
+    net_force_.resize(count()), net_moment_.resize(count());
+    passes_.team().each(passes_.chunks().size(), [this](std::size_t chunk) { find_net_forces(chunk); });
+    net_step_ = step();
+  }
+  return net_force_;
+}
+
+std::span<const Row> WorldView::moments() const {
+  static_cast<void>(forces());
+  return net_moment_;
+}
+
+std::span<const Vec3> WorldView::displacements() const {
+  if (displacement_step_ == step()) return displacements_;
+  const Bodies& bodies = state_.bodies;
+  displacements_.resize(bodies.origin.size());
+  for (std::size_t i = 0; i < displacements_.size(); ++i)
+    displacements_[i] = xyz(bodies.position[i]) - bodies.origin[i];
+  displacement_step_ = step();
+  return displacements_;
+}
+
+std::span<const std::uint32_t> WorldView::clump_of() const {
+  static_cast<void>(clumps());
+  return clump_of_;
+}
+
+std::span<const Vec3> WorldView::arms() const {
+  static_cast<void>(clumps());
+  return arms_;
+}
+
+std::span<const ClumpView> WorldView::clumps() const {
+  if (clump_step_ == step()) return clumps_;
+  clumps_.clear(), clump_of_.clear(), arms_.clear();
+  clump_step_ = step();
+  const Bodies& bodies = state_.bodies;
+  if (bodies.clumps.none()) return clumps_;
+  clump_of_.resize(count()), arms_.assign(count(), Vec3::Zero());
+  for (std::size_t i = 0; i < count(); ++i) {
+    const ClumpSphere& own = bodies.clumps.of_body[i];
+    clump_of_[i] = own.clump;
+    if (own.clump != no_clump) arms_[i] = bodies.clumps.clump[own.clump].axes * own.place;
+  }
+  for (const Clump& clump : bodies.clumps.clump) {
+    const ClumpLoad load = load_of(clump, bodies, state_.sum.data());
+    clumps_.push_back({.id = clump.id,
+                       .centre = clump.centre,
+                       .velocity = clump.velocity,
+                       .spin = clump.spin,
+                       .momentum = clump.momentum,
+                       .force = load.force + state_.settings.motion.gravity / clump.inverse_mass,
+                       .moment = load.moment,
+                       .radius = clump.radius,
+                       .mass = 1 / clump.inverse_mass,
+                       .axes = clump.axes,
+                       .inertia = clump.inertia});
+  }
+  return clumps_;
+}
+
+std::span<const Contact> WorldView::contacts() const {
+  if (contact_step_ == step()) return contacts_;
+  contacts_.clear();
+  contacts_.reserve(state_.pairs.touching_count() + state_.wall_contacts.touching_count());
+  state_.pairs.each_touching(state_.instant(true), [&](std::size_t c, const ContactRow& row) {
+    const Vec3 branch = state_.pairs.branch(c, state_.bodies, state_.cell.images());
+    contacts_.push_back({.a = state_.pairs.a(c),
+                         .b = state_.pairs.b(c),
+                         .with_wall = false,
+                         .feature = 0,
+                         .branch = branch,
+                         .normal = branch.normalized(),
+                         .force = xyz(row.force),
+                         .moment = xyz(row.moment),
+                         .normal_force = row.force.w,
+                         .overlap = row.moment.w});
+  });
+  const auto with_walls = contacts_with_walls();
+  contacts_.insert(contacts_.end(), with_walls.begin(), with_walls.end());
+  contact_step_ = step();
+  return contacts_;
+}
+
+std::span<const Contact> WorldView::contacts_with_walls() const {
+  if (wall_contact_step_ == step()) return wall_contacts_;
+  wall_contacts_.clear();
+  state_.wall_contacts.each([&](const WallContacts::Touching& t) {
+    const double arm = state_.bodies.position[t.touch->body].w - t.touch->overlap;
+    wall_contacts_.push_back({.a = t.touch->body,
+                              .b = t.touch->wall,
+                              .with_wall = true,
+                              .feature = t.touch->feature,
+                              .branch = arm * t.touch->normal,
+                              .normal = t.touch->normal,
+                              .force = xyz(t.row->force),
+                              .moment = xyz(t.row->moment),
+                              .normal_force = t.row->force.w,
+                              .overlap = t.touch->overlap});
+  });
+  wall_contact_step_ = step();
+  return wall_contacts_;
+}
+
+double WorldView::mean_contact_force() const {
+  double sum = 0;
+  std::size_t count = 0;
+  state_.pairs.each_touching(state_.instant(true),
+                             [&](std::size_t, const ContactRow& row) { sum += std::abs(row.force.w), ++count; });
+  state_.wall_contacts.each([&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), ++count; });
+  return count > 0 ? sum / static_cast<double>(count) : 0;
+}
+
+std::span<const WallView> WorldView::walls() const {
+  if (wall_step_ != step()) state_.walls.view(walls_), wall_step_ = step();
+  return walls_;
+}
+
+std::optional<Clearance> WorldView::clearance(std::size_t wall, const Vec3& point, double reach) const {
+  const Sphere sphere{point, reach, 0};
+  thread_local std::vector<Touch> touches;  // called so often that allocating it each time took longer
+  touches.clear();
+  state_.walls.geometry(wall).touch(state_.walls.pose(wall), {&sphere, 1}, touches);
+  // The sphere overlaps by its radius less the distance of its centre, by more where that is behind.
+  const auto deepest = std::ranges::max_element(touches, {}, &Touch::overlap);
+  if (deepest == touches.end()) return {};
+  return Clearance{.distance = reach - deepest->overlap, .normal = deepest->normal};
+}
+
+Region WorldView::specimen() const { return specimen_region(state_, 0); }
+Region WorldView::envelope() const { return specimen_region(state_, 0, SurfaceSide::far); }
+Region WorldView::interior(double margin) const { return specimen_region(state_, margin); }
+
+EnergyLedger WorldView::energies() const { return balance_->terms(); }
+
+}  // namespace grit

@@ -1,0 +1,77 @@
+// The world as probes, engines and conditions see it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "grit/world.hpp"
+#include "kernel/passes.hpp"
+#include "kernel/state.hpp"
+
+namespace grit {
+
+class EnergyBalance;
+
+/// A const view of a state. What probes ask for is computed once an instant at most.
+class WorldView final : public World {
+ public:
+  WorldView(const State& state, Passes& passes) : state_(state), passes_(passes) {}
+  void set_balance(EnergyBalance& balance) { balance_ = &balance; }
+
+  /// The state has changed: everything is computed again when asked for.
+  void invalidate();
+  /// Only forces and what depends on them.
+  void invalidate_forces() { net_step_ = clump_step_ = never; }
+
+  double time() const override { return state_.time.time; }
+  std::uint64_t step() const override { return state_.time.step; }
+  double dt() const override { return state_.time.dt; }
+  const std::string& stage() const override { return state_.stage; }
+  std::span<const std::uint32_t> ids() const override { return state_.bodies.id; }
+  std::span<const Row> positions() const override { return {state_.bodies.position.data(), count()}; }
+  std::span<const Row> velocities() const override { return {state_.bodies.velocity.data(), count()}; }
+  std::span<const Row> spins() const override { return {state_.bodies.spin.data(), count()}; }
+  std::span<const std::uint8_t> materials() const override { return {state_.bodies.material.data(), count()}; }
+  std::span<const Vec3> rotations() const override { return state_.bodies.rotation; }
+  std::span<const Vec3> displacements() const override;
+  std::span<const std::uint32_t> clump_of() const override;
+  std::span<const ClumpView> clumps() const override;
+  std::span<const Vec3> arms() const override;
+  std::span<const double> volume_shares() const override { return state_.bodies.clumps.volume_share; }
+  std::span<const Departure> departures() const override { return state_.departures; }
+  std::span<const Row> forces() const override;
+  std::span<const Row> moments() const override;
+  std::span<const Contact> contacts() const override;
+  std::span<const Contact> contacts_with_walls() const override;
+  double mean_contact_force() const override;
+  std::span<const WallView> walls() const override;
+  std::optional<Clearance> clearance(std::size_t wall, const Vec3& point, double reach) const override;
+  const Cell& cell() const override { return state_.cell.cell(); }
+  Region specimen() const override;
+  Region envelope() const override;
+  Region interior(double margin) const override;
+  double mean_diameter() const override { return state_.statistics.mean_diameter; }
+  double solid_density() const override { return state_.statistics.solid_density; }
+  EnergyLedger energies() const override;
+
+ private:
+  static constexpr std::uint64_t never = ~0ull;
+  std::size_t count() const { return state_.bodies.count(); }
+  void find_net_forces(std::size_t chunk) const;
+
+  const State& state_;
+  Passes& passes_;
+  EnergyBalance* balance_ = nullptr;
+
+  mutable std::vector<Row> net_force_, net_moment_;
+  mutable std::vector<std::uint32_t> clump_of_;
+  mutable std::vector<ClumpView> clumps_;
+  mutable std::vector<Vec3> arms_, displacements_;
+  mutable std::vector<Contact> contacts_, wall_contacts_;
+  mutable std::vector<WallView> walls_;
+  // Steps for which each was computed.
+  mutable std::uint64_t net_step_ = never, contact_step_ = never, wall_contact_step_ = never, wall_step_ = never,
+                        clump_step_ = never, displacement_step_ = never;
+};
+
+}  // namespace grit

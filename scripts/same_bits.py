@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+"""Runs descriptions with two builds and compares their series bit by bit.
+
+  same_bits.py OLD [NEW] [--only PATTERN] [--seconds S] [--renames FILE]
+
+OLD and NEW are trees with a build in build/, each of which runs its own descriptions; NEW is this tree unless given.
+By default all sims/*/quick*.json run to their ends. With --seconds a run is interrupted after S seconds, and the samples
+that both builds reached are compared, but for the last one, which an interruption takes. FILE says what has another name
+in NEW: {"groups": {"old": "new"}, "channels": {"old": "new"}}; scripts/renames.json unless given.
+
+Exit status: 0 all bits are the same; 1 some differ, or a run failed; 2 wrong use.
+"""
+import argparse
+import json
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import h5py
+import numpy
+
+ROOT = Path(__file__).resolve().parent.parent
+INTERRUPTED = 130
+
+
+def run(tree, description, folder, seconds):
+    """Whether the run reached its end."""
+    command = [tree / 'build/bin/grit', 'run', description, '--out', folder, '--threads', '1', '--quiet', '--no-report']
+    with subprocess.Popen(command, cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            _, errors = process.communicate(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate()
+    if process.returncode not in (0, INTERRUPTED):
+        raise RuntimeError(f'{tree}: {description}: exit status {process.returncode}\n{errors}')
+    return process.returncode == 0
+
+
+def series(folder):
+    """All datasets of series.h5 as {(group, channel): array}."""
+    found = {}
+    with h5py.File(folder / 'series.h5') as file:
+        for group, members in file.items():
+            for channel, dataset in members.items():
+                found[group, channel] = dataset[...]
+    return found
+
+
+def renamed(found, renames):
+    groups, channels = renames.get('groups', {}), renames.get('channels', {})
+    return {(groups.get(group, group), channels.get(channel, channel)): values
+            for (group, channel), values in found.items()}
+
+
+def differences(old, new, whole):
+    """Lines that say what differs, and the number of samples that were compared."""
+    lines, compared = [], 0
+    for name in sorted(old.keys() ^ new.keys()):
+        lines.append(f'{"/".join(name)} is only in the {"old" if name in old else "new"} series')
+    for name in sorted(old.keys() & new.keys()):
+        a, b = old[name], new[name]
+        if not whole:
+            count = max(0, min(len(a), len(b)) - 1)
+            a, b = a[:count], b[:count]
+        compared += len(a)
+        if a.shape != b.shape:
+            lines.append(f'{"/".join(name)}: shape {a.shape} before, {b.shape} now')
+        elif a.tobytes() != b.tobytes():
+            at = numpy.flatnonzero((a != b).reshape(len(a), -1).any(axis=1))
+            lines.append(f'{"/".join(name)}: {len(at)} of {len(a)} samples differ, the first is sample {at[0] if len(at) else "?"}')
+    return lines, compared
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('old', type=Path)
+    parser.add_argument('new', type=Path, nargs='?', default=ROOT)
+    parser.add_argument('--only', default='sims/*/quick*.json', metavar='PATTERN', help='glob in the trees')
+    parser.add_argument('--seconds', type=float, help='interrupt each run after so long')
+    parser.add_argument('--renames', type=Path, default=ROOT / 'scripts/renames.json')
+    given = parser.parse_args()
+    for tree in (given.old, given.new):
+        if not (tree / 'build/bin/grit').is_file():
+            parser.error(f'{tree}/build/bin/grit does not exist; build that tree')
+    renames = json.loads(given.renames.read_text(encoding='utf-8')) if given.renames.is_file() else {}
+    descriptions = sorted(path.relative_to(given.new) for path in given.new.glob(given.only))
+    if not descriptions:
+        parser.error(f'no description matches {given.only}')
+
+    failed = 0
+    for description in descriptions:
+        with tempfile.TemporaryDirectory() as place:
+            folders = [Path(place) / 'old', Path(place) / 'new']
+            try:
+                done = [run(tree.resolve(), description, folder, given.seconds)
+                        for tree, folder in zip((given.old, given.new), folders)]
+                old, new = (series(folder) for folder in folders)
+                lines, compared = differences(renamed(old, renames), new, all(done))
+            except (RuntimeError, OSError) as error:
+                lines, compared = [str(error)], 0
+        failed += bool(lines)
+        print(f'{description}: ' + ('differs' if lines else f'same bits, {compared} samples'), flush=True)
+        for line in lines:
+            print(f'  {line}')
+    print(f'{len(descriptions) - failed} of {len(descriptions)} descriptions have the same bits')
+    return 1 if failed else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

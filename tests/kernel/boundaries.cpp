@@ -1,0 +1,53 @@
+#include "domain/boundaries.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "two_spheres.hpp"
+
+namespace grit::test::boundaries_tests {
+namespace {
+
+void must_not_escape(std::size_t, int, bool) { FAIL(); }
+
+TEST(Boundaries, BodiesReEnterAtTheOtherSideWithTheFlowThere) {
+  State state = two_spheres(0.004, box({true, false, false}));
+  state.bodies.position[1].x = 0.012;
+  set_velocity(state, 1, {1, 0, 0});
+  const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), {0.5, 0, 0}, {}, must_not_escape);
+  EXPECT_DOUBLE_EQ(state.bodies.position[1].x, -0.008);
+  EXPECT_DOUBLE_EQ(state.bodies.velocity[1].x, 0.5) << "the cell's far side moves by 0.5 m/s more";
+  EXPECT_NEAR(wrapped.energy_gained, 0.5 * sphere_mass() * (0.25 - 1), 1e-12 * sphere_mass());
+  EXPECT_EQ(state.bodies.position[0].x, -0.002) << "a body inside stays";
+  EXPECT_THAT(wrapped.leaves, testing::Each(false));
+}
+
+TEST(Boundaries, BodiesLeaveThroughOpenSidesAlone) {
+  State state = two_spheres(0.004);
+  state.bodies.position[0].z = -0.011;
+  EXPECT_EQ(wrap(state.bodies, state.cell.cell(), Vec3::Zero(), {"-z"}, must_not_escape).leaves,
+            (std::vector{true, false}));
+  int escaped = 0;
+  wrap(state.bodies, state.cell.cell(), Vec3::Zero(), {"+z", "-x"}, [&](std::size_t body, int axis, bool high) {
+    EXPECT_EQ(body, 0u);
+    EXPECT_EQ(axis, 2);
+    EXPECT_FALSE(high);
+    ++escaped;
+  });
+  EXPECT_EQ(escaped, 1);
+}
+
+TEST(Boundaries, LeavingBodiesTakeTheirEnergyAlong) {
+  State state = two_spheres(0.004);
+  set_velocity(state, 1, {0, 3, 4});
+  const auto left = leaving(state.bodies, {false, true}, 0.25, {0, 0, -10});
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].departure.id, 1u);
+  EXPECT_EQ(left[0].departure.time, 0.25);
+  EXPECT_NEAR(left[0].departure.mass, sphere_mass(), 1e-15 * sphere_mass());
+  EXPECT_NEAR(left[0].kinetic, 12.5 * sphere_mass(), 1e-12 * sphere_mass());
+  EXPECT_EQ(left[0].potential, 0) << "at height 0";
+}
+
+}  // namespace
+}  // namespace grit::test::boundaries_tests

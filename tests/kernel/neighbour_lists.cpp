@@ -1,0 +1,75 @@
+#include "kernel/neighbour_lists.hpp"
+
+#include <gtest/gtest.h>
+
+#include "two_spheres.hpp"
+
+namespace grit::test::neighbour_lists_tests {
+namespace {
+
+constexpr double least_skin = 0.03 * 2 * radius;
+
+class Lists : public testing::Test {
+ protected:
+  Lists() {
+    state_.time.dt = 1e-6;
+    search(state_, passes_);
+  }
+  State state_ = two_spheres(0.004);
+  Passes passes_{1};
+};
+
+TEST_F(Lists, AreDueAtFirst) { EXPECT_TRUE(NeighbourLists().due(state_.bodies, state_.cell)); }
+
+TEST_F(Lists, BodiesAtRestGetTheLeastSkin) {
+  EXPECT_DOUBLE_EQ(state_.lists.skins().of_chunk(0), least_skin);
+  EXPECT_EQ(state_.lists.rebuilds(), 1u);
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell));
+}
+
+TEST_F(Lists, FastBodiesGetWiderSkins) {
+  set_velocity(state_, 0, {2, 0, 0});
+  search(state_, passes_);
+  EXPECT_NEAR(state_.lists.skins().of_chunk(0), 100 * 1e-6 * 2, 1e-15) << "for 100 steps";
+}
+
+TEST_F(Lists, AreDueOnceABodyHasUsedUpItsSkin) {
+  passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
+  state_.bodies.position[0].y += 0.9 * least_skin;
+  state_.lists.advance(1, 0, passes_);
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell));
+  state_.bodies.position[0].y += 0.2 * least_skin;
+  state_.lists.advance(1, 0, passes_);
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+}
+
+TEST_F(Lists, AreNotDueWhereABodyHasComeBack) {
+  passes_.chunks()[0].motion.largest_speed = 0.9 * least_skin;
+  for (int i = 0; i < 5; ++i) state_.lists.advance(1, 0, passes_);
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell)) << "its true distance is 0";
+}
+
+TEST_F(Lists, AreDueOnceAWallHasUsedUpItsSkin) {
+  state_.lists.advance_walls(1.1 * least_skin);
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+}
+
+TEST_F(Lists, AreDueOnRequest) {
+  state_.lists.request_rebuild();
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+}
+
+TEST_F(Lists, AreDueOnceStrainHasUsedUpTheSkins) {
+  passes_.chunks()[0].motion.largest_speed = 0;
+  state_.lists.advance(1, 1.9 * least_skin, passes_);
+  EXPECT_FALSE(state_.lists.due(state_.bodies, state_.cell)) << "two bodies share it";
+  state_.lists.advance(1, 0.2 * least_skin, passes_);
+  EXPECT_TRUE(state_.lists.due(state_.bodies, state_.cell));
+}
+
+TEST_F(Lists, AShortestPeriodIsTwiceTheReach) {
+  EXPECT_DOUBLE_EQ(NeighbourLists::shortest_period(state_.bodies, state_.statistics), 4 * (radius + least_skin));
+}
+
+}  // namespace
+}  // namespace grit::test::neighbour_lists_tests

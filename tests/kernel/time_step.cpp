@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernel/time_step_control.hpp"
+#include "two_spheres.hpp"
+
+namespace grit::test::time_step_tests {
+namespace {
+
+class TimeStep : public testing::Test {
+ protected:
+  explicit TimeStep(const std::string& law = "linear-frictional") : state_(two_spheres(1.99 * radius, box(), law)) {
+    control_.update_stiffening(state_);
+    search(state_, passes_);
+    evaluate(state_);
+  }
+  double set() {
+    control_.set(state_, bounds_, passes_.team());
+    return state_.time.dt;
+  }
+  State state_;
+  Passes passes_{1};
+  TimeStepControl control_;
+  DisplacementBounds bounds_;
+};
+class StiffeningStep : public TimeStep {
+ protected:
+  StiffeningStep() : TimeStep("hertz-mindlin") {}
+};
+
+TEST_F(TimeStep, IsTheShorterOfSafetyAndSteps) {
+  state_.settings.time_step.steps_per_impact = 0;
+  state_.settings.time_step.safety = 0.5;
+  EXPECT_DOUBLE_EQ(set(), 0.5 * control_.critical());
+  state_.settings.time_step.steps_per_impact = 100;
+  EXPECT_LT(set(), 0.5 * control_.critical());
+}
+
+TEST_F(TimeStep, StaysWhileItCouldBeLittleLonger) {
+  state_.settings.time_step.steps_per_impact = 0;
+  state_.settings.time_step.safety = 0.5;
+  const double before = set();
+  state_.settings.time_step.safety = 0.54;
+  EXPECT_EQ(set(), before);
+  state_.settings.time_step.safety = 0.56;
+  EXPECT_DOUBLE_EQ(set(), 0.56 / 0.5 * before);
+}
+
+TEST_F(TimeStep, PrescribedAboveTheCriticalOneIsRefused) {
+  state_.settings.time_step.value = 1;
+  try {
+    set();
+    FAIL();
+  } catch (const NumericsError& error) {
+    EXPECT_EQ(error.guard(), Guard::critical_step);
+  }
+  state_.settings.time_step.allow_unstable = true;
+  EXPECT_EQ(set(), 1);
+}
+
+TEST_F(TimeStep, OfLinearSpringsDoesNotFollowOverlaps) {
+  EXPECT_FALSE(control_.stiffening().is_there());
+  EXPECT_EQ(control_.stiffening().expected_overlap(), 0);
+  set();
+  state_.overlap = 0.15;
+  EXPECT_FALSE(control_.may_stiffen(state_, bounds_));
+}
+
+TEST_F(StiffeningStep, ExpectsTheOverlapOfTheFastestImpact) {
+  EXPECT_TRUE(control_.stiffening().is_there());
+  set();
+  const double at_rest = control_.stiffening().expected_overlap(), step = state_.time.dt;
+  set_velocity(state_, 0, {5, 0, 0});
+  set();
+  EXPECT_GT(control_.stiffening().expected_overlap(), 1.2 * at_rest);
+  EXPECT_LT(state_.time.dt, step);
+}
+
+TEST_F(StiffeningStep, IsSetAgainWhenContactsAreDeeper) {
+  set();
+  EXPECT_FALSE(control_.may_stiffen(state_, bounds_));
+  state_.overlap *= 1.3;
+  EXPECT_TRUE(control_.may_stiffen(state_, bounds_));
+}
+
+}  // namespace
+}  // namespace grit::test::time_step_tests
