@@ -8,6 +8,9 @@
 
 #include "fake_world.hpp"
 #include "folder.hpp"
+#include "format/duration.hpp"
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "output/grain_view.hpp"
 #include "output/scale.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "made_runs.hpp"
 #include "study/chart_page.hpp"

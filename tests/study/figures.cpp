@@ -130,18 +130,5 @@ TEST_F(Figures, WhatIsNotThereIsTold) {
   EXPECT_THAT(error_of([&] { take_figure(figure("last"), folder / "nowhere"); }), HasSubstr("there is no such file"));
 }
 
-TEST(ReferenceCurves, AreTwoColumnsOfATable) {
-  const OwnFolder folder;
-  const auto path = folder.write("laboratory.csv", "strain, ratio,\"stress\"\n# source\n0,1,0.5\n1,2,0.75\n").string();
-  const Figure curve = read_reference({path, "strain", "stress"});
-  EXPECT_THAT(curve.x, ElementsAre(0, 1));
-  EXPECT_THAT(curve.y, ElementsAre(0.5, 0.75));
-  EXPECT_THAT(error_of([&] { read_reference({path, "strain", "tau"}); }), HasSubstr(":1: there is no column \"tau\""));
-  const auto elsewhere = folder.write("elsewhere.csv", "\xef\xbb\xbfx, y\r\n0, 1\r\n\r\n1, 2\r\n").string();
-  EXPECT_THAT(read_reference({elsewhere, "x", "y"}).y, ElementsAre(1, 2)) << "as other systems write it";
-  const auto bad = folder.write("bad.csv", "x,y\n0,1\n1,much\n").string();
-  EXPECT_THAT(error_of([&] { read_reference({bad, "x", "y"}); }), HasSubstr("bad.csv:3: not two numbers"));
-}
-
 }  // namespace
 }  // namespace grit

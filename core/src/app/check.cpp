@@ -15,6 +15,8 @@
 #include "app/run_setup.hpp"
 #include "app/too_deep.hpp"
 #include "app/without_effect.hpp"
+#include "format/duration.hpp"
+#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"

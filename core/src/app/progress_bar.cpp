@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "format/duration.hpp"
+
 namespace grit {
 namespace {
 
@@ -19,13 +21,6 @@ std::string format(const char* form, auto... values) {
 }
 
 }  // namespace
-
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long>(std::lround(std::min(seconds, 1e9)));
-  if (whole < 60) return format("%ld s", whole);
-  if (whole < 3600) return format("%ld min %02ld s", whole / 60, whole % 60);
-  return format("%ld h %02ld min", whole / 3600, whole / 60 % 60);
-}
 
 std::string progress_text(const Progress& now) {
   std::string text = format("%zu/%zu %-14s ", now.stage_number, now.stages, now.stage.c_str());

@@ -35,9 +35,6 @@ class ProgressBar {
   std::string stage_;
 };
 
-/// "42 s", "3 min 10 s", "2 h 05 min".
-std::string duration_text(double seconds);
-
 /// One line without its end, e.g. "2/4 shear  [#####-----]  48 %, 12 s left, 8.1 M particle-steps/s".
 std::string progress_text(const Progress& progress);
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "input/scene.hpp"
 #include "grit/world.hpp"
+#include "input/scene.hpp"
 
 namespace grit {
 

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "output/clipped.hpp"
 #include "output/colours.hpp"
 #include "output/heading.hpp"

@@ -11,6 +11,8 @@
 #include <span>
 #include <utility>
 
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "output/clipped.hpp"
 #include "output/colours.hpp"
 #include "output/heading.hpp"

@@ -33,9 +33,8 @@ struct Frame {
 
   struct Wall {
     std::string name;
-    std::vector<double>
-        corners;        ///< of its triangles where it has moved and turned to: nine numbers a triangle [m]
-    Vec3 displacement;  ///< since the start of the run [m]
+    std::vector<double> corners;  ///< of its triangles where it has moved and turned to: nine numbers a triangle [m]
+    Vec3 displacement;            ///< since the start of the run [m]
   };
   std::vector<Wall> walls;
 };

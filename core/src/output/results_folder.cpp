@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "format/duration.hpp"
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
-#include "output/scale.hpp"
 #include "scene/packing_file.hpp"
 
 namespace grit {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "format/symbols.hpp"
 #include "output/scale.hpp"
 #include "output/strays.hpp"
 

@@ -7,6 +7,9 @@
 #include <iterator>
 #include <limits>
 
+#include "format/duration.hpp"
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "output/picture.hpp"
 #include "output/scale.hpp"
 #include "report/facts.hpp"

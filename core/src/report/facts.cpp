@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "output/scale.hpp"
-#include "study/chart_words.hpp"
+#include "format/duration.hpp"
+#include "format/number.hpp"
 
 namespace grit {
 namespace {

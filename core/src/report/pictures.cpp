@@ -9,6 +9,9 @@
 #include <numeric>
 #include <ranges>
 
+#include "format/duration.hpp"
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "output/grain_view.hpp"
 #include "output/map_picture.hpp"

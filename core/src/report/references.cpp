@@ -1,7 +1,7 @@
 #include "report/references.hpp"
 
-#include "output/scale.hpp"
-#include "study/figures.hpp"
+#include "format/symbols.hpp"
+#include "output/reference_curve.hpp"
 
 namespace grit {
 
@@ -14,7 +14,7 @@ std::vector<Reference> references_of(RunResults& run) {
         reference.value = json.at("value").get<double>();
       } else {
         const Description& curve = json.at("curve");
-        Figure read = read_reference({curve.at("file"), curve.at("x"), curve.at("y")});
+        ReferencePoints read = read_reference({curve.at("file"), curve.at("x"), curve.at("y")});
         reference.x = std::move(read.x), reference.y = std::move(read.y);
       }
       all.push_back(std::move(reference));

@@ -6,15 +6,16 @@
 #include <array>
 #include <cmath>
 
+#include "format/duration.hpp"
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "output/colours.hpp"
 #include "output/page.hpp"
-#include "output/scale.hpp"
 #include "output/shell_word.hpp"
 #include "output/svg.hpp"
 #include "report/facts.hpp"
 #include "report/references.hpp"
 #include "report/run_results.hpp"
-#include "study/chart_words.hpp"
 
 namespace grit {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "output/read_frames.hpp"
-#include "output/scale.hpp"
 
 namespace grit {
 namespace {

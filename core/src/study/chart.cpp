@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/csv.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
 #include "output/read_results.hpp"
+#include "output/reference_curve.hpp"
 #include "study/chart_words.hpp"
 #include "study/parts.hpp"
 
@@ -139,7 +141,7 @@ struct Range {
 std::optional<Range> reference_range(const Chart& chart, const std::string& name) {
   const FigureDescription& figure = chart.study.figures.at(name);
   if (figure.curve) {
-    const Figure curve = read_reference(*figure.curve);
+    const ReferencePoints curve = read_reference(*figure.curve);
     return Range{curve.x.front(), curve.x.back()};
   }
   if (!all_done(chart.finest())) return std::nullopt;
@@ -271,8 +273,10 @@ void find_references(Chart& chart) {
     if (chart.uncharted.contains(name)) continue;
     Figure reference;
     if (figure.value) reference.y = {*figure.value};
-    else if (figure.curve) reference = read_reference(*figure.curve);
-    else if (all_done(chart.finest())) {
+    else if (figure.curve) {
+      ReferencePoints curve = read_reference(*figure.curve);
+      reference.x = std::move(curve.x), reference.y = std::move(curve.y);
+    } else if (all_done(chart.finest())) {
       const auto finest = figures_of(chart.finest(), name);
       const auto x = shared_places(finest, finest).value();
       reference = {x, sampled(values_at(finest, x)).mean, finest.front()->unit, finest.front()->x_unit};
@@ -376,12 +380,6 @@ Description to_json(const std::map<std::string, Deviation>& deviations) {
                   {"standard_error", or_null(one.standard_error)},
                   {"scatter", or_null(one.scatter)}};
   return json;
-}
-
-std::string quoted(const std::string& text) {
-  std::string all = "\"";
-  for (const char c : text) all += c == '"' ? "\"\"" : std::string(1, c);
-  return all + '"';
 }
 
 }  // namespace
@@ -494,22 +492,22 @@ Description to_json(const Chart& chart) {
 
 std::string to_csv(const Chart& chart) {
   std::string text = "variant";
-  for (const auto& [name, setting] : chart.study.settings) text += ',' + quoted(name);
+  for (const auto& [name, setting] : chart.study.settings) text += ',' + quoted_cell(name);
   text +=
       ",figure,mean,error,standard_error,scatter,core_seconds,core_seconds_scatter,steps,particle_steps_per_core_s,"
       "samples_"
       "done,samples\n";
   for (const VariantResult& one : chart.variants) {
-    std::string head = quoted(one.variant.name);
+    std::string head = quoted_cell(one.variant.name);
     std::size_t k = 0;
     for (const auto& [name, setting] : chart.study.settings)
-      head += ',' + quoted(setting.label(one.variant.levels[k++]));
+      head += ',' + quoted_cell(setting.label(one.variant.levels[k++]));
     const auto done = std::ranges::count(one.samples, "done", &Sample::status);
     for (const auto& [name, figure] : chart.study.figures) {
       const auto found = one.deviations.find(name);
       Deviation figures = found == one.deviations.end() ? Deviation() : found->second;
       if (const auto value = one.values.find(name); value != one.values.end()) figures.mean = value->second.mean;
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted(name), figures.mean, figures.error,
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", head, quoted_cell(name), figures.mean, figures.error,
                           figures.standard_error, figures.scatter, one.core_seconds, one.cost_scatter, one.steps,
                           one.particle_steps_per_core_second, done, one.samples.size());
     }

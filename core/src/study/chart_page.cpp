@@ -7,8 +7,9 @@
 #include <map>
 #include <utility>
 
+#include "format/number.hpp"
+#include "format/symbols.hpp"
 #include "output/page.hpp"
-#include "output/scale.hpp"
 #include "output/svg.hpp"
 #include "study/chart_words.hpp"
 #include "study/error_chart.hpp"
@@ -42,7 +43,7 @@ std::string variants_table(const Chart& chart) {
                 ? fmt::format("<td>{:.3g} <small>± {}</small></td><td>{}</td><td>{:.0f}</td><td>{:.2f}</td>",
                               one.core_seconds, or_unknown(one.cost_scatter),
                               chart.finest().core_seconds > 0
-                                  ? times(chart.finest().core_seconds / one.core_seconds) + " times"
+                                  ? ratio_text(chart.finest().core_seconds / one.core_seconds) + " times"
                                   : "?",
                               one.steps, 1e-6 * one.particle_steps_per_core_second)
                 : "<td>–</td><td>–</td><td>–</td><td>–</td>";
@@ -112,7 +113,7 @@ std::string effects_part(const Chart& chart) {
         "<tr><td class=\"name\">{}{}</td><td class=\"name\">{} <small>(finest {})</small></td><td>{} <small>± "
         "{}</small></td>",
         escaped(effect.setting), setting.about.empty() ? "" : "<br><small>" + escaped(setting.about) + "</small>",
-        escaped(effect.level), escaped(setting.label(setting.finest_level())), times(effect.cost),
+        escaped(effect.level), escaped(setting.label(setting.finest_level())), ratio_text(effect.cost),
         or_unknown(effect.cost_error));
     for (const auto& [name, reference] : chart.reference) {
       const auto found = effect.deviations.find(name);

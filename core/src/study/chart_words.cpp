@@ -7,6 +7,8 @@
 #include <map>
 #include <ranges>
 
+#include "format/duration.hpp"
+#include "format/number.hpp"
 #include "study/chart.hpp"
 
 namespace grit {
@@ -28,24 +30,6 @@ std::string passed_over(const Chart& chart) {
 }  // namespace
 
 std::string word_for_error(const StudyDescription& study) { return study.advice ? "error" : "difference"; }
-
-std::string percent(double share) {
-  if (!std::isfinite(share)) return "?";
-  const double value = 100 * share;
-  return fmt::format("{:.{}f} %", value, value >= 9.95 ? 0 : value >= 0.1 ? 1 : 2);
-}
-
-std::string times(double ratio) { return fmt::format("{:.{}f}", ratio, ratio >= 10 ? 0 : ratio >= 3 ? 1 : 2); }
-
-std::string cost_text(double seconds) {
-  return seconds < 0.1     ? fmt::format("{:.2g} s", seconds)
-         : seconds < 600   ? fmt::format("{:.{}f} s", seconds,
-                                       seconds < 1    ? 2
-                                         : seconds < 10 ? 1
-                                                        : 0)
-         : seconds < 36000 ? fmt::format("{:.0f} min", seconds / 60)
-                           : fmt::format("{:.1f} h", seconds / 3600);
-}
 
 std::vector<std::string> not_charted(const Chart& chart) {
   std::map<std::string, std::vector<std::string>> by_reason;
@@ -96,7 +80,7 @@ std::string verdict_of_figures(const Chart& chart) {
   text +=
       fmt::format("Cheapest within {}: {}, {} of one core", tolerance, best.variant.name, cost_text(best.core_seconds));
   if (chart.finest().core_seconds > 0)
-    text += ", " + times(chart.finest().core_seconds / best.core_seconds) + " times cheaper than the finest";
+    text += ", " + ratio_text(chart.finest().core_seconds / best.core_seconds) + " times cheaper than the finest";
   text += fmt::format("; its largest error is {} ± {} ({}).", percent(worst.error), percent(worst.standard_error),
                       best.worst);
   std::vector<std::string> doubtful;
@@ -136,7 +120,7 @@ std::string of_order(const Chart& chart) {
     text += fmt::format(
         "{}{}={} costs {} times as much as {}, which stands last and so is taken for the finest: levels go from the "
         "cheapest to the finest.",
-        text.empty() ? "" : " ", name, first->level, times(first->cost), setting.label(setting.finest_level()));
+        text.empty() ? "" : " ", name, first->level, ratio_text(first->cost), setting.label(setting.finest_level()));
   }
   return text;
 }

@@ -10,17 +10,8 @@ struct Chart;
 struct StudyDescription;
 struct VariantResult;
 
-/// "2.1 %"; "?" where it cannot be told.
-std::string percent(double share);
-
 /// What a deviation from the finest is called: where what is modelled varies, not how, it is no error.
 std::string word_for_error(const StudyDescription& study);
-
-/// A ratio with three digits.
-std::string times(double ratio);
-
-/// "42 s", "12 min", "3.5 h".
-std::string cost_text(double seconds);
 
 /// "peak, end: its reference is 0 …": the figures that could not be charted, a line for each reason.
 std::vector<std::string> not_charted(const Chart& chart);

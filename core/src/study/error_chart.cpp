@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/duration.hpp"
+#include "format/number.hpp"
 #include "output/colours.hpp"
 #include "output/svg.hpp"
 #include "study/chart_words.hpp"

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numeric>
-#include <sstream>
 
 #include "grit/error.hpp"
 #include "output/read_results.hpp"
@@ -98,25 +96,6 @@ Figure value_of(const FigureDescription& figure, const Figure& all) {
   return one(all.y.back(), all.unit);
 }
 
-/// A line as it is on any system: without what ends it elsewhere, and without the mark of UTF-8 that some begin with.
-bool get_line(std::istream& stream, std::string& line) {
-  const bool first = stream.tellg() == std::streampos(0);
-  if (!std::getline(stream, line)) return false;
-  if (first && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);
-  if (line.ends_with('\r')) line.pop_back();
-  return true;
-}
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> all;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\""), last = cell.find_last_not_of(" \t\"");
-    all.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return all;
-}
-
 }  // namespace
 
 double at(const Figure& curve, double x) {
@@ -141,35 +120,6 @@ Figure take_figure(const FigureDescription& figure, const std::filesystem::path&
       finite(profile ? last_row(against) : against.values, profile ? last_row(of) : of.values, of.unit, against.unit);
   if (all.x.empty()) throw NumericsError(figure.of + " has no finite number");
   return figure.is_curve() ? rising(all) : value_of(figure, all);
-}
-
-Figure read_reference(const ReferenceCurve& curve) {
-  std::ifstream file(curve.file);
-  if (!file) throw FileError(curve.file + ": cannot be read");
-  std::string line;
-  get_line(file, line);
-  const auto names = cells(line);
-  const auto column = [&](const std::string& name) {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
-      throw FileError(curve.file + ":1: there is no column \"" + name + "\" in \"" + line + '"');
-    return static_cast<std::size_t>(found - names.begin());
-  };
-  const std::size_t x = column(curve.x), y = column(curve.y);
-  std::vector<double> xs, ys;
-  for (int number = 2; get_line(file, line); ++number) {
-    const auto row = cells(line);
-    if (row.empty() || row.front().starts_with('#')) continue;
-    try {
-      xs.push_back(std::stod(row.at(x))), ys.push_back(std::stod(row.at(y)));
-    } catch (const std::exception&) {
-      throw FileError(curve.file + ':' + std::to_string(number) + ": not two numbers in columns " + curve.x + " and " +
-                      curve.y + ": \"" + line + '"');
-    }
-  }
-  Figure found = rising(finite(xs, ys, "", ""));
-  if (found.x.size() < 2) throw FileError(curve.file + ": fewer than two points with rising " + curve.x);
-  return found;
 }
 
 }  // namespace grit

@@ -19,9 +19,6 @@ struct Figure {
 /// no finite number of it, or did not reach the abscissa of a value.
 Figure take_figure(const FigureDescription& figure, const std::filesystem::path& folder);
 
-/// The curve that a description gives. Throws FileError.
-Figure read_reference(const ReferenceCurve& curve);
-
 /// A curve at `x`, straight between its points; NaN outside.
 double at(const Figure& curve, double x);
 
