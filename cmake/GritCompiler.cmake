@@ -1,5 +1,5 @@
 # Before project(): where nobody names a compiler, clang 16 or newer, if it is there. Its loops over contacts take four fifths
-# of the time of those of g++ 12, which keeps fewer of their numbers in registers (docs/performance.md).
+# of the time of those of g++ 12, which keeps fewer of their numbers in registers (docs/evidence/performance.md).
 if(NOT CMAKE_CXX_COMPILER AND NOT DEFINED ENV{CXX})
   function(grit_new_enough result compiler)
     execute_process(COMMAND ${compiler} --version OUTPUT_VARIABLE says ERROR_QUIET)

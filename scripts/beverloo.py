@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures how fast grains flow through round holes and slots, against Beverloo's law: writes docs/beverloo.md.
+"""Measures how fast grains flow through round holes and slots, against Beverloo's law: writes docs/evidence/beverloo.md.
 
   beverloo.py [BUILD]      BUILD is build unless given; results/beverloo has the runs, and those that are done are not run again
 
@@ -21,11 +21,17 @@ BOUND = 0.1
 BEVERLOO = 1.4                                           # his own k
 STEADY_FROM = 0.25                                       # of the mass that leaves
 
-HEAD = '''## Beverloo's law
-Written by `scripts/beverloo.py` from runs of [sims/beverloo](../sims/beverloo). Do not edit. Grains of 0.9 to 1.1 mm (d = 1 mm) without rolling resistance,
-friction 25°, flow out of a flat-bottomed bin through a round hole, or through a slot of which 10 mm repeat. The bin is 30 d wider than a slot, as
-Nedderman asks for, and 16 d than a hole, and filled to about 45 d or 2.7 slots, to 32 d or 2.5 holes, whichever is more. Rates, one of each sample, are slopes of the mass
-that has left, from a quarter of what leaves on.
+HEAD = '''# Beverloo's law
+Written by `scripts/beverloo.py` from runs of [sims/beverloo](../../sims/beverloo). Do not edit.
+
+'''
+SETUP = '''
+## Setup
+- Grains have diameters of 0.9 to 1.1 mm (d = 1 mm), friction of 25° and no rolling resistance.
+- The bin is flat-bottomed. The outlet is a round hole, or a slot that is periodic over 10 mm.
+- The bin is wider than a slot by 30 d, as Nedderman recommends, and wider than a hole by 16 d.
+- It is filled to the larger of 45 d and 2.7 slot widths, or of 32 d and 2.5 hole diameters.
+- A rate is the slope of the discharged mass, without the first quarter. Each sample has its own.
 
 '''
 
@@ -113,33 +119,37 @@ def verdict(kind, n):
     return 'holds' if abs(n - EXPONENTS[kind]) <= BOUND else 'misses'
 
 
+def exponent(found, kind, k):
+    """The exponent of one kind at a given k, and whether it holds, in words."""
+    n, _, error, _ = line(logs(found[kind], k))
+    return f'{n:.2f} ± {error:.3f}', verdict(kind, n)
+
+
 def page(found):
     fitted = best_k(found)
     sizes = {kind: {size: [w for s, w in rates if s == size] for size, _ in rates} for kind, rates in found.items()}
-    text = '| outlet | D/d | rate, g/s | by the law with k = %.2f |\n| --- | --- | --- | --- |\n' % fitted
+    (holes, holes_hold), (slots, slots_hold) = (exponent(found, kind, fitted) for kind in ('hole', 'slot'))
+    text = (f"**Summary.** Rates of discharge follow W = C (D − k d)^n with k = {fitted:.2f}, n = {holes} for holes (law: 2.5, {holes_hold})\n"
+            f"and n = {slots} for slots (law: 1.5, {slots_hold}). An exponent holds if it is within {BOUND} of the law's.\n")
+    text += SETUP + '## Rates\n| outlet | D/d | rate, g/s | law with k = %.2f |\n| --- | --- | --- | --- |\n' % fitted
     for kind, of_size in sizes.items():
         constant = sum(y - EXPONENTS[kind] * x for x, y in logs(found[kind], fitted)) / len(found[kind])
         for size, samples in of_size.items():
             law = math.exp(constant) * (size - fitted) ** EXPONENTS[kind]
             text += f'| {kind} | {size} | {", ".join(f"{one:.2f}" for one in samples)} | {law:.2f} |\n'
-    text += (f'\nThe law is W = C (D − k d)^n, n = 2.5 for holes and 1.5 for slots, asked for to within {BOUND}. k is one for both kinds: the one by which\n'
-             f'the law, with its own exponents and a constant for each kind, misses all rates least (sum of squares of ln W): **k = {fitted:.2f}**.\n'
-             'With it, exponents are fitted anew, each kind by itself; ± is the standard error of the fit, k being given.\n\n'
+    text += ('\n## Exponents\n'
+             f'k = {fitted:.2f} is fitted to all outlets, with the exponents of the law and a constant C for each kind (least squares of ln W).\n'
+             'The exponents below are fitted to each kind at a given k. ± is the standard error of that fit.\n\n'
              '| k | holes, 2.5 ± 0.1 | | slots, 1.5 ± 0.1 | |\n| --- | --- | --- | --- | --- |\n')
-    for k, name in ((fitted, 'the rule'), (BEVERLOO, "Beverloo's"), (1.6, ''), (1.8, ''), (2.0, ''), (2.4, '')):
-        text += f'| {k:.2f}{", " + name if name else ""} |'
-        for kind in ('hole', 'slot'):
-            n, _, error, _ = line(logs(found[kind], k))
-            text += f' {n:.2f} ± {error:.3f} | {verdict(kind, n)} |'
-        text += '\n'
-    text += '\nThat k is drawn towards the exponents that are looked for. One that the other kind alone has chosen is not:\n\n'
+    for k, name in ((fitted, 'fitted'), (BEVERLOO, "Beverloo's"), (1.6, ''), (1.8, ''), (2.0, ''), (2.4, '')):
+        text += f'| {k:.2f}{", " + name if name else ""} | {" | ".join(word for kind in ("hole", "slot") for word in exponent(found, kind, k))} |\n'
+    text += '\nThis k is biased towards the exponents of the law. A k that was fitted to the other kind alone is not:\n\n'
     for kind, other in (('slot', 'hole'), ('hole', 'slot')):
         k = best_k({other: found[other]})
-        n, _, error, _ = line(logs(found[kind], k))
-        text += f'- k = {k:.2f}, of {other}s: {kind}s have {n:.2f} ± {error:.3f}, {verdict(kind, n)}\n'
+        text += f'- k = {k:.2f} from {other}s: exponent of {kind}s {", ".join(exponent(found, kind, k))}\n'
     free = ', '.join(f'k = {k:.2f} and n = {n:.2f} for {kind}s' for kind, (k, n) in
                      ((kind, best_of_both(rates)) for kind, rates in found.items()))
-    return text + f'\nWith k and n both free, and each kind by itself, what fits best is {free}.\n'
+    return text + f'\nWith k and n both free, and each kind fitted alone: {free}.\n'
 
 
 def main():
@@ -147,7 +157,7 @@ def main():
     found = {kind: [(outlet[0], rate(run(grit, kind, outlet, seed))) for outlet in outlets for seed in range(1, outlet[-1] + 1)]
              for kind, outlets in OUTLETS.items()}
     text = HEAD + page(found)
-    (ROOT / 'docs' / 'beverloo.md').write_text(text, encoding='utf-8')
+    (ROOT / 'docs' / 'evidence' / 'beverloo.md').write_text(text, encoding='utf-8')
     print(text)
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Plants errors in copies of the contact laws and of the kernel, one at a time, and writes which tests of physics turn red:
-docs/planted.md, with which docs/validation.md ends.
+docs/evidence/planted.md.
 
   planted.py [--only PART] [BUILD]      BUILD is build unless given; exit status 1 if a plant leaves all tests green, or
                                         if tests are red without one; with --only the rows of one of the PARTS below are made anew
@@ -85,11 +85,16 @@ namespace {
 const int planted_error = std::getenv("VARIABLE") != nullptr ? std::atoi(std::getenv("VARIABLE")) : 0;
 }
 '''
-HEAD = '''## Planted errors
-Written by `scripts/planted.py`. Do not edit. Each error was planted alone in a copy of the law, or of the kernel; beside it stand the tests of
-[tests/physics](../tests/physics) that turned red. Those that run whole specimens are left out, and those of surfaces where a law errs.
+HEAD = '''# Planted errors
+Written by `scripts/planted.py`. Do not edit.
 
-| in | error | tests that turned red |
+**Summary.** Do the tests of physics detect errors in the code? Each error below was planted alone in a copy of a contact law or of the
+kernel, and at least one test failed each time.
+
+The last column has the tests of [tests/physics](../../tests/physics) that failed. Tests of whole specimens were not run,
+nor tests of curved surfaces for errors in a law.
+
+| in | error | failing tests |
 | --- | --- | --- |
 '''
 
@@ -185,16 +190,6 @@ def tried(build, part):
             os.replace(kept, library)
 
 
-def write(page, text):
-    """The page, and the end of the page of all figures, which it is."""
-    whole = page.with_name('validation.md')
-    before = page.read_text(encoding='utf-8') if page.is_file() else ''
-    figures = whole.read_text(encoding='utf-8')
-    if before and figures.endswith(before):
-        whole.write_text(figures.removesuffix(before) + text, encoding='utf-8')
-    page.write_text(text, encoding='utf-8')
-
-
 def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was exchanged is put back
     words = sys.argv[1:]
@@ -212,7 +207,7 @@ def main():
         library = library_of(build, part)
         if library.with_suffix('.unplanted').is_file():
             os.replace(library.with_suffix('.unplanted'), library)
-    page = ROOT / 'docs' / 'planted.md'
+    page = ROOT / 'docs' / 'evidence' / 'planted.md'
     green = False
     for part in parts:
         found = list(tried(build, part))
@@ -220,7 +215,7 @@ def main():
         lines = page.read_text(encoding='utf-8').splitlines(True) if page.is_file() else []
         rows = {other: [line for line in lines if line.startswith(f'| {other} |')] for other in PARTS}
         rows[part] = [f'| {part} | {what} | {", ".join(tests) or "none"} |\n' for _, what, tests in found]
-        write(page, HEAD + ''.join(line for other in PARTS for line in rows[other]))
+        page.write_text(HEAD + ''.join(line for other in PARTS for line in rows[other]), encoding='utf-8')
     return 1 if green else 0
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Writes docs/reproduction.md: what tests of the reference work come to in grit, beside what they came to there.
+"""Writes docs/evidence/reproduction.md: results of grit beside those of a reference work.
 
   reproduce.py [--run GLOB]… [--samples N] [--for SECONDS] [--threads N] [--results FOLDER] [--grit FILE]
 
-docs/reproduction.json has the figures. Each quick and full description of sims/ whose finished run lies in FOLDER/TEST/NAME
-(results/reproduce unless given) gets its rows. Of one without, what docs/reproduction.md has stays, as long as docs/reproduction.json
+docs/evidence/reproduction.json has the figures. Each quick and full description of sims/ whose finished run lies in FOLDER/TEST/NAME
+(results/reproduce unless given) gets its rows. Of one without, what docs/evidence/reproduction.md has stays, as long as docs/evidence/reproduction.json
 asks for the same figures; the other full ones are listed with the time they would take. All sims/*/quick*.json have a line that says how they ended, from
 FOLDER or, without a run there, as the page has it. --run runs those that GLOB fits and
 that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100, and --samples as many packings of each:
@@ -28,31 +28,37 @@ import numpy
 
 ROOT = Path(__file__).resolve().parents[1]
 HEAD = '''# Reproduction
-Written by `scripts/reproduce.py` from finished runs of [sims](../sims); do not edit. The reference is YADE's (A. Grabowski, doctoral dissertation,
-Gdańsk 2024), at full size. `full` descriptions are of that size; `quick` ones are smaller boxes with fewer grains, those of surfaces with small grains made heavier, and many sheared at another rate, as their
-descriptions say, to show order and shape, and differ as the notes below them say. A figure is of one packing, or the mean of several ± the standard deviation of one; so is the
-reference's of one packing. A section stays until its test is run again, and says which commit of grit ran it, where that was kept. "none": rotation is largest at the surface
-and falls off fastest there, so that it has no inflection point. The triaxial tests of its table 4.1, one parameter of the sand at a time, stand in [studies](studies.md), with their deviations.
+Written by `scripts/reproduce.py` from finished runs of [sims](../../sims); do not edit.
+
+**Summary.** {within} of {all} values lie within the deviation that [reproduction.json](reproduction.json) allows from a reference work. The others are
+explained below their table; [deviations](deviations.md) has what was tried. Most come from the small boxes of the quick descriptions.
+
+The reference is A. Grabowski, doctoral dissertation, Gdańsk 2024 (YADE, full size). Its values are of one packing each.
+
+- `full` descriptions have the reference's size. `quick` ones are smaller, and many are sheared at another rate.
+- A value is of one packing, or a mean of several ± the standard deviation of one.
+- "none": rotation is largest at the surface and has no inflection point.
+- A section stays until its test is run again, and names the commit that ran it.
+- Triaxial tests of the reference's table 4.1 are in [studies](studies.md#triaxial-compression).
 
 '''
 
 UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
-Hours by `grit check` on two threads at 12 M particle-steps/s: with what stages that end by a condition take as a rule, as smaller runs of the same test found it, and with their limits. Those that were timed
-(`--for`): how much they went of what `grit check` takes for all of it, by which commit, and the core-hours that all of it takes
-if it goes on at that speed. What was timed is sand that falls; once it lies each step takes some four times as long, so these hours are the least; the last column has those with sand that lies,
-by what stands below the table.
+- Hours are those of `grit check` on two threads at 12 M particle-steps/s, with the usual durations of stages and with their limits.
+- Timed runs (`--for`) show the fraction done and the commit. They are of falling sand, so that their core-hours are a lower bound.
+- The last column takes the measured speed of resting sand, which is a quarter of that.
 
-| description | hours by `grit check` | timed | M particle-steps a core-second | core-hours by that, at least | with sand that lies |
+| description | hours by `grit check` | timed | M particle-steps/core-second | core-hours, at least | with resting sand |
 | --- | --- | --- | --- | --- | --- |'''
 
 IN_SECTION = 'see its section'
 QUICK = 'All quick descriptions, run to their ends'
 HEAD_OF_QUICK = f'''## {QUICK}
-Each of `sims/*/quick*.json` once, with the seed of the description: how its run ended, and some of what it came to. Where there is no reference, or only that of another size, figures stand alone.
-Of those that have a section above it has the figures, but for those that stand here as well. Ends of curves are means of their last quarter, peaks the highest samples.
+Each of `sims/*/quick*.json` once, with the seed of its description. Ends of curves are means of the last quarter; peaks are the highest samples.
+Values of descriptions with a section above are in that section.
 
-| description | ended | steps | core-seconds | commit | figures |
+| description | ended | steps | core-seconds | commit | values |
 | --- | --- | --- | --- | --- | --- |'''
 
 
@@ -77,7 +83,7 @@ def found(series, row, ends=None):
     elif how == 'where largest':
         figure = series[row['against']][of.argmax()]
     else:
-        sys.exit(f'docs/reproduction.json: found "how": "{how}"; allowed are maximum, minimum, last, mean of the last quarter, at the start, '
+        sys.exit(f'docs/evidence/reproduction.json: found "how": "{how}"; allowed are maximum, minimum, last, mean of the last quarter, at the start, '
                  'at the end of a stage, where largest')
     return row.get('scale', 1) * float(figure) + row.get('plus', 0)
 
@@ -116,7 +122,7 @@ def rows(name, folders, figures, older):
             with h5py.File(folder / 'series.h5') as series:
                 if channel := lacks(series, row):
                     if not older:
-                        sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
+                        sys.exit(f'docs/evidence/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
                                  f'{folder / "series.h5"} lacks; correct it, run {name} again, or name it under "older" if its '
                                  'run is from before there was that channel')
                     break
@@ -213,7 +219,7 @@ def short(name, results, wanted, section, older, figures=()):
                 for row in (row for group in wanted if any(fnmatch.fnmatch(name, glob) for glob in group['descriptions'])
                             for row in group['figures'] if (row['of'], row['how']) not in above):
                     if channel := lacks(series, row):
-                        sys.exit(f'docs/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
+                        sys.exit(f'docs/evidence/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
                                  f'{results / name / "series.h5"} lacks; correct it, or run {name} again')
                     words.append(f"{row['figure']}: {found(series, row, ends):#.3g}")
         return f"{ended} | {run['steps']:,} | {run.get('cpu_s', run['wall_s']):.0f} | {run['grit'].get('revision') or 'unknown'} | {'; '.join(words)} |"
@@ -247,7 +253,7 @@ def main():
     parser.add_argument('--results', default=ROOT / 'results' / 'reproduce', type=Path)
     parser.add_argument('--grit', default=ROOT / 'build' / 'bin' / 'grit')
     given = parser.parse_args()
-    reference = json.loads((ROOT / 'docs' / 'reproduction.json').read_text(encoding='utf-8'))
+    reference = json.loads((ROOT / 'docs' / 'evidence' / 'reproduction.json').read_text(encoding='utf-8'))
     of_size = {size: sorted(str(path.relative_to(ROOT / 'sims').with_suffix('')) for path in (ROOT / 'sims').glob(f'*/{size}*.json'))
                for size in ('quick', 'full')}
     names = list(dict.fromkeys([*(row['description'] for row in reference['figures']), *of_size['full'], *of_size['quick']]))
@@ -262,7 +268,7 @@ def main():
                 start([given.grit, 'run', ROOT / 'sims' / f'{name}.json', '--out', folder, '--resume', '--threads', given.threads, *other],
                       given.most)
 
-    page = ROOT / 'docs' / 'reproduction.md'
+    page = ROOT / 'docs' / 'evidence' / 'reproduction.md'
     old = sections(page.read_text(encoding='utf-8'))
     timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| ((?:[^|\n]*\|){3})', old.get(UNFINISHED, ''), re.MULTILINE))
     ended = dict(re.findall(r'^\| (\S+) \| (.*)$', old.get(QUICK, ''), re.MULTILINE))
@@ -295,8 +301,10 @@ def main():
     if missing:
         note = reference['notes'].get(UNFINISHED)
         lines += [HEAD_OF_UNFINISHED, *missing, *(['', note] if note else [])]
-    page.write_text(HEAD + '\n'.join(lines) + '\n', encoding='utf-8')
-    print(f'docs/reproduction.md: {len(told)} descriptions run, {len(missing)} not run')
+    verdicts = [line.rpartition('| ')[2] for line in '\n'.join(lines).splitlines() if line.endswith(('| within |', '| outside |'))]
+    head = HEAD.replace('{within}', str(verdicts.count('within |'))).replace('{all}', str(len(verdicts)))
+    page.write_text(head + '\n'.join(lines) + '\n', encoding='utf-8')
+    print(f'docs/evidence/reproduction.md: {len(told)} descriptions run, {len(missing)} not run')
 
 
 if __name__ == '__main__':

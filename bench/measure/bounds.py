@@ -1,4 +1,4 @@
-"""What is promised and what is wanted. docs/performance.md has the same in words."""
+"""What is promised and what is wanted. docs/evidence/performance.md has the same in words."""
 
 # grit's particle-steps per second over a peer's: (law, grains, threads, peer) → (promised, wanted)
 RATIOS = {

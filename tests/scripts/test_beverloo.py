@@ -21,14 +21,14 @@ def rates(k, hole, slot, noise=0.0):
 
 
 def verdicts(found):
-    """The row of the rule: k, and of holes and of slots what was fitted and whether it holds."""
-    row = next(line for line in beverloo.page(found).splitlines() if ', the rule' in line)
+    """The row of the fitted k, and of holes and of slots what was fitted and whether it holds."""
+    row = next(line for line in beverloo.page(found).splitlines() if ', fitted' in line)
     return [cell.strip() for cell in row.strip('|').split('|')]
 
 
 class Beverloo(unittest.TestCase):
     def test_his_own_law_gives_its_k_and_its_exponents(self):
-        self.assertEqual(verdicts(rates(1.9, 2.5, 1.5)), ['1.90, the rule', '2.50 ± 0.000', 'holds', '1.50 ± 0.000', 'holds'])
+        self.assertEqual(verdicts(rates(1.9, 2.5, 1.5)), ['1.90, fitted', '2.50 ± 0.000', 'holds', '1.50 ± 0.000', 'holds'])
 
     def test_one_k_serves_not_where_exponents_are_others(self):
         k, hole, of_hole, slot, of_slot = verdicts(rates(1.4, 2.5, 1.8))
@@ -38,7 +38,7 @@ class Beverloo(unittest.TestCase):
 
     def test_k_of_one_kind_judges_the_other(self):
         lines = beverloo.page(rates(1.4, 2.5, 1.8)).splitlines()
-        self.assertIn('- k = 1.40, of holes: slots have 1.80 ± 0.000, misses', lines)
+        self.assertIn('- k = 1.40 from holes: exponent of slots 1.80 ± 0.000, misses', lines)
 
     def test_the_bound_is_a_tenth_on_either_side(self):
         for n, said in ((1.39, 'misses'), (1.41, 'holds'), (1.59, 'holds'), (1.61, 'misses')):
@@ -52,7 +52,7 @@ class Beverloo(unittest.TestCase):
             self.assertAlmostEqual(found, known, places=12)
 
     def test_the_page_holds_by_the_rates_that_it_tells(self):
-        with open(f'{ROOT}/docs/beverloo.md', encoding='utf-8') as page:
+        with open(f'{ROOT}/docs/evidence/beverloo.md', encoding='utf-8') as page:
             text = page.read()
         told = {'hole': [], 'slot': []}
         for kind, size, measured in re.findall(r'^\| (hole|slot) \| (\d+) \| ([0-9., ]+) \|', text, re.MULTILINE):

@@ -1,6 +1,6 @@
 """usage: test_reproduce.py ROOT [what unittest takes]
 
-What scripts/reproduce.py keeps of docs/reproduction.md, and what it writes anew. Exit status 77 where there is no h5py.
+What scripts/reproduce.py keeps of docs/evidence/reproduction.md, and what it writes anew. Exit status 77 where there is no h5py.
 """
 import json
 import pathlib
@@ -66,7 +66,7 @@ class Reproduction(unittest.TestCase):
                       'resting': {'shear/timed': 3}, 'older': [], 'quick': [], 'notes': {'shear/run-long-ago': 'As it was.'}}
         for name in NAMES:
             self.file(f'sims/{name}.json', '{}')
-        self.file('docs/reproduction.md', PAGE)
+        self.file('docs/evidence/reproduction.md', PAGE)
         self.checks_as('3.00 h (3 h)')
 
     def test_figures_are_scaled_and_put_off(self):
@@ -101,12 +101,12 @@ class Reproduction(unittest.TestCase):
 
     def written(self):
         """The page, as {heading: text below it}, and all of it."""
-        self.file('docs/reproduction.json', json.dumps(self.given))
+        self.file('docs/evidence/reproduction.json', json.dumps(self.given))
         words = ['', '--results', str(self.root / 'results'), '--grit', str(self.root / 'grit')]
         with unittest.mock.patch.object(reproduce, 'ROOT', self.root), unittest.mock.patch('sys.argv', words), \
                 unittest.mock.patch('builtins.print'):
             reproduce.main()
-        page = (self.root / 'docs/reproduction.md').read_text(encoding='utf-8')
+        page = (self.root / 'docs/evidence/reproduction.md').read_text(encoding='utf-8')
         return reproduce.sections(page), page
 
     def test_without_results_all_stays(self):
@@ -175,10 +175,10 @@ class Reproduction(unittest.TestCase):
         row, = (row for row in self.given['figures'] if row['description'] == 'shear/run-long-ago')
         for change in ({'figure': 'residual'}, {'reference': 3}, {'allowed': 1}):
             with self.subTest(change), unittest.mock.patch.dict(row, change):
-                self.file('docs/reproduction.md', PAGE)
+                self.file('docs/evidence/reproduction.md', PAGE)
                 self.expect_not_run()
         self.given['figures'].append({**row, 'figure': 'residual'})
-        self.file('docs/reproduction.md', PAGE)
+        self.file('docs/evidence/reproduction.md', PAGE)
         self.expect_not_run()
 
     def test_a_description_that_is_gone_is_listed_as_not_run(self):
@@ -216,7 +216,7 @@ class Reproduction(unittest.TestCase):
 
     def test_a_quick_run_with_a_section_is_told_there(self):
         self.file('sims/shear/quick.json', '{}')
-        self.file('docs/reproduction.md', PAGE.replace('## shear/run-long-ago\n\n100 bodies, by', '## shear/quick\n\n100 bodies, 8,000 steps, '
+        self.file('docs/evidence/reproduction.md', PAGE.replace('## shear/run-long-ago\n\n100 bodies, by', '## shear/quick\n\n100 bodies, 8,000 steps, '
                                                        '60 core-seconds on 2 threads, by', 1).replace('1111.\n', '1111-dirty.\n', 1))
         figures = self.given['figures']
         figures.append({**figures[0], 'description': 'shear/quick'})

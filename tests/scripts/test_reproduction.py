@@ -1,6 +1,6 @@
 """usage: test_reproduction.py ROOT [what unittest takes]
 
-What docs/reproduction.md has to show: the order and shape of the reference's results in the quick runs, and a word on whatever deviates.
+What docs/evidence/reproduction.md has to show: the order and shape of the reference's results in the quick runs, and a word on whatever deviates.
 """
 import itertools
 import math
@@ -18,7 +18,7 @@ PEAK, RESIDUAL = 'peak friction angle, deg', 'residual friction angle, deg'
 
 def sections():
     """{heading: what stands below it}, of the descriptions that have rows"""
-    page = (ROOT / 'docs' / 'reproduction.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'evidence' / 'reproduction.md').read_text(encoding='utf-8')
     return {name: text for name, text in (part.split('\n', 1) for part in re.split('^## ', page, flags=re.M)[1:])
             if '| figure | reference |' in text}
 
@@ -64,7 +64,7 @@ class Shape(unittest.TestCase):
             self.grows_and_levels_off(names, figure, f'interface-shear/quick-dl-{at}')
 
     def test_loose_sand_on_a_rough_surface_neither_peaks_nor_dilates(self):
-        page = (ROOT / 'docs' / 'reproduction.md').read_text(encoding='utf-8')
+        page = (ROOT / 'docs' / 'evidence' / 'reproduction.md').read_text(encoding='utf-8')
         row = re.search(r'^\| interface-shear/quick-loose \|.*peak friction angle, deg: ([\d.]+); mean of the last quarter, deg: ([\d.]+); '
                         r'volumetric strain at the end, %: (-?[\d.]+)', page, re.M)
         peak, end, strain = map(float, row.groups())
@@ -74,7 +74,7 @@ class Shape(unittest.TestCase):
         self.assertLess(strain, 0)
 
     def test_peaks_of_direct_shear_fall_with_stress_and_void_ratio(self):
-        page = (ROOT / 'docs' / 'reproduction.md').read_text(encoding='utf-8')
+        page = (ROOT / 'docs' / 'evidence' / 'reproduction.md').read_text(encoding='utf-8')
         usual, less, more, loose = (float(re.search(rf'^\| direct-shear/{name} \|.*peak stress ratio: ([\d.]+)', page, re.M)[1])
                                   for name in ('quick', 'quick-50kPa', 'quick-500kPa', 'quick-loose'))
         self.assertGreater(less, usual)
@@ -92,7 +92,7 @@ class Shape(unittest.TestCase):
     def test_whatever_is_outside_has_a_word_below_its_table(self):
         silent = [name for name, text in sections().items()
                   if re.search(r'\| outside \|$', text, re.M) and not text[text.rindex(' |\n') + 3:].strip()]
-        self.assertEqual(silent, [], 'add to "notes" of docs/reproduction.json')
+        self.assertEqual(silent, [], 'add to "notes" of docs/evidence/reproduction.json')
 
 
 unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -169,10 +169,10 @@ Description published(const std::string& name) {
   return others;
 }
 
-// What a curve is held against in docs/reproduction.json stands beside it in its description, and nothing else of the
+// What a curve is held against in docs/evidence/reproduction.json stands beside it in its description, and nothing else of the
 // curves that are held against something.
 TEST(References, AreThoseOfTheReproduction) {
-  std::ifstream stream(GRIT_SOURCE_DIR "/docs/reproduction.json");
+  std::ifstream stream(GRIT_SOURCE_DIR "/docs/evidence/reproduction.json");
   const auto rows = nlohmann::json::parse(stream).at("figures");
   ASSERT_GT(rows.size(), 100u);
   const auto short_of = [](double value) {

@@ -1,4 +1,4 @@
-// Points of the maps in docs/stability, and figures of its table.
+// Points of the maps in docs/evidence/stability, and figures of its table.
 #pragma once
 
 #include <gtest/gtest.h>

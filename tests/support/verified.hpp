@@ -1,4 +1,4 @@
-// Figures with a known answer: asserted, and noted for docs/validation.md.
+// Figures with a known answer: asserted, and noted for docs/evidence/validation.md.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ inline void verify(const std::string& what, double found, double known, double a
   verify(what, found, known, allowed, known);
 }
 
-/// Notes what is found beside a figure `of_others`, for docs/validation.md: by how much they differ, over `scale`.
+/// Notes what is found beside a figure `of_others`, for docs/evidence/validation.md: by how much they differ, over `scale`.
 /// Nothing is expected of that.
 inline void beside(const std::string& what, double found, double of_others, double scale) {
   char figures[128];
