@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Builds what a run needs, shears a small box of sand, and says where to look. Replaces the results of an earlier demo.
+# Builds what one test needs, shears a small box of sand, and prints where the results are. Replaces those of an earlier demo.
+# The build lies in build-demo and does not touch build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 results=results/demo
-scripts/install-deps.sh
-cmake --preset release
-cmake --build --preset release --target grit_app grit_plugins
+scripts/install-deps.sh --run
+cmake --preset demo
+cmake --build --preset demo
 
 rm -rf "$results"
-build/bin/grit run sims/direct-shear/quick.json --out "$results"
+build-demo/bin/grit run sims/direct-shear/quick.json --out "$results"
 
 echo
 echo "Results: $PWD/$results"

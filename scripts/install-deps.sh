@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # Installs what grit is built from, on Debian 12. Needs root or sudo only where something is missing; can be run again.
-#   install-deps.sh [--viewers]      with Chromium and ParaView, 1 GB, in which some tests look at results as users do
+#   install-deps.sh [--run | --viewers]
+#     --run      only what building and running grit needs: no libraries of tests and benchmarks
+#     --viewers  also Chromium and ParaView (1 GB), in which some tests look at results as users do
 set -euo pipefail
 
 packages=(
-  clang-16 g++ cmake ninja-build git # the build; of g++ the C++ library
+  clang-16 g++ cmake ninja-build git # the build; g++ for its C++ library
   libboost-dev                       # Boost.DLL, Boost.Beast
   libboost-program-options-dev
   libeigen3-dev
@@ -12,19 +14,23 @@ packages=(
   libmuparser-dev
   libspdlog-dev
   libudunits2-dev
-  libvalijson-dev
   nlohmann-json3-dev
   zlib1g-dev
   libjs-vega                         # draws the curves of a report; goes into the library
-  libgtest-dev libgmock-dev libbenchmark-dev
-  librsvg2-bin                       # pictures as PNG
-  python3 python3-h5py               # tests of the loops' instructions and of the README
 )
+for_tests=(
+  libgtest-dev libgmock-dev libbenchmark-dev
+  libvalijson-dev
+  librsvg2-bin                       # pictures as PNG
+  python3 python3-h5py               # tests of vector instructions and of the documentation
+)
+viewers=(chromium paraview python3-paraview xvfb)
 case ${1-} in
-  '') ;;
-  --viewers) packages+=(chromium paraview python3-paraview xvfb) ;;
+  --run) ;;
+  '') packages+=("${for_tests[@]}") ;;
+  --viewers) packages+=("${for_tests[@]}" "${viewers[@]}") ;;
   *)
-    echo "install-deps: there is no option '$1'; usage: install-deps.sh [--viewers]" >&2
+    echo "install-deps: unknown option '$1'; usage: install-deps.sh [--run | --viewers]" >&2
     exit 1
     ;;
 esac
