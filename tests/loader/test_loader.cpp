@@ -213,6 +213,8 @@ std::vector<TagCase> tag_cases() {
       {"wrong-compiler", text("compiler", tag.compiler, 'G')},
       {"wrong-library-abi", text("C++ library", tag.library_abi, 'L')},
       {"wrong-instruction-set", text("instruction set", tag.instruction_set, 'X')},
+      {"other-instruction-set",
+       std::string("instruction set: expected \"") + tag.instruction_set + "\", found \"" OTHER_INSTRUCTION_SET "\""},
       {"wrong-row", layout("Row", tag.row, {tag.row.size + 8, tag.row.alignment})},
       {"wrong-contact-row",
        layout("ContactRow", tag.contact_row, {tag.contact_row.size, tag.contact_row.alignment * 2})},

@@ -1,11 +1,7 @@
-// What a plugin exports: one function, and behind it a build tag that is compared before anything else is touched.
+// What a plugin exports: one function. It returns a PluginInfo, which begins with the build tag.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-
-#include "grit/contact/batch.hpp"
-#include "grit/vec.hpp"
+#include "grit/build_tag.hpp"
 
 namespace grit {
 
@@ -16,125 +12,9 @@ class Geometry;
 class Probe;
 class Scenario;
 
-/// Raised whenever anything that crosses the plugin boundary changes.
-inline constexpr std::uint32_t sdk_version = 10;
-
-/// Size and alignment of a struct on the hot path.
-struct Layout {
-  std::uint32_t size, alignment;
-  friend bool operator==(const Layout&, const Layout&) = default;
-};
-
-/// How a plugin was built. The layout of this struct never changes; new facts go into `reserved`.
-struct BuildTag {
-  char magic[8];
-  std::uint32_t tag_size;
-  std::uint32_t sdk_version;
-  char compiler[48];         ///< e.g. "gcc 12"
-  char library_abi[48];      ///< e.g. "libstdc++ cxx11 20220819"
-  char instruction_set[64];  ///< e.g. "x86-64-v3", "x86-64-v2 avx"
-  Layout row, contact_row, body_sum, pair_batch, wall_batch;
-  char reserved[256];
-};
-
-namespace detail {
-
-template <std::size_t N>
-constexpr void put(char (&target)[N], const char* text) {
-  std::size_t i = 0;
-  while (i + 1 < N && target[i] != 0) ++i;
-  while (i + 1 < N && *text != 0) target[i++] = *text++;
-}
-
-template <std::size_t N>
-constexpr void put(char (&target)[N], long number) {
-  char digits[24] = {};
-  int last = 23;
-  do digits[--last] = static_cast<char>('0' + number % 10);
-  while ((number /= 10) > 0);
-  put(target, digits + last);
-}
-
-/// The highest level of x86-64, 1 to 4, all of whose instructions the compiler may use; 0 for another architecture.
-constexpr long x86_64_level() {
-#if !defined(__x86_64__)
-  return 0;
-#elif !defined(__SSE4_2__) || !defined(__POPCNT__)
-  return 1;
-#elif !defined(__AVX2__) || !defined(__BMI__) || !defined(__BMI2__) || !defined(__F16C__) || !defined(__FMA__) || \
-    !defined(__LZCNT__) || !defined(__MOVBE__)
-  return 2;
-#elif !defined(__AVX512F__) || !defined(__AVX512BW__) || !defined(__AVX512CD__) || !defined(__AVX512DQ__) || \
-    !defined(__AVX512VL__)
-  return 3;
-#else
-  return 4;
-#endif
-}
-
-template <class T>
-constexpr Layout layout_of() {
-  return {sizeof(T), alignof(T)};
-}
-
-}  // namespace detail
-
-/// The tag of the translation unit that calls this.
-constexpr BuildTag build_tag() {
-  BuildTag tag{};
-  detail::put(tag.magic, "gritplg");
-  tag.tag_size = sizeof(BuildTag);
-  tag.sdk_version = sdk_version;
-#if defined(__clang__)
-  detail::put(tag.compiler, "clang ");
-  detail::put(tag.compiler, long{__clang_major__});
-#elif defined(__GNUC__)
-  detail::put(tag.compiler, "gcc ");
-  detail::put(tag.compiler, long{__GNUC__});
-#else
-  detail::put(tag.compiler, "unknown");
-#endif
-#if defined(_GLIBCXX_USE_CXX11_ABI)
-  detail::put(tag.library_abi, _GLIBCXX_USE_CXX11_ABI ? "libstdc++ cxx11 " : "libstdc++ old ");
-  detail::put(tag.library_abi, long{__GLIBCXX__});
-#else
-  detail::put(tag.library_abi, "unknown");
-#endif
-#if defined(__x86_64__)
-  detail::put(tag.instruction_set, "x86-64");
-#elif defined(__aarch64__)
-  detail::put(tag.instruction_set, "aarch64");
-#else
-  detail::put(tag.instruction_set, "unknown");
-#endif
-  const long level = detail::x86_64_level();
-  if (level > 1) {
-    detail::put(tag.instruction_set, "-v");
-    detail::put(tag.instruction_set, level);
-  }
-  // Vector instructions beyond the level.
-#if defined(__AVX__)
-  if (level < 3) detail::put(tag.instruction_set, " avx");
-#endif
-#if defined(__AVX2__)
-  if (level < 3) detail::put(tag.instruction_set, " avx2");
-#endif
-#if defined(__FMA__)
-  if (level < 3) detail::put(tag.instruction_set, " fma");
-#endif
-#if defined(__AVX512F__)
-  if (level < 4) detail::put(tag.instruction_set, " avx512f");
-#endif
-  tag.row = detail::layout_of<Row>();
-  tag.contact_row = detail::layout_of<ContactRow>();
-  tag.body_sum = detail::layout_of<BodySum>();
-  tag.pair_batch = detail::layout_of<PairBatch>();
-  tag.wall_batch = detail::layout_of<WallBatch>();
-  return tag;
-}
-
-/// One plugin: a name in one registry. Exactly one of the makers is set, the one of its kind.
-struct PluginInfo {
+/// One plugin: a name in one registry. Exactly one of the makers is set, the one of its kind. Hidden, so that no shared
+/// library uses the implicit constructor of another one, which sets that one's tag.
+struct [[gnu::visibility("hidden")]] PluginInfo {
   BuildTag tag = build_tag();  ///< first, so that it can be read before anything else is trusted
   const char* kind = "";       ///< "body", "contact", "engine", "geometry", "probe" or "scenario"
   const char* name = "";       ///< kebab-case, the file's name without its ending
