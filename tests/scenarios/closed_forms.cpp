@@ -1,5 +1,5 @@
 // Closed forms of silos and sand, against published values, limits, and the balances that they come from.
-#include "../../plugins/scenarios/closed_forms.hpp"
+#include "grit/toolkit/closed_forms.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The lateral surface of a cone, whole or cut.
 #pragma once
 
-#include "../frustum.hpp"
+#include "grit/toolkit/frustum.hpp"
 
 namespace grit {
 

@@ -1,7 +1,7 @@
 // The lateral surface of a cylinder.
 #pragma once
 
-#include "../frustum.hpp"
+#include "grit/toolkit/frustum.hpp"
 
 namespace grit {
 

@@ -1,7 +1,7 @@
 // A flat rectangle in space.
 #pragma once
 
-#include "../sheet.hpp"
+#include "grit/toolkit/sheet.hpp"
 
 namespace grit {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "../sheet.hpp"
+#include "grit/toolkit/sheet.hpp"
 
 namespace grit {
 

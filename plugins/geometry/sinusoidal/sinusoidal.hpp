@@ -1,7 +1,7 @@
 // A rectangular sheet in sine waves.
 #pragma once
 
-#include "../sheet.hpp"
+#include "grit/toolkit/sheet.hpp"
 
 namespace grit {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "../specimen.hpp"
 #include "grit/error.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <limits>
 
-#include "../specimen.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "../profile.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/profile.hpp"
 
 namespace grit {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "../cell_contents.hpp"
-#include "../grain_masses.hpp"
-#include "../specimen.hpp"
-#include "../wall_names.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/cell_contents.hpp"
+#include "grit/toolkit/grain_masses.hpp"
+#include "grit/toolkit/specimen.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "../averaging_cells.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/averaging_cells.hpp"
 
 namespace grit {
 

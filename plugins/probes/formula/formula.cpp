@@ -9,10 +9,10 @@
 #include <functional>
 #include <regex>
 
-#include "../grain_masses.hpp"
-#include "../specimen.hpp"
-#include "../wall_names.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/grain_masses.hpp"
+#include "grit/toolkit/specimen.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 

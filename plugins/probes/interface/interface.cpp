@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "../specimen.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "../wall_layer.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/wall_layer.hpp"
 
 namespace grit {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "../cell_contents.hpp"
+#include "grit/toolkit/cell_contents.hpp"
 
 namespace grit {
 

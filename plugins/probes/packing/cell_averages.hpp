@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "../averaging_cells.hpp"
+#include "grit/toolkit/averaging_cells.hpp"
 
 namespace grit {
 

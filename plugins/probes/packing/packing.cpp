@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../specimen.hpp"
-#include "../stress_invariants.hpp"
-#include "../wall_names.hpp"
 #include "cell_averages.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/specimen.hpp"
+#include "grit/toolkit/stress_invariants.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 

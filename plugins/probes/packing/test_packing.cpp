@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "../averaging_cells.hpp"
 #include "cell_averages.hpp"
 #include "contracts/probe.hpp"
+#include "grit/toolkit/averaging_cells.hpp"
 
 namespace grit {
 namespace {

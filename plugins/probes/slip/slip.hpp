@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "../wall_layer.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/wall_layer.hpp"
 
 namespace grit {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../wall_names.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 

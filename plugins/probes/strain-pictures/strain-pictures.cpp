@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "../displacement_fit.hpp"
-#include "../specimen.hpp"
 #include "grit/error.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/displacement_fit.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "../sliding_lengths.hpp"
 #include "camera.hpp"
 #include "correlation.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/sliding_lengths.hpp"
 
 namespace grit {
 

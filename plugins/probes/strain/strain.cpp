@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <iterator>
 
-#include "../displacement_fit.hpp"
-#include "../specimen.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/displacement_fit.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 

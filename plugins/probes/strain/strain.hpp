@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "../sliding_lengths.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/sliding_lengths.hpp"
 
 namespace grit {
 

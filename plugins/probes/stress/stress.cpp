@@ -7,9 +7,9 @@
 #include <numbers>
 #include <string>
 
-#include "../cell_contents.hpp"
-#include "../stress_invariants.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/cell_contents.hpp"
+#include "grit/toolkit/stress_invariants.hpp"
 
 namespace grit {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "../cell_contents.hpp"
 #include "free_volume.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/cell_contents.hpp"
 
 namespace grit {
 namespace {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "../averaging_cells.hpp"
 #include "grit/probe.hpp"
+#include "grit/toolkit/averaging_cells.hpp"
 
 namespace grit {
 

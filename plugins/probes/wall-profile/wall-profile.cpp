@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "../specimen.hpp"
-#include "../wall_names.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/specimen.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 namespace {

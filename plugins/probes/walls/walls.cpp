@@ -1,8 +1,8 @@
 // Six channels a wall. See README.md.
 #include "walls.hpp"
 
-#include "../wall_names.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "../homogeneity.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/homogeneity.hpp"
 
 namespace grit {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "../preparation.hpp"
+#include "grit/toolkit/preparation.hpp"
 
 namespace grit {
 

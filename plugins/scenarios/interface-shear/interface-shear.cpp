@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "../closed_forms.hpp"
-#include "../homogeneity.hpp"
-#include "../lengths.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/closed_forms.hpp"
+#include "grit/toolkit/homogeneity.hpp"
+#include "grit/toolkit/lengths.hpp"
 
 namespace grit {
 namespace {

@@ -4,9 +4,9 @@
 #include <sstream>
 #include <utility>
 
-#include "../homogeneity.hpp"
-#include "../lengths.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/homogeneity.hpp"
+#include "grit/toolkit/lengths.hpp"
 
 namespace grit {
 namespace {

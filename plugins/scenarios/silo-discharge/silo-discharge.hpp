@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "../silo.hpp"
+#include "grit/toolkit/silo.hpp"
 
 namespace grit {
 

@@ -1,8 +1,8 @@
 #include "silo-quasistatic.hpp"
 
-#include "../homogeneity.hpp"
-#include "../lengths.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/homogeneity.hpp"
+#include "grit/toolkit/lengths.hpp"
 
 namespace grit {
 namespace {

@@ -1,7 +1,7 @@
 // Silo whose bottom is lowered: forces on bottom and walls at rest and while wall friction is mobilised.
 #pragma once
 
-#include "../silo.hpp"
+#include "grit/toolkit/silo.hpp"
 
 namespace grit {
 

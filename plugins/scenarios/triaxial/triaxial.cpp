@@ -3,9 +3,9 @@
 #include <array>
 #include <string_view>
 
-#include "../closed_forms.hpp"
-#include "../homogeneity.hpp"
 #include "grit/plugin.hpp"
+#include "grit/toolkit/closed_forms.hpp"
+#include "grit/toolkit/homogeneity.hpp"
 
 namespace grit {
 namespace {

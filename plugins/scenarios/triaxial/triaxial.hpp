@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "../preparation.hpp"
+#include "grit/toolkit/preparation.hpp"
 
 namespace grit {
 

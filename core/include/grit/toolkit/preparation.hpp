@@ -19,8 +19,8 @@
 
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
-#include "lengths.hpp"
-#include "wall_descriptions.hpp"
+#include "grit/toolkit/lengths.hpp"
+#include "grit/toolkit/wall_descriptions.hpp"
 
 namespace grit {
 

@@ -12,7 +12,7 @@
 
 #include "grit/error.hpp"
 #include "grit/probe.hpp"
-#include "specimen.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 

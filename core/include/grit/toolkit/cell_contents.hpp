@@ -1,7 +1,7 @@
 // What lies in the parts of averaging cells: solids, and what contacts transmit.
 #pragma once
 
-#include "averaging_cells.hpp"
+#include "grit/toolkit/averaging_cells.hpp"
 #include "grit/world.hpp"
 
 namespace grit {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "closed_forms.hpp"
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
-#include "lengths.hpp"
-#include "wall_descriptions.hpp"
+#include "grit/toolkit/closed_forms.hpp"
+#include "grit/toolkit/lengths.hpp"
+#include "grit/toolkit/wall_descriptions.hpp"
 
 namespace grit {
 

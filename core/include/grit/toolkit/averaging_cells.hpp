@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "grit/probe.hpp"
-#include "specimen.hpp"
+#include "grit/toolkit/specimen.hpp"
 
 namespace grit {
 

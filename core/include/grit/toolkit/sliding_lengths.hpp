@@ -12,8 +12,8 @@
 #include "grit/error.hpp"
 #include "grit/parameters.hpp"
 #include "grit/probe.hpp"
-#include "specimen.hpp"
-#include "wall_names.hpp"
+#include "grit/toolkit/specimen.hpp"
+#include "grit/toolkit/wall_names.hpp"
 
 namespace grit {
 
