@@ -4,15 +4,13 @@
 #include <cmath>
 #include <optional>
 
+#include "grit/contact/law.hpp"
 #include "grit/contact/law_parameters.hpp"
-#include "grit/contact/springs.hpp"
 
 namespace grit {
 
-struct HertzMindlin {
-  struct Settings {
-    void declare(Parameters&) {}
-  };
+struct HertzMindlin : LawBase {
+  using Settings = NoParameters;
 
   struct Material {
     double young_modulus = 70e9;
@@ -51,30 +49,32 @@ struct HertzMindlin {
     L curved;  ///< 1: b is a sphere, 0: b is a wall, flat at the scale of the contact
   };
 
+  static constexpr LawTraits traits{
+      .single_precision = true, .losses = true, .features = {"shear", "damping", "rolling"}};
+  static constexpr unsigned with_shear = 1, with_damping = 2, with_rolling = 4;
+
   template <class L>
   struct State {
-    L shear_x, shear_y, shear_z;        ///< shear force on b [N]
-    L contact_radius;                   ///< m
-    L rolling_x, rolling_y, rolling_z;  ///< rolling moment on b [N m]
+    Vec<L> shear;
+    L contact_radius;
+    Vec<L> rolling;
   };
-  static std::vector<StateField> fields() {
-    return {
-        {"shear_x", "N", "shear force on b", -1},        {"shear_y", "N", "shear force on b", -1},
-        {"shear_z", "N", "shear force on b", -1},        {"contact_radius", "m", "radius of the area of contact", 1},
-        {"rolling_x", "N m", "rolling moment on b", -1}, {"rolling_y", "N m", "rolling moment on b", -1},
-        {"rolling_z", "N m", "rolling moment on b", -1}};
-  }
+  static constexpr LawField fields[] = {
+      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
+      {.name = "contact_radius",
+       .unit = "m",
+       .doc = "radius of the area of contact",
+       .needed_by = with_shear | with_rolling},
+      {.name = "rolling",
+       .unit = "N m",
+       .doc = "rolling moment on b",
+       .width = 3,
+       .swap = -1,
+       .needed_by = with_rolling}};
 
-  static constexpr bool single_precision = true;
-  static constexpr unsigned feature_bits = 3;
-  static constexpr unsigned with_shear = 1, with_damping = 2, with_rolling = 4;
-  static constexpr const char* feature_names[] = {"shear", "damping", "rolling"};
   static unsigned features(const Pair<double>& pair) {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
            (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u);
-  }
-  static constexpr unsigned fields_used(unsigned features) {
-    return ((features & with_shear) != 0 ? 0b1111u : 0u) | ((features & with_rolling) != 0 ? 0b1111000u : 0u);
   }
 
   static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface& interface,
@@ -121,17 +121,16 @@ struct HertzMindlin {
     const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(tiny<L>)));
     state.contact_radius = contact_radius;
     if constexpr ((Features & with_shear) != 0) {
-      const Vec<L> stored{state.shear_x, state.shear_y, state.shear_z};
-      response.shear = shortened(stretched(at, kept * stored, ks, at.velocity), pair.friction * response.normal_force);
-      state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
+      response.shear =
+          shortened(stretched(at, kept * state.shear, ks, at.velocity), pair.friction * response.normal_force);
+      state.shear = response.shear;
     }
     if constexpr ((Features & with_rolling) != 0) {
-      const Vec<L> stored{state.rolling_x, state.rolling_y, state.rolling_z};
       const L stiffness = pair.rolling * ks * at.radius_a * at.radius_b;
       const L arm = L(0.5) * (at.radius_a + at.radius_b);
-      response.moment =
-          shortened(stretched(at, kept * stored, stiffness, at.spin), pair.rolling_limit * arm * response.normal_force);
-      state.rolling_x = response.moment.x, state.rolling_y = response.moment.y, state.rolling_z = response.moment.z;
+      response.moment = shortened(stretched(at, kept * state.rolling, stiffness, at.spin),
+                                  pair.rolling_limit * arm * response.normal_force);
+      state.rolling = response.moment;
     }
     return response;
   }
@@ -158,12 +157,10 @@ struct HertzMindlin {
     if constexpr ((Features & with_damping) != 0)
       loss.viscosity = dashpot_work(at, response.normal_force, L(2.0 / 3) * kn * at.overlap);
     if constexpr ((Features & with_shear) != 0)
-      loss.friction = lost(pair.friction, {before.shear_x, before.shear_y, before.shear_z},
-                           {after.shear_x, after.shear_y, after.shear_z}, L(1.0), at.velocity);
+      loss.friction = lost(pair.friction, before.shear, after.shear, L(1.0), at.velocity);
     if constexpr ((Features & with_rolling) != 0)
       loss.rolling =
-          lost(pair.rolling_limit, {before.rolling_x, before.rolling_y, before.rolling_z},
-               {after.rolling_x, after.rolling_y, after.rolling_z}, pair.rolling * at.radius_a * at.radius_b, at.spin);
+          lost(pair.rolling_limit, before.rolling, after.rolling, pair.rolling * at.radius_a * at.radius_b, at.spin);
     return loss;
   }
 
@@ -185,12 +182,10 @@ struct HertzMindlin {
     const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
     // Those of shear and rolling as they are loaded: as the area changes, losses() takes what they hold less.
     const Stiffness k = stiffness_at(size, pair, state.contact_radius);
-    const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
-    const Vec<double> rolling{state.rolling_x, state.rolling_y, state.rolling_z};
     const double kn = stiffness_at(size, pair, std::sqrt(radius * size.overlap)).normal;
     return {.normal = 4.0 / 15 * kn * size.overlap * size.overlap,
-            .shear = spring_energy(dot(shear, shear), k.shear),
-            .rolling = spring_energy(dot(rolling, rolling), k.rolling)};
+            .shear = spring_energy(dot(state.shear, state.shear), k.shear),
+            .rolling = spring_energy(dot(state.rolling, state.rolling), k.rolling)};
   }
 };
 

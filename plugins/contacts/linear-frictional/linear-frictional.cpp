@@ -1,6 +1,8 @@
 // Linear normal and shear springs with Coulomb's limit, with dashpots from a restitution. See README.md.
 #include "linear-frictional.hpp"
 
+#include "grit/contact/law_plugin.hpp"
+
 const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info = grit::contact_law_plugin<grit::LinearFrictional>(
       "linear-frictional", "1.0.0", "linear springs, Coulomb friction, viscous damping");

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "grit/contact/law.hpp"
 #include "grit/contact/law_parameters.hpp"
-#include "grit/contact/springs.hpp"
 
 namespace grit {
 
-struct LinearFrictional {
+struct LinearFrictional : LawBase {
   struct Settings {
     bool shear_damping = false;
 
@@ -47,26 +47,26 @@ struct LinearFrictional {
     L damping, shear_damping;  ///< over critical
   };
 
+  static constexpr LawTraits traits{
+      .single_precision = true, .losses = true, .features = {"shear", "damping", "shear damping"}};
+  static constexpr unsigned with_shear = 1, with_damping = 2, with_shear_damping = 4;
+
   template <class L>
   struct State {
-    L shear_x, shear_y, shear_z;  ///< force of the shear spring on b [N]
+    Vec<L> shear;
   };
-  static std::vector<StateField> fields() {
-    return {{"shear_x", "N", "force of the shear spring on b", -1},
-            {"shear_y", "N", "force of the shear spring on b", -1},
-            {"shear_z", "N", "force of the shear spring on b", -1}};
-  }
+  static constexpr LawField fields[] = {{.name = "shear",
+                                         .unit = "N",
+                                         .doc = "force of the shear spring on b",
+                                         .width = 3,
+                                         .swap = -1,
+                                         .needed_by = with_shear}};
 
-  static constexpr bool single_precision = true;
-  static constexpr unsigned feature_bits = 3;
-  static constexpr unsigned with_shear = 1, with_damping = 2, with_shear_damping = 4;
-  static constexpr const char* feature_names[] = {"shear", "damping", "shear damping"};
   static unsigned features(const Pair<double>& pair) {
     const bool shear = pair.friction * pair.shear_ratio > 0;
     return (shear ? with_shear : 0u) | (pair.damping > 0 ? with_damping : 0u) |
            (shear && pair.shear_damping > 0 ? with_shear_damping : 0u);
   }
-  static constexpr unsigned fields_used(unsigned features) { return (features & with_shear) != 0 ? 0b111u : 0u; }
 
   /// A wall lends its friction and restitution: stiffness, like the radius, is the grain's.
   static Pair<double> mix(const Settings& settings, const Material& a, const Material& b, const Interface& interface,
@@ -97,9 +97,9 @@ struct LinearFrictional {
 
     if constexpr ((Features & with_shear) != 0) {
       const L limit = pair.friction * response.normal_force;
-      const Vec<L> trial = stretched(at, {state.shear_x, state.shear_y, state.shear_z}, ks, at.velocity);
+      const Vec<L> trial = stretched(at, state.shear, ks, at.velocity);
       const Vec<L> spring = shortened(trial, limit);
-      state.shear_x = spring.x, state.shear_y = spring.y, state.shear_z = spring.z;
+      state.shear = spring;
       response.shear = spring;
       if constexpr ((Features & with_shear_damping) != 0) {
         const L dash = dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass);
@@ -120,8 +120,7 @@ struct LinearFrictional {
     if constexpr ((Features & with_damping) != 0)
       loss.viscosity = dashpot_work(at, response.normal_force, kn * at.overlap);
     if constexpr ((Features & with_shear) != 0) {
-      const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
-      const Vec<L> spring{after.shear_x, after.shear_y, after.shear_z};
+      const Vec<L>&shear = before.shear, &spring = after.shear;
       // What a spring held when it was switched off is booked with that.
       loss.friction = select(pair.friction > L(0.0),
                              slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity), spring, ks), L(0.0));
@@ -139,8 +138,8 @@ struct LinearFrictional {
   }
   static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Stiffness k = stiffness(size, pair);
-    const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
-    return {.normal = 0.5 * k.normal * size.overlap * size.overlap, .shear = spring_energy(dot(shear, shear), k.shear)};
+    return {.normal = 0.5 * k.normal * size.overlap * size.overlap,
+            .shear = spring_energy(dot(state.shear, state.shear), k.shear)};
   }
 };
 

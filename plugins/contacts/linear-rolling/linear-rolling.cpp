@@ -2,7 +2,7 @@
 // README.md.
 #include "linear-rolling.hpp"
 
-#include "grit/contact/law.hpp"
+#include "grit/contact/law_plugin.hpp"
 
 const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info = grit::contact_law_plugin<grit::LinearRolling>(

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "grit/contact/law.hpp"
 #include "grit/contact/law_parameters.hpp"
-#include "grit/contact/springs.hpp"
 
 namespace grit {
 
-struct LinearRolling {
+struct LinearRolling : LawBase {
   struct Settings {
     std::string limit_radius = "mean";
 
@@ -69,33 +69,31 @@ struct LinearRolling {
     L smaller_radius;  ///< 1: limits by the smaller radius, 0: by the mean
   };
 
+  static constexpr LawTraits traits{
+      .single_precision = true, .losses = true, .features = {"shear", "rolling", "twisting"}};
+  static constexpr unsigned with_shear = 1, with_rolling = 2, with_twisting = 4;
+
   template <class L>
   struct State {
-    L shear_x, shear_y, shear_z;        ///< shear force on b [N]
-    L rolling_x, rolling_y, rolling_z;  ///< rolling moment on b [N m]
-    L twisting;                         ///< twisting moment on b along the normal [N m]
+    Vec<L> shear, rolling;
+    L twisting;
   };
-  static std::vector<StateField> fields() {
-    return {{"shear_x", "N", "shear force on b", -1},
-            {"shear_y", "N", "shear force on b", -1},
-            {"shear_z", "N", "shear force on b", -1},
-            {"rolling_x", "N m", "rolling moment on b", -1},
-            {"rolling_y", "N m", "rolling moment on b", -1},
-            {"rolling_z", "N m", "rolling moment on b", -1},
-            {"twisting", "N m", "twisting moment on b, along the normal from a to b", 1}};
-  }
+  static constexpr LawField fields[] = {
+      {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
+      {.name = "rolling",
+       .unit = "N m",
+       .doc = "rolling moment on b",
+       .width = 3,
+       .swap = -1,
+       .needed_by = with_rolling},
+      {.name = "twisting",
+       .unit = "N m",
+       .doc = "twisting moment on b, along the normal from a to b",
+       .needed_by = with_twisting}};
 
-  static constexpr bool single_precision = true;
-  static constexpr unsigned feature_bits = 3;
-  static constexpr unsigned with_shear = 1, with_rolling = 2, with_twisting = 4;
-  static constexpr const char* feature_names[] = {"shear", "rolling", "twisting"};
   static unsigned features(const Pair<double>& pair) {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u) |
            (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u);
-  }
-  static constexpr unsigned fields_used(unsigned features) {
-    return ((features & with_shear) != 0 ? 0b111u : 0u) | ((features & with_rolling) != 0 ? 0b111000u : 0u) |
-           ((features & with_twisting) != 0 ? 0b1000000u : 0u);
   }
 
   /// A wall lends its strength only: stiffness, like the radius, is the grain's.
@@ -134,19 +132,18 @@ struct LinearRolling {
     response.normal_force = kn * at.overlap;
 
     if constexpr ((Features & with_shear) != 0) {
-      const Vec<L> shear = stretched(at, {state.shear_x, state.shear_y, state.shear_z}, ks, at.velocity);
+      const Vec<L> shear = stretched(at, state.shear, ks, at.velocity);
       response.shear = shortened(shear, pair.friction * response.normal_force);
-      state.shear_x = response.shear.x, state.shear_y = response.shear.y, state.shear_z = response.shear.z;
+      state.shear = response.shear;
     }
 
     if constexpr ((Features & (with_rolling | with_twisting)) != 0) {
       const L arm = limiting_radius(at, pair) * response.normal_force;
       const L angular = ks * at.radius_a * at.radius_b;
       if constexpr ((Features & with_rolling) != 0) {
-        const Vec<L> rolling =
-            stretched(at, {state.rolling_x, state.rolling_y, state.rolling_z}, pair.rolling * angular, at.spin);
+        const Vec<L> rolling = stretched(at, state.rolling, pair.rolling * angular, at.spin);
         response.moment = shortened(rolling, pair.rolling_limit * arm);
-        state.rolling_x = response.moment.x, state.rolling_y = response.moment.y, state.rolling_z = response.moment.z;
+        state.rolling = response.moment;
       }
       if constexpr ((Features & with_twisting) != 0) {
         state.twisting = twisted(at, state.twisting, pair.twisting * angular, pair.twisting_limit * arm);
@@ -172,17 +169,17 @@ struct LinearRolling {
     const L kn = spring_in_line(pair.modulus_a, at.radius_a, pair.modulus_b, at.radius_b), ks = pair.shear_ratio * kn;
     L slid(0.0);
     if constexpr ((Features & with_shear) != 0) {
-      const Vec<L> shear{before.shear_x, before.shear_y, before.shear_z};
-      slid = slipped(at.turn(shear), stretched(at, shear, ks, at.velocity), pair.friction * response.normal_force);
+      slid = slipped(at.turn(before.shear), stretched(at, before.shear, ks, at.velocity),
+                     pair.friction * response.normal_force);
     }
     const L angular = ks * at.radius_a * at.radius_b, rolling_stiffness = pair.rolling * angular;
     // Of rolling, where it is on; one division serves both springs.
     L other(1.0), rolled(0.0);
     if constexpr ((Features & with_rolling) != 0) {
       const L arm = limiting_radius(at, pair) * response.normal_force;
-      const Vec<L> rolling{before.rolling_x, before.rolling_y, before.rolling_z};
       other = select(pair.rolling_limit > L(0.0), rolling_stiffness, L(1.0));
-      rolled = slipped(at.turn(rolling), stretched(at, rolling, rolling_stiffness, at.spin), pair.rolling_limit * arm);
+      rolled = slipped(at.turn(before.rolling), stretched(at, before.rolling, rolling_stiffness, at.spin),
+                       pair.rolling_limit * arm);
     }
     // A spring without stiffness has no limit, see mix().
     const L half = L(0.5) / (ks * other);
@@ -211,11 +208,9 @@ struct LinearRolling {
   }
   static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Stiffness k = stiffness(size, pair);
-    const Vec<double> shear{state.shear_x, state.shear_y, state.shear_z};
-    const Vec<double> rolling{state.rolling_x, state.rolling_y, state.rolling_z};
     return {.normal = 0.5 * k.normal * size.overlap * size.overlap,
-            .shear = spring_energy(dot(shear, shear), k.shear),
-            .rolling = spring_energy(dot(rolling, rolling), k.rolling) +
+            .shear = spring_energy(dot(state.shear, state.shear), k.shear),
+            .rolling = spring_energy(dot(state.rolling, state.rolling), k.rolling) +
                        spring_energy(state.twisting * state.twisting, k.twisting)};
   }
 };

@@ -1,7 +1,7 @@
-// Pieces that laws are composed of: springs that turn with the contact and slip at a limit.
+// Parts that laws are composed of: springs that rotate with the contact and slip at a limit, dashpots.
 #pragma once
 
-#include "grit/contact/law.hpp"
+#include "grit/contact/contact_point.hpp"
 
 namespace grit {
 

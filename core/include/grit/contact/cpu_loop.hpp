@@ -1,0 +1,558 @@
+// The loops over pairs and wall contacts that call a law, for CPUs. They are templates of the law, so that they are
+// compiled inside its plugin, with evaluate() inlined.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "grit/contact/batch.hpp"
+#include "grit/contact/contact_law.hpp"
+#include "grit/contact/contact_point.hpp"
+#include "grit/contact/law.hpp"
+
+namespace grit {
+
+namespace detail {
+
+template <class Law, unsigned Features, class L>
+[[gnu::always_inline]] inline Loss<L> losses_of(const ContactPoint<L>& at, const typename Law::template Pair<L>& pair,
+                                                const typename Law::template State<L>& before,
+                                                const typename Law::template State<L>& after,
+                                                const Response<L>& response) {
+  if constexpr (Law::traits.losses) return Law::template losses<Features>(at, pair, before, after, response);
+  else return {};
+}
+
+/// Of both: by one division where it is what takes time, each by its own where digits are few.
+template <class L>
+[[gnu::always_inline]] inline std::pair<L, L> inverses(const L& a, const L& b) {
+  if constexpr (is_single<L>) return {L(1.0) / a, L(1.0) / b};
+  const L of_product = L(1.0) / (a * b);
+  return {of_product * b, of_product * a};
+}
+
+/// `turns` is 1; 0 leaves out the change of normal.
+template <class L>
+[[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
+                                                const Vec<L>& spin_b, double dt, const L& turns) {
+  Turn<L> turn;
+  turn.normal = normal;
+  turn.bisector = normal + before;
+  // Opposite normals, half a turn within a step, have no bisector; the guard against fast bodies trips long before.
+  turn.over = turns / max(dot(turn.bisector, normal), L(1e-6));
+  const L half = L(0.25 * dt) * dot(spin_a + spin_b, normal);  // tan(angle / 2), Cayley's form of a rotation
+  const L scale = L(1.0) / (L(1.0) + half * half);
+  turn.cosine = (L(1.0) - half * half) * scale;
+  turn.sine = L(2.0) * half * scale;
+  return turn;
+}
+
+/// `left`: what all lanes have lost, below 0.
+template <class L>
+inline void add_losses(const Loss<L>& left, Losses& losses) {
+  losses.friction -= total(left.friction), losses.rolling -= total(left.rolling);
+  losses.viscosity -= total(left.viscosity);
+}
+
+/// The members of a struct that has nothing but lanes, one after the other. (Not std::bit_cast: that was seen to copy
+/// through memory.)
+template <class L, class Members>
+[[gnu::always_inline]] inline L& member(Members& members, std::size_t i) {
+  static_assert((std::is_empty_v<Members> || sizeof(Members) % sizeof(L) == 0) &&
+                std::is_trivially_copyable_v<Members>);
+  return reinterpret_cast<L*>(&members)[i];
+}
+template <class Members, class L>
+inline constexpr std::size_t member_count = sizeof(Members) / sizeof(L);
+
+/// Places of the bits that are set.
+template <unsigned mask>
+inline constexpr auto places_of_bits = [] {
+  std::array<std::size_t, std::popcount(mask)> places{};
+  for (std::size_t bit = 0, k = 0; k < places.size(); ++bit)
+    if ((mask >> bit & 1) != 0) places[k++] = bit;
+  return places;
+}();
+/// Where in State the fields are that contacts remember.
+template <class Law, unsigned Features>
+inline constexpr auto kept_fields = places_of_bits<fields_used<Law>(Features)>;
+
+/// Parameters of the pairs of `width` contacts.
+template <class Law, class L, class Index>
+[[gnu::always_inline]] inline auto load_pair(const typename Law::template Pair<double>* table, Index index) {
+  typename Law::template Pair<L> pair;
+  for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m) {
+    const auto number = [&](std::size_t k) { return reinterpret_cast<const double*>(table + index(k))[m]; };
+    member<L>(pair, m) = gather_lanes<L>(number);
+  }
+  return pair;
+}
+
+/// The same where all contacts are of one kind.
+template <class Law, class L>
+[[gnu::always_inline]] inline auto broadcast_pair(const typename Law::template Pair<double>& numbers) {
+  typename Law::template Pair<L> pair;
+  for (std::size_t m = 0; m < member_count<typename Law::template Pair<double>, double>; ++m)
+    member<L>(pair, m) = L(reinterpret_cast<const double*>(&numbers)[m]);
+  return pair;
+}
+
+/// Has the processor fetch what comes next: memory takes as long as several contacts, and loads of bodies come in an
+/// order that it does not foresee.
+class Ahead {
+ public:
+  [[gnu::always_inline]] Ahead(const PairBatch& batch, std::size_t fields) : batch_(batch), fields_(fields) {
+    const std::size_t blocks = std::max<std::size_t>(1, batch.last_near - batch.first_block);
+    share_ = (batch.next_count + blocks - 1) / blocks;
+    // A cache line holds two rows.
+    step_ = batch.next == nullptr ? 64 / sizeof(Row) : 1;
+    share_ = (share_ + step_ - 1) / step_ * step_;
+  }
+  /// A share of the bodies, and what contacts of the block after next remember, if any touches.
+  [[gnu::always_inline]] void operator()(std::size_t block) const {
+    const double* const state = batch_.state + (block + 2) * fields_ * block_size;
+    if (block + 2 < batch_.last_block && batch_.touching[block + 2] != 0)
+      for (std::size_t f = 0; f < fields_; ++f) __builtin_prefetch(state + f * block_size, 1);
+    const std::size_t first = (block - batch_.first_block) * share_;
+    const std::size_t last = std::min<std::size_t>(batch_.next_count, first + share_);
+    for (std::size_t k = first; k < last; k += step_) {
+      const std::size_t i = batch_.next != nullptr ? batch_.next[k] : batch_.next_first + k;
+      __builtin_prefetch(batch_.position + i), __builtin_prefetch(batch_.velocity + i),
+          __builtin_prefetch(batch_.spin + i);
+    }
+  }
+
+ private:
+  const PairBatch& batch_;
+  std::size_t fields_, share_, step_;
+};
+
+/// Touching pairs out of registers that few of theirs fill, to be evaluated together: among grains that flow most
+/// candidates do not touch, and which of them do changes all the time.
+template <std::size_t Fields>
+class Waiting {
+ public:
+  void add(std::size_t place) { place_[count_++] = place; }
+  bool none() const { return count_ == 0; }
+  bool has_room_for_a_block() const { return count_ + block_size <= most; }
+
+  /// Them as a batch of their own, which adds to the same sums.
+  PairBatch take(const PairBatch& from) {
+    const std::size_t blocks = (count_ + block_size - 1) / block_size;
+    for (std::size_t k = 0; k < blocks * block_size; ++k) {
+      const bool used = k < count_;
+      a_[k] = from.a[place_[used ? k : 0]], b_[k] = used ? from.b[place_[k]] : from.nobody;
+      image_[k] = used && from.image != nullptr ? from.image[place_[k]] : 0;
+      for (std::size_t f = 0; f < Fields; ++f) memory(state_, k, f) = used ? memory(from.state, place_[k], f) : 0;
+    }
+    std::fill_n(touching_, blocks, std::uint8_t{0});  // none parts here
+    PairBatch own = from;
+    own.a = a_, own.b = b_, own.image = from.image != nullptr ? image_ : nullptr;
+    own.first_block = 0, own.last_block = own.last_near = blocks, own.next_count = 0;
+    own.state = state_, own.touching = touching_, own.asleep_until = nullptr;
+    own.row = from.row != nullptr ? row_ : nullptr;
+    return own;
+  }
+  /// Puts what they remember and their rows back to their places; none are left.
+  void put_back(const PairBatch& to) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      for (std::size_t f = 0; f < Fields; ++f) memory(to.state, place_[k], f) = memory(state_, k, f);
+      if (to.row != nullptr) to.row[place_[k] - to.first_block * block_size] = row_[k];
+    }
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t most = 64;
+  static double& memory(double* state, std::size_t place, std::size_t f) {
+    return state[(place / block_size * Fields + f) * block_size + place % block_size];
+  }
+
+  std::size_t count_ = 0;
+  std::size_t place_[most];
+  std::uint32_t a_[most], b_[most];
+  std::uint8_t image_[most], touching_[most / block_size] = {};
+  alignas(64) double state_[most * Fields + block_size];
+  ContactRow row_[most];
+};
+
+/// Pairs that touch no more, and what they remembered, out of the loop: what follows of them is rare.
+template <std::size_t Fields>
+class Parted {
+ public:
+  bool has_room_for_a_block() const { return count_ + block_size <= most; }
+  void add(std::size_t place, const double* state) {
+    place_[count_] = place;
+    for (std::size_t f = 0; f < Fields; ++f) state_[count_ * Fields + f] = state[f * block_size];
+    ++count_;
+  }
+  /// Calls use(place, state) for each; none are left.
+  template <class Use>
+  void take(Use use) {
+    for (std::size_t k = 0; k < count_; ++k) use(place_[k], std::span<const double>(state_ + k * Fields, Fields));
+    count_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t most = 64;
+  std::size_t count_ = 0;
+  std::size_t place_[most];
+  double state_[most * Fields + 1];
+};
+
+/// What springs of two bodies that touch no more held, of which friction and rolling had not yet taken all, is lost.
+template <class Law, unsigned Features>
+void lose_springs(const PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials,
+                  std::size_t place, std::span<const double> remembered) {
+  const std::uint32_t a = batch.a[place], b = batch.b[place];
+  Vec3 between = xyz(batch.position[b]) - xyz(batch.position[a]),
+       apart = xyz(batch.velocity[b]) - xyz(batch.velocity[a]);
+  if (batch.image != nullptr && batch.image[place] != 0) {
+    const ImageShift& shift = batch.shifts[batch.image[place]];
+    between += xyz(shift.position), apart += xyz(shift.velocity);
+  }
+  const double radius_a = batch.position[a].w, radius_b = batch.position[b].w;
+  // As it was when they touched.
+  const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
+  typename Law::template State<double> state{};
+  for (std::size_t f = 0; f < remembered.size(); ++f)
+    member<double>(state, kept_fields<Law, Features>[f]) = remembered[f];
+  const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
+  const PairSize size{.radius_a = radius_a,
+                      .radius_b = radius_b,
+                      .inverse_mass_a = batch.velocity[a].w,
+                      .inverse_mass_b = batch.velocity[b].w,
+                      .overlap = std::max(0.0, overlap),
+                      .wall = false};
+  const ElasticEnergy held = Law::energy(size, table[kind], state);
+  batch.losses->friction += held.shear * size.work_share(), batch.losses->rolling += held.rolling;
+}
+
+/// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the reference twin. Flattened: a call
+/// left in it would pass lanes through memory, which was seen to cost a factor of two. Not inlined, so that
+/// tests/vectorisation finds it. Begins with block `from` and goes on until `waiting` or `parted` is full, if they are
+/// given; returns the block that comes next. All pairs take the one way through the arithmetic, so that one has the
+/// same bits wherever it stands.
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
+[[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
+                                                      std::size_t materials, std::size_t from,
+                                                      Waiting<kept_fields<Law, Features>.size()>* waiting,
+                                                      Parted<kept_fields<Law, Features>.size()>* parted) {
+  constexpr auto& kept = kept_fields<Law, Features>;
+  constexpr std::size_t width = lane_width<L>, fields = kept.size();
+  using State = typename Law::template State<L>;
+  const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
+  using W = Wide<L>;
+  const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
+  const double remembered_dt = batch.again ? 0 : batch.dt;
+  const L turns(batch.again ? 0.0 : 1.0);
+  L largest(0.0);
+  // What is lost is taken off: where a law loses nothing, x − 0 folds away, and x + 0 does not.
+  Loss<W> left{W(0.0), W(0.0), W(0.0)};
+  const auto one_kind = broadcast_pair<Law, L>(table[0]);
+  const std::size_t first_row = batch.first_block * block_size;
+  const std::uint32_t last_body = batch.last_body;
+  const Ahead ahead(batch, fields);
+  // A register with fewer touching lanes has them wait. A pair that waits was seen to take 55 ns, nearly half of it for
+  // the way there and back; a register 125.
+  constexpr int few = width * 3 / 4;
+
+  std::size_t block = from;
+  for (; block < batch.last_block; ++block) {
+    if (waiting != nullptr && !waiting->has_room_for_a_block()) break;
+    if (Ledger && parted != nullptr && !parted->has_room_for_a_block()) break;
+    ahead(block);
+    const std::uint32_t before = batch.touching[block];
+    if (before == 0 && batch.asleep_until != nullptr && batch.closing < batch.asleep_until[block]) continue;
+    std::uint32_t touching_now = 0;
+    L gap(std::numeric_limits<float>::max());
+    for (std::size_t sub = 0; sub < block_size; sub += width) {
+      const std::size_t first = block * block_size + sub;
+      const std::uint32_t* ia = batch.a + first;
+      const std::uint32_t* ib = batch.b + first;
+      const auto index_a = [=](std::size_t k) { return ia[k]; };
+      const auto index_b = [=](std::size_t k) { return ib[k]; };
+      const auto image = [&](std::size_t k) { return batch.image[first + k]; };
+      const auto shift = [&](std::size_t k) { return image(k) * (sizeof(ImageShift) / sizeof(Row)); };
+
+      // Whether two touch, and the small difference that the overlap is, is found in double precision.
+      const RowLanes<W> pa = load_rows<W>(batch.position, index_a), pb = load_rows<W>(batch.position, index_b);
+      Vec<W> between = pb.xyz() - pa.xyz();
+      bool shifted = false;
+      if constexpr (Periodic) {
+        if (batch.image != nullptr)
+          for (std::size_t k = 0; k < width; ++k) shifted |= image(k) != 0;
+        if (shifted) between = between + load_rows<W>(&batch.shifts->position, shift).xyz();
+      }
+      const W square = dot(between, between), radii = pa.w + pb.w;
+      const auto touches = mask_in_precision<L>(square < radii * radii);
+      const std::uint32_t now = bits(touches);
+      const L reach = in_precision<L>(radii);
+      const auto length = [&] { return sqrt(in_precision<L>(square)); };
+      double* const state_at = batch.state + block * fields * block_size + sub;
+      touching_now |= now << sub;
+      constexpr std::uint32_t all = (1u << width) - 1u;
+      const std::uint32_t gone_now = before >> sub & all & ~now;
+      if constexpr (Ledger && fields > 0)
+        for (std::uint32_t gone = gone_now; gone != 0; gone &= gone - 1) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(gone));
+          parted->add(first + k, state_at + k);
+        }
+      if (now == 0 || (waiting != nullptr && std::popcount(now) < few)) {
+        for (std::uint32_t gone = gone_now; gone != 0; gone &= gone - 1) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(gone));
+          for (std::size_t f = 0; f < fields; ++f) state_at[f * block_size + k] = 0;
+          if (batch.row != nullptr) batch.row[first - first_row + k] = {};
+        }
+        for (std::uint32_t here = now; here != 0; here &= here - 1)
+          waiting->add(first + static_cast<std::size_t>(std::countr_zero(here)));
+        if constexpr (is_single<L>) gap = min(gap, in_precision<L>(square - radii * radii) / (length() + reach));
+        else gap = min(gap, length() - reach);
+        continue;
+      }
+
+      const RowLanes<W> va = load_rows<W>(batch.velocity, index_a), wa = load_rows<W>(batch.spin, index_a);
+      const RowLanes<W> vb = load_rows<W>(batch.velocity, index_b), wb = load_rows<W>(batch.spin, index_b);
+      Vec<W> apart = vb.xyz() - va.xyz();
+      if constexpr (Periodic) {
+        if (shifted) apart = apart + load_rows<W>(&batch.shifts->velocity, shift).xyz();
+      }
+      const Vec<L> branch = in_precision<L>(between), velocity = in_precision<L>(apart);
+      const L distance = max(length(), L(tiny<L>));
+      const auto [per_distance, per_reach] = inverses(distance, reach);
+      const Vec<L> normal = per_distance * branch;
+      const Vec<L> way = dt * velocity, branch_before = branch - way;
+      const L distance_before = max(sqrt(dot(branch_before, branch_before)), L(tiny<L>));
+      L overlap, overlap_before;
+      Vec<L> normal_before, change_of_normal;
+      if constexpr (is_single<L>) {
+        // Small differences from what they are differences of, before it is rounded: by the difference of the squares.
+        const L longer = dot(way, branch + branch_before) / (distance + distance_before);
+        overlap = in_precision<L>(radii * radii - square) / (reach + distance), overlap_before = overlap + longer;
+        change_of_normal = (L(1.0) / distance_before) * (way - longer * normal);
+        normal_before = normal - change_of_normal;
+      } else {
+        overlap = reach - distance, overlap_before = reach - distance_before;
+        normal_before = (L(1.0) / distance_before) * branch_before;
+        change_of_normal = normal - normal_before;
+      }
+
+      ContactPoint<L> at;
+      at.normal = normal;
+      at.overlap = max(overlap, L(0.0));
+      const L work_share = L(1.0) - at.overlap * per_reach;  // as PairSize tells it
+      at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
+      at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
+      at.turn =
+          make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), remembered_dt, turns);
+      // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips. The
+      // spins act on the normal of the middle of the step, as the velocities do.
+      at.velocity = velocity - cross(in_precision<L>(pa.w * wa.xyz() + pb.w * wb.xyz()), L(0.5) * at.turn.bisector) +
+                    (overlap_before * per_dt) * change_of_normal;
+      at.spin = in_precision<L>(wb.xyz() - wa.xyz());
+      at.dt = L(remembered_dt);
+      largest = max(largest, at.overlap / max(min(at.radius_a, at.radius_b), L(tiny<L>)));
+
+      State state{};
+      for (std::size_t f = 0; f < fields; ++f) member<L>(state, kept[f]) = load_lanes<L>(state_at + f * block_size);
+      [[maybe_unused]] const State before_step = state;
+      typename Law::template Pair<L> pair;
+      if constexpr (OneKind) {
+        pair = one_kind;
+      } else {
+        const auto kind = [&](std::size_t k) {
+          return batch.material != nullptr ? batch.material[ia[k]] * materials + batch.material[ib[k]] : 0;
+        };
+        pair = load_pair<Law, L>(table, kind);
+      }
+      const Response<L> response = Law::template evaluate<Features>(at, pair, state);
+      const L zero(0.0);
+      if constexpr (Ledger) {
+        const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
+        left.friction = left.friction - widened(select(touches, own.friction * work_share, zero));
+        left.rolling = left.rolling - widened(select(touches, own.rolling, zero));
+        left.viscosity = left.viscosity - widened(select(touches, own.viscosity, zero));
+      }
+      for (std::size_t f = 0; f < fields; ++f)
+        store_lanes(select(touches, member<L>(state, kept[f]), zero), state_at + f * block_size);
+
+      // The arms add up to the branch, so that no angular momentum is made, and are as the radii, so that shear does
+      // the same share of its work on all motions: laws tell slip with the radii as arms.
+      const Vec<L> none{zero, zero, zero};
+      const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
+      const Vec<L> lever = cross(normal, select(touches, response.shear, none));
+      const Vec<L> moment = select(touches, response.moment, none);
+      const Vec<L> moment_a = -moment - (work_share * at.radius_a) * lever;
+      const Vec<L> moment_b = moment - (work_share * at.radius_b) * lever;
+      const L normal_force = select(touches, response.normal_force, zero);
+      const L shown_overlap = select(touches, at.overlap, zero);
+
+      BodySum* const sum = batch.sum;
+      if (batch.row == nullptr) {
+        // Padding, which belongs to no chunk, adds its zero to the last body.
+        const auto own_b = [=](std::size_t k) { return std::min(ib[k], last_body); };
+        store_rows(widened(force.x), widened(force.y), widened(force.z), W(0.0), [=](std::size_t k, const Quad& force) {
+          sum[ia[k]].force -= force;
+          sum[own_b(k)].force += force;
+        });
+        store_rows(widened(moment_b.x), widened(moment_b.y), widened(moment_b.z), W(0.0),
+                   [=](std::size_t k, const Quad& moment) { sum[own_b(k)].moment += moment; });
+      } else {
+        ContactRow* const row = batch.row + (first - first_row);
+        store_rows(widened(force.x), widened(force.y), widened(force.z), widened(normal_force),
+                   [=](std::size_t k, const Quad& force) {
+                     store(force, row[k].force);
+                     if (sum != nullptr) sum[ia[k]].force -= force;
+                   });
+        store_rows(widened(moment_b.x), widened(moment_b.y), widened(moment_b.z), widened(shown_overlap),
+                   [=](std::size_t k, const Quad& moment) { store(moment, row[k].moment); });
+      }
+      if (sum != nullptr)
+        store_rows(widened(moment_a.x), widened(moment_a.y), widened(moment_a.z), W(0.0),
+                   [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
+    }
+    batch.touching[block] = static_cast<std::uint8_t>(touching_now);
+    // The sum and its parts are rounded, by far less than what is taken off.
+    if (touching_now == 0 && batch.asleep_until != nullptr)
+      batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));
+  }
+  out.largest_overlap = detail::largest(largest);
+  if constexpr (Ledger) add_losses(left, *out.losses);
+  return block;
+}
+
+/// All pairs of a batch.
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
+void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
+  constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind, Ledger>;
+  Waiting<kept_fields<Law, Features>.size()> waiting;
+  Parted<kept_fields<Law, Features>.size()> parted;
+  double largest = 0;
+  for (std::size_t next = batch.first_block; next < batch.last_block;) {
+    next = loop(batch, table, materials, next, &waiting, &parted);
+    if constexpr (Ledger)
+      parted.take([&](std::size_t place, std::span<const double> state) {
+        lose_springs<Law, Features>(batch, table, materials, place, state);
+      });
+    largest = std::max(largest, batch.largest_overlap);
+    // Where only `parted` was full, those that wait go on waiting: a ledger does not change the order of sums.
+    if (waiting.none() || (next < batch.last_block && waiting.has_room_for_a_block())) continue;
+    PairBatch together = waiting.take(batch);
+    loop(together, table, materials, 0, nullptr, nullptr);
+    waiting.put_back(batch);
+    largest = std::max(largest, together.largest_overlap);
+  }
+  batch.largest_overlap = largest;
+}
+
+/// Calls use(f) for groups of four numbers from f on that cover all of `count`; the last group may take in some of the
+/// one before. None if there are fewer than four.
+template <std::size_t count, class Use>
+[[gnu::always_inline]] inline void for_fours(Use use) {
+  for (std::size_t f = 0; f + 4 <= count; f += 4) use(f);
+  if constexpr (count > 4 && count % 4 != 0) use(count - 4);
+}
+
+/// The loop over touches of walls. Few, so that their memory may lie contact by contact. Not inlined, as pair_loop.
+template <class Law, unsigned Features, class L, bool Ledger>
+[[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
+                                               std::size_t materials) {
+  constexpr auto& kept = kept_fields<Law, Features>;
+  constexpr std::size_t width = lane_width<L>, fields = kept.size();
+  using State = typename Law::template State<L>;
+  const L per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
+  const L place([](std::size_t k) { return k; });
+  L most(0.0);
+  Loss<L> left{L(0.0), L(0.0), L(0.0)};
+  for (std::size_t first = 0; first < batch.count; first += width) {
+    const std::size_t used = std::min(width, batch.count - first);
+    // Lanes past the end repeat the last touch and are not stored.
+    const auto touch = [&](std::size_t k) -> const WallTouch& { return batch.touch[first + std::min(k, used - 1)]; };
+    const auto body = [&](std::size_t k) { return touch(k).body; };
+    const RowLanes<L> pa = load_rows<L>(batch.position, body), va = load_rows<L>(batch.velocity, body),
+                      wa = load_rows<L>(batch.spin, body);
+    // Their numbers follow each other without a gap: what a row has beyond its vector is of the next.
+    const auto rows = [&](Vec3 WallTouch::*member) {
+      return load_fours<L>([&](std::size_t k) { return (touch(k).*member).data(); });
+    };
+    static_assert(offsetof(WallTouch, overlap) == offsetof(WallTouch, spin) + sizeof(Vec3));
+    const Vec<L> normal = rows(&WallTouch::normal).xyz(), normal_before = rows(&WallTouch::normal_before).xyz(),
+                 wall_velocity = rows(&WallTouch::velocity).xyz();
+    const RowLanes<L> spin_and_overlap = rows(&WallTouch::spin);
+    const Vec<L> wall_spin = spin_and_overlap.xyz();
+
+    ContactPoint<L> at;
+    at.normal = normal;
+    at.overlap = spin_and_overlap.w;
+    at.radius_a = at.radius_b = pa.w;
+    at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
+    at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
+    // The last term takes the wall's velocity where the sphere's surface would be: none slips that a wall carries along
+    // as it turns, or that pivots about an edge.
+    at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), L(0.5) * at.turn.bisector) +
+                  (at.overlap * per_dt) * (normal - normal_before);
+    at.spin = wall_spin - wa.xyz();
+    at.dt = L(batch.dt);
+
+    const auto memory = [&](std::size_t k) { return batch.state + (first + std::min(k, used - 1)) * fields; };
+    State state{};
+    for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
+      const RowLanes<L> row = load_fours<L>([&](std::size_t k) { return memory(k) + f; });
+      member<L>(state, kept[f]) = row.x, member<L>(state, kept[f + 1]) = row.y;
+      member<L>(state, kept[f + 2]) = row.z, member<L>(state, kept[f + 3]) = row.w;
+    });
+    for (std::size_t f = 0; fields < 4 && f < fields; ++f)
+      member<L>(state, kept[f]) = gather_lanes<L>([&](std::size_t k) { return memory(k)[f]; });
+    const auto kind = [&](std::size_t k) {
+      const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
+      return own * materials + touch(k).material;
+    };
+    bool alike = true;
+    for (std::size_t k = 1; k < width; ++k) alike = alike & (kind(k) == kind(0));
+    const auto pair = alike ? broadcast_pair<Law, L>(table[kind(0)]) : load_pair<Law, L>(table, kind);
+    [[maybe_unused]] const State before_step = state;
+    const Response<L> response = Law::template evaluate<Features>(at, pair, state);
+    if constexpr (Ledger) {
+      const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
+      const auto counts = place < L(static_cast<double>(used));
+      left.friction = left.friction - select(counts, own.friction, L(0.0));
+      left.rolling = left.rolling - select(counts, own.rolling, L(0.0));
+      left.viscosity = left.viscosity - select(counts, own.viscosity, L(0.0));
+    }
+
+    // Shear acts where slip is told, at the sphere's surface, which is as far behind the wall's as they overlap.
+    const Vec<L> force = response.normal_force * normal + response.shear, lever = cross(normal, response.shear);
+    const Vec<L> moment_a = -response.moment - pa.w * lever, moment_wall = response.moment + at.overlap * lever;
+    for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
+      store_rows(member<L>(state, kept[f]), member<L>(state, kept[f + 1]), member<L>(state, kept[f + 2]),
+                 member<L>(state, kept[f + 3]), [&](std::size_t k, const Quad& numbers) {
+                   if (k < used) std::memcpy(memory(k) + f, &numbers, sizeof numbers);
+                 });
+    });
+    for (std::size_t k = 0; fields < 4 && k < used; ++k)
+      for (std::size_t f = 0; f < fields; ++f) memory(k)[f] = lane(member<L>(state, kept[f]), k);
+    store_rows(force.x, force.y, force.z, response.normal_force, [&](std::size_t k, const Quad& on_wall) {
+      if (k >= used) return;
+      store(on_wall, batch.row[first + k].force);
+      batch.sum[touch(k).body].force -= on_wall;
+    });
+    store_rows(moment_wall.x, moment_wall.y, moment_wall.z, at.overlap, [&](std::size_t k, const Quad& on_wall) {
+      if (k < used) store(on_wall, batch.row[first + k].moment);
+    });
+    store_rows(moment_a.x, moment_a.y, moment_a.z, L(0.0), [&](std::size_t k, const Quad& on_body) {
+      if (k < used) batch.sum[touch(k).body].moment += on_body;
+    });
+    most = max(most, at.overlap / pa.w);
+  }
+  batch.largest_overlap = largest(most);
+  if constexpr (Ledger) add_losses(left, *batch.losses);
+}
+
+}  // namespace detail
+
+}  // namespace grit
