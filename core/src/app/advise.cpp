@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "app/options.hpp"
-#include "app/shipped_studies.hpp"
 #include "grit/error.hpp"
 #include "input/scene.hpp"
+#include "lint/installed_studies.hpp"
 #include "output/shell_word.hpp"
 #include "study/advice.hpp"
 #include "study/parts.hpp"
@@ -94,7 +94,8 @@ std::string no_advice(const ChartedStudy& study) {
 /// The studies that came with grit for scenes like this. Throws UsageError if there is none.
 std::vector<ChartedStudy> studies_like(const std::string& scenario, const std::vector<std::string>& parts,
                                        const std::vector<std::string>& figures) {
-  const auto all = shipped_studies();
+  const auto [all, unreadable] = installed_studies();
+  for (const std::string& why : unreadable) std::cerr << "grit: left out: " << why << std::endl;
   std::vector<ChartedStudy> studies;
   const ChartedStudy* other = nullptr;  // of the scenario, but not to advise by
   std::vector<std::string> files;

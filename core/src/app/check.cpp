@@ -7,19 +7,19 @@
 #include <map>
 #include <thread>
 
-#include "app/idle_materials.hpp"
-#include "app/idle_motions.hpp"
-#include "app/idle_scenario.hpp"
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
-#include "app/too_deep.hpp"
-#include "app/without_effect.hpp"
 #include "format/duration.hpp"
-#include "format/number.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
+#include "lint/excess_depth.hpp"
+#include "lint/installed_studies.hpp"
+#include "lint/unused_materials.hpp"
+#include "lint/unused_motions.hpp"
+#include "lint/unused_scenario_parameters.hpp"
+#include "lint/unused_settings.hpp"
 #include "kernel/kernel.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
@@ -143,8 +143,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << (unknown ? " and what stages take that end by a condition" : "") << ", at most " << cost(most) / 3600
               << " h, by the limits of stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
-  auto idle = without_effect(scene, kernel);
-  std::ranges::move(idle_motions(scene), std::back_inserter(idle));
+  auto idle = unused_settings(scene, kernel);
+  std::ranges::move(unused_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");
   const Description now = resolved(description);
   const auto same = [&](const std::vector<std::string>& more) {
@@ -162,7 +162,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     all.push_back(set);
     return load_scene(file, all, registry);
   };
-  for (const std::string& line : idle_materials(scene, is_written, with)) {
+  for (const std::string& line : unused_materials(scene, is_written, with)) {
     // Some are known already, and why, or are part of what is.
     const std::string pointer = line.substr(0, line.find(": "));
     if (std::ranges::none_of(idle, [&](const std::string& other) {
@@ -171,8 +171,11 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
         }))
       idle.push_back(line);
   }
-  std::ranges::move(idle_scenario(written, same), std::back_inserter(idle));
-  if (auto line = too_deep(scene, kernel.world(), scenario_type(Document::load(file)), same)) idle.push_back(*line);
+  std::ranges::move(unused_scenario_parameters(written, same), std::back_inserter(idle));
+  const auto [studies, unreadable] = installed_studies();
+  for (const std::string& why : unreadable) std::cerr << "grit: left out: " << why << std::endl;
+  if (auto line = excess_depth(scene, kernel.world(), scenario_type(Document::load(file)), studies, same))
+    idle.push_back(*line);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';
 }

@@ -1,4 +1,4 @@
-#include "app/little_change.hpp"
+#include "lint/small_changes.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

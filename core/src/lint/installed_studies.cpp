@@ -1,15 +1,14 @@
-#include "app/shipped_studies.hpp"
+#include "lint/installed_studies.hpp"
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 
 #include "grit/error.hpp"
 #include "plugins/loader.hpp"
 
 namespace grit {
 
-std::vector<ChartedStudy> shipped_studies() {
+InstalledStudies installed_studies() {
   namespace fs = std::filesystem;
   const fs::path folder = library_directory() / "studies";
   std::vector<fs::path> files;
@@ -17,12 +16,12 @@ std::vector<ChartedStudy> shipped_studies() {
     for (const auto& entry : fs::directory_iterator(folder))
       if (entry.path().extension() == ".json") files.push_back(entry.path());
   std::ranges::sort(files);
-  std::vector<ChartedStudy> studies;
+  InstalledStudies studies;
   for (const auto& file : files) {
     try {
-      studies.push_back(read_charted_study(file, {}));
+      studies.readable.push_back(read_charted_study(file, {}));
     } catch (const FileError& error) {  // the others count all the same
-      std::cerr << "grit: left out: " << error.what() << std::endl;
+      studies.unreadable.push_back(error.what());
     }
   }
   return studies;

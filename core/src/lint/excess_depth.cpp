@@ -1,4 +1,4 @@
-#include "app/too_deep.hpp"
+#include "lint/excess_depth.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "app/shipped_studies.hpp"
-#include "app/stages.hpp"
+#include "lint/all_stages.hpp"
+#include "lint/installed_studies.hpp"
 #include "scene/wall_ways.hpp"
 #include "study/parts.hpp"
 
@@ -25,9 +25,10 @@ bool shows(const Evidence& level) {
 }
 
 /// Sets `tried` if a study knows this depth.
-std::optional<std::string> by_studies(const std::string& scenario, const std::vector<std::string>& parts,
+std::optional<std::string> by_studies(std::vector<ChartedStudy> studies, const std::string& scenario,
+                                      const std::vector<std::string>& parts,
                                       const std::function<bool(const std::vector<std::string>&)>& same, bool& tried) {
-  for (ChartedStudy& study : shipped_studies()) {
+  for (ChartedStudy& study : studies) {
     if (!is_of(study, scenario, parts)) continue;
     std::erase_if(study.settings, [](const auto& setting) { return setting.first != "depth"; });
     for (const Advice& advice : advise(study, tolerance, same)) {
@@ -152,11 +153,12 @@ std::optional<std::string> by_contacts(const Scene& described, const World& worl
 
 }  // namespace
 
-std::optional<std::string> too_deep(const Scene& described, const World& world, const std::string& scenario,
-                                    const std::function<bool(const std::vector<std::string>&)>& same) {
+std::optional<std::string> excess_depth(const Scene& described, const World& world, const std::string& scenario,
+                                        const std::vector<ChartedStudy>& studies,
+                                        const std::function<bool(const std::vector<std::string>&)>& same) {
   const SceneDescription& scene = *described.description;
   bool tried = false;
-  auto line = by_studies(scenario, parts_of(resolved(scene)), same, tried);
+  auto line = by_studies(studies, scenario, parts_of(resolved(scene)), same, tried);
   if (!line && !tried) line = by_contacts(described, world, scenario.empty());
   return line;
 }

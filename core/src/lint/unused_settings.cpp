@@ -1,10 +1,10 @@
-#include "app/without_effect.hpp"
+#include "lint/unused_settings.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 
-#include "app/stages.hpp"
+#include "lint/all_stages.hpp"
 #include "scene/wall_ways.hpp"
 #include "study/parts.hpp"
 
@@ -126,7 +126,7 @@ bool only_contacts_turn(const Scene& described) {
 
 }  // namespace
 
-std::vector<std::string> without_effect(const Scene& described, const Kernel& kernel) {
+std::vector<std::string> unused_settings(const Scene& described, const Kernel& kernel) {
   const World& world = kernel.world();
   const SceneDescription& scene = *described.description;
   std::vector<std::string> lines;

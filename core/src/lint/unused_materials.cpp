@@ -1,10 +1,10 @@
-#include "app/idle_materials.hpp"
+#include "lint/unused_materials.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <set>
 
-#include "app/little_change.hpp"
+#include "lint/small_changes.hpp"
 #include "scene/make_bodies.hpp"
 
 namespace grit {
@@ -40,8 +40,8 @@ std::vector<double> mixed(const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> idle_materials(const Scene& scene, const std::function<bool(const std::string&)>& is_written,
-                                        const std::function<Scene(const std::string&)>& with) {
+std::vector<std::string> unused_materials(const Scene& scene, const std::function<bool(const std::string&)>& is_written,
+                                          const std::function<Scene(const std::string&)>& with) {
   const Description values = resolved(*scene.description);
   const std::vector<double> now = mixed(scene);
   std::vector<std::string> lines;

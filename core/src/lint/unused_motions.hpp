@@ -9,6 +9,6 @@
 namespace grit {
 
 /// One line each, with the pointer and why.
-std::vector<std::string> idle_motions(const Scene& described);
+std::vector<std::string> unused_motions(const Scene& described);
 
 }  // namespace grit

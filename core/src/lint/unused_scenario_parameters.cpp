@@ -1,11 +1,11 @@
-#include "app/idle_scenario.hpp"
+#include "lint/unused_scenario_parameters.hpp"
 
-#include "app/little_change.hpp"
+#include "lint/small_changes.hpp"
 
 namespace grit {
 
-std::vector<std::string> idle_scenario(const Document& written,
-                                       const std::function<bool(const std::vector<std::string>&)>& same) {
+std::vector<std::string> unused_scenario_parameters(const Document& written,
+                                                    const std::function<bool(const std::vector<std::string>&)>& same) {
   std::vector<std::string> lines;
   if (!written.json().contains("scenario")) return lines;
   for (const auto& [key, value] : written.json().at("scenario").items()) {

@@ -10,6 +10,6 @@
 namespace grit {
 
 /// One line each, with the pointer of the part and why; `world` is the scene at its start.
-std::vector<std::string> without_effect(const Scene& described, const Kernel& kernel);
+std::vector<std::string> unused_settings(const Scene& described, const Kernel& kernel);
 
 }  // namespace grit

@@ -1,11 +1,11 @@
-#include "app/idle_motions.hpp"
+#include "lint/unused_motions.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "app/stages.hpp"
+#include "lint/all_stages.hpp"
 #include "scene/wall_ways.hpp"
 
 namespace grit {
@@ -39,7 +39,7 @@ std::optional<std::string> never_at_full_speed(const Scene& described, const std
 
 }  // namespace
 
-std::vector<std::string> idle_motions(const Scene& described) {
+std::vector<std::string> unused_motions(const Scene& described) {
   std::vector<std::string> lines;
   for (const auto& [name, wall] : described.description->walls) {
     const MotionDescription& motion = wall.motion;
