@@ -26,7 +26,7 @@ class ClumpDescription : public testing::Test {
   "stages": [{"name": "only", "until": {"type": "steps", "value": 1}, "limit": 1}]
 })");
     try {
-      load_scene(file, {}, installed());
+      LiveScene(load_scene(file, {}, installed()));
     } catch (const DescriptionError& error) {
       return error.what();
     }

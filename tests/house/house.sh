@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(format plugins scene input contact engines domain kernel run output study report lint app)
+rooms=(format plugins scene input contact engines domain kernel run simulation output study report lint app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {

@@ -10,6 +10,7 @@
 
 #include "grit/error.hpp"
 #include "input/scene.hpp"
+#include "simulation/live_scene.hpp"
 
 namespace grit {
 
@@ -40,7 +41,8 @@ std::string SchemaCheck::refusal(const std::filesystem::path& file) const {
 
 std::string kernel_refusal(const std::filesystem::path& file, const Registry& registry) {
   try {
-    load_scene(file, {}, registry);
+    const Scene scene = load_scene(file, {}, registry);
+    LiveScene{scene};
     return {};
   } catch (const Error& error) {
     return error.what();

@@ -4,7 +4,7 @@
 #include "folder.hpp"
 #include "input/reader.hpp"
 #include "input/reference.hpp"
-#include "input/writer.hpp"
+#include "plugins/parameter_values.hpp"
 
 using namespace grit;
 using testing::HasSubstr;

@@ -4,6 +4,8 @@
 #include "components.hpp"
 #include "folder.hpp"
 #include "input/scene.hpp"
+#include "plugins/parameter_values.hpp"
+#include "scene/current_scene.hpp"
 
 using namespace grit;
 using testing::HasSubstr;
@@ -40,7 +42,7 @@ TEST_F(SceneTest, ReadsIntoTypes) {
   EXPECT_EQ(s.seed, 7);
   EXPECT_EQ(s.contacts.type(), "spring");
   EXPECT_EQ(s.materials.at("sand").density, 2600);
-  EXPECT_EQ(s.interfaces, (std::vector<std::pair<std::string, std::string>>{{"sand", "steel"}, {"sand", "sand"}}));
+  EXPECT_EQ(s.units_of("interfaces"), (std::vector<std::string>{"sand+steel", "sand+sand"}));
   EXPECT_EQ(s.domain.strain_rate, Vec3(0.01, 0, 0));
   EXPECT_EQ(std::get<PlacedGrains>(s.bodies.at("wanderers").grains.value()).grains.at(0).radius, 1e-3);
   EXPECT_EQ(std::get<FileGrains>(s.bodies.at("saved").grains.value()).path,
@@ -64,22 +66,29 @@ TEST_F(SceneTest, ReadsIntoTypes) {
 TEST_F(SceneTest, ChangesAndRampsStay) {
   const Scene scene = good("everything");
   ASSERT_EQ(scene.stages.size(), 2u);
-  const auto& [first, second] = std::tie(scene.stages[0], scene.stages[1]);
-  EXPECT_TRUE(first.ramp.empty());
-  EXPECT_EQ(resolved(*first.start), resolved(*scene.description));
+  CurrentScene current(*scene.description, scene.stages);
+  const SceneDescription& now = current.now();
+  EXPECT_EQ(at(now, "/materials/sand/friction_angle"), 18 * 0.017453292519943295);
+  current.begin_stage();
+  EXPECT_EQ(scene.stages[0].increments(), 0u);
+  EXPECT_EQ(resolved(now), resolved(*scene.description));
+  EXPECT_TRUE(now.engines.contains("damping"));
 
-  EXPECT_EQ(at(*scene.description, "/materials/sand/friction_angle"), 18 * 0.017453292519943295);
-  EXPECT_EQ(at(*second.start, "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
-  EXPECT_TRUE(first.start->engines.contains("damping"));
-  EXPECT_FALSE(second.start->engines.contains("damping"));
-  EXPECT_EQ(second.start->domain.strain_rate, Vec3::Zero());
-
-  EXPECT_EQ(second.start->walls.at("lid").motion.servo->pressure, 200e3);
-  ASSERT_EQ(second.ramp.size(), 3u);
-  EXPECT_EQ(second.ramp[0]->walls.at("lid").motion.servo->pressure, 150e3);
-  EXPECT_EQ(second.ramp[1]->walls.at("lid").motion.servo->pressure, 100e3);
-  EXPECT_EQ(second.ramp[2]->walls.at("lid").motion.servo->pressure, 50e3);
-  EXPECT_EQ(at(*second.ramp[2], "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
+  current.begin_stage();
+  EXPECT_EQ(at(now, "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
+  EXPECT_FALSE(now.engines.contains("damping"));
+  EXPECT_EQ(now.domain.strain_rate, Vec3::Zero());
+  const auto pressure = [&] { return now.walls.at("lid").motion.servo->pressure; };
+  EXPECT_EQ(pressure(), 200e3);
+  ASSERT_EQ(scene.stages[1].increments(), 3u);
+  EXPECT_TRUE(current.advance_ramps(1).replaced);
+  EXPECT_EQ(pressure(), 150e3);
+  EXPECT_FALSE(current.advance_ramps(2).replaced) << "one number is set";
+  EXPECT_EQ(pressure(), 100e3);
+  EXPECT_EQ(current.advance_ramps(2).ramp, nullptr) << "done already";
+  current.advance_ramps(3);
+  EXPECT_EQ(pressure(), 50e3);
+  EXPECT_EQ(at(now, "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
 }
 
 TEST_F(SceneTest, RampsGoOneAfterTheOtherAndIntoLists) {
@@ -88,16 +97,46 @@ TEST_F(SceneTest, RampsGoOneAfterTheOtherAndIntoLists) {
       {R"(/stages/0/ramps=[{"pointer": "/walls/floor/motion/velocity/0", "from": 0, "to": "1 mm/s", "duration": 1, "increments": 2},
                            {"pointer": "/guards/overlap", "from": "20 %", "to": 0.3, "duration": 1, "increments": 1}])",
        R"(/stages/-={"name": "after", "until": {"type": "time", "value": 1}, "limit": 2})"});
-  const auto& ramp = scene.stages.at(0).ramp;
-  ASSERT_EQ(ramp.size(), 3u);
-  EXPECT_EQ(ramp[0]->walls.at("floor").motion.velocity, Vec3(0.5e-3, 0, 0));
-  EXPECT_EQ(ramp[1]->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
-  EXPECT_EQ(ramp[1]->guards.overlap, GuardsDescription().overlap);
-  EXPECT_EQ(ramp[2]->guards.overlap, 0.3);
-  EXPECT_EQ(ramp[2]->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
-  EXPECT_EQ(scene.stages.at(1).start->guards.overlap, 0.3);
-  EXPECT_EQ(scene.stages.at(1).start->walls.at("floor").motion.velocity, Vec3(1e-3, 0, 0));
+  ASSERT_EQ(scene.stages.at(0).increments(), 3u);
+  CurrentScene current(*scene.description, scene.stages), hurried(*scene.description, scene.stages),
+      early(*scene.description, scene.stages);
+  const SceneDescription& now = current.now();
+  const auto velocity = [](const SceneDescription& one) { return one.walls.at("floor").motion.velocity; };
+  current.begin_stage();
+  current.advance_ramps(1);
+  EXPECT_EQ(velocity(now), Vec3(0.5e-3, 0, 0));
+  current.advance_ramps(2);
+  EXPECT_EQ(velocity(now), Vec3(1e-3, 0, 0));
+  EXPECT_EQ(now.guards.overlap, GuardsDescription().overlap);
+  current.advance_ramps(3);
+  EXPECT_EQ(now.guards.overlap, 0.3);
+  EXPECT_EQ(velocity(now), Vec3(1e-3, 0, 0));
+  current.begin_stage();
+  EXPECT_EQ(now.guards.overlap, 0.3);
+  EXPECT_EQ(velocity(now), Vec3(1e-3, 0, 0));
   EXPECT_EQ(scene.description->guards.overlap, GuardsDescription().overlap);
+
+  hurried.begin_stage();
+  hurried.advance_ramps(3);
+  EXPECT_EQ(resolved(hurried.now()), resolved(now)) << "all increments at once";
+  early.begin_stage();
+  early.begin_stage();
+  EXPECT_EQ(resolved(early.now()), resolved(now)) << "a stage that ends before its ramps do";
+}
+
+// What is described is a value: a copy has a life of its own.
+TEST_F(SceneTest, CopiesAreIndependent) {
+  const Scene scene = good("everything");
+  SceneDescription copy = *scene.description;
+  const Description before = resolved(copy);
+  EXPECT_EQ(before, resolved(*scene.description));
+  Parameters parameters;
+  copy.declare_unit("materials", "sand", nullptr, parameters);
+  const std::vector<std::string> keys{"friction_angle"};
+  find_number(parameters, keys)->set(0.25);
+  copy.walls.at("lid").motion.servo->pressure = 1;
+  EXPECT_EQ(at(copy, "/materials/sand/friction_angle"), 0.25);
+  EXPECT_EQ(resolved(*scene.description), before);
 }
 
 TEST_F(SceneTest, ExtendingFilesAndSets) {

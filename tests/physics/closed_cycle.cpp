@@ -167,7 +167,7 @@ struct Floor {
     t.world().energies();
     std::vector<Corner> corners;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-      t.kernel().begin_stage("side" + std::to_string(i), *t.scene().stages.at(i + 1).start);
+      t.begin_stage(i + 1, "side" + std::to_string(i));
       t.kernel().find_forces();
       t.step(steps);
       const EnergyLedger now = t.world().energies();

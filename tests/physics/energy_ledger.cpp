@@ -203,7 +203,7 @@ TEST(EnergyLedger, AChangeOfStiffnessIsPutInBySettings) {
                          {"limit", 1}});
   Kept part(d);
   const double before = part.world().energies().elastic();
-  part.kernel().begin_stage("stiffer", *part.scene().stages.at(1).start);
+  part.begin_stage(1, "stiffer");
   part.kernel().find_forces();
   EnergyLedger now = part.world().energies();
   EXPECT_NEAR(now.settings, 2 * before, 1e-12 * before);
@@ -258,7 +258,7 @@ TEST(EnergyLedger, WhatASpringHeldGoesWithTheSettingThatSwitchesItOff) {
       pair.step(40);
       const EnergyLedger before = pair.world().energies();
       ASSERT_GT(off.starts_with("rolling") ? before.elastic_rolling : before.elastic_shear, 0);
-      pair.kernel().begin_stage("without", *pair.scene().stages.at(1).start);
+      pair.begin_stage(1, "without");
       pair.kernel().find_forces();
       const EnergyLedger now = pair.world().energies();
       EXPECT_LT(now.settings, 0);

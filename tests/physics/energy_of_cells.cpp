@@ -130,7 +130,7 @@ TEST(EnergyLedger, AChangeOfTheStrainRateIsPutInBySettings) {
     for (const int next : {1, 2}) {
       cell.step(300);
       const EnergyLedger before = cell.world().energies();
-      cell.kernel().begin_stage(next == 1 ? "fast" : "slow", *cell.scene().stages.at(next).start);
+      cell.begin_stage(static_cast<std::size_t>(next), next == 1 ? "fast" : "slow");
       cell.kernel().find_forces();
       const EnergyLedger now = cell.world().energies();
       const double scale = now.kinetic + turnover(now);

@@ -98,7 +98,7 @@ TEST(EnergyLedger, IsWholeAfterBodiesAreLetGo) {
   Kept pair(d);
   pair.step(100);
   const EnergyLedger held = pair.world().energies();
-  pair.kernel().begin_stage("free", *pair.scene().stages.at(1).start);
+  pair.begin_stage(1, "free");
   pair.kernel().find_forces();
   pair.step(3000);
   const EnergyLedger now = pair.world().energies();

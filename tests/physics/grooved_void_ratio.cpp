@@ -26,7 +26,7 @@ std::vector<Grain> grains_from(const Vec3& low) {
 double free_volume(Description d) {
   d["probes"]["void"].update({{"type", "void-ratio"}, {"every_steps", 1}});
   const Trial t(d);
-  const auto& probe = t.scene().description->probes.at("void").probe;
+  const auto probe = t.scene().description->probes.at("void").probe.make();
   probe->prepare(t.world());
   std::vector<std::vector<double>> rooms;
   for (const Channel& channel : probe->channels()) {

@@ -61,7 +61,7 @@ TEST(PackingStress, OfContactsIsThatOfWalls) {
 
 /// What a probe of the description says at this instant, by channel.
 std::map<std::string, std::vector<double>> sampled(const Trial& t, const std::string& name) {
-  const auto& probe = t.scene().description->probes.at(name).probe;
+  const auto probe = t.scene().description->probes.at(name).probe.make();
   probe->prepare(t.world());
   std::map<std::string, std::vector<double>> rooms;
   std::vector<std::span<double>> spans;

@@ -38,7 +38,7 @@ Description cloud(const Vec3& low, const Vec3& high, int count, double smallest,
           {"count", count},
           {"sizes", {{"type", "uniform"}, {"smallest", smallest}, {"largest", largest}}}};
 }
-void begin_second(Trial& trial) { trial.kernel().begin_stage("second", *trial.scene().stages.at(1).start); }
+void begin_second(Trial& trial) { trial.begin_stage(1, "second"); }
 std::vector<std::uint32_t> sorted_ids(const World& world) {
   std::vector<std::uint32_t> ids(world.ids().begin(), world.ids().end());
   std::ranges::sort(ids);

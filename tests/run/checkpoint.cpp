@@ -197,7 +197,8 @@ void expect_same_when_stopped(const Description& d, const Taped& whole, const st
   unsigned threads = 3;
   for (const std::uint64_t at : stops) {
     Taped part(
-        d, threads, [&](const Kernel& now) { return now.world().step() >= at; }, from ? &*from : nullptr, std::move(before));
+        d, threads, [&](const Kernel& now) { return now.world().step() >= at; }, from ? &*from : nullptr,
+        std::move(before));
     ASSERT_EQ(part.tape.summary.status, "interrupted") << at;
     ASSERT_FALSE(part.tape.checkpoints.empty());
     from = part.tape.checkpoints.back(), before = std::move(part.tape.entries);
@@ -342,7 +343,7 @@ TEST(Checkpoint, KeepsWhatEnginesRemember) {
   for (const bool careless : {false, true}) {
     Description d = cell();
     d["engines"]["drum"] = {{"type", careless ? "careless-drum" : "drum"}};
-    const Taped whole(d, 1), part(d, 1, [](const Kernel& now) { return now.world().step() >= 60; });
+    const Taped whole(d, 1), part(d, 1, [](const Kernel&now) { return now.world().step() >= 60; });
     const Taped rest(d, 1, {}, &part.tape.checkpoints.back(), part.tape.entries);
     EXPECT_EQ(parting(whole, rest).empty(), !careless);
   }

@@ -40,7 +40,7 @@ Description two(double gap, const std::string& law = "linear-rolling") {
 /// A trial in its first stage.
 struct Grown : Trial {
   explicit Grown(const Description& d, unsigned threads = 1, StateRequest state = {}) : Trial(d, threads, state) {
-    kernel().begin_stage(scene().description->stages[0].name, *scene().stages.front().start);
+    begin_stage(0, scene().description->stages[0].name);
     kernel().find_forces();
   }
   double radius_of(std::uint32_t id) const { return world().positions()[index_of(world(), id)].w; }

@@ -146,7 +146,7 @@ TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {
   faster["domain"]["strain_rate"] = {20, -40, 0};
   const Scene then = scene_of(faster);
   one.step(20), other.step(20);
-  for (Trial* t : {&one, &other}) t->kernel().begin_stage("then", *then.stages[0].start), t->kernel().find_forces();
+  for (Trial* t : {&one, &other}) t->begin_stage(then, 0, "then"), t->kernel().find_forces();
   one.step(20), other.step(20);
   // The flow of the step before the change counts by its new rate: dt ε̇² over the cell, against what grains do.
   EXPECT_LT(apart(one, other, 6 * 7 * 8), 5e-5);

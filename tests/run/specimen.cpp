@@ -15,9 +15,7 @@ Region specimen_between(const Description& low, const Description& high) {
   d["walls"]["block"] = {
       {"type", "box"}, {"low", {0, 0, 2}}, {"high", {1, 2, 2.5}}, {"inside", false}, {"material", "grain"}};
   d["specimen"] = {{"low", low}, {"high", high}};
-  const Scene scene = scene_of(d);
-  const Kernel kernel(*scene.description, make_bodies(*scene.description, {}), 1);
-  return kernel.world().specimen();
+  return Started(scene_of(d)).kernel.world().specimen();
 }
 
 TEST(Specimen, EndsAtTheInnerFacesOfAContainer) {
@@ -54,8 +52,8 @@ class Clearances : public testing::Test {
     d["walls"]["block"] = {
         {"type", "box"}, {"low", {0, 0, 6}}, {"high", {4, 4, 7}}, {"inside", false}, {"material", "grain"}};
     d["specimen"] = {{"low", {"", "", "floor"}}, {"high", {"", "", "block"}}};
-    scene_ = scene_of(d);
-    kernel_.emplace(*scene_.description, make_bodies(*scene_.description, {}), 1);
+    started_.emplace(scene_of(d));
+    kernel_ = &started_->kernel;
   }
   /// From wall `name`, which is to be nearer than 3.
   Clearance from(const std::string& name, const Vec3& point) const {
@@ -74,8 +72,8 @@ class Clearances : public testing::Test {
     EXPECT_NEAR(found.distance, distance, 1e-12) << name << ", " << point.transpose();
     EXPECT_NEAR((found.normal - normal.normalized()).norm(), 0, 1e-12) << name << ", " << point.transpose();
   }
-  Scene scene_;
-  std::optional<Kernel> kernel_;
+  std::optional<Started> started_;
+  Kernel* kernel_ = nullptr;
 };
 
 TEST_F(Clearances, AreDistancesInFrontOfWalls) {

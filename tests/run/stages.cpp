@@ -207,8 +207,8 @@ TEST(Stage, TellsWhichOfItsConditionsEndedIt) {
 }
 
 TEST(Stage, TellsHowFarItIs) {
-  const Scene scene = scene_of(lone({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}}));
-  Kernel kernel(*scene.description, make_bodies(*scene.description, {}), 1);
+  Started started(scene_of(lone({{"type", "all"}, {"of", {steps(20), seconds(5e-4)}}})));
+  auto& [scene, live, kernel] = started;
   kernel.find_forces();
   for (int i = 0; i < 10; ++i) kernel.advance(), kernel.find_forces();
   EXPECT_NEAR(*progress(scene.description->stages[0].until, kernel, {}), 0.2, 1e-12);
@@ -217,8 +217,8 @@ TEST(Stage, TellsHowFarItIs) {
 TEST(Stage, DoesNotTellHowFarItIsOnceItWaitsForRestAlone) {
   const Description rest = {{"type", "unbalanced-force"}, {"below", 1e-3}};
   const auto far = [&](const Description& until, int steps_gone) {
-    const Scene scene = scene_of(lone(until));
-    Kernel kernel(*scene.description, make_bodies(*scene.description, {}), 1);
+    Started started(scene_of(lone(until)));
+    auto& [scene, live, kernel] = started;
     kernel.find_forces();
     for (int i = 0; i < steps_gone; ++i) kernel.advance(), kernel.find_forces();
     return progress(scene.description->stages[0].until, kernel, {});
@@ -462,7 +462,9 @@ TEST(Reports, ChangeNoBitHoweverOftenTheyCome) {
   const Done seen = run(d);
   EXPECT_GT(seen.notes.steps_of("way").size(), 50u);
   for (std::uint32_t id = 0; id < 64; ++id) {
-    const auto row = [&](const Done& of) { return xyz(of.kernel->world().positions()[index_of(of.kernel->world(), id)]); };
+    const auto row = [&](const Done& of) {
+      return xyz(of.kernel->world().positions()[index_of(of.kernel->world(), id)]);
+    };
     EXPECT_EQ(row(unseen), row(seen)) << id;
   }
 }

@@ -14,13 +14,14 @@
 #include "engines/builtin.hpp"
 #include "input/scene.hpp"
 #include "input/schema.hpp"
-#include "run/driver.hpp"
 #include "scene/clump_body.hpp"
 #include "scene/make_bodies.hpp"
 #include "scene/sphere_body.hpp"
 #include "schema_check.hpp"
+#include "simulation/driver.hpp"
 #include "study/variants.hpp"
 #include "support/packing.hpp"
+#include "support/scene.hpp"
 
 namespace grit {
 namespace {
@@ -111,10 +112,10 @@ TEST_P(QuickSims, RunAWhile) {
     document.set(stage + R"(/until={"type": "steps", "value": 50})");
     if (document.json().at("stages")[i].contains("expect")) document.erase(stage + "/expect");
   }
-  const Scene scene = read_scene(document, registry());
-  Kernel kernel(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
+  test::Started started(read_scene(document, registry()), 2);
+  auto& [scene, live, kernel] = started;
   Silent recorder;
-  run(scene, kernel, recorder, {});
+  run(scene, live, kernel, recorder, {});
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
   EXPECT_EQ(recorder.summary.steps, 50 * stages);
   ASSERT_EQ(recorder.summary.probes.size(), scene.description->probes.size());
@@ -140,7 +141,8 @@ TEST(Clumps, FillASpecimenToTheVoidRatioThatIsAskedFor) {
       sims_folder / "triaxial/quick-clumps.json",
       {"/scenario/smallest_diameter=6e-3", "/scenario/largest_diameter=6e-3", "/scenario/void_ratio=0.6"}, registry());
   const Scene scene = read_scene(document, registry());
-  const Bodies bodies = make_bodies(*scene.description, requested_state(*scene.description));
+  const LiveScene live(scene);
+  const Bodies bodies = make_bodies(live.now(), live.components(), requested_state(live.components()));
   const auto& clumps = bodies.clumps.clump;
   ASSERT_GT(clumps.size(), 500u);
   double solids = 0;
@@ -169,8 +171,8 @@ Description published(const std::string& name) {
   return others;
 }
 
-// What a curve is held against in docs/evidence/reproduction.json stands beside it in its description, and nothing else of the
-// curves that are held against something.
+// What a curve is held against in docs/evidence/reproduction.json stands beside it in its description, and nothing else
+// of the curves that are held against something.
 TEST(References, AreThoseOfTheReproduction) {
   std::ifstream stream(GRIT_SOURCE_DIR "/docs/evidence/reproduction.json");
   const auto rows = nlohmann::json::parse(stream).at("figures");
@@ -235,7 +237,7 @@ TEST(References, OfADescriptionStandBesideClosedForms) {
 }
 
 /// A small direct shear test with these probes as it is sheared; frames ask them for their fields too.
-std::unique_ptr<Kernel> sheared(const std::map<std::string, std::string>& probes) {
+std::unique_ptr<test::Started> sheared(const std::map<std::string, std::string>& probes) {
   Document document = load_document(sims_folder / "direct-shear/quick.json",
                                     {"/scenario/width=6e-3", "/scenario/height=4e-3"}, registry());
   document.set("/probes={}");
@@ -245,14 +247,12 @@ std::unique_ptr<Kernel> sheared(const std::map<std::string, std::string>& probes
   document.set(R"(/output={"frames": {"every_steps": 10000}})");
   const std::size_t last = document.json().at("stages").size() - 1;
   document.set("/stages/" + std::to_string(last) + R"(/until={"type": "steps", "value": 200})");
-  const Scene scene = read_scene(document, registry());
-  auto kernel = std::make_unique<Kernel>(*scene.description,
-                                            make_bodies(*scene.description, requested_state(*scene.description)), 2);
+  auto started = std::make_unique<test::Started>(read_scene(document, registry()), 2);
   Silent recorder;
-  run(scene, *kernel, recorder, {});
+  run(started->scene, started->live, started->kernel, recorder, {});
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
-  EXPECT_EQ(kernel->world().stage(), "shear");
-  return kernel;
+  EXPECT_EQ(started->kernel.world().stage(), "shear");
+  return started;
 }
 
 TEST(Probes, AllAtOnceChangeNotOneBit) {
@@ -268,8 +268,8 @@ TEST(Probes, AllAtOnceChangeNotOneBit) {
   for (const std::string& name : registry().names("probe")) all[name] = asked.contains(name) ? asked.at(name) : "";
   EXPECT_GE(all.size(), 16u);
   const auto without = sheared({}), with = sheared(all);
-  EXPECT_GT(with->state().pairs.touching_count(), 100u);
-  EXPECT_TRUE(test::same_bits(*without, *with));
+  EXPECT_GT(with->kernel.state().pairs.touching_count(), 100u);
+  EXPECT_TRUE(test::same_bits(without->kernel, with->kernel));
 }
 
 class Studies : public testing::TestWithParam<std::filesystem::path> {};
@@ -277,7 +277,7 @@ class Studies : public testing::TestWithParam<std::filesystem::path> {};
 TEST_P(Studies, AskForRunsThatTheKernelTakes) {
   const StudyDescription study = load_study(GetParam());
   for (const Variant& variant : variants(study))
-    EXPECT_NO_THROW(load_scene(study.scene, sets_of(study, variant, study.seeds.values.front()), registry()))
+    EXPECT_NO_THROW(LiveScene(load_scene(study.scene, sets_of(study, variant, study.seeds.values.front()), registry())))
         << variant.name;
 }
 

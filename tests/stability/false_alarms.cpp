@@ -10,12 +10,14 @@ namespace {
 /// Returns how many grains there were. The guard of energies goes by what is stored, or by the ledger.
 std::size_t expect_done(const std::string& file, const std::vector<std::string>& sets, bool by_ledger) {
   const StateRequest also = by_ledger ? StateRequest(BodyState::energy) : StateRequest();
-  const Scene scene = load_scene(std::string(GRIT_SOURCE_DIR) + "/sims/" + file, sets, installed());
-  Kernel kernel(*scene.description, make_bodies(*scene.description, requested_state(*scene.description, also)), 2);
+  Scene described = load_scene(std::string(GRIT_SOURCE_DIR) + "/sims/" + file, sets, installed());
+  const StateRequest state = requested_state(LiveScene(described).components(), also);
+  Started started(std::move(described), 2, state);
+  auto& [scene, live, kernel] = started;
   kernel.find_forces();
   kernel.world().energies();
   Notes notes;
-  run(scene, kernel, notes, {});
+  run(scene, live, kernel, notes, {});
   EXPECT_EQ(notes.summary.status, "done") << notes.summary.message;
   EXPECT_EQ(notes.ended.size(), scene.stages.size());
   EXPECT_GT(kernel.world().step(), 1000u);

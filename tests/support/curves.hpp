@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "input/scene.hpp"
-#include "run/driver.hpp"
 #include "scene/make_bodies.hpp"
+#include "simulation/driver.hpp"
 #include "support/scene.hpp"
 
 namespace grit::test {
@@ -50,9 +50,8 @@ struct Curves : Recorder {
 
 /// Runs a description of the repository with `sets` ("/pointer=value") to its end on two threads.
 inline void run_to_the_end(const std::string& file, const std::vector<std::string>& sets, Curves& curves) {
-  const Scene scene = load_scene(std::string(GRIT_SOURCE_DIR) + "/" + file, sets, installed());
-  Kernel kernel(*scene.description, make_bodies(*scene.description, requested_state(*scene.description)), 2);
-  run(scene, kernel, curves, {});
+  Started started(load_scene(std::string(GRIT_SOURCE_DIR) + "/" + file, sets, installed()), 2);
+  run(started.scene, started.live, started.kernel, curves, {});
   EXPECT_EQ(curves.summary.status, "done") << curves.summary.message;
 }
 

@@ -11,7 +11,7 @@ namespace grit::test {
 using Memories = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<double>>;
 inline Memories memories(const Trial& t, std::size_t* swapped = nullptr) {
   const State& state_now = t.kernel().state();
-  const auto fields = t.scene().stages[0].start->contacts->state();
+  const auto fields = t.law().state();
   const auto ids = t.world().ids();
   Memories all;
   for (std::size_t c = 0; c < state_now.pairs.candidates(); ++c) {

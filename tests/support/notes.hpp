@@ -8,7 +8,7 @@
 
 #include "grit/plugin.hpp"
 #include "grit/probe.hpp"
-#include "run/driver.hpp"
+#include "simulation/driver.hpp"
 #include "support/scene.hpp"
 
 namespace grit::test {
@@ -78,9 +78,9 @@ class Watch final : public Probe {
 
 /// A description that has been run.
 struct Done {
-  Scene scene;  // the kernel refers to it
   Notes notes;
-  std::unique_ptr<Kernel> kernel;
+  std::unique_ptr<Started> started;
+  Kernel* kernel = nullptr;
   const RunSummary& summary() const { return notes.summary; }
 };
 
@@ -93,10 +93,9 @@ inline Done run(const Description& plain, const RunControl& control = {}) {
   }();
   installed().add(watch);
   Done done;
-  done.scene = scene_of(plain);
-  const SceneDescription& start = *done.scene.description;
-  done.kernel = std::make_unique<Kernel>(start, make_bodies(start, {}), 1);
-  grit::run(done.scene, *done.kernel, done.notes, control);
+  done.started = std::make_unique<Started>(scene_of(plain), 1, StateRequest());
+  done.kernel = &done.started->kernel;
+  grit::run(done.started->scene, done.started->live, *done.kernel, done.notes, control);
   return done;
 }
 

@@ -45,8 +45,9 @@ inline bool same_bits(const Kernel& a, const Kernel& b) {
   const auto same = [](auto x, auto y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
   };
-  if (!same(a.world().ids(), b.world().ids()) || !same(a.world().positions(), b.world().positions()) || !same(a.world().velocities(), b.world().velocities()) ||
-      !same(a.world().spins(), b.world().spins()) || a.state().pairs.candidates() != b.state().pairs.candidates())
+  if (!same(a.world().ids(), b.world().ids()) || !same(a.world().positions(), b.world().positions()) ||
+      !same(a.world().velocities(), b.world().velocities()) || !same(a.world().spins(), b.world().spins()) ||
+      a.state().pairs.candidates() != b.state().pairs.candidates())
     return false;
   for (std::size_t c = 0; c < a.state().pairs.candidates(); ++c)
     if (a.state().pairs.touches(c) != b.state().pairs.touches(c) || a.state().pairs.a(c) != b.state().pairs.a(c) ||

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engines/builtin.hpp"
@@ -11,6 +14,7 @@
 #include "scene/clump_body.hpp"
 #include "scene/make_bodies.hpp"
 #include "scene/sphere_body.hpp"
+#include "simulation/live_scene.hpp"
 
 namespace grit::test {
 
@@ -66,13 +70,41 @@ inline std::size_t index_of(const World& world, std::uint32_t id) {
   return static_cast<std::size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
 }
 
+/// A scene with its components and its kernel, as a run begins.
+struct Started {
+  Scene scene;
+  LiveScene live;
+  Kernel kernel;
+
+  /// With the state of bodies that components ask for, or this one.
+  explicit Started(Scene described, unsigned threads = 1, std::optional<StateRequest> state = {})
+      : scene(std::move(described)),
+        live(scene),
+        kernel(live.now(), live.components(),
+               make_bodies(live.now(), live.components(), state.value_or(requested_state(live.components()))),
+               threads) {}
+  Started(const Started&) = delete;
+};
+
 /// The first stage of a description, step by step; forces and positions always belong together.
 class Trial {
  public:
   explicit Trial(const Description& plain, unsigned threads = 1, StateRequest state = {})
       : scene_(scene_of(plain)),
-        kernel_(*scene_.stages.front().start, make_bodies(*scene_.description, state), threads) {
+        live_(live_at(0)),
+        kernel_(live_->now(), live_->components(), make_bodies(live_->now(), live_->components(), state), threads) {
     kernel_.find_forces();
+  }
+  Trial(const Trial&) = delete;
+
+  /// Begins a stage of the description, by this name.
+  void begin_stage(std::size_t stage, const std::string& name) { begin_stage(scene_, stage, name); }
+  /// One of another description of the same world, which must live as long.
+  void begin_stage(const Scene& scene, std::size_t stage, const std::string& name) {
+    auto next = std::make_unique<LiveScene>(scene);
+    next->go_to(stage, 0);
+    kernel_.begin_stage(name, next->now(), next->components());
+    live_ = std::move(next);
   }
   void step(std::size_t steps = 1) {
     for (; steps > 0; --steps) kernel_.advance(), kernel_.find_forces();
@@ -89,6 +121,7 @@ class Trial {
   Kernel& kernel() { return kernel_; }
   const Kernel& kernel() const { return kernel_; }
   const Scene& scene() const { return scene_; }
+  const ContactLaw& law() const { return *live_->components().law; }
 
   Vec3 position(std::uint32_t id) const { return xyz(world().positions()[index_of(world(), id)]); }
   /// At time(), not half a step before.
@@ -103,7 +136,14 @@ class Trial {
     return xyz(rates[i]) + half * rates[i].w * xyz(pushes[i]);
   }
 
+  std::unique_ptr<LiveScene> live_at(std::size_t stage) const {
+    auto live = std::make_unique<LiveScene>(scene_);
+    live->go_to(stage, 0);
+    return live;
+  }
+
   Scene scene_;
+  std::unique_ptr<LiveScene> live_;
   Kernel kernel_;
 };
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "run/driver.hpp"
+#include "simulation/driver.hpp"
 #include "support/notes.hpp"
 
 namespace grit::test {
@@ -70,16 +70,14 @@ struct Tape final : Recorder {
 
 /// A run on tape. `tape` is what was recorded before the checkpoint, and maybe after.
 struct Taped {
-  Scene scene;
+  Started started;
+  Kernel* kernel = &started.kernel;
   Tape tape;
-  std::unique_ptr<Kernel> kernel;
 
   /// `stop` is asked at every sample and, every eighth step, between two steps.
   Taped(const Description& plain, unsigned threads, std::function<bool(const Kernel&)> stop = {},
         const Checkpoint* resume = nullptr, std::vector<Tape::Entry> before = {}, double checkpoint_every = 0)
-      : scene(scene_of(plain)) {
-    const SceneDescription& start = *scene.description;
-    kernel = std::make_unique<Kernel>(start, make_bodies(start, requested_state(start)), threads);
+      : started(scene_of(plain), threads) {
     tape.entries = std::move(before);
     std::atomic<bool> stops = false;
     const auto look = [&](const World&) {
@@ -92,7 +90,7 @@ struct Taped {
     control.progress_every = 0;
     control.resume = resume;
     control.checkpoint_every = checkpoint_every;
-    grit::run(scene, *kernel, tape, control);
+    grit::run(started.scene, started.live, *kernel, tape, control);
     tape.look = {};
   }
 };

@@ -24,8 +24,8 @@ inline void verify(const std::string& what, double found, double known, double a
   verify(what, found, known, allowed, known);
 }
 
-/// Notes what is found beside a figure `of_others`, for docs/evidence/validation.md: by how much they differ, over `scale`.
-/// Nothing is expected of that.
+/// Notes what is found beside a figure `of_others`, for docs/evidence/validation.md: by how much they differ, over
+/// `scale`. Nothing is expected of that.
 inline void beside(const std::string& what, double found, double of_others, double scale) {
   char figures[128];
   std::snprintf(figures, sizeof figures, "%.4g %.4g %+.2g", of_others, found, (found - of_others) / std::abs(scale));

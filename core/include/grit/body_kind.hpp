@@ -31,7 +31,7 @@ class BodyKind {
  public:
   virtual ~BodyKind() = default;
   virtual void declare(Parameters& parameters) = 0;
-  /// After the parameters were read.
+  /// Once, after the parameters were set. Throws ParameterError for values that it cannot work with.
   virtual void prepare() {}
   /// What it is made of, if it is not a sphere; then radii are those of the enclosing sphere.
   virtual const ClumpShape* clump() const { return nullptr; }

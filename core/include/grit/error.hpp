@@ -43,6 +43,28 @@ class DescriptionError : public Error {
   std::vector<Problem> problems_;
 };
 
+/// What a component finds wrong with its parameters when it is prepared, e.g. a file that is missing. The kernel
+/// reports each fault with its place in the description.
+class ParameterError : public Error {
+ public:
+  struct Fault {
+    std::string key;  ///< of the parameter; "" for the whole object, "outlets/left" for what lies deeper
+    std::string found, allowed;
+    std::string message() const { return "found " + found + "; allowed is " + allowed; }
+  };
+  explicit ParameterError(std::vector<Fault> faults) : Error(text(faults)), faults_(std::move(faults)) {}
+  const std::vector<Fault>& faults() const { return faults_; }
+
+ private:
+  static std::string text(const std::vector<Fault>& faults) {
+    std::string all;
+    for (const Fault& fault : faults)
+      all += (all.empty() ? "" : "\n") + fault.key + (fault.key.empty() ? "" : ": ") + fault.message();
+    return all;
+  }
+  std::vector<Fault> faults_;
+};
+
 /// A plugin that cannot be loaded or that broke its contract.
 class PluginError : public Error {
  public:
@@ -65,11 +87,15 @@ enum class Guard {
 /// The simulation went wrong.
 class NumericsError : public Error {
  public:
-  explicit NumericsError(const std::string& what, Guard guard = Guard::none) : Error(what), guard_(guard) {}
+  /// `keys` lead from the root of the description to the part that the failure is about; none if there is no such part.
+  explicit NumericsError(const std::string& what, Guard guard = Guard::none, std::vector<std::string> keys = {})
+      : Error(what), guard_(guard), keys_(std::move(keys)) {}
   Guard guard() const { return guard_; }
+  const std::vector<std::string>& keys() const { return keys_; }
 
  private:
   Guard guard_;
+  std::vector<std::string> keys_;
 };
 
 /// A file or disk that does not do as asked.

@@ -47,7 +47,7 @@ class Geometry {
  public:
   virtual ~Geometry() = default;
   virtual void declare(Parameters& parameters) = 0;
-  /// After the parameters were read.
+  /// Once, after the parameters were set. Throws ParameterError for values that it cannot work with.
   virtual void prepare() {}
   virtual Bounds bounds() const = 0;
   /// Whether bodies are inside of bounds(), as in a container, so that averages end at its near side.

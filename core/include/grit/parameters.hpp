@@ -61,6 +61,7 @@ struct OptionalTarget {
   std::function<bool()> present;
   std::function<void(Parameters&)> create;   // makes it, with defaults, and declares it
   std::function<void(Parameters&)> declare;  // of the one that is present
+  std::function<void()> remove;
 };
 
 /// A list of objects.
@@ -168,10 +169,11 @@ class Parameters {
   /// Declares an object that may be left out.
   template <Declarable T>
   Parameter& add(std::string name, std::optional<T>& member) {
-    return entries_.emplace_back(std::move(name),
-                                 OptionalTarget{[&member] { return member.has_value(); },
-                                                [&member](Parameters& p) { member.emplace().declare(p); },
-                                                [&member](Parameters& p) { member->declare(p); }});
+    return entries_.emplace_back(
+        std::move(name),
+        OptionalTarget{[&member] { return member.has_value(); },
+                       [&member](Parameters& p) { member.emplace().declare(p); },
+                       [&member](Parameters& p) { member->declare(p); }, [&member] { member.reset(); }});
   }
   /// Says that the key "type" of this very object makes a choice, and that the parameters of what is chosen stand
   /// beside those declared here. Whoever reads or writes the object lets the choice declare them once it is made.
@@ -217,16 +219,27 @@ class Parameters {
   /// not read; what it says of those is not heard.
   void check_names(std::function<void(const Complain&)> check) { checks_.push_back({std::move(check), {}, true}); }
 
+  /// Adds a call that a reader makes once the object was read and checked without a problem.
+  void when_read(std::function<void()> call) { when_read_.push_back(std::move(call)); }
+  /// Says that the object also has these values, in SI, of parameters that are declared elsewhere: those of a component
+  /// that is described and not alive. A writer adds them. They must outlive this object.
+  void add_values(Description& values) { values_ = &values; }
+
   Choice* choice() const { return choice_; }
   const std::deque<Parameter>& entries() const { return entries_; }
   const std::vector<Check>& checks() const { return checks_; }
   bool is_open() const { return open_; }
+  const std::vector<std::function<void()>>& calls_when_read() const { return when_read_; }
+  /// Null if there are none.
+  Description* values() const { return values_; }
 
  private:
   Choice* choice_ = nullptr;
+  Description* values_ = nullptr;
   bool open_ = false;
   std::deque<Parameter> entries_;  // a deque keeps references valid while it grows
   std::vector<Check> checks_;
+  std::vector<std::function<void()>> when_read_;
 };
 
 /// A choice among built-in variants. Each T has `static constexpr const char* type_name` and declare().

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <ranges>
 #include <set>
@@ -31,6 +32,7 @@
 #include "plugins/nearest.hpp"
 #include "run/observer.hpp"
 #include "scene/make_bodies.hpp"
+#include "simulation/live_scene.hpp"
 #include "study/batch.hpp"
 #include "study/chart.hpp"
 #include "study/chart_page.hpp"
@@ -178,13 +180,14 @@ void check_figures(const StudyDescription& study, const Document& written, const
 }
 
 /// The same of channels, which probes tell only once they have seen a world.
-void check_channels(const StudyDescription& study, const Document& written, const SceneDescription& scene) try {
-  const Kernel kernel(scene, make_bodies(scene, run_state(scene)), 1);
+void check_channels(const StudyDescription& study, const Document& written, const SceneDescription& scene,
+                    const Components& components) try {
+  const Kernel kernel(scene, components, make_bodies(scene, components, run_state(scene, components)), 1);
   std::vector<std::string> all;
   std::set<std::string> wide;  // several numbers a sample
   for (const auto& [name, probe] : scene.probes) {
     for (const char* channel : {"time", "step"}) all.push_back(name + '/' + channel);
-    for (const Channel& channel : Observer(name, probe, kernel.world()).group().channels) {
+    for (const Channel& channel : Observer(name, probe, components.probes.at(name), kernel.world()).group().channels) {
       all.push_back(name + '/' + channel.name);
       if (std::ranges::any_of(channel.shape, [](std::size_t n) { return n != 1; })) wide.insert(all.back());
     }
@@ -238,6 +241,7 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                          "; give their levels labels that differ in "
                          "more than punctuation");
       const Scene scene = of_variant(file, variant, [&] { return load_scene(study.scene, sets, registry); });
+      const auto live = of_variant(file, variant, [&] { return std::make_unique<LiveScene>(scene); });
       check_figures(study, written, *scene.description);
       // As run.json has it, whose numbers went through text.
       const std::string text = resolved(*scene.description).dump();
@@ -249,8 +253,9 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                                        "than how they are written",
                                        other->second, variant.name))});
       if (all == 1 && !options.has("draw"))
-        of_variant(file, variant,
-                   [&] { at_its_place(scene.document, [&] { check_channels(study, written, *scene.description); }); });
+        of_variant(file, variant, [&] {
+          at_its_place(scene.document, [&] { check_channels(study, written, *scene.description, live->components()); });
+        });
       if (options.has("draw")) {
         expect_same(folder, description);
         continue;

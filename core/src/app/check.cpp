@@ -14,16 +14,18 @@
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
+#include "kernel/kernel.hpp"
 #include "lint/excess_depth.hpp"
 #include "lint/installed_studies.hpp"
 #include "lint/unused_materials.hpp"
 #include "lint/unused_motions.hpp"
 #include "lint/unused_scenario_parameters.hpp"
 #include "lint/unused_settings.hpp"
-#include "kernel/kernel.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
+#include "scene/current_scene.hpp"
 #include "scene/make_bodies.hpp"
+#include "simulation/live_scene.hpp"
 
 namespace grit {
 namespace {
@@ -58,41 +60,46 @@ StageTime stage_time(const StageDescription& stage, const SceneDescription& scen
 
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
   const SceneDescription& description = *scene.description;
+  const LiveScene live(scene);
+  const Components& components = live.components();
   std::cout << file << ": " << description.title << "\n\ncomponents\n";
   for (const PluginUsed& one : plugins_used(description, registry))
     std::cout << "  " << std::left << std::setw(10) << one.kind << std::setw(20) << one.name << one.version
               << (one.file.empty() ? "  built in" : "") << '\n';
 
   const unsigned threads = options.threads();
-  Kernel kernel(description, make_bodies(description, run_state(description)), threads);
+  Kernel kernel(description, components, make_bodies(description, components, run_state(description, components)),
+                threads);
   kernel.find_forces();
   std::vector<ProbeGroup> probes;
-  for (const auto& [name, probe] : description.probes) probes.push_back(Observer(name, probe, kernel.world()).group());
+  for (const auto& [name, probe] : description.probes)
+    probes.push_back(Observer(name, probe, components.probes.at(name), kernel.world()).group());
   SingleChannels(probes).check(file, description.output);  // as a run does
   const std::size_t bodies = kernel.world().positions().size();
 
   std::cout << "\nstate beyond position, velocity and spin\n";
-  for (const std::string& line : who_asked(description)) std::cout << "  " << line << '\n';
+  for (const std::string& line : who_asked(description, components)) std::cout << "  " << line << '\n';
   std::cout << "\norder of a step\n  neighbour search if due, contacts of pairs, touches of walls";
-  for (const auto& [name, engine] : description.engines)
-    if (engine.engine->phase() == Phase::forces) std::cout << ", " << name;
+  for (const auto& [name, engine] : components.engines)
+    if (engine->phase() == Phase::forces) std::cout << ", " << name;
   std::cout << ", probes, wall motion, integration";
-  for (const auto& [name, engine] : description.engines)
-    if (engine.engine->phase() == Phase::settings) std::cout << " with " << name;
+  for (const auto& [name, engine] : components.engines)
+    if (engine->phase() == Phase::settings) std::cout << " with " << name;
   std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << kernel.state().pairs.touching_count()
             << '\n';
   std::map<std::string, std::size_t> coming;  // by stage
   std::size_t all_bodies = bodies;
   for (const auto& [name, group] : description.bodies) {
     if (group.stage.empty()) continue;
-    const std::size_t count = body_count(group);
+    const std::size_t count = body_count(group, *components.body_kinds.at(name));
     all_bodies += count, coming[group.stage] += count;
   }
   for (const StageDescription& stage : description.stages)
     if (coming.contains(stage.name))
       std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';
-  for (const auto& [name, clump] : clumps_of(description))
-    std::cout << "clumps " << name << ": " << body_count(description.bodies.at(name)) / clump.spheres << " of "
+  for (const auto& [name, clump] : clumps_of(components))
+    std::cout << "clumps " << name << ": "
+              << body_count(description.bodies.at(name), *components.body_kinds.at(name)) / clump.spheres << " of "
               << clump.spheres << " spheres each; mass to " << std::setprecision(2) << clump.errors.mass
               << ", centre to " << clump.errors.centre << " of the enclosing radius, inertia to "
               << clump.errors.inertia << std::setprecision(6) << '\n';
@@ -111,16 +118,21 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   double least = 0, most = 0;  // s times bodies
   bool unknown = false;
   std::size_t there = bodies;
-  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+  std::vector<StageTime> times;
+  through_stages(description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
+    if (!i) return true;
     try {
-      check_oscillations(*scene.stages[i].start, dt);
-      for (const auto& increment : scene.stages[i].ramp) check_oscillations(*increment, dt);
+      check_oscillations(now, dt);
     } catch (PlacedError& error) {
-      error.begun(i + 1);
+      error.begun(*i + 1);
       throw;
     }
+    if (times.size() == *i) times.push_back(stage_time(description.stages[*i], now));
+    return true;
+  });
+  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     const StageDescription& stage = description.stages[i];
-    const StageTime time = stage_time(stage, *scene.stages[i].start);
+    const StageTime& time = times[i];
     there += coming[stage.name];
     least += time.least * static_cast<double>(there), most += time.most * static_cast<double>(there);
     unknown = unknown || (!time.known && !time.usual);
@@ -143,7 +155,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << (unknown ? " and what stages take that end by a condition" : "") << ", at most " << cost(most) / 3600
               << " h, by the limits of stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
-  auto idle = unused_settings(scene, kernel);
+  auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");
   const Description now = resolved(description);
@@ -157,12 +169,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const auto is_written = [&](const std::string& pointer) {
     return written.json().contains(Description::json_pointer(pointer));
   };
-  const auto with = [&](const std::string& set) {
-    auto all = sets;
-    all.push_back(set);
-    return load_scene(file, all, registry);
-  };
-  for (const std::string& line : unused_materials(scene, is_written, with)) {
+  for (const std::string& line : unused_materials(scene, is_written)) {
     // Some are known already, and why, or are part of what is.
     const std::string pointer = line.substr(0, line.find(": "));
     if (std::ranges::none_of(idle, [&](const std::string& other) {
@@ -174,7 +181,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::ranges::move(unused_scenario_parameters(written, same), std::back_inserter(idle));
   const auto [studies, unreadable] = installed_studies();
   for (const std::string& why : unreadable) std::cerr << "grit: left out: " << why << std::endl;
-  if (auto line = excess_depth(scene, kernel.world(), scenario_type(Document::load(file)), studies, same))
+  if (auto line = excess_depth(scene, components, kernel.world(), scenario_type(Document::load(file)), studies, same))
     idle.push_back(*line);
   if (!idle.empty()) std::cout << "\nwithout effect\n";
   for (const std::string& line : idle) std::cout << "  " << line << '\n';

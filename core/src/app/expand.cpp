@@ -2,6 +2,7 @@
 
 #include "app/options.hpp"
 #include "input/scene.hpp"
+#include "simulation/live_scene.hpp"
 
 namespace grit {
 namespace {
@@ -25,7 +26,8 @@ ExitStatus expand_command(const std::vector<std::string>& words) {
   const std::string file = options.only_word("description");
   const auto registry = options.registry();
   const Document document = load_document(file, options.list("set"), *registry);
-  const Scene scene = read_scene(document, *registry);  // what is printed can be run
+  const Scene scene = read_scene(document, *registry);
+  const LiveScene live(scene);  // what is printed can be run
   Description plain = document.json();
   name_files(plain, resolved(*scene.description));
   std::cout << plain.dump(2) << '\n';

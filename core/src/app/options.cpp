@@ -5,10 +5,7 @@
 #include <iostream>
 #include <thread>
 
-#include "engines/builtin.hpp"
-#include "plugins/loader.hpp"
-#include "scene/clump_body.hpp"
-#include "scene/sphere_body.hpp"
+#include "simulation/standard_registry.hpp"
 
 namespace grit {
 namespace po = boost::program_options;
@@ -71,13 +68,7 @@ std::string Options::only_word(const char* what) const {
   return words_.front();
 }
 
-std::unique_ptr<Registry> Options::registry() const {
-  auto registry = std::make_unique<Registry>(plugin_directories(list("plugin-path"), library_directory()));
-  registry->add(sphere_body());
-  registry->add(clump_body());
-  for (const PluginInfo& engine : builtin_engines()) registry->add(engine);
-  return registry;
-}
+std::unique_ptr<Registry> Options::registry() const { return standard_registry(list("plugin-path")); }
 
 const Command& command(const std::string& name) {
   const auto found =

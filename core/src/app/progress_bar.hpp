@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "run/driver.hpp"
+#include "simulation/driver.hpp"
 
 namespace grit {
 

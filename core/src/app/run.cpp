@@ -1,7 +1,6 @@
-#include "run/driver.hpp"
-
 #include <charconv>
 #include <iostream>
+#include <memory>
 
 #include "app/curve_summary.hpp"
 #include "app/interrupt.hpp"
@@ -23,6 +22,7 @@
 #include "output/shell_word.hpp"
 #include "report/report_page.hpp"
 #include "scene/make_bodies.hpp"
+#include "simulation/driver.hpp"
 #include "study/figures.hpp"
 
 namespace grit {
@@ -33,6 +33,7 @@ struct Job {
   std::string file;
   std::filesystem::path folder;
   Scene scene;
+  std::unique_ptr<LiveScene> live;
   Existing existing = Existing::refuse;
 };
 
@@ -81,6 +82,7 @@ void read_all(std::vector<Job>& jobs, const Options& options, const Registry& re
   std::vector<Problem> problems;
   for (Job& job : jobs) try {
       job.scene = load_scene(job.file, options.list("set"), registry);
+      job.live = std::make_unique<LiveScene>(job.scene);
     } catch (const DescriptionError& error) {
       for (const Problem& problem : error.problems()) problems.push_back(problem);
     }
@@ -139,19 +141,20 @@ bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
 }
 
 /// What may be done where a guard has stopped a run that changes nothing but where a run ends.
-std::string way_on(const std::string& message, const std::filesystem::path& folder) {
-  for (const std::string guard : {"/guards/travel", "/guards/energy"})
-    if (message.find(guard) != message.npos && std::filesystem::exists(folder / "checkpoint.h5"))
-      return "\n  its last checkpoint is kept: with another " + guard + " --resume goes on from there";
-  return "";
+std::string way_on(Guard guard, const std::filesystem::path& folder) {
+  if (guard != Guard::travel && guard != Guard::energy) return "";
+  if (!std::filesystem::exists(folder / "checkpoint.h5")) return "";
+  return std::string("\n  its last checkpoint is kept: with another /guards/") +
+         (guard == Guard::travel ? "travel" : "energy") + " --resume goes on from there";
 }
 
 ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
                    const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
-  const auto& [file, folder, scene, existing] = job;
+  const auto& [file, folder, scene, live_scene, existing] = job;
   const unsigned threads = options.threads();
   const bool quiet = options.has("quiet");
   const SceneDescription& description = *scene.description;
+  LiveScene& live = *live_scene;
 
   ResultsOptions results{.folder = folder,
                          .existing = existing,
@@ -160,7 +163,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
                                    .plugins = plugins_used(description, registry),
                                    .seed = description.seed,
                                    .threads = threads,
-                                   .clumps = clumps_of(description)},
+                                   .clumps = clumps_of(live.components())},
                          .walls = {},
                          .picture = {}};
   if (const auto& picture = description.output.picture)
@@ -180,13 +183,13 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     checkpoint = resumed(folder, results.facts);
     if (!checkpoint) results.existing = Existing::overwrite;
   }
-  Bodies bodies = make_bodies(description, run_state(description));
-  results.walls = wall_shapes(scene, bodies);
+  Bodies bodies = make_bodies(description, live.components(), run_state(description, live.components()));
+  results.walls = wall_shapes(scene, live.geometries(), bodies);
   ResultsFolder recorder(std::move(results));
   std::optional<Watch> watch;
   if (listener) watch.emplace(*listener, folder);
 
-  Kernel kernel(description, std::move(bodies), threads);
+  Kernel kernel(live.now(), live.components(), std::move(bodies), threads);
   say(std::to_string(kernel.world().positions().size()) + " bodies, " + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
   if (checkpoint)
@@ -206,7 +209,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
       if (!quiet) bar.show(now);
       if (watch) watch->say(progress_text(now));
     };
-  const RunSummary summary = run(scene, kernel, summary_curves, control);
+  const RunSummary summary = run(scene, live, kernel, summary_curves, control);
   bar.end();
 
   std::cout << summary_curves.text();
@@ -227,7 +230,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
               << shell_word(folder.string()) << "' goes on" << std::endl;
   if (!options.has("no-report")) make_report(folder);
   if (summary.status == "interrupted") return ExitStatus::interrupted;
-  if (summary.status == "failed") throw NumericsError(summary.message + way_on(summary.message, folder));
+  if (summary.status == "failed") throw NumericsError(summary.message + way_on(summary.guard, folder));
   return ExitStatus::done;
 }
 

@@ -31,32 +31,34 @@ std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Regist
   return used;
 }
 
-std::map<std::string, ClumpFacts> clumps_of(const SceneDescription& scene) {
+std::map<std::string, ClumpFacts> clumps_of(const Components& components) {
   std::map<std::string, ClumpFacts> clumps;
-  for (const auto& [name, group] : scene.bodies)
-    if (const ClumpShape* clump = group.kind->clump()) clumps[name] = {clump->spheres.size(), clump->errors};
+  for (const auto& [name, kind] : components.body_kinds)
+    if (const ClumpShape* clump = kind->clump()) clumps[name] = {clump->spheres.size(), clump->errors};
   return clumps;
 }
 
-StateRequest run_state(const SceneDescription& scene) { return requested_state(scene, picture_state(scene)); }
+StateRequest run_state(const SceneDescription& scene, const Components& components) {
+  return requested_state(components, picture_state(scene));
+}
 
-std::vector<std::string> who_asked(const SceneDescription& scene) {
+std::vector<std::string> who_asked(const SceneDescription& scene, const Components& components) {
   std::vector<std::string> lines;
   for (const auto& [state, name, bytes] : {std::tuple(BodyState::rotation, "rotation", sizeof(Vec3)),
                                            std::tuple(BodyState::displacement, "displacement", sizeof(Vec3)),
                                            std::tuple(BodyState::energy, "energies", std::size_t{0})}) {
     std::string who;
     const auto add = [&](const std::string& one) { who += (who.empty() ? "" : ", ") + one; };
-    for (const auto& [probe_name, probe] : scene.probes)
-      if (probe.probe->needs().has(state)) add("probe " + probe_name);
-    for (const auto& [engine_name, engine] : scene.engines)
-      if (engine.engine->needs().has(state)) add("engine " + engine_name);
+    for (const auto& [probe_name, probe] : components.probes)
+      if (probe->needs().has(state)) add("probe " + probe_name);
+    for (const auto& [engine_name, engine] : components.engines)
+      if (engine->needs().has(state)) add("engine " + engine_name);
     if (picture_state(scene).has(state)) add("the picture");
     lines.push_back(std::string(name) + (who.empty()  ? ": off"
                                          : bytes == 0 ? ": kept, for " + who
                                                       : ": " + std::to_string(bytes) + " bytes a body, for " + who));
   }
-  for (const StateField& field : scene.contacts->state())
+  for (const StateField& field : components.law->state())
     lines.push_back(field.name + ": 8 bytes a contact, for contact law " + scene.contacts.type() + " (" + field.doc +
                     ")");
   return lines;

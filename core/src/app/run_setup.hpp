@@ -7,6 +7,7 @@
 
 #include "output/run_json.hpp"
 #include "plugins/registry.hpp"
+#include "scene/components.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
@@ -15,12 +16,12 @@ namespace grit {
 std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry);
 
 /// Of each group of clumps.
-std::map<std::string, ClumpFacts> clumps_of(const SceneDescription& scene);
+std::map<std::string, ClumpFacts> clumps_of(const Components& components);
 
 /// State of bodies that the scene's components and its picture ask for.
-StateRequest run_state(const SceneDescription& scene);
+StateRequest run_state(const SceneDescription& scene, const Components& components);
 
 /// The same, with who asked: "rotation: picture".
-std::vector<std::string> who_asked(const SceneDescription& scene);
+std::vector<std::string> who_asked(const SceneDescription& scene, const Components& components);
 
 }  // namespace grit

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <memory>
+#include <string>
 #include <utility>
 
 namespace grit {
@@ -22,10 +26,10 @@ int endless_across(const Geometry& geometry) {
 }
 
 /// How far endless planes are drawn.
-Bounds drawn_box(const SceneDescription& scene, const Bodies& bodies) {
+Bounds drawn_box(const SceneDescription& scene, const LiveGeometries& geometries, const Bodies& bodies) {
   Bounds box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  for (const auto& [name, wall] : scene.walls) {
-    const Geometry& geometry = *wall.geometry;
+  for (const auto& [name, shape] : geometries.all()) {
+    const Geometry& geometry = *shape;
     for (const Vec3& corner : geometry.triangles())
       box.low = box.low.cwiseMin(corner), box.high = box.high.cwiseMax(corner);
     if (const int across = endless_across(geometry); across >= 0) {
@@ -67,24 +71,39 @@ std::vector<Vec3> rectangle(const Geometry& plane, int across, const Bounds& box
 
 }  // namespace
 
-std::vector<WallShape> wall_shapes(const Scene& scene, const Bodies& bodies) {
+std::vector<WallShape> wall_shapes(const Scene& scene, LiveGeometries geometries, const Bodies& bodies) {
   const SceneDescription& start = *scene.description;
   const bool has_endless =
-      std::ranges::any_of(start.walls, [](const auto& wall) { return endless_across(*wall.second.geometry) >= 0; });
-  const Bounds box = has_endless ? drawn_box(start, bodies) : Bounds{Vec3::Zero(), Vec3::Zero()};
+      std::ranges::any_of(geometries.all(), [](const auto& shape) { return endless_across(*shape.second) >= 0; });
+  const Bounds box = has_endless ? drawn_box(start, geometries, bodies) : Bounds{Vec3::Zero(), Vec3::Zero()};
   const auto triangles = [&](const Geometry& geometry) {
     const int across = endless_across(geometry);
     return across >= 0 && has_endless ? rectangle(geometry, across, box) : geometry.triangles();
   };
-  std::vector<WallShape> shapes;
-  for (const auto& [name, wall] : start.walls) {
-    const std::vector<Vec3> first = triangles(*wall.geometry);
-    shapes.push_back({name, first});
-    for (std::size_t i = 0; i < scene.stages.size(); ++i)
-      if (auto now = triangles(*scene.stages[i].start->walls.at(name).geometry); now != first)
-        shapes.push_back({name, std::move(now), start.stages[i].name});
+  struct Drawn {
+    std::shared_ptr<const Geometry> geometry;
+    std::vector<Vec3> first;
+  };
+  std::map<std::string, Drawn> drawn;
+  std::map<std::string, std::vector<WallShape>> shapes;
+  for (const auto& [name, geometry] : geometries.all()) {
+    drawn[name] = {geometry, triangles(*geometry)};
+    shapes[name] = {{name, drawn[name].first}};
   }
-  return shapes;
+  CurrentScene current(start, scene.stages);
+  for (const StageDescription& stage : start.stages) {
+    current.begin_stage();
+    geometries.follow(current.now());
+    for (const auto& [name, geometry] : geometries.all()) {
+      const Drawn& at_first = drawn.at(name);
+      if (geometry == at_first.geometry) continue;
+      if (auto now = triangles(*geometry); now != at_first.first)
+        shapes[name].push_back({name, std::move(now), stage.name});
+    }
+  }
+  std::vector<WallShape> all;
+  for (auto& [name, own] : shapes) std::ranges::move(own, std::back_inserter(all));
+  return all;
 }
 
 }  // namespace grit

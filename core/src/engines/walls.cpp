@@ -152,9 +152,9 @@ double servo_velocity(const WallSetup& setup, std::size_t wall, int axis, double
 
 }  // namespace
 
-std::vector<WallSetup> wall_setups(const SceneDescription& scene) {
+std::vector<WallSetup> wall_setups(const SceneDescription& scene, const Components& components) {
   std::vector<WallSetup> setups;
-  for (const auto& [name, wall] : scene.walls) setups.push_back({name, wall.geometry.get(), wall.motion});
+  for (const auto& [name, wall] : scene.walls) setups.push_back({name, components.geometries.at(name), wall.motion});
   return setups;
 }
 

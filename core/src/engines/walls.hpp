@@ -13,6 +13,7 @@
 #include "grit/geometry.hpp"
 #include "grit/memory.hpp"
 #include "grit/world.hpp"
+#include "scene/components.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
@@ -24,7 +25,7 @@ struct WallSetup {
   MotionDescription motion;
 };
 /// The walls of a scene, in the order of their names.
-std::vector<WallSetup> wall_setups(const SceneDescription& scene);
+std::vector<WallSetup> wall_setups(const SceneDescription& scene, const Components& components);
 /// Throws grit::Error, naming the wall, for an oscillation that steps of dt [s] cannot follow.
 void check_oscillations(const SceneDescription& scene, double dt);
 
@@ -58,11 +59,11 @@ class Walls {
   /// stand where the description puts them. Throws grit::Error, naming the wall, for motions that cannot be: two on one
   /// axis, a wall that is unknown or follows itself, a servo on a pressure without an area or along the wall's face, no
   /// mass. An oscillation goes on from the stage before, unless it was not there or has another phase.
-  void apply(const SceneDescription& scene) { apply(wall_setups(scene)); }
+  void apply(const SceneDescription& scene, const Components& components) { apply(wall_setups(scene, components)); }
   void apply(std::vector<WallSetup> setups);
   /// The same within a stage, e.g. for one increment of a ramp: the stage's time and start stay, and an oscillation
   /// goes on from where it is. Throws as apply() does.
-  void change(const SceneDescription& scene) { change(wall_setups(scene)); }
+  void change(const SceneDescription& scene, const Components& components) { change(wall_setups(scene, components)); }
   void change(std::vector<WallSetup> setups);
 
   std::size_t size() const { return states_.size(); }

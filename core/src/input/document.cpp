@@ -238,9 +238,20 @@ Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
     throw FileError(path.string() +
                     ": cannot be read: " + (fs::is_directory(path, none) ? "it is a directory" : std::strerror(errno)));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
+  open.push_back(fs::weakly_canonical(path));
+  Document document = read(text, {path.string(), path.parent_path()}, open);
+  open.pop_back();
+  return document;
+}
 
+Document Document::parse(const std::string& text, const std::string& name) {
+  std::vector<fs::path> open;
+  return read(text, {name, {}}, open);
+}
+
+Document Document::read(const std::string& text, const Source& source, std::vector<fs::path>& open) {
   Document document;
-  Parser parser(document, std::make_shared<const Source>(Source{path.string(), path.parent_path()}));
+  Parser parser(document, std::make_shared<const Source>(source));
   parser.parse(text);
   if (!parser.problems.empty()) throw DescriptionError(std::move(parser.problems));
   if (!document.json_.is_object())
@@ -254,13 +265,12 @@ Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
   };
   if (!extends->is_string())
     refuse("found " + describe_value(*extends) + "; allowed is the path of a description, from the folder of this one");
-  const fs::path base_path = (path.parent_path() / extends->get<std::string>()).lexically_normal();
-  open.push_back(fs::weakly_canonical(path));
+  const fs::path base_path = (source.directory / extends->get<std::string>()).lexically_normal();
   if (std::ranges::find(open, fs::weakly_canonical(base_path)) != open.end())
     refuse(base_path.string() + " extends itself, directly or by way of others; break the circle");
+  std::error_code none;
   if (!fs::is_regular_file(base_path, none)) refuse("there is no file " + base_path.string() + " to extend");
   Document base = load(base_path, open);
-  open.pop_back();
   document.erase("/extends");
   base.merge(document);
   return base;
@@ -383,6 +393,27 @@ void Document::extend(Document base) {
   for (const std::string& pointer : removed_) base.erase(pointer);
   base.merge(*this);
   *this = std::move(base);
+}
+
+Document Document::excerpt(const std::string& pointer) const {
+  Document part;
+  for (std::string at = pointer;; at.erase(at.rfind('/'))) {
+    if (const auto found = origins_.find(at); found != origins_.end()) part.origins_.insert(*found);
+    if (at.empty()) break;
+  }
+  const Description::json_pointer place(pointer);
+  const auto tokens = split_pointer(pointer);
+  if (!tokens || !json_.contains(place)) return part;
+  for (auto entry = origins_.lower_bound(pointer + '/'); entry != origins_.end() && is_below(entry->first, pointer);
+       ++entry)
+    part.origins_.insert(*entry);
+  Description* value = &part.json_;
+  for (const std::string& token : *tokens) {
+    if (value->is_null()) *value = Description::object();
+    value = &(*value)[token];
+  }
+  *value = json_.at(place);
+  return part;
 }
 
 void Document::erase(const std::string& pointer) {

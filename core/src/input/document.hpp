@@ -40,6 +40,10 @@ class Document {
   /// stands twice, and extended file that is not there or extends itself.
   static Document load(const std::filesystem::path& path);
 
+  /// The same for a text in place of a file; `name` stands for the file in messages. Relative paths start in the working
+  /// directory.
+  static Document parse(const std::string& text, const std::string& name);
+
   const Description& json() const { return json_; }
   /// Where the value at a pointer was written; for one that is not there, where its nearest parent was, with the rest
   /// of the pointer added.
@@ -56,6 +60,8 @@ class Document {
   /// Merges the value at `from` of a document onto the value at the root of this one (RFC 7396), and objects whose keys
   /// are numbers of entries of a list onto these entries. Throws DescriptionError for a number that is of none.
   void merge(const Document& other, const std::string& from = "");
+  /// The value at a pointer alone, with where it was written; an empty object if it is not there.
+  Document excerpt(const std::string& pointer) const;
   /// Removes a value.
   void erase(const std::string& pointer);
   /// Puts this document in place of `base` merged with it: what null removed here, by extending or set(), is removed
@@ -65,6 +71,7 @@ class Document {
  private:
   struct Parser;
   static Document load(const std::filesystem::path& path, std::vector<std::filesystem::path>& open);
+  static Document read(const std::string& text, const Source& source, std::vector<std::filesystem::path>& open);
   void merge(Description& target, const std::string& at, const Description& patch, const Document& other,
              const std::string& from);
   void forget(const std::string& pointer);

@@ -51,7 +51,13 @@ class Reader {
         complain(where, "found " + std::string(found) + "; allowed is " + std::string(allowed));
       });
     }
-    return problems_.size() == before;
+    if (problems_.size() != before) return false;
+    for (const auto& call : parameters.calls_when_read()) call();
+    return true;
+  }
+  /// An entry with a name that the description gives it.
+  bool named(const Description& entry, const std::string& name, const std::string& at, Parameters& parameters) {
+    return has_good_name(name, at) && object(entry, at, parameters);
   }
 
  private:
@@ -262,15 +268,14 @@ class Reader {
     return clean;
   }
   bool read(const Description& value, const std::string& at, const Parameter& parameter, const MapTarget& target) {
-    static const std::regex pattern(name_pattern);
     if (!value.is_object()) return wrong(at, value, "an object with a name for each of its entries");
     if (value.size() < parameter.least_entries()) return too_few(at, value, parameter);
     target.clear();
     bool clean = true;
     for (const auto& [name, entry] : value.items()) {
       const std::string pointer = at + '/' + pointer_token(name);
-      if (name.size() > 100 || !std::regex_match(name, pattern)) {
-        clean = complain(pointer, "found the name " + in_quotes(name) + "; allowed are letters, digits and _ . + -");
+      if (!has_good_name(name, pointer)) {
+        clean = false;
         continue;
       }
       Parameters inner;
@@ -278,6 +283,12 @@ class Reader {
       clean &= object(entry, pointer, inner);
     }
     return clean;
+  }
+
+  bool has_good_name(const std::string& name, const std::string& at) {
+    static const std::regex pattern(name_pattern);
+    return (name.size() <= 100 && std::regex_match(name, pattern)) ||
+           complain(at, "found the name " + in_quotes(name) + "; allowed are letters, digits and _ . + -");
   }
 
   // ---- lengths
@@ -306,6 +317,12 @@ class Reader {
 bool read(const Document& document, const std::string& pointer, Parameters& parameters,
           std::vector<Problem>& problems) {
   return Reader(document, problems).object(document.json().at(Description::json_pointer(pointer)), pointer, parameters);
+}
+
+bool read_entry(const Document& document, const std::string& section, const std::string& name, Parameters& parameters,
+                std::vector<Problem>& problems) {
+  return Reader(document, problems)
+      .named(document.json().at(section).at(name), name, '/' + section + '/' + pointer_token(name), parameters);
 }
 
 void read(const Document& document, Parameters& parameters) {

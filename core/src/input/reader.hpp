@@ -19,6 +19,10 @@ inline constexpr const char* name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.+-]*$";
 /// had.
 bool read(const Document& document, const std::string& pointer, Parameters& parameters, std::vector<Problem>& problems);
 
+/// The same of one entry of an object with entries by name, whose name is checked too.
+bool read_entry(const Document& document, const std::string& section, const std::string& name, Parameters& parameters,
+                std::vector<Problem>& problems);
+
 /// The same, throwing all problems together as DescriptionError.
 void read(const Document& document, Parameters& parameters);
 

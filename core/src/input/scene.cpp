@@ -1,37 +1,34 @@
 #include "input/scene.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
 #include <tuple>
+#include <utility>
 
-#include "input/never_holds.hpp"
-#include "input/places.hpp"
 #include "input/reader.hpp"
-#include "input/writer.hpp"
-#include "scene/servo_face.hpp"
+#include "plugins/component.hpp"
+#include "plugins/parameter_values.hpp"
 
 namespace grit {
 namespace {
 
-/// Reads a document whole. Null if it has problems, which are added unless they are known already.
-std::shared_ptr<SceneDescription> read_whole(const Document& document, const Registry& registry,
-                                             std::vector<Problem>& problems) {
-  auto scene = std::make_shared<SceneDescription>(registry);
-  Parameters parameters;
-  scene->declare(parameters);
-  std::vector<Problem> found;
-  read(document, "", parameters, found);
+/// Adds problems that are not known already: a fault in a part that several stages change is found with each.
+void add_new(std::vector<Problem>& problems, const std::vector<Problem>& found) {
   const auto same = [](const Problem& a, const Problem& b) {
     return std::tie(a.file, a.line, a.pointer, a.message) == std::tie(b.file, b.line, b.pointer, b.message);
   };
-  for (auto& problem : found)
+  for (const Problem& problem : found)
     if (std::ranges::none_of(problems, [&](const Problem& known) { return same(known, problem); }))
       problems.push_back(problem);
-  if (!found.empty()) return nullptr;
-  for (auto& [name, group] : scene->bodies) group.kind->prepare();
-  for (auto& [name, wall] : scene->walls) wall.geometry->prepare();
-  return scene;
 }
+
+/// A part that a stage can change: an entry of a section, or a section that has no entries by name.
+struct Unit {
+  std::string section, name;
+  std::string pointer() const { return '/' + section + (name.empty() ? "" : '/' + pointer_token(name)); }
+};
 
 /// Lets lists that are nowhere in the document, but in what it resolves to, stand in it, so that a pointer to one of
 /// their entries finds them.
@@ -44,41 +41,43 @@ void write_out_lists(Document& document, const Description& resolved, const std:
   }
 }
 
-/// The typed scenes of the stages, one change after the other.
+/// What the stages change, one after the other. Only parts that a change or a ramp touches are read anew, so that the
+/// cost of a stage does not depend on how many there are.
 class Planner {
  public:
-  Planner(const Document& document, const Registry& registry, std::vector<Problem>& problems)
-      : written_(document), now_(document), registry_(registry), problems_(problems) {}
+  /// `described` was read from the document, and `is_clean` says whether without a problem.
+  Planner(const Document& document, const SceneDescription& described, bool is_clean, std::vector<Problem>& problems)
+      : written_(document),
+        merged_(document),
+        described_(described),
+        now_(described),
+        is_clean_(is_clean),
+        problems_(problems) {
+    merged_.erase("/stages");
+    if (!described.contacts.type().empty()) law_ = described.contacts.make();
+  }
 
   StagePlan stage(std::size_t number) {
     StagePlan plan;
     const std::string at = "/stages/" + std::to_string(number);
-    const auto& stage = written_.json().at("stages").at(number);
-    if (const auto change = stage.find("change"); change != stage.end() && change->is_object())
-      now_.merge(written_, at + "/change");
-    same_walls(at + "/change/walls");
-    plan.start = read_whole(now_, registry_, problems_);
-    if (!plan.start) return plan;
-    const auto& ramps = plan.start->stages.at(number).ramps;
-    for (std::size_t i = 0; i < ramps.size(); ++i) {
-      const auto& before = plan.ramp.empty() ? *plan.start : *plan.ramp.back();
-      if (!ramp(ramps[i], at + "/ramps/" + std::to_string(i), before, plan.ramp)) return plan;
+    const Description& stage = written_.json().at("stages")[number];
+    if (const auto change = stage.find("change"); change != stage.end() && change->is_object()) {
+      merged_.merge(written_, at + "/change");
+      if (change->contains("walls")) same_walls(at + "/change/walls");
+      read_changed(*change, plan.change);
+      use(plan.change);
     }
-    for (const auto& [pointer, message] : never_holds(plan, number))
-      problems_.push_back(written_.problem(pointer, message));
-    servos_press(*plan.start, number);
-    note_turns(*plan.start);
-    for (const auto& increment : plan.ramp) {
-      note_turns(*increment);
-      servos_press(*increment, number);
-    }
+    if (!is_clean_) return plan;
+    const auto& ramps = described_.stages.at(number).ramps;
+    for (std::size_t i = 0; i < ramps.size(); ++i)
+      if (auto ramp = plan_of(ramps[i], at + "/ramps/" + std::to_string(i))) plan.ramps.push_back(*std::move(ramp));
     return plan;
   }
 
  private:
-  /// Probes and what a wall remembers of its contacts go by the walls that a run begins with.
+  /// Probes and the history of contacts with walls go by the walls that a run begins with.
   void same_walls(const std::string& changed) {
-    if (now_.json().contains("walls") && !now_.json().at("walls").is_object()) return;  // told as it is read
+    if (merged_.json().contains("walls") && !merged_.json().at("walls").is_object()) return;  // reported as it is read
     const Description none = Description::object();
     const auto walls = [&](const Document& document) -> const Description& {
       const auto found = document.json().find("walls");
@@ -92,82 +91,161 @@ class Planner {
         problems_.push_back(written_.problem(is_written ? at : changed, message));
       }
     };
-    refuse_of(now_, written_,
+    refuse_of(merged_, written_,
               "found a wall that the run does not begin with; allowed are those of /walls: let it begin out of the "
               "bodies' way, and let the stage say where it stands then");
-    refuse_of(written_, now_,
+    refuse_of(written_, merged_,
               "found null, which would take a wall away; allowed is what it is from then on: let the stage say where "
               "it stands, out of the bodies' way");
   }
 
-  /// Which way a wall faces once it has turned, the run alone knows.
-  void note_turns(const SceneDescription& scene) {
-    for (const auto& [name, wall] : scene.walls)
-      if (const MotionDescription& motion = wall.motion;
-          !motion.spin.isZero(0.0) || (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
-        turned_.insert(name);
-  }
-
-  /// What a servo lacks would else show when its stage begins.
-  void servos_press(const SceneDescription& scene, std::size_t stage) {
-    for (const auto& [name, wall] : scene.walls) {
-      const MotionDescription& motion = wall.motion;
-      if (!motion.servo || !motion.servo->pressure) continue;
-      const Vec3 normal = turned_.contains(name) ? Vec3(Vec3::Ones()) : wall.geometry->normal();
-      const std::string& axis = motion.servo->axis;
-      const std::string why = presses_on_specimen(motion) && !specimen_ends_across(scene, axis)
-                                  ? lacks_cross_section(axis)
-                                  : presses_with_nothing(motion, *wall.geometry, normal);
-      if (why.empty() || !faceless_.insert(name).second) continue;
-      const std::string at = "/walls/" + pointer_token(name);
-      std::vector<std::string> causes{at + "/motion/servo"};
-      for (const auto& [key, value] : now_.json().at(Description::json_pointer(at)).items())
-        if (key != "motion") causes.push_back(at + '/' + pointer_token(key));
-      problems_.push_back(written_.problem(written_last(written_, causes, stage + 1), why));
+  void read_changed(const Description& patch, SettingsChange& change) {
+    for (const auto& [section, part] : patch.items()) {
+      const auto& all = SceneDescription::changeable();
+      if (std::ranges::find(all, section) == all.end()) continue;  // refused as the stage was read
+      const bool removes =
+          !part.is_object() || std::any_of(part.begin(), part.end(), [](const auto& one) { return one.is_null(); });
+      if (!SceneDescription::has_names(section)) read_unit({section, ""}, change);
+      else if (removes) read_section(section, change);
+      else
+        for (const auto& [name, one] : part.items()) read_unit({section, name}, change);
     }
   }
 
-  /// Appends the increments of a ramp. False if there was a problem.
-  bool ramp(const RampDescription& ramp, const std::string& at, const SceneDescription& before,
-            std::vector<std::shared_ptr<const SceneDescription>>& increments) {
-    write_out_lists(now_, resolved(before), ramp.pointer);
-    const auto from = number_at(ramp, at + "/from", ramp.from), to = number_at(ramp, at + "/to", ramp.to);
-    if (!from || !to) return false;
-    for (std::int64_t k = 1; k <= ramp.increments; ++k) {
-      const double share = static_cast<double>(k) / static_cast<double>(ramp.increments);
-      // Exact at the end, where (to − from) + from may not be.
-      now_.set(ramp.pointer, k == ramp.increments ? *to : *from + (*to - *from) * share, written_.origin(at + "/to"));
-      increments.push_back(read_whole(now_, registry_, problems_));
-      if (!increments.back()) return false;
+  void read_unit(const Unit& unit, SettingsChange& change) {
+    SceneDescription fresh(described_.registry());
+    if (read_unit(merged_, unit, fresh)) change.add(fresh, unit.section, unit.name);
+    else faulty_.insert(unit.pointer());
+  }
+
+  /// Reads a unit of a document into a description that has nothing of it. False if it has problems.
+  bool read_unit(const Document& document, const Unit& unit, SceneDescription& fresh) {
+    if (law_) law_->clear_materials();  // defaults, not what was read before
+    Parameters parameters;
+    fresh.declare_unit(unit.section, unit.name, law_.get(), parameters);
+    std::vector<Problem> found;
+    if (!unit.name.empty()) read_entry(document, unit.section, unit.name, parameters, found);
+    else if (document.json().contains(unit.section)) read(document, unit.pointer(), parameters, found);
+    add_new(problems_, found);
+    return found.empty();
+  }
+
+  /// Reads a section that entries were removed from.
+  void read_section(const std::string& section, SettingsChange& change) {
+    SceneDescription fresh(described_.registry());
+    fresh.contacts = described_.contacts;
+    Parameters parameters;
+    fresh.declare_section(section, parameters);
+    parameters.leave_open();
+    std::vector<Problem> found;
+    read(merged_, "", parameters, found);
+    if (!found.empty()) faulty_.insert('/' + section);
+    add_new(problems_, found);
+    if (!found.empty()) return;
+    for (const SceneDescription* scene : {&std::as_const(now_), &std::as_const(fresh)})
+      for (const std::string& name : scene->units_of(section))
+        if (scene == &fresh || !fresh.has_unit(section, name)) change.add(fresh, section, name);
+  }
+
+  /// Takes over new values, and sees that they fit the others, where all of them are known.
+  void use(const SettingsChange& change) {
+    if (!is_clean_) return;
+    change.apply_to(now_);
+    if (!faulty_.empty()) return;
+    std::vector<Problem> found;
+    now_.check_together([&](std::string_view key, std::string_view what, std::string_view allowed) {
+      found.push_back(merged_.problem('/' + std::string(key),
+                                      "found " + std::string(what) + "; allowed is " + std::string(allowed)));
+    });
+    add_new(problems_, found);
+  }
+
+  /// One end of a ramp.
+  struct RampEnd {
+    double value = 0;
+    bool is_integer = false;
+    SettingsChange change;  ///< the unit, with the number at this value
+  };
+
+  /// Nothing if there was a problem.
+  std::optional<RampPlan> plan_of(const RampDescription& ramp, const std::string& at) {
+    const auto place = NumberPointer::of(ramp.pointer);
+    if (!place) return refuse_pointer(ramp, at), std::nullopt;
+    const Unit unit{place->section, place->name};
+    if (faulty_.contains(unit.pointer()) || faulty_.contains('/' + unit.section)) return std::nullopt;
+    Description resolved = Description::object();
+    if (now_.has_unit(unit.section, unit.name)) {
+      Parameters parameters;
+      now_.declare_unit(unit.section, unit.name, nullptr, parameters);
+      Description& part = unit.name.empty() ? resolved[unit.section] : resolved[unit.section][unit.name];
+      part = write(parameters);
+    }
+    auto from = end_of(ramp, *place, unit, resolved, at, "/from", ramp.from);
+    auto to = end_of(ramp, *place, unit, resolved, at, "/to", ramp.to);
+    if (!from || !to) return std::nullopt;
+    RampPlan plan{.pointer = ramp.pointer,
+                  .begin = std::move(from->change),
+                  .from = from->value,
+                  .to = to->value,
+                  .duration = ramp.duration,
+                  .increments = ramp.increments};
+    if (from->is_integer && !is_whole(plan, at)) return std::nullopt;
+    use(plan.begin);
+    use(to->change);
+    write_out_lists(merged_, resolved, ramp.pointer);
+    merged_.set(ramp.pointer, to->value, written_.origin(at + "/to"));
+    return plan;
+  }
+
+  /// A number as the description gives it, read where the ramp's pointer points.
+  std::optional<RampEnd> end_of(const RampDescription& ramp, const NumberPointer& place, const Unit& unit,
+                                const Description& resolved, const std::string& at, const std::string& key,
+                                const Description& value) {
+    Document trial = merged_.excerpt(unit.pointer());
+    write_out_lists(trial, resolved, ramp.pointer);
+    if (const auto problem = trial.set(ramp.pointer, value, written_.origin(at + key)); !problem.empty()) {
+      add_new(problems_, {written_.problem(at + "/pointer", problem)});
+      return std::nullopt;
+    }
+    SceneDescription fresh(described_.registry());
+    if (!read_unit(trial, unit, fresh)) return std::nullopt;
+    RampEnd end;
+    end.change.add(fresh, unit.section, unit.name);
+    Parameters parameters;
+    fresh.declare_unit(unit.section, unit.name, nullptr, parameters);
+    const auto number = find_number(parameters, place.keys);
+    if (!number) return refuse_pointer(ramp, at), std::nullopt;
+    end.value = number->get(), end.is_integer = number->is_integer();
+    return end;
+  }
+
+  void refuse_pointer(const RampDescription& ramp, const std::string& at) {
+    add_new(problems_,
+            {written_.problem(at + "/pointer", "found \"" + ramp.pointer + "\"; allowed is the pointer of a number")});
+  }
+
+  /// Whether all increments of a ramp of an integer are integers.
+  bool is_whole(const RampPlan& plan, const std::string& at) {
+    for (std::int64_t k = 1; k <= plan.increments; ++k) {
+      const double value = plan.value(k);
+      if (value == std::floor(value)) continue;
+      add_new(problems_,
+              {written_.problem(at + "/to", "found the number " + Description(value).dump() + " in increment " +
+                                                std::to_string(k) + "; allowed is an integer")});
+      return false;
     }
     return true;
   }
 
-  /// The SI value that `value` has where the ramp's pointer points: found by reading it there.
-  std::optional<double> number_at(const RampDescription& ramp, const std::string& at, const Description& value) {
-    const auto refuse = [&](const std::string& key, const std::string& message) -> std::optional<double> {
-      problems_.push_back(written_.problem(key, message));
-      return std::nullopt;
-    };
-    const std::string pointer_key = at.substr(0, at.rfind('/')) + "/pointer";
-    Document trial = now_;
-    if (const auto problem = trial.set(ramp.pointer, value, written_.origin(at)); !problem.empty())
-      return refuse(pointer_key, problem);
-    const auto scene = read_whole(trial, registry_, problems_);
-    if (!scene) return std::nullopt;
-    const Description all = resolved(*scene);
-    const Description::json_pointer place(ramp.pointer);
-    if (!all.contains(place) || !all.at(place).is_number())
-      return refuse(pointer_key, "found \"" + ramp.pointer + "\"; allowed is the pointer of a number");
-    return all.at(place).get<double>();
-  }
-
   const Document& written_;
-  Document now_;
-  const Registry& registry_;
+  Document merged_;                    // with the changes of the stages so far, without the stages
+  const SceneDescription& described_;  // before any stage
+  SceneDescription now_;               // with the changes of the stages so far
+  std::shared_ptr<ContactLaw> law_;    // to read parameters of materials; null where it is unknown
+  const bool is_clean_;                // whether described_ is; if not, only what is written is read
+  std::set<std::string> faulty_;       // units and sections with problems
   std::vector<Problem>& problems_;
-  std::set<std::string> refused_, faceless_;  ///< names of walls, each of which is told once
-  std::set<std::string> turned_;              ///< names of walls that may face elsewhere by then
+  std::set<std::string> refused_;  // names of walls, each of which is reported once
 };
 
 /// What a scenario says cannot be had: of the parameter that it names first, with a colon, or of all of it.
@@ -188,7 +266,8 @@ Document expanded(const Document& document, const Registry& registry) {
   const std::string name = "scenario \"" + scenario.type() + '"';
   Document plain;
   try {
-    plain = Document(scenario->expand(), "expansion of " + name + " in " + document.origin("/scenario").source->name);
+    plain = Document(scenario.make()->expand(),
+                     "expansion of " + name + " in " + document.origin("/scenario").source->name);
   } catch (const PluginError&) {
     throw;
   } catch (const Error& error) {
@@ -218,6 +297,10 @@ Document load_document(const std::filesystem::path& path, const std::vector<std:
     throw DescriptionError({document.problem(
         "/scene", "found a study, of which this is the scene; allowed is a description. 'grit chart " + path.string() +
                       "' runs a study, with --dry it says what would be run")});
+  return expanded_document(std::move(document), sets, registry);
+}
+
+Document expanded_document(Document document, const std::vector<std::string>& sets, const Registry& registry) {
   for (const auto& assignment : sets) document.set(assignment);
   return document.json().contains("scenario") ? expanded(document, registry) : document;
 }
@@ -229,14 +312,45 @@ Scene load_scene(const std::filesystem::path& path, const std::vector<std::strin
 Scene read_scene(Document document, const Registry& registry) {
   Scene scene;
   std::vector<Problem> problems;
-  scene.description = read_whole(document, registry, problems);
+  auto described = std::make_shared<SceneDescription>(registry);
+  Parameters parameters;
+  described->declare(parameters);
+  const bool is_clean = read(document, "", parameters, problems);
   if (const auto stages = document.json().find("stages"); stages != document.json().end() && stages->is_array()) {
-    Planner planner(document, registry, problems);
+    Planner planner(document, *described, is_clean, problems);
     for (std::size_t i = 0; i < stages->size(); ++i) scene.stages.push_back(planner.stage(i));
   }
   if (!problems.empty()) throw DescriptionError(std::move(problems));
+  scene.description = std::move(described);
   scene.document = std::move(document);
   return scene;
+}
+
+SettingsChange change_of(const SceneDescription& now, const std::string& pointer, const Description& value) {
+  // Read as the change of a stage of the present values, without what a change cannot touch.
+  Description all = resolved(now);
+  for (const char* section : {"probes", "output", "title"}) all.erase(section);
+  for (auto& [name, group] : all.at("bodies").items()) group.erase("stage");
+  Description patch = Description::object();
+  try {
+    patch[Description::json_pointer(pointer)] = value;
+  } catch (const Description::exception&) {
+    throw DescriptionError({{"set", 0, pointer, "found \"" + pointer + "\"; allowed is a JSON pointer"}});
+  }
+  all["stages"] = {{{"name", "set"},
+                    {"until", {{"type", "steps"}, {"value", 1}}},
+                    {"limit", 1},
+                    {"change", std::move(patch)}}};
+  try {
+    Scene scene = read_scene(Document(std::move(all), "set"), now.registry());
+    return std::move(scene.stages.front().change);
+  } catch (const DescriptionError& error) {
+    constexpr std::string_view inside = "/stages/0/change";
+    std::vector<Problem> problems = error.problems();
+    for (Problem& problem : problems)
+      if (problem.pointer.starts_with(inside)) problem.pointer.erase(0, inside.size());
+    throw DescriptionError(std::move(problems));
+  }
 }
 
 Description resolved(const SceneDescription& scene) {

@@ -1,4 +1,4 @@
-// From a file to the typed scenes that a run needs.
+// From a file to the typed description that a run needs, and what its stages change of it.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,9 @@
 #include "input/document.hpp"
 #include "plugins/registry.hpp"
 #include "scene/description.hpp"
+#include "scene/stage_plan.hpp"
 
 namespace grit {
-
-/// What one stage runs with. A stage's changes, and where its ramps ended, stay for the stages after it.
-struct StagePlan {
-  std::shared_ptr<const SceneDescription> start;  ///< with all changes up to this stage, its own included
-  /// After each increment of its ramps: those of the first ramp, then, on top of its end, those of the second, …
-  std::vector<std::shared_ptr<const SceneDescription>> ramp;
-};
 
 /// A description that was read and found right.
 struct Scene {
@@ -35,12 +29,20 @@ std::string scenario_type(const Document& document);
 Document load_document(const std::filesystem::path& path, const std::vector<std::string>& sets,
                        const Registry& registry);
 
-/// The same, then reads all that the stages will run with. Throws DescriptionError with every problem of the
-/// description and of its stages' changes and ramps. Components hold a pointer to the registry.
+/// The same for a document that was read.
+Document expanded_document(Document document, const std::vector<std::string>& sets, const Registry& registry);
+
+/// load_document(), then reads it and all that its stages change. Throws DescriptionError with every problem of the
+/// description and of its stages' changes and ramps. What is described holds a pointer to the registry. What shows only
+/// once components are made, `simulation` finds.
 Scene load_scene(const std::filesystem::path& path, const std::vector<std::string>& sets, const Registry& registry);
 
 /// The same for a plain document.
 Scene read_scene(Document document, const Registry& registry);
+
+/// What setting one value changes of a scene: the value at `pointer`, as a stage's change would have it. Throws
+/// DescriptionError.
+SettingsChange change_of(const SceneDescription& now, const std::string& pointer, const Description& value);
 
 /// All values of a scene, in SI, as run.json keeps them.
 Description resolved(const SceneDescription& scene);

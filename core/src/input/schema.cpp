@@ -7,7 +7,7 @@
 #include "input/range.hpp"
 #include "input/reader.hpp"
 #include "input/units.hpp"
-#include "input/writer.hpp"
+#include "plugins/parameter_values.hpp"
 #include "scene/description.hpp"
 
 namespace grit {

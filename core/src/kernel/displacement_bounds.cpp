@@ -56,7 +56,7 @@ void DisplacementBounds::advance_walls(State& state, double furthest) {
     const Vec3 normal = wall.pose.turn * state.walls.geometry(w).normal();
     const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
     if (!(dt * closing <= travel * smallest) && state.bodies.count() > 0)
-      fail(state, Guard::travel,
+      fail(state, Guard::travel, {"walls", state.walls.name(w), "motion"},
            "wall \"" + state.walls.name(w) + "\" moves " + number(dt * closing / smallest) +
                " of the smallest radius in one step, more than /guards/travel " + number(travel),
            "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step "

@@ -53,7 +53,7 @@ void EnergyGuard::check(const State& state, EnergyBalance& balance) {
   const double scale = largest_ + (terms.dissipated() - dissipated_at_start_);
   const double allowed = state.settings.guards.energy;
   if (gained > allowed * scale)
-    fail(state, Guard::energy,
+    fail(state, Guard::energy, {"guards", "energy"},
          "energy came from nowhere: " + number(gained) + " J more than was put in, " + number(gained / scale) +
              " of the largest energy so far" + (by_balance ? " and of what was dissipated" : "") +
              "; /guards/energy allows " + number(allowed),

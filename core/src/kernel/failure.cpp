@@ -4,17 +4,18 @@
 
 namespace grit {
 
-void fail(const State& state, Guard guard, const std::string& what, const std::string& advice) {
+void fail(const State& state, Guard guard, const Keys& keys, const std::string& what, const std::string& advice) {
   throw NumericsError("step " + std::to_string(state.time.step) + ", time " + number(state.time.time) + " s" +
                           (state.stage.empty() ? "" : ", stage \"" + state.stage + "\"") + ": " + what +
                           (advice.empty() ? "" : "; " + advice),
-                      guard);
+                      guard, keys);
 }
 
 void fail_at_body(const State& state, Guard guard, std::size_t body, const std::string& what,
                   const std::string& advice) {
   const Vec3 x = xyz(state.bodies.position[body]);
-  fail(state, guard,
+  const std::string group = state.bodies.group_of(state.bodies.id[body]);
+  fail(state, guard, group.empty() ? Keys() : Keys{"bodies", group},
        "body " + std::to_string(state.bodies.id[body]) + " at (" + number(x.x()) + ", " + number(x.y()) + ", " +
            number(x.z()) + ") m " + what,
        advice);

@@ -31,7 +31,7 @@ void check_periods(const State& state) {
   const double shortest = NeighbourLists::shortest_period(state.bodies, state.statistics);
   for (int k = 0; k < 3; ++k)
     if (const double period = state.cell.lengths()[k]; state.cell.cell().periodic[k] && period < shortest)
-      fail(state, Guard::period,
+      fail(state, Guard::period, {"domain"},
            "/domain is " + number(period) + " m long along " + "xyz"[k] +
                ", where it repeats; a body would meet another one twice in less than " + number(shortest) +
                " m, twice the reach of the largest",
@@ -41,7 +41,7 @@ void check_periods(const State& state) {
 void check_growth(const State& state, double distance) {
   const double smallest = state.statistics.smallest_radius, most = state.settings.guards.travel;
   if (distance <= most * smallest) return;
-  fail(state, Guard::travel,
+  fail(state, Guard::travel, {"stages"},
        "the largest body grows by " + number(distance / smallest) +
            " of the smallest radius in one step, more than /guards/travel " + number(most),
        "let bodies grow more slowly, by a smaller rate of the stage's growth");

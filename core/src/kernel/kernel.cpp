@@ -29,7 +29,7 @@ bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high ==
 
 }  // namespace
 
-Kernel::Kernel(const SceneDescription& scene, Bodies bodies, unsigned threads)
+Kernel::Kernel(const SceneDescription& scene, const Components& components, Bodies bodies, unsigned threads)
     : state_(cell_of(scene.domain)),
       passes_(threads),
       view_(state_, passes_),
@@ -40,25 +40,25 @@ Kernel::Kernel(const SceneDescription& scene, Bodies bodies, unsigned threads)
   state_.bodies = std::move(bodies);
   count_in(0, 0);
   check_periods(state_);
-  state_.walls.apply(scene);
-  apply(scene);
+  state_.walls.apply(scene, components);
+  apply(scene, components);
 }
 
-void Kernel::begin_stage(const std::string& name, const SceneDescription& scene) {
+void Kernel::begin_stage(const std::string& name, const SceneDescription& scene, const Components& components) {
   state_.stage = name;
   state_.bodies.start_paths();
-  state_.walls.apply(scene);
-  apply(scene);
-  admit(scene);
+  state_.walls.apply(scene, components);
+  apply(scene, components);
+  admit(scene, components);
 }
 
-void Kernel::change(const SceneDescription& scene) {
-  state_.walls.change(scene);
-  apply(scene);
+void Kernel::change(const SceneDescription& scene, const Components& components) {
+  state_.walls.change(scene, components);
+  apply(scene, components);
 }
 
-void Kernel::apply(const SceneDescription& scene) {
-  balance_.book_elastic([&] { take_settings(scene); });
+void Kernel::apply(const SceneDescription& scene, const Components& components) {
+  balance_.book_elastic([&] { take_settings(scene, components); });
   const auto kinetic = [this] {
     view_.invalidate_forces();
     return balance_.begun() ? kinetic_energy(view_, 0) : 0;
@@ -73,21 +73,22 @@ void Kernel::apply(const SceneDescription& scene) {
   view_.invalidate();
 }
 
-void Kernel::take_settings(const SceneDescription& scene) {
-  state_.settings = settings_of(scene, state_.stage, state_.materials);
+void Kernel::take_settings(const SceneDescription& scene, const Components& components) {
+  state_.settings = settings_of(scene, components, state_.stage, state_.materials);
   state_.pairs.set_fields(state_.settings.fields), state_.wall_contacts.set_fields(state_.settings.fields);
-  take_walls(scene);
+  take_walls(scene, components);
 }
 
-void Kernel::take_walls(const SceneDescription& scene) {
+void Kernel::take_walls(const SceneDescription& scene, const Components& components) {
   state_.surfaces.resize(state_.walls.size());
   for (std::size_t w = 0; w < state_.walls.size(); ++w) {
     const WallDescription& wall = scene.walls.at(state_.walls.name(w));
+    const auto& geometry = components.geometries.at(state_.walls.name(w));
     WallSurface& surface = state_.surfaces[w];
     // Candidates stay what they are, unless a wall has become another.
-    if (surface.geometry == nullptr || !same(surface.geometry->bounds(), wall.geometry.get()->bounds()))
+    if (surface.geometry == nullptr || !same(surface.geometry->bounds(), geometry->bounds()))
       state_.lists.request_rebuild();
-    surface.geometry = wall.geometry.get();
+    surface.geometry = geometry;
     surface.gives_way = wall.motion.servo || wall.motion.free;
     surface.free = bool(wall.motion.free);
     surface.material =
@@ -134,14 +135,14 @@ void Kernel::count_in(std::size_t first, std::size_t first_clump) {
   passes_.resize(state_.bodies.count());
 }
 
-void Kernel::admit(const SceneDescription& scene) {
+void Kernel::admit(const SceneDescription& scene, const Components& components) {
   Newcomers arriving;
   try {
-    arriving = make_newcomers(scene, state_.stage, view_.cell(), view_.positions(), state_.bodies.state);
+    arriving = make_newcomers(scene, components, state_.stage, view_.cell(), view_.positions(), state_.bodies.state);
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
-    fail(state_, Guard::arrival, error.what(), "");
+    fail(state_, Guard::arrival, {"bodies"}, error.what(), "");
   }
   if (arriving.bodies.count() == 0) return;
   match_velocities(arriving.bodies, state_);
@@ -204,10 +205,10 @@ void Kernel::save(Memory& memory) {
   remember(memory);
 }
 
-void Kernel::restore(const SceneDescription& scene, Memory& memory) {
+void Kernel::restore(const SceneDescription& scene, const Components& components, Memory& memory) {
   memory(state_.walls);
-  state_.walls.change(scene);  // as they stand and move now
-  take_settings(scene);
+  state_.walls.change(scene, components);  // as they stand and move now
+  take_settings(scene, components);
   remember(memory);
   state_.settings.growth_rate = growth_rate(scene, state_.stage);
   state_.sum.assign(state_.bodies.count() + 1, {});

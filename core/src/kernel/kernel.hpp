@@ -17,16 +17,16 @@ namespace grit {
 class Kernel {
  public:
   /// Starts with the bodies of the scene, with the state that its components ask for.
-  Kernel(const SceneDescription& scene, Bodies bodies, unsigned threads);
+  Kernel(const SceneDescription& scene, const Components& components, Bodies bodies, unsigned threads);
 
   /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first. Lets in
   /// bodies that appear in it. Throws NumericsError where they find no room, or overlap others or walls by more than
   /// they may; then they are not there.
-  void begin_stage(const std::string& name, const SceneDescription& scene);
+  void begin_stage(const std::string& name, const SceneDescription& scene, const Components& components);
   /// Checks the guards that are not checked at each step. Throws NumericsError if one trips.
   void end_stage() { guard_.check(state_, balance_); }
   /// Changes settings within a stage.
-  void change(const SceneDescription& scene);
+  void change(const SceneDescription& scene, const Components& components);
 
   void find_forces() { stepper_.find_forces(); }
   void advance() { stepper_.advance(); }
@@ -47,17 +47,17 @@ class Kernel {
   /// Saves everything, between two steps.
   void save(Memory& memory);
   /// Goes on, to the same bits, where a kernel of the same scene was saved, `scene` being its settings then.
-  void restore(const SceneDescription& scene, Memory& memory);
+  void restore(const SceneDescription& scene, const Components& components, Memory& memory);
 
  private:
-  void apply(const SceneDescription& scene);
-  void take_settings(const SceneDescription& scene);
-  void take_walls(const SceneDescription& scene);
+  void apply(const SceneDescription& scene, const Components& components);
+  void take_settings(const SceneDescription& scene, const Components& components);
+  void take_walls(const SceneDescription& scene, const Components& components);
   /// Stops what moves out of a plane.
   void flatten(int axis);
   /// Lets bodies take part in the mean flow of a cell from its first instant.
   void change_strain_rate(const Vec3& rate);
-  void admit(const SceneDescription& scene);
+  void admit(const SceneDescription& scene, const Components& components);
   /// Counts bodies from this one on, and makes room for them.
   void count_in(std::size_t first, std::size_t first_clump);
   void remember(Memory& memory);

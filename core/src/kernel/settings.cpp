@@ -11,22 +11,22 @@ double growth_rate(const SceneDescription& scene, const std::string& stage) {
   return found != scene.stages.end() && found->growth ? found->growth->rate : 0;
 }
 
-Settings settings_of(const SceneDescription& scene, const std::string& stage,
+Settings settings_of(const SceneDescription& scene, const Components& components, const std::string& stage,
                      const std::vector<std::string>& materials) {
   Settings now;
-  now.law = scene.contacts.get();
+  now.law = components.law;
   now.law->mix(materials_in_use(scene, materials), materials_of_bodies(scene));
   now.fields = now.law->state();
-  for (const auto& [name, engine] : scene.engines) {
-    now.engines[name] = engine.engine.get();
-    if (engine.engine->phase() == Phase::settings) engine.engine->settings(now.motion);
-    else now.force_engines.push_back(engine.engine.get().get());
+  now.engines = components.engines;
+  for (const auto& [name, engine] : components.engines) {
+    if (engine->phase() == Phase::settings) engine->settings(now.motion);
+    else now.force_engines.push_back(engine.get());
   }
   now.strain_rate = scene.domain.strain_rate, now.open_sides = scene.domain.open_sides;
   now.specimen = scene.specimen, now.time_step = scene.time_step, now.guards = scene.guards;
   now.growth_rate = growth_rate(scene, stage);
   now.may_clump =
-      std::ranges::any_of(scene.bodies, [](const auto& group) { return group.second.kind->clump() != nullptr; });
+      std::ranges::any_of(components.body_kinds, [](const auto& kind) { return kind.second->clump() != nullptr; });
   return now;
 }
 

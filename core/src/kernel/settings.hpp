@@ -9,6 +9,7 @@
 
 #include "grit/contact/contact_law.hpp"
 #include "grit/engine.hpp"
+#include "scene/components.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
@@ -33,7 +34,7 @@ struct Settings {
 };
 
 /// The settings of a scene in a stage; mixes the law's materials. `materials` are all names by index.
-Settings settings_of(const SceneDescription& scene, const std::string& stage,
+Settings settings_of(const SceneDescription& scene, const Components& components, const std::string& stage,
                      const std::vector<std::string>& materials);
 /// Rate at which radii grow in a stage [1/s]; 0 where none is given.
 double growth_rate(const SceneDescription& scene, const std::string& stage);

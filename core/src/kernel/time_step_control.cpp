@@ -58,7 +58,7 @@ void TimeStepControl::choose(const Demand& contacts, State& state) {
   if (wish.value) {
     dt = *wish.value;
     if (*wish.value > critical_time_step_ && !wish.allow_unstable)
-      fail(state, Guard::critical_step,
+      fail(state, Guard::critical_step, {"time_step", "value"},
            "the time step " + number(*wish.value) + " s is above the critical one, " + number(critical_time_step_) +
                " s",
            "leave out /time_step/value, or say \"allow_unstable\": true");

@@ -2,34 +2,67 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "input/scene.hpp"
+#include "scene/current_scene.hpp"
 #include "scene/make_bodies.hpp"
+#include "simulation/live_components.hpp"
 
 namespace grit {
 
-/// Whether all that a run goes by is so: the description, each stage with its changes, each increment of its ramps.
+/// Whether a scene is so all the time: as described, as each stage begins, and as each ramp begins and ends.
 template <class Is>
 bool always(const Scene& described, Is is) {
-  return is(*described.description) && std::ranges::all_of(described.stages, [&](const StagePlan& stage) {
-           return is(*stage.start) &&
-                  std::ranges::all_of(stage.ramp, [&](const auto& increment) { return is(*increment); });
-         });
+  return through_stages(*described.description, described.stages,
+                        [&](const SceneDescription& now, std::optional<std::size_t>) { return is(now); });
 }
 
-/// The same of what the law of contacts makes of the materials; the law is left as the run begins with it.
+using EngineMap = std::map<std::string, std::shared_ptr<Engine>>;
+
+/// The same of a scene and its engines.
+template <class Is>
+bool always_by_engines(const Scene& described, Is is) {
+  LiveEngines engines;
+  return always(described, [&](const SceneDescription& now) {
+    engines.follow(now);
+    return is(now, engines.all());
+  });
+}
+
+/// The contact law of a scene, with the materials mixed that are in use.
+class MixedLaw {
+ public:
+  explicit MixedLaw(const SceneDescription& described) : law_(described) {}
+  /// Returns whether what was mixed may have changed.
+  bool follow(const SceneDescription& now) {
+    const bool changed = law_.follow(now);
+    auto in_use = materials_in_use(now, material_names(now));
+    if (!changed && in_use == in_use_) return false;
+    in_use_ = std::move(in_use);
+    law_->mix(in_use_, materials_of_bodies(now));
+    return true;
+  }
+  ContactLaw& law() const { return *law_; }
+
+ private:
+  LiveLaw law_;
+  std::vector<std::string> in_use_;
+};
+
+/// The same of a scene and its contact law.
 template <class Is>
 bool always_by_law(const Scene& described, Is is) {
-  const auto mixed = [&](const SceneDescription& scene) -> ContactLaw& {
-    ContactLaw& law = *scene.contacts.get();
-    law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
-    return law;
-  };
-  const bool so = always(described, [&](const SceneDescription& scene) { return is(scene, mixed(scene)); });
-  mixed(*described.description);
-  return so;
+  MixedLaw mixed(*described.description);
+  return always(described, [&](const SceneDescription& now) {
+    mixed.follow(now);
+    return is(now, std::as_const(mixed.law()));
+  });
 }
 
 /// Longest time that a stage can take [s].
@@ -39,10 +72,10 @@ inline double longest(const StageDescription& stage) {
 }
 
 /// How bodies move by all engines, but for the one of this name.
-inline MotionSettings settings_of(const SceneDescription& scene, const std::string& left_out = "") {
+inline MotionSettings settings_of(const EngineMap& engines, const std::string& left_out = "") {
   MotionSettings settings;
-  for (const auto& [name, engine] : scene.engines)
-    if (name != left_out) engine.engine->settings(settings);
+  for (const auto& [name, engine] : engines)
+    if (name != left_out) engine->settings(settings);
   return settings;
 }
 

@@ -79,7 +79,9 @@ bool is_still_and_smooth(const Scene& described, const std::string& name) {
 }
 
 bool weighs_along(const Scene& described, int axis) {
-  return !always(described, [&](const SceneDescription& scene) { return settings_of(scene).gravity[axis] == 0; });
+  return !always_by_engines(described, [&](const SceneDescription&, const EngineMap& engines) {
+    return settings_of(engines).gravity[axis] == 0;
+  });
 }
 
 /// Whether grains lie from one end of the cell to the other, between planes that go on along this axis, from the start.
@@ -132,14 +134,15 @@ std::optional<Depth> depth_of(const Scene& described, const World& world, bool p
                fmt::format("walls \"{}\" and \"{}\", which bound it along y, stand still and are smooth", low, high)};
 }
 
-std::optional<std::string> by_contacts(const Scene& described, const World& world, bool plain) {
+std::optional<std::string> by_contacts(const Scene& described, const Components& components, const World& world,
+                                       bool plain) {
   const SceneDescription& scene = *described.description;
   if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
   const auto depth = depth_of(described, world, plain);
   if (!depth || !std::isfinite(depth->length)) return std::nullopt;
   std::size_t bodies = world.positions().size();
   for (const auto& [name, group] : scene.bodies)
-    if (!group.stage.empty()) bodies += body_count(group);
+    if (!group.stage.empty()) bodies += body_count(group, *components.body_kinds.at(name));
   const double contacts = contacts_a_body * static_cast<double>(bodies);
   const double share =
       std::max(1 / (fine_scatter * fine_scatter) / contacts, depth->fewest * world.mean_diameter() / depth->length);
@@ -153,13 +156,13 @@ std::optional<std::string> by_contacts(const Scene& described, const World& worl
 
 }  // namespace
 
-std::optional<std::string> excess_depth(const Scene& described, const World& world, const std::string& scenario,
-                                        const std::vector<ChartedStudy>& studies,
+std::optional<std::string> excess_depth(const Scene& described, const Components& components, const World& world,
+                                        const std::string& scenario, const std::vector<ChartedStudy>& studies,
                                         const std::function<bool(const std::vector<std::string>&)>& same) {
   const SceneDescription& scene = *described.description;
   bool tried = false;
   auto line = by_studies(studies, scenario, parts_of(resolved(scene)), same, tried);
-  if (!line && !tried) line = by_contacts(described, world, scenario.empty());
+  if (!line && !tried) line = by_contacts(described, components, world, scenario.empty());
   return line;
 }
 

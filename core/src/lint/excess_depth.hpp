@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "grit/world.hpp"
+#include "scene/components.hpp"
 #include "input/scene.hpp"
-#include "run/simulation.hpp"
 #include "study/advice.hpp"
 
 namespace grit {
@@ -15,8 +16,8 @@ namespace grit {
 /// One line, with the pointer, if the scene is at least twice as deep as what shows beside the scatter between samples:
 /// by one of `studies`, if it varied the depth of scenes like this; else by 1/√contacts. `same(sets)`:
 /// whether the description stays the same with these.
-std::optional<std::string> excess_depth(const Scene& described, const World& world, const std::string& scenario,
-                                        const std::vector<ChartedStudy>& studies,
+std::optional<std::string> excess_depth(const Scene& described, const Components& components, const World& world,
+                                        const std::string& scenario, const std::vector<ChartedStudy>& studies,
                                         const std::function<bool(const std::vector<std::string>&)>& same);
 
 }  // namespace grit

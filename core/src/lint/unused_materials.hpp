@@ -9,9 +9,9 @@
 
 namespace grit {
 
-/// One line each, with the pointer and why: with a little more and a little less of it whatever meets comes to the same
-/// numbers, in all stages. Of those that `is_written(pointer)`; `with("/pointer=value")` reads the scene again.
-std::vector<std::string> unused_materials(const Scene& scene, const std::function<bool(const std::string&)>& is_written,
-                                          const std::function<Scene(const std::string&)>& with);
+/// One line each, with the pointer and why: with a little more and a little less of it all contacts that may be have
+/// the same numbers, in all stages. Of those that `is_written(pointer)`.
+std::vector<std::string> unused_materials(const Scene& scene,
+                                          const std::function<bool(const std::string&)>& is_written);
 
 }  // namespace grit

@@ -24,17 +24,22 @@ bool has_speed(const MotionDescription& motion) {
 /// The first stage that a wall's ramp is longer than, if it is longer than all in which the wall moves.
 std::optional<std::string> never_at_full_speed(const Scene& described, const std::string& wall) {
   std::string told;
-  for (std::size_t i = 0; i < described.stages.size(); ++i) {
-    const StagePlan& plan = described.stages[i];
-    const auto moves = [&](const auto& scene) { return has_speed(scene->walls.at(wall).motion); };
-    if (!moves(plan.start) && std::ranges::none_of(plan.ramp, moves)) continue;
-    const StageDescription& stage = described.description->stages[i];
-    const double lasts = longest(stage), ramp = plan.start->walls.at(wall).motion.ramp_time;
-    if (ramp <= lasts) return std::nullopt;
-    if (told.empty())
-      told = fmt::format("the ramp takes {:g} s, and the stage \"{}\" {:g} s at most", ramp, stage.name, lasts);
-  }
-  return told.empty() ? std::nullopt : std::optional(told);
+  std::optional<std::size_t> present;
+  double ramp = 0;  // as the present stage begins
+  const bool never = through_stages(
+      *described.description, described.stages, [&](const SceneDescription& now, std::optional<std::size_t> number) {
+        const MotionDescription& motion = now.walls.at(wall).motion;
+        if (number != present) ramp = motion.ramp_time;
+        present = number;
+        if (!number || !has_speed(motion)) return true;
+        const StageDescription& stage = described.description->stages[*number];
+        const double lasts = longest(stage);
+        if (ramp <= lasts) return false;
+        if (told.empty())
+          told = fmt::format("the ramp takes {:g} s, and the stage \"{}\" {:g} s at most", ramp, stage.name, lasts);
+        return true;
+      });
+  return !never || told.empty() ? std::nullopt : std::optional(told);
 }
 
 }  // namespace

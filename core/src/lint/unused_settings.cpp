@@ -36,14 +36,14 @@ bool is_smooth(const Scene& described) {
 bool is_zero(const Scene& described, const std::string& key) {
   bool found = false;
   const bool zero = always(described, [&](const SceneDescription& scene) {
-    const Description values = resolved(scene);
-    for (const char* section : {"materials", "interfaces"})
-      for (const auto& [name, one] : values.at(section).items()) {
-        if (!one.contains(key) || one.at(key).is_null()) continue;
-        if (one.at(key) != 0.0) return false;
-        found = true;
-      }
-    return true;
+    const auto is_zero_of = [&](const Description& values) {
+      const auto value = values.find(key);
+      if (value == values.end() || value->is_null()) return true;
+      found = true;
+      return *value == 0.0;
+    };
+    return std::ranges::all_of(scene.materials, [&](const auto& one) { return is_zero_of(one.second.values); }) &&
+           std::ranges::all_of(scene.interfaces, [&](const auto& one) { return is_zero_of(one.values); });
   });
   return zero && found;
 }
@@ -112,9 +112,8 @@ bool comes_spinning(const BodiesDescription& group) {
 
 /// Whether nothing could turn a sphere that does not turn, but contacts: no engine, no wall that spins, no clump.
 bool only_contacts_turn(const Scene& described) {
-  return always(described, [](const SceneDescription& scene) {
-    return std::ranges::none_of(scene.engines,
-                                [](const auto& one) { return one.second.engine->phase() == Phase::forces; }) &&
+  return always_by_engines(described, [](const SceneDescription& scene, const EngineMap& engines) {
+    return std::ranges::none_of(engines, [](const auto& one) { return one.second->phase() == Phase::forces; }) &&
            std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
            std::ranges::all_of(scene.walls, [](const auto& one) {
              const MotionDescription& motion = one.second.motion;
@@ -126,18 +125,19 @@ bool only_contacts_turn(const Scene& described) {
 
 }  // namespace
 
-std::vector<std::string> unused_settings(const Scene& described, const Kernel& kernel) {
+std::vector<std::string> unused_settings(const Scene& described, const Components& components, const Kernel& kernel) {
   const World& world = kernel.world();
   const SceneDescription& scene = *described.description;
   std::vector<std::string> lines;
   const auto say = [&](const std::string& pointer, const std::string& why) { lines.push_back(pointer + ": " + why); };
 
-  for (const auto& [engine, component] : scene.engines) {
+  for (const auto& [engine, instance] : components.engines) {
     const std::string& name = engine;
+    const bool is_of_settings = instance->phase() == Phase::settings;
     // Where it is; elsewhere it does nothing anyway.
     const auto idle = [&](auto is) {
-      return component.engine->phase() == Phase::settings && always(described, [&](const SceneDescription& now) {
-               return !now.engines.contains(name) || is(settings_of(now), settings_of(now, name));
+      return is_of_settings && always_by_engines(described, [&](const SceneDescription&, const EngineMap& engines) {
+               return !engines.contains(name) || is(settings_of(engines), settings_of(engines, name));
              });
     };
     if (idle([](const MotionSettings& with, const MotionSettings& without) { return same(with, without); }))
@@ -148,7 +148,8 @@ std::vector<std::string> unused_settings(const Scene& described, const Kernel& k
              }))
       say("/engines/" + name, "bodies are held along the axis that it acts along");
   }
-  const bool never_turn = always(described, [](const SceneDescription& now) { return settings_of(now).hold_rotation; });
+  const bool never_turn = always_by_engines(
+      described, [](const SceneDescription&, const EngineMap& engines) { return settings_of(engines).hold_rotation; });
   const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
                     std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
   const Description values = resolved(scene);
@@ -160,8 +161,8 @@ std::vector<std::string> unused_settings(const Scene& described, const Kernel& k
   if (!still.empty()) {
     if (scene.output.picture && scene.output.picture->color == "rotation")
       say("/output/picture/color", still + ", so that all rotations are 0; another colour would show something");
-    for (const auto& [name, probe] : scene.probes)
-      if (probe.probe->needs().has(BodyState::rotation))
+    for (const auto& [name, probe] : components.probes)
+      if (probe->needs().has(BodyState::rotation))
         say("/probes/" + name, "it looks at rotations, and " + still + ": those are all 0");
   }
   const Description& written = described.document.json();
@@ -208,10 +209,10 @@ std::vector<std::string> unused_settings(const Scene& described, const Kernel& k
     say("/time_step/allow_unstable", "with this safety the step is not above the critical one");
   for (const auto& [name, material] : scene.materials)
     if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall is of it");
-  for (const auto& [a, b] : scene.interfaces)
-    if (const std::string name = a + '+' + b; !meet(scene, a, b) && !is_changed(scene, "interfaces", name))
-      say("/interfaces/" + pointer_token(name),
-          a == b ? "no two things of " + a + " meet" : a + " and " + b + " never meet");
+  for (const InterfaceDescription& one : scene.interfaces)
+    if (!meet(scene, one.a, one.b) && !is_changed(scene, "interfaces", one.name()))
+      say("/interfaces/" + pointer_token(one.name()),
+          one.a == one.b ? "no two things of " + one.a + " meet" : one.a + " and " + one.b + " never meet");
   if (const auto& every = scene.output.frames.every_time; every && *every < world.dt())
     say("/output/frames/every_time",
         fmt::format("{:g} s is less than a step takes, {:g} s at the start: there is a frame at each step, {:.3g} a "

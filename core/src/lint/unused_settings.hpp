@@ -9,7 +9,7 @@
 
 namespace grit {
 
-/// One line each, with the pointer of the part and why; `world` is the scene at its start.
-std::vector<std::string> unused_settings(const Scene& described, const Kernel& kernel);
+/// One line each, with the pointer of the part and why; `components` and `kernel` are of the scene at its start.
+std::vector<std::string> unused_settings(const Scene& described, const Components& components, const Kernel& kernel);
 
 }  // namespace grit

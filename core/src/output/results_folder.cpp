@@ -39,11 +39,16 @@ std::string comment_on(const World& world, const std::string& title) {
   return fmt::format("{}\ncell {} {} {} to {} {} {}, m", title, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
 }
 
-const std::filesystem::path& made(const std::filesystem::path& folder) {
+/// Makes a folder. Returns those that were not there, the innermost first.
+std::vector<std::filesystem::path> made(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> all;
   std::error_code error;
+  for (auto at = std::filesystem::absolute(folder).lexically_normal(); !std::filesystem::exists(at, error);
+       at = at.parent_path())
+    if (all.push_back(at); !at.has_relative_path()) break;
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder.string() + ": cannot make the folder of results: " + error.message());
-  return folder;
+  return all;
 }
 
 /// Sees to it that what is in the folder may be used.
@@ -73,10 +78,21 @@ void refuse_busy(const std::filesystem::path& folder) {
 
 ResultsFolder::ResultsFolder(ResultsOptions options)
     : options_(std::move(options)),
-      lock_(made(options_.folder)),
+      made_(made(options_.folder)),
+      lock_(options_.folder),
       run_json_(prepared(options_, lock_) / "run.json", options_.facts) {
   if (!options_.facts.description.is_null())
     write_atomically(options_.folder / "description.json", options_.facts.description.dump(2) + '\n');
+}
+
+ResultsFolder::~ResultsFolder() {
+  if (!series_ && options_.existing != Existing::resume) discard();
+}
+
+void ResultsFolder::discard() noexcept {
+  std::error_code none;
+  for (const char* file : {"run.json", "description.json"}) std::filesystem::remove(options_.folder / file, none);
+  for (const auto& folder : made_) std::filesystem::remove(folder, none);  // if it is empty
 }
 
 void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes) {

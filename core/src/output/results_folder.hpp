@@ -52,6 +52,9 @@ class ResultsFolder final : public Recorder {
   /// Makes the folder. Throws FileError where it cannot, where another run writes now, or where it holds a run and
   /// `existing` says refuse.
   explicit ResultsFolder(ResultsOptions options);
+  /// Removes what was written, and the folders that were made, if begin() was never called: nothing is left of a run that
+  /// does not get to its first step.
+  ~ResultsFolder() override;
 
   /// Throws Error for a channel of the picture that no probe has, or that is not one number.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
@@ -80,7 +83,10 @@ class ResultsFolder final : public Recorder {
 
   void draw_picture(const World& world, const RunSummary& summary) const;
 
+  void discard() noexcept;
+
   ResultsOptions options_;
+  std::vector<std::filesystem::path> made_;  ///< folders, the innermost first
   FolderLock lock_;
   RunJson run_json_;
   std::optional<Series> series_;

@@ -8,16 +8,19 @@
 
 #include "grit/body_kind.hpp"
 #include "grit/contact/contact_law.hpp"
+#include "grit/description.hpp"
 #include "grit/engine.hpp"
 #include "grit/geometry.hpp"
 #include "grit/probe.hpp"
 #include "grit/scenario.hpp"
 #include "plugins/boundary.hpp"
+#include "plugins/parameter_values.hpp"
 #include "plugins/registry.hpp"
 
 namespace grit {
 
-/// A choice among the installed plugins of one kind; holds the one that was chosen.
+/// A choice among the installed plugins of one kind, described: its name and the values of all its parameters. An
+/// instance serves to read them, and is gone once they were read.
 template <class Interface>
 class Component : public Choice {
  public:
@@ -26,24 +29,49 @@ class Component : public Choice {
   std::vector<std::string> types() const override { return registry_->names(kind_name<Interface>()); }
   std::string type() const override { return type_; }
   void choose(const std::string& type) override {
-    instance_ = registry_->make<Interface>(type);
-    type_ = type;
+    prototype_ = registry_->make<Interface>(type);
+    type_ = type, values_ = Description::object();
   }
   void declare(Parameters& parameters) override {
-    if (instance_)
-      at_boundary(registry_->title(kind_name<Interface>(), type_), "declare()",
-                  [&] { instance_->declare(parameters); });
+    if (!prototype_) return parameters.add_values(values_);
+    declare_of(*prototype_, parameters);
+    parameters.when_read([this] {
+      Parameters own;
+      declare_of(*prototype_, own);
+      values_ = write(own);
+      prototype_.reset();
+    });
   }
   std::unique_ptr<Choice> twin() const override { return std::make_unique<Component>(*registry_); }
 
-  Interface* operator->() const { return instance_.get(); }
-  Interface& operator*() const { return *instance_; }
-  const std::shared_ptr<Interface>& get() const { return instance_; }
+  /// Of all its parameters, in SI.
+  const Description& values() const { return values_; }
+  bool operator==(const Component& other) const { return type_ == other.type_ && values_ == other.values_; }
+
+  /// A new instance with these values, not yet prepared. One must have been chosen. Throws PluginError.
+  std::shared_ptr<Interface> make() const {
+    auto made = registry_->make<Interface>(type_);
+    if (!prototype_) assign_to(*made);
+    return made;
+  }
+  /// Sets an instance of this type to these values.
+  void assign_to(Interface& instance) const {
+    Parameters own;
+    declare_of(instance, own);
+    assign(own, values_);
+  }
+  /// The plugin as messages name it.
+  std::string title() const { return registry_->title(kind_name<Interface>(), type_); }
 
  private:
+  void declare_of(Interface& instance, Parameters& parameters) const {
+    at_boundary(title(), "declare()", [&] { instance.declare(parameters); });
+  }
+
   const Registry* registry_;
   std::string type_;
-  std::shared_ptr<Interface> instance_;
+  Description values_ = Description::object();
+  std::shared_ptr<Interface> prototype_;  // only while it is read
 };
 
 }  // namespace grit

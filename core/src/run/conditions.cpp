@@ -68,10 +68,10 @@ struct Met {
     return kernel.state().discharged_fraction() >= c.share * (1 - 1e-12) || kernel.world().ids().empty();
   }
   bool operator()(const AllCondition& c) const {
-    return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one->is.value()); });
+    return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one.is.value()); });
   }
   bool operator()(const AnyCondition& c) const {
-    return std::any_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one->is.value()); });
+    return std::any_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one.is.value()); });
   }
   bool operator()(std::monostate) const { return true; }
 };
@@ -81,7 +81,7 @@ std::string in_words(const Condition& condition, const Met& met) {
   const auto joined = [&](const auto& of, const char* with, bool met_alone) {
     std::string text;
     for (const auto& one : of)
-      if (!met_alone || std::visit(met, one->is.value())) text += (text.empty() ? "" : with) + in_words(*one, met);
+      if (!met_alone || std::visit(met, one.is.value())) text += (text.empty() ? "" : with) + in_words(one, met);
     return text;
   };
   if (const auto* all = std::get_if<AllCondition>(&condition.is.value())) return joined(all->of, " and ", false);
@@ -93,7 +93,7 @@ bool has_choice(const Condition& condition) {
   const auto& is = condition.is.value();
   if (const auto* any = std::get_if<AnyCondition>(&is)) return any->of.size() > 1;
   const auto* all = std::get_if<AllCondition>(&is);
-  return all && std::ranges::any_of(all->of, [](const auto& one) { return has_choice(*one); });
+  return all && std::ranges::any_of(all->of, [](const auto& one) { return has_choice(one); });
 }
 
 struct ShareReached {
@@ -117,14 +117,14 @@ struct ShareReached {
     std::optional<double> least;
     bool all_tell = true;
     for (const auto& one : c.of)
-      if (const auto p = progress(*one, kernel, start)) least = least ? std::min(*least, *p) : p;
+      if (const auto p = progress(one, kernel, start)) least = least ? std::min(*least, *p) : p;
       else all_tell = false;
     return all_tell || (least && *least < 1) ? least : std::nullopt;
   }
   std::optional<double> operator()(const AnyCondition& c) const {
     std::optional<double> most;
     for (const auto& one : c.of)
-      if (const auto p = progress(*one, kernel, start)) most = most ? std::max(*most, *p) : p;
+      if (const auto p = progress(one, kernel, start)) most = most ? std::max(*most, *p) : p;
     return most;
   }
   template <class Other>
@@ -191,10 +191,10 @@ struct Wanting {
   std::string operator()(std::monostate) const { return ""; }
 
  private:
-  std::string joined(const std::vector<std::unique_ptr<Condition>>& conditions, const char* with) const {
+  std::string joined(const std::vector<Condition>& conditions, const char* with) const {
     std::string text;
     for (const auto& one : conditions)
-      if (const std::string part = of(*one); !part.empty()) text += (text.empty() ? "" : with) + part;
+      if (const std::string part = of(one); !part.empty()) text += (text.empty() ? "" : with) + part;
     return text;
   }
 };
@@ -208,14 +208,14 @@ struct Brief {
   std::optional<double> operator()(const AllCondition& c) const {
     std::optional<double> longest;
     for (const auto& one : c.of)
-      if (const auto brief = std::visit(*this, one->is.value())) longest = std::max(longest, brief);
+      if (const auto brief = std::visit(*this, one.is.value())) longest = std::max(longest, brief);
       else return std::nullopt;
     return longest;
   }
   std::optional<double> operator()(const AnyCondition& c) const {
     std::optional<double> shortest;
     for (const auto& one : c.of)
-      if (const auto brief = std::visit(*this, one->is.value())) shortest = std::min(shortest.value_or(*brief), *brief);
+      if (const auto brief = std::visit(*this, one.is.value())) shortest = std::min(shortest.value_or(*brief), *brief);
     return shortest;
   }
   template <class Other>

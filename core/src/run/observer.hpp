@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <sstream>
 #include <string>
@@ -21,16 +22,17 @@ namespace grit {
 /// Samples when its schedule says, once a step at most, and in the stages that it watches.
 class Observer {
  public:
-  Observer(const std::string& name, const ProbeDescription& description, const World& world)
-      : name_(name), description_(&description), schedule_(description.cadence) {
-    prepare(*description.probe, description.probe.type(), world);
-    for (const Channel& channel : description.probe->channels()) {
+  Observer(const std::string& name, const ProbeDescription& description, std::shared_ptr<Probe> probe,
+           const World& world)
+      : name_(name), description_(&description), probe_(std::move(probe)), schedule_(description.cadence) {
+    prepare(description.probe.type(), world);
+    for (const Channel& channel : probe_->channels()) {
       std::size_t size = 1;
       for (const std::size_t n : channel.shape) size *= n;
       values_.emplace_back(size);
     }
   }
-  ProbeGroup group() const { return {name_, description_->probe->channels()}; }
+  ProbeGroup group() const { return {name_, probe_->channels()}; }
   bool watches(const std::string& stage) const {
     return description_->stages.empty() ||
            std::find(description_->stages.begin(), description_->stages.end(), stage) != description_->stages.end();
@@ -43,7 +45,7 @@ class Observer {
     ++samples_;
     {
       const Stopwatch watch(seconds_);
-      description_->probe->sample(world, out);
+      probe_->sample(world, out);
     }
     const std::vector<std::span<const double>> in(values_.begin(), values_.end());
     recorder.sample(index, world, in);
@@ -52,14 +54,14 @@ class Observer {
   bool in_frames() const { return description_->frames; }
   void remember(Memory& memory) {
     memory(schedule_, last_step_, samples_, seconds_);
-    remember_by_itself("probe \"" + name_ + '"', *description_->probe, memory);
+    remember_by_itself("probe \"" + name_ + '"', *probe_, memory);
   }
-  FieldGroup fields(const World& world) const { return {name_, description_->probe->fields(world)}; }
+  FieldGroup fields(const World& world) const { return {name_, probe_->fields(world)}; }
 
  private:
   /// What a probe says against the world begins with "probe TYPE" and, as a rule, the key that it means: ", /KEY".
-  void prepare(Probe& probe, const std::string& type, const World& world) const try {
-    probe.prepare(world);
+  void prepare(const std::string& type, const World& world) const try {
+    probe_->prepare(world);
   } catch (const Error& error) {
     if (typeid(error) != typeid(Error)) throw;  // says by its kind what it is about
     std::vector<std::string> keys{"probes", name_};
@@ -77,6 +79,7 @@ class Observer {
 
   std::string name_;
   const ProbeDescription* description_;
+  std::shared_ptr<Probe> probe_;
   Schedule schedule_;
   std::vector<std::vector<double>> values_;
   std::uint64_t last_step_ = ~0ull, samples_ = 0;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "grit/checkpoint.hpp"
+#include "grit/error.hpp"
 #include "grit/memory.hpp"
 #include "grit/probe.hpp"
 #include "grit/world.hpp"
@@ -37,6 +39,7 @@ struct ProbeTime {
 struct RunSummary {
   std::string status;   ///< "done", "interrupted", "failed"
   std::string message;  ///< of the failure
+  Guard guard = Guard::none;  ///< that tripped
   std::string stage;    ///< the last one
   double time = 0;      ///< simulated, s
   std::uint64_t steps = 0;
@@ -50,14 +53,6 @@ struct RunSummary {
   std::vector<PhaseTime> phases;
   std::vector<ProbeTime> probes;
   Model model;
-};
-
-/// Where a run was, and all that it needs to go on to the same bits.
-struct Checkpoint {
-  std::string stage;
-  double time = 0;  ///< simulated, s
-  std::uint64_t step = 0;
-  std::vector<std::byte> memory;
 };
 
 class Recorder {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "grit/memory.hpp"
@@ -24,10 +25,19 @@ struct Bodies {
   std::vector<Vec3> rotation;  ///< cumulative, see start_paths() [rad]; empty unless asked for
   std::vector<Vec3> origin;    ///< from where displacements count [m], see start_paths(); empty unless asked for
   Clumps clumps;
+  /// A group of the description, whose bodies have this id and those up to that of the next group.
+  struct Group {
+    std::string name;
+    std::uint32_t first_id;
+    void remember(Memory& memory) { memory(name, first_id); }
+  };
+  std::vector<Group> groups;                         ///< by rising id
   StateRequest state;                                ///< that components asked for
   std::uint32_t ids_given = 0, clump_ids_given = 0;  ///< ever, to those that have left too
 
   std::size_t count() const { return id.size(); }
+  /// The name of the group of a body with this id; empty where groups are not known.
+  std::string group_of(std::uint32_t body) const;
   /// Whether a component asked for the ledger of energies.
   bool energies() const { return state.has(BodyState::energy); }
   /// Makes room for so many more, and the padding.
@@ -52,7 +62,7 @@ struct Bodies {
   void reorder(std::span<const std::uint32_t> order);
   /// All but `state`, which the scene says.
   void remember(Memory& memory) {
-    memory(position, velocity, spin, id, material, rotation, origin, clumps, ids_given, clump_ids_given);
+    memory(position, velocity, spin, id, material, rotation, origin, clumps, groups, ids_given, clump_ids_given);
   }
 };
 

@@ -1,6 +1,7 @@
 #include "scene/clump_body.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "grit/error.hpp"
@@ -62,27 +63,27 @@ void RodSpheres::declare(Parameters& p) {
 
 void ClumpBody::declare(Parameters& p) {
   p.add("shape", spheres_).required().doc("spheres that it is made of, in proportion");
-  p.check(
-      [this](const Complain& complain) {
-        const auto* file = std::get_if<SpheresOfFile>(&spheres_.value());
-        try {
-          balls_ = std::visit(Balls{}, spheres_.value());
-        } catch (const DescriptionError& error) {
-          for (const Problem& problem : error.problems())
-            complain("shape/path", DescriptionError({problem}).what(), lines_of_file);
-          return;
-        } catch (const FileError& error) {
-          return complain("shape/path", error.what(), lines_of_file);
-        }
-        const auto defect = clump_defect(balls_);
-        if (!defect) return;
-        std::string key = "shape";
-        if (file != nullptr) key += "/path";
-        else if (spheres_.type() == RodSpheres::type_name) key += "/spacing";
-        else key += "/spheres" + (defect->sphere ? '/' + std::to_string(*defect->sphere) : "");
-        complain(key, (file != nullptr ? file->path + ": " : "") + defect->found, defect->allowed);
-      },
-      {"shape"});
+}
+
+void ClumpBody::prepare() {
+  const auto* file = std::get_if<SpheresOfFile>(&spheres_.value());
+  try {
+    balls_ = std::visit(Balls{}, spheres_.value());
+  } catch (const DescriptionError& error) {
+    std::vector<ParameterError::Fault> faults;
+    for (const Problem& problem : error.problems())
+      faults.push_back({"shape/path", DescriptionError({problem}).what(), lines_of_file});
+    throw ParameterError(std::move(faults));
+  } catch (const FileError& error) {
+    throw ParameterError({{"shape/path", error.what(), lines_of_file}});
+  }
+  const auto defect = clump_defect(balls_);
+  if (!defect) return;
+  std::string key = "shape";
+  if (file != nullptr) key += "/path";
+  else if (spheres_.type() == RodSpheres::type_name) key += "/spacing";
+  else key += "/spheres" + (defect->sphere ? '/' + std::to_string(*defect->sphere) : "");
+  throw ParameterError({{key, (file != nullptr ? file->path + ": " : "") + defect->found, defect->allowed}});
 }
 
 const ClumpShape* ClumpBody::clump() const {

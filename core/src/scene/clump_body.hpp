@@ -43,6 +43,8 @@ struct AsymmetricSpheres {
 class ClumpBody : public BodyKind {
  public:
   void declare(Parameters& p) override;
+  /// Throws ParameterError for spheres that cannot be read or make no clump.
+  void prepare() override;
   const ClumpShape* clump() const override;
   double volume(double radius) const override { return clump()->volume * radius * radius * radius; }
   /// The least principal moment.
@@ -51,7 +53,7 @@ class ClumpBody : public BodyKind {
  private:
   OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
   std::vector<Ball> balls_;
-  mutable std::optional<ClumpShape> shape_;  // integrated when asked for: not by every stage
+  mutable std::optional<ClumpShape> shape_;  // integrated when asked for
 };
 
 /// For Registry::add().

@@ -67,8 +67,8 @@ class References {
 };
 
 void check_walls_of(const Condition& condition, const std::string& key, const References& walls) {
-  const auto each = [&](const std::vector<std::unique_ptr<Condition>>& parts) {
-    for (std::size_t i = 0; i < parts.size(); ++i) check_walls_of(*parts[i], key + "/of/" + std::to_string(i), walls);
+  const auto each = [&](const std::vector<Condition>& parts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) check_walls_of(parts[i], key + "/of/" + std::to_string(i), walls);
   };
   const auto& is = condition.is.value();
   if (const auto* displacement = std::get_if<DisplacementCondition>(&is))
@@ -94,12 +94,62 @@ void check_circles(const std::map<std::string, WallDescription>& walls, const Co
   }
 }
 
-void declare_parts(Parameters& p, std::vector<std::unique_ptr<Condition>>& of, const std::string& doc) {
+// ---- what sections say of each other
+
+void check_interfaces(const SceneDescription& scene, const Complain& complain) {
+  for (const auto& [name, _] : scene.materials)
+    if (name.find('+') != std::string::npos)
+      complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
+  const References known("material", keys(scene.materials), complain);
+  std::set<std::pair<std::string, std::string>> pairs;
+  for (const InterfaceDescription& one : scene.interfaces) {
+    const std::string name = one.name(), key = "interfaces/" + name;
+    if (one.b.empty()) {
+      complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
+      continue;
+    }
+    known.check(key, one.a);
+    if (one.a != one.b) known.check(key, one.b);
+    if (!pairs.insert(std::minmax(one.a, one.b)).second)
+      complain(key, "an interface that is described twice", "either order, once");
+  }
+}
+
+void check_materials_of_bodies(const SceneDescription& scene, const Complain& complain) {
+  const References known("material", keys(scene.materials), complain);
+  for (const auto& [name, group] : scene.bodies) known.check("bodies/" + name + "/material", group.material);
+}
+
+void check_materials_of_walls(const SceneDescription& scene, const Complain& complain) {
+  const References known("material", keys(scene.materials), complain);
+  for (const auto& [name, wall] : scene.walls) known.check("walls/" + name + "/material", wall.material);
+}
+
+void check_weight(const SceneDescription& scene, const Complain& complain) {
+  const auto is_heavier = [](const auto& group) { return group.second.heavier_below > 0; };
+  if (std::ranges::none_of(scene.bodies, is_heavier)) return;
+  MotionSettings settings;
+  for (const auto& [name, engine] : scene.engines) engine.engine.make()->settings(settings);
+  if (settings.gravity.isZero(0.0)) return;
+  for (const auto& [name, group] : scene.bodies)
+    if (group.heavier_below > 0)
+      complain("bodies/" + name + "/heavier_below", "heavier grains where gravity acts",
+               "0: their weight would grow with their mass");
+}
+
+void check_followers(const SceneDescription& scene, const Complain& complain) {
+  const References known("wall", keys(scene.walls), complain);
+  for (const auto& [name, wall] : scene.walls)
+    if (wall.motion.follow) known.check("walls/" + name + "/motion/follow/wall", wall.motion.follow->wall);
+  check_circles(scene.walls, complain);
+}
+
+void declare_parts(Parameters& p, std::vector<Condition>& of, const std::string& doc) {
   ListTarget target;
   target.size = [&of] { return of.size(); };
   target.clear = [&of] { of.clear(); };
-  target.append = [&of](Parameters& inner) { of.emplace_back(std::make_unique<Condition>())->declare(inner); };
-  target.declare = [&of](std::size_t i, Parameters& inner) { of[i]->declare(inner); };
+  target.append = [&of](Parameters& inner) { of.emplace_back().declare(inner); };
+  target.declare = [&of](std::size_t i, Parameters& inner) { of[i].declare(inner); };
   p.add_target("of", std::move(target)).required().entries(1).doc(doc);
 }
 
@@ -313,6 +363,28 @@ void WallDescription::declare(Parameters& p) {
 
 // ---- the rest
 
+void MaterialDescription::declare(const std::string& name, ContactLaw* law, Parameters& p) {
+  p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("of the solid");
+  if (law == nullptr) return p.leave_open(), p.add_values(values);
+  law->declare_material(name, p);
+  p.when_read([this, name, law] {
+    Parameters own;
+    law->declare_material(name, own);
+    values = write(own);
+  });
+}
+InterfaceDescription::InterfaceDescription(const std::string& name) : a(name.substr(0, name.find('+'))) {
+  if (a.size() < name.size()) b = name.substr(a.size() + 1);
+}
+void InterfaceDescription::declare(ContactLaw* law, Parameters& p) {
+  if (law == nullptr || b.empty()) return p.leave_open(), p.add_values(values);
+  law->declare_interface(a, b, p);
+  p.when_read([this, law] {
+    Parameters own;
+    law->declare_interface(a, b, own);
+    values = write(own);
+  });
+}
 void DomainDescription::declare(Parameters& p) {
   p.add("low", low).unit("m").doc("lower corner; left out: open");
   p.add("high", high).unit("m").doc("upper corner; left out: open");
@@ -443,6 +515,12 @@ void PressureCondition::declare(Parameters& p) {
 void LeftCondition::declare(Parameters& p) {
   p.add("share", share).above(0).at_most(1).doc("share of all mass that has come that has left the domain");
 }
+Conditions::Conditions() = default;
+Conditions::Conditions(const Conditions&) = default;
+Conditions::Conditions(Conditions&&) noexcept = default;
+Conditions& Conditions::operator=(const Conditions&) = default;
+Conditions& Conditions::operator=(Conditions&&) noexcept = default;
+Conditions::~Conditions() = default;
 void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at once"); }
 void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which one must hold"); }
 
@@ -577,101 +655,126 @@ const std::vector<std::string>& SceneDescription::changeable() {
   return sections;
 }
 
+std::shared_ptr<ContactLaw> SceneDescription::law_to_read() const {
+  return contacts.type().empty() ? nullptr : contacts.make();
+}
+
+void SceneDescription::declare_section(const std::string& section, Parameters& p) {
+  if (section == "materials") {
+    MapTarget target;
+    // One law for all of them, made when the first is read.
+    const auto law = std::make_shared<std::shared_ptr<ContactLaw>>();
+    target.names = [this] { return keys(materials); };
+    target.clear = [this, law] { materials.clear(), *law = nullptr; };
+    target.declare = [this](const std::string& name, Parameters& inner) {
+      materials.at(name).declare(name, nullptr, inner);
+    };
+    target.insert = [this, law](const std::string& name, Parameters& inner) {
+      if (!*law) *law = law_to_read();
+      (materials[name] = {}).declare(name, law->get(), inner);
+    };
+    p.add_target("materials", std::move(target))
+        .required()
+        .entries(1)
+        .doc("materials by name: density and what the contact law asks for");
+  }
+  if (section == "interfaces") {
+    MapTarget target;
+    const auto law = std::make_shared<std::shared_ptr<ContactLaw>>();
+    target.names = [this] { return units_of("interfaces"); };
+    target.clear = [this, law] { interfaces.clear(), *law = nullptr; };
+    target.declare = [this](const std::string& name, Parameters& inner) {
+      find_interface(name)->declare(nullptr, inner);
+    };
+    target.insert = [this, law](const std::string& name, Parameters& inner) {
+      if (!*law) *law = law_to_read();
+      interfaces.emplace_back(name).declare(law->get(), inner);
+    };
+    p.add_target("interfaces", std::move(target)).doc("what differs where two materials meet, by \"one+other\"");
+  }
+  if (section == "domain") p.add("domain", domain).doc("box of the world");
+  if (section == "walls")
+    p.add("walls", walls, [this](const std::string&) { return WallDescription(*registry_); }).doc("walls by name");
+  if (section == "engines")
+    p.add("engines", engines, [this](const std::string&) {
+       return EngineDescription(*registry_);
+     }).doc("what acts on the bodies besides contacts, by name");
+  if (section == "time_step") p.add("time_step", time_step).doc("time step");
+  if (section == "guards") p.add("guards", guards).doc("limits beyond which a run stops");
+}
+
+bool SceneDescription::has_names(const std::string& section) {
+  return section == "materials" || section == "interfaces" || section == "walls" || section == "engines";
+}
+
+bool SceneDescription::declare_unit(const std::string& section, const std::string& name, ContactLaw* law,
+                                    Parameters& p) {
+  if (section == "materials") return materials[name].declare(name, law, p), true;
+  if (section == "interfaces") {
+    InterfaceDescription* const known = find_interface(name);
+    return (known != nullptr ? *known : interfaces.emplace_back(name)).declare(law, p), true;
+  }
+  if (section == "walls") return walls.try_emplace(name, *registry_).first->second.declare(p), true;
+  if (section == "engines") return engines.try_emplace(name, *registry_).first->second.declare(p), true;
+  if (section == "domain") return domain.declare(p), true;
+  if (section == "time_step") return time_step.declare(p), true;
+  if (section == "guards") return guards.declare(p), true;
+  return false;
+}
+
+std::vector<std::string> SceneDescription::units_of(const std::string& section) const {
+  if (section == "materials") return keys(materials);
+  if (section == "walls") return keys(walls);
+  if (section == "engines") return keys(engines);
+  if (section != "interfaces") return {""};
+  std::vector<std::string> names;
+  for (const InterfaceDescription& one : interfaces) names.push_back(one.name());
+  return names;
+}
+
+bool SceneDescription::has_unit(const std::string& section, const std::string& name) const {
+  const auto names = units_of(section);
+  return std::ranges::find(names, name) != names.end();
+}
+
+InterfaceDescription* SceneDescription::find_interface(const std::string& name) {
+  const auto found = std::ranges::find(interfaces, name, &InterfaceDescription::name);
+  return found == interfaces.end() ? nullptr : &*found;
+}
+
+void SceneDescription::check_together(const Complain& complain) const {
+  check_interfaces(*this, complain);
+  check_materials_of_bodies(*this, complain);
+  check_weight(*this, complain);
+  check_materials_of_walls(*this, complain);
+  check_followers(*this, complain);
+}
+
 void SceneDescription::declare(Parameters& p) {
   p.add("title", title).doc("one line that names the run");
   p.add("seed", seed).at_least(0).doc("seed of everything random");
   p.add("contacts", contacts).required().doc("contact law");
-
-  MapTarget by_material;
-  by_material.names = [this] { return keys(materials); };
-  by_material.clear = [this] {
-    materials.clear();
-    if (contacts.get()) contacts->clear_materials();
-  };
-  by_material.declare = [this](const std::string& name, Parameters& inner) {
-    inner.add("density", materials.at(name).density).unit("kg/m^3").symbol("rho").above(0).doc("of the solid");
-    if (contacts.get()) contacts->declare_material(name, inner);
-    else inner.leave_open();
-  };
-  by_material.insert = [this, declare = by_material.declare](const std::string& name, Parameters& inner) {
-    materials[name] = {};
-    declare(name, inner);
-  };
-  p.add_target("materials", std::move(by_material))
-      .required()
-      .entries(1)
-      .doc("materials by name: density and what the contact law asks for");
-
-  MapTarget by_pair;
-  by_pair.names = [this] {
-    std::vector<std::string> names;
-    for (const auto& [a, b] : interfaces) names.push_back(a + '+' + b);
-    return names;
-  };
-  by_pair.clear = [this] { interfaces.clear(); };
-  by_pair.declare = [this](const std::string& name, Parameters& inner) {
-    const auto plus = name.find('+');
-    if (contacts.get() && plus != std::string::npos)
-      contacts->declare_interface(name.substr(0, plus), name.substr(plus + 1), inner);
-    else inner.leave_open();
-  };
-  by_pair.insert = [this, declare = by_pair.declare](const std::string& name, Parameters& inner) {
-    const auto plus = name.find('+');
-    interfaces.emplace_back(name.substr(0, plus), plus == std::string::npos ? "" : name.substr(plus + 1));
-    declare(name, inner);
-  };
-  p.add_target("interfaces", std::move(by_pair)).doc("what differs where two materials meet, by \"one+other\"");
-
-  p.add("domain", domain).doc("box of the world");
+  declare_section("materials", p);
+  declare_section("interfaces", p);
+  declare_section("domain", p);
   p.add("bodies", bodies, [this](const std::string&) { return BodiesDescription(*registry_); })
       .required()
       .entries(1)
       .doc("groups of bodies by name");
-  p.add("walls", walls, [this](const std::string&) { return WallDescription(*registry_); }).doc("walls by name");
-  p.add("engines", engines, [this](const std::string&) {
-     return EngineDescription(*registry_);
-   }).doc("what acts on the bodies besides contacts, by name");
+  declare_section("walls", p);
+  declare_section("engines", p);
   p.add("specimen", specimen).doc("part of the world that averages are taken over");
-  p.add("time_step", time_step).doc("time step");
-  p.add("guards", guards).doc("limits beyond which a run stops");
+  declare_section("time_step", p);
+  declare_section("guards", p);
   p.add("stages", stages).required().entries(1).doc("what happens, in order");
   p.add("probes", probes, [this](const std::string&) {
      return ProbeDescription(*registry_);
    }).doc("what is measured, by name");
   p.add("output", output).doc("frames, checkpoints, picture, references, summary");
 
-  p.check_names([this](const Complain& complain) {
-    for (const auto& [name, _] : materials)
-      if (name.find('+') != std::string::npos)
-        complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
-    const References known("material", keys(materials), complain);
-    std::set<std::pair<std::string, std::string>> pairs;
-    for (const auto& [a, b] : interfaces) {
-      const std::string name = b.empty() ? a : a + '+' + b, key = "interfaces/" + name;
-      if (b.empty()) {
-        complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
-        continue;
-      }
-      known.check(key, a);
-      if (a != b) known.check(key, b);
-      if (!pairs.insert(std::minmax(a, b)).second)
-        complain(key, "an interface that is described twice", "either order, once");
-    }
-  });
-  p.check_names([this](const Complain& complain) {
-    const References known("material", keys(materials), complain);
-    for (const auto& [name, group] : bodies) known.check("bodies/" + name + "/material", group.material);
-  });
-  p.check(
-      [this](const Complain& complain) {
-        MotionSettings settings;
-        for (const auto& [name, engine] : engines) engine.engine->settings(settings);
-        for (const auto& [name, group] : bodies)
-          if (group.heavier_below > 0 && !settings.gravity.isZero(0.0))
-            complain("bodies/" + name + "/heavier_below", "heavier grains where gravity acts",
-                     "0: their weight would grow with their mass");
-      },
-      {"bodies", "engines"});
+  p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
+  p.check([this](const Complain& complain) { check_weight(*this, complain); }, {"bodies", "engines"});
   p.check(
       [this](const Complain& complain) {
         const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
@@ -681,16 +784,8 @@ void SceneDescription::declare(Parameters& p) {
                      "0: they would be made heavier for a size that they do not keep");
       },
       {"bodies", "stages"});
-  p.check_names([this](const Complain& complain) {
-    const References known("material", keys(materials), complain);
-    for (const auto& [name, wall] : walls) known.check("walls/" + name + "/material", wall.material);
-  });
-  p.check_names([this](const Complain& complain) {
-    const References known("wall", keys(walls), complain);
-    for (const auto& [name, wall] : walls)
-      if (wall.motion.follow) known.check("walls/" + name + "/motion/follow/wall", wall.motion.follow->wall);
-    check_circles(walls, complain);
-  });
+  p.check_names([this](const Complain& complain) { check_materials_of_walls(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_followers(*this, complain); });
   p.check_names([this](const Complain& complain) {
     const References known("wall", keys(walls), complain);
     for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})

@@ -1,5 +1,5 @@
-// The plain description, typed. What it says about a parameter here is all that is ever said about it: reading, checks,
-// schema and reference pages come from these declarations.
+// The plain description, typed: values alone, nothing alive. Each parameter is declared here and nowhere else: reading,
+// checks, schema and reference pages come from these declarations.
 #pragma once
 
 #include <array>
@@ -152,6 +152,21 @@ struct WallDescription {
 
 struct MaterialDescription {
   double density = 2600;
+  Description values = Description::object();  ///< of the parameters of the contact law, SI
+  /// With a law, to read its parameters; without one, the values that there are.
+  void declare(const std::string& name, ContactLaw* law, Parameters& p);
+  bool operator==(const MaterialDescription&) const = default;
+};
+/// Where two materials meet, in either order.
+struct InterfaceDescription {
+  std::string a, b;                            ///< b is empty where the name had no "+"
+  Description values = Description::object();  ///< of the parameters of the contact law, SI
+  /// With the name that the description gives it, "a+b".
+  explicit InterfaceDescription(const std::string& name);
+  std::string name() const { return b.empty() ? a : a + '+' + b; }
+  /// As that of a material.
+  void declare(ContactLaw* law, Parameters& p);
+  bool operator==(const InterfaceDescription&) const = default;
 };
 struct DomainDescription {
   std::optional<Vec3> low, high;
@@ -241,14 +256,22 @@ struct LeftCondition {
   double share = 1;
   void declare(Parameters& p);
 };
-struct AllCondition {
+/// Several conditions; here so that they can be copied where Condition is complete.
+struct Conditions {
+  std::vector<Condition> of;
+  Conditions();
+  Conditions(const Conditions&);
+  Conditions(Conditions&&) noexcept;
+  Conditions& operator=(const Conditions&);
+  Conditions& operator=(Conditions&&) noexcept;
+  ~Conditions();
+};
+struct AllCondition : Conditions {
   static constexpr const char* type_name = "all";
-  std::vector<std::unique_ptr<Condition>> of;
   void declare(Parameters& p);
 };
-struct AnyCondition {
+struct AnyCondition : Conditions {
   static constexpr const char* type_name = "any";
-  std::vector<std::unique_ptr<Condition>> of;
   void declare(Parameters& p);
 };
 struct Condition {
@@ -325,13 +348,12 @@ struct OutputDescription {
 /// A whole scene. Every name in it (of a wall, a material, a stage) was checked to exist once it has been read.
 struct SceneDescription {
   explicit SceneDescription(const Registry& registry);
-  SceneDescription(const SceneDescription&) = delete;
 
   std::string title;
   std::int64_t seed = 1;
   Component<ContactLaw> contacts;
   std::map<std::string, MaterialDescription> materials;
-  std::vector<std::pair<std::string, std::string>> interfaces;
+  std::vector<InterfaceDescription> interfaces;  ///< in the order in which they were described
   DomainDescription domain;
   std::map<std::string, BodiesDescription> bodies;
   std::map<std::string, WallDescription> walls;
@@ -347,8 +369,27 @@ struct SceneDescription {
 
   /// The sections that a stage may change and ramp; of the domain only its strain rate.
   static const std::vector<std::string>& changeable();
+  /// Declares one of these alone.
+  void declare_section(const std::string& section, Parameters& p);
+  /// Declares one entry of a section that has entries by name, or a section that has none, with a law to read
+  /// parameters of materials. An entry that is not there is added. False if a description has no such section.
+  bool declare_unit(const std::string& section, const std::string& name, ContactLaw* law, Parameters& p);
+  /// Whether it is there.
+  bool has_unit(const std::string& section, const std::string& name) const;
+  /// The names of a section's entries; one empty name for a section that has none.
+  std::vector<std::string> units_of(const std::string& section) const;
+  /// Whether a changeable section has entries by name.
+  static bool has_names(const std::string& section);
+  /// Reports what does not fit together between sections that a stage may change.
+  void check_together(const Complain& complain) const;
+  /// The interface of this name; null if there is none.
+  InterfaceDescription* find_interface(const std::string& name);
+
+  const Registry& registry() const { return *registry_; }
 
  private:
+  std::shared_ptr<ContactLaw> law_to_read() const;
+
   const Registry* registry_;
 };
 

@@ -29,19 +29,19 @@ std::set<std::string> of_bodies(const SceneDescription& scene) {
 }
 
 /// Adds a group. Clouds keep clear of `there` and of what `bodies` has.
-void add_group(const SceneDescription& scene, const BodiesDescription& group, const Cell& cell,
+void add_group(const SceneDescription& scene, const BodiesDescription& group, const BodyKind& kind, const Cell& cell,
                std::span<const Row> there, Random& random, Bodies& bodies) {
   const auto names = material_names(scene);
   const auto material =
       static_cast<std::uint8_t>(std::find(names.begin(), names.end(), group.material) - names.begin());
   const double density = scene.materials.at(group.material).density;
-  const ClumpShape* const clump = group.kind->clump();
+  const ClumpShape* const clump = kind.clump();
   const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
                        const Vec3& spin) {
     const double inert = std::max(radius, 0.5 * group.heavier_below);
-    const double mass = density * group.kind->volume(inert);
+    const double mass = density * kind.volume(inert);
     if (clump == nullptr) {
-      bodies.add(centre, radius, mass, group.kind->inertia(inert, mass), material, velocity, spin);
+      bodies.add(centre, radius, mass, kind.inertia(inert, mass), material, velocity, spin);
       return;
     }
     const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(clump->axes);
@@ -98,9 +98,9 @@ Random random_of(const SceneDescription& scene, const std::string& stage) {
 
 }  // namespace
 
-StateRequest requested_state(const SceneDescription& scene, StateRequest also) {
-  for (const auto& [name, probe] : scene.probes) also = also | probe.probe->needs();
-  for (const auto& [name, engine] : scene.engines) also = also | engine.engine->needs();
+StateRequest requested_state(const Components& components, StateRequest also) {
+  for (const auto& [name, probe] : components.probes) also = also | probe->needs();
+  for (const auto& [name, engine] : components.engines) also = also | engine->needs();
   return also;
 }
 
@@ -123,28 +123,35 @@ std::vector<std::string> materials_in_use(const SceneDescription& scene, std::ve
   return names;
 }
 
-Bodies make_bodies(const SceneDescription& scene, StateRequest state) {
+Bodies make_bodies(const SceneDescription& scene, const Components& components, StateRequest state) {
   const Vec3 open = Vec3::Constant(std::numeric_limits<double>::infinity());
   const Cell cell{scene.domain.low.value_or(-open), scene.domain.high.value_or(open), scene.domain.periodic};
   Random random(static_cast<std::uint64_t>(scene.seed));
   Bodies bodies;
-  for (const auto& [name, group] : scene.bodies)
-    if (group.stage.empty()) add_group(scene, group, cell, {}, random, bodies);
-    else body_count(group);  // a slip in a file shows now, not when its stage begins
+  for (const auto& [name, group] : scene.bodies) {
+    const BodyKind& kind = *components.body_kinds.at(name);
+    if (group.stage.empty()) {
+      bodies.groups.push_back({name, bodies.ids_given});
+      add_group(scene, group, kind, cell, {}, random, bodies);
+    } else {
+      body_count(group, kind);  // a fault in a file shows now, not when its stage begins
+    }
+  }
   check_inside(cell, bodies);
   bodies.finish(state);
   return bodies;
 }
 
-Newcomers make_newcomers(const SceneDescription& scene, const std::string& stage, const Cell& cell,
-                         std::span<const Row> there, StateRequest state) {
+Newcomers make_newcomers(const SceneDescription& scene, const Components& components, const std::string& stage,
+                         const Cell& cell, std::span<const Row> there, StateRequest state) {
   Newcomers newcomers;
   Random random = random_of(scene, stage);
   for (const auto& [name, group] : scene.bodies) {
     if (group.stage.empty() || group.stage != stage) continue;
     newcomers.groups.push_back({name, newcomers.bodies.ids_given, group.overlap});
+    newcomers.bodies.groups.push_back({name, newcomers.bodies.ids_given});
     try {
-      add_group(scene, group, cell, there, random, newcomers.bodies);
+      add_group(scene, group, *components.body_kinds.at(name), cell, there, random, newcomers.bodies);
       check_inside(cell, newcomers.bodies);
     } catch (const FileError&) {
       throw;
@@ -156,8 +163,8 @@ Newcomers make_newcomers(const SceneDescription& scene, const std::string& stage
   return newcomers;
 }
 
-std::size_t body_count(const BodiesDescription& group) {
-  const auto spheres = group.kind->clump() != nullptr ? group.kind->clump()->spheres.size() : 1;
+std::size_t body_count(const BodiesDescription& group, const BodyKind& kind) {
+  const auto spheres = kind.clump() != nullptr ? kind.clump()->spheres.size() : 1;
   if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) return spheres * placed->grains.size();
   if (const auto* cloud = std::get_if<CloudGrains>(&group.grains.value()))
     return spheres * static_cast<std::size_t>(cloud->count);

@@ -8,12 +8,13 @@
 
 #include "grit/world.hpp"
 #include "scene/bodies.hpp"
+#include "scene/components.hpp"
 #include "scene/description.hpp"
 
 namespace grit {
 
-/// All state of bodies that a component of the scene, or `also`, asks for.
-StateRequest requested_state(const SceneDescription& scene, StateRequest also = {});
+/// All state of bodies that a component, or `also`, asks for.
+StateRequest requested_state(const Components& components, StateRequest also = {});
 
 /// Materials in the order of their numbers in bodies and walls: those of bodies come first, so that all bodies have
 /// number 0 where they are of one, whatever else there is.
@@ -28,7 +29,7 @@ std::vector<std::string> materials_in_use(const SceneDescription& scene, std::ve
 
 /// The bodies of all groups that are there at the start, in the order of their names; ids count through. Throws as the
 /// sources of grains do, those of later groups included where they are files.
-Bodies make_bodies(const SceneDescription& scene, StateRequest state);
+Bodies make_bodies(const SceneDescription& scene, const Components& components, StateRequest state);
 
 /// Bodies that appear at the begin of a stage, group after group; ids count from 0.
 struct Newcomers {
@@ -43,10 +44,10 @@ struct Newcomers {
 /// Clouds keep clear of `there` (centre, w: radius), the spheres that the cell holds now. What is random depends on the
 /// seed and on the stage's place among all stages. Throws grit::Error, with the group, where a cloud finds no room or a
 /// body lies outside the cell.
-Newcomers make_newcomers(const SceneDescription& scene, const std::string& stage, const Cell& cell,
-                         std::span<const Row> there, StateRequest state);
+Newcomers make_newcomers(const SceneDescription& scene, const Components& components, const std::string& stage,
+                         const Cell& cell, std::span<const Row> there, StateRequest state);
 
 /// How many bodies a group has; each sphere of a clump is one. Throws where its file cannot be read.
-std::size_t body_count(const BodiesDescription& group);
+std::size_t body_count(const BodiesDescription& group, const BodyKind& kind);
 
 }  // namespace grit

@@ -1,33 +1,10 @@
 // A surface of triangles out of a file. See README.md.
 #include "mesh.hpp"
 
-#include <filesystem>
-#include <map>
-#include <mutex>
-#include <system_error>
-#include <tuple>
-
+#include "grit/error.hpp"
 #include "grit/plugin.hpp"
 
 namespace grit {
-namespace {
-
-/// The surface of a file. Scenes that are alive share it: a ramp makes a scene for each of its increments.
-std::shared_ptr<const Surface> surface_of(const std::string& path, const SurfaceOptions& o) {
-  std::error_code unknown;
-  const auto changed = std::filesystem::last_write_time(path, unknown).time_since_epoch().count();
-  const auto size = std::filesystem::file_size(path, unknown);
-  const std::tuple key(path, changed, size, o.scale, o.position.x(), o.position.y(), o.position.z(), o.merge, o.crease,
-                       o.open, o.two_sided, o.inside, o.skip_degenerate, o.ignore_normals);
-  static std::mutex busy;
-  static std::map<std::remove_const_t<decltype(key)>, std::weak_ptr<const Surface>> alive;
-  const std::lock_guard lock(busy);
-  std::shared_ptr<const Surface> surface = alive[key].lock();
-  if (!surface) alive[key] = surface = std::make_shared<const Surface>(read_stl(path), o);
-  return surface;
-}
-
-}  // namespace
 
 void Mesh::declare(Parameters& p) {
   p.add("path", path_).file().required().doc("file in STL, ASCII or binary");
@@ -47,10 +24,15 @@ void Mesh::declare(Parameters& p) {
   p.add("ignore_normals", options_.ignore_normals)
       .doc("whether normals in the file may contradict the order of corners, which counts");
   p.check([this](const Complain& complain) {
-    if (path_.empty()) return complain("path", "an empty text", "the path of a file");
-    surface_ = surface_of(path_, options_);
-    for (const Defect& defect : surface_->defects()) complain("path", defect.found, defect.allowed);
+    if (path_.empty()) complain("path", "an empty text", "the path of a file");
   });
+}
+
+void Mesh::prepare() {
+  surface_ = std::make_shared<const Surface>(read_stl(path_), options_);
+  std::vector<ParameterError::Fault> faults;
+  for (const Defect& defect : surface_->defects()) faults.push_back({"path", defect.found, defect.allowed});
+  if (!faults.empty()) throw ParameterError(std::move(faults));
 }
 
 Vec3 Mesh::normal() const {

@@ -13,6 +13,8 @@ namespace grit {
 class Mesh : public Geometry {
  public:
   void declare(Parameters& p) override;
+  /// Reads the file. Throws ParameterError for each defect of its surface.
+  void prepare() override;
   Bounds bounds() const override { return surface_->bounds(); }
   bool hollow() const override { return options_.inside; }
   /// Of the flat sheet that an open surface has the rim of; none if it is closed.
@@ -27,7 +29,7 @@ class Mesh : public Geometry {
  private:
   std::string path_;
   SurfaceOptions options_{.crease = std::numbers::pi / 12};
-  std::shared_ptr<const Surface> surface_;  // after the checks
+  std::shared_ptr<const Surface> surface_;  // after prepare()
 };
 
 }  // namespace grit

@@ -320,7 +320,7 @@ TEST(Mesh, RefusesARimUnlessItIsMeant) {
   EXPECT_THAT(
       complaint(without_top()),
       HasSubstr("path: found an open surface: 4 edges of one facet alone, the first from (0, 0, 3) to (0, 2, 3) m, "
-                "of facets 1, 4, 6, 7, allowed: a closed one; close it, let \"merge\" join"));
+                "of facets 1, 4, 6, 7; allowed is a closed one; close it, let \"merge\" join"));
   EXPECT_EQ(complaint(without_top(), {{"open", true}}), "");
 }
 
@@ -349,9 +349,9 @@ TEST(Mesh, RefusesAFacetThatEndsOnTheMiddleOfAnotherEvenWhereARimIsMeant) {
                          {0, 1, 0}, {0.5, 0.5, 0}, {1, 1, 0}, {0, 1, 0}};
   EXPECT_EQ(complaint(junction, {{"open", true}}),
             "path: found edges of one facet alone that lie on other facets, where a body would be pushed twice: the "
-            "first of facet 1 on facet 2, from (0, 0, 0) to (0.5, 0.5, 0) m, 0 m apart; of facets 1, 2, 3, allowed: "
+            "first of facet 1 on facet 2, from (0, 0, 0) to (0.5, 0.5, 0) m, 0 m apart; of facets 1, 2, 3; allowed is "
             "facets that share the edges where one goes on in another; split facets in the file where corners of "
-            "others lie on them, so that both have these corners; ");
+            "others lie on them, so that both have these corners");
   EXPECT_TRUE(both_refuse_a_seam(junction));
   EXPECT_TRUE(both_refuse_a_seam(turned(junction, askew, {3, 4, 5})));
   Corners near = junction;
@@ -375,10 +375,11 @@ TEST(Mesh, RefusesAFacetThatEndsOnTheMiddleOfAnotherEvenWhereARimIsMeant) {
 
 TEST(Mesh, RefusesCornersThatAreNotMergedEvenWhereARimIsMeant) {
   const Corners apart{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1e-9, 0, 0}, {1, 1 + 1e-9, 0}, {0, 1, 0}};
-  EXPECT_THAT(complaint(apart, {{"open", true}}),
-              HasSubstr("pushed twice: the first of facet 1 on facet 2, from (5e-10, 5e-10, 0) to (1, 1, 0) m, 1e-09 m "
-                        "apart; of facets 1, 2, allowed: facets that share the edges where one goes on in another; say "
-                        "\"merge\": 1.1e-09 or more, in m, which joins corners that should be one; "));
+  EXPECT_THAT(
+      complaint(apart, {{"open", true}}),
+      HasSubstr("pushed twice: the first of facet 1 on facet 2, from (5e-10, 5e-10, 0) to (1, 1, 0) m, 1e-09 m "
+                "apart; of facets 1, 2; allowed is facets that share the edges where one goes on in another; say "
+                "\"merge\": 1.1e-09 or more, in m, which joins corners that should be one; "));
   EXPECT_TRUE(both_refuse_a_seam(apart));
   EXPECT_EQ(complaint(apart, {{"open", true}, {"merge", 1.1e-9}}), "");
 
@@ -466,7 +467,7 @@ TEST(Mesh, RefusesDegenerateFacetsUnlessToldToSkipThem) {
   corners.insert(corners.begin() + 3, {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, 3)});
   corners.insert(corners.end(), {high, high, low});
   EXPECT_THAT(complaint(corners),
-              HasSubstr("found degenerate facets, without area: 2, 14, allowed: facets whose corners"));
+              HasSubstr("found degenerate facets, without area: 2, 14; allowed is facets whose corners"));
   EXPECT_EQ(complaint(corners, {{"skip_degenerate", true}}), "");
   EXPECT_THAT(touches_of(*mesh(corners, {{"skip_degenerate", true}}), {0.5, 1, 3.05}, 0.1), SizeIs(1));
   EXPECT_THAT(complaint({high, high, low}, {{"skip_degenerate", true}}), HasSubstr("found degenerate facets only"));
@@ -489,7 +490,7 @@ TEST(Mesh, RefusesAClosedSurfaceThatFacesInwards) {
   const Corners cube = box(low, high);
   EXPECT_THAT(
       complaint(reversed(cube)),
-      HasSubstr("found a closed surface that faces inwards: facets 1, 2, 3, 4, 5 and 7 more, allowed: facets that"));
+      HasSubstr("found a closed surface that faces inwards: facets 1, 2, 3, 4, 5 and 7 more; allowed is facets that"));
   EXPECT_THAT(complaint(reversed(cube), {{"inside", true}}), HasSubstr("faces inwards"));
   const auto beside = [&](Corners other) {
     Corners both = cube;
@@ -531,7 +532,7 @@ TEST(Mesh, MergesCornersWithinTheToleranceAlone) {
 }
 
 TEST(Mesh, SaysWhatIsWrongWithItsFile) {
-  EXPECT_EQ(complaint({}), "path: found a file without facets, allowed: at least one facet; ");
+  EXPECT_EQ(complaint({}), "path: found a file without facets; allowed is at least one facet");
   EXPECT_THAT(
       [] {
         made<Mesh>({{"path", std::string("/nowhere.stl")}});

@@ -1,0 +1,115 @@
+#include "simulation/driver.hpp"
+
+#include <chrono>
+
+#include "grit/error.hpp"
+#include "kernel/stopwatch.hpp"
+#include "scene/placed_error.hpp"
+#include "simulation/first_instant.hpp"
+#include "simulation/stage_runner.hpp"
+
+namespace grit {
+namespace {
+
+using Instant = std::chrono::steady_clock::time_point;
+
+// However short the time between checkpoints, they take no more than this fraction of it.
+constexpr double most_for_checkpoints = 0.01;
+
+/// Reports progress, and saves checkpoints, while a runner goes on.
+class Driver {
+ public:
+  Driver(const Scene& scene, StageRunner& runner, Kernel& kernel, Recorder& recorder, const RunControl& control)
+      : scene_(scene), runner_(runner), kernel_(kernel), recorder_(recorder), control_(control) {}
+
+  /// Returns false if it was interrupted.
+  bool operator()() {
+    saved_ = std::chrono::steady_clock::now();
+    enter_stage();
+    while (!runner_.done()) {
+      // Asked once a step, so that what is saved is where the run stops.
+      const bool stop = control_.interrupted != nullptr && control_.interrupted->load();
+      if (stop || checkpoint_is_due()) save();
+      const StageRunner::Event event = runner_.next(stop);
+      if (event == StageRunner::Event::stopped) return false;
+      if (event == StageRunner::Event::stage_ended) enter_stage();
+      else report();
+    }
+    return true;
+  }
+
+ private:
+  void enter_stage() {
+    began_ = last_report_ = std::chrono::steady_clock::now();
+    last_report_steps_ = kernel_.world().step();
+    done_at_begin_ = control_.progress && !runner_.done() ? runner_.progress().value_or(0) : 0;
+  }
+
+  // Between two steps, and by the wall clock alone: nothing that is simulated depends on it.
+  bool checkpoint_is_due() const {
+    if (!(control_.checkpoint_every > 0)) return false;
+    const double since = seconds_since(saved_);
+    return since >= control_.checkpoint_every && most_for_checkpoints * since >= saving_;
+  }
+
+  void save() {
+    const Instant began = std::chrono::steady_clock::now();
+    recorder_.checkpoint(runner_.save());
+    saved_ = std::chrono::steady_clock::now(), saving_ = seconds_since(began);
+  }
+
+  void report() {
+    if (!control_.progress || kernel_.world().step() % 8 != 0) return;
+    const double since = seconds_since(last_report_);
+    if (since < control_.progress_every) return;
+    Progress now;
+    now.stage = runner_.description().name, now.stage_number = runner_.stage() + 1, now.stages = scene_.stages.size();
+    now.fraction = runner_.progress();
+    if (const double gone = now.fraction.value_or(0) - done_at_begin_; gone > 1e-3)
+      now.seconds_left = seconds_since(began_) * (1 - *now.fraction) / gone;
+    now.time = kernel_.world().time();
+    now.particle_steps_per_second = static_cast<double>(kernel_.world().step() - last_report_steps_) *
+                                    static_cast<double>(kernel_.world().positions().size()) / since;
+    last_report_ = std::chrono::steady_clock::now(), last_report_steps_ = kernel_.world().step();
+    control_.progress(now);
+  }
+
+  const Scene& scene_;
+  StageRunner& runner_;
+  Kernel& kernel_;
+  Recorder& recorder_;
+  const RunControl& control_;
+  Instant began_, last_report_, saved_;
+  std::uint64_t last_report_steps_ = 0;
+  double saving_ = 0;         // s, the last checkpoint
+  double done_at_begin_ = 0;  // fraction of the stage
+};
+
+}  // namespace
+
+RunSummary run(const Scene& scene, LiveScene& live, Kernel& kernel, Recorder& recorder, const RunControl& control) {
+  StageRunner runner(scene, live, kernel, recorder);
+  try {
+    RunSummary summary;
+    runner.prepare();
+    if (control.resume != nullptr) runner.resume(*control.resume);
+    else at_first_instant(scene.document, kernel.world(), [&] { runner.start(); });  // before anything is recorded
+    try {
+      summary.status = Driver(scene, runner, kernel, recorder, control)() ? "done" : "interrupted";
+    } catch (const NumericsError& error) {
+      summary.status = "failed", summary.message = error.what(), summary.guard = error.guard();
+    } catch (const PlacedError& error) {
+      summary.status = "failed", summary.message = error.what();
+      runner.fill(summary);
+      recorder.finish(kernel.world(), summary);
+      throw;
+    }
+    runner.finish(summary);
+    return summary;
+  } catch (PlacedError& error) {
+    error.begun(runner.stages_begun());
+    throw;
+  }
+}
+
+}  // namespace grit

@@ -1,0 +1,71 @@
+// Live components that follow a description: made once, and set to new values as the description changes.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "scene/components.hpp"
+#include "scene/current_scene.hpp"
+#include "scene/description.hpp"
+
+namespace grit {
+
+/// Reports a fault of a component: the keys that lead to it from the root, and what is wrong.
+using ReportFault = std::function<void(const std::vector<std::string>& keys, const std::string& message)>;
+/// Throws the fault as a PlacedError.
+void throw_fault(const std::vector<std::string>& keys, const std::string& message);
+
+/// The contact law, with the materials and interfaces of a description.
+class LiveLaw {
+ public:
+  explicit LiveLaw(const SceneDescription& described);
+  /// Takes over materials and interfaces where they differ. Returns whether they did.
+  bool follow(const SceneDescription& now);
+  ContactLaw& operator*() const { return *law_; }
+  ContactLaw* operator->() const { return law_.get(); }
+  const std::shared_ptr<ContactLaw>& get() const { return law_; }
+  /// Binds a number of a material or an interface; nothing if it is none of the law's.
+  std::optional<NumberPlace> number(const NumberPointer& place);
+
+ private:
+  std::shared_ptr<ContactLaw> law_;
+  std::map<std::string, MaterialDescription> materials_;
+  std::vector<InterfaceDescription> interfaces_;
+};
+
+/// The engines of a description, which keep their instances, and what these remember, as long as their types stay.
+class LiveEngines {
+ public:
+  void follow(const SceneDescription& now);
+  const std::map<std::string, std::shared_ptr<Engine>>& all() const { return engines_; }
+  /// Binds a number of an engine.
+  std::optional<NumberPlace> number(const NumberPointer& place);
+
+ private:
+  std::map<std::string, std::shared_ptr<Engine>> engines_;
+  std::map<std::string, Component<Engine>> described_;
+  std::set<std::string> set_from_outside_;  // by a bound number, so that they are not what was described
+};
+
+/// The geometries of walls, each prepared once and replaced where its values change.
+class LiveGeometries {
+ public:
+  /// Returns whether there was a change. A geometry that cannot be made or prepared is reported, and left out.
+  bool follow(const SceneDescription& now, const ReportFault& report = throw_fault);
+  const std::map<std::string, std::shared_ptr<const Geometry>>& all() const { return geometries_; }
+
+ private:
+  std::map<std::string, std::shared_ptr<const Geometry>> geometries_;
+  std::map<std::string, Component<Geometry>> described_;
+};
+
+/// A prepared instance; null where it cannot be made or prepared, which is reported at `keys`.
+std::shared_ptr<BodyKind> prepared(const Component<BodyKind>& described, const std::vector<std::string>& keys,
+                                   const ReportFault& report);
+
+}  // namespace grit

@@ -1,0 +1,175 @@
+#include "grit/simulation.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "grit/error.hpp"
+#include "input/places.hpp"
+#include "kernel/stopwatch.hpp"
+#include "scene/make_bodies.hpp"
+#include "scene/placed_error.hpp"
+#include "simulation/first_instant.hpp"
+#include "simulation/relay.hpp"
+#include "simulation/stage_runner.hpp"
+#include "simulation/standard_registry.hpp"
+
+namespace grit {
+
+/// Members are made in this order, and refer to those before.
+struct Simulation::Parts {
+  Parts(std::unique_ptr<Registry> plugins, Document document, unsigned threads)
+      : registry(std::move(plugins)),
+        scene(read_scene(std::move(document), *registry)),
+        live(scene),
+        kernel(live.now(), live.components(),
+               make_bodies(live.now(), live.components(), requested_state(live.components())), threads),
+        runner(scene, live, kernel, relay) {
+    runner.prepare();
+  }
+
+  void start() {
+    if (started) return;
+    at_first_instant(scene.document, kernel.world(), [this] { runner.start(); });
+    started = true;
+  }
+  /// One step, or the end of a stage. `stop` as StageRunner has it.
+  StageRunner::Event next(bool stop) {
+    return at_its_place(scene.document, [&] {
+      try {
+        return runner.next(stop);
+      } catch (PlacedError& error) {
+        error.begun(runner.stages_begun());
+        throw;
+      }
+    });
+  }
+  bool wants_to_stop() const { return interrupted && interrupted(); }
+  void report();
+
+  std::unique_ptr<Registry> registry;
+  Scene scene;
+  LiveScene live;
+  Kernel kernel;
+  Relay relay;
+  StageRunner runner;
+  bool started = false;
+  std::function<bool()> interrupted;
+  std::function<void(const Progress&)> progress;
+  double progress_interval = 0;
+  std::chrono::steady_clock::time_point reported = std::chrono::steady_clock::now();
+  std::uint64_t reported_step = 0;
+};
+
+void Simulation::Parts::report() {
+  if (!progress || kernel.world().step() % 8 != 0) return;
+  const double since = seconds_since(reported);
+  if (since < progress_interval) return;
+  Progress now;
+  now.stage = runner.description().name, now.stage_number = runner.stage() + 1, now.stages = scene.stages.size();
+  now.fraction = runner.progress(), now.time = kernel.world().time();
+  now.particle_steps_per_second = static_cast<double>(kernel.world().step() - reported_step) *
+                                  static_cast<double>(kernel.world().positions().size()) / since;
+  reported = std::chrono::steady_clock::now(), reported_step = kernel.world().step();
+  progress(now);
+}
+
+Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+Simulation Simulation::open(const std::filesystem::path& file, const SimulationOptions& options) {
+  auto registry = standard_registry(options.plugin_path);
+  Document document = load_document(file, options.sets, *registry);
+  return Simulation(std::make_unique<Parts>(std::move(registry), std::move(document), options.threads));
+}
+
+Simulation Simulation::from_text(const std::string& text, const SimulationOptions& options, const std::string& name) {
+  auto registry = standard_registry(options.plugin_path);
+  Document document = expanded_document(Document::parse(text, name), options.sets, *registry);
+  return Simulation(std::make_unique<Parts>(std::move(registry), std::move(document), options.threads));
+}
+
+Simulation::Simulation(const Description& description, const SimulationOptions& options) {
+  auto registry = standard_registry(options.plugin_path);
+  Document document = expanded_document(Document(description, "description"), options.sets, *registry);
+  parts_ = std::make_unique<Parts>(std::move(registry), std::move(document), options.threads);
+}
+
+Forecast Simulation::check() {
+  Parts& parts = *parts_;
+  if (!parts.started) at_first_instant(parts.scene.document, world(), [&] { parts.kernel.find_forces(); });
+  return {.bodies = world().positions().size(),
+          .contacts = parts.kernel.state().pairs.touching_count(),
+          .time_step = world().dt(),
+          .critical_time_step = parts.kernel.critical_time_step(),
+          .bytes = parts.kernel.state().bytes()};
+}
+
+bool Simulation::run_stage() {
+  parts_->start();
+  while (!done()) {
+    const StageRunner::Event event = parts_->next(parts_->wants_to_stop());
+    if (event == StageRunner::Event::stopped) return false;
+    if (event == StageRunner::Event::stage_ended) return true;
+    parts_->report();
+  }
+  return true;
+}
+
+bool Simulation::run() {
+  while (!done())
+    if (!run_stage()) return false;
+  return true;
+}
+
+std::uint64_t Simulation::step(std::uint64_t steps) {
+  parts_->start();
+  std::uint64_t taken = 0;
+  while (taken < steps && !done()) taken += parts_->next(false) == StageRunner::Event::stepped ? 1 : 0;
+  parts_->kernel.find_forces();
+  return taken;
+}
+
+bool Simulation::done() const { return parts_->runner.done(); }
+
+const World& Simulation::world() const { return parts_->kernel.world(); }
+
+Description Simulation::description() const { return resolved(*parts_->scene.description); }
+
+void Simulation::set(const std::string& pointer, const Description& value) {
+  parts_->start();
+  if (!done()) parts_->runner.set(pointer, value);
+}
+
+void Simulation::every_time(double seconds, Observer observer) {
+  parts_->runner.call({.every_time = seconds}, std::move(observer));
+}
+
+void Simulation::every_steps(std::uint64_t steps, Observer observer) {
+  parts_->runner.call({.every_steps = static_cast<std::int64_t>(steps)}, std::move(observer));
+}
+
+void Simulation::at_stage_end(Observer observer) {
+  parts_->runner.call({}, std::move(observer));
+}
+
+void Simulation::on_progress(std::function<void(const Progress&)> report, double interval) {
+  parts_->progress = std::move(report), parts_->progress_interval = interval;
+}
+
+void Simulation::interrupt_when(std::function<bool()> condition) { parts_->interrupted = std::move(condition); }
+
+Checkpoint Simulation::save() {
+  parts_->start();
+  return parts_->runner.save();
+}
+
+void Simulation::resume(const Checkpoint& checkpoint) {
+  parts_->runner.resume(checkpoint);
+  parts_->started = true;
+}
+
+void Simulation::record(Recorder& recorder) { parts_->relay.set(recorder); }
+
+}  // namespace grit

@@ -1,0 +1,269 @@
+#include "simulation/stage_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "format/number.hpp"
+#include "grit/error.hpp"
+#include "kernel/stopwatch.hpp"
+#include "scene/placed_error.hpp"
+
+namespace grit {
+namespace {
+
+constexpr std::uint64_t contacts_counted_every = 100;  // steps
+
+double interior_void_ratio(const World& world) { return void_ratio(world, world.interior(world.mean_diameter())); }
+
+}  // namespace
+
+StageRunner::StageRunner(const Scene& scene, LiveScene& live, Kernel& kernel, Recorder& recorder)
+    : scene_(scene),
+      live_(live),
+      kernel_(kernel),
+      world_(kernel.world()),
+      recorder_(recorder),
+      frames_(scene.description->output.frames),
+      phases_{{"probes", 0}, {"output", 0}} {}
+
+void StageRunner::prepare() {
+  for (const auto& [name, probe] : scene_.description->probes)
+    observers_.emplace_back(name, probe, live_.components().probes.at(name), world_);
+}
+
+void StageRunner::start() {
+  kernel_.find_forces();
+  begin_stage();
+  begin_recording();
+}
+
+void StageRunner::begin_recording() {
+  std::vector<ProbeGroup> groups;
+  for (const Observer& observer : observers_) groups.push_back(observer.group());
+  recorder_.begin(world_, groups);
+}
+
+void StageRunner::resume(const Checkpoint& checkpoint) {
+  Memory memory(checkpoint.memory);
+  memory(stage_, increments_, sets_);
+  stages_begun_ = stage_ + 1;
+  if (stage_ >= scene_.stages.size() || increments_ > scene_.stages[stage_].increments())
+    throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
+                std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
+  for (const Set& set : sets_) {
+    live_.go_to(set.stage, 0);
+    live_.apply(change_of(live_.now(), set.pointer, Description::parse(set.value)));
+  }
+  live_.go_to(stage_, increments_);
+  kernel_.restore(live_.now(), live_.components(), memory);
+  remember(memory);
+  if (!memory.at_end()) throw Error("a checkpoint holds more than this simulation restores");
+  begin_recording();
+  enter_stage();
+}
+
+void StageRunner::begin_stage() {
+  stages_begun_ = stage_ + 1;
+  live_.begin_stage();
+  kernel_.begin_stage(description().name, live_.now(), live_.components());
+  start_ = {world_.time(), world_.step(), kernel_.state().discharged_fraction()};  // with bodies that have appeared
+  for (Observer& observer : observers_) observer.schedule().restart(kernel_);
+  for (Callback& one : callbacks_) one.schedule.restart(kernel_);
+  frames_.restart(kernel_);
+  increments_ = 0;
+  enter_stage();
+}
+
+void StageRunner::enter_stage() {
+  watching_.clear();
+  for (Observer& observer : observers_)
+    if (observer.watches(description().name)) watching_.push_back(&observer);
+}
+
+StageRunner::Event StageRunner::next(bool stop) {
+  const StageDescription& stage = description();
+  ramp();
+  // Decided before forces, which may change the time step: a stage ends at the same step, whoever samples.
+  const bool may_end = may_be_met(stage.until, kernel_, start_);
+  ask_schedules();
+  if (!may_end && !stop && !forces_are_needed(stage)) {
+    const Stopwatch watch(stepping_);
+    kernel_.step_on();
+    return Event::stepped;
+  }
+  {
+    const Stopwatch watch(stepping_);
+    kernel_.find_forces();
+  }
+  const bool met = may_end && is_met(stage.until, kernel_, start_);
+  observe(met);
+  if (met) {
+    end_stage(stage);
+    return Event::stage_ended;
+  }
+  if (stop) return Event::stopped;
+  if (too_late(stage)) fail_late(stage);
+  const Stopwatch watch(stepping_);
+  kernel_.advance();
+  return Event::stepped;
+}
+
+void StageRunner::end_stage(const StageDescription& stage) {
+  refuse_without_a_step(stage);
+  const std::string by = ended_by(stage.until, kernel_, start_), behind = kernel_.state().walls.fallen_behind();
+  kernel_.end_stage();
+  recorder_.stage_ended(world_,
+                        (by.empty() ? "" : "by " + by + ", ") + reached() + (behind.empty() ? "" : "; " + behind));
+  if (stage.expect.void_ratio) {
+    const double e = interior_void_ratio(world_);
+    if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
+      throw NumericsError("stage \"" + stage.name + "\" was to end at a void ratio of " +
+                          number(*stage.expect.void_ratio) + " ± " + number(stage.expect.within) + " and reached " +
+                          number(e) + "; wish for another one, or prepare the specimen otherwise");
+  }
+  ++stage_;
+  if (!done()) begin_stage();
+}
+
+void StageRunner::ramp() {
+  double since = world_.time() - start_.time;
+  std::size_t due = 0;
+  for (const RampPlan& one : scene_.stages[stage_].ramps) {
+    const auto increments = static_cast<double>(one.increments);
+    const double past = std::floor(std::clamp(since / one.duration, 0.0, 1.0) * increments + 1e-9);
+    due += static_cast<std::size_t>(past);
+    if (past < increments) break;
+    since -= one.duration;
+  }
+  if (due == increments_) return;
+  increments_ = due;
+  if (live_.advance_ramps(due)) kernel_.change(live_.now(), live_.components());
+}
+
+void StageRunner::call(const Cadence& cadence, std::function<void(const World&)> observer) {
+  callbacks_.push_back({Schedule(cadence), std::move(observer)});
+  callbacks_.back().schedule.restart(kernel_);
+}
+
+void StageRunner::set(const std::string& pointer, const Description& value) {
+  live_.apply(change_of(live_.now(), pointer, value));
+  kernel_.change(live_.now(), live_.components());
+  sets_.push_back({stage_, pointer, value.dump()});
+}
+
+std::optional<double> StageRunner::progress() const { return grit::progress(description().until, kernel_, start_); }
+
+Checkpoint StageRunner::save() {
+  const Stopwatch watch(phases_[1].seconds);
+  recorder_.flush();
+  Memory memory;
+  memory(stage_, increments_, sets_);
+  kernel_.save(memory);
+  remember(memory);
+  return {world_.stage(), world_.time(), world_.step(), memory.bytes()};
+}
+
+void StageRunner::remember(Memory& memory) {
+  memory(start_.time, start_.step, start_.share_left, frames_, last_frame_, contact_samples_, contact_sum_, stepping_);
+  for (PhaseTime& phase : phases_) memory(phase.seconds);
+  for (Observer& observer : observers_) observer.remember(memory);
+  recorder_.remember(memory);
+}
+
+void StageRunner::refuse_without_a_step(const StageDescription& stage) const {
+  if (world_.step() > start_.step) return;
+  if (const auto lasts = time_without_a_step(stage.until, kernel_))
+    throw NumericsError("stage \"" + stage.name + "\" lasts " + number(*lasts) +
+                        " s, less than half of the time step of " + number(world_.dt()) +
+                        " s, so that it would take no step; give it more time (/stages/" + std::to_string(stage_) +
+                        "/until) or a shorter step (/time_step)");
+}
+
+void StageRunner::fail_late(const StageDescription& stage) const {
+  throw NumericsError("stage \"" + stage.name + "\" did not end within its limit of " + number(stage.limit) +
+                      " s: " + still_wanting(stage.until, kernel_, start_) + " (" + reached() +
+                      "); give it more time (/stages/" + std::to_string(stage_) +
+                      "/limit) or a condition that it can reach");
+}
+
+bool StageRunner::counts_contacts() const { return world_.step() % contacts_counted_every == 0; }
+
+void StageRunner::ask_schedules() {
+  frames_.ask(kernel_);
+  for (Callback& one : callbacks_) one.schedule.ask(kernel_);
+  for (Observer* observer : watching_) observer->schedule().ask(kernel_);
+}
+
+bool StageRunner::forces_are_needed(const StageDescription& stage) const {
+  return too_late(stage) || counts_contacts() || frames_.is_due() ||
+         std::ranges::any_of(callbacks_, [](const Callback& one) { return one.schedule.is_due(); }) ||
+         std::ranges::any_of(watching_, [](Observer* observer) { return observer->schedule().is_due(); });
+}
+
+void StageRunner::observe(bool all) {
+  sample(all);
+  if (frames_.is_due()) frame();
+  for (const Callback& one : callbacks_)
+    if (one.schedule.is_due() || (all && one.schedule.never())) one.call(world_);
+}
+
+void StageRunner::sample(bool all) {
+  const Stopwatch watch(phases_[0].seconds);
+  for (std::size_t i = 0; i < observers_.size(); ++i) {
+    Observer& observer = observers_[i];
+    if (!observer.watches(world_.stage())) continue;
+    if (all || observer.schedule().is_due()) observer.sample(i, world_, recorder_);
+  }
+  if (counts_contacts() && world_.positions().size() > 0)
+    contact_sum_ += 2.0 * static_cast<double>(kernel_.state().pairs.touching_count()) /
+                    static_cast<double>(world_.positions().size()),
+        ++contact_samples_;
+}
+
+void StageRunner::frame() {
+  if (last_frame_ == world_.step()) return;
+  last_frame_ = world_.step();
+  const Stopwatch watch(phases_[1].seconds);
+  std::vector<FieldGroup> fields;
+  for (const Observer& observer : observers_)
+    if (observer.in_frames() && observer.watches(world_.stage())) fields.push_back(observer.fields(world_));
+  recorder_.frame(world_, fields);
+}
+
+std::string StageRunner::reached() const {
+  std::string text = "unbalanced force " + number(unrest(world_).unbalanced_force);
+  const double e = interior_void_ratio(world_), overall = void_ratio(world_, world_.specimen());
+  if (std::isfinite(e) && std::isfinite(overall))
+    text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
+  const auto appears_later = [](const auto& group) { return !group.second.stage.empty(); };
+  if (std::ranges::any_of(scene_.description->bodies, appears_later))
+    text = std::to_string(world_.positions().size()) + " bodies, " + text;
+  if (const double fraction = kernel_.state().discharged_fraction(); fraction > 0)
+    text += ", " + number(100 * fraction) + " % of the mass has left";
+  return text + ", time " + number(world_.time() - start_.time) + " s";
+}
+
+void StageRunner::finish(RunSummary& summary) {
+  observe(true);
+  if (!frames_.never()) frame();
+  fill(summary);
+  recorder_.finish(world_, summary);
+}
+
+void StageRunner::fill(RunSummary& summary) const {
+  summary.stage = world_.stage();
+  summary.time = world_.time(), summary.steps = world_.step();
+  summary.time_step = world_.dt(), summary.critical_time_step = kernel_.critical_time_step();
+  summary.bodies = world_.positions().size();
+  summary.contacts_per_body = contact_samples_ > 0 ? contact_sum_ / static_cast<double>(contact_samples_) : 0;
+  summary.wall_seconds = stepping_;
+  summary.particle_steps_per_second = stepping_ > 0 ? kernel_.body_steps() / stepping_ : 0;
+  summary.rebuilds = kernel_.state().lists.rebuilds();
+  summary.threads = kernel_.threads();
+  summary.model = kernel_.model();
+  summary.phases = kernel_.phases();
+  summary.phases.insert(summary.phases.end(), phases_.begin(), phases_.end());
+  for (const Observer& observer : observers_) summary.probes.push_back(observer.cost());
+}
+
+}  // namespace grit

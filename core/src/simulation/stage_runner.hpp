@@ -1,0 +1,106 @@
+// Runs the stages of a scene: ramps, conditions, probes, frames, checkpoints.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/scene.hpp"
+#include "kernel/kernel.hpp"
+#include "run/conditions.hpp"
+#include "run/observer.hpp"
+#include "run/recorder.hpp"
+#include "run/schedule.hpp"
+#include "simulation/live_scene.hpp"
+
+namespace grit {
+
+class StageRunner {
+ public:
+  /// `live` is the scene at its beginning, and the kernel was made of it.
+  StageRunner(const Scene& scene, LiveScene& live, Kernel& kernel, Recorder& recorder);
+
+  /// Makes probes ready. Throws PlacedError for what a probe refuses.
+  void prepare();
+  /// Finds the first forces, begins the first stage, then the recording; after prepare().
+  void start();
+  /// Instead of both: goes on at a checkpoint. Throws Error if it is of another scene.
+  void resume(const Checkpoint& checkpoint);
+
+  enum class Event { stepped, stage_ended, stopped };
+  /// One step of the present stage, or its end and the start of the next. If `stop`, stops instead, where positions and
+  /// forces are of one instant. Throws NumericsError if a guard trips, the stage takes longer than its limit, or misses
+  /// what it expects.
+  Event next(bool stop);
+
+  bool done() const { return stage_ == scene_.stages.size(); }
+  /// Index of the present stage, and how many have begun.
+  std::size_t stage() const { return stage_; }
+  std::size_t stages_begun() const { return stages_begun_; }
+  const StageDescription& description() const { return scene_.description->stages[stage_]; }
+  /// Calls an observer at the given cadence, or at the end of each stage where it is none. Not part of checkpoints: after
+  /// resume() the cadence counts from there.
+  void call(const Cadence& cadence, std::function<void(const World&)> observer);
+  /// Sets a value of the description from now on. Throws DescriptionError.
+  void set(const std::string& pointer, const Description& value);
+  /// Fraction of the present stage that is done, where its end can be foreseen.
+  std::optional<double> progress() const;
+
+  /// Has the recorder keep what was recorded, and returns where the run is. Between two steps.
+  Checkpoint save();
+  /// Samples and frame of the last instant, and the summary.
+  void finish(RunSummary& summary);
+  /// All figures of the summary but status and message.
+  void fill(RunSummary& summary) const;
+  double output_seconds() const { return phases_[1].seconds; }
+
+ private:
+  /// A value that was set from outside.
+  struct Set {
+    std::size_t stage;
+    std::string pointer, value;
+    void remember(Memory& memory) { memory(stage, pointer, value); }
+  };
+  struct Callback {
+    Schedule schedule;
+    std::function<void(const World&)> call;
+  };
+  void begin_recording();
+  void begin_stage();
+  void enter_stage();
+  void end_stage(const StageDescription& stage);
+  void ramp();
+  void remember(Memory& memory);
+  void refuse_without_a_step(const StageDescription& stage) const;
+  [[noreturn]] void fail_late(const StageDescription& stage) const;
+  bool too_late(const StageDescription& stage) const { return world_.time() - start_.time > stage.limit; }
+  bool counts_contacts() const;
+  void ask_schedules();
+  bool forces_are_needed(const StageDescription& stage) const;
+  void observe(bool all);
+  void sample(bool all);
+  void frame();
+  /// State of the specimen in words.
+  std::string reached() const;
+
+  const Scene& scene_;
+  LiveScene& live_;
+  Kernel& kernel_;
+  const World& world_;
+  Recorder& recorder_;
+  Schedule frames_;
+  std::deque<Observer> observers_;
+  std::vector<Callback> callbacks_;
+  std::vector<Observer*> watching_;  // those that sample in the present stage
+  std::size_t stage_ = 0, stages_begun_ = 0;
+  StageStart start_;
+  std::size_t increments_ = 0;  // of the stage's ramps, done
+  std::vector<Set> sets_;
+  std::uint64_t last_frame_ = ~0ull, contact_samples_ = 0;
+  double stepping_ = 0, contact_sum_ = 0;  // s; sum of contacts per body
+  std::vector<PhaseTime> phases_;
+};
+
+}  // namespace grit

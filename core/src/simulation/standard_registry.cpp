@@ -1,0 +1,18 @@
+#include "simulation/standard_registry.hpp"
+
+#include "engines/builtin.hpp"
+#include "plugins/loader.hpp"
+#include "scene/clump_body.hpp"
+#include "scene/sphere_body.hpp"
+
+namespace grit {
+
+std::unique_ptr<Registry> standard_registry(const std::vector<std::string>& plugin_path) {
+  auto registry = std::make_unique<Registry>(plugin_directories(plugin_path, library_directory()));
+  registry->add(sphere_body());
+  registry->add(clump_body());
+  for (const PluginInfo& engine : builtin_engines()) registry->add(engine);
+  return registry;
+}
+
+}  // namespace grit

@@ -1,0 +1,15 @@
+// The components of the library itself and the plugins that are installed.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plugins/registry.hpp"
+
+namespace grit {
+
+/// Searches the folders of `plugin_path` first, then those of GRIT_PLUGIN_PATH, then those beside the library.
+std::unique_ptr<Registry> standard_registry(const std::vector<std::string>& plugin_path);
+
+}  // namespace grit
