@@ -25,6 +25,12 @@ file(WRITE ${build_package}/${GRIT_ARCH}/grit-compiler.cmake
      "set(grit_COMPILER \"${CMAKE_CXX_COMPILER_ID} ${major}\")\nset(grit_CXX_COMPILER \"${CMAKE_CXX_COMPILER}\")\n")
 configure_file(cmake/grit-config.cmake ${build_package}/grit-config.cmake COPYONLY)
 configure_file(cmake/GritPlugin.cmake ${build_package}/GritPlugin.cmake COPYONLY)
+file(GLOB contracts CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
+foreach(contract ${contracts})
+  cmake_path(GET contract FILENAME file)
+  configure_file(${contract} ${build_package}/testing/${file} COPYONLY)
+endforeach()
+install(FILES ${contracts} DESTINATION ${package}/testing)
 install(FILES cmake/grit-config.cmake cmake/GritPlugin.cmake ${build_package}/grit-config-version.cmake
         DESTINATION ${package})
 install(FILES ${build_package}/${GRIT_ARCH}/grit-compiler.cmake DESTINATION ${package}/${GRIT_ARCH})

@@ -1,9 +1,23 @@
 # grit_plugin(<kind folder> <name> [LIBRARIES …]): builds <name>.cpp of the current folder into
 # <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, where there is one and the project has found GTest, into a
-# test that sees the same code and runs in the plugin's folder. `cmake --install` puts the plugin where grit of the same
+# test that sees the same code, links grit::testing and runs in the plugin's folder. `cmake --install` puts the plugin where grit of the same
 # instruction set looks, lib/grit/<arch>. The target grit_plugins is all plugins of a project. Part of the installed SDK.
 include(GNUInstallDirs)
 include(GoogleTest)
+
+# Makes the target grit::testing, where the project has found GTest: the contracts that every plugin of a kind must pass
+# (grit/testing), compiled once a project. A program gets those whose headers it includes.
+function(grit_testing)
+  if(TARGET grit_testing OR NOT TARGET GTest::gtest)
+    return()
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
+  add_library(grit_testing STATIC EXCLUDE_FROM_ALL ${sources})
+  target_compile_options(grit_testing PRIVATE -Wall -Wextra -O1)
+  set_target_properties(grit_testing PROPERTIES UNITY_BUILD OFF)  # one object a contract, so that a program gets its own alone
+  target_link_libraries(grit_testing PUBLIC grit::grit grit::sdk GTest::gtest)
+  add_library(grit::testing ALIAS grit_testing)
+endfunction()
 
 function(grit_plugin folder name)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
@@ -30,10 +44,13 @@ function(grit_plugin folder name)
   add_dependencies(grit_plugins ${target})
 
   if(TARGET GTest::gtest_main AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/test_${name}.cpp)
+    grit_testing()
     add_executable(test_${target} test_${name}.cpp)
     target_compile_options(test_${target} PRIVATE -Wall -Wextra -O1)  # what is tested is optimised; its test is built sooner
-    target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-    target_link_libraries(test_${target} PRIVATE ${target}_objects grit::grit GTest::gtest GTest::gmock GTest::gtest_main)
+    target_link_libraries(test_${target} PRIVATE ${target}_objects grit::testing GTest::gmock GTest::gtest_main)
+    if(TARGET grit_precompiled_hidden)
+      target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    endif()
     gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST
                          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   endif()

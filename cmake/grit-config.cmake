@@ -1,4 +1,5 @@
-# find_package(grit): the targets grit::sdk (to compile against) and grit::grit (to link), and the function grit_plugin.
+# find_package(grit): the targets grit::sdk (to compile against) and grit::grit (to link), and the function grit_plugin;
+# where GTest was found before, grit::testing (contracts for a plugin's tests).
 # GRIT_ARCH says for which of the installed instruction sets; where one is installed, that one unless set.
 file(GLOB installed RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/*/grit-targets.cmake)
 list(TRANSFORM installed REPLACE "/.*" "")
@@ -28,4 +29,6 @@ find_dependency(Threads)
 find_dependency(Eigen3 3.4)
 find_dependency(nlohmann_json 3.11)
 include(${CMAKE_CURRENT_LIST_DIR}/${GRIT_ARCH}/grit-targets.cmake)
+set(grit_TESTING_SOURCES ${CMAKE_CURRENT_LIST_DIR}/testing)
 include(${CMAKE_CURRENT_LIST_DIR}/GritPlugin.cmake)
+grit_testing()

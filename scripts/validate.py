@@ -25,7 +25,7 @@ Written by `scripts/validate.py` from the tests in [tests/physics](../../tests/p
 - Errors are relative to the closed form unless the quantity says otherwise.
 - Errors depend on the time step of the test, and shrink with it.
 - SIMD and scalar evaluation of a contact law agree within 1e-14 (1 + 0.1 size / overlap) of the force
-  ([contact_law.cpp](../../tests/contracts/contact_law.cpp)). The size is the sum of the radii plus the longest branch component.
+  ([contact_law.cpp](../../core/src/testing/contact_law.cpp)). The size is the sum of the radii plus the longest branch component.
 
 Whole tests of sand are compared with a reference work in [reproduction](reproduction.md). Flow through outlets is compared with
 [Beverloo's law](beverloo.md). [Planted errors](planted.md) shows which tests detect which error in the code.

@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "dense.hpp"
-#include "support/pairs.hpp"
+#include "grit/testing/pairs.hpp"
 
 namespace grit::bench {
 namespace {

@@ -1,5 +1,5 @@
 // The kernel's own engines, and one with a memory.
-#include "contracts/engine.hpp"
+#include "grit/testing/engine.hpp"
 
 #include <gtest/gtest.h>
 

@@ -34,6 +34,7 @@ check() {
     later="${rooms[i]}${later:+|$later}"
   done
   sources core/include | find_in "#include [\"<](\.\./|src/)*($later)/" | report "the SDK includes the kernel"
+  sources core/src/testing | find_in "#include [\"<](\.\./|src/)*($later)/" | report "the SDK includes the kernel"
   sources plugins | grep -v '/test_[^/]*$' | find_in "#include [\"<](\.\./|core/|src/)*($later)/" |
     report "a plugin includes the kernel"
 
@@ -86,6 +87,7 @@ self_test() {
   planted "includes a later room" core/src/input/planted.cpp '#include "../app/planted.hpp"'
   planted "the SDK includes the kernel" core/include/grit/planted.hpp '#include "scene/planted.hpp"'
   allowed core/include/grit/planted.hpp '#include "grit/contact/law.hpp"'
+  planted "the SDK includes the kernel" core/src/testing/planted.cpp '#include "plugins/registry.hpp"'
   planted "a plugin includes the kernel" plugins/probes/planted/planted.cpp '#include "contact/planted.hpp"'
   allowed plugins/probes/planted/test_planted.cpp '#include "contact/planted.hpp"'
   planted "the launcher includes grit" core/src/launcher/planted.cpp '#include "plugins/build_facts.hpp"'

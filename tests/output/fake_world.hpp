@@ -1,7 +1,7 @@
 // Worlds whose numbers tell a body from another.
 #pragma once
 
-#include "support/fake_world.hpp"
+#include "grit/testing/fake_world.hpp"
 
 namespace grit {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "grit/testing/fake_world.hpp"
 #include "output/folder.hpp"
 #include "output/results_folder.hpp"
-#include "support/fake_world.hpp"
 
 namespace grit {
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include "grit/testing/fake_world.hpp"
 #include "scene/random.hpp"
-#include "support/fake_world.hpp"
 
 namespace grit::averages_tests {
 namespace {

@@ -1,10 +1,10 @@
 // The general contract, and what is this law's own: Coulomb's friction, and restitution.
 #include <gmock/gmock.h>
 
-#include "contracts/contact_law.hpp"
 #include "grit/contact/law_parameters.hpp"
 #include "grit/contact/restitution.hpp"
-#include "support/collision.hpp"
+#include "grit/testing/collision.hpp"
+#include "grit/testing/contact_law.hpp"
 
 namespace grit::test {
 namespace {

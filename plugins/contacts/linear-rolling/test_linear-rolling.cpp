@@ -1,9 +1,9 @@
 // The general contract, and what is this law's own: stiffnesses, limits and walls of DESIGN, rolling, twisting.
 #include <gmock/gmock.h>
 
-#include "contracts/contact_law.hpp"
 #include "grit/contact/law_parameters.hpp"
-#include "support/collision.hpp"
+#include "grit/testing/collision.hpp"
+#include "grit/testing/contact_law.hpp"
 
 namespace grit::test {
 namespace {

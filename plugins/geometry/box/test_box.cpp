@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "box.hpp"
-#include "contracts/geometry.hpp"
+#include "grit/testing/geometry.hpp"
 
 namespace grit {
 namespace {

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "cone.hpp"
-#include "contracts/geometry.hpp"
+#include "grit/testing/geometry.hpp"
 
 namespace grit {
 namespace {

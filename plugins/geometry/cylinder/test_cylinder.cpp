@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "contracts/geometry.hpp"
 #include "cylinder.hpp"
+#include "grit/testing/geometry.hpp"
 
 namespace grit {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "contracts/geometry.hpp"
+#include "grit/testing/geometry.hpp"
 #include "mesh.hpp"
 #include "support/stl_file.hpp"
 

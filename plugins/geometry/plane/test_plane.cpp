@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "contracts/geometry.hpp"
+#include "grit/testing/geometry.hpp"
 #include "plane.hpp"
 
 namespace grit {

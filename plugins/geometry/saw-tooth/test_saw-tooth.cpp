@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "contracts/geometry.hpp"
+#include "grit/testing/geometry.hpp"
 #include "saw-tooth.hpp"
 
 namespace grit {

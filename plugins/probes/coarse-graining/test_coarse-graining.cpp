@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 #include "lucy.hpp"
 
 namespace grit {

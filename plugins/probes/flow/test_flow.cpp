@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 #include "input/document.hpp"
 #include "input/reader.hpp"
 

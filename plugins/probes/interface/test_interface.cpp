@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "cell_averages.hpp"
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 #include "grit/toolkit/averaging_cells.hpp"
 
 namespace grit {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

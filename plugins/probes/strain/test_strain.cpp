@@ -5,7 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <random>
 
-#include "contracts/probe.hpp"
 #include "free_boxes.hpp"
 #include "free_volume.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

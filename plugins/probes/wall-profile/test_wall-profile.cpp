@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "contracts/probe.hpp"
+#include "grit/testing/probe.hpp"
 
 namespace grit {
 namespace {

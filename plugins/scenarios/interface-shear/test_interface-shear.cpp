@@ -5,10 +5,13 @@
 
 #include <cmath>
 
-#include "contracts/scenario.hpp"
+#include "grit/testing/scenario.hpp"
 
 namespace grit {
 namespace {
+
+INSTANTIATE_TEST_SUITE_P(InterfaceShear, ScenarioContract,
+                         testing::Values(ScenarioCase{"defaults", make_scenario<InterfaceShear>}), scenario_case_name);
 
 using testing::HasSubstr;
 

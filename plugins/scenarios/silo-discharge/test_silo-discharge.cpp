@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "contracts/scenario.hpp"
+#include "grit/testing/scenario.hpp"
 
 namespace grit {
 namespace {
+
+INSTANTIATE_TEST_SUITE_P(SiloDischarge, ScenarioContract,
+                         testing::Values(ScenarioCase{"defaults", make_scenario<SiloDischarge>}), scenario_case_name);
 
 using testing::ElementsAre;
 using testing::HasSubstr;

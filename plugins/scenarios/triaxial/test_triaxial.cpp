@@ -5,10 +5,13 @@
 
 #include <cmath>
 
-#include "contracts/scenario.hpp"
+#include "grit/testing/scenario.hpp"
 
 namespace grit {
 namespace {
+
+INSTANTIATE_TEST_SUITE_P(Triaxial, ScenarioContract, testing::Values(ScenarioCase{"defaults", make_scenario<Triaxial>}),
+                         scenario_case_name);
 
 using testing::HasSubstr;
 

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "contracts/lattice_world.hpp"
 #include "grit/error.hpp"
 #include "grit/probe.hpp"
+#include "grit/testing/lattice_world.hpp"
 
 namespace grit {
 
@@ -105,5 +105,9 @@ class ProbeContract : public testing::TestWithParam<ProbeCase> {
   FakeWorld world_;
   std::shared_ptr<Probe> probe_;
 };
+
+/// Links the tests with a program that includes this file.
+int probe_contract();
+inline const int probe_contract_is_linked = probe_contract();
 
 }  // namespace grit

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "support/fake_world.hpp"
+#include "grit/testing/fake_world.hpp"
 
 namespace grit {
 

@@ -1,5 +1,7 @@
-// What every scenario must do, and how its test reads it. The test's program runs in the plugin's folder, where
-// expansion.json is what all defaults expand to.
+// What every scenario must do, and how its test reads it. A plugin's test names its cases:
+//   INSTANTIATE_TEST_SUITE_P(Heap, ScenarioContract, testing::Values(ScenarioCase{"defaults", make_scenario<Heap>}),
+//   scenario_case_name);
+// expect_golden() compares with expansion.json in the folder where the test runs: for a plugin its own folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,14 +9,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
-#include "input/document.hpp"
-#include "input/reader.hpp"
+#include "grit/testing/reading.hpp"
 
 namespace grit {
 
@@ -29,7 +32,7 @@ ReadScenario<S> read_scenario(const Description& keys) {
   ReadScenario<S> result;
   Parameters parameters;
   result.scenario->declare(parameters);
-  read(Document(keys, "test"), "", parameters, result.problems);
+  result.problems = read_parameters(keys, parameters);
   return result;
 }
 
@@ -80,5 +83,38 @@ inline void expect_golden(const Description& now, const std::string& name) {
     }
   }
 }
+
+/// A scenario whose defaults, and `keys`, expand to a description.
+struct ScenarioCase {
+  std::string name;
+  std::function<std::unique_ptr<Scenario>()> make;
+  Description keys = Description::object();  ///< what has no default, or more
+};
+
+inline void PrintTo(const ScenarioCase& one, std::ostream* out) { *out << one.name; }
+inline std::string scenario_case_name(const testing::TestParamInfo<ScenarioCase>& info) { return info.param.name; }
+
+/// What makes a case's scenario.
+template <class S>
+std::unique_ptr<Scenario> make_scenario() {
+  return std::make_unique<S>();
+}
+
+class ScenarioContract : public testing::TestWithParam<ScenarioCase> {
+ protected:
+  /// The scenario with the keys of the case.
+  static std::unique_ptr<Scenario> made() {
+    auto scenario = GetParam().make();
+    Parameters parameters;
+    scenario->declare(parameters);
+    for (const Problem& problem : read_parameters(GetParam().keys, parameters))
+      ADD_FAILURE() << problem.pointer << ' ' << problem.message;
+    return scenario;
+  }
+};
+
+/// Links the tests with a program that includes this file.
+int scenario_contract();
+inline const int scenario_contract_is_linked = scenario_contract();
 
 }  // namespace grit

@@ -142,4 +142,8 @@ class GeometryContract : public testing::TestWithParam<GeometryCase> {
   std::vector<Vec3> triangles_;
 };
 
+/// Links the tests with a program that includes this file.
+int geometry_contract();
+inline const int geometry_contract_is_linked = geometry_contract();
+
 }  // namespace grit

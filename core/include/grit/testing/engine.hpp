@@ -8,12 +8,11 @@
 #include <functional>
 #include <memory>
 #include <ostream>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "contracts/lattice_world.hpp"
 #include "grit/engine.hpp"
+#include "grit/testing/lattice_world.hpp"
 
 namespace grit {
 
@@ -54,36 +53,8 @@ class EngineContract : public testing::TestWithParam<EngineCase> {
   std::shared_ptr<Engine> engine_ = GetParam().make();
 };
 
-TEST_P(EngineContract, DocumentsItsParameters) {
-  Parameters parameters;
-  engine_->declare(parameters);
-  std::set<std::string> names;
-  for (const auto& parameter : parameters.entries()) {
-    EXPECT_TRUE(names.insert(parameter.name()).second) << parameter.name() << " is declared twice";
-    EXPECT_FALSE(parameter.doc().empty()) << parameter.name();
-  }
-}
-
-TEST_P(EngineContract, BeginsAsItsLike) {
-  const auto other = GetParam().make();
-  for (int look = 0; look < 6; ++look)
-    EXPECT_TRUE(same_bits(acted(*engine_, later(world_, look)), acted(*other, later(world_, look)))) << look;
-}
-
-/// What it remembers from one step for the next must be in remember(): an engine that goes on from a checkpoint does
-/// the same as the one that was not stopped.
-TEST_P(EngineContract, GoesOnFromACheckpoint) {
-  const int looks = 12, stops_after = 6;
-  std::shared_ptr<Engine> goes_on;
-  for (int look = 0; look < looks; ++look) {
-    const FakeWorld now = later(world_, look);
-    const auto expected = acted(*engine_, now);
-    if (goes_on) ASSERT_TRUE(same_bits(acted(*goes_on, now), expected)) << "look " << look;
-    if (look != stops_after) continue;
-    goes_on = GetParam().make();
-    restore_memory(*goes_on, saved_memory(*engine_));
-    EXPECT_TRUE(saved_memory(*goes_on) == saved_memory(*engine_));
-  }
-}
+/// Links the tests with a program that includes this file.
+int engine_contract();
+inline const int engine_contract_is_linked = engine_contract();
 
 }  // namespace grit

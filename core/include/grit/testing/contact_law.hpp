@@ -2,19 +2,22 @@
 //   INSTANTIATE_TEST_SUITE_P(MyLaw, ContactLawContract, testing::ValuesIn(setups()), setup_name);
 // with at least one setup for each combination of the law's features. Radii are about 1 m, masses 1 kg; stiffnesses
 // should be 1e5 … 1e7 N/m, so that a step of 1e-5 s is a small one.
+// A law without single precision is not tested for it. For a law that attracts, or whose limits are not those of the
+// parameters friction_angle, rolling_limit and twisting_limit, its setups say so.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <ostream>
 #include <random>
 
-#include "support/laws.hpp"
-#include "support/pairs.hpp"
+#include "grit/testing/laws.hpp"
+#include "grit/testing/pairs.hpp"
 
 namespace grit::test {
 
@@ -24,6 +27,10 @@ struct LawSetup {
   std::size_t state_size;  ///< how many numbers a contact remembers
   /// Radius, over the grain's, of the sphere that a plane wall is like: 1 for a law whose walls take the grain's.
   double wall_sphere = 1;
+  bool attracts = false;  ///< its normal force may be negative
+  /// Its shear force, rolling and twisting moments have the limits tan(friction_angle) F_n, rolling_limit R F_n and
+  /// twisting_limit R F_n, R the mean radius. A law without such a force has no such parameter.
+  bool usual_limits = true;
 };
 inline std::ostream& operator<<(std::ostream& out, const LawSetup& setup) { return out << setup.name; }
 inline std::string setup_name(const testing::TestParamInfo<LawSetup>& info) { return info.param.name; }
@@ -184,10 +191,19 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     EXPECT_FALSE(pairs.touching(first));
     EXPECT_NEAR(pairs.asleep_until[0], 0.5, 1e-5);
   }
+  bool has_single_precision() {
+    Parameters parameters;
+    law_->declare(parameters);
+    return std::ranges::any_of(parameters.entries(), [](const Parameter& p) { return p.name() == "precision"; });
+  }
   bool stiffness_follows_overlap() {
     Pairs pairs = two(0.01);
     return law_->stiffness(size(pairs, 0.01), 0, 0).normal != law_->stiffness(size(pairs, 0.02), 0, 0).normal;
   }
 };
+
+/// Links the tests with a program that includes this file.
+int contact_law_contract();
+inline const int contact_law_contract_is_linked = contact_law_contract();
 
 }  // namespace grit::test

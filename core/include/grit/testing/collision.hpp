@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "support/pairs.hpp"
+#include "grit/testing/pairs.hpp"
 
 namespace grit::test {
 
