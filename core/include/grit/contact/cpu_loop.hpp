@@ -28,7 +28,7 @@ template <class Law, unsigned Features, class L>
   else return {};
 }
 
-/// Of both: by one division where it is what takes time, each by its own where digits are few.
+/// The reciprocals of both. In double precision one division is faster; in single precision it would lose digits.
 template <class L>
 [[gnu::always_inline]] inline std::pair<L, L> inverses(const L& a, const L& b) {
   if constexpr (is_single<L>) return {L(1.0) / a, L(1.0) / b};
@@ -36,14 +36,15 @@ template <class L>
   return {of_product * b, of_product * a};
 }
 
-/// `turns` is 1; 0 leaves out the change of normal.
+/// With `turns` = 0 the change of normal is left out; else it is 1.
 template <class L>
 [[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
                                                 const Vec<L>& spin_b, double dt, const L& turns) {
   Turn<L> turn;
   turn.normal = normal;
   turn.bisector = normal + before;
-  // Opposite normals, half a turn within a step, have no bisector; the guard against fast bodies trips long before.
+  // Opposite normals, half a turn within a step, have no bisector; the guard against fast bodies stops the run before
+  // that.
   turn.over = turns / max(dot(turn.bisector, normal), L(1e-6));
   const L half = L(0.25 * dt) * dot(spin_a + spin_b, normal);  // tan(angle / 2), Cayley's form of a rotation
   const L scale = L(1.0) / (L(1.0) + half * half);
@@ -52,15 +53,14 @@ template <class L>
   return turn;
 }
 
-/// `left`: what all lanes have lost, below 0.
+/// `left`: minus what the lanes have dissipated.
 template <class L>
 inline void add_losses(const Loss<L>& left, Losses& losses) {
   losses.friction -= total(left.friction), losses.rolling -= total(left.rolling);
   losses.viscosity -= total(left.viscosity);
 }
 
-/// The members of a struct that has nothing but lanes, one after the other. (Not std::bit_cast: that was seen to copy
-/// through memory.)
+/// Member `i` of a struct that consists of lanes. (std::bit_cast was measured to copy through memory.)
 template <class L, class Members>
 [[gnu::always_inline]] inline L& member(Members& members, std::size_t i) {
   static_assert((std::is_empty_v<Members> || sizeof(Members) % sizeof(L) == 0) &&
@@ -70,7 +70,7 @@ template <class L, class Members>
 template <class Members, class L>
 inline constexpr std::size_t member_count = sizeof(Members) / sizeof(L);
 
-/// Places of the bits that are set.
+/// Indices of the bits that are set.
 template <unsigned mask>
 inline constexpr auto places_of_bits = [] {
   std::array<std::size_t, std::popcount(mask)> places{};
@@ -78,11 +78,11 @@ inline constexpr auto places_of_bits = [] {
     if ((mask >> bit & 1) != 0) places[k++] = bit;
   return places;
 }();
-/// Where in State the fields are that contacts remember.
+/// Indices in State of the fields that contacts keep.
 template <class Law, unsigned Features>
 inline constexpr auto kept_fields = places_of_bits<fields_used<Law>(Features)>;
 
-/// Parameters of the pairs of `width` contacts.
+/// Parameters of contacts, one a lane.
 template <class Law, class L, class Index>
 [[gnu::always_inline]] inline auto load_pair(const typename Law::template Pair<double>* table, Index index) {
   typename Law::template Pair<L> pair;
@@ -93,7 +93,7 @@ template <class Law, class L, class Index>
   return pair;
 }
 
-/// The same where all contacts are of one kind.
+/// The same where all contacts are between the same two materials.
 template <class Law, class L>
 [[gnu::always_inline]] inline auto broadcast_pair(const typename Law::template Pair<double>& numbers) {
   typename Law::template Pair<L> pair;
@@ -102,8 +102,8 @@ template <class Law, class L>
   return pair;
 }
 
-/// Has the processor fetch what comes next: memory takes as long as several contacts, and loads of bodies come in an
-/// order that it does not foresee.
+/// Prefetches bodies and contact histories: the latency of memory is that of several contacts, and the processor cannot
+/// predict the order of the bodies.
 class Ahead {
  public:
   [[gnu::always_inline]] Ahead(const PairBatch& batch, std::size_t fields) : batch_(batch), fields_(fields) {
@@ -113,7 +113,7 @@ class Ahead {
     step_ = batch.next == nullptr ? 64 / sizeof(Row) : 1;
     share_ = (share_ + step_ - 1) / step_ * step_;
   }
-  /// A share of the bodies, and what contacts of the block after next remember, if any touches.
+  /// Prefetches a share of the bodies, and the contact history of the block after next, if it has contacts.
   [[gnu::always_inline]] void operator()(std::size_t block) const {
     const double* const state = batch_.state + (block + 2) * fields_ * block_size;
     if (block + 2 < batch_.last_block && batch_.touching[block + 2] != 0)
@@ -132,8 +132,8 @@ class Ahead {
   std::size_t fields_, share_, step_;
 };
 
-/// Touching pairs out of registers that few of theirs fill, to be evaluated together: among grains that flow most
-/// candidates do not touch, and which of them do changes all the time.
+/// Contacts from registers with few of them, collected to be evaluated together. In flowing material most candidates
+/// are not in contact, and those that are change all the time.
 template <std::size_t Fields>
 class Waiting {
  public:
@@ -141,7 +141,7 @@ class Waiting {
   bool none() const { return count_ == 0; }
   bool has_room_for_a_block() const { return count_ + block_size <= most; }
 
-  /// Them as a batch of their own, which adds to the same sums.
+  /// The collected contacts as a batch of their own, which adds to the same sums.
   PairBatch take(const PairBatch& from) {
     const std::size_t blocks = (count_ + block_size - 1) / block_size;
     for (std::size_t k = 0; k < blocks * block_size; ++k) {
@@ -150,7 +150,7 @@ class Waiting {
       image_[k] = used && from.image != nullptr ? from.image[place_[k]] : 0;
       for (std::size_t f = 0; f < Fields; ++f) memory(state_, k, f) = used ? memory(from.state, place_[k], f) : 0;
     }
-    std::fill_n(touching_, blocks, std::uint8_t{0});  // none parts here
+    std::fill_n(touching_, blocks, std::uint8_t{0});  // no contact opens here
     PairBatch own = from;
     own.a = a_, own.b = b_, own.image = from.image != nullptr ? image_ : nullptr;
     own.first_block = 0, own.last_block = own.last_near = blocks, own.next_count = 0;
@@ -158,7 +158,7 @@ class Waiting {
     own.row = from.row != nullptr ? row_ : nullptr;
     return own;
   }
-  /// Puts what they remember and their rows back to their places; none are left.
+  /// Writes their histories and rows back to their places, and empties the collection.
   void put_back(const PairBatch& to) {
     for (std::size_t k = 0; k < count_; ++k) {
       for (std::size_t f = 0; f < Fields; ++f) memory(to.state, place_[k], f) = memory(state_, k, f);
@@ -181,7 +181,7 @@ class Waiting {
   ContactRow row_[most];
 };
 
-/// Pairs that touch no more, and what they remembered, out of the loop: what follows of them is rare.
+/// Contacts that have opened, with their histories. They are rare, and so are evaluated outside of the loop.
 template <std::size_t Fields>
 class Parted {
  public:
@@ -191,7 +191,7 @@ class Parted {
     for (std::size_t f = 0; f < Fields; ++f) state_[count_ * Fields + f] = state[f * block_size];
     ++count_;
   }
-  /// Calls use(place, state) for each; none are left.
+  /// Calls use(place, state) for each, and empties the collection.
   template <class Use>
   void take(Use use) {
     for (std::size_t k = 0; k < count_; ++k) use(place_[k], std::span<const double>(state_ + k * Fields, Fields));
@@ -205,7 +205,7 @@ class Parted {
   double state_[most * Fields + 1];
 };
 
-/// What springs of two bodies that touch no more held, of which friction and rolling had not yet taken all, is lost.
+/// The elastic energy of the springs of an opened contact is dissipated.
 template <class Law, unsigned Features>
 void lose_springs(const PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials,
                   std::size_t place, std::span<const double> remembered) {
@@ -217,7 +217,7 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
     between += xyz(shift.position), apart += xyz(shift.velocity);
   }
   const double radius_a = batch.position[a].w, radius_b = batch.position[b].w;
-  // As it was when they touched.
+  // When they were last in contact.
   const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
   typename Law::template State<double> state{};
   for (std::size_t f = 0; f < remembered.size(); ++f)
@@ -233,11 +233,11 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
   batch.losses->friction += held.shear * size.work_share(), batch.losses->rolling += held.rolling;
 }
 
-/// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the reference twin. Flattened: a call
-/// left in it would pass lanes through memory, which was seen to cost a factor of two. Not inlined, so that
-/// tests/vectorisation finds it. Begins with block `from` and goes on until `waiting` or `parted` is full, if they are
-/// given; returns the block that comes next. All pairs take the one way through the arithmetic, so that one has the
-/// same bits wherever it stands.
+/// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the scalar reference. Flattened: a
+/// call in it would pass lanes through memory, which was measured to double its time. Not inlined, so that
+/// tests/vectorisation finds it. Starts with block `from` and stops when `waiting` or `parted` is full, if they are
+/// given; returns the next block. The arithmetic is the same for all pairs, so that a pair has the same bits at every
+/// place.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
@@ -246,20 +246,20 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   constexpr auto& kept = kept_fields<Law, Features>;
   constexpr std::size_t width = lane_width<L>, fields = kept.size();
   using State = typename Law::template State<L>;
-  const PairBatch batch = out;  // a copy: the compiler need not fear that sums overwrite it
+  const PairBatch batch = out;  // a copy, which sums cannot alias
   using W = Wide<L>;
   const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
   const double remembered_dt = batch.again ? 0 : batch.dt;
   const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
-  // What is lost is taken off: where a law loses nothing, x − 0 folds away, and x + 0 does not.
+  // Losses are subtracted: of a law without losses the compiler removes x − 0, but not x + 0.
   Loss<W> left{W(0.0), W(0.0), W(0.0)};
   const auto one_kind = broadcast_pair<Law, L>(table[0]);
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
   const Ahead ahead(batch, fields);
-  // A register with fewer touching lanes has them wait. A pair that waits was seen to take 55 ns, nearly half of it for
-  // the way there and back; a register 125.
+  // Contacts of a register with fewer of them are collected. Measured: 55 ns a collected contact, nearly half of it for
+  // copying, and 125 ns a register.
   constexpr int few = width * 3 / 4;
 
   std::size_t block = from;
@@ -280,7 +280,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       const auto image = [&](std::size_t k) { return batch.image[first + k]; };
       const auto shift = [&](std::size_t k) { return image(k) * (sizeof(ImageShift) / sizeof(Row)); };
 
-      // Whether two touch, and the small difference that the overlap is, is found in double precision.
+      // Contact and overlap, a small difference of large numbers, are computed in double precision.
       const RowLanes<W> pa = load_rows<W>(batch.position, index_a), pb = load_rows<W>(batch.position, index_b);
       Vec<W> between = pb.xyz() - pa.xyz();
       bool shifted = false;
@@ -331,7 +331,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       L overlap, overlap_before;
       Vec<L> normal_before, change_of_normal;
       if constexpr (is_single<L>) {
-        // Small differences from what they are differences of, before it is rounded: by the difference of the squares.
+        // Small differences are computed before rounding, from the difference of the squares.
         const L longer = dot(way, branch + branch_before) / (distance + distance_before);
         overlap = in_precision<L>(radii * radii - square) / (reach + distance), overlap_before = overlap + longer;
         change_of_normal = (L(1.0) / distance_before) * (way - longer * normal);
@@ -345,13 +345,13 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       ContactPoint<L> at;
       at.normal = normal;
       at.overlap = max(overlap, L(0.0));
-      const L work_share = L(1.0) - at.overlap * per_reach;  // as PairSize tells it
+      const L work_share = L(1.0) - at.overlap * per_reach;  // see PairSize
       at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
       at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
       at.turn =
           make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), remembered_dt, turns);
-      // The last term stretches the branch to the sum of the radii; without it a pair that turns as one body slips. The
-      // spins act on the normal of the middle of the step, as the velocities do.
+      // The last term stretches the branch to the sum of the radii; without it a pair that rotates as one body slips.
+      // The spins act on the normal of the middle of the step, as the velocities do.
       at.velocity = velocity - cross(in_precision<L>(pa.w * wa.xyz() + pb.w * wb.xyz()), L(0.5) * at.turn.bisector) +
                     (overlap_before * per_dt) * change_of_normal;
       at.spin = in_precision<L>(wb.xyz() - wa.xyz());
@@ -382,7 +382,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         store_lanes(select(touches, member<L>(state, kept[f]), zero), state_at + f * block_size);
 
       // The arms add up to the branch, so that no angular momentum is made, and are as the radii, so that shear does
-      // the same share of its work on all motions: laws tell slip with the radii as arms.
+      // the same share of its work in all motions: laws measure slip with the radii as arms.
       const Vec<L> none{zero, zero, zero};
       const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
       const Vec<L> lever = cross(normal, select(touches, response.shear, none));
@@ -417,7 +417,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
                    [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(touching_now);
-    // The sum and its parts are rounded, by far less than what is taken off.
+    // Reduced by far more than the rounding of the sum and its parts.
     if (touching_now == 0 && batch.asleep_until != nullptr)
       batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));
   }
@@ -440,7 +440,7 @@ void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>*
         lose_springs<Law, Features>(batch, table, materials, place, state);
       });
     largest = std::max(largest, batch.largest_overlap);
-    // Where only `parted` was full, those that wait go on waiting: a ledger does not change the order of sums.
+    // Where only `parted` was full, the collected contacts stay: the energy balance must not change the order of sums.
     if (waiting.none() || (next < batch.last_block && waiting.has_room_for_a_block())) continue;
     PairBatch together = waiting.take(batch);
     loop(together, table, materials, 0, nullptr, nullptr);
@@ -450,15 +450,16 @@ void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>*
   batch.largest_overlap = largest;
 }
 
-/// Calls use(f) for groups of four numbers from f on that cover all of `count`; the last group may take in some of the
-/// one before. None if there are fewer than four.
+/// Calls use(f) for groups of four numbers from f on that cover all of `count`; the last group may overlap the one
+/// before. None if there are fewer than four.
 template <std::size_t count, class Use>
 [[gnu::always_inline]] inline void for_fours(Use use) {
   for (std::size_t f = 0; f + 4 <= count; f += 4) use(f);
   if constexpr (count > 4 && count % 4 != 0) use(count - 4);
 }
 
-/// The loop over touches of walls. Few, so that their memory may lie contact by contact. Not inlined, as pair_loop.
+/// The loop over wall contacts. They are few, so that histories are stored contact by contact. Not inlined, as
+/// pair_loop.
 template <class Law, unsigned Features, class L, bool Ledger>
 [[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
                                                std::size_t materials) {
@@ -471,12 +472,12 @@ template <class Law, unsigned Features, class L, bool Ledger>
   Loss<L> left{L(0.0), L(0.0), L(0.0)};
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
-    // Lanes past the end repeat the last touch and are not stored.
+    // Lanes past the end repeat the last contact and are not stored.
     const auto touch = [&](std::size_t k) -> const WallTouch& { return batch.touch[first + std::min(k, used - 1)]; };
     const auto body = [&](std::size_t k) { return touch(k).body; };
     const RowLanes<L> pa = load_rows<L>(batch.position, body), va = load_rows<L>(batch.velocity, body),
                       wa = load_rows<L>(batch.spin, body);
-    // Their numbers follow each other without a gap: what a row has beyond its vector is of the next.
+    // The members are contiguous: the fourth number of a row belongs to the next member.
     const auto rows = [&](Vec3 WallTouch::*member) {
       return load_fours<L>([&](std::size_t k) { return (touch(k).*member).data(); });
     };
@@ -492,8 +493,8 @@ template <class Law, unsigned Features, class L, bool Ledger>
     at.radius_a = at.radius_b = pa.w;
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
     at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
-    // The last term takes the wall's velocity where the sphere's surface would be: none slips that a wall carries along
-    // as it turns, or that pivots about an edge.
+    // The last term moves the wall's velocity to the sphere's surface: a sphere that is carried along by a rotating
+    // wall, or pivots about an edge, does not slip.
     at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), L(0.5) * at.turn.bisector) +
                   (at.overlap * per_dt) * (normal - normal_before);
     at.spin = wall_spin - wa.xyz();
@@ -525,7 +526,7 @@ template <class Law, unsigned Features, class L, bool Ledger>
       left.viscosity = left.viscosity - select(counts, own.viscosity, L(0.0));
     }
 
-    // Shear acts where slip is told, at the sphere's surface, which is as far behind the wall's as they overlap.
+    // Shear acts where slip is measured, at the sphere's surface, which is behind the wall's by the overlap.
     const Vec<L> force = response.normal_force * normal + response.shear, lever = cross(normal, response.shear);
     const Vec<L> moment_a = -response.moment - pa.w * lever, moment_wall = response.moment + at.overlap * lever;
     for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {

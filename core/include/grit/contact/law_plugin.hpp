@@ -13,7 +13,7 @@
 
 namespace grit {
 
-/// A law as the kernel sees it, made from a law as its author wrote it.
+/// The kernel's contact law, made from the struct that the author wrote.
 template <class Law>
 class LawPlugin final : public ContactLaw {
   using Pair = typename Law::template Pair<double>;
@@ -97,7 +97,7 @@ class LawPlugin final : public ContactLaw {
   }
 
  private:
-  /// Calls `run.operator()<F>()` with the features that are on as a constant.
+  /// Calls `run.operator()<F>()` with the active features as a constant.
   template <unsigned F = 0, class Run>
   void with_features(Run run) const {
     if constexpr (F < (1u << detail::feature_count<Law>)) {
@@ -108,8 +108,8 @@ class LawPlugin final : public ContactLaw {
   template <class L>
   void pairs(PairBatch& batch) const {
     with_features([&]<unsigned F>() {
-      // The twin and mixtures take the general loop; others are worth their compilation, in single precision one for
-      // periodic scenes and those that are not.
+      // The scalar reference and several materials take the general loop. Others have loops of their own; in single
+      // precision one serves periodic domains and all others.
       const bool general = lane_width<L> == 1 || batch.material != nullptr, ledger = batch.losses != nullptr;
       if (general && ledger) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
       else if (general) detail::evaluate_pairs<Law, F, L, true, false, false>(batch, table_.data(), count_);

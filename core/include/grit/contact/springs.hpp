@@ -11,8 +11,8 @@ template <class L>
   return min(L(1.0), limit / max(sqrt(dot(v, v)), L(tiny<L>))) * v;
 }
 
-/// A spring in the contact plane, of a force driven by at.velocity or of a moment driven by at.spin: what was `stored`
-/// turns with the contact, then grows against the relative motion of b during the step. Not limited yet.
+/// A spring in the contact plane, of a force driven by at.velocity or of a moment driven by at.spin: `stored`
+/// rotates with the contact, then grows against the relative motion of b during the step. Not limited yet.
 template <class L>
 [[gnu::always_inline]] inline Vec<L> stretched(const ContactPoint<L>& at, const Vec<L>& stored, const L& stiffness,
                                                const Vec<L>& rate) {
@@ -43,16 +43,16 @@ template <class L>
   return L(2.0) * ratio * sqrt(product);
 }
 
-/// What slipping has dissipated [J] where a spring as stretched() gives it, `trial`, was shortened to `now`: the mean
-/// force of the step over the slipped way.
+/// Energy [J] dissipated by slip, where a spring `trial` of stretched() was shortened to `now`: the mean force of the
+/// step times the slip.
 template <class L>
 [[gnu::always_inline]] inline L slip_work(const Vec<L>& before, const Vec<L>& trial, const Vec<L>& now,
                                           const L& stiffness) {
   return L(0.5) * dot(before + now, trial - now) / max(stiffness, L(tiny<L>));
 }
 
-/// What a dashpot beside the normal spring `elastic` [N] has dissipated [J]: its force over the mean velocity before
-/// and after this instant, as if no other contact pushed.
+/// Energy [J] dissipated by a dashpot beside the normal spring `elastic` [N]: its force times the mean velocity before
+/// and after this instant, as if no other contact acted.
 template <class L>
 [[gnu::always_inline]] inline L dashpot_work(const ContactPoint<L>& at, const L& normal_force, const L& elastic) {
   const L after = dot(at.velocity, at.normal) + L(0.5) * at.dt * normal_force * (at.inverse_mass_a + at.inverse_mass_b);
