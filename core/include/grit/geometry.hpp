@@ -10,7 +10,9 @@
 
 namespace grit {
 
-/// Where a wall has moved to: x ↦ about + turn · (x − about) + shift, `about` being the wall's reference point.
+/// Where a wall has moved to: x ↦ about + turn · (x − about) + shift. `about` is the wall's reference point, in the
+/// coordinates of the description: motion/about if that is given, else the middle of bounds(), where a side that is
+/// not finite counts as 0. A geometry applies the pose; it need not know the point.
 struct Pose {
   Vec3 about = Vec3::Zero();
   Vec3 shift = Vec3::Zero();
@@ -59,8 +61,10 @@ class Geometry {
   /// Whether it is made of plane faces that are wide: without grooves, curves or facets that a body could be as large
   /// as.
   virtual bool flat() const { return false; }
-  /// Appends the touches of each sphere, in the order of the spheres and, for one sphere, by feature. What is touched
-  /// at an edge or corner that two faces share counts once.
+  /// Appends the contacts of each sphere, in the order of the spheres and, for one sphere, by feature. A convex edge or
+  /// corner counts once, with the normal from the sphere's centre to the closest point. In a concave edge each face
+  /// that is nearer than a radius counts by itself, two in an edge and three in a corner, so that no force jumps as the
+  /// sphere comes in. Normal and overlap must not jump either as the sphere goes from a face over its convex edge.
   virtual void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const = 0;
   /// Whether a sphere is within `reach` of the shape: may say yes too often, never no when it touches, nor when it
   /// would say yes to a smaller sphere within it.
