@@ -1,5 +1,5 @@
 # What `cmake --install` gives: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the
-# plugins; the launcher as <prefix>/bin/grit; the SDK's headers and its CMake package. Builds for several instruction sets
+# plugins; the launcher as <prefix>/bin/grit; the SDK's headers, its CMake package and the pages for authors of plugins. Builds for several instruction sets
 # can be installed in one prefix: only that folder and the targets of the package are each one's own. The package also
 # stands in the build folder, for plugins that are built against that.
 include(CMakePackageConfigHelpers)
@@ -11,6 +11,7 @@ set_target_properties(grit_sdk PROPERTIES EXPORT_NAME sdk)
 install(TARGETS grit grit_sdk EXPORT grit LIBRARY DESTINATION ${own})
 install(DIRECTORY ${PROJECT_BINARY_DIR}/lib/grit/studies DESTINATION ${own} OPTIONAL)
 install(DIRECTORY python/grit DESTINATION ${CMAKE_INSTALL_DATADIR}/grit/python FILES_MATCHING PATTERN *.py)
+install(DIRECTORY docs/plugins DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/grit FILES_MATCHING PATTERN *.md)
 install(DIRECTORY core/include/grit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 if(TARGET grit_app)
   set_target_properties(grit_app PROPERTIES INSTALL_RPATH "$ORIGIN")

@@ -1,4 +1,4 @@
-// What was built outside the tree is loaded, and computes the force of its spring.
+// The law that was built outside the tree is loaded, and computes the force of its spring.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,12 +12,13 @@ namespace {
 
 TEST(Sdk, LoadsAPluginFromOutside) {
   const Registry registry({OUTSIDE_PLUGINS, INSTALLED_PLUGINS});
-  EXPECT_THAT(registry.names("contact"), testing::IsSupersetOf({"linear-normal", "linear-rolling"}));
-  const auto law = registry.make<ContactLaw>("linear-normal");
+  EXPECT_THAT(registry.names("contact"), testing::IsSupersetOf({"adhesive", "linear-rolling"}));
+  const auto law = registry.make<ContactLaw>("adhesive");
   Parameters parameters;
   law->declare_material("sand", parameters);
-  ASSERT_EQ(parameters.entries().front().name(), "stiffness");
-  *std::get<double*>(parameters.entries().front().target()) = 3000;
+  ASSERT_EQ(parameters.entries().front().name(), "contact_modulus");
+  *std::get<double*>(parameters.entries().front().target()) = 1500;
+  *std::get<double*>(parameters.entries()[2].target()) = 0;  // the angle of friction
   const std::string sand[] = {"sand"};
   law->mix(sand, 1);
   EXPECT_TRUE(law->state().empty());
@@ -35,10 +36,11 @@ TEST(Sdk, LoadsAPluginFromOutside) {
   batch.touching = &touching, batch.row = row, batch.sum = sum;
   law->evaluate_pairs(batch);
   EXPECT_EQ(touching, 1);
-  EXPECT_NEAR(row[0].force.w, 1500 * 0.25, 1e-9);
-  EXPECT_NEAR(row[0].force.x, 0.6 * 375, 1e-9);
-  EXPECT_NEAR(row[0].force.y, 0.8 * 375, 1e-9);
-  EXPECT_NEAR(sum[0].force.x, -0.6 * 375, 1e-9);
+  const double force = 2 * 4500.0 * 3375 / (4500 + 3375) * 0.25;
+  EXPECT_NEAR(row[0].force.w, force, 1e-9);
+  EXPECT_NEAR(row[0].force.x, 0.6 * force, 1e-9);
+  EXPECT_NEAR(row[0].force.y, 0.8 * force, 1e-9);
+  EXPECT_NEAR(sum[0].force.x, -0.6 * force, 1e-9);
 }
 
 TEST(Sdk, LoadsAnInstalledPlugin) {
