@@ -66,7 +66,7 @@ fi
 if command -v pvpython > /dev/null && command -v xvfb-run > /dev/null; then
   (
     cd results/pictures
-    sed -n '/^```pvpython/,/^```$/{/^```/d; p}' ../../docs/results.md | sed "s@/home/me/results/box@$PWD/direct-shear@" > chains.py
+    sed -n '/^```pvpython/,/^```$/{/^```/d; p}' ../../docs/how-to/paraview.md | sed "s@/home/me/results/box@$PWD/direct-shear@" > chains.py
     xvfb-run -a -s '-noreset -screen 0 1280x1024x24' pvpython chains.py
     /usr/bin/python3 -c 'from PIL import Image; Image.open("force-chains.png").convert("RGB").quantize(256, method=1).save("../../docs/pictures/force-chains.png", optimize=True)'
   )

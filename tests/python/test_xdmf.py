@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What ParaView's own reader makes of frames.xdmf, held against the frames; and that the script in docs/results.md draws.
+"""What ParaView's own reader makes of frames.xdmf, held against the frames; and that the script in docs/how-to/paraview.md draws.
 
 usage: test_xdmf.py GRIT     exit status 77 where there is no h5py or no ParaView
 """
@@ -24,7 +24,7 @@ except ImportError as error:
     sys.exit(77)
 
 GRIT = None
-DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs/results.md"
+DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs/how-to/paraview.md"
 
 GRAIN = {"type": "sphere", "material": "sand"}
 SCENE = {

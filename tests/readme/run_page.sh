@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs a page of the documentation in a folder of its own: writes its ```json NAME blocks to files, runs the commands of its
-# ```sh blocks in order, and its ```python blocks where h5py is there; sees that what its links name exists.
+# Runs a page of the documentation in a folder of its own: writes its ```json NAME and ```stl NAME blocks to files, runs the
+# commands of its ```sh blocks in order, and its ```python blocks where h5py is there; sees that what its links name exists.
 #   run_page.sh ROOT GRIT PAGE              PAGE is a path below ROOT
 #   run_page.sh --check ROOT GRIT PAGE…     has what would be run for minutes checked instead, and nothing in it may be without effect
 #   run_page.sh --self-test ROOT GRIT       sees that wrong pages are noticed
@@ -64,7 +64,7 @@ run_page() {
   }
   end_block() {
     case $language in
-      json)
+      json | stl)
         if [[ -n $name ]]; then printf '%s' "$text" > "$place/$name"; fi ;;
       python)
         python=''
