@@ -56,7 +56,7 @@ Written by `scripts/stability.py` from the {tests} tests in [tests/stability](..
 | [stiffening springs](#stiffening-springs) | stiffness of the deepest contact | force error at most {error of the force of what is pressed from first touch on:.1%} |
 
 ## Time step
-The bound is 2/ω of the fastest mode, with dashpots and rotation, estimated by body ([definitions](../definitions.md#time-step)).
+The bound is 2/ω of the fastest mode, with dashpots and rotation, estimated by body ([numerical method](../method.md#time-step)).
 
 - An explicit time step above the bound is refused.
 - Otherwise the step is {share of the bound that is chosen:.2g} of the bound, or shorter where impacts need it.
