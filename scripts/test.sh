@@ -5,6 +5,6 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 scripts/install-deps.sh
-cmake --preset release -DGRIT_BATCH_TESTS=ON
+cmake --preset release -DGRIT_BATCH_TESTS=ON -DCMAKE_UNITY_BUILD=ON
 cmake --build --preset release
 exec ctest --preset release -j"$(nproc)" "$@"

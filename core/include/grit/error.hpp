@@ -87,14 +87,19 @@ enum class Guard {
 /// The simulation went wrong.
 class NumericsError : public Error {
  public:
-  /// `keys` lead from the root of the description to the part that the failure is about; none if there is no such part.
-  explicit NumericsError(const std::string& what, Guard guard = Guard::none, std::vector<std::string> keys = {})
-      : Error(what), guard_(guard), keys_(std::move(keys)) {}
+  explicit NumericsError(const std::string& what) : Error(what), cause_(what) {}
+  /// `when` is the instant, `cause` what was found and what to do. `keys` lead from the root of the description to the
+  /// part that the failure is about.
+  NumericsError(const std::string& when, const std::string& cause, Guard guard, std::vector<std::string> keys)
+      : Error(when + ": " + cause), cause_(cause), guard_(guard), keys_(std::move(keys)) {}
+  /// what() without the instant.
+  const std::string& cause() const { return cause_; }
   Guard guard() const { return guard_; }
   const std::vector<std::string>& keys() const { return keys_; }
 
  private:
-  Guard guard_;
+  std::string cause_;
+  Guard guard_ = Guard::none;
   std::vector<std::string> keys_;
 };
 

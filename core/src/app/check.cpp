@@ -25,6 +25,7 @@
 #include "run/observer.hpp"
 #include "scene/current_scene.hpp"
 #include "scene/make_bodies.hpp"
+#include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
 
 namespace grit {
@@ -68,9 +69,11 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
               << (one.file.empty() ? "  built in" : "") << '\n';
 
   const unsigned threads = options.threads();
-  Kernel kernel(description, components, make_bodies(description, components, run_state(description, components)),
-                threads);
-  kernel.find_forces();
+  Kernel kernel(at_first_instant(scene.document, [&] {
+    return Kernel(description, components, make_bodies(description, components, run_state(description, components)),
+                  threads);
+  }));
+  at_first_instant(scene.document, [&] { kernel.find_forces(); });
   std::vector<ProbeGroup> probes;
   for (const auto& [name, probe] : description.probes)
     probes.push_back(Observer(name, probe, components.probes.at(name), kernel.world()).group());

@@ -23,6 +23,7 @@
 #include "report/report_page.hpp"
 #include "scene/make_bodies.hpp"
 #include "simulation/driver.hpp"
+#include "simulation/first_instant.hpp"
 #include "study/figures.hpp"
 
 namespace grit {
@@ -189,7 +190,8 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
   std::optional<Watch> watch;
   if (listener) watch.emplace(*listener, folder);
 
-  Kernel kernel(live.now(), live.components(), std::move(bodies), threads);
+  Kernel kernel(at_first_instant(scene.document,
+                                 [&] { return Kernel(live.now(), live.components(), std::move(bodies), threads); }));
   say(std::to_string(kernel.world().positions().size()) + " bodies, " + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
   if (checkpoint)

@@ -75,7 +75,7 @@ void check_arrivals(const State& state, const World& world, const std::vector<Ne
       });
   if (count == 0) return;
   const Newcomers::Group& group = group_of(deepest.body);
-  fail_at_body(state, Guard::arrival, deepest.body,
+  fail_at_body(state, Guard::arrival, {"bodies", group.name}, deepest.body,
                "of the group \"" + group.name + "\" appears inside " +
                    (deepest.with_wall ? "wall \"" + state.walls.name(deepest.other) + "\""
                                       : "body " + std::to_string(bodies.id[deepest.other])) +

@@ -72,13 +72,13 @@ void DisplacementBounds::check_bodies(const State& state) const {
   for (std::size_t i = 0; i < state.bodies.count(); ++i) {
     const Vec3 v = xyz(state.bodies.velocity[i]), w = xyz(state.bodies.spin[i]);
     if (!v.allFinite() || !w.allFinite())
-      fail_at_body(state, Guard::finite, i, "has a velocity that is not a number",
+      fail_at_body(state, Guard::finite, group_keys(state, i), i, "has a velocity that is not a number",
                    "two bodies may have begun at one place, or the time step is too large");
     const double travel = dt * (v - state.cell.mean_flow(xyz(state.bodies.position[i]))).norm();
     const double radius = state.bodies.position[i].w;
     if (travel > most * radius)
       fail_at_body(
-          state, Guard::travel, i,
+          state, Guard::travel, group_keys(state, i), i,
           "moves " + number(travel / radius) + " of its radius in one step, more than /guards/travel " + number(most),
           "bodies may overlap too much at the start, a wall may be too fast, or the time step too large");
   }

@@ -18,7 +18,8 @@ void check_overlap(const State& state, const World& world) {
   const auto all = world.contacts();
   const Contact& contact = *std::max_element(all.begin(), all.end(),
                                              [&](const Contact& c, const Contact& d) { return share(c) < share(d); });
-  fail_at_body(state, Guard::overlap, contact.a,
+  const Keys keys = contact.with_wall ? Keys{"walls", state.walls.name(contact.b)} : group_keys(state, contact.a);
+  fail_at_body(state, Guard::overlap, keys, contact.a,
                "overlaps " +
                    (contact.with_wall ? "wall \"" + state.walls.name(contact.b) + "\""
                                       : "body " + std::to_string(bodies.id[contact.b])) +

@@ -12,6 +12,7 @@
 #include "plugins/component_memory.hpp"
 #include "scene/kinetic_energy.hpp"
 #include "scene/make_bodies.hpp"
+#include "scene/placed_error.hpp"
 
 namespace grit {
 
@@ -141,8 +142,8 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
     arriving = make_newcomers(scene, components, state_.stage, view_.cell(), view_.positions(), state_.bodies.state);
   } catch (const FileError&) {
     throw;
-  } catch (const Error& error) {
-    fail(state_, Guard::arrival, {"bodies"}, error.what(), "");
+  } catch (const PlacedError& error) {
+    fail(state_, Guard::arrival, error.keys(), error.what(), "");
   }
   if (arriving.bodies.count() == 0) return;
   match_velocities(arriving.bodies, state_);

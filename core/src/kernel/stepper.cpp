@@ -38,7 +38,7 @@ void Stepper::rebuild() {
   const DeformingCell& cell = state_.cell;
   const Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt),
                                state_.settings.open_sides, [this](std::size_t body, int axis, bool high) {
-                                 fail_at_body(state_, Guard::domain, body,
+                                 fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
                                               "left the domain through its " + std::string(high ? "upper" : "lower") +
                                                   " " + "xyz"[axis] + " side",
                                               "close the domain there with a wall, make it larger, or name the side "

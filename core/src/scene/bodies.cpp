@@ -1,6 +1,9 @@
 #include "scene/bodies.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include "grit/error.hpp"
 
 namespace grit {
 namespace {
@@ -58,6 +61,8 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
 }
 
 void Bodies::finish(StateRequest asked_for) {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() - 1;  // the padding has an index, too
+  if (count() >= most) throw Error(std::to_string(count()) + " bodies; allowed are fewer than " + std::to_string(most));
   constexpr double far_away = 1e18;  // its square is finite in single precision too
   position.push_back({far_away, far_away, far_away, 0});
   velocity.push_back({});

@@ -96,6 +96,13 @@ void check_circles(const std::map<std::string, WallDescription>& walls, const Co
 
 // ---- what sections say of each other
 
+/// A body keeps the index of its material in one byte.
+void check_number_of_materials(const SceneDescription& scene, const Complain& complain) {
+  constexpr std::size_t most = 255;
+  if (scene.materials.size() > most)
+    complain("materials", std::to_string(scene.materials.size()) + " materials", std::to_string(most) + " or fewer");
+}
+
 void check_interfaces(const SceneDescription& scene, const Complain& complain) {
   for (const auto& [name, _] : scene.materials)
     if (name.find('+') != std::string::npos)
@@ -743,6 +750,7 @@ InterfaceDescription* SceneDescription::find_interface(const std::string& name) 
 }
 
 void SceneDescription::check_together(const Complain& complain) const {
+  check_number_of_materials(*this, complain);
   check_interfaces(*this, complain);
   check_materials_of_bodies(*this, complain);
   check_weight(*this, complain);
@@ -772,6 +780,7 @@ void SceneDescription::declare(Parameters& p) {
    }).doc("what is measured, by name");
   p.add("output", output).doc("frames, checkpoints, picture, references, summary");
 
+  p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
   p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
   p.check([this](const Complain& complain) { check_weight(*this, complain); }, {"bodies", "engines"});

@@ -6,10 +6,12 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <typeinfo>
 
 #include "grit/error.hpp"
 #include "scene/cloud.hpp"
 #include "scene/packing_file.hpp"
+#include "scene/placed_error.hpp"
 
 namespace grit {
 namespace {
@@ -70,7 +72,7 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
   }
 }
 
-/// Throws for a body outside the cell.
+/// Throws PlacedError for a body outside the cell.
 void check_inside(const Cell& cell, const Bodies& bodies) {
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     const Row& x = bodies.position[i];
@@ -79,10 +81,22 @@ void check_inside(const Cell& cell, const Bodies& bodies) {
     const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
     for (int k = 0; k < 3; ++k) {
       const double over = cell.periodic[k] ? reach : 0;  // just past a periodic side a body is inside at the other
-      if (!(xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over))
-        throw Error("a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
-                    ") m lies outside the domain; enlarge /domain or move the body");
+      if (xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over) continue;
+      throw PlacedError({"bodies", bodies.group_of(bodies.id[i])},
+                        "a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
+                            ") m lies outside the domain; enlarge /domain or move the body");
     }
+  }
+}
+
+/// Does the work for a group; its errors become those of the group, but for errors of files, which have a place.
+template <class Work>
+void for_group(const std::string& name, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    if (typeid(error) != typeid(Error)) throw;
+    throw PlacedError({"bodies", name}, error.what());
   }
 }
 
@@ -132,7 +146,7 @@ Bodies make_bodies(const SceneDescription& scene, const Components& components, 
     const BodyKind& kind = *components.body_kinds.at(name);
     if (group.stage.empty()) {
       bodies.groups.push_back({name, bodies.ids_given});
-      add_group(scene, group, kind, cell, {}, random, bodies);
+      for_group(name, [&] { add_group(scene, group, kind, cell, {}, random, bodies); });
     } else {
       body_count(group, kind);  // a fault in a file shows now, not when its stage begins
     }
@@ -150,14 +164,10 @@ Newcomers make_newcomers(const SceneDescription& scene, const Components& compon
     if (group.stage.empty() || group.stage != stage) continue;
     newcomers.groups.push_back({name, newcomers.bodies.ids_given, group.overlap});
     newcomers.bodies.groups.push_back({name, newcomers.bodies.ids_given});
-    try {
+    for_group(name, [&, &group = group] {
       add_group(scene, group, *components.body_kinds.at(name), cell, there, random, newcomers.bodies);
-      check_inside(cell, newcomers.bodies);
-    } catch (const FileError&) {
-      throw;
-    } catch (const Error& error) {
-      throw Error("/bodies/" + name + ": " + error.what());
-    }
+    });
+    check_inside(cell, newcomers.bodies);
   }
   newcomers.bodies.finish(state);
   return newcomers;

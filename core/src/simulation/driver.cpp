@@ -93,7 +93,7 @@ RunSummary run(const Scene& scene, LiveScene& live, Kernel& kernel, Recorder& re
     RunSummary summary;
     runner.prepare();
     if (control.resume != nullptr) runner.resume(*control.resume);
-    else at_first_instant(scene.document, kernel.world(), [&] { runner.start(); });  // before anything is recorded
+    else at_first_instant(scene.document, [&] { runner.start(); });  // before anything is recorded
     try {
       summary.status = Driver(scene, runner, kernel, recorder, control)() ? "done" : "interrupted";
     } catch (const NumericsError& error) {

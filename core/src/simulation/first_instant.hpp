@@ -2,22 +2,22 @@
 #pragma once
 
 #include "grit/error.hpp"
-#include "grit/world.hpp"
 #include "input/places.hpp"
 #include "scene/placed_error.hpp"
 
 namespace grit {
 
-/// Does the work. A guard that trips before the first step, and an error of a part, become a DescriptionError with file,
-/// line and pointer: overlapping bodies, a wall that faces away from them, a time step above the critical one.
+/// Does work that ends before the first step. A guard that trips, and an error of a part, become a DescriptionError
+/// with file, line and pointer: overlapping bodies, a wall that faces away from them, a time step above the critical
+/// one.
 template <class Work>
-auto at_first_instant(const Document& document, const World& world, const Work& work) {
+auto at_first_instant(const Document& document, const Work& work) {
   return at_its_place(document, [&] {
     try {
       return work();
     } catch (const NumericsError& error) {
-      if (world.step() > 0 || error.keys().empty()) throw;
-      PlacedError placed(error.keys(), error.what());
+      if (error.keys().empty()) throw;
+      PlacedError placed(error.keys(), error.cause());
       placed.begun(1);
       throw placed;
     }

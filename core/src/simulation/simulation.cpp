@@ -21,15 +21,19 @@ struct Simulation::Parts {
       : registry(std::move(plugins)),
         scene(read_scene(std::move(document), *registry)),
         live(scene),
-        kernel(live.now(), live.components(),
-               make_bodies(live.now(), live.components(), requested_state(live.components())), threads),
+        kernel(at_first_instant(
+            scene.document,
+            [&] {
+              return Kernel(live.now(), live.components(),
+                            make_bodies(live.now(), live.components(), requested_state(live.components())), threads);
+            })),
         runner(scene, live, kernel, relay) {
-    runner.prepare();
+    at_first_instant(scene.document, [this] { runner.prepare(); });
   }
 
   void start() {
     if (started) return;
-    at_first_instant(scene.document, kernel.world(), [this] { runner.start(); });
+    at_first_instant(scene.document, [this] { runner.start(); });
     started = true;
   }
   /// One step, or the end of a stage. `stop` as StageRunner has it.
@@ -98,7 +102,7 @@ Simulation::Simulation(const Description& description, const SimulationOptions& 
 
 Forecast Simulation::check() {
   Parts& parts = *parts_;
-  if (!parts.started) at_first_instant(parts.scene.document, world(), [&] { parts.kernel.find_forces(); });
+  if (!parts.started) at_first_instant(parts.scene.document, [&] { parts.kernel.find_forces(); });
   return {.bodies = world().positions().size(),
           .contacts = parts.kernel.state().pairs.touching_count(),
           .time_step = world().dt(),
@@ -150,9 +154,7 @@ void Simulation::every_steps(std::uint64_t steps, Observer observer) {
   parts_->runner.call({.every_steps = static_cast<std::int64_t>(steps)}, std::move(observer));
 }
 
-void Simulation::at_stage_end(Observer observer) {
-  parts_->runner.call({}, std::move(observer));
-}
+void Simulation::at_stage_end(Observer observer) { parts_->runner.call({}, std::move(observer)); }
 
 void Simulation::on_progress(std::function<void(const Progress&)> report, double interval) {
   parts_->progress = std::move(report), parts_->progress_interval = interval;

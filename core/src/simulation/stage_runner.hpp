@@ -40,8 +40,8 @@ class StageRunner {
   std::size_t stage() const { return stage_; }
   std::size_t stages_begun() const { return stages_begun_; }
   const StageDescription& description() const { return scene_.description->stages[stage_]; }
-  /// Calls an observer at the given cadence, or at the end of each stage where it is none. Not part of checkpoints: after
-  /// resume() the cadence counts from there.
+  /// Calls an observer at the given cadence, or at the end of each stage where it is none. Not part of checkpoints:
+  /// after resume() the cadence counts from there.
   void call(const Cadence& cadence, std::function<void(const World&)> observer);
   /// Sets a value of the description from now on. Throws DescriptionError.
   void set(const std::string& pointer, const Description& value);

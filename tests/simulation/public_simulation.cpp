@@ -1,0 +1,166 @@
+// The public class: a simulation as a library.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "grit/error.hpp"
+#include "grit/simulation.hpp"
+#include "support/notes.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test::public_simulation_tests {
+namespace {
+
+constexpr double dt = 1e-4, g = 9.81;
+
+/// A ball that falls freely, in two stages of 100 steps.
+Description drop() {
+  Description d = description("linear-frictional", {{"density", 2500}}, {{{0, 0, 0}, 5e-3}});
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["time_step"] = {{"value", dt}};
+  const auto stage = [](const char* name) {
+    return Description{{"name", name}, {"until", {{"type", "steps"}, {"value", 100}}}, {"limit", 1}};
+  };
+  d["stages"] = {stage("first"), stage("second")};
+  return d;
+}
+SimulationOptions options() { return {.plugin_path = {GRIT_PLUGIN_DIR}}; }
+double height(const Simulation& simulation) { return simulation.world().positions()[0].z; }
+/// The leap-frog from rest: the first kick is half a step.
+double fallen(double steps) { return -0.5 * g * dt * dt * steps * steps; }
+
+TEST(PublicSimulation, RunsStageAfterStage) {
+  Simulation simulation(drop(), options());
+  EXPECT_TRUE(simulation.run_stage());
+  EXPECT_EQ(simulation.world().step(), 100u);
+  EXPECT_NEAR(height(simulation), fallen(100), 1e-12);
+  EXPECT_EQ(simulation.world().stage(), "second");
+  EXPECT_FALSE(simulation.done());
+  EXPECT_TRUE(simulation.run());
+  EXPECT_NEAR(height(simulation), fallen(200), 1e-12);
+  EXPECT_TRUE(simulation.done());
+  EXPECT_TRUE(simulation.run()) << "there is nothing left to do";
+}
+
+TEST(PublicSimulation, StepsThroughTheEndsOfStages) {
+  Simulation stepped(drop(), options()), whole(drop(), options());
+  EXPECT_EQ(stepped.step(150), 150u);
+  EXPECT_EQ(stepped.world().stage(), "second");
+  EXPECT_NEAR(height(stepped), fallen(150), 1e-12);
+  EXPECT_EQ(stepped.step(1000), 50u);
+  EXPECT_TRUE(stepped.done());
+  whole.run();
+  EXPECT_EQ(height(stepped), height(whole)) << "the same bits";
+}
+
+TEST(PublicSimulation, TellsWhatARunTakes) {
+  Simulation simulation(drop(), options());
+  const Forecast forecast = simulation.check();
+  EXPECT_EQ(forecast.bodies, 1u);
+  EXPECT_EQ(forecast.contacts, 0u);
+  EXPECT_EQ(forecast.time_step, dt);
+  EXPECT_GT(forecast.critical_time_step, 0);
+  EXPECT_GT(forecast.bytes, 100u);
+  EXPECT_EQ(simulation.world().step(), 0u);
+}
+
+TEST(PublicSimulation, CallsObservers) {
+  Simulation simulation(drop(), options());
+  std::vector<std::uint64_t> by_steps, by_time, at_end;
+  simulation.every_steps(30, [&](const World& world) { by_steps.push_back(world.step()); });
+  simulation.every_time(50 * dt, [&](const World& world) { by_time.push_back(world.step()); });
+  simulation.at_stage_end([&](const World& world) { at_end.push_back(world.step()); });
+  simulation.run();
+  EXPECT_THAT(by_steps, testing::ElementsAre(0, 30, 60, 90, 100, 130, 160, 190)) << "from the start of each stage";
+  EXPECT_THAT(by_time, testing::ElementsAre(0, 50, 100, 100, 150, 200));
+  EXPECT_THAT(at_end, testing::ElementsAre(100, 200));
+}
+
+TEST(PublicSimulation, ReportsProgressAndCanBeInterrupted) {
+  Simulation simulation(drop(), options());
+  std::vector<double> fractions;
+  simulation.on_progress([&](const Progress& now) { fractions.push_back(now.fraction.value_or(-1)); }, 0);
+  simulation.interrupt_when([&] { return simulation.world().step() == 40; });
+  EXPECT_FALSE(simulation.run());
+  EXPECT_EQ(simulation.world().step(), 40u);
+  EXPECT_THAT(fractions, testing::ElementsAre(0.08, 0.16, 0.24, 0.32, 0.4));
+  simulation.interrupt_when({});
+  EXPECT_TRUE(simulation.run()) << "an interrupted simulation can go on";
+  EXPECT_NEAR(height(simulation), fallen(200), 1e-12);
+}
+
+TEST(PublicSimulation, SetsAValueFromNowOn) {
+  Simulation simulation(drop(), options());
+  simulation.run_stage();
+  simulation.set("/engines/gravity/acceleration", {0, 0, 0});
+  const double speed = simulation.world().velocities()[0].z;
+  simulation.run();
+  EXPECT_EQ(simulation.world().velocities()[0].z, speed);
+  EXPECT_NEAR(speed, -g * dt * 99.5, 1e-12);
+}
+
+TEST(PublicSimulation, RefusesWhatCannotBeSet) {
+  Simulation simulation(drop(), options());
+  const auto problem = [&](const std::string& pointer, const Description& value) {
+    try {
+      simulation.set(pointer, value);
+    } catch (const DescriptionError& error) {
+      return error.problems().at(0);
+    }
+    return Problem{};
+  };
+  EXPECT_EQ(problem("/materials/grain/friction_angle", 7).pointer, "/materials/grain/friction_angle");
+  EXPECT_THAT(problem("/materials/grain/colour", 7).message, testing::HasSubstr("unknown key \"colour\""));
+  EXPECT_THAT(problem("/seed", 7).message, testing::HasSubstr("found a change of \"seed\""));
+  EXPECT_THAT(problem("seed", 7).message, testing::HasSubstr("allowed is a JSON pointer"));
+}
+
+TEST(PublicSimulation, GoesOnFromACheckpointWithWhatWasSet) {
+  Simulation simulation(drop(), options());
+  simulation.step(30);
+  simulation.set("/engines/gravity/acceleration", {0, 0, -1.0});
+  simulation.step(30);
+  const Checkpoint there = simulation.save();
+  EXPECT_EQ(there.step, 60u);
+  simulation.run();
+  Simulation other(drop(), options());
+  other.resume(there);
+  EXPECT_EQ(other.world().step(), 60u);
+  other.run();
+  EXPECT_EQ(height(other), height(simulation)) << "the same bits";
+  EXPECT_GT(height(other), fallen(200)) << "gravity was lowered";
+}
+
+TEST(PublicSimulation, ReadsFilesAndTexts) {
+  const std::string text = drop().dump(2);
+  Simulation simulation = Simulation::from_text(text, options());
+  simulation.run();
+  EXPECT_NEAR(height(simulation), fallen(200), 1e-12);
+  EXPECT_EQ(simulation.description().at("time_step").at("value"), dt);
+  try {
+    Simulation::from_text("{\n \"seed\": -1}", options(), "mine.json");
+    FAIL();
+  } catch (const DescriptionError& error) {
+    EXPECT_EQ(error.problems().at(0).file, "mine.json");
+    EXPECT_THAT(error.what(), testing::HasSubstr("mine.json:2: /seed"));
+  }
+  EXPECT_THROW(Simulation::open("/nowhere/box.json", options()), FileError);
+}
+
+TEST(PublicSimulation, PlacesFaultsOfTheFirstInstant) {
+  Description d = drop();
+  d["bodies"]["others"] = d["bodies"]["grains"];
+  d["bodies"]["others"]["grains"]["grains"][0]["position"] = {0, 0, 2e-3};
+  Simulation simulation(d, options());
+  try {
+    simulation.run();
+    FAIL();
+  } catch (const DescriptionError& error) {
+    EXPECT_EQ(error.problems().at(0).pointer, "/bodies/grains");
+    EXPECT_THAT(error.what(), testing::HasSubstr("overlaps body 1 by 1.6 of its radius"));
+  }
+}
+
+}  // namespace
+}  // namespace grit::test::public_simulation_tests
