@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "scene/large_array.hpp"
+#include "bodies/large_array.hpp"
 
 namespace grit::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "grit/error.hpp"
-#include "scene/clump_body.hpp"
-#include "scene/clump_shape.hpp"
-#include "scene/random.hpp"
+#include "bodies/clump_body.hpp"
+#include "bodies/clump_shape.hpp"
+#include "bodies/random.hpp"
 #include "support/verified.hpp"
 
 namespace grit::test::shape_tests {

@@ -5,7 +5,7 @@
 set -euo pipefail
 
 # A room may include itself and those before it.
-rooms=(format plugins scene input contact engines domain kernel run simulation output study report lint app)
+rooms=(format plugins description input bodies contact motion domain kernel run simulation output study report lint app)
 
 # sources FOLDER…: the C++ files below those that exist.
 sources() {
@@ -85,7 +85,7 @@ self_test() {
     allowed "core/src/${rooms[i + 1]}/planted.hpp" "#include \"${rooms[i]}/planted.hpp\""
   done
   planted "includes a later room" core/src/input/planted.cpp '#include "../app/planted.hpp"'
-  planted "the SDK includes the kernel" core/include/grit/planted.hpp '#include "scene/planted.hpp"'
+  planted "the SDK includes the kernel" core/include/grit/planted.hpp '#include "bodies/planted.hpp"'
   allowed core/include/grit/planted.hpp '#include "grit/contact/law.hpp"'
   planted "the SDK includes the kernel" core/src/testing/planted.cpp '#include "plugins/registry.hpp"'
   planted "a plugin includes the kernel" plugins/probes/planted/planted.cpp '#include "contact/planted.hpp"'
@@ -105,11 +105,11 @@ self_test() {
   planted "not the same bits" cmake/planted.cmake 'add_compile_options(-Ofast)'
   allowed cmake/planted.cmake '# -ffast-math is banned'
   for line in 'std::cout << 1;' 'std::printf("1");' '  std::abort();' 'exit(1);' 'fprintf(stderr, "1");'; do
-    planted "library code prints or exits" core/src/scene/planted.cpp "$line"
+    planted "library code prints or exits" core/src/bodies/planted.cpp "$line"
     allowed core/src/app/planted.cpp "$line"
     allowed core/src/launcher/planted.cpp "$line"
   done
-  allowed core/src/scene/planted.cpp 'std::snprintf(text, 4, "1"); on_exit_of(x); // never exit(1)'
+  allowed core/src/bodies/planted.cpp 'std::snprintf(text, 4, "1"); on_exit_of(x); // never exit(1)'
 
   local found wanted
   found=$(verdict "$copy" | sed 's@: \./@: @' || true)

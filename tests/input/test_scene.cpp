@@ -5,7 +5,7 @@
 #include "folder.hpp"
 #include "input/scene.hpp"
 #include "plugins/parameter_values.hpp"
-#include "scene/current_scene.hpp"
+#include "description/current_scene.hpp"
 
 using namespace grit;
 using testing::HasSubstr;

@@ -10,7 +10,7 @@
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
-#include "scene/packing_file.hpp"
+#include "bodies/packing_file.hpp"
 
 namespace grit::results_folder_tests {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "grit/plugin.hpp"
-#include "scene/random.hpp"
+#include "bodies/random.hpp"
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 

@@ -11,12 +11,12 @@
 #include <set>
 #include <sstream>
 
-#include "engines/builtin.hpp"
+#include "motion/builtin.hpp"
 #include "input/scene.hpp"
 #include "input/schema.hpp"
-#include "scene/clump_body.hpp"
-#include "scene/make_bodies.hpp"
-#include "scene/sphere_body.hpp"
+#include "bodies/clump_body.hpp"
+#include "bodies/make_bodies.hpp"
+#include "bodies/sphere_body.hpp"
 #include "schema_check.hpp"
 #include "simulation/driver.hpp"
 #include "study/variants.hpp"

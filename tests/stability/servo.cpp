@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engines/walls.hpp"
+#include "motion/walls.hpp"
 #include "grit/contact/restitution.hpp"
 #include "grit/error.hpp"
 #include "support/growth.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "input/scene.hpp"
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 #include "simulation/driver.hpp"
 #include "support/scene.hpp"
 

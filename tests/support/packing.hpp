@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "scene/random.hpp"
+#include "bodies/random.hpp"
 #include "support/scene.hpp"
 
 namespace grit::test {

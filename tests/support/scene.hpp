@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "engines/builtin.hpp"
+#include "motion/builtin.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
-#include "scene/clump_body.hpp"
-#include "scene/make_bodies.hpp"
-#include "scene/sphere_body.hpp"
+#include "bodies/clump_body.hpp"
+#include "bodies/make_bodies.hpp"
+#include "bodies/sphere_body.hpp"
 #include "simulation/live_scene.hpp"
 
 namespace grit::test {

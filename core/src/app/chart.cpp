@@ -31,7 +31,7 @@
 #include "plugins/build_facts.hpp"
 #include "plugins/nearest.hpp"
 #include "run/observer.hpp"
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 #include "simulation/live_scene.hpp"
 #include "study/batch.hpp"
 #include "study/chart.hpp"

@@ -23,8 +23,8 @@
 #include "lint/unused_settings.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
-#include "scene/current_scene.hpp"
-#include "scene/make_bodies.hpp"
+#include "description/current_scene.hpp"
+#include "bodies/make_bodies.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
 

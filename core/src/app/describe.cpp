@@ -6,7 +6,7 @@
 #include "grit/error.hpp"
 #include "input/reference.hpp"
 #include "plugins/nearest.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 #include "study/description.hpp"
 
 namespace grit {

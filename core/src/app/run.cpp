@@ -21,7 +21,7 @@
 #include "output/results_folder.hpp"
 #include "output/shell_word.hpp"
 #include "report/report_page.hpp"
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 #include "simulation/driver.hpp"
 #include "simulation/first_instant.hpp"
 #include "study/figures.hpp"

@@ -3,7 +3,7 @@
 #include <set>
 #include <utility>
 
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 
 namespace grit {
 namespace {

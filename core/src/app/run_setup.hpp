@@ -7,8 +7,8 @@
 
 #include "output/run_json.hpp"
 #include "plugins/registry.hpp"
-#include "scene/components.hpp"
-#include "scene/description.hpp"
+#include "description/components.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

@@ -5,7 +5,7 @@
 
 #include "input/scene.hpp"
 #include "output/frames.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 #include "simulation/live_components.hpp"
 
 namespace grit {

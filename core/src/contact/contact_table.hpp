@@ -12,7 +12,7 @@
 #include "contact/skins.hpp"
 #include "contact/team.hpp"
 #include "grit/contact/contact_law.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

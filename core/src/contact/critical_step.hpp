@@ -5,7 +5,7 @@
 #include "contact/demand.hpp"
 #include "contact/wall_contacts.hpp"
 #include "grit/contact/contact_law.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

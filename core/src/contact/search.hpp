@@ -9,7 +9,7 @@
 #include "contact/chunks.hpp"
 #include "contact/skins.hpp"
 #include "grit/world.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

@@ -11,7 +11,7 @@
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
 #include "grit/memory.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

@@ -7,7 +7,7 @@
 
 #include "domain/deforming_cell.hpp"
 #include "grit/world.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "grit/memory.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "input/document.hpp"
-#include "scene/placed_error.hpp"
+#include "description/placed_error.hpp"
 
 namespace grit {
 

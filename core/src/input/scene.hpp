@@ -8,8 +8,8 @@
 
 #include "input/document.hpp"
 #include "plugins/registry.hpp"
-#include "scene/description.hpp"
-#include "scene/stage_plan.hpp"
+#include "description/description.hpp"
+#include "description/stage_plan.hpp"
 
 namespace grit {
 

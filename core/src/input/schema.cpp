@@ -8,7 +8,7 @@
 #include "input/reader.hpp"
 #include "input/units.hpp"
 #include "plugins/parameter_values.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 namespace {

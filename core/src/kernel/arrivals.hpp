@@ -5,7 +5,7 @@
 
 #include "grit/world.hpp"
 #include "kernel/state.hpp"
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 
 namespace grit {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "engines/clump_motion.hpp"
-#include "scene/kinetic_energy.hpp"
+#include "motion/clump_motion.hpp"
+#include "bodies/kinetic_energy.hpp"
 
 namespace grit {
 

@@ -10,9 +10,9 @@
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
 #include "plugins/component_memory.hpp"
-#include "scene/kinetic_energy.hpp"
-#include "scene/make_bodies.hpp"
-#include "scene/placed_error.hpp"
+#include "bodies/kinetic_energy.hpp"
+#include "bodies/make_bodies.hpp"
+#include "description/placed_error.hpp"
 
 namespace grit {
 

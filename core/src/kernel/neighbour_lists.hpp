@@ -8,8 +8,8 @@
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
 #include "kernel/passes.hpp"
-#include "scene/bodies.hpp"
-#include "scene/large_array.hpp"
+#include "bodies/bodies.hpp"
+#include "bodies/large_array.hpp"
 
 namespace grit {
 

@@ -8,7 +8,7 @@
 
 #include "contact/chunks.hpp"
 #include "contact/team.hpp"
-#include "engines/motion.hpp"
+#include "motion/motion.hpp"
 #include "grit/contact/batch.hpp"
 #include "kernel/model.hpp"
 #include "kernel/stopwatch.hpp"

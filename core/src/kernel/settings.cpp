@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 
 namespace grit {
 

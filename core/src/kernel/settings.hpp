@@ -9,8 +9,8 @@
 
 #include "grit/contact/contact_law.hpp"
 #include "grit/engine.hpp"
-#include "scene/components.hpp"
-#include "scene/description.hpp"
+#include "description/components.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

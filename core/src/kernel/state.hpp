@@ -8,12 +8,12 @@
 #include "contact/wall_contacts.hpp"
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
-#include "engines/motion.hpp"
-#include "engines/walls.hpp"
+#include "motion/motion.hpp"
+#include "motion/walls.hpp"
 #include "kernel/neighbour_lists.hpp"
 #include "kernel/settings.hpp"
 #include "kernel/step_time.hpp"
-#include "scene/bodies.hpp"
+#include "bodies/bodies.hpp"
 
 namespace grit {
 

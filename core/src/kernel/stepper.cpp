@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "domain/boundaries.hpp"
-#include "engines/clump_motion.hpp"
-#include "engines/growth.hpp"
+#include "motion/clump_motion.hpp"
+#include "motion/growth.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"

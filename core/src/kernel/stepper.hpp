@@ -8,7 +8,7 @@
 #include "kernel/energy_guard.hpp"
 #include "kernel/time_step_control.hpp"
 #include "kernel/world_view.hpp"
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 
 namespace grit {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engines/clump_motion.hpp"
+#include "motion/clump_motion.hpp"
 #include "kernel/energy_balance.hpp"
 #include "kernel/specimen.hpp"
 

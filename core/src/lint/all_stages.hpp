@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "input/scene.hpp"
-#include "scene/current_scene.hpp"
-#include "scene/make_bodies.hpp"
+#include "description/current_scene.hpp"
+#include "bodies/make_bodies.hpp"
 #include "simulation/live_components.hpp"
 
 namespace grit {

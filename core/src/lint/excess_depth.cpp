@@ -8,7 +8,7 @@
 
 #include "lint/all_stages.hpp"
 #include "lint/installed_studies.hpp"
-#include "scene/wall_ways.hpp"
+#include "description/wall_ways.hpp"
 #include "study/parts.hpp"
 
 namespace grit {

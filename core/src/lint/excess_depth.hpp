@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "grit/world.hpp"
-#include "scene/components.hpp"
+#include "description/components.hpp"
 #include "input/scene.hpp"
 #include "study/advice.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "lint/all_stages.hpp"
 #include "lint/small_changes.hpp"
-#include "scene/make_bodies.hpp"
+#include "bodies/make_bodies.hpp"
 
 namespace grit {
 namespace {

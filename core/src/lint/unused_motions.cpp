@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "lint/all_stages.hpp"
-#include "scene/wall_ways.hpp"
+#include "description/wall_ways.hpp"
 
 namespace grit {
 namespace {

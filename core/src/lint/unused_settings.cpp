@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "lint/all_stages.hpp"
-#include "scene/wall_ways.hpp"
+#include "description/wall_ways.hpp"
 #include "study/parts.hpp"
 
 namespace grit {

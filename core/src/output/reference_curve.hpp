@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

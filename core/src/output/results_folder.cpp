@@ -13,7 +13,7 @@
 #include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
-#include "scene/packing_file.hpp"
+#include "bodies/packing_file.hpp"
 
 namespace grit {
 namespace {

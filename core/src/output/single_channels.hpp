@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "run/recorder.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "kernel/kernel.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

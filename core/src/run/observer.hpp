@@ -15,7 +15,7 @@
 #include "plugins/component_memory.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
-#include "scene/placed_error.hpp"
+#include "description/placed_error.hpp"
 
 namespace grit {
 

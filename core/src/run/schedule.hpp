@@ -7,7 +7,7 @@
 
 #include "grit/memory.hpp"
 #include "kernel/kernel.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

@@ -4,7 +4,7 @@
 
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
-#include "scene/placed_error.hpp"
+#include "description/placed_error.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/stage_runner.hpp"
 

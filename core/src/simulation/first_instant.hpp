@@ -3,7 +3,7 @@
 
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "scene/placed_error.hpp"
+#include "description/placed_error.hpp"
 
 namespace grit {
 

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "scene/placed_error.hpp"
+#include "description/placed_error.hpp"
 
 namespace grit {
 namespace {

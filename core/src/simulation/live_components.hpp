@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "scene/components.hpp"
-#include "scene/current_scene.hpp"
-#include "scene/description.hpp"
+#include "description/components.hpp"
+#include "description/current_scene.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

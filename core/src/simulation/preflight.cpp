@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "input/places.hpp"
-#include "scene/servo_face.hpp"
+#include "description/servo_face.hpp"
 #include "simulation/unreachable_conditions.hpp"
 
 namespace grit {

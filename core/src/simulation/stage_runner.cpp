@@ -6,7 +6,7 @@
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
-#include "scene/placed_error.hpp"
+#include "description/placed_error.hpp"
 
 namespace grit {
 namespace {

@@ -1,9 +1,9 @@
 #include "simulation/standard_registry.hpp"
 
-#include "engines/builtin.hpp"
+#include "motion/builtin.hpp"
 #include "plugins/loader.hpp"
-#include "scene/clump_body.hpp"
-#include "scene/sphere_body.hpp"
+#include "bodies/clump_body.hpp"
+#include "bodies/sphere_body.hpp"
 
 namespace grit {
 

@@ -4,7 +4,7 @@
 
 #include <variant>
 
-#include "scene/wall_ways.hpp"
+#include "description/wall_ways.hpp"
 
 namespace grit {
 namespace {

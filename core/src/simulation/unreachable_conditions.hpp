@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "grit/geometry.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

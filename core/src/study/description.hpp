@@ -10,7 +10,7 @@
 
 #include "grit/description.hpp"
 #include "grit/parameters.hpp"
-#include "scene/description.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

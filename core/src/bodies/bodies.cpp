@@ -1,0 +1,143 @@
+#include "bodies/bodies.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "grit/error.hpp"
+
+namespace grit {
+namespace {
+
+/// Values of `count` bodies and of the padding after them.
+template <class Array>
+void permute(Array& values, std::span<const std::uint32_t> order, std::size_t count) {
+  if (values.empty()) return;
+  Array moved(order.size() + values.size() - count);
+  for (std::size_t i = 0; i < order.size(); ++i) moved[i] = values[order[i]];
+  for (std::size_t i = order.size(); i < moved.size(); ++i) moved[i] = values[count + i - order.size()];
+  values.swap(moved);
+}
+
+}  // namespace
+
+void Bodies::reserve(std::size_t more) {
+  const std::size_t all = count() + more + 1;
+  position.reserve(all), velocity.reserve(all), spin.reserve(all), material.reserve(all), id.reserve(all);
+}
+
+void Bodies::add(const Vec3& centre, double radius, double mass, double inertia, std::uint8_t body_material,
+                 const Vec3& v, const Vec3& w) {
+  position.push_back({centre.x(), centre.y(), centre.z(), radius});
+  velocity.push_back({v.x(), v.y(), v.z(), 1 / mass});
+  spin.push_back({w.x(), w.y(), w.z(), 1 / inertia});
+  material.push_back(body_material);
+  id.push_back(ids_given++);
+}
+
+void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radius, double mass, const Vec3& inertia,
+                       const Eigen::Quaterniond& orientation, std::uint8_t body_material, const Vec3& v,
+                       const Vec3& w) {
+  const auto index = static_cast<std::uint32_t>(clumps.clump.size());
+  Clump clump;
+  clump.id = clump_ids_given++;
+  clump.first = static_cast<std::uint32_t>(clumps.spheres.size());
+  clump.centre = centre, clump.velocity = v, clump.spin = w;
+  clump.orientation = orientation, clump.axes = orientation.toRotationMatrix();
+  clump.inertia = inertia;
+  clump.momentum = clump.axes * clump.inertia.cwiseProduct(clump.axes.transpose() * w);
+  clump.inverse_mass = 1 / mass, clump.radius = radius, clump.volume = shape.volume * radius * radius * radius;
+  clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+  for (std::size_t k = 0; k < shape.spheres.size(); ++k) {
+    const Vec3 place = radius * xyz(shape.spheres[k]), arm = clump.axes * place;
+    const double sphere_radius = radius * shape.spheres[k].w;
+    clump.furthest = std::max(clump.furthest, place.norm() + sphere_radius);
+    clumps.spheres.push_back(static_cast<std::uint32_t>(count()));
+    add(centre + arm, sphere_radius, mass, clump.inertia.minCoeff(), body_material, v + w.cross(arm), w);
+    clumps.of_body.push_back({.clump = index, .periods = {}, .place = place});
+    clumps.volume_share.push_back(shape.shares[k]);
+  }
+  clump.last = static_cast<std::uint32_t>(clumps.spheres.size());
+  clumps.clump.push_back(clump);
+}
+
+void Bodies::finish(StateRequest asked_for) {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() - 1;  // the padding has an index, too
+  if (count() >= most) throw Error(std::to_string(count()) + " bodies; allowed are fewer than " + std::to_string(most));
+  constexpr double far_away = 1e18;  // its square is finite in single precision too
+  position.push_back({far_away, far_away, far_away, 0});
+  velocity.push_back({});
+  spin.push_back({});
+  material.push_back(0);
+  state = asked_for;
+  if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+  if (state.has(BodyState::rotation)) rotation.resize(count());
+  if (state.has(BodyState::displacement)) origin.resize(count());
+  start_paths();
+}
+
+void Bodies::start_paths() {
+  for (std::size_t i = 0; i < origin.size(); ++i) origin[i] = xyz(position[i]);
+  std::ranges::fill(rotation, Vec3::Zero());
+}
+
+std::string Bodies::group_of(std::uint32_t body) const {
+  const auto next = std::ranges::upper_bound(groups, body, {}, &Group::first_id);
+  return next == groups.begin() ? "" : std::prev(next)->name;
+}
+
+void Bodies::append(const Bodies& others) {
+  const auto before = static_cast<std::uint32_t>(count()),
+             clumps_before = static_cast<std::uint32_t>(clumps.clump.size()),
+             spheres_before = static_cast<std::uint32_t>(clumps.spheres.size());
+  const auto go_on = [](auto& array, const auto& more) { array.insert(array.end(), more.begin(), more.end()); };
+  // In place of the padding come the others, with theirs.
+  position.pop_back(), velocity.pop_back(), spin.pop_back(), material.pop_back();
+  go_on(position, others.position), go_on(velocity, others.velocity), go_on(spin, others.spin);
+  go_on(material, others.material), go_on(rotation, others.rotation), go_on(origin, others.origin);
+  for (const std::uint32_t other : others.id) id.push_back(ids_given + other);
+  for (const Group& group : others.groups) groups.push_back({group.name, ids_given + group.first_id});
+  if (!clumps.none() || !others.clumps.none()) {
+    clumps.of_body.resize(before), clumps.volume_share.resize(before, 1.0);
+    go_on(clumps.of_body, others.clumps.of_body), go_on(clumps.volume_share, others.clumps.volume_share);
+    clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+    for (std::size_t i = before; i < count(); ++i)
+      if (std::uint32_t& clump = clumps.of_body[i].clump; clump != no_clump) clump += clumps_before;
+    for (const std::uint32_t sphere : others.clumps.spheres) clumps.spheres.push_back(before + sphere);
+    for (Clump clump : others.clumps.clump) {
+      clump.id += clump_ids_given, clump.first += spheres_before, clump.last += spheres_before;
+      clumps.clump.push_back(clump);
+    }
+  }
+  ids_given += others.ids_given, clump_ids_given += others.clump_ids_given;
+}
+
+void Bodies::reorder(std::span<const std::uint32_t> order) {
+  const std::size_t before = count();
+  permute(position, order, before), permute(velocity, order, before), permute(spin, order, before);
+  permute(id, order, before), permute(material, order, before);
+  permute(rotation, order, before), permute(origin, order, before);
+  if (clumps.none()) return;
+  permute(clumps.of_body, order, before), permute(clumps.volume_share, order, before);
+  constexpr std::uint32_t gone = ~0u;
+  std::vector<std::uint32_t> now(before, gone);
+  for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
+  std::vector<Clump> kept;
+  std::vector<std::uint32_t> spheres;
+  // Clumps lie as their first spheres do, so that those of neighbouring bodies are near in memory too.
+  const auto place = [&](const Clump& clump) { return now[clumps.spheres[clump.first]]; };
+  std::ranges::sort(clumps.clump, {}, place);
+  for (Clump clump : clumps.clump) {
+    if (place(clump) == gone) break;
+    const auto first = static_cast<std::uint32_t>(spheres.size());
+    for (std::uint32_t k = clump.first; k < clump.last; ++k) {
+      spheres.push_back(now[clumps.spheres[k]]);
+      clumps.of_body[spheres.back()].clump = static_cast<std::uint32_t>(kept.size());
+    }
+    clump.first = first, clump.last = static_cast<std::uint32_t>(spheres.size());
+    kept.push_back(clump);
+  }
+  clumps.clump.swap(kept), clumps.spheres.swap(spheres);
+  if (clumps.none()) clumps = {};
+}
+
+}  // namespace grit

@@ -1,0 +1,247 @@
+#include "bodies/cloud.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include "grit/error.hpp"
+#include "bodies/sizes.hpp"
+
+namespace grit {
+
+namespace {
+
+constexpr int most_tries = 100'000;  // for one grain
+
+/// Where there is room: grains on cell grids, one grid for each factor of two in size.
+class Room {
+ public:
+  Room(const Region& box, const std::array<bool, 3>& periodic, std::span<const double> radii)
+      : low_(box.low), size_(box.high - box.low), periodic_(periodic) {
+    largest_ = *std::max_element(radii.begin(), radii.end());
+    for (const double radius : radii) {
+      const std::size_t place = level_of(radius);
+      if (place >= levels_.size()) levels_.resize(place + 1);
+      levels_[place].largest = std::max(levels_[place].largest, radius);
+      ++levels_[place].expected;
+    }
+    for (auto& level : levels_) lay_out(level);
+    grains_.reserve(radii.size());
+    next_.reserve(radii.size());
+  }
+
+  void add(const Row& grain) {
+    Level& level = levels_[level_of(grain.w)];
+    std::array<int, 3> cell;
+    Vec3 centre = xyz(grain);
+    for (int k = 0; k < 3; ++k) {
+      if (periodic_[k]) centre[k] -= size_[k] * std::floor((centre[k] - low_[k]) / size_[k]);
+      cell[k] = std::clamp(level.cell(k, centre[k] - low_[k]), 0, level.cells[k] - 1);
+    }
+    auto& first = level.first[level.index(cell[0], cell[1], cell[2])];
+    next_.push_back(first);
+    first = static_cast<std::int32_t>(grains_.size());
+    grains_.push_back({centre[0], centre[1], centre[2], grain.w});
+  }
+
+  bool has_room(const Row& grain) const {
+    // Most places are taken, most often by a grain centred in the very cell that is tried.
+    for (const auto& level : levels_)
+      if (level.expected > 0 && !free_own_cell(level, grain)) return false;
+    for (const auto& level : levels_)
+      if (level.expected > 0 && !free_neighbours(level, grain)) return false;
+    return true;
+  }
+
+ private:
+  struct Level {
+    double largest = 0;  // radius
+    std::size_t expected = 0;
+    std::array<int, 3> cells{};
+    Vec3 per_length = Vec3::Zero();   // cells a metre
+    std::vector<std::int32_t> first;  // grain of each cell; the others follow by next_
+
+    int cell(int axis, double offset) const { return static_cast<int>(std::floor(offset * per_length[axis])); }
+    std::size_t index(int x, int y, int z) const { return (static_cast<std::size_t>(z) * cells[1] + y) * cells[0] + x; }
+  };
+
+  std::size_t level_of(double radius) const { return static_cast<std::size_t>(std::ilogb(largest_ / radius)); }
+
+  void lay_out(Level& level) const {
+    if (level.expected == 0) return;
+    // As wide as its grains, but not many more cells than grains.
+    const double side = std::max(2 * level.largest, std::cbrt(size_.prod() / static_cast<double>(level.expected)));
+    for (int k = 0; k < 3; ++k) {
+      level.cells[k] = std::max(1, static_cast<int>(size_[k] / side));
+      level.per_length[k] = level.cells[k] / size_[k];
+    }
+    level.first.assign(level.index(0, 0, level.cells[2]), -1);
+  }
+
+  /// Whether no grain of a list comes near; `at` is shifted to the image of the list's cell.
+  bool free_list(std::int32_t grain, const Vec3& at, double radius) const {
+    for (; grain >= 0; grain = next_[grain]) {
+      const Row& other = grains_[grain];
+      const double x = other.x - at[0], y = other.y - at[1], z = other.z - at[2], reach = other.w + radius;
+      if (x * x + y * y + z * z < reach * reach) return false;
+    }
+    return true;
+  }
+
+  bool free_own_cell(const Level& level, const Row& grain) const {
+    const Vec3 at = xyz(grain);
+    std::array<int, 3> cell;
+    for (int k = 0; k < 3; ++k) cell[k] = std::clamp(level.cell(k, at[k] - low_[k]), 0, level.cells[k] - 1);
+    return free_list(level.first[level.index(cell[0], cell[1], cell[2])], at, grain.w);
+  }
+
+  bool free_neighbours(const Level& level, const Row& grain) const {
+    const double reach = grain.w + level.largest;
+    const Vec3 at = xyz(grain);
+    std::array<int, 3> from, to;
+    for (int k = 0; k < 3; ++k) {
+      from[k] = level.cell(k, at[k] - low_[k] - reach), to[k] = level.cell(k, at[k] - low_[k] + reach);
+      if (periodic_[k]) continue;
+      from[k] = std::clamp(from[k], 0, level.cells[k] - 1), to[k] = std::clamp(to[k], 0, level.cells[k] - 1);
+    }
+    // A cell beyond a periodic side is one within, seen from a place shifted by whole periods.
+    Vec3 seen;
+    const auto wrap = [&](int axis, int cell) {
+      const int cells = level.cells[axis];
+      const int turns = cell < 0 ? -((cells - 1 - cell) / cells) : cell / cells;
+      seen[axis] = turns == 0 ? at[axis] : at[axis] - turns * size_[axis];
+      return cell - turns * cells;
+    };
+    for (int z = from[2]; z <= to[2]; ++z) {
+      const int cell_z = wrap(2, z);
+      for (int y = from[1]; y <= to[1]; ++y) {
+        const int cell_y = wrap(1, y);
+        for (int x = from[0]; x <= to[0]; ++x) {
+          const int cell_x = wrap(0, x);
+          if (!free_list(level.first[level.index(cell_x, cell_y, cell_z)], seen, grain.w)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  Vec3 low_, size_;
+  std::array<bool, 3> periodic_;
+  double largest_;
+  std::vector<Level> levels_;
+  std::vector<Row> grains_;
+  std::vector<std::int32_t> next_;
+};
+
+std::string text(const Region& box) {
+  std::ostringstream out;
+  out << '(' << box.low.transpose() << ") … (" << box.high.transpose() << ") m";
+  return out.str();
+}
+
+/// The axes along which the box wraps round.
+std::array<bool, 3> wrapped_axes(const Region& box, const Cell& cell) {
+  std::array<bool, 3> wrapped;
+  for (int k = 0; k < 3; ++k) {
+    if (!(box.low[k] < box.high[k]) || !std::isfinite(box.high[k] - box.low[k]))
+      throw Error("cloud: the box " + text(box) + " is empty or endless; its low corner must lie below its high one");
+    if (cell.periodic[k] && (box.low[k] < cell.low[k] || box.high[k] > cell.high[k]))
+      throw Error("cloud: the box " + text(box) + " leaves the periodic cell " + text({cell.low, cell.high}) +
+                  "; keep it within");
+    wrapped[k] = cell.periodic[k] && box.low[k] == cell.low[k] && box.high[k] == cell.high[k];
+  }
+  return wrapped;
+}
+
+/// Those of `others`, and of their images, that may be in the way of a grain in the box, whose radius is at most this.
+/// Along wrapped axes there are no images: room is sought there across the sides anyway.
+std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<bool, 3>& wrapped,
+                          std::span<const Row> others, double radius) {
+  Vec3 period = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (cell.periodic[k] && !wrapped[k]) period[k] = cell.high[k] - cell.low[k];
+  std::vector<Row> near;
+  for (const Row& other : others) {
+    const Vec3 reach = Vec3::Constant(other.w + radius);
+    for (std::uint8_t image = 0; image < 27; ++image) {
+      const std::array<int, 3> turns{image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
+      Vec3 centre = xyz(other);
+      bool counts = true;
+      for (int k = 0; k < 3; ++k) {
+        counts = counts && (turns[k] == 0 || period[k] > 0);
+        centre[k] += turns[k] * period[k];
+        counts = counts && (wrapped[k] || (centre[k] > box.low[k] - reach[k] && centre[k] < box.high[k] + reach[k]));
+      }
+      if (counts) near.push_back({centre.x(), centre.y(), centre.z(), other.w});
+    }
+  }
+  return near;
+}
+
+}  // namespace
+
+std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vector<double> diameters, Random& random,
+                                 std::span<const Row> others, std::optional<int> flat) {
+  const auto wrapped = wrapped_axes(box, cell);
+  if (diameters.empty()) return {};
+  std::sort(diameters.begin(), diameters.end(), std::greater<>());
+  const Vec3 size = box.high - box.low;
+  if (diameters.front() > size.minCoeff()) {
+    std::ostringstream out;
+    out << "cloud: a grain of diameter " << diameters.front() << " m does not fit into the box " << text(box)
+        << "; give a bigger box or smaller grains";
+    throw Error(out.str());
+  }
+
+  std::vector<double> radii;
+  for (const double diameter : diameters) radii.push_back(0.5 * diameter);
+  const auto in_the_way = near_box(box, cell, wrapped, others, radii.front());
+  for (const auto& other : in_the_way) radii.push_back(other.w);
+  Room room(box, wrapped, radii);
+  for (const auto& other : in_the_way) room.add(other);
+
+  std::vector<Row> placed;
+  placed.reserve(diameters.size());
+  const auto coordinate = [&](int axis, double radius) {
+    if (axis == flat) return 0.5 * (box.low[axis] + box.high[axis]);
+    const double margin = wrapped[axis] ? 0 : radius;
+    const double at = box.low[axis] + margin + random.uniform() * std::max(0.0, size[axis] - 2 * margin);
+    return std::min(at, box.high[axis] - margin);
+  };
+  for (const double diameter : diameters) {
+    Row grain;
+    grain.w = 0.5 * diameter;
+    int tries = 0;
+    do {
+      if (tries++ == most_tries) {
+        double solid = 0;
+        for (const auto& one : placed) solid += 4.0 / 3.0 * std::numbers::pi * one.w * one.w * one.w;
+        std::ostringstream out;
+        out << "cloud: only " << placed.size() << " of " << diameters.size() << " grains found a place in the box "
+            << text(box) << ": solid fraction " << solid / size.prod() << ", and no room for a grain of diameter "
+            << diameter << " m in " << most_tries
+            << " tries; equal grains placed at random end near 0.38: give a bigger box, fewer grains or smaller ones"
+            << (in_the_way.empty() ? "" : "; what is there by then takes room as well");
+        throw Error(out.str());
+      }
+      grain.x = coordinate(0, grain.w), grain.y = coordinate(1, grain.w), grain.z = coordinate(2, grain.w);
+    } while (!room.has_room(grain));
+    room.add(grain);
+    placed.push_back(grain);
+  }
+  random.shuffle(placed);
+  return placed;
+}
+
+std::vector<Row> make_cloud(const CloudGrains& cloud, const Cell& cell, Random& random, std::span<const Row> others) {
+  const auto count = static_cast<std::size_t>(std::max<std::int64_t>(cloud.count, 0));
+  const std::optional<int> flat = cloud.flat == "none" ? std::nullopt : std::optional(cloud.flat[0] - 'x');
+  return place_at_random({cloud.low, cloud.high}, cell, draw_diameters(cloud.sizes, count, random), random, others,
+                         flat);
+}
+
+}  // namespace grit

@@ -1,0 +1,62 @@
+// The built-in body kind "clump".
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "grit/body_kind.hpp"
+#include "grit/plugin.hpp"
+#include "bodies/clump_shape.hpp"
+
+namespace grit {
+
+struct ClumpSphereDescription {
+  Vec3 position = Vec3::Zero();
+  double radius = 0;
+  void declare(Parameters& p);
+};
+struct ListedSpheres {
+  static constexpr const char* type_name = "list";
+  std::deque<ClumpSphereDescription> spheres;
+  void declare(Parameters& p);
+};
+struct SpheresOfFile {
+  static constexpr const char* type_name = "file";
+  std::string path;
+  void declare(Parameters& p);
+};
+struct RodSpheres {
+  static constexpr const char* type_name = "rod";
+  std::int64_t count = 2;
+  double spacing = 0.5;
+  void declare(Parameters& p);
+};
+struct AsymmetricSpheres {
+  static constexpr const char* type_name = "asymmetric";
+  void declare(Parameters&) {}
+};
+
+/// Overlapping spheres that are fixed to each other. Sizes of the description say how they lie, those of its grains how
+/// large each clump is.
+class ClumpBody : public BodyKind {
+ public:
+  void declare(Parameters& p) override;
+  /// Throws ParameterError for spheres that cannot be read or make no clump.
+  void prepare() override;
+  const ClumpShape* clump() const override;
+  double volume(double radius) const override { return clump()->volume * radius * radius * radius; }
+  /// The least principal moment.
+  double inertia(double radius, double mass) const override { return clump()->inertia[0] * mass * radius * radius; }
+
+ private:
+  OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
+  std::vector<Ball> balls_;
+  mutable std::optional<ClumpShape> shape_;  // integrated when asked for
+};
+
+/// For Registry::add().
+const PluginInfo& clump_body();
+
+}  // namespace grit

@@ -1,0 +1,100 @@
+#include "bodies/sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "grit/error.hpp"
+#include "bodies/normal.hpp"
+#include "bodies/same_bits.hpp"
+
+namespace grit {
+
+namespace {
+
+/// `quantile` gives the diameter below which a share of the number lies.
+template <class Quantile>
+std::vector<double> stratified(std::size_t count, Random& random, const Quantile& quantile) {
+  std::vector<double> diameters(count);
+  for (std::size_t i = 0; i < count; ++i)
+    diameters[i] = quantile((static_cast<double>(i) + 0.5) / static_cast<double>(count));
+  random.shuffle(diameters);
+  return diameters;
+}
+
+/// Where mass is spread evenly over the diameters a … b, numbers go with 1/d³ and their share below d is
+/// (1/a² − 1/d²) / (1/a² − 1/b²); solved for d.
+double even_mass_quantile(double a, double b, double share) {
+  const double ratio = a / b;
+  return std::clamp(a / std::sqrt(1 - share * (1 - ratio * ratio)), a, b);
+}
+
+void check(const SieveSizes& sieve) {
+  const auto& [d, passing] = sieve;
+  const bool curve = d.size() >= 2 && passing.size() == d.size() && d.front() > 0 &&
+                     std::is_sorted(d.begin(), d.end(), std::less_equal<>()) && passing.front() == 0 &&
+                     passing.back() == 1 && std::is_sorted(passing.begin(), passing.end());
+  if (!curve)
+    throw Error(
+        "sieve sizes: `diameters` must be positive and increase, `passing` must not decrease from 0 to 1, and both "
+        "need "
+        "the same number of entries, 2 or more; found " +
+        std::to_string(d.size()) + " diameters and " + std::to_string(passing.size()) + " shares");
+}
+
+}  // namespace
+
+std::vector<double> draw_diameters(const UniformSizes& sizes, std::size_t count, Random& random) {
+  return stratified(count, random,
+                    [&](double share) { return sizes.smallest + share * (sizes.largest - sizes.smallest); });
+}
+
+std::vector<double> draw_diameters(const LinearSizes& sizes, std::size_t count, Random& random) {
+  return stratified(count, random,
+                    [&](double share) { return even_mass_quantile(sizes.smallest, sizes.largest, share); });
+}
+
+std::vector<double> draw_diameters(const LogNormalSizes& sizes, std::size_t count, Random& random) {
+  const auto score = [&](double d) { return same_bits::log(d / sizes.median) / sizes.deviation; };
+  const double low = score(sizes.smallest), high = score(sizes.largest);
+  // Shares are taken from the nearer tail, where they keep their digits.
+  const double sign = low + high > 0 ? -1 : 1;
+  const double first = normal_share(sign * low), last = normal_share(sign * high);
+  return stratified(count, random, [&](double share) {
+    const double z = sign * normal_quantile(first + share * (last - first));
+    return std::clamp(sizes.median * same_bits::exp(sizes.deviation * z), sizes.smallest, sizes.largest);
+  });
+}
+
+std::vector<double> draw_diameters(const SieveSizes& sizes, std::size_t count, Random& random) {
+  check(sizes);
+  const std::vector<double>&d = sizes.diameters, &passing = sizes.passing;
+  std::vector<double> numbers(d.size(), 0.0);  // of grains below each diameter, per mass
+  for (std::size_t i = 1; i < d.size(); ++i)
+    numbers[i] =
+        numbers[i - 1] + (passing[i] - passing[i - 1]) * (d[i - 1] + d[i]) / (2 * d[i - 1] * d[i - 1] * d[i] * d[i]);
+  return stratified(count, random, [&](double share) {
+    const double wanted = share * numbers.back();
+    const auto above = std::upper_bound(numbers.begin() + 1, numbers.end() - 1, wanted) - numbers.begin();
+    const double within = (wanted - numbers[above - 1]) / (numbers[above] - numbers[above - 1]);
+    return even_mass_quantile(d[above - 1], d[above], within);
+  });
+}
+
+std::vector<double> draw_diameters(const ListSizes& sizes, std::size_t count, Random&) {
+  if (sizes.diameters.empty()) throw Error("list of sizes: no diameters; give one or more");
+  std::vector<double> diameters(count);
+  for (std::size_t i = 0; i < count; ++i) diameters[i] = sizes.diameters[i % sizes.diameters.size()];
+  return diameters;
+}
+
+std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random) {
+  return std::visit(
+      [&]<class S>(const S& chosen) -> std::vector<double> {
+        if constexpr (std::same_as<S, std::monostate>) throw Error("sizes of grains: no size distribution was chosen");
+        else return draw_diameters(chosen, count, random);
+      },
+      sizes.value());
+}
+
+}  // namespace grit

@@ -1,0 +1,833 @@
+#include "description/description.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace grit {
+namespace {
+
+const std::vector<std::string> one_axis{"x", "y", "z"};
+const std::vector<std::string> some_axes{"x", "y", "z", "xy", "xz", "yz", "xyz"};
+
+std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
+
+bool is_changeable(const std::string& section) {
+  const auto& all = SceneDescription::changeable();
+  return std::ranges::find(all, section) != all.end();
+}
+
+template <class Names>
+std::string any_of(const Names& names, const std::string& otherwise) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "one of " : ", ") + name;
+  return text.empty() ? otherwise : text;
+}
+
+template <class T>
+std::vector<std::string> keys(const std::map<std::string, T>& map) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) names.push_back(entry.first);
+  return names;
+}
+
+void declare_sizes(Parameters& p, double& smallest, double& largest) {
+  p.add("smallest", smallest).unit("m").symbol("d_min").above(0).doc("smallest diameter");
+  p.add("largest", largest).unit("m").symbol("d_max").above(0).doc("largest diameter");
+  p.check(
+      [&](const Complain& complain) {
+        if (largest < smallest) complain("largest", "a diameter below smallest", "smallest or more");
+      },
+      {"smallest", "largest"});
+}
+
+/// Reports a low that is not below its high, axis by axis.
+void check_box(const Vec3& low, const Vec3& high, const Complain& complain) {
+  for (int k = 0; k < 3; ++k)
+    if (!(low[k] < high[k]))
+      complain("high/" + std::to_string(k), "a side that is not above low along " + one_axis[k], "low < high");
+}
+
+/// Reports names that are none of `names`.
+class References {
+ public:
+  References(std::string what, std::vector<std::string> names, const Complain& complain)
+      : names_(std::move(names)), complain_(complain), what_(std::move(what)) {}
+
+  bool has(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
+  void check(const std::string& key, const std::string& name) const {
+    if (!has(name))
+      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not described", any_of(names_, "none"));
+  }
+
+ private:
+  std::vector<std::string> names_;
+  const Complain& complain_;
+  std::string what_;
+};
+
+void check_walls_of(const Condition& condition, const std::string& key, const References& walls) {
+  const auto each = [&](const std::vector<Condition>& parts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) check_walls_of(parts[i], key + "/of/" + std::to_string(i), walls);
+  };
+  const auto& is = condition.is.value();
+  if (const auto* displacement = std::get_if<DisplacementCondition>(&is))
+    walls.check(key + "/wall", displacement->wall);
+  if (const auto* pressure = std::get_if<PressureCondition>(&is)) walls.check(key + "/wall", pressure->wall);
+  if (const auto* all = std::get_if<AllCondition>(&is)) each(all->of);
+  if (const auto* any = std::get_if<AnyCondition>(&is)) each(any->of);
+}
+
+/// A wall that follows itself by way of others.
+void check_circles(const std::map<std::string, WallDescription>& walls, const Complain& complain) {
+  for (const auto& [name, wall] : walls) {
+    std::set<std::string> passed;
+    const WallDescription* at = &wall;
+    while (at->motion.follow && passed.insert(at->motion.follow->wall).second) {
+      const auto next = walls.find(at->motion.follow->wall);
+      if (next == walls.end()) break;
+      at = &next->second;
+    }
+    if (passed.contains(name))
+      complain("walls/" + name + "/motion/follow/wall", "a circle of walls that follow each other",
+               "a wall that leads");
+  }
+}
+
+// ---- what sections say of each other
+
+/// A body keeps the index of its material in one byte.
+void check_number_of_materials(const SceneDescription& scene, const Complain& complain) {
+  constexpr std::size_t most = 255;
+  if (scene.materials.size() > most)
+    complain("materials", std::to_string(scene.materials.size()) + " materials", std::to_string(most) + " or fewer");
+}
+
+void check_interfaces(const SceneDescription& scene, const Complain& complain) {
+  for (const auto& [name, _] : scene.materials)
+    if (name.find('+') != std::string::npos)
+      complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
+  const References known("material", keys(scene.materials), complain);
+  std::set<std::pair<std::string, std::string>> pairs;
+  for (const InterfaceDescription& one : scene.interfaces) {
+    const std::string name = one.name(), key = "interfaces/" + name;
+    if (one.b.empty()) {
+      complain(key, in_quotes(name), "two materials joined by +, e.g. sand+steel");
+      continue;
+    }
+    known.check(key, one.a);
+    if (one.a != one.b) known.check(key, one.b);
+    if (!pairs.insert(std::minmax(one.a, one.b)).second)
+      complain(key, "an interface that is described twice", "either order, once");
+  }
+}
+
+void check_materials_of_bodies(const SceneDescription& scene, const Complain& complain) {
+  const References known("material", keys(scene.materials), complain);
+  for (const auto& [name, group] : scene.bodies) known.check("bodies/" + name + "/material", group.material);
+}
+
+void check_materials_of_walls(const SceneDescription& scene, const Complain& complain) {
+  const References known("material", keys(scene.materials), complain);
+  for (const auto& [name, wall] : scene.walls) known.check("walls/" + name + "/material", wall.material);
+}
+
+void check_weight(const SceneDescription& scene, const Complain& complain) {
+  const auto is_heavier = [](const auto& group) { return group.second.heavier_below > 0; };
+  if (std::ranges::none_of(scene.bodies, is_heavier)) return;
+  MotionSettings settings;
+  for (const auto& [name, engine] : scene.engines) engine.engine.make()->settings(settings);
+  if (settings.gravity.isZero(0.0)) return;
+  for (const auto& [name, group] : scene.bodies)
+    if (group.heavier_below > 0)
+      complain("bodies/" + name + "/heavier_below", "heavier grains where gravity acts",
+               "0: their weight would grow with their mass");
+}
+
+void check_followers(const SceneDescription& scene, const Complain& complain) {
+  const References known("wall", keys(scene.walls), complain);
+  for (const auto& [name, wall] : scene.walls)
+    if (wall.motion.follow) known.check("walls/" + name + "/motion/follow/wall", wall.motion.follow->wall);
+  check_circles(scene.walls, complain);
+}
+
+void declare_parts(Parameters& p, std::vector<Condition>& of, const std::string& doc) {
+  ListTarget target;
+  target.size = [&of] { return of.size(); };
+  target.clear = [&of] { of.clear(); };
+  target.append = [&of](Parameters& inner) { of.emplace_back().declare(inner); };
+  target.declare = [&of](std::size_t i, Parameters& inner) { of[i].declare(inner); };
+  p.add_target("of", std::move(target)).required().entries(1).doc(doc);
+}
+
+}  // namespace
+
+void DisplacementCadence::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall");
+  p.add("axis", axis).one_of(one_axis).doc("axis of the displacement");
+  p.add("value", value)
+      .unit("m")
+      .symbol("u")
+      .above(0)
+      .required()
+      .doc("displacement from one to the next, there or back");
+}
+void Cadence::declare(Parameters& p) {
+  p.add("every_time", every_time).unit("s").above(0).doc("simulated time from one to the next");
+  p.add("every_steps", every_steps).at_least(0).doc("steps from one to the next; 0: not by steps");
+  p.add("every_displacement", every_displacement).doc("displacement of a wall from one to the next");
+  p.add("every_left", every_left)
+      .above(0)
+      .at_most(1)
+      .doc("share of all mass that has come that leaves the domain from one to the next");
+  p.check(
+      [this](const Complain& complain) {
+        std::string key, given;
+        const auto count = [&](bool there, const char* name, const char* what) {
+          if (there) key = name, given += (given.empty() ? "a cadence " : " and ") + std::string(what);
+        };
+        count(every_time.has_value(), "every_time", "in time");
+        count(every_steps > 0, "every_steps", "in steps");
+        count(every_displacement.has_value(), "every_displacement", "in displacement");
+        count(every_left.has_value(), "every_left", "in mass that leaves");
+        if (given.find(" and ") != std::string::npos) complain(key, given, "one of them");
+      },
+      {"every_time", "every_steps", "every_displacement", "every_left"});
+}
+
+// ---- grains
+
+void UniformSizes::declare(Parameters& p) { declare_sizes(p, smallest, largest); }
+void LinearSizes::declare(Parameters& p) { declare_sizes(p, smallest, largest); }
+void LogNormalSizes::declare(Parameters& p) {
+  p.add("median", median).unit("m").symbol("d_50").above(0).doc("median diameter");
+  p.add("deviation", deviation).above(0).at_most(3).doc("standard deviation of the diameter's natural logarithm");
+  declare_sizes(p, smallest, largest);
+}
+void SieveSizes::declare(Parameters& p) {
+  p.add("diameters", diameters).unit("m").above(0).required().entries(2).doc("openings of the sieves, rising");
+  p.add("passing", passing)
+      .at_least(0)
+      .at_most(1)
+      .required()
+      .entries(2)
+      .doc("share of the mass that passes each, rising to 1");
+  p.check(
+      [this](const Complain& complain) {
+        const auto rises = [](const std::vector<double>& v) {
+          return std::ranges::adjacent_find(v, std::greater_equal()) == v.end();
+        };
+        if (passing.size() != diameters.size())
+          complain("passing", std::to_string(passing.size()) + " entries",
+                   std::to_string(diameters.size()) + ", one for each diameter");
+        if (!rises(diameters)) complain("diameters", "a list that does not rise", "a rising list");
+        if (!rises(passing)) complain("passing", "a list that does not rise", "a rising list");
+        if (passing.back() != 1) complain("passing", "a last entry below 1", "1, all of the mass");
+      },
+      {"diameters", "passing"});
+}
+void ListSizes::declare(Parameters& p) {
+  p.add("diameters", diameters).unit("m").above(0).required().entries(1).doc("diameters, taken in turn");
+}
+
+void CloudGrains::declare(Parameters& p) {
+  p.add("low", low).unit("m").required().doc("lower corner of the box that is filled");
+  p.add("high", high).unit("m").required().doc("upper corner of the box that is filled");
+  p.add("count", count).at_least(1).at_most(4e9).required().doc("number of grains");
+  p.add("sizes", sizes).required().doc("their diameters");
+  p.add("flat", flat)
+      .one_of({"none", "x", "y", "z"})
+      .doc("normal of the plane in the middle of the box on which all centres lie, for the engine planar");
+  p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
+}
+void FileGrains::declare(Parameters& p) {
+  p.add("path", path).file().required().doc("text file, a line a grain: x y z radius, in m; # starts a comment");
+  p.check(
+      [this](const Complain& complain) {
+        if (path.empty()) complain("path", "an empty text", "the path of a file");
+      },
+      {"path"});
+}
+void PlacedGrain::declare(Parameters& p) {
+  p.add("position", position).unit("m").required().doc("centre");
+  p.add("radius", radius).unit("m").symbol("R").above(0).required().doc("radius");
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity at the start");
+  p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity at the start, right-handed");
+  p.add("orientation", orientation)
+      .unit("rad")
+      .doc("of a clump: axis times angle by which it is turned from how its shape is given");
+}
+void PlacedGrains::declare(Parameters& p) {
+  p.add("grains", grains).required().entries(1).doc("the grains, one by one");
+}
+
+BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) {}
+void BodiesDescription::declare(Parameters& p) {
+  p.choose(kind);
+  p.add("material", material).required().doc("name of their material");
+  p.add("stage", stage).doc("name of the stage at whose begin they appear; left out: at the start of the run");
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("with which they appear, on top of what a list says of each");
+  p.add("overlap", overlap)
+      .at_least(0)
+      .doc("largest overlap with walls and bodies that are there when they appear in a stage, over the smaller radius");
+  p.add("heavier_below", heavier_below)
+      .unit("m")
+      .at_least(0)
+      .doc(
+          "grains of a smaller diameter than this get the mass and inertia of one of it, so that they allow a longer "
+          "time step (differential density scaling); not where gravity acts");
+  p.add("grains", grains).required().doc("where they are and how large");
+}
+
+// ---- walls
+
+void ServoDescription::declare(Parameters& p) {
+  p.add("axis", axis).one_of(one_axis).doc("axis along which the wall is driven");
+  p.add("pressure", pressure).unit("Pa").symbol("p").at_least(0).doc("pressure to keep, compression positive");
+  p.add("force", force)
+      .unit("N")
+      .symbol("F")
+      .doc("force to keep, with which the wall pushes bodies along the axis, by its sign; for any geometry");
+  p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
+  p.add("gain", gain)
+      .above(0)
+      .at_most(1)
+      .doc("share of the force's error that one step takes away where contacts are springs; less where they damp");
+  p.add("area", area)
+      .one_of({"geometry", "specimen"})
+      .doc("what the pressure acts on: the geometry's area, or the specimen's cross-section as it is then");
+  p.check(
+      [this](const Complain& complain) {
+        if (!pressure && !force) complain("pressure", "neither a pressure nor a force", "one of them, to be kept");
+        if (pressure && force) complain("force", "a pressure and a force", "one of them");
+        if (force && area != "geometry") complain("area", "the area of a force", "it beside a pressure alone");
+      },
+      {"pressure", "force", "area"});
+}
+void FollowDescription::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall whose motion it shares");
+  p.add("axes", axes).one_of(some_axes).doc("axes along which it does");
+}
+void FreeDescription::declare(Parameters& p) {
+  p.add("axes", axes).one_of(some_axes).doc("axes along which the wall moves as forces push it");
+  p.add("mass", mass).unit("kg").symbol("m").above(0).required().doc("its mass");
+  p.add("load", load).unit("N").symbol("F").doc("force on the wall from outside");
+}
+void OscillationDescription::declare(Parameters& p) {
+  p.add("amplitude", amplitude).unit("m").symbol("A").doc("of the displacement, half of the way from end to end");
+  p.add("angle", angle).unit("rad").symbol("alpha").doc("the same of the turn about its point, right-handed");
+  p.add("frequency", frequency).unit("Hz").symbol("f").above(0).required().doc("periods in a second");
+  p.add("phase", phase)
+      .unit("rad")
+      .symbol("phi")
+      .doc("where in its period it begins; 0: in the middle of its way, 90 deg: at its far end");
+  p.check(
+      [this](const Complain& complain) {
+        if (amplitude.isZero(0.0) && angle.isZero(0.0))
+          complain("amplitude", "neither an amplitude nor an angle", "one that is not 0, or no oscillation");
+      },
+      {"amplitude", "angle"});
+}
+void MotionDescription::declare(Parameters& p) {
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity");
+  p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity, right-handed");
+  p.add("about", about).unit("m").doc("point that it turns about; left out: the geometry's reference point");
+  p.add("ramp_time", ramp_time)
+      .unit("s")
+      .at_least(0)
+      .doc("time in which velocity, spin and oscillation grow linearly from zero");
+  p.add("oscillation", oscillation).doc("to and fro as a sine, on top of velocity and spin");
+  p.add("servo", servo).doc("keeps a pressure");
+  p.add("follow", follow).doc("shares the motion of another wall");
+  p.add("free", free).doc("moves as forces push it");
+  p.check(
+      [this](const Complain& complain) {
+        for (int k = 0; k < 3; ++k) {
+          std::vector<std::string> claims;
+          const auto claim = [&](bool claimed, const char* key) {
+            if (claimed) claims.push_back(key);
+          };
+          const bool swings = oscillation && oscillation->amplitude[k] != 0;
+          claim(velocity[k] != 0 && !swings, "velocity");
+          claim(swings, "oscillation");
+          claim(servo && servo->axis == one_axis[k], "servo");
+          claim(follow && follow->axes.find(one_axis[k]) != std::string::npos, "follow");
+          claim(free && free->axes.find(one_axis[k]) != std::string::npos, "free");
+          if (claims.size() < 2) continue;
+          std::string all;
+          for (const auto& one : claims) all += (all.empty() ? "" : " and ") + one;
+          complain(claims.back(), "the axis " + one_axis[k] + " claimed by " + all, "one of them for each axis");
+        }
+      },
+      {"velocity", "oscillation", "servo", "follow", "free"});
+}
+WallDescription::WallDescription(const Registry& registry) : geometry(registry) {}
+void WallDescription::declare(Parameters& p) {
+  p.choose(geometry);
+  p.add("material", material).required().doc("name of the material of its surface");
+  p.add("motion", motion).doc("how it moves, axis by axis; left out: not at all");
+}
+
+// ---- the rest
+
+void MaterialDescription::declare(const std::string& name, ContactLaw* law, Parameters& p) {
+  p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("of the solid");
+  if (law == nullptr) return p.leave_open(), p.add_values(values);
+  law->declare_material(name, p);
+  p.when_read([this, name, law] {
+    Parameters own;
+    law->declare_material(name, own);
+    values = write(own);
+  });
+}
+InterfaceDescription::InterfaceDescription(const std::string& name) : a(name.substr(0, name.find('+'))) {
+  if (a.size() < name.size()) b = name.substr(a.size() + 1);
+}
+void InterfaceDescription::declare(ContactLaw* law, Parameters& p) {
+  if (law == nullptr || b.empty()) return p.leave_open(), p.add_values(values);
+  law->declare_interface(a, b, p);
+  p.when_read([this, law] {
+    Parameters own;
+    law->declare_interface(a, b, own);
+    values = write(own);
+  });
+}
+void DomainDescription::declare(Parameters& p) {
+  p.add("low", low).unit("m").doc("lower corner; left out: open");
+  p.add("high", high).unit("m").doc("upper corner; left out: open");
+  p.add("periodic", periodic).doc("axes along which the domain repeats");
+  p.add("strain_rate", strain_rate).unit("1/s").symbol("eps_dot").doc("of the periodic axes, positive in extension");
+  p.add("open_sides", open_sides)
+      .doc("sides through which bodies may leave, and are gone: -x, +x, -y, +y, -z, +z; elsewhere that is an error");
+  p.check(
+      [this](const Complain& complain) {
+        if (low && high) check_box(*low, *high, complain);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::string axis = '/' + std::to_string(k);
+          if (periodic[k] && !(low && high))
+            complain("periodic" + axis, "a periodic axis without an end", "low and high with periodic axes");
+          if (!periodic[k] && strain_rate[static_cast<int>(k)] != 0)
+            complain("strain_rate" + axis, "a strain rate along an axis that is not periodic",
+                     "0 here, or a periodic axis");
+        }
+      },
+      {"low", "high", "periodic", "strain_rate"});
+  p.check(
+      [this](const Complain& complain) {
+        for (std::size_t i = 0; i < open_sides.size(); ++i) {
+          const std::string& side = open_sides[i];
+          const std::string at = "open_sides/" + std::to_string(i);
+          const bool known = side.size() == 2 && (side[0] == '-' || side[0] == '+') && side[1] >= 'x' && side[1] <= 'z';
+          if (!known) complain(at, in_quotes(side), "one of -x, +x, -y, +y, -z, +z");
+          else if (periodic[static_cast<std::size_t>(side[1] - 'x')])
+            complain(at, "a side of a periodic axis", "a side of an axis that is not periodic");
+          else if (!(side[0] == '-' ? low : high))
+            complain(at, "a side that lies nowhere", side[0] == '-' ? "low with it" : "high with it");
+        }
+      },
+      {"low", "high", "periodic", "open_sides"});
+}
+void SpecimenDescription::declare(Parameters& p) {
+  p.add("low", low).doc("walls on its lower x, y and z side; \"\" where the domain bounds it");
+  p.add("high", high).doc("walls on its upper x, y and z side; \"\" where the domain bounds it");
+  p.check([this](const Complain& complain) {
+    for (const auto& [key, walls] : {std::pair("low", &low), std::pair("high", &high)})
+      if (!walls->empty() && walls->size() != 3)
+        complain(key, "a list of " + std::to_string(walls->size()), "a list of 3, for x, y and z");
+  });
+}
+void TimeStepDescription::declare(Parameters& p) {
+  p.add("safety", safety).above(0).at_most(10).doc("time step over the critical one");
+  p.add("steps_per_impact", steps_per_impact)
+      .at_least(0)
+      .at_most(1e6)
+      .doc("that an impact of two grains by themselves takes at least; 0: as few as safety allows");
+  p.add("value", value)
+      .unit("s")
+      .symbol("dt")
+      .above(0)
+      .doc(
+          "time step; left out: safety times the critical one, or what steps_per_impact asks for where that is "
+          "shorter");
+  p.add("allow_unstable", allow_unstable).doc("runs above the critical time step too");
+  p.check([this](const Complain& complain) {
+    if (safety > 1 && !allow_unstable)
+      complain("safety", "a time step above the critical one", "at most 1, unless allow_unstable is true");
+  });
+}
+void GuardsDescription::declare(Parameters& p) {
+  p.add("overlap", overlap).above(0).doc("largest overlap, over the smaller radius");
+  p.add("travel", travel).above(0).doc("largest way in one step, over the radius");
+  p.add("energy", energy)
+      .above(0)
+      .doc(
+          "largest share of the energy that may appear from nowhere; dissipation hides gains unless an energy probe "
+          "looks; not looked at where a cell deforms, bodies are held or engines push them");
+}
+void EngineDescription::declare(Parameters& p) { p.choose(engine); }
+void ProbeDescription::declare(Parameters& p) {
+  p.choose(probe);
+  cadence.declare(p);
+  p.add("stages", stages).doc("names of the stages in which it looks; empty: all");
+  p.add("frames", frames).doc("whether its fields go into frames");
+}
+
+// ---- stages
+
+void TimeCondition::declare(Parameters& p) {
+  p.add("value", value).unit("s").symbol("t").above(0).required().doc("simulated time since the stage began");
+}
+void StepsCondition::declare(Parameters& p) {
+  p.add("value", value).at_least(1).required().doc("steps since the stage began");
+}
+void DisplacementCondition::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall");
+  p.add("axis", axis).one_of(one_axis).doc("axis of the displacement");
+  p.add("value", value)
+      .unit("m")
+      .symbol("u")
+      .required()
+      .doc("displacement since the stage began, reached in the direction of its sign");
+  p.check(
+      [this](const Complain& complain) {
+        if (value == 0) complain("value", "0 m", "a displacement with a direction");
+      },
+      {"value"});
+}
+void UnbalancedForceCondition::declare(Parameters& p) {
+  p.add("below", below).above(0).doc("mean net force of a body over the mean contact force");
+}
+void KineticEnergyCondition::declare(Parameters& p) {
+  p.add("below", below).above(0).doc("kinetic energy of all bodies over the elastic energy of all contacts");
+}
+void VoidRatioCondition::declare(Parameters& p) {
+  p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen that is fallen below");
+  p.add("above", above).symbol("e").above(0).doc("void ratio of the specimen that is exceeded");
+  p.check([this](const Complain& complain) {
+    if (!below && !above) complain("", "neither below nor above", "at least one of them");
+  });
+}
+void MeanStressCondition::declare(Parameters& p) {
+  p.add("below", below).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen that is fallen below");
+  p.add("above", above).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen that is exceeded");
+  p.check([this](const Complain& complain) {
+    if (!below && !above) complain("", "neither below nor above", "at least one of them");
+  });
+}
+void PressureCondition::declare(Parameters& p) {
+  p.add("wall", wall).required().doc("name of the wall");
+  p.add("value", value).unit("Pa").symbol("p").at_least(0).required().doc("pressure on the wall, compression positive");
+  p.add("within", within).above(0).at_most(1).doc("relative difference that counts as reached");
+}
+void LeftCondition::declare(Parameters& p) {
+  p.add("share", share).above(0).at_most(1).doc("share of all mass that has come that has left the domain");
+}
+Conditions::Conditions() = default;
+Conditions::Conditions(const Conditions&) = default;
+Conditions::Conditions(Conditions&&) noexcept = default;
+Conditions& Conditions::operator=(const Conditions&) = default;
+Conditions& Conditions::operator=(Conditions&&) noexcept = default;
+Conditions::~Conditions() = default;
+void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at once"); }
+void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which one must hold"); }
+
+void RampDescription::declare(Parameters& p) {
+  p.add("pointer", pointer).required().doc("JSON pointer of the number, e.g. /walls/top/motion/servo/pressure");
+  p.add("from", from).required().doc("its value at the start, as the description would give it");
+  p.add("to", to).required().doc("its value at the end, which stays");
+  p.add("duration", duration).unit("s").above(0).required().doc("simulated time from start to end");
+  p.add("increments", increments).at_least(1).at_most(100000).doc("equal steps in which it goes");
+  p.check(
+      [this](const Complain& complain) {
+        const auto second = pointer.find('/', 1);
+        const std::string section = pointer.empty() ? "" : pointer.substr(1, second - 1);
+        if (pointer.empty() || pointer.front() != '/' || second == std::string::npos || !is_changeable(section))
+          complain("pointer", in_quotes(pointer), "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
+        else if (section == "domain" && !pointer.starts_with("/domain/strain_rate"))
+          complain("pointer", in_quotes(pointer), "of the domain only /domain/strain_rate");
+        for (const auto& [key, value] : {std::pair("from", &from), std::pair("to", &to)})
+          if (!value->is_number() && !value->is_string())
+            complain(key, "neither number nor text", "a number or a quantity");
+      },
+      {"pointer", "from", "to"});
+}
+void GrowthDescription::declare(Parameters& p) {
+  p.add("rate", rate)
+      .unit("1/s")
+      .above(0)
+      .required()
+      .doc("of all radii R: dR/dt = rate R; masses and moments of inertia follow, density stays");
+}
+void ExpectDescription::declare(Parameters& p) {
+  p.add("void_ratio", void_ratio).symbol("e").above(0).doc("void ratio of the specimen at the end of the stage");
+  p.add("within", within).above(0).doc("difference that is accepted");
+}
+void StageDescription::declare(Parameters& p) {
+  p.add("name", name).required().doc("its name, which no other stage has");
+  p.add("until", until).required().doc("what ends it");
+  p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage has failed");
+  p.add("usual_time", usual_time)
+      .unit("s")
+      .above(0)
+      .doc("simulated time that it takes as a rule where a condition ends it: grit check estimates by it");
+  p.add("change", change)
+      .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
+           any_of(SceneDescription::changeable(), "").substr(7) + "; of domain only strain_rate");
+  p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
+  p.add("growth", growth).doc("all bodies grow during the stage; left out: they do not");
+  p.add("expect", expect).doc("what the stage must have reached");
+  p.check(
+      [this](const Complain& complain) {
+        if (!change.is_object()) return complain("change", "no object", "a merge patch, which is an object");
+        for (const auto& [section, patch] : change.items()) {
+          if (!is_changeable(section))
+            complain("change/" + section, "a change of " + in_quotes(section),
+                     any_of(SceneDescription::changeable(), ""));
+          if (section != "domain" || !patch.is_object()) continue;
+          for (const auto& [key, _] : patch.items())
+            if (key != "strain_rate")
+              complain("change/domain/" + key, "a change of " + in_quotes(key), "strain_rate alone");
+        }
+      },
+      {"change"});
+  p.check(
+      [this](const Complain& complain) {
+        if (usual_time && *usual_time > limit)
+          complain("usual_time", "a time beyond the stage's limit", "one that the stage may take");
+      },
+      {"usual_time", "limit"});
+  p.check(
+      [this](const Complain& complain) {
+        if (name.empty()) complain("name", "an empty text", "a name");
+      },
+      {"name"});
+}
+
+// ---- output
+
+void PictureDescription::declare(Parameters& p) {
+  p.add("x", x).required().doc(
+      "series of the horizontal axis: probe/channel or probe/time, e.g. test/shear_displacement");
+  p.add("y", y).required().entries(1).doc("series of the vertical axis");
+  p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the grains are drawn");
+  p.add("color", color)
+      .one_of({"rotation", "displacement", "speed"})
+      .doc("what colours the grains: rotation about the line of sight, displacement along the first axis, speed");
+}
+void check_channel(const std::string& name, const char* key, const Complain& complain) {
+  const auto slash = name.find('/');
+  if (!name.empty() && (slash == 0 || slash == std::string::npos || slash + 1 == name.size()))
+    complain(key, '"' + name + '"', "a probe's name, a slash and its channel, e.g. \"test/stress_ratio\"");
+}
+
+void ReferenceCurve::declare(Parameters& p) {
+  p.add("file", file).file().required().doc("CSV with a line of names");
+  p.add("x", x).required().doc("column of the abscissa, in the channel's own unit");
+  p.add("y", y).required().doc("column of the curve, in the channel's own unit");
+}
+void ReferenceDescription::declare(Parameters& p) {
+  p.add("of", of).required().doc("series that it is about: probe/channel, e.g. test/stress_ratio");
+  p.add("against", against).doc("series of the curve's abscissa, of the same probe; left out: time");
+  p.add("value", value).doc("one value, in the series' own unit");
+  p.add("curve", curve).doc("a curve");
+  p.check([this](const Complain& complain) {
+    check_channel(of, "of", complain), check_channel(against, "against", complain);
+    if (!against.empty() && against.substr(0, against.find('/')) != of.substr(0, of.find('/')))
+      complain("against", '"' + against + '"', "a series of the same probe as " + of);
+    if (value.has_value() == curve.has_value())
+      complain("curve", value ? "a value and a curve" : "neither a value nor a curve", "one of both");
+  });
+}
+void OutputDescription::declare(Parameters& p) {
+  p.add("frames", frames).doc("when frames are written, besides the end of the run; neither given: never");
+  p.add("checkpoint_every", checkpoint_every)
+      .unit("s")
+      .at_least(0)
+      .doc(
+          "time by the clock on the wall between checkpoints, from which --resume goes on; they never take more than "
+          "1 % of the time; 0: only when the run is interrupted");
+  p.add("picture", picture).doc("curves and view of the grains, drawn at the end");
+  p.add("references", references)
+      .doc("what the report draws curves against, by name: measured, published, by a formula");
+  p.add("summary", summary).doc("series whose largest and last values are printed at the end: probe/channel");
+}
+
+// ---- the scene
+
+SceneDescription::SceneDescription(const Registry& registry) : contacts(registry), registry_(&registry) {}
+
+const std::vector<std::string>& SceneDescription::changeable() {
+  static const std::vector<std::string> sections{"materials", "interfaces", "walls", "engines",
+                                                 "domain",    "time_step",  "guards"};
+  return sections;
+}
+
+std::shared_ptr<ContactLaw> SceneDescription::law_to_read() const {
+  return contacts.type().empty() ? nullptr : contacts.make();
+}
+
+void SceneDescription::declare_section(const std::string& section, Parameters& p) {
+  if (section == "materials") {
+    MapTarget target;
+    // One law for all of them, made when the first is read.
+    const auto law = std::make_shared<std::shared_ptr<ContactLaw>>();
+    target.names = [this] { return keys(materials); };
+    target.clear = [this, law] { materials.clear(), *law = nullptr; };
+    target.declare = [this](const std::string& name, Parameters& inner) {
+      materials.at(name).declare(name, nullptr, inner);
+    };
+    target.insert = [this, law](const std::string& name, Parameters& inner) {
+      if (!*law) *law = law_to_read();
+      (materials[name] = {}).declare(name, law->get(), inner);
+    };
+    p.add_target("materials", std::move(target))
+        .required()
+        .entries(1)
+        .doc("materials by name: density and what the contact law asks for");
+  }
+  if (section == "interfaces") {
+    MapTarget target;
+    const auto law = std::make_shared<std::shared_ptr<ContactLaw>>();
+    target.names = [this] { return units_of("interfaces"); };
+    target.clear = [this, law] { interfaces.clear(), *law = nullptr; };
+    target.declare = [this](const std::string& name, Parameters& inner) {
+      find_interface(name)->declare(nullptr, inner);
+    };
+    target.insert = [this, law](const std::string& name, Parameters& inner) {
+      if (!*law) *law = law_to_read();
+      interfaces.emplace_back(name).declare(law->get(), inner);
+    };
+    p.add_target("interfaces", std::move(target)).doc("what differs where two materials meet, by \"one+other\"");
+  }
+  if (section == "domain") p.add("domain", domain).doc("box of the world");
+  if (section == "walls")
+    p.add("walls", walls, [this](const std::string&) { return WallDescription(*registry_); }).doc("walls by name");
+  if (section == "engines")
+    p.add("engines", engines, [this](const std::string&) {
+       return EngineDescription(*registry_);
+     }).doc("what acts on the bodies besides contacts, by name");
+  if (section == "time_step") p.add("time_step", time_step).doc("time step");
+  if (section == "guards") p.add("guards", guards).doc("limits beyond which a run stops");
+}
+
+bool SceneDescription::has_names(const std::string& section) {
+  return section == "materials" || section == "interfaces" || section == "walls" || section == "engines";
+}
+
+bool SceneDescription::declare_unit(const std::string& section, const std::string& name, ContactLaw* law,
+                                    Parameters& p) {
+  if (section == "materials") return materials[name].declare(name, law, p), true;
+  if (section == "interfaces") {
+    InterfaceDescription* const known = find_interface(name);
+    return (known != nullptr ? *known : interfaces.emplace_back(name)).declare(law, p), true;
+  }
+  if (section == "walls") return walls.try_emplace(name, *registry_).first->second.declare(p), true;
+  if (section == "engines") return engines.try_emplace(name, *registry_).first->second.declare(p), true;
+  if (section == "domain") return domain.declare(p), true;
+  if (section == "time_step") return time_step.declare(p), true;
+  if (section == "guards") return guards.declare(p), true;
+  return false;
+}
+
+std::vector<std::string> SceneDescription::units_of(const std::string& section) const {
+  if (section == "materials") return keys(materials);
+  if (section == "walls") return keys(walls);
+  if (section == "engines") return keys(engines);
+  if (section != "interfaces") return {""};
+  std::vector<std::string> names;
+  for (const InterfaceDescription& one : interfaces) names.push_back(one.name());
+  return names;
+}
+
+bool SceneDescription::has_unit(const std::string& section, const std::string& name) const {
+  const auto names = units_of(section);
+  return std::ranges::find(names, name) != names.end();
+}
+
+InterfaceDescription* SceneDescription::find_interface(const std::string& name) {
+  const auto found = std::ranges::find(interfaces, name, &InterfaceDescription::name);
+  return found == interfaces.end() ? nullptr : &*found;
+}
+
+void SceneDescription::check_together(const Complain& complain) const {
+  check_number_of_materials(*this, complain);
+  check_interfaces(*this, complain);
+  check_materials_of_bodies(*this, complain);
+  check_weight(*this, complain);
+  check_materials_of_walls(*this, complain);
+  check_followers(*this, complain);
+}
+
+void SceneDescription::declare(Parameters& p) {
+  p.add("title", title).doc("one line that names the run");
+  p.add("seed", seed).at_least(0).doc("seed of everything random");
+  p.add("contacts", contacts).required().doc("contact law");
+  declare_section("materials", p);
+  declare_section("interfaces", p);
+  declare_section("domain", p);
+  p.add("bodies", bodies, [this](const std::string&) { return BodiesDescription(*registry_); })
+      .required()
+      .entries(1)
+      .doc("groups of bodies by name");
+  declare_section("walls", p);
+  declare_section("engines", p);
+  p.add("specimen", specimen).doc("part of the world that averages are taken over");
+  declare_section("time_step", p);
+  declare_section("guards", p);
+  p.add("stages", stages).required().entries(1).doc("what happens, in order");
+  p.add("probes", probes, [this](const std::string&) {
+     return ProbeDescription(*registry_);
+   }).doc("what is measured, by name");
+  p.add("output", output).doc("frames, checkpoints, picture, references, summary");
+
+  p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_materials_of_bodies(*this, complain); });
+  p.check([this](const Complain& complain) { check_weight(*this, complain); }, {"bodies", "engines"});
+  p.check(
+      [this](const Complain& complain) {
+        const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
+        for (const auto& [name, group] : bodies)
+          if (group.heavier_below > 0 && std::ranges::any_of(stages, grows))
+            complain("bodies/" + name + "/heavier_below", "heavier grains where bodies grow in a stage",
+                     "0: they would be made heavier for a size that they do not keep");
+      },
+      {"bodies", "stages"});
+  p.check_names([this](const Complain& complain) { check_materials_of_walls(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_followers(*this, complain); });
+  p.check_names([this](const Complain& complain) {
+    const References known("wall", keys(walls), complain);
+    for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})
+      for (std::size_t k = 0; k < side->size(); ++k)
+        if (!(*side)[k].empty()) known.check("specimen/" + std::string(key) + '/' + std::to_string(k), (*side)[k]);
+  });
+  p.check_names([this](const Complain& complain) {
+    const References known("wall", keys(walls), complain);
+    for (std::size_t i = 0; i < stages.size(); ++i)
+      check_walls_of(stages[i].until, "stages/" + std::to_string(i) + "/until", known);
+    const auto check_cadence = [&](const std::string& key, const Cadence& cadence) {
+      if (cadence.every_displacement) known.check(key + "/every_displacement/wall", cadence.every_displacement->wall);
+    };
+    for (const auto& [name, probe] : probes) check_cadence("probes/" + name, probe.cadence);
+    check_cadence("output/frames", output.frames);
+  });
+  p.check_names([this](const Complain& complain) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < stages.size(); ++i)
+      if (!names.insert(stages[i].name).second)
+        complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", as a stage before it",
+                 "a name of its own");
+  });
+  p.check_names([this](const Complain& complain) {
+    std::vector<std::string> names;
+    for (const auto& stage : stages) names.push_back(stage.name);
+    const References known("stage", names, complain);
+    for (const auto& [name, group] : bodies)
+      if (!group.stage.empty()) known.check("bodies/" + name + "/stage", group.stage);
+    for (const auto& [name, probe] : probes)
+      for (std::size_t i = 0; i < probe.stages.size(); ++i)
+        known.check("probes/" + name + "/stages/" + std::to_string(i), probe.stages[i]);
+  });
+}
+
+}  // namespace grit

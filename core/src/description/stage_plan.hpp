@@ -1,0 +1,65 @@
+// What stages change of a description, as values: complete and checked before a run begins.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "description/description.hpp"
+
+namespace grit {
+
+/// Where a number that a stage changes stands: a section, the name of its entry (empty in a section without names), and
+/// the keys below.
+struct NumberPointer {
+  std::string section, name;
+  std::vector<std::string> keys;
+  /// Of a JSON pointer below one of SceneDescription::changeable(); nothing if it does not reach so deep.
+  static std::optional<NumberPointer> of(const std::string& pointer);
+};
+
+/// New values of parts of a description, each complete. An entry without a value is removed.
+struct SettingsChange {
+  std::map<std::string, std::optional<MaterialDescription>> materials;
+  std::vector<std::pair<std::string, std::optional<InterfaceDescription>>> interfaces;  ///< in the order of writing
+  std::map<std::string, std::optional<WallDescription>> walls;
+  std::map<std::string, std::optional<EngineDescription>> engines;
+  std::optional<DomainDescription> domain;
+  std::optional<TimeStepDescription> time_step;
+  std::optional<GuardsDescription> guards;
+
+  void apply_to(SceneDescription& scene) const;
+  /// Adds the present values of a part of a scene; of an entry that is not there, its removal.
+  void add(const SceneDescription& scene, const std::string& section, const std::string& name);
+};
+
+/// A number that changes in equal increments.
+struct RampPlan {
+  std::string pointer;
+  SettingsChange begin;  ///< the part that the number belongs to, with the number at `from`
+  double from = 0, to = 0;
+  double duration = 0;  ///< s
+  std::int64_t increments = 1;
+
+  /// After so many increments, from 1. Exact at the end, where (to − from) + from may not be.
+  double value(std::int64_t increment) const {
+    const double share = static_cast<double>(increment) / static_cast<double>(increments);
+    return increment == increments ? to : from + (to - from) * share;
+  }
+};
+
+/// A stage's changes, and where its ramps end, stay for the stages after it.
+struct StagePlan {
+  SettingsChange change;
+  std::vector<RampPlan> ramps;  ///< one after the other
+  std::size_t increments() const {
+    std::size_t sum = 0;
+    for (const RampPlan& ramp : ramps) sum += static_cast<std::size_t>(ramp.increments);
+    return sum;
+  }
+};
+
+}  // namespace grit

@@ -1,0 +1,33 @@
+// Where a wall's motion may take it.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "description/description.hpp"
+
+namespace grit {
+
+inline bool stands_still(const MotionDescription& motion) {
+  return motion.velocity.isZero(0.0) && motion.spin.isZero(0.0) && !motion.oscillation && !motion.servo &&
+         !motion.follow && !motion.free;
+}
+
+/// Whether a wall's reference point may go along an axis, and against it.
+struct Ways {
+  bool along = false, against = false;
+  bool none() const { return !along && !against; }
+};
+
+/// Of walls that follow no circle.
+inline Ways ways(const std::map<std::string, WallDescription>& walls, const std::string& name, char axis) {
+  const MotionDescription& motion = walls.at(name).motion;
+  const auto has = [axis](const std::string& axes) { return axes.find(axis) != std::string::npos; };
+  if (motion.follow && has(motion.follow->axes)) return ways(walls, motion.follow->wall, axis);
+  const bool swings = motion.oscillation && motion.oscillation->amplitude[axis - 'x'] != 0;
+  const bool both = swings || (motion.servo && has(motion.servo->axis)) || (motion.free && has(motion.free->axes));
+  const double velocity = motion.velocity[axis - 'x'];
+  return {both || velocity > 0, both || velocity < 0};
+}
+
+}  // namespace grit

@@ -1,0 +1,153 @@
+#include "motion/clump_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace grit {
+namespace {
+
+/// Component by component, as of spheres: lessens what speeds up, adds to what slows down.
+Vec3 damped(const Vec3& push, const Vec3& velocity, double coefficient) {
+  return push.binaryExpr(
+      velocity, [=](double p, double v) { return p - coefficient * (v != 0 ? std::copysign(std::abs(p), v) : 0.0); });
+}
+
+// A body turns little in a step. Up to here a few terms of the series are as good as the functions, and take a tenth of
+// their time.
+constexpr double little = 0.02;
+
+/// Sine and cosine to rounding.
+struct SineCosine {
+  double sine, cosine;
+};
+SineCosine sine_cosine(double angle) {
+  if (std::abs(angle) > little) return {std::sin(angle), std::cos(angle)};
+  const double s = angle * angle;
+  return {angle - angle * s * (1.0 / 6 - s * (1.0 / 120 - s * (1.0 / 5040))),
+          1 - s * (1.0 / 2 - s * (1.0 / 24 - s * (1.0 / 720)))};
+}
+/// Arc sine over its argument, to rounding; `square` is that of the argument.
+double arc_over_sine(double square) {
+  if (square > little * little) {
+    const double sine = std::sqrt(std::min(square, 1.0));
+    return std::asin(sine) / sine;
+  }
+  return 1 + square * (1.0 / 6 + square * (3.0 / 40 + square * (5.0 / 112 + square * (35.0 / 1152))));
+}
+
+/// Turns about one principal axis by the angular velocity that the momentum along it alone would give; `time` is
+/// divided by twice the moment of inertia.
+template <int axis>
+[[gnu::always_inline]] inline void turn_about(double time, Eigen::Quaterniond& orientation, Vec3& momentum) {
+  constexpr int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  const auto [sine, cosine] = sine_cosine(time * momentum[axis]);
+  // orientation · (cosine, sine along the axis)
+  auto& q = orientation.coeffs();  // x, y, z, w
+  const double along = q[axis], one = q[next], other = q[last], scalar = q[3];
+  q[3] = cosine * scalar - sine * along, q[axis] = cosine * along + sine * scalar;
+  q[next] = cosine * one + sine * other, q[last] = cosine * other - sine * one;
+  // The momentum, seen from the axes, turns the other way by the whole angle.
+  const double double_sine = 2 * sine * cosine, double_cosine = 1 - 2 * sine * sine;
+  const double p = momentum[next], r = momentum[last];
+  momentum[next] = double_cosine * p + double_sine * r, momentum[last] = double_cosine * r - double_sine * p;
+}
+
+void turn_freely(Clump& clump, double dt) {
+  Eigen::Quaterniond now = clump.orientation;
+  Vec3 momentum = clump.axes.transpose() * clump.momentum;
+  const Vec3 time = 0.5 * dt * clump.inertia.cwiseInverse();
+  turn_about<0>(0.5 * time[0], now, momentum);
+  turn_about<1>(0.5 * time[1], now, momentum);
+  turn_about<2>(time[2], now, momentum);
+  turn_about<1>(0.5 * time[1], now, momentum);
+  turn_about<0>(0.5 * time[0], now, momentum);
+  // It was a unit before, so that one step of Newton's makes it one to rounding.
+  now.coeffs() *= 1.5 - 0.5 * now.squaredNorm();
+  Eigen::Quaterniond turn = now * clump.orientation.conjugate();
+  if (turn.w() < 0) turn.coeffs() *= -1;
+  clump.orientation = now;
+  clump.axes = now.toRotationMatrix();
+  clump.half_turn = turn.vec() / turn.w();
+  clump.chord_rate = 2 / (dt * (1 + clump.half_turn.squaredNorm()));
+  clump.spin = 2 * arc_over_sine(turn.vec().squaredNorm()) / dt * turn.vec();
+}
+
+/// Puts a clump's body where the clump has moved it; its velocity is its way in the step over the step.
+[[gnu::always_inline]] inline void carry(std::uint32_t body, const Clump& clump, Bodies& bodies,
+                                         const MotionStep& step) {
+  const ClumpSphere& own = bodies.clumps.of_body[body];
+  const Vec3 arm = clump.axes * own.place;
+  const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
+  // The chord of the arc over the step: from the arm turned back to the arm.
+  const Vec3 across = clump.half_turn.cross(arm);
+  const Vec3 v = clump.velocity + clump.chord_rate * (across - clump.half_turn.cross(across)) -
+                 periods.cwiseProduct(step.period_growth);
+  const Vec3 x = clump.centre + arm - periods.cwiseProduct(step.period);
+  Row &position = bodies.position[body], &velocity = bodies.velocity[body], &spin = bodies.spin[body];
+  position.x = x.x(), position.y = x.y(), position.z = x.z();
+  velocity.x = v.x(), velocity.y = v.y(), velocity.z = v.z();
+  spin.x = clump.spin.x(), spin.y = clump.spin.y(), spin.z = clump.spin.z();
+}
+
+/// Spheres of a clump lie as space has them, where the processor does not guess.
+constexpr std::size_t ahead = 3;
+void fetch(const Clump& clump, const Bodies& bodies, const BodySum* sum) {
+  for (std::uint32_t k = clump.first; k < clump.last; ++k) {
+    const std::uint32_t body = bodies.clumps.spheres[k];
+    __builtin_prefetch(&sum[body]);
+    __builtin_prefetch(&bodies.clumps.of_body[body]);
+    __builtin_prefetch(&bodies.position[body], 1);
+    __builtin_prefetch(&bodies.velocity[body], 1);
+    __builtin_prefetch(&bodies.spin[body], 1);
+  }
+}
+
+}  // namespace
+
+ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum) {
+  ClumpLoad load{Vec3::Zero(), Vec3::Zero()};
+  for (std::uint32_t k = clump.first; k < clump.last; ++k) {
+    const std::uint32_t body = bodies.clumps.spheres[k];
+    const Vec3 arm = clump.axes * bodies.clumps.of_body[body].place, force = xyz(sum[body].force);
+    load.force += force;
+    load.moment += xyz(sum[body].moment) + arm.cross(force);
+  }
+  return load;
+}
+
+Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
+  Motion motion;
+  const MotionSettings& settings = step.settings;
+  const Vec3 free = step.free_translation(), turns = step.free_rotation();
+  for (std::size_t c = first; c < last; ++c) {
+    fetch(bodies.clumps.clump[std::min(c + ahead, last - 1)], bodies, sum);
+    Clump& clump = bodies.clumps.clump[c];
+    const ClumpLoad load = load_of(clump, bodies, sum);
+    const Vec3 before = clump.velocity, carried = (step.flowed * step.strain_rate).cwiseProduct(before);
+    clump.velocity += carried;
+    const Vec3 flow = step.strain_rate.cwiseProduct(clump.centre - step.centre);
+    Vec3 push = step.kick * free.cwiseProduct(clump.inverse_mass * load.force + settings.gravity);
+    Vec3 twist = step.kick * turns.cwiseProduct(load.moment);
+    if (settings.local_damping > 0) {
+      const Vec3 pushed = damped(push, clump.velocity - flow, settings.local_damping);
+      const Vec3 twisted = damped(twist, clump.spin, settings.local_damping);
+      if (step.energies) {
+        motion.damped += (push - pushed).dot(clump.velocity - flow + 0.5 * pushed) / clump.inverse_mass +
+                         (twist - twisted).dot(clump.spin_of(clump.momentum + 0.5 * twisted));
+        motion.carried -= (push - pushed).dot(flow) / clump.inverse_mass;
+      }
+      push = pushed, twist = twisted;
+    }
+    clump.velocity += push, clump.momentum += twist;
+    clump.centre += step.drift * clump.velocity;
+    if (step.energies) {
+      motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
+      motion.carried += 0.5 * carried.dot(before + clump.velocity) / clump.inverse_mass;
+    }
+    turn_freely(clump, step.drift);
+    for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step);
+  }
+  return motion;
+}
+
+}  // namespace grit

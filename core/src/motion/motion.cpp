@@ -1,0 +1,132 @@
+#include "motion/motion.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace grit {
+namespace {
+
+Quad quad(const Vec3& v) { return Quad{v.x(), v.y(), v.z(), 0}; }
+
+/// Lessens components that speed the body up, adds to those that slow it down; does nothing to a body at rest.
+Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
+  const Quad power = force * velocity;
+  const Quad less = force * (1 - coefficient), more = force * (1 + coefficient);
+  return power > 0 ? less : power < 0 ? more : force;
+}
+
+/// What that takes off the force, over the coefficient; `push` has the force's signs.
+Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
+  const Quad power = push * velocity, none{};
+  return power > 0 ? force : power < 0 ? -force : none;
+}
+
+Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
+
+/// Adds up by how much a body turns; nothing where nobody asks for it.
+void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift) {
+  if (turned == nullptr) return;
+  const Quad angle = spin * drift;
+  for (int k = 0; k < 3; ++k) turned[body][k] += angle[k];
+}
+
+double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// What of the bodies' energies is kept. Constants for the compiler: it would divide by what may not be needed, for
+/// every body, and a division by body is what a ledger costs most.
+enum class Ledger { none, without_weight, with_weight, with_flow };
+
+/// Not inlined: all of them in one function would have their constants in memory.
+template <Ledger ledger, bool Clumps>
+[[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
+  const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
+  const MotionSettings& settings = step.settings;
+  const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
+  // The mean flow at a body grows as the body goes with it: without that, bodies would fall behind the cell's sides.
+  const Quad growth = rate * step.flowed;
+  // The fourth number of a row (radius, 1/mass, 1/inertia) stays as it is.
+  const Quad free = quad(step.free_translation());
+  const Quad kick = step.kick * free, turn_kick = step.kick * quad(step.free_rotation());
+  const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
+  const Quad drift{step.drift, step.drift, step.drift, 0};
+  const double damping = settings.local_damping;
+  constexpr bool flows = ledger == Ledger::with_flow, falls = flows || ledger == Ledger::with_weight;
+  const Quad weight = quad(settings.gravity);
+  Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
+  double fastest_carried = 0;
+  // What is stored might be the arrays' own pointers for all that the compiler knows.
+  Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
+             *const spin = bodies.spin.data();
+  Vec3* const turned = bodies.rotation.empty() ? nullptr : bodies.rotation.data();
+  for (std::size_t i = first; i < last; ++i) {
+    if constexpr (Clumps)
+      if (bodies.clumps.of_body[i].clump != no_clump) {
+        const Quad v = load(velocity[i]), before = load(position[i]) - v * drift,
+                   against = v - rate * (before - centre);
+        fastest_carried = std::max(fastest_carried, product(against, against));
+        poison += v * 0.0 + load(spin[i]) * 0.0;
+        turn_on(turned, i, load(spin[i]), drift);
+        continue;
+      }
+    const Quad force = load(sum[i].force), moment = load(sum[i].moment);
+    Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
+    const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
+    const Quad before = v;
+    v += growth * v;
+    const Quad flow = rate * (x - centre);
+    Quad push = force * (kick * inverse_mass) + fall;
+    Quad twist = moment * (turn_kick * inverse_inertia);
+    const double mass = falls ? 1 / inverse_mass : 0;
+    if (damping > 0) {
+      const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
+      if constexpr (ledger != Ledger::none) {
+        const Quad less = taken(falls ? force + weight * mass : force, push, v - flow);
+        damped_power += less * (v - flow + 0.5 * pushed);
+        if constexpr (flows) flow_power -= less * flow;
+        damped_turning += taken(moment, twist, w) * (w + 0.5 * twisted);
+      }
+      push = pushed, twist = twisted;
+    }
+    v += push, w += twist;
+    x += v * drift;
+    if constexpr (falls) momentum += v * mass;
+    if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
+    store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
+    turn_on(turned, i, w, drift);
+    const Quad speed = absolute(v - flow);
+    fastest = speed > fastest ? speed : fastest;
+    poison += v * 0.0 + w * 0.0;
+  }
+  const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
+  return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
+          damping * (product(damped_power, kick) + product(damped_turning, turn_kick)),
+          step.drift * product(momentum, quad(settings.gravity)),
+          damping * product(flow_power, kick) + product(flow_work, Quad{1, 1, 1, 0})};
+}
+
+}  // namespace
+
+Vec3 MotionStep::free_translation() const {
+  Vec3 free = settings.hold_translation ? Vec3::Zero() : Vec3::Ones();
+  if (settings.flat) free[*settings.flat] = 0;
+  return free;
+}
+
+Vec3 MotionStep::free_rotation() const {
+  if (settings.hold_rotation) return Vec3::Zero();
+  return settings.flat ? Vec3(Vec3::Unit(*settings.flat)) : Vec3(Vec3::Ones());
+}
+
+Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
+  const auto with = [&]<Ledger ledger>() {
+    return bodies.clumps.none() ? move<ledger, false>(chunk, bodies, sum, step)
+                                : move<ledger, true>(chunk, bodies, sum, step);
+  };
+  if (!step.energies) return with.operator()<Ledger::none>();
+  if (step.flows()) return with.operator()<Ledger::with_flow>();
+  return step.settings.gravity.isZero(0.0) ? with.operator()<Ledger::without_weight>()
+                                           : with.operator()<Ledger::with_weight>();
+}
+
+}  // namespace grit

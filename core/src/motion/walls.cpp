@@ -1,0 +1,380 @@
+#include "motion/walls.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+#include "grit/error.hpp"
+#include "description/placed_error.hpp"
+#include "description/servo_face.hpp"
+
+namespace grit {
+
+namespace {
+
+/// Steps, times the gain, in which a servo gets used to a velocity. A stack of some dozens of grains is slower.
+constexpr double habit_steps = 30;
+/// How often a servo counts the dashpots it touches. A change of its velocity shows in their forces at once and whole,
+/// and it sees them a step late: counted once, a gain of 1 chatters on dashpots that are stable by themselves; three
+/// times, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
+constexpr double dashpots_counted = 3;
+/// Of the force that a servo keeps, by how much it may be off and is not told.
+constexpr double most_behind = 0.05;
+/// Of the force that a servo keeps, what a step may add however little is wanting.
+constexpr double always_added = 0.25;
+/// Halvings after which a step's way is as good as none.
+constexpr int most_halvings = 50;
+/// Fewest steps to a period of an oscillation: by then the mean velocity of a step differs from the one at its middle
+/// by (ω dt)²/24, 0.4 %.
+constexpr double steps_to_a_period = 20;
+
+/// `key` is the motion's that is wrong.
+[[noreturn]] void fail(const std::string& wall, const std::string& key, const std::string& what) {
+  throw PlacedError({"walls", wall, "motion", key}, "wall \"" + wall + "\": " + what);
+}
+[[noreturn]] void fail(const WallSetup& setup, const std::string& what) {
+  throw PlacedError({"walls", setup.name, "motion"}, "wall \"" + setup.name + "\": " + what);
+}
+
+std::array<bool, 3> axes_of(const WallSetup& setup, const std::string& motion, const std::string& letters) {
+  std::array<bool, 3> axes{};
+  for (const char letter : letters) {
+    if (letter < 'x' || letter > 'z') fail(setup, motion + " along \"" + letters + "\"; allowed are x, y and z");
+    axes[letter - 'x'] = true;
+  }
+  if (letters.empty()) fail(setup, motion + " along no axis; name one or more of x, y and z");
+  return axes;
+}
+
+/// The same place, told from another reference point.
+void tell_from(const Vec3& about, WallState& state) {
+  if (about == state.pose.about) return;
+  const Vec3 before = state.pose.about + state.pose.shift, now = state.pose.to_world(about), shift = now - about;
+  state.stage_start += shift - state.pose.shift;
+  state.moment += (before - now).cross(state.force);
+  state.velocity += state.spin.cross(now - before);
+  state.pose.about = about;
+  state.pose.shift = shift;
+}
+
+void check_oscillation(const std::string& wall, const MotionDescription& motion, double dt) {
+  if (!motion.oscillation) return;
+  const double frequency = motion.oscillation->frequency;
+  if (frequency * dt * steps_to_a_period > 1)
+    fail(wall, "oscillation",
+         fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
+                     "more: lower the frequency, or shorten the time step by /time_step/safety or "
+                     "/time_step/value",
+                     frequency, 1 / (frequency * dt), dt, steps_to_a_period));
+}
+
+/// Where a wall turns about if nothing is said: the middle of its bounds, 0 along axes where they are infinite.
+Vec3 middle(const Geometry& geometry) {
+  const Bounds bounds = geometry.bounds();
+  Vec3 middle = 0.5 * (bounds.low + bounds.high);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(middle[axis])) middle[axis] = 0;
+  return middle;
+}
+
+/// How far an oscillation of amplitude 1 has gone some time [s] after it began.
+double swing(const MotionDescription& motion, double time, double lead) {
+  const OscillationDescription& how = *motion.oscillation;
+  const double periods = how.frequency * time + lead,
+               ramp = motion.ramp_time > 0 ? std::min(1.0, time / motion.ramp_time) : 1;
+  const double angle = 2 * std::numbers::pi * (periods - std::floor(periods)) + how.phase;
+  return ramp * (std::sin(angle) - std::sin(how.phase));
+}
+
+/// What becomes of an oscillation when the motion may have changed: it goes on from where it is, at its new frequency,
+/// or begins.
+void swing_on(const MotionDescription& motion, WallState& state) {
+  const OscillationDescription how = motion.oscillation.value_or(OscillationDescription{});
+  if (state.swing_frequency > 0 && how.frequency > 0 && state.swing_phase == how.phase)
+    state.swing_lead += (state.swing_frequency - how.frequency) * state.swing_time;
+  else state.swing_time = state.swing_lead = 0;
+  state.swing_frequency = how.frequency, state.swing_phase = how.phase;
+}
+
+/// Component of a servo's wall's normal along its axis. Throws if the servo has nothing to press with.
+double facing(const WallSetup& setup, const Pose& pose) {
+  const Vec3 normal = pose.turn * setup.geometry->normal();
+  if (const std::string why = presses_with_nothing(setup.motion, *setup.geometry, normal); !why.empty())
+    fail(setup.name, "servo", why);
+  return normal[setup.motion.servo->axis.front() - 'x'];
+}
+
+/// A servo sees what a step has done when it is done: one grain that is stiff, or many of one height, would bear a
+/// multiple of what is wanted in the step in which it comes to touch them. So it goes no further in a step than to
+/// where they bear what is wanting; `velocity` is what it wishes.
+double braked(double velocity, std::size_t wall, int axis, double wanted, const WallState& state, double dt,
+              const Walls::Ahead& ahead) {
+  if (ahead == nullptr || !(velocity * wanted > 0)) return velocity;
+  const double most = std::abs(wanted), borne = -std::copysign(1.0, wanted) * state.force[axis],
+               may_add = std::max(most - borne, always_added * most);
+  // Costs nothing, and says for nearly all steps that all that is near, as stiff as what touches, would not be too
+  // much.
+  if ((state.stiffness * dt + state.dashpot) * std::abs(velocity) * state.near < always_added * most * state.touches)
+    return velocity;
+  for (int halving = 0; halving < most_halvings; ++halving) {
+    const Vec3 moves = velocity * Vec3::Unit(axis);
+    Pose there = state.pose;
+    there.shift += dt * moves;
+    if (ahead(wall, there, moves, std::abs(velocity) * dt) - ahead(wall, state.pose, moves, 0) <= may_add) break;
+    velocity *= 0.5;
+  }
+  return velocity;
+}
+
+/// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
+/// in one step if the touches are springs, less where they damp, and leaves no error behind when the specimen swells or
+/// shrinks steadily.
+double servo_velocity(const WallSetup& setup, std::size_t wall, int axis, double area, WallState& state, double dt,
+                      const Walls::Ahead& ahead) {
+  const ServoDescription& servo = *setup.motion.servo;
+  const double wanted = servo.force ? *servo.force : *servo.pressure * area * facing(setup, state.pose);
+  if (state.touches == 0 || !(state.stiffness > 0)) {  // nothing to press on yet: close
+    state.habit = 0;
+    return wanted != 0 ? braked(std::copysign(servo.max_velocity, wanted), wall, axis, wanted, state, dt, ahead) : 0;
+  }
+  const double wished = state.habit + servo.gain * (state.force[axis] + wanted) /
+                                          (state.stiffness * dt + dashpots_counted * state.dashpot);
+  const double velocity =
+      braked(std::clamp(wished, -servo.max_velocity, servo.max_velocity), wall, axis, wanted, state, dt, ahead);
+  state.habit += servo.gain / habit_steps * (velocity - state.habit);
+  return velocity;
+}
+
+}  // namespace
+
+std::vector<WallSetup> wall_setups(const SceneDescription& scene, const Components& components) {
+  std::vector<WallSetup> setups;
+  for (const auto& [name, wall] : scene.walls) setups.push_back({name, components.geometries.at(name), wall.motion});
+  return setups;
+}
+
+void check_oscillations(const SceneDescription& scene, double dt) {
+  for (const auto& [name, wall] : scene.walls) check_oscillation(name, wall.motion, dt);
+}
+
+void Walls::check_oscillations(double dt) const {
+  for (const WallSetup& setup : setups_) check_oscillation(setup.name, setup.motion, dt);
+}
+
+void Walls::apply(std::vector<WallSetup> setups) {
+  change(std::move(setups));
+  for (WallState& state : states_) {
+    state.stage_start = state.pose.shift;
+    state.stage_time = 0;
+  }
+}
+
+void Walls::change(std::vector<WallSetup> setups) {
+  std::vector<Drive> drives;
+  std::vector<WallState> states;
+  for (const WallSetup& setup : setups) {
+    const auto known =
+        std::find_if(setups_.begin(), setups_.end(), [&](const auto& old) { return old.name == setup.name; });
+    WallState state;
+    if (known != setups_.end()) state = states_[static_cast<std::size_t>(known - setups_.begin())];
+    else state.pose.about = middle(*setup.geometry);
+    swing_on(setup.motion, state);
+    tell_from(setup.motion.about.value_or(state.pose.about), state);
+    drives.push_back(drive_of(setups, setup));
+    if (drives.back().servo_axis >= 0 && setup.motion.servo->pressure) facing(setup, state.pose);
+    states.push_back(state);
+  }
+  order_ = leaders_first(setups, drives);
+  setups_ = std::move(setups);
+  drives_ = std::move(drives);
+  states_ = std::move(states);
+}
+
+Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSetup& setup) {
+  const MotionDescription& motion = setup.motion;
+  Drive drive;
+  Axes servo{};
+  if (motion.servo) {
+    servo = axes_of(setup, "servo", motion.servo->axis);
+    if (std::count(servo.begin(), servo.end(), true) != 1)
+      fail(setup, "a servo along \"" + motion.servo->axis + "\"; it acts along one axis");
+    if (!(motion.servo->max_velocity > 0)) fail(setup, "a servo needs a max_velocity above 0");
+    if (motion.servo->pressure.has_value() == motion.servo->force.has_value())
+      fail(setup, "a servo keeps a pressure or a force, one of them");
+    drive.servo_axis = static_cast<int>(std::find(servo.begin(), servo.end(), true) - servo.begin());
+  }
+  if (motion.follow) {
+    drive.follow = axes_of(setup, "following", motion.follow->axes);
+    const auto leader =
+        std::find_if(setups.begin(), setups.end(), [&](const auto& s) { return s.name == motion.follow->wall; });
+    if (leader == setups.end()) fail(setup, "follows the wall \"" + motion.follow->wall + "\", which there is not");
+    drive.leader = static_cast<std::size_t>(leader - setups.begin());
+  }
+  if (motion.free) {
+    drive.free = axes_of(setup, "free", motion.free->axes);
+    if (!(motion.free->mass > 0)) fail(setup, "a free wall needs a mass above 0");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
+    if ((motion.velocity[axis] != 0 || swings) + servo[axis] + drive.follow[axis] + drive.free[axis] > 1)
+      fail(setup, std::string("two motions along ") + "xyz"[axis] +
+                      "; choose velocity and oscillation, or one of servo, follow and free");
+  }
+  return drive;
+}
+
+std::vector<std::size_t> Walls::leaders_first(const std::vector<WallSetup>& setups, const std::vector<Drive>& drives) {
+  enum class Mark { unseen, waiting, placed };
+  std::vector<Mark> marks(setups.size(), Mark::unseen);
+  std::vector<std::size_t> order;
+  const std::function<void(std::size_t)> place = [&](std::size_t wall) {
+    if (marks[wall] == Mark::placed) return;
+    if (marks[wall] == Mark::waiting) fail(setups[wall], "follows itself, directly or by way of others");
+    marks[wall] = Mark::waiting;
+    if (setups[wall].motion.follow) place(drives[wall].leader);
+    marks[wall] = Mark::placed;
+    order.push_back(wall);
+  };
+  for (std::size_t wall = 0; wall < setups.size(); ++wall) place(wall);
+  return order;
+}
+
+Vec3 Walls::point_velocity(std::size_t wall, const Vec3& point) const {
+  return states_[wall].velocity + states_[wall].spin.cross(point - reference(wall));
+}
+
+bool Walls::presses_on_specimen() const {
+  return std::ranges::any_of(setups_, [](const WallSetup& setup) { return grit::presses_on_specimen(setup.motion); });
+}
+
+bool Walls::any_servo() const {
+  return std::ranges::any_of(setups_, [](const WallSetup& setup) { return setup.motion.servo.has_value(); });
+}
+
+double Walls::area(std::size_t wall) const {
+  const WallSetup& setup = setups_[wall];
+  if (!grit::presses_on_specimen(setup.motion)) return setup.geometry->area();
+  const int axis = drives_[wall].servo_axis;
+  const double across = specimen_[(axis + 1) % 3] * specimen_[(axis + 2) % 3];
+  if (!std::isfinite(across) || !(across > 0)) fail(setup, lacks_cross_section(setup.motion.servo->axis));
+  return across / std::abs(facing(setup, states_[wall].pose));
+}
+
+void Walls::clear_forces() {
+  for (WallState& state : states_) {
+    state.force.setZero();
+    state.moment.setZero();
+    state.stiffness = state.spring = state.dashpot = 0;
+    state.touches = state.near = 0;
+  }
+}
+
+void Walls::add(std::size_t wall, const WallLoad& load) {
+  WallState& state = states_[wall];
+  state.force += load.force;
+  state.moment += load.moment;
+  state.stiffness += load.stiffness, state.spring += load.spring, state.dashpot += load.dashpot;
+  state.touches += load.touches, state.near += load.near;
+}
+
+void Walls::drive(double dt, const Ahead& ahead) {
+  for (const std::size_t wall : order_) {
+    const MotionDescription& motion = setups_[wall].motion;
+    const Drive& how = drives_[wall];
+    WallState& state = states_[wall];
+    // The ramp in the middle of the step: so a ramp of whole steps covers exactly half of velocity × ramp_time.
+    const double ramp = motion.ramp_time > 0 ? std::min(1.0, (state.stage_time + 0.5 * dt) / motion.ramp_time) : 1.0;
+    double swings = 0;  // amplitudes in a second
+    if (motion.oscillation)
+      swings =
+          (swing(motion, state.swing_time + dt, state.swing_lead) - swing(motion, state.swing_time, state.swing_lead)) /
+          dt;
+    for (int axis = 0; axis < 3; ++axis) {
+      double& velocity = state.velocity[axis];
+      if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], wall, axis, area(wall), state, dt, ahead);
+      else if (how.follow[axis]) velocity = states_[how.leader].velocity[axis];
+      else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
+      else {
+        velocity = ramp * motion.velocity[axis];
+        if (motion.oscillation) velocity += swings * motion.oscillation->amplitude[axis];
+      }
+    }
+    state.spin = ramp * motion.spin;
+    if (motion.oscillation) state.spin += swings * motion.oscillation->angle;
+  }
+}
+
+std::string Walls::fallen_behind() const {
+  std::string words;
+  for (std::size_t wall = 0; wall < size(); ++wall) {
+    const int axis = drives_[wall].servo_axis;
+    const WallState& state = states_[wall];
+    if (axis < 0 || state.touches == 0) continue;  // what does not touch is on its way
+    const ServoDescription& servo = *setups_[wall].motion.servo;
+    const double kept = servo.force ? *servo.force : *servo.pressure,
+                 pressed = -state.force[axis] / (servo.force ? 1 : area(wall) * facing(setups_[wall], state.pose));
+    if (std::abs(state.velocity[axis]) < (1 - 1e-9) * servo.max_velocity ||
+        std::abs(pressed - kept) <= most_behind * std::abs(kept))
+      continue;
+    words += fmt::format(
+        "{}servo of wall \"{}\" fell behind at its max_velocity of {:g} m/s: {:.4g} {}, to be kept at {:.4g}",
+        words.empty() ? "" : "; ", name(wall), servo.max_velocity, pressed, servo.force ? "N" : "Pa", kept);
+  }
+  return words;
+}
+
+Demand Walls::demand() const {
+  Demand most;
+  for (std::size_t wall = 0; wall < size(); ++wall)
+    if (const auto& free = setups_[wall].motion.free)
+      most = {std::max(most.spring, states_[wall].spring / free->mass),
+              std::max(most.dashpot, states_[wall].dashpot / free->mass)};
+  return most;
+}
+
+void Walls::move(double dt) {
+  for (WallState& state : states_) {
+    state.pose.shift += dt * state.velocity;
+    state.stage_time += dt, state.swing_time += dt;
+    const double angle = dt * state.spin.norm();
+    if (angle == 0) continue;  // the turn of a wall that does not spin stays the exact identity
+    const Mat3 turn = Eigen::AngleAxisd(angle, state.spin.normalized()) * state.pose.turn;
+    state.pose.turn = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
+  }
+}
+
+void Walls::view(std::vector<WallView>& views) const {
+  views.resize(size());
+  for (std::size_t wall = 0; wall < size(); ++wall) {
+    const WallState& state = states_[wall];
+    const Geometry& geometry = *setups_[wall].geometry;
+    WallView& view = views[wall];
+    view.name = setups_[wall].name;
+    view.position = state.pose.shift;
+    view.stage_position = state.pose.shift - state.stage_start;
+    view.velocity = state.velocity;
+    view.spin = state.spin;
+    view.force = state.force;
+    view.moment = state.moment;
+    view.area = area(wall), view.flat = geometry.flat();
+    view.normal = state.pose.turn * geometry.normal();
+    view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
+    view.touches = state.touches;
+    view.pose = state.pose;
+  }
+}
+
+void Walls::remember(Memory& memory) {
+  const std::size_t walls = states_.size();
+  memory(states_);
+  if (states_.size() != walls)
+    throw Error("a checkpoint with " + std::to_string(states_.size()) + " walls, but the scene has " +
+                std::to_string(walls) + "; continue with the description that wrote it");
+}
+
+}  // namespace grit

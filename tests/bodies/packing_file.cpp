@@ -1,0 +1,156 @@
+#include "bodies/packing_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "grit/error.hpp"
+#include "bodies/random.hpp"
+
+namespace grit::packing_file_tests {
+namespace {
+
+class PackingFile : public testing::Test {
+ protected:
+  PackingFile()
+      : folder_(
+            std::filesystem::path(testing::TempDir()) /
+            ("packing-" + std::to_string(getpid()) + testing::UnitTest::GetInstance()->current_test_info()->name())),
+        path_(folder_ / "grains.txt") {
+    std::filesystem::create_directories(folder_);
+  }
+  ~PackingFile() override { std::filesystem::remove_all(folder_); }
+
+  void write(const std::string& text) const { std::ofstream(path_, std::ios::binary) << text; }
+  std::vector<Problem> problems(const std::string& text) const {
+    write(text);
+    try {
+      read_packing(path_);
+    } catch (const DescriptionError& error) {
+      return error.problems();
+    }
+    return {};
+  }
+
+  std::filesystem::path folder_, path_;
+};
+
+TEST_F(PackingFile, ReadsLinesCommentsAndBlanks) {
+  write("# L 1.089894405e-02\n\n  1e-3 2e-3\t-3e-3 0.5e-3   # the first\r\n \t\n4 5 6 7");
+  const auto grains = read_packing(path_);
+  ASSERT_EQ(grains.size(), 2u);
+  EXPECT_EQ(xyz(grains[0]), Vec3(1e-3, 2e-3, -3e-3));
+  EXPECT_EQ(grains[0].w, 0.5e-3);
+  EXPECT_EQ(xyz(grains[1]), Vec3(4, 5, 6));
+  EXPECT_EQ(grains[1].w, 7);
+}
+
+TEST_F(PackingFile, ComesBackToTheSameBits) {
+  Random random(1);
+  std::vector<Row> grains;
+  const auto number = [&] {  // any bits that are a finite number
+    for (;;)
+      if (const auto x = std::bit_cast<double>(random.bits()); std::isfinite(x)) return x;
+  };
+  for (int i = 0; i < 20'000; ++i) grains.push_back({number(), number(), number(), std::abs(number())});
+  grains.push_back({-0.0, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(),
+                    std::numeric_limits<double>::min()});
+  write_packing(path_, grains, "made by hand\nin two lines");
+  const auto read = read_packing(path_);
+  ASSERT_EQ(read.size(), grains.size());
+  const auto same = [](double a, double b) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  };
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    ASSERT_TRUE(same(read[i].x, grains[i].x) && same(read[i].y, grains[i].y) && same(read[i].z, grains[i].z) &&
+                same(read[i].w, grains[i].w))
+        << i;
+}
+
+TEST_F(PackingFile, WritesSeventeenDigitsAndItsComment) {
+  const Row grain{0.1, -2, 0, 1e-3};
+  write_packing(path_, {&grain, 1}, "of a test");
+  std::ifstream file(path_);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_EQ(text,
+            "# of a test\n# x y z radius, m\n"
+            "1.0000000000000001e-01 -2.0000000000000000e+00 0.0000000000000000e+00 1.0000000000000000e-03\n");
+  EXPECT_FALSE(std::filesystem::exists(path_.string() + ".part"));
+}
+
+TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
+  const auto found =
+      problems("# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -4\n1e999 2 3 4\n");
+  const std::pair<int, const char*> wanted[] = {
+      {3, "found 3 numbers; a grain is four: x y z radius"},
+      {4, "z is \"x3\", not a number"},
+      {5, "found 5 numbers; a grain is four: x y z radius"},
+      {6, "y is \"nan\", not a finite number in double's range"},
+      {7, "radius is \"inf\", not a finite number in double's range"},
+      {8, "radius is 0.000000 m; it must be above 0"},
+      {9, "radius is -4.000000 m; it must be above 0"},
+      {10, "x is \"1e999\", not a finite number in double's range"},
+  };
+  ASSERT_EQ(found.size(), std::size(wanted));
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].file, path_.string());
+    EXPECT_EQ(found[i].line, wanted[i].first);
+    EXPECT_EQ(found[i].message, wanted[i].second);
+  }
+  EXPECT_THAT(DescriptionError(found).what(), testing::StartsWith(path_.string() + ":3: found 3 numbers"));
+}
+
+TEST_F(PackingFile, TellsOfTheFirstFaultsOnly) {
+  std::string text;
+  for (int i = 0; i < 50; ++i) text += "oops\n";
+  const auto found = problems(text);
+  ASSERT_EQ(found.size(), 11u);
+  EXPECT_EQ(found.back().message, "40 more lines are wrong");
+}
+
+TEST_F(PackingFile, RefusesAFileWithoutGrains) {
+  for (const char* text : {"", "# L 1\n# nothing\n\n"}) {
+    const auto found = problems(text);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].message, "holds no grain; a line for each is needed: x y z radius, in m");
+  }
+}
+
+TEST_F(PackingFile, SaysWhyAFileCannotBeReadOrWritten) {
+  const auto message = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const FileError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto missing = folder_ / "nowhere" / "grains.txt";
+  EXPECT_EQ(message([&] { read_packing(missing); }),
+            missing.string() + ": cannot read grains: No such file or directory");
+  EXPECT_EQ(message([&] { read_packing(folder_); }), folder_.string() + ": cannot read grains: Is a directory");
+  EXPECT_EQ(message([&] { write_packing(missing, {}); }),
+            missing.string() + ".part: cannot write grains: No such file or directory");
+  EXPECT_THAT(message([&] { write_packing(folder_, {}); }), testing::HasSubstr("cannot write grains: "));
+}
+
+TEST_F(PackingFile, SaysThatTheDiskIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  std::filesystem::create_symlink("/dev/full", path_.string() + ".part");
+  const std::vector<Row> grains(1000, Row{1, 2, 3, 4});
+  try {
+    write_packing(path_, grains);
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("No space left on device"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+}  // namespace
+}  // namespace grit::packing_file_tests
