@@ -77,7 +77,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::vector<ProbeGroup> probes;
   for (const auto& [name, probe] : description.probes)
     probes.push_back(Observer(name, probe, components.probes.at(name), kernel.world()).group());
-  SingleChannels(probes).check(file, description.output);  // as a run does
+  SingleChannels(probes).check(scene.document, description.output);  // as a run does
   const std::size_t bodies = kernel.world().positions().size();
 
   std::cout << "\nstate beyond position, velocity and spin\n";

@@ -7,13 +7,13 @@
 
 namespace grit {
 
-CurveSummary::CurveSummary(Recorder& next, std::string file, const OutputDescription& output,
+CurveSummary::CurveSummary(Recorder& next, const Document& document, const OutputDescription& output,
                            std::function<void(const std::string&)> say)
-    : next_(next), file_(std::move(file)), output_(output), say_(std::move(say)), curves_(output.summary.size()) {}
+    : next_(next), document_(document), output_(output), say_(std::move(say)), curves_(output.summary.size()) {}
 
 void CurveSummary::begin(const World& world, std::span<const ProbeGroup> probes) {
   const SingleChannels channels(probes);
-  channels.check(file_, output_);
+  channels.check(document_, output_);
   for (std::size_t i = 0; i < curves_.size(); ++i)
     curves_[i].channel = channels.at(output_.summary[i], fmt::format("/output/summary/{}", i));
   next_.begin(world, probes);

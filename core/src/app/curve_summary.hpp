@@ -13,8 +13,8 @@ namespace grit {
 
 class CurveSummary final : public Recorder {
  public:
-  /// `file` and `output` are the description's; `say` gets a line for each stage that ends.
-  CurveSummary(Recorder& next, std::string file, const OutputDescription& output,
+  /// `document` and `output` are the description's; `say` gets a line for each stage that ends.
+  CurveSummary(Recorder& next, const Document& document, const OutputDescription& output,
                std::function<void(const std::string&)> say);
 
   /// Throws DescriptionError for channels that the output names and no probe has.
@@ -37,7 +37,7 @@ class CurveSummary final : public Recorder {
     bool any = false;
   };
   Recorder& next_;
-  std::string file_;
+  const Document& document_;
   const OutputDescription& output_;
   std::function<void(const std::string&)> say_;
   std::vector<Curve> curves_;

@@ -198,7 +198,7 @@ ExitStatus run_one(const Job& job, const Options& options, const Registry& regis
     say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
 
   ProgressBar bar;
-  CurveSummary summary_curves(recorder, file, description.output, [&](const std::string& line) {
+  CurveSummary summary_curves(recorder, scene.document, description.output, [&](const std::string& line) {
     bar.end();
     say(line);
   });

@@ -36,10 +36,10 @@ const SingleChannel& SingleChannels::at(const std::string& name, const std::stri
   throw Error(pointer + ": " + refusal(name));
 }
 
-void SingleChannels::check(const std::string& file, const OutputDescription& output) const {
+void SingleChannels::check(const Document& document, const OutputDescription& output) const {
   std::vector<Problem> problems;
   const auto expect = [&](const std::string& name, const std::string& pointer) {
-    if (!find(name)) problems.push_back({file, 0, "/output/" + pointer, refusal(name)});
+    if (!find(name)) problems.push_back(document.problem("/output/" + pointer, refusal(name)));
   };
   if (output.picture) {
     expect(output.picture->x, "picture/x");
@@ -47,8 +47,8 @@ void SingleChannels::check(const std::string& file, const OutputDescription& out
       expect(output.picture->y[i], fmt::format("picture/y/{}", i));
   }
   for (const auto& [name, reference] : output.references) {
-    expect(reference.of, "references/" + name + "/of");
-    if (!reference.against.empty()) expect(reference.against, "references/" + name + "/against");
+    expect(reference.of, "references/" + pointer_token(name) + "/of");
+    if (!reference.against.empty()) expect(reference.against, "references/" + pointer_token(name) + "/against");
   }
   for (std::size_t i = 0; i < output.summary.size(); ++i) expect(output.summary[i], fmt::format("summary/{}", i));
   if (!problems.empty()) throw DescriptionError(std::move(problems));

@@ -9,6 +9,7 @@
 
 #include "run/recorder.hpp"
 #include "description/description.hpp"
+#include "input/document.hpp"
 
 namespace grit {
 
@@ -29,8 +30,8 @@ class SingleChannels {
   explicit SingleChannels(std::span<const ProbeGroup> probes);
   /// `pointer`: where the description has the name. Throws Error for one that is not there.
   const SingleChannel& at(const std::string& name, const std::string& pointer) const;
-  /// Throws DescriptionError with all names of the section that are not there.
-  void check(const std::string& file, const OutputDescription& output) const;
+  /// Throws DescriptionError with all names of the section that are not there, each with its place in the document.
+  void check(const Document& document, const OutputDescription& output) const;
 
  private:
   const SingleChannel* find(const std::string& name) const;
