@@ -36,7 +36,7 @@ class Dense {
  public:
   Dense(const std::string& law, std::size_t about)
       : scene_(test::scene_of(test::description(law, material(law), {{Vec3::Zero(), spacing}}))), team_(1) {
-    law_ = scene_.description->contacts.get();
+    law_ = LiveScene(scene_).components().law;
     const std::array<std::string, 1> names{"grain"};
     law_->mix(names, names.size());
     for (const test::Grain& g : grains(about)) {

@@ -56,7 +56,8 @@ void touch(benchmark::State& state, Description wall) {
   plain["walls"]["wall"] = wall;
   plain["walls"]["wall"]["material"] = "grain";
   const Scene scene = test::scene_of(plain);
-  const Geometry& geometry = *scene.description->walls.at("wall").geometry;
+  const LiveScene live(scene);
+  const Geometry& geometry = *live.components().geometries.at("wall");
   // A layer about z = 0, of which half overlaps the face, over somewhat more than the square [0, 1] × [0, 1] m.
   Random random(1);
   std::vector<Sphere> spheres;

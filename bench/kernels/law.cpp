@@ -13,7 +13,8 @@ void law(benchmark::State& state, const std::string& name) {
   plain["guards"] = {{"overlap", 1.0}};
   const test::Trial trial(plain);
   const auto& world = trial.world();
-  ContactLaw& law = *trial.scene().description->contacts;
+  const auto own = LiveScene(trial.scene()).components().law;
+  ContactLaw& law = *own;
   law.mix(std::array<std::string, 1>{"grain"}, 1);
   test::Pairs pairs(law, time_step);
   for (std::size_t i = 0; i < world.positions().size(); ++i) {

@@ -275,14 +275,67 @@ TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {
                         "--set", R"(/output/references={"a": {"of": "test/x", "value": 1}})", "--set",
                         R"(/output/summary=["packing/kinetic_energy", "packing/none"])"});
     EXPECT_EQ(outcome.status, 2) << does;
-    EXPECT_THAT(
-        outcome.err,
-        AllOf(HasSubstr("two.json: /output/picture/y/0: found \"packing/nope\", which no probe has as one number; "
-                        "allowed is one of packing/time, "),
-              HasSubstr("/output/references/a/of: found \"test/x\""),
-              HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")))
+    EXPECT_THAT(outcome.err,
+                AllOf(HasSubstr("--set: /output/picture/y/0: found \"packing/nope\", which no probe has as one number; "
+                                "allowed is one of packing/time, "),
+                      HasSubstr("/output/references/a/of: found \"test/x\""),
+                      HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")))
         << does;
   }
+}
+
+/// What shows only when the forces of the first instant are known has a place, too, and leaves no folder behind.
+TEST(Descriptions, AreRefusedForFaultsOfTheFirstInstant) {
+  const std::string start = R"({
+  "contacts": {"type": "linear-frictional"},
+  "materials": {"sand": {"density": 2600}},
+  "bodies": {
+    "sand": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [
+      {"position": [0, 0, 0.02], "radius": 0.005})";
+  const std::string middle = R"(
+    ]}}
+  },
+  "walls": {
+    "floor": {"type": "plane", "material": "sand", "normal": [0, 0, )";
+  const std::string end = R"(]}
+  },
+  "stages": [{"name": "fall", "until": {"type": "time", "value": 0.01}, "limit": 1}])";
+  const auto expect = [&](const std::string& text, const std::string& problem) {
+    const OwnFolder folder;
+    folder.write("box.json", text);
+    for (const std::string does : {"check", "run"}) {
+      const auto outcome = grit_in(folder.path(), {does, "box.json"});
+      EXPECT_EQ(outcome.status, 2) << does;
+      EXPECT_THAT(outcome.err, AllOf(HasSubstr(problem), HasSubstr("1 problem"))) << does;
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "results")) << does;
+    }
+  };
+  expect(start + middle + "-1" + end + "}",
+         "box.json:10: /walls/floor: body 0 at (0, 0, 0.02) m overlaps wall \"floor\" by 5 of its radius");
+  expect(start + R"(, {"position": [0, 0, 0.021], "radius": 0.005})" + middle + "1" + end + "}",
+         "box.json:5: /bodies/sand: body 0 at (0, 0, 0.02) m overlaps body 1 by 1.8 of its radius");
+  expect(start + middle + "1" + end + ",\n  \"time_step\": {\"value\": 1}}",
+         "box.json:13: /time_step/value: the time step 1 s is above the critical one, ");
+  expect(start + middle + "1" + end + ",\n  \"domain\": {\"low\": [-1, -1, 0], \"high\": [1, 1, 0.01]}}",
+         "box.json:5: /bodies/sand: a body at (0.000000, 0.000000, 0.020000) m lies outside the domain");
+  expect(start + middle + "1" + end + ",\n  \"output\": {\"summary\": [\"packing/none\"]}}",
+         "box.json:13: /output/summary/0: found \"packing/none\", which no probe has as one number");
+}
+
+TEST(Descriptions, AreRefusedForTooManyMaterials) {
+  std::string materials;
+  for (int i = 0; i < 256; ++i) materials += (i > 0 ? ", " : "") + ("\"m" + std::to_string(i) + "\": {}");
+  const OwnFolder folder;
+  folder.write("many.json", R"({
+  "contacts": {"type": "linear-frictional"},
+  "materials": {)" + materials + R"(},
+  "bodies": {"sand": {"type": "sphere", "material": "m0", "grains": {"type": "list", "grains": [
+    {"position": [0, 0, 0], "radius": 0.005}]}}},
+  "stages": [{"name": "fall", "until": {"type": "time", "value": 0.01}, "limit": 1}]
+})");
+  const auto outcome = grit_in(folder.path(), {"check", "many.json"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("many.json:3: /materials: found 256 materials; allowed is 255 or fewer"));
 }
 
 TEST(Descriptions, ProbesAndWallsThatFitNoSceneAreToldAtTheirPlaces) {

@@ -228,7 +228,7 @@ TEST_F(Reports, HaveWhatCurvesAreComparedWith) {
   };
   auto outcome = refused(R"({"of": "packing/nothing", "value": 1})");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("two.json: /output/references/it/of: found \"packing/nothing\""));
+  EXPECT_THAT(outcome.err, HasSubstr("--set: /output/references/it/of: found \"packing/nothing\""));
   outcome = refused(R"({"of": "packing/mean_stress", "curve": {"file": "nothing.csv", "x": "u", "y": "ratio"}})");
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.err, HasSubstr("nothing.csv: cannot be read"));

@@ -21,7 +21,8 @@ std::shared_ptr<const Geometry> geometry(Description wall) {
   Description d = description("linear-frictional", {{"friction_angle", 0.3}}, {{Vec3::Zero(), 1e-3}});
   wall["material"] = "grain";
   d["walls"]["wall"] = std::move(wall);
-  return scene_of(d).description->walls.at("wall").geometry.get();
+  const Scene scene = scene_of(d);
+  return LiveScene(scene).components().geometries.at("wall");
 }
 
 std::vector<Touch> by_overlap(const Geometry& geometry, const Sphere& sphere) {

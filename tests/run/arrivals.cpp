@@ -288,11 +288,11 @@ TEST(Arrivals, ThatTripAGuardAreSeenWithTheirForces) {
 TEST(Arrivals, WithoutRoomOrOutsideAreRefused) {
   Description d = first_and_late({{Vec3::Zero(), 2 * radius}}, {});
   d["bodies"]["late"]["grains"] = cloud({-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}, 1, 0.9e-3, 1e-3);
-  EXPECT_THAT(refusal(d), testing::AllOf(HasSubstr("stage \"second\": /bodies/late: cloud: only 0 of 1 grains"),
+  EXPECT_THAT(refusal(d), testing::AllOf(HasSubstr("stage \"second\": group \"late\": cloud: only 0 of 1 grains"),
                                          HasSubstr("what is there by then takes room as well")));
   d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 6e-3}, radius}});
   d["domain"] = {{"low", {-5e-3, -5e-3, -5e-3}}, {"high", {5e-3, 5e-3, 5e-3}}};
-  EXPECT_THAT(refusal(d), testing::EndsWith("/bodies/late: a body at (0.000000, 0.000000, 0.006000) m lies outside the "
+  EXPECT_THAT(refusal(d), testing::EndsWith("group \"late\": a body at (0.000000, 0.000000, 0.006000) m lies outside the "
                                             "domain; enlarge /domain or move the body"));
 }
 

@@ -308,7 +308,7 @@ TEST(Checkpoint, OfAnotherSceneIsRefused) {
   EXPECT_THAT(error_of(servo(), half), HasSubstr("more is to be remembered than was saved"));
   Checkpoint longer = good;
   longer.memory.emplace_back();
-  EXPECT_THAT(error_of(servo(), longer), HasSubstr("more in it than the run remembers"));
+  EXPECT_THAT(error_of(servo(), longer), HasSubstr("holds more than this simulation restores"));
 }
 
 /// A force that grows with the number of times that it acted, an engine's own memory.

@@ -44,7 +44,7 @@ TEST(EngineMemory, OutlivesARestartInEachStage) {
   const std::int64_t calls = tally_of(whole).calls;
   const double sum = tally_of(whole).sum;
   for (const std::uint64_t stop : {24u, 56u, 64u, 88u}) {
-    const Taped first(tallied(), 1, [&](const World& now) { return now.step() >= stop; });
+    const Taped first(tallied(), 1, [&](const Kernel& now) { return now.world().step() >= stop; });
     ASSERT_EQ(first.tape.summary.status, "interrupted") << stop;
     ASSERT_FALSE(first.tape.checkpoints.empty());
     const Taped rest(tallied(), 1, {}, &first.tape.checkpoints.back());

@@ -12,7 +12,7 @@
 namespace grit::test::public_simulation_tests {
 namespace {
 
-constexpr double dt = 1e-4, g = 9.81;
+constexpr double dt = 2e-5, g = 9.81;
 
 /// A ball that falls freely, in two stages of 100 steps.
 Description drop() {

@@ -379,7 +379,7 @@ TEST(Mesh, RefusesCornersThatAreNotMergedEvenWhereARimIsMeant) {
       complaint(apart, {{"open", true}}),
       HasSubstr("pushed twice: the first of facet 1 on facet 2, from (5e-10, 5e-10, 0) to (1, 1, 0) m, 1e-09 m "
                 "apart; of facets 1, 2; allowed is facets that share the edges where one goes on in another; say "
-                "\"merge\": 1.1e-09 or more, in m, which joins corners that should be one; "));
+                "\"merge\": 1.1e-09 or more, in m, which joins corners that should be one"));
   EXPECT_TRUE(both_refuse_a_seam(apart));
   EXPECT_EQ(complaint(apart, {{"open", true}, {"merge", 1.1e-9}}), "");
 
@@ -457,7 +457,7 @@ TEST(Mesh, RefusesInvertedFacetsUnlessItHasTwoSides) {
   Corners corners = box(low, high);
   std::swap(corners[3 * 6 + 1], corners[3 * 6 + 2]);
   EXPECT_THAT(complaint(corners),
-              HasSubstr("found inverted facets, which face another way than most of their neighbours: 7, allowed"));
+              HasSubstr("found inverted facets, which face another way than most of their neighbours: 7; allowed"));
   EXPECT_EQ(complaint(corners, {{"two_sided", true}}), "");
   EXPECT_EQ(mesh(corners, {{"two_sided", true}})->area(), 0);
 }
@@ -478,7 +478,7 @@ TEST(Mesh, RefusesEdgesOfManyFacetsUnlessItHasTwoSides) {
   add_quad(fin, {0, 0, 3}, {0, 2, 3}, {-1, 2, 3}, {-1, 0, 3});
   add_quad(fin, {0, 0, 3}, {0, 2, 3}, {-1, 2, 4}, {-1, 0, 4});
   EXPECT_THAT(complaint(fin, {{"open", true}}),
-              HasSubstr("found edges that more than two facets share, of facets 1, 11, 13, allowed"));
+              HasSubstr("found edges that more than two facets share, of facets 1, 11, 13; allowed"));
   EXPECT_EQ(complaint(fin, {{"open", true}, {"two_sided", true}}), "");
 }
 
@@ -518,7 +518,7 @@ TEST(Mesh, RefusesNormalsAgainstTheCornersUnlessToldToIgnoreThem) {
     return "";
   };
   EXPECT_THAT(with({}),
-              HasSubstr("found facets whose corners go round against the normal that the file gives: 1, allowed"));
+              HasSubstr("found facets whose corners go round against the normal that the file gives: 1; allowed"));
   EXPECT_EQ(with({{"ignore_normals", true}}), "");
 }
 

@@ -14,7 +14,7 @@ int main(int, char** arguments) try {
   std::vector<double> heights;
   drop.every_steps(10, [&](const grit::World& world) { heights.push_back(world.positions()[0].z); });
   drop.run_stage();
-  std::printf("stage \"fall\": %zu heights, the last %.4f m\n", heights.size(), heights.back());
+  std::printf("stage \"fall\": %zu heights, the last %.3g m\n", heights.size(), heights.back());
 
   drop.set("/engines/gravity/acceleration", {0, 0, -1.0});
   const grit::Checkpoint there = drop.save();
