@@ -150,19 +150,19 @@ TEST(Package, RefusesAPluginOfAnother) {
   };
   const std::string expected = tag(own), found = tag(other);
   if (expected == found) GTEST_SKIP() << "both are " << found;
-  const auto outcome = grit(folder.path(), own, {"plugins", "linear-normal", "--plugin-path", OUTSIDE "/" + other});
+  const auto outcome = grit(folder.path(), own, {"plugins", "adhesive", "--plugin-path", OUTSIDE "/" + other});
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("linear-normal.so"),
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("adhesive.so"),
                                  HasSubstr("instruction set: expected \"" + expected + "\", found \"" + found + '"'),
                                  HasSubstr("cmake/grit -DGRIT_ARCH=" + own + " && ")));
 }
 
 TEST(Package, FindsAPluginInTheFolderOfItsOwn) {
   const OwnFolder folder;
-  const std::vector<std::string> words{"plugins", "linear-normal", "--plugin-path", OUTSIDE};
+  const std::vector<std::string> words{"plugins", "adhesive", "--plugin-path", OUTSIDE};
   const auto found = grit(folder.path(), other, words);
   EXPECT_EQ(found.status, 0) << found.err;
-  EXPECT_THAT(found.out, HasSubstr(OUTSIDE "/" + other + "/contacts/linear-normal.so\n"));
+  EXPECT_THAT(found.out, HasSubstr(OUTSIDE "/" + other + "/contacts/adhesive.so\n"));
   EXPECT_EQ(grit(folder.path(), own, words).status, 3);
 }
 

@@ -10,6 +10,8 @@
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
 #include "app/run_setup.hpp"
+#include "bodies/make_bodies.hpp"
+#include "description/current_scene.hpp"
 #include "format/duration.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
@@ -23,8 +25,6 @@
 #include "lint/unused_settings.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
-#include "description/current_scene.hpp"
-#include "bodies/make_bodies.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
 

@@ -3,10 +3,10 @@
 
 #include "app/options.hpp"
 #include "app/reference.hpp"
+#include "description/description.hpp"
 #include "grit/error.hpp"
 #include "input/reference.hpp"
 #include "plugins/nearest.hpp"
-#include "description/description.hpp"
 #include "study/description.hpp"
 
 namespace grit {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "output/run_json.hpp"
-#include "plugins/registry.hpp"
 #include "description/components.hpp"
 #include "description/description.hpp"
+#include "output/run_json.hpp"
+#include "plugins/registry.hpp"
 
 namespace grit {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "input/scene.hpp"
 #include "output/frames.hpp"
-#include "bodies/bodies.hpp"
 #include "simulation/live_components.hpp"
 
 namespace grit {

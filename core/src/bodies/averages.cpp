@@ -4,8 +4,8 @@
 #include <limits>
 #include <numbers>
 
-#include "grit/world.hpp"
 #include "bodies/kinetic_energy.hpp"
+#include "grit/world.hpp"
 
 namespace grit {
 

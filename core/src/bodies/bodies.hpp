@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "bodies/clumps.hpp"
+#include "bodies/large_array.hpp"
 #include "grit/memory.hpp"
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
-#include "bodies/clumps.hpp"
-#include "bodies/large_array.hpp"
 
 namespace grit {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "grit/error.hpp"
 #include "bodies/sizes.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "grit/world.hpp"
-#include "description/description.hpp"
 #include "bodies/random.hpp"
+#include "description/description.hpp"
+#include "grit/world.hpp"
 
 namespace grit {
 

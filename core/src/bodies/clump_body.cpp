@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "grit/error.hpp"
 #include "bodies/clump_shape.hpp"
 #include "bodies/packing_file.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "bodies/clump_shape.hpp"
 #include "grit/body_kind.hpp"
 #include "grit/plugin.hpp"
-#include "bodies/clump_shape.hpp"
 
 namespace grit {
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <typeinfo>
 
-#include "grit/error.hpp"
 #include "bodies/cloud.hpp"
 #include "bodies/packing_file.hpp"
 #include "description/placed_error.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "grit/world.hpp"
 #include "bodies/bodies.hpp"
 #include "description/components.hpp"
 #include "description/description.hpp"
+#include "grit/world.hpp"
 
 namespace grit {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "grit/error.hpp"
 #include "bodies/normal.hpp"
 #include "bodies/same_bits.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 

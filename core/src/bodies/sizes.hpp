@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "description/description.hpp"
 #include "bodies/random.hpp"
+#include "description/description.hpp"
 
 namespace grit {
 

@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
 #include "contact/team.hpp"
 #include "grit/contact/contact_law.hpp"
-#include "bodies/bodies.hpp"
 
 namespace grit {
 

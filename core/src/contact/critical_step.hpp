@@ -1,11 +1,11 @@
 // The largest stable time step.
 #pragma once
 
+#include "bodies/bodies.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/demand.hpp"
 #include "contact/wall_contacts.hpp"
 #include "grit/contact/contact_law.hpp"
-#include "bodies/bodies.hpp"
 
 namespace grit {
 

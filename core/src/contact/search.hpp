@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "contact/chunks.hpp"
 #include "contact/skins.hpp"
 #include "grit/world.hpp"
-#include "bodies/bodies.hpp"
 
 namespace grit {
 

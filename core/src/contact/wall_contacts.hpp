@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "contact/chunks.hpp"
 #include "contact/skins.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
 #include "grit/memory.hpp"
-#include "bodies/bodies.hpp"
 
 namespace grit {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "plugins/parameter_values.hpp"
 #include "description/stage_plan.hpp"
+#include "plugins/parameter_values.hpp"
 
 namespace grit {
 

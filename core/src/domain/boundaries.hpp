@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "domain/deforming_cell.hpp"
 #include "grit/world.hpp"
-#include "bodies/bodies.hpp"
 
 namespace grit {
 

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-#include "grit/memory.hpp"
 #include "bodies/bodies.hpp"
+#include "grit/memory.hpp"
 
 namespace grit {
 

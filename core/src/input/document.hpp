@@ -40,8 +40,8 @@ class Document {
   /// stands twice, and extended file that is not there or extends itself.
   static Document load(const std::filesystem::path& path);
 
-  /// The same for a text in place of a file; `name` stands for the file in messages. Relative paths start in the working
-  /// directory.
+  /// The same for a text in place of a file; `name` stands for the file in messages. Relative paths start in the
+  /// working directory.
   static Document parse(const std::string& text, const std::string& name);
 
   const Description& json() const { return json_; }

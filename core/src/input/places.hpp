@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "input/document.hpp"
 #include "description/placed_error.hpp"
+#include "input/document.hpp"
 
 namespace grit {
 

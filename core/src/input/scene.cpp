@@ -337,10 +337,8 @@ SettingsChange change_of(const SceneDescription& now, const std::string& pointer
   } catch (const Description::exception&) {
     throw DescriptionError({{"set", 0, pointer, "found \"" + pointer + "\"; allowed is a JSON pointer"}});
   }
-  all["stages"] = {{{"name", "set"},
-                    {"until", {{"type", "steps"}, {"value", 1}}},
-                    {"limit", 1},
-                    {"change", std::move(patch)}}};
+  all["stages"] = {
+      {{"name", "set"}, {"until", {{"type", "steps"}, {"value", 1}}}, {"limit", 1}, {"change", std::move(patch)}}};
   try {
     Scene scene = read_scene(Document(std::move(all), "set"), now.registry());
     return std::move(scene.stages.front().change);

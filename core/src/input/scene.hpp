@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "input/document.hpp"
-#include "plugins/registry.hpp"
 #include "description/description.hpp"
 #include "description/stage_plan.hpp"
+#include "input/document.hpp"
+#include "plugins/registry.hpp"
 
 namespace grit {
 

@@ -4,11 +4,11 @@
 #include <map>
 #include <set>
 
+#include "description/description.hpp"
 #include "input/range.hpp"
 #include "input/reader.hpp"
 #include "input/units.hpp"
 #include "plugins/parameter_values.hpp"
-#include "description/description.hpp"
 
 namespace grit {
 namespace {

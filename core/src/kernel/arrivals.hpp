@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "bodies/make_bodies.hpp"
 #include "grit/world.hpp"
 #include "kernel/state.hpp"
-#include "bodies/make_bodies.hpp"
 
 namespace grit {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "motion/clump_motion.hpp"
 #include "bodies/kinetic_energy.hpp"
+#include "motion/clump_motion.hpp"
 
 namespace grit {
 

@@ -4,15 +4,15 @@
 #include <limits>
 #include <utility>
 
+#include "bodies/kinetic_energy.hpp"
+#include "bodies/make_bodies.hpp"
+#include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
 #include "plugins/component_memory.hpp"
-#include "bodies/kinetic_energy.hpp"
-#include "bodies/make_bodies.hpp"
-#include "description/placed_error.hpp"
 
 namespace grit {
 

@@ -3,13 +3,13 @@
 
 #include <cstdint>
 
+#include "bodies/bodies.hpp"
+#include "bodies/large_array.hpp"
 #include "contact/search.hpp"
 #include "contact/skins.hpp"
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
 #include "kernel/passes.hpp"
-#include "bodies/bodies.hpp"
-#include "bodies/large_array.hpp"
 
 namespace grit {
 

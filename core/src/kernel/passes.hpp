@@ -8,10 +8,10 @@
 
 #include "contact/chunks.hpp"
 #include "contact/team.hpp"
-#include "motion/motion.hpp"
 #include "grit/contact/batch.hpp"
 #include "kernel/model.hpp"
 #include "kernel/stopwatch.hpp"
+#include "motion/motion.hpp"
 
 namespace grit {
 

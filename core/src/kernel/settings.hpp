@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "grit/contact/contact_law.hpp"
-#include "grit/engine.hpp"
 #include "description/components.hpp"
 #include "description/description.hpp"
+#include "grit/contact/contact_law.hpp"
+#include "grit/engine.hpp"
 
 namespace grit {
 

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "bodies/bodies.hpp"
 #include "contact/contact_table.hpp"
 #include "contact/wall_contacts.hpp"
 #include "domain/deforming_cell.hpp"
 #include "domain/population_statistics.hpp"
-#include "motion/motion.hpp"
-#include "motion/walls.hpp"
 #include "kernel/neighbour_lists.hpp"
 #include "kernel/settings.hpp"
 #include "kernel/step_time.hpp"
-#include "bodies/bodies.hpp"
+#include "motion/motion.hpp"
+#include "motion/walls.hpp"
 
 namespace grit {
 

@@ -7,12 +7,12 @@
 #include <limits>
 
 #include "domain/boundaries.hpp"
-#include "motion/clump_motion.hpp"
-#include "motion/growth.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
+#include "motion/clump_motion.hpp"
+#include "motion/growth.hpp"
 
 namespace grit {
 

@@ -3,12 +3,12 @@
 
 #include <vector>
 
+#include "bodies/make_bodies.hpp"
 #include "contact/readiness.hpp"
 #include "kernel/displacement_bounds.hpp"
 #include "kernel/energy_guard.hpp"
 #include "kernel/time_step_control.hpp"
 #include "kernel/world_view.hpp"
-#include "bodies/make_bodies.hpp"
 
 namespace grit {
 

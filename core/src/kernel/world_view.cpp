@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/clump_motion.hpp"
 #include "kernel/energy_balance.hpp"
 #include "kernel/specimen.hpp"
+#include "motion/clump_motion.hpp"
 
 namespace grit {
 

@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "input/scene.hpp"
-#include "description/current_scene.hpp"
 #include "bodies/make_bodies.hpp"
+#include "description/current_scene.hpp"
+#include "input/scene.hpp"
 #include "simulation/live_components.hpp"
 
 namespace grit {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "description/wall_ways.hpp"
 #include "lint/all_stages.hpp"
 #include "lint/installed_studies.hpp"
-#include "description/wall_ways.hpp"
 #include "study/parts.hpp"
 
 namespace grit {

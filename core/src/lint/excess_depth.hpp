@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grit/world.hpp"
 #include "description/components.hpp"
+#include "grit/world.hpp"
 #include "input/scene.hpp"
 #include "study/advice.hpp"
 

@@ -8,9 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "bodies/make_bodies.hpp"
 #include "lint/all_stages.hpp"
 #include "lint/small_changes.hpp"
-#include "bodies/make_bodies.hpp"
 
 namespace grit {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "lint/all_stages.hpp"
 #include "description/wall_ways.hpp"
+#include "lint/all_stages.hpp"
 
 namespace grit {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "lint/all_stages.hpp"
 #include "description/wall_ways.hpp"
+#include "lint/all_stages.hpp"
 #include "study/parts.hpp"
 
 namespace grit {

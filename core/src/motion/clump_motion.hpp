@@ -1,9 +1,9 @@
 // Rigid clumps: forces of their spheres to one force and moment, a step, and where the spheres are then.
 #pragma once
 
-#include "motion/motion.hpp"
-#include "grit/contact/batch.hpp"
 #include "bodies/bodies.hpp"
+#include "grit/contact/batch.hpp"
+#include "motion/motion.hpp"
 
 namespace grit {
 

@@ -1,10 +1,10 @@
 // From forces to positions: one pass over the bodies damps and integrates.
 #pragma once
 
+#include "bodies/bodies.hpp"
 #include "contact/search.hpp"
 #include "grit/contact/batch.hpp"
 #include "grit/engine.hpp"
-#include "bodies/bodies.hpp"
 
 namespace grit {
 

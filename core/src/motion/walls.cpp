@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
-#include "grit/error.hpp"
 #include "description/placed_error.hpp"
 #include "description/servo_face.hpp"
+#include "grit/error.hpp"
 
 namespace grit {
 

@@ -10,11 +10,11 @@
 
 #include "contact/demand.hpp"
 #include "contact/wall_contacts.hpp"
+#include "description/components.hpp"
+#include "description/description.hpp"
 #include "grit/geometry.hpp"
 #include "grit/memory.hpp"
 #include "grit/world.hpp"
-#include "description/components.hpp"
-#include "description/description.hpp"
 
 namespace grit {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "bodies/packing_file.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "format/symbols.hpp"
@@ -13,7 +14,6 @@
 #include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
-#include "bodies/packing_file.hpp"
 
 namespace grit {
 namespace {

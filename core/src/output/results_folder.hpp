@@ -52,8 +52,8 @@ class ResultsFolder final : public Recorder {
   /// Makes the folder. Throws FileError where it cannot, where another run writes now, or where it holds a run and
   /// `existing` says refuse.
   explicit ResultsFolder(ResultsOptions options);
-  /// Removes what was written, and the folders that were made, if begin() was never called: nothing is left of a run that
-  /// does not get to its first step.
+  /// Removes what was written, and the folders that were made, if begin() was never called: nothing is left of a run
+  /// that does not get to its first step.
   ~ResultsFolder() override;
 
   /// Throws Error for a channel of the picture that no probe has, or that is not one number.

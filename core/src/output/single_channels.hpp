@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "run/recorder.hpp"
 #include "description/description.hpp"
 #include "input/document.hpp"
+#include "run/recorder.hpp"
 
 namespace grit {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "kernel/kernel.hpp"
 #include "description/description.hpp"
+#include "kernel/kernel.hpp"
 
 namespace grit {
 

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "description/placed_error.hpp"
 #include "kernel/stopwatch.hpp"
 #include "plugins/component_memory.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
-#include "description/placed_error.hpp"
 
 namespace grit {
 

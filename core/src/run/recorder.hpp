@@ -37,11 +37,11 @@ struct ProbeTime {
 
 /// How a run ended.
 struct RunSummary {
-  std::string status;   ///< "done", "interrupted", "failed"
-  std::string message;  ///< of the failure
+  std::string status;         ///< "done", "interrupted", "failed"
+  std::string message;        ///< of the failure
   Guard guard = Guard::none;  ///< that tripped
-  std::string stage;    ///< the last one
-  double time = 0;      ///< simulated, s
+  std::string stage;          ///< the last one
+  double time = 0;            ///< simulated, s
   std::uint64_t steps = 0;
   double time_step = 0, critical_time_step = 0;  ///< s, the last ones
   std::size_t bodies = 0;

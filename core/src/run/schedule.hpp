@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "description/description.hpp"
 #include "grit/memory.hpp"
 #include "kernel/kernel.hpp"
-#include "description/description.hpp"
 
 namespace grit {
 

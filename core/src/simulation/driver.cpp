@@ -2,9 +2,9 @@
 
 #include <chrono>
 
+#include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
-#include "description/placed_error.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/stage_runner.hpp"
 

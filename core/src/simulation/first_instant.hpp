@@ -1,9 +1,9 @@
 // Faults of a description that show only when the forces of the first instant are known.
 #pragma once
 
+#include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "description/placed_error.hpp"
 
 namespace grit {
 

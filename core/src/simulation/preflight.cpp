@@ -4,8 +4,8 @@
 #include <set>
 #include <tuple>
 
-#include "input/places.hpp"
 #include "description/servo_face.hpp"
+#include "input/places.hpp"
 #include "simulation/unreachable_conditions.hpp"
 
 namespace grit {

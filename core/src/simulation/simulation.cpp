@@ -3,11 +3,11 @@
 #include <chrono>
 #include <utility>
 
+#include "bodies/make_bodies.hpp"
+#include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
 #include "kernel/stopwatch.hpp"
-#include "bodies/make_bodies.hpp"
-#include "description/placed_error.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/relay.hpp"
 #include "simulation/stage_runner.hpp"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "description/placed_error.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
-#include "description/placed_error.hpp"
 
 namespace grit {
 namespace {

@@ -1,9 +1,9 @@
 #include "simulation/standard_registry.hpp"
 
-#include "motion/builtin.hpp"
-#include "plugins/loader.hpp"
 #include "bodies/clump_body.hpp"
 #include "bodies/sphere_body.hpp"
+#include "motion/builtin.hpp"
+#include "plugins/loader.hpp"
 
 namespace grit {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "grit/geometry.hpp"
 #include "description/description.hpp"
+#include "grit/geometry.hpp"
 
 namespace grit {
 

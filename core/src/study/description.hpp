@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "description/description.hpp"
 #include "grit/description.hpp"
 #include "grit/parameters.hpp"
-#include "description/description.hpp"
 
 namespace grit {
 
