@@ -21,11 +21,9 @@
 
 namespace grit {
 
-class Recorder;
-
 struct SimulationOptions {
-  unsigned threads = 1;            ///< results are the same bits for any number
-  std::vector<std::string> sets;   ///< changes of the description, "/pointer=value", applied in order
+  unsigned threads = 1;           ///< results are the same bits for any number
+  std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", applied in order
   /// Folders that are searched for plugins first; then come those of GRIT_PLUGIN_PATH and those beside the library.
   std::vector<std::string> plugin_path;
 };
@@ -42,11 +40,11 @@ struct Progress {
 
 /// What a run takes, found without running it.
 struct Forecast {
-  std::size_t bodies = 0;           ///< at the start; each sphere of a clump is one
-  std::size_t contacts = 0;         ///< between bodies, at the start
-  double time_step = 0;             ///< s, at the start
-  double critical_time_step = 0;    ///< s, at the start
-  std::size_t bytes = 0;            ///< held by bodies and contacts at the start
+  std::size_t bodies = 0;         ///< at the start; each sphere of a clump is one
+  std::size_t contacts = 0;       ///< between bodies, at the start
+  double time_step = 0;           ///< s, at the start
+  double critical_time_step = 0;  ///< s, at the start
+  std::size_t bytes = 0;          ///< held by bodies and contacts at the start
 };
 
 class Simulation {
@@ -102,10 +100,6 @@ class Simulation {
   Checkpoint save();
   /// Goes on where a simulation of the same description was saved. Throws Error for another description.
   void resume(const Checkpoint& checkpoint);
-
-  /// Has a recorder get all samples, frames and checkpoints of the description's probes and output from now on; before
-  /// the first step. It must outlive the simulation.
-  void record(Recorder& recorder);
 
  private:
   struct Parts;

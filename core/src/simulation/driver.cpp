@@ -6,6 +6,7 @@
 #include "grit/error.hpp"
 #include "kernel/stopwatch.hpp"
 #include "simulation/first_instant.hpp"
+#include "simulation/progress_reporter.hpp"
 #include "simulation/stage_runner.hpp"
 
 namespace grit {
@@ -20,31 +21,30 @@ constexpr double most_for_checkpoints = 0.01;
 class Driver {
  public:
   Driver(const Scene& scene, StageRunner& runner, Kernel& kernel, Recorder& recorder, const RunControl& control)
-      : scene_(scene), runner_(runner), kernel_(kernel), recorder_(recorder), control_(control) {}
+      : runner_(runner),
+        recorder_(recorder),
+        control_(control),
+        progress_(runner, kernel.world(), scene.stages.size()) {
+    progress_.set(control.progress, control.progress_every);
+  }
 
   /// Returns false if it was interrupted.
   bool operator()() {
     saved_ = std::chrono::steady_clock::now();
-    enter_stage();
+    progress_.enter_stage();
     while (!runner_.done()) {
       // Asked once a step, so that what is saved is where the run stops.
       const bool stop = control_.interrupted != nullptr && control_.interrupted->load();
       if (stop || checkpoint_is_due()) save();
       const StageRunner::Event event = runner_.next(stop);
       if (event == StageRunner::Event::stopped) return false;
-      if (event == StageRunner::Event::stage_ended) enter_stage();
-      else report();
+      if (event == StageRunner::Event::stage_ended) progress_.enter_stage();
+      else progress_.step();
     }
     return true;
   }
 
  private:
-  void enter_stage() {
-    began_ = last_report_ = std::chrono::steady_clock::now();
-    last_report_steps_ = kernel_.world().step();
-    done_at_begin_ = control_.progress && !runner_.done() ? runner_.progress().value_or(0) : 0;
-  }
-
   // Between two steps, and by the wall clock alone: nothing that is simulated depends on it.
   bool checkpoint_is_due() const {
     if (!(control_.checkpoint_every > 0)) return false;
@@ -58,31 +58,12 @@ class Driver {
     saved_ = std::chrono::steady_clock::now(), saving_ = seconds_since(began);
   }
 
-  void report() {
-    if (!control_.progress || kernel_.world().step() % 8 != 0) return;
-    const double since = seconds_since(last_report_);
-    if (since < control_.progress_every) return;
-    Progress now;
-    now.stage = runner_.description().name, now.stage_number = runner_.stage() + 1, now.stages = scene_.stages.size();
-    now.fraction = runner_.progress();
-    if (const double gone = now.fraction.value_or(0) - done_at_begin_; gone > 1e-3)
-      now.seconds_left = seconds_since(began_) * (1 - *now.fraction) / gone;
-    now.time = kernel_.world().time();
-    now.particle_steps_per_second = static_cast<double>(kernel_.world().step() - last_report_steps_) *
-                                    static_cast<double>(kernel_.world().positions().size()) / since;
-    last_report_ = std::chrono::steady_clock::now(), last_report_steps_ = kernel_.world().step();
-    control_.progress(now);
-  }
-
-  const Scene& scene_;
   StageRunner& runner_;
-  Kernel& kernel_;
   Recorder& recorder_;
   const RunControl& control_;
-  Instant began_, last_report_, saved_;
-  std::uint64_t last_report_steps_ = 0;
-  double saving_ = 0;         // s, the last checkpoint
-  double done_at_begin_ = 0;  // fraction of the stage
+  ProgressReporter progress_;
+  Instant saved_;
+  double saving_ = 0;  // s, the last checkpoint
 };
 
 }  // namespace

@@ -1,19 +1,31 @@
 #include "grit/simulation.hpp"
 
-#include <chrono>
 #include <utility>
 
 #include "bodies/make_bodies.hpp"
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "kernel/stopwatch.hpp"
 #include "simulation/first_instant.hpp"
-#include "simulation/relay.hpp"
+#include "simulation/progress_reporter.hpp"
 #include "simulation/stage_runner.hpp"
 #include "simulation/standard_registry.hpp"
 
 namespace grit {
+
+namespace {
+
+/// Nothing is written.
+class NoRecorder final : public Recorder {
+ public:
+  void begin(const World&, std::span<const ProbeGroup>) override {}
+  void sample(std::size_t, const World&, std::span<const std::span<const double>>) override {}
+  void frame(const World&, std::span<const FieldGroup>) override {}
+  void stage_ended(const World&, const std::string&) override {}
+  void finish(const World&, const RunSummary&) override {}
+};
+
+}  // namespace
 
 /// Members are made in this order, and refer to those before.
 struct Simulation::Parts {
@@ -27,7 +39,8 @@ struct Simulation::Parts {
               return Kernel(live.now(), live.components(),
                             make_bodies(live.now(), live.components(), requested_state(live.components())), threads);
             })),
-        runner(scene, live, kernel, relay) {
+        runner(scene, live, kernel, recorder),
+        progress(runner, kernel.world(), scene.stages.size()) {
     at_first_instant(scene.document, [this] { runner.prepare(); });
   }
 
@@ -35,6 +48,7 @@ struct Simulation::Parts {
     if (started) return;
     at_first_instant(scene.document, [this] { runner.start(); });
     started = true;
+    progress.enter_stage();
   }
   /// One step, or the end of a stage. `stop` as StageRunner has it.
   StageRunner::Event next(bool stop) {
@@ -48,34 +62,17 @@ struct Simulation::Parts {
     });
   }
   bool wants_to_stop() const { return interrupted && interrupted(); }
-  void report();
 
   std::unique_ptr<Registry> registry;
   Scene scene;
   LiveScene live;
   Kernel kernel;
-  Relay relay;
+  NoRecorder recorder;
   StageRunner runner;
+  ProgressReporter progress;
   bool started = false;
   std::function<bool()> interrupted;
-  std::function<void(const Progress&)> progress;
-  double progress_interval = 0;
-  std::chrono::steady_clock::time_point reported = std::chrono::steady_clock::now();
-  std::uint64_t reported_step = 0;
 };
-
-void Simulation::Parts::report() {
-  if (!progress || kernel.world().step() % 8 != 0) return;
-  const double since = seconds_since(reported);
-  if (since < progress_interval) return;
-  Progress now;
-  now.stage = runner.description().name, now.stage_number = runner.stage() + 1, now.stages = scene.stages.size();
-  now.fraction = runner.progress(), now.time = kernel.world().time();
-  now.particle_steps_per_second = static_cast<double>(kernel.world().step() - reported_step) *
-                                  static_cast<double>(kernel.world().positions().size()) / since;
-  reported = std::chrono::steady_clock::now(), reported_step = kernel.world().step();
-  progress(now);
-}
 
 Simulation::Simulation(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -115,8 +112,11 @@ bool Simulation::run_stage() {
   while (!done()) {
     const StageRunner::Event event = parts_->next(parts_->wants_to_stop());
     if (event == StageRunner::Event::stopped) return false;
-    if (event == StageRunner::Event::stage_ended) return true;
-    parts_->report();
+    if (event == StageRunner::Event::stage_ended) {
+      parts_->progress.enter_stage();
+      return true;
+    }
+    parts_->progress.step();
   }
   return true;
 }
@@ -157,7 +157,7 @@ void Simulation::every_steps(std::uint64_t steps, Observer observer) {
 void Simulation::at_stage_end(Observer observer) { parts_->runner.call({}, std::move(observer)); }
 
 void Simulation::on_progress(std::function<void(const Progress&)> report, double interval) {
-  parts_->progress = std::move(report), parts_->progress_interval = interval;
+  parts_->progress.set(std::move(report), interval);
 }
 
 void Simulation::interrupt_when(std::function<bool()> condition) { parts_->interrupted = std::move(condition); }
@@ -171,7 +171,5 @@ void Simulation::resume(const Checkpoint& checkpoint) {
   parts_->runner.resume(checkpoint);
   parts_->started = true;
 }
-
-void Simulation::record(Recorder& recorder) { parts_->relay.set(recorder); }
 
 }  // namespace grit
