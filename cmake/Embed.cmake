@@ -1,4 +1,4 @@
-# Writes files into a C++ source as one string, so that a program carries what its pages are made of.
+# Writes files into a C++ source as one string, to embed the sources of pages in the library.
 #   cmake -DOUT=FILE.cpp -DNAME=SYMBOL -DFILES="a;b" -P Embed.cmake
 # A file named MODULE=PATH is a CommonJS module: it becomes `define("MODULE", function (exports, module, require) {…});`.
 file(WRITE ${OUT} "#include <string_view>\n\nnamespace grit {\nextern const std::string_view ${NAME};\nconst std::string_view ${NAME} = ")
@@ -11,10 +11,10 @@ foreach(file ${FILES})
   file(READ ${file} text)
   string(FIND "${text}" ")grit-page\"" inside)
   if(NOT inside EQUAL -1)
-    message(FATAL_ERROR "${file} holds what ends the string that it is to become: )grit-page\"")
+    message(FATAL_ERROR "${file} contains the end mark of the string: )grit-page\"")
   endif()
   if(module)
-    string(REGEX REPLACE "\n?//# sourceMappingURL=[^\n]*" "" text "${text}")  # a request, where developers look
+    string(REGEX REPLACE "\n?//# sourceMappingURL=[^\n]*" "" text "${text}")  # avoids a request by developer tools
     file(APPEND ${OUT} "R\"grit-page(define(\"${module}\", function (exports, module, require) {)grit-page\"\n")
   endif()
   file(APPEND ${OUT} "R\"grit-page(")

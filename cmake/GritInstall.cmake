@@ -1,7 +1,7 @@
-# What `cmake --install` gives: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the
-# plugins; the launcher as <prefix>/bin/grit; the SDK's headers, its CMake package and the pages for authors of plugins. Builds for several instruction sets
-# can be installed in one prefix: only that folder and the targets of the package are each one's own. The package also
-# stands in the build folder, for plugins that are built against that.
+# Installation: <prefix>/lib/grit/<arch> with the library, the program and, by GritPlugin.cmake, the plugins; the launcher as
+# <prefix>/bin/grit; the SDK's headers, its CMake package and the pages for plugin authors. Builds for several instruction sets
+# can share a prefix: only this folder and the targets of the package are separate. The package is also written to the build
+# folder, for plugins that are built against it.
 include(CMakePackageConfigHelpers)
 set(own ${CMAKE_INSTALL_LIBDIR}/grit/${GRIT_ARCH})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/grit)
@@ -19,7 +19,7 @@ if(TARGET grit_app)
   install(TARGETS grit_launcher RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
-file(REMOVE_RECURSE ${build_package})  # what another GRIT_ARCH left would be offered beside this one
+file(REMOVE_RECURSE ${build_package})  # removes targets of an earlier GRIT_ARCH
 write_basic_package_version_file(${build_package}/grit-config-version.cmake COMPATIBILITY SameMinorVersion)
 string(REGEX MATCH "^[0-9]+" major "${CMAKE_CXX_COMPILER_VERSION}")
 file(WRITE ${build_package}/${GRIT_ARCH}/grit-compiler.cmake

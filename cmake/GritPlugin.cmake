@@ -1,12 +1,13 @@
 # grit_plugin(<kind folder> <name> [LIBRARIES …]): builds <name>.cpp of the current folder into
-# <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, where there is one and the project has found GTest, into a
-# test that sees the same code, links grit::testing and runs in the plugin's folder. `cmake --install` puts the plugin where grit of the same
-# instruction set looks, lib/grit/<arch>. The target grit_plugins is all plugins of a project. Part of the installed SDK.
+# <build>/lib/grit/<kind folder>/<name>.so, and test_<name>.cpp, if it exists and the project has found GTest, into a test
+# that has access to the same code, links grit::testing and runs in the plugin's folder. `cmake --install` installs the plugin
+# into lib/grit/<arch>, where grit of the same instruction set searches. The target grit_plugins builds all plugins of a
+# project. Part of the installed SDK.
 include(GNUInstallDirs)
 include(GoogleTest)
 
-# Makes the target grit::testing, where the project has found GTest: the contracts that every plugin of a kind must pass
-# (grit/testing), compiled once a project. A program gets those whose headers it includes.
+# Defines the target grit::testing if the project has found GTest: the contracts that every plugin of a kind must pass
+# (grit/testing), compiled once per project. A program links those whose headers it includes.
 function(grit_testing)
   if(TARGET grit_testing OR NOT TARGET GTest::gtest)
     return()
@@ -14,7 +15,7 @@ function(grit_testing)
   file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
   add_library(grit_testing STATIC EXCLUDE_FROM_ALL ${sources})
   target_compile_options(grit_testing PRIVATE -Wall -Wextra -O1)
-  set_target_properties(grit_testing PROPERTIES UNITY_BUILD OFF)  # one object a contract, so that a program gets its own alone
+  set_target_properties(grit_testing PROPERTIES UNITY_BUILD OFF)  # one object per contract, so that a program links only those it uses
   target_link_libraries(grit_testing PUBLIC grit::grit grit::sdk GTest::gtest)
   add_library(grit::testing ALIAS grit_testing)
 endfunction()
@@ -26,7 +27,7 @@ function(grit_plugin folder name)
   add_library(${target}_objects OBJECT ${name}.cpp)
   set_target_properties(${target}_objects PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                         VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF)
-  # Without a build type nothing would be optimised, and a law without it is slower by an order of magnitude.
+  # Without a build type there is no optimisation, which makes a contact law slower by an order of magnitude.
   target_compile_options(${target}_objects PRIVATE -Wall -Wextra $<$<CONFIG:>:-O3>)
   target_link_libraries(${target}_objects PUBLIC grit::sdk ${arg_LIBRARIES})
   if(TARGET grit_precompiled_hidden)  # within grit's own tree
@@ -46,7 +47,7 @@ function(grit_plugin folder name)
   if(TARGET GTest::gtest_main AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/test_${name}.cpp)
     grit_testing()
     add_executable(test_${target} test_${name}.cpp)
-    target_compile_options(test_${target} PRIVATE -Wall -Wextra -O1)  # what is tested is optimised; its test is built sooner
+    target_compile_options(test_${target} PRIVATE -Wall -Wextra -O1)  # only the plugin is fully optimised; its test builds faster
     target_link_libraries(test_${target} PRIVATE ${target}_objects grit::testing GTest::gmock GTest::gtest_main)
     if(TARGET grit_precompiled_hidden)
       target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)

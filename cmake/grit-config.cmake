@@ -1,6 +1,6 @@
 # find_package(grit): the targets grit::sdk (to compile against) and grit::grit (to link), and the function grit_plugin;
-# where GTest was found before, grit::testing (contracts for a plugin's tests).
-# GRIT_ARCH says for which of the installed instruction sets; where one is installed, that one unless set.
+# if GTest was found before, grit::testing (contracts for a plugin's tests).
+# GRIT_ARCH selects one of the installed instruction sets; it may be omitted if only one is installed.
 file(GLOB installed RELATIVE ${CMAKE_CURRENT_LIST_DIR} ${CMAKE_CURRENT_LIST_DIR}/*/grit-targets.cmake)
 list(TRANSFORM installed REPLACE "/.*" "")
 list(LENGTH installed count)
@@ -10,8 +10,8 @@ endif()
 if(NOT GRIT_ARCH IN_LIST installed)
   list(JOIN installed ", " installed)
   set(grit_FOUND FALSE)
-  set(grit_NOT_FOUND_MESSAGE "GRIT_ARCH is \"${GRIT_ARCH}\": say with -DGRIT_ARCH= for which of the installed \
-instruction sets to build: ${installed}")
+  set(grit_NOT_FOUND_MESSAGE "GRIT_ARCH is \"${GRIT_ARCH}\"; select an installed instruction set with -DGRIT_ARCH=: \
+${installed}")
   return()
 endif()
 
@@ -19,8 +19,8 @@ include(${CMAKE_CURRENT_LIST_DIR}/${GRIT_ARCH}/grit-compiler.cmake)
 string(REGEX MATCH "^[0-9]+" major "${CMAKE_CXX_COMPILER_VERSION}")
 if(NOT "${CMAKE_CXX_COMPILER_ID} ${major}" STREQUAL grit_COMPILER)
   set(grit_FOUND FALSE)
-  set(grit_NOT_FOUND_MESSAGE "grit was built with ${grit_COMPILER}, and this is ${CMAKE_CXX_COMPILER_ID} ${major}: configure \
-anew with cmake --fresh … -DCMAKE_CXX_COMPILER=${grit_CXX_COMPILER}")
+  set(grit_NOT_FOUND_MESSAGE "grit was built with ${grit_COMPILER}, but the compiler is ${CMAKE_CXX_COMPILER_ID} ${major}; \
+configure again with cmake --fresh … -DCMAKE_CXX_COMPILER=${grit_CXX_COMPILER}")
   return()
 endif()
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures how fast grains flow through round holes and slots, against Beverloo's law: writes docs/evidence/beverloo.md.
+"""Measures discharge rates through round holes and slots and compares them with Beverloo's law: writes docs/evidence/beverloo.md.
 
-  beverloo.py [BUILD]      BUILD is build unless given; results/beverloo has the runs, and those that are done are not run again
+  beverloo.py [BUILD]      BUILD is build unless given; runs are in results/beverloo; finished ones are not run again
 
 Runs of sims/beverloo, a minute or two each on one core, one after the other. Needs python3-h5py.
 """
@@ -13,13 +13,13 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[1]
-# Diameter or width [mm]; side of the bin [mm], number of grains, height of their cloud [mm], share of the mass that leaves, samples.
+# Diameter or width [mm]; side of the bin [mm], number of grains, height of their cloud [mm], discharged fraction, samples.
 OUTLETS = {'hole': ((8, 24, 21100, 55, 0.12, 2), (10, 26, 24800, 55, 0.18, 2), (12, 28, 28700, 55, 0.25, 2), (16, 32, 46900, 69, 0.3, 2)),
            'slot': ((8, 38, 19600, 77, 0.25, 2), (12, 42, 21700, 77, 0.35, 2), (16, 46, 26400, 86, 0.38, 2), (24, 54, 41000, 113, 0.4, 2))}
 EXPONENTS = {'hole': 2.5, 'slot': 1.5}
 BOUND = 0.1
 BEVERLOO = 1.4                                           # his own k
-STEADY_FROM = 0.25                                       # of the mass that leaves
+STEADY_FROM = 0.25                                       # of the discharged mass
 
 HEAD = '''# Beverloo's law
 Written by `scripts/beverloo.py` from runs of [sims/beverloo](../../sims/beverloo). Do not edit.
@@ -37,16 +37,16 @@ SETUP = '''
 
 
 def settings(kind, outlet, seed):
-    size, side, count, height, share, _ = outlet
+    size, side, count, height, fraction, _ = outlet
     half, edge, over, gate = (f'{1e-3 * x:.9g}' for x in (0.5 * size, 0.5 * side, 0.5 * side + 2, 0.5 * size + 2))
     length = f'{1e-3 * (size + 4):.9g}'
-    of = [f'/domain/low/0=-{over}', f'/bodies/sand/grains/low/0=-{edge}', f'/bodies/sand/grains/high/0={edge}',
+    of = [f'/domain/low/0=-{over}', f'/bodies/sand/source/low/0=-{edge}', f'/bodies/sand/source/high/0={edge}',
           f'/walls/left/point/0=-{edge}', f'/walls/right/point/0={edge}', f'/walls/gate/corner/0=-{gate}',
-          f'/walls/gate/edge_a/0={length}', f'/bodies/sand/grains/high/2={1e-3 * height:.9g}',
-          f'/bodies/sand/grains/count={count}', f'/stages/1/until/share={share:g}', f'/seed={seed}']
+          f'/walls/gate/edge_a/0={length}', f'/bodies/sand/source/high/2={1e-3 * height:.9g}',
+          f'/bodies/sand/source/count={count}', f'/stages/1/until/fraction={fraction:g}', f'/seed={seed}']
     if kind == 'hole':
-        return of + [f'/domain/low/1=-{over}', f'/domain/high=[{over},{over},0.2]', f'/bodies/sand/grains/low/1=-{edge}',
-                     f'/bodies/sand/grains/high/1={edge}', f'/walls/front/point/1=-{edge}', f'/walls/back/point/1={edge}',
+        return of + [f'/domain/low/1=-{over}', f'/domain/high=[{over},{over},0.2]', f'/bodies/sand/source/low/1=-{edge}',
+                     f'/bodies/sand/source/high/1={edge}', f'/walls/front/point/1=-{edge}', f'/walls/back/point/1={edge}',
                      f'/walls/gate/corner/1=-{gate}', f'/walls/gate/edge_b/1={length}', f'/walls/bottom/start_radius={half}',
                      f'/walls/bottom/end_radius={0.75e-3 * side:.9g}']
     beyond = 0.5 * side + 5                              # where the bottom ends
@@ -55,7 +55,7 @@ def settings(kind, outlet, seed):
 
 
 def run(grit, kind, outlet, seed):
-    """The results' folder of one outlet."""
+    """The results folder of one outlet."""
     folder = ROOT / 'results' / 'beverloo' / f'{kind}-{outlet[0]}-{seed}'
     try:
         if json.loads((folder / 'run.json').read_text())['status'] == 'done':
@@ -69,17 +69,17 @@ def run(grit, kind, outlet, seed):
 
 
 def line(points):
-    """(slope, value at 0, standard error of the slope, sum of squares left) of the straight line through points, by least squares."""
+    """(slope, intercept, standard error of the slope, residual sum of squares) of the least-squares line through points."""
     n = len(points)
     x, y = (sum(p[k] for p in points) / n for k in (0, 1))
     spread = sum((p[0] - x) ** 2 for p in points)
     slope = sum((p[0] - x) * (p[1] - y) for p in points) / spread
-    left = sum((p[1] - y - slope * (p[0] - x)) ** 2 for p in points)
-    return slope, y - slope * x, math.sqrt(left / (n - 2) / spread), left
+    residual = sum((p[1] - y - slope * (p[0] - x)) ** 2 for p in points)
+    return slope, y - slope * x, math.sqrt(residual / (n - 2) / spread), residual
 
 
 def rate(folder):
-    """Mass that leaves in a second [g/s], once it flows steadily."""
+    """Steady rate of discharge [g/s]."""
     import h5py
     with h5py.File(folder / 'series.h5') as series:
         flow = {name: series['flow'][name][:] for name in ('time', 'mass')}
@@ -92,25 +92,25 @@ def logs(rates, k):
 
 
 def misfit(found, k):
-    """How far Beverloo's law with his exponents is off, each kind of outlet with a constant of its own."""
-    off = 0
+    """Sum of squared errors of Beverloo's law with his exponents and a separate constant for each kind of outlet."""
+    total = 0
     for kind, rates in found.items():
         constants = [y - EXPONENTS[kind] * x for x, y in logs(rates, k)]
         mean = sum(constants) / len(constants)
-        off += sum((one - mean) ** 2 for one in constants)
-    return off
+        total += sum((one - mean) ** 2 for one in constants)
+    return total
 
 
 CANDIDATES = [0.01 * n for n in range(0, 500)]           # k
 
 
 def best_k(found):
-    """The one k by which his law misses the rates of all outlets least."""
+    """The k with which his law fits the rates of all outlets best."""
     return min(CANDIDATES, key=lambda k: misfit(found, k))
 
 
 def best_of_both(rates):
-    """(k, n), both free, that fit the rates of one kind best."""
+    """The free k and n that fit the rates of one kind best."""
     k = min(CANDIDATES, key=lambda k: line(logs(rates, k))[3])
     return k, line(logs(rates, k))[0]
 
@@ -120,7 +120,7 @@ def verdict(kind, n):
 
 
 def exponent(found, kind, k):
-    """The exponent of one kind at a given k, and whether it holds, in words."""
+    """The exponent of one kind at a given k, and whether the law holds, as text."""
     n, _, error, _ = line(logs(found[kind], k))
     return f'{n:.2f} ± {error:.3f}', verdict(kind, n)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds what one test needs, shears a small box of sand, and prints where the results are. Replaces those of an earlier demo.
-# The build lies in build-demo and does not touch build.
+# Builds what one direct shear test needs, shears a small box of sand, and prints the paths of the results. Replaces the results
+# of an earlier demo. The build is in build-demo and does not affect build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs what grit is built from, on Debian 12. Needs root or sudo only where something is missing; can be run again.
+# Installs the dependencies of grit on Debian 12. Needs root or sudo only if something is missing; can be run again.
 #   install-deps.sh [--run | --viewers]
-#     --run      only what building and running grit needs: no libraries of tests and benchmarks
-#     --viewers  also Chromium and ParaView (1 GB), in which some tests look at results as users do
+#     --run      only what building and running grit needs: no libraries for tests and benchmarks
+#     --viewers  also Chromium and ParaView (1 GB), in which some tests open results as users do
 set -euo pipefail
 
 packages=(
@@ -16,7 +16,7 @@ packages=(
   libudunits2-dev
   nlohmann-json3-dev
   zlib1g-dev
-  libjs-vega                         # draws the curves of a report; goes into the library
+  libjs-vega                         # draws the curves of a report; embedded in the library
 )
 for_tests=(
   libgtest-dev libgmock-dev libbenchmark-dev
@@ -40,14 +40,14 @@ for package in "${packages[@]}"; do
   [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true) == installed ]] || missing+=("$package")
 done
 if [[ ${#missing[@]} == 0 ]]; then
-  echo "install-deps: all ${#packages[@]} packages are there"
+  echo "install-deps: all ${#packages[@]} packages are installed"
   exit 0
 fi
 
 as_root=()
 if [[ $(id -u) != 0 ]]; then
   command -v sudo > /dev/null || {
-    echo "install-deps: not root and no sudo; as root, run: apt-get install ${missing[*]}" >&2
+    echo "install-deps: not root and no sudo; run as root: apt-get install ${missing[*]}" >&2
     exit 1
   }
   as_root=(sudo)

@@ -24,7 +24,7 @@ if [[ $target == *.tar.gz ]]; then
   prefix=$stage/$(basename "$target" .tar.gz)
 fi
 
-# All are built before one is installed: half a package would run, but not with the best that a processor has.
+# All are built before one is installed: a partial package would run, but not with the best instruction set of a processor.
 for level in "${levels[@]}"; do
   cmake -S "$root" -B "$builds/$level" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$prefix" \
     -DGRIT_ARCH="$level" -DGRIT_TESTS=OFF -DGRIT_BENCH=OFF "$@"

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Draws the pictures of the documentation anew, from runs of some minutes each. Needs a build.
+# Draws the pictures of the documentation again, from runs of some minutes each. Needs a build.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-# drawn RUN PICTURE: a run's picture as PNG, 1000 pixels wide where it has the whole width.
+# drawn RUN PICTURE: a run's picture as PNG, 1000 pixels wide if it has the full width.
 drawn() { rsvg-convert --zoom 1.1111 "results/pictures/$1" --output "docs/$2.png"; }
 
 mkdir -p docs/pictures docs/gallery
-# gallery NAME FILE [OPTION…]: curves and grains of a test, as docs/gallery/README.md has them.
+# gallery NAME FILE [OPTION…]: curves and grains of a test, for docs/gallery/README.md.
 gallery() {
   local name=$1 file=$2
   shift 2
@@ -27,7 +27,7 @@ drawn direct-shear/directions-force-chains.svg gallery/direct-shear-directions
 drawn silo-discharge/map-flow-velocity.svg gallery/silo-discharge-velocity
 drawn silo-discharge/layers.svg gallery/silo-discharge-layers
 
-# Pages, where there is a browser: that of a run for the README, and the one that a run serves when it has got some way.
+# Pages, if there is a browser: that of a finished run for the README, and the one that a running simulation serves.
 if command -v chromium > /dev/null; then
   # shot URL PICTURE: the page down to its grains.
   shot() {
@@ -46,14 +46,14 @@ end
   }
   shot results/pictures/direct-shear/report.html pictures/report
   watched=results/pictures/watched
-  rm -rf "$watched" # else its frames are there already
+  rm -rf "$watched" # else its frames exist already
   build/bin/grit run sims/silo-discharge/quick.json --out "$watched" --overwrite --threads 1 --watch 2> "$watched.log" &
   run=$!
   until [[ -e $watched/frames/000018.h5 ]]; do
-    kill -0 "$run" # it has not ended before
+    kill -0 "$run" # fails if the run has ended
     sleep 1
   done
-  kill -STOP "$run" # else it may end while the page is drawn, which another process serves
+  kill -STOP "$run" # else it may end while the page is drawn; the page is served by another process
   status=0
   shot "$(grep --only-matching --max-count=1 'http://[0-9.:]*/' "$watched.log")" gallery/watched || status=$?
   kill -CONT "$run"
@@ -62,7 +62,7 @@ end
   ((status == 0))
 fi
 
-# Its force chains in ParaView, where there is one, by the script of docs/results.md; in 256 colours it has a quarter of the size.
+# Its force chains in ParaView, if installed, by the script of docs/how-to/paraview.md; 256 colours reduce the file to a quarter.
 if command -v pvpython > /dev/null && command -v xvfb-run > /dev/null; then
   (
     cd results/pictures

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes which tests of physics turn red:
+"""Plants errors in copies of the contact laws and of the kernel, one at a time, and writes which physics tests fail:
 docs/evidence/planted.md.
 
-  planted.py [--only PART] [BUILD]      BUILD is build unless given; exit status 1 if a plant leaves all tests green, or
-                                        if tests are red without one; with --only the rows of one of the PARTS below are made anew
+  planted.py [--only PART] [BUILD]      BUILD is build unless given; exit status 1 if no test fails with an error, or if
+                                        tests fail without one; --only updates the rows of one of the PARTS below
 
-While it runs, a library of the build is exchanged for its copy, which has all errors and takes the one that the environment names.
-Five minutes on one core. What was exchanged when it was killed is put back when it begins again.
-tests/house/planted.py sees, without a build, that all errors can still be planted and that the page is of these.
+While it runs, a library of the build is replaced by a copy that has all errors and selects one by an environment variable.
+Takes five minutes on one core. If it is killed, the next run restores the library.
+tests/house/planted.py checks, without a build, that all errors can still be planted and that the page lists these.
 """
 import os
 import re
@@ -22,22 +22,22 @@ from pathlib import Path
 sys.dont_write_bytecode = True
 ROOT = Path(__file__).resolve().parents[1]
 LAWS = ROOT / 'plugins' / 'contacts'
-# All tests that are left take seconds; an error may keep a ball rolling for ever.
-PATIENCE = 60                                            # s of the processor's time
+# All tests except the slow ones take seconds; an error may keep a ball rolling for ever.
+PATIENCE = 60                                            # s of CPU time
 SLOW = ('PlaneSilo.*', 'Silo.*', 'DirectShear.*', 'InterfaceShear.*', 'Triaxial.*', 'GroovedVoidRatio.*', 'PackingStress.*')
 OF_WALLS = ('*Seams.*', 'Faceted*.*', 'FacetingError.*')
-# What a shear spring lacks that is half a step late.
+# The missing part of a shear spring that is half a step late.
 LATE = '(L(0.5) * ks * at.dt) * at.tangential(at.velocity)'
 FRICTION = 'std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)))'
 ROLLING_LIMIT = 'interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit))'
 
 
 def at_each(what, text, factor='2'):
-    """At pairs and at walls, each alone."""
+    """The same error at pairs and at walls, each alone."""
     return [(f'{what} of pairs', text, f'(wall ? 1 : {factor}) * ($)'), (f'{what} of walls', text, f'(wall ? {factor} : 1) * ($)')]
 
 
-# Part: (folder, source, [(what, text of the source, what stands in its place: $ is the text itself)])
+# Part: (folder, source, [(error, text of the source, replacement, in which $ is the text itself)])
 PARTS = {
     'linear-frictional': (LAWS / 'linear-frictional', 'linear-frictional.hpp', [
         *at_each('shear stiffness × 2', '0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness)'),
@@ -100,18 +100,18 @@ nor tests of curved surfaces for errors in a law.
 
 
 def variable(part):
-    """By which a copy is told the number of its error."""
+    """The environment variable with the number of the error."""
     return 'GRIT_PLANTED_' + part.upper().replace('-', '_')
 
 
 def with_errors(text, part):
-    """A source with all errors of a part, each behind its number."""
+    """A source with all errors of a part, each selected by its number."""
     places = {}
     for number, (_, old, new) in enumerate(PARTS[part][2], 1):
         places.setdefault(old, []).append((number, new.replace('$', old)))
     for old, news in places.items():
         if text.count(old) != 1:
-            sys.exit(f'planted.py: stands {text.count(old)} times in the source, not once: {old}')
+            sys.exit(f'planted.py: found {text.count(old)} times in the source, not once: {old}')
         if old.endswith(';'):
             changed = ''.join(f'if (planted_error == {number}) {{ {new} }} else ' for number, new in news) + f'{{ {old} }}'
         else:
@@ -121,7 +121,7 @@ def with_errors(text, part):
 
 
 def command_of(build, words):
-    """The shell command by which the build makes what the words are in."""
+    """The shell command of the build that contains all the words."""
     for line in subprocess.run(['ninja', '-C', build, '-t', 'commands', 'grit', 'grit_plugins'], check=True, capture_output=True,
                                text=True).stdout.splitlines():
         if all(word in line for word in words):
@@ -134,11 +134,11 @@ def library_of(build, part):
 
 
 def built(build, part, folder):
-    """The library of the build that a part is in, and its copy with errors."""
-    room, source, _ = PARTS[part]
-    changed = with_errors((room / source).read_text(encoding='utf-8'), part)
+    """The library of a part in the build, and its copy with errors."""
+    source_folder, source, _ = PARTS[part]
+    changed = with_errors((source_folder / source).read_text(encoding='utf-8'), part)
     library = library_of(build, part)
-    unit = room / (source if part == 'walls' else f'{part}.cpp')
+    unit = source_folder / (source if part == 'walls' else f'{part}.cpp')
     (folder / unit.name).write_bytes(unit.read_bytes())
     (folder / source).write_text(changed, encoding='utf-8')
     compile_one = command_of(build, [f' -c {unit}'])
@@ -151,27 +151,27 @@ def built(build, part, folder):
     return library, folder / 'planted.so'
 
 
-def red(program, folder, left_out, errors):
-    """Names of the tests that fail, or that do not end, with an error planted; those of one suite of values as one."""
+def failing(program, folder, excluded, errors):
+    """Names of the tests that fail or do not end with an error planted; a parametrised test counts once."""
     tests = []
     patience = lambda: resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE))  # noqa: E731
     while True:
-        done = subprocess.run([program, '--gtest_filter=-' + ':'.join(left_out)], cwd=folder, stdout=subprocess.PIPE,
+        done = subprocess.run([program, '--gtest_filter=-' + ':'.join(excluded)], cwd=folder, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL, preexec_fn=patience, env={**os.environ, **errors})
         lines = done.stdout.decode(errors='replace').splitlines()
         tests += [match.group(1) for match in map(re.compile(r'\[  FAILED  \] ([^\s,]+).* ms\)$').match, lines) if match]
         if done.returncode in (0, 1):
             break
-        # It crashed or had to be ended; the others are still to come.
+        # The program crashed or was killed; run the remaining tests.
         begun = [line.split()[-1] for line in lines if line.startswith('[ RUN ')]
         tests.append(begun[-1])
-        left_out = (*left_out, *begun)
+        excluded = (*excluded, *begun)
     return sorted({re.sub(r'^\w+/(?=\w+\.)', '', re.sub(r'/\w+$', '', name)) for name in tests})
 
 
 def tried(build, part):
     """Rows of the page: (part, error, tests)."""
-    program, left_out = build / 'tests' / 'test_physics', SLOW if part == 'walls' else SLOW + OF_WALLS
+    program, excluded = build / 'tests' / 'test_physics', SLOW if part == 'walls' else SLOW + OF_WALLS
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         library, planted = built(build, part, folder)
@@ -179,19 +179,19 @@ def tried(build, part):
         os.replace(library, kept)
         try:
             shutil.copy(planted, library)
-            healthy = red(program, folder, left_out, {})
+            healthy = failing(program, folder, excluded, {})
             if healthy:
-                sys.exit(f'planted.py: {part}: red without an error: {", ".join(healthy)}')
+                sys.exit(f'planted.py: {part}: fail without an error: {", ".join(healthy)}')
             for number, (what, _, _) in enumerate(PARTS[part][2], 1):
-                tests = red(program, folder, left_out, {variable(part): str(number)})
-                print(f'{part}: {what}: {", ".join(tests) or "nothing turned red"}', flush=True)
+                tests = failing(program, folder, excluded, {variable(part): str(number)})
+                print(f'{part}: {what}: {", ".join(tests) or "no test failed"}', flush=True)
                 yield part, what, tests
         finally:
             os.replace(kept, library)
 
 
 def main():
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # what was exchanged is put back
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # restores the library
     words = sys.argv[1:]
     parts = list(PARTS)
     if words[:1] == ['--only']:

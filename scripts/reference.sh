@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Writes docs/reference, the parameters of everything built in and of this tree's plugins, from what the program says.
+# Writes docs/reference, the parameters of all built-in components and of this tree's plugins, from the output of the program.
 #   reference.sh [GRIT]            writes the pages; GRIT is build/bin/grit unless given
-#   reference.sh --check [GRIT]    says how the pages differ; exit status 1 if they do
+#   reference.sh --check [GRIT]    prints how the pages differ; exit status 1 if they do
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -15,9 +15,9 @@ unset GRIT_PLUGIN_PATH
 pages=$(mktemp -d)
 trap 'rm -rf "$pages"' EXIT
 
-# names HEADING: what `grit describe` lists under this heading.
+# names HEADING: the names that `grit describe` lists under this heading.
 names() { "$grit" describe | sed -n "/^$1\$/,/^\$/{/^  /p}" | awk '{print $1}'; }
-# tables NAME…: what the program says of each, under a heading.
+# tables NAME…: the program's description of each, under a heading.
 tables() {
   for name in "$@"; do
     printf '\n## %s\n```text\n%s\n```\n' "$name" "$("$grit" describe "$name")"
@@ -30,8 +30,8 @@ page() { printf '# %s\nWritten by `scripts/reference.sh` from what `grit describ
   tables $(names 'sections of a description')
 } > "$pages/sections.md"
 {
-  page "Files for 'grit chart'"
-  tables $(names "files for 'grit chart'")
+  page "Files for 'grit study'"
+  tables $(names "files for 'grit study'")
 } > "$pages/study.md"
 for kind in body contact engine geometry probe scenario; do
   {
@@ -42,7 +42,7 @@ done
 
 if [[ -n $check ]]; then
   diff -ru docs/reference "$pages" || {
-    echo "docs/reference is not what the program says; run scripts/reference.sh and commit what it writes" >&2
+    echo "docs/reference differs from the output of the program; run scripts/reference.sh and commit the result" >&2
     exit 1
   }
 else

@@ -1,4 +1,4 @@
-"""What a test program of a build reports beside passing or failing."""
+"""Properties that a test program reports besides passing or failing."""
 import json
 import subprocess
 import sys
@@ -9,8 +9,8 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 def tests(name, page):
-    """(name, properties) of each test of build/tests/NAME; the first word of the command line is another build. Ends
-    the process, with `page` as it was, if there is no such program (2) or a test fails (1)."""
+    """(name, properties) of each test of build/tests/NAME; the first command-line argument names another build. Exits
+    if there is no such program (status 2) or a test fails (status 1); `page` is then unchanged."""
     build = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / 'build').resolve()
     program = build / 'tests' / name
     if not program.is_file():
@@ -20,7 +20,7 @@ def tests(name, page):
         report = Path(folder) / 'report.json'
         done = subprocess.run([program, '--gtest_brief=1', f'--gtest_output=json:{report}'], cwd=folder)
         if done.returncode != 0:
-            print(f'{page} is as it was: tests failed', file=sys.stderr)
+            print(f'{page} is unchanged: tests failed', file=sys.stderr)
             sys.exit(1)
         suites = json.loads(report.read_text(encoding='utf-8'))['testsuites']
     return [(f"{suite['name']}.{test['name']}", test) for suite in suites for test in suite['testsuite']]

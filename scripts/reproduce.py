@@ -3,14 +3,13 @@
 
   reproduce.py [--run GLOB]… [--samples N] [--for SECONDS] [--threads N] [--results FOLDER] [--grit FILE]
 
-docs/evidence/reproduction.json has the figures. Each quick and full description of sims/ whose finished run lies in FOLDER/TEST/NAME
-(results/reproduce unless given) gets its rows. Of one without, what docs/evidence/reproduction.md has stays, as long as docs/evidence/reproduction.json
-asks for the same figures; the other full ones are listed with the time they would take. All sims/*/quick*.json have a line that says how they ended, from
-FOLDER or, without a run there, as the page has it. --run runs those that GLOB fits and
-that are not there yet, e.g. --run '*/quick*', --run interface-shear/full-rn-100, and --samples as many packings of each:
-the second's run, of seed 2, lies in FOLDER/TEST/NAME-sample-2. Rows of several samples have their mean and the standard
-deviation of one of them. --for interrupts a run that has taken so many core-seconds, so that it is timed; it goes on where it
-stopped when it is run again.
+docs/evidence/reproduction.json defines the figures. Each quick and full description of sims/ with a finished run in FOLDER/TEST/NAME
+(results/reproduce unless given) gets its rows. Without a run, its section of docs/evidence/reproduction.md is kept as long as
+docs/evidence/reproduction.json defines the same figures; other full descriptions are listed with their estimated times. All
+sims/*/quick*.json have a line on how they ended, from FOLDER or, without a run there, from the existing page. --run runs the
+descriptions that match GLOB and have no finished run, e.g. --run '*/quick*', --run interface-shear/full-rn-100. --samples runs N
+packings of each: that of seed 2 is in FOLDER/TEST/NAME-sample-2. Rows of several samples show mean and standard deviation. --for
+interrupts a run after so many core-seconds, to time it; running it again resumes it.
 """
 import argparse
 import fnmatch
@@ -38,16 +37,16 @@ The reference is A. Grabowski, doctoral dissertation, Gdańsk 2024 (YADE, full s
 - `full` descriptions have the reference's size. `quick` ones are smaller, and many are sheared at another rate.
 - A value is of one packing, or a mean of several ± the standard deviation of one.
 - "none": rotation is largest at the surface and has no inflection point.
-- A section stays until its test is run again, and names the commit that ran it.
-- Triaxial tests of the reference's table 4.1 are in [studies](studies.md#triaxial-compression).
+- A section is kept until its test is run again, and names the commit of its runs.
+- Triaxial tests of table 4.1 of the reference are in [studies](studies.md#triaxial-compression).
 
 '''
 
 UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
-- Hours are those of `grit check` on two threads at 12 M particle-steps/s, with the usual durations of stages and with their limits.
-- Timed runs (`--for`) show the fraction done and the commit. They are of falling sand, so that their core-hours are a lower bound.
-- The last column takes the measured speed of resting sand, which is a quarter of that.
+- Hours are those of `grit check` on two threads at 12 M particle-steps/s, with typical durations of stages and with their limits.
+- Timed runs (`--for`) show the fraction done and the commit. They cover falling sand only, so that their core-hours are a lower bound.
+- The last column uses the measured speed with resting sand, a quarter of that.
 
 | description | hours by `grit check` | timed | M particle-steps/core-second | core-hours, at least | with resting sand |
 | --- | --- | --- | --- | --- | --- |'''
@@ -63,7 +62,7 @@ Values of descriptions with a section above are in that section.
 
 
 def found(series, row, ends=None):
-    """The figure that a row asks for; `ends` has the step at which each stage ended."""
+    """The figure that a row defines; `ends`: step at which each stage ended."""
     of, how = series[row['of']][:], row['how']
     if 'component' in row:
         of = of[:, row['component']]
@@ -89,7 +88,7 @@ def found(series, row, ends=None):
 
 
 def state(folder):
-    """What run.json says of a run, or None."""
+    """The run.json of a run, or None."""
     try:
         return json.loads((folder / 'run.json').read_text(encoding='utf-8'))
     except (FileNotFoundError, json.JSONDecodeError):
@@ -102,19 +101,19 @@ def lacks(series, row):
 
 
 def samples(results, name):
-    """Folders of the finished runs of a description, the packing of its own seed first."""
+    """Folders of the finished runs of a description, first the packing with its own seed."""
     folders = [results / name, *sorted((results / name).parent.glob(f'{Path(name).name}-sample-*'),
                                        key=lambda folder: int(folder.name.rpartition('-')[2]))]
     return [folder for folder in folders if (state(folder) or {}).get('status') == 'done']
 
 
 def asked(row):
-    """How the line of a figure begins."""
+    """The start of a figure's line."""
     return f"| {row['figure']} | {row['reference']:g} ± {row['allowed']:g} |"
 
 
 def rows(name, folders, figures, older):
-    """Lines of the table: a figure in all samples beside the reference's."""
+    """Lines of the table: a figure over all samples compared with the reference."""
     for row in figures:
         reference, allowed = row['reference'], row['allowed']
         values = []
@@ -123,27 +122,27 @@ def rows(name, folders, figures, older):
                 if channel := lacks(series, row):
                     if not older:
                         sys.exit(f'docs/evidence/reproduction.json: {name}, "{row["figure"]}": found the channel "{channel}", which '
-                                 f'{folder / "series.h5"} lacks; correct it, run {name} again, or name it under "older" if its '
-                                 'run is from before there was that channel')
+                                 f'{folder / "series.h5"} lacks; correct it, run {name} again, or list it under "older" if its '
+                                 'run is older than that channel')
                     break
                 values.append(found(series, row))
         if not values:
             yield f'{asked(row)} not recorded | | |'
             continue
-        told = [value for value in values if not numpy.isnan(value)]
-        if not told:
+        finite = [value for value in values if not numpy.isnan(value)]
+        if not finite:
             yield f'{asked(row)} none | | |'
             continue
-        mean = numpy.mean(told)
-        scatter = f' ± {numpy.std(told, ddof=1):.2g}' if len(told) > 1 else ''
-        if len(told) < len(values):
-            scatter += f' in {len(told)} of {len(values)}'
+        mean = numpy.mean(finite)
+        scatter = f' ± {numpy.std(finite, ddof=1):.2g}' if len(finite) > 1 else ''
+        if len(finite) < len(values):
+            scatter += f' in {len(finite)} of {len(values)}'
         verdict = 'within' if abs(mean - reference) <= allowed else 'outside'
         yield f'{asked(row)} {mean:.3g}{scatter} | {mean - reference:+.2g} | {verdict} |'
 
 
 def commits(folders):
-    """By which commits of grit runs were made."""
+    """The commits of grit that made the runs."""
     names = dict.fromkeys(state(folder).get('grit', {}).get('revision') or 'unknown' for folder in folders)
     return f"by commit{'s' if len(names) > 1 else ''} {', '.join(names)}"
 
@@ -153,7 +152,7 @@ def table(name, folders, figures, older):
     yield ''
     several = f'{len(folders)} packings; the first: ' if len(folders) > 1 else ''
     yield (f"{several}{run['bodies']:,} bodies, {run['steps']:,} steps, {run.get('cpu_s', run['wall_s']):.0f} core-seconds on {run['threads']} "
-           f"thread{'s' if run['threads'] > 1 else ''}, {run['bodies'] * run['steps'] / run.get('cpu_s', run['wall_s']) / 1e6:.1f} M particle-steps a core-second, {commits(folders)}.\n")
+           f"thread{'s' if run['threads'] > 1 else ''}, {run['bodies'] * run['steps'] / run.get('cpu_s', run['wall_s']) / 1e6:.1f} M particle-steps per core-second, {commits(folders)}.\n")
     if not figures:
         return
     yield '| figure | reference | grit | deviation | |'
@@ -162,23 +161,23 @@ def table(name, folders, figures, older):
 
 
 def sections(page):
-    """{heading: what stands below it}"""
+    """{heading: text below it}"""
     return dict(text.split('\n', 1) for text in re.split('^## ', page, flags=re.MULTILINE)[1:])
 
 
 def kept(section, figures):
-    """The lines that table() once made of a section, if its figures are those that are asked for; else none."""
+    """The lines of a section that table() wrote earlier, if its figures are still the defined ones; else none."""
     lines = section.splitlines()
     if not figures:
         return lines[:next((i + 2 for i, line in enumerate(lines) if ' core-seconds on ' in line), 0)]
     at = [i for i, line in enumerate(lines) if line.startswith('| ')]
-    told = [lines[i] for i in at[2:]]
-    same = len(told) == len(figures) and all(line.startswith(asked(row)) for line, row in zip(told, figures))
+    old = [lines[i] for i in at[2:]]
+    same = len(old) == len(figures) and all(line.startswith(asked(row)) for line, row in zip(old, figures))
     return lines[:at[-1] + 1] if at and same else []
 
 
 def estimate(program, description):
-    """(hours by `grit check`, as a rule and at most; particle-steps as a rule)"""
+    """(hours by `grit check`, usual and maximum; usual number of particle-steps)"""
     words = subprocess.run([program, 'check', description], capture_output=True, text=True, check=False).stdout
     match = re.search(r'^estimated time.* at ([0-9.]+) M particle-steps/s: ([0-9.]+) h \(.*?\)[^,\n]*(?:, at most ([0-9.]+) h)?', words, re.M)
     if not match:
@@ -188,7 +187,7 @@ def estimate(program, description):
 
 
 def part(run, all_of_it):
-    """Columns that say how far a run went of all its particle-steps, how fast, and the core-hours that it takes at that speed; none if it was not timed."""
+    """Columns of a timed run: the fraction done, the speed, and the core-hours of the whole at that speed; empty if it was not timed."""
     if not run or not run.get('cpu_s') or not run.get('particle_steps_per_s'):
         return ''
     done = run['particle_steps_per_s'] * run['wall_s']
@@ -201,13 +200,13 @@ def part(run, all_of_it):
 
 
 def resting(columns, speed):
-    """`columns` of part() and one more: the core-hours at the `speed` of sand that lies, in M particle-steps a core-second; None: not known."""
+    """`columns` of part() and the core-hours at the `speed` of resting sand, in M particle-steps per core-second (None: unknown)."""
     timed = re.fullmatch(r'.*\| ([0-9.]+) \| ([0-9.]+) \|', columns)
     return f"{columns} {f'{float(timed[1]) * float(timed[2]) / speed:.0f} ' if timed and speed else ''}|"
 
 
 def short(name, results, wanted, section, older, figures=()):
-    """The line of a quick description: of its run, without what its section has as `figures`, or else as the page has it, or as its section says."""
+    """The line of a quick description: from its run, without the `figures` of its section, or else from the page or its section."""
     run = state(results / name) or {}
     if run.get('status') in ('done', 'failed'):
         ended = 'done' if run['status'] == 'done' else f"failed: {run['message'].splitlines()[0]}"
@@ -234,7 +233,7 @@ def short(name, results, wanted, section, older, figures=()):
 
 
 def start(words, most):
-    """Runs, and interrupts what has taken so many core-seconds."""
+    """Runs a command and interrupts it after `most` core-seconds."""
     with subprocess.Popen(words) as process:
         while process.poll() is None:
             time.sleep(1)
@@ -272,7 +271,7 @@ def main():
     old = sections(page.read_text(encoding='utf-8'))
     timed = dict(re.findall(r'^\| (\S+) \| [^|]+\| ((?:[^|\n]*\|){3})', old.get(UNFINISHED, ''), re.MULTILINE))
     ended = dict(re.findall(r'^\| (\S+) \| (.*)$', old.get(QUICK, ''), re.MULTILINE))
-    lines, missing, told = [], [], {}
+    lines, missing, written = [], [], {}
 
     def rows_of(name):
         return [row for row in reference['figures'] if row['description'] == name]
@@ -287,7 +286,7 @@ def main():
         else:
             section = kept(old.get(name, ''), figures) if description.exists() else []
         if section:
-            told[name] = section
+            written[name] = section
             note = reference['notes'].get(name)
             lines += [f'## {name}', *section, *(['', note] if note else []), '']
         else:
@@ -296,7 +295,7 @@ def main():
             speed = next((speed for glob, speed in reference['resting'].items() if fnmatch.fnmatch(name, glob)), None)
             missing.append(f"| {name} | {hours} | {resting(part(run, particle_steps) or timed.get(name, '| | |'), speed)}")
     if of_size['quick']:
-        lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], told.get(name), ended.get(name), rows_of(name))}"
+        lines += [HEAD_OF_QUICK, *(f"| {name} | {short(name, given.results, reference['quick'], written.get(name), ended.get(name), rows_of(name))}"
                                    for name in of_size['quick']), '']
     if missing:
         note = reference['notes'].get(UNFINISHED)
@@ -304,7 +303,7 @@ def main():
     verdicts = [line.rpartition('| ')[2] for line in '\n'.join(lines).splitlines() if line.endswith(('| within |', '| outside |'))]
     head = HEAD.replace('{within}', str(verdicts.count('within |'))).replace('{all}', str(len(verdicts)))
     page.write_text(head + '\n'.join(lines) + '\n', encoding='utf-8')
-    print(f'docs/evidence/reproduction.md: {len(told)} descriptions run, {len(missing)} not run')
+    print(f'docs/evidence/reproduction.md: {len(written)} descriptions run, {len(missing)} not run')
 
 
 if __name__ == '__main__':

@@ -5,13 +5,15 @@
 
 OLD and NEW are trees with a build in build/, each of which runs its own descriptions; NEW is this tree unless given.
 By default all sims/*/quick*.json run to their ends. With --seconds a run is interrupted after S seconds, and the samples
-that both builds reached are compared, but for the last one, which an interruption takes. FILE says what has another name
-in NEW: {"groups": {"old": "new"}, "channels": {"old": "new"}}; scripts/renames.json unless given.
+that both builds reached are compared, except the last one, which is taken at the interruption. FILE lists what was renamed
+in NEW: {"groups": {"old": "new"}, "channels": {"old": "new"}}; scripts/renames.json unless given. An old channel is a
+regular expression for "channel", or for "group/channel" in the old series, and a new one its expansion.
 
 Exit status: 0 all bits are the same; 1 some differ, or a run failed; 2 wrong use.
 """
 import argparse
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -50,13 +52,19 @@ def series(folder):
 
 
 def renamed(found, renames):
-    groups, channels = renames.get('groups', {}), renames.get('channels', {})
-    return {(groups.get(group, group), channels.get(channel, channel)): values
-            for (group, channel), values in found.items()}
+    def channel_of(group, channel):
+        for old, new in renames.get('channels', {}).items():
+            match = re.fullmatch(old, f'{group}/{channel}' if '/' in old else channel)
+            if match:
+                return match.expand(new)
+        return channel
+
+    groups = renames.get('groups', {})
+    return {(groups.get(group, group), channel_of(group, channel)): values for (group, channel), values in found.items()}
 
 
 def differences(old, new, whole):
-    """Lines that say what differs, and the number of samples that were compared."""
+    """Lines that describe the differences, and the number of samples compared."""
     lines, compared = [], 0
     for name in sorted(old.keys() ^ new.keys()):
         lines.append(f'{"/".join(name)} is only in the {"old" if name in old else "new"} series')
@@ -79,7 +87,7 @@ def main():
     parser.add_argument('old', type=Path)
     parser.add_argument('new', type=Path, nargs='?', default=ROOT)
     parser.add_argument('--only', default='sims/*/quick*.json', metavar='PATTERN', help='glob in the trees')
-    parser.add_argument('--seconds', type=float, help='interrupt each run after so long')
+    parser.add_argument('--seconds', type=float, help='interrupt each run after this time')
     parser.add_argument('--renames', type=Path, default=ROOT / 'scripts/renames.json')
     given = parser.parse_args()
     for tree in (given.old, given.new):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes docs/evidence/stability.md and its maps: limits of the numerical methods, as the stability tests of a build find them.
+"""Writes docs/evidence/stability.md and its maps: limits of the numerical methods, as found by the stability tests of a build.
 
-  stability.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, or tells a figure of the table
-                            no more, and nothing is written
+  stability.py [BUILD]      BUILD is build unless given; exit status 1, and nothing written, if a test fails or does not
+                            report a figure of the page
 
 Maps are docs/evidence/stability/*.svg, with their numbers as *.csv.
 """
@@ -35,7 +35,7 @@ WHY = {
     'triaxial/base': 'in so small a cell one grain may be pinched by a third of its radius, and leaves at a tenth of it per step',
 }
 
-# Where a figure stands, {its name:its format}: tests tell it (figure() of tests/support/mapped.hpp).
+# Figures are placeholders {name:format}; tests report them with figure() of tests/support/mapped.hpp.
 HEAD = '''# Stability
 Written by `scripts/stability.py` from the {tests} tests in [tests/stability](../../tests/stability). Do not edit.
 
@@ -191,16 +191,16 @@ Limits found by bisection are one limit each. Two Hertz bodies that start with a
 
 
 class Axis:
-    """Along one of the picture's sides: logarithmic, but linear where values span less than a decade, so that small
-    differences show, or are angles."""
+    """An axis of a picture: logarithmic, but linear if values are angles or span less than a decade, so that small
+    differences show."""
 
     def __init__(self, values, title, margin, begin, end):
         low, high = min(values), max(values)
         self.linear = '°' in title or 'degrees' in title or low > 0.1 * high
         self.begin, self.end = begin, end
         if self.linear:
-            room = 0.05 * (high - low) or 0.5 * abs(high) or 1
-            self.low, self.high = low - room, high + room
+            border = 0.05 * (high - low) or 0.5 * abs(high) or 1
+            self.low, self.high = low - border, high + border
         else:
             self.low, self.high = low / margin, high * margin
 
@@ -210,7 +210,7 @@ class Axis:
         return self.begin + along * (self.end - self.begin)
 
     def ticks(self):
-        """Powers of ten, or 1, 2, 5 where there are few; steps of 1, 2 or 5 where it is linear."""
+        """Powers of ten, or 1, 2, 5 times these if they are few; steps of 1, 2 or 5 on a linear axis."""
         if self.linear:
             power = 10.0 ** math.floor(math.log10((self.high - self.low) / 4))
             step = next(lead * power for lead in (1, 2, 5, 10) if (self.high - self.low) / (lead * power) <= 6)
@@ -222,8 +222,8 @@ class Axis:
 
 
 def picture(title, series):
-    """Curves, each thinner than the one before, so that one below another shows. Those that are predicted are dashed and
-    have no marks; they have the colour of what was found of the same name."""
+    """Curves, each thinner than the one before, so that overlapping ones remain visible. Predicted curves are dashed, without
+    marks, in the colour of the measured curve of the same name."""
     y_title, x_title = title.split('|')
     points = [p for curve in series.values() for p in curve if p[1] > 0]
     own = [p for name, curve in series.items() if not name.startswith('predicted') or name.startswith('predicted bound')
@@ -270,7 +270,7 @@ def picture(title, series):
 
 
 def numbers(what, along, series):
-    """The points of a map as CSV, without predicted curves, which are dense; a predicted limit is one point."""
+    """The points of a map as CSV, without predicted curves, which are dense, but with predicted limits."""
     out = io.StringIO()
     rows = csv.writer(out, lineterminator='\n')
     rows.writerow(['series', along, what])
@@ -281,18 +281,18 @@ def numbers(what, along, series):
 
 
 def filled(text, figures):
-    """Ends the process where the tests tell no figure of such a name."""
+    """Fills in the figures. Exits if the tests report no figure of some name."""
     place = re.compile('{([^{}:]+):([^{}:]+)}')
     missing = sorted({name for name, _ in place.findall(text) if name not in figures})
     if missing:
-        print('docs/evidence/stability.md is as it was: no test tells\n' + '\n'.join(missing), file=sys.stderr)
+        print('docs/evidence/stability.md is unchanged: no test reports\n' + '\n'.join(missing), file=sys.stderr)
         sys.exit(1)
     return place.sub(lambda found: format(figures[found[1]], found[2]), text)
 
 
 def own_guards():
-    """Rows of the descriptions and studies that set guards themselves. Ends the process where one is not told why, or one
-    that is told of sets none."""
+    """Rows of the descriptions and studies that set guards. Exits if one of them has no reason in WHY, or if WHY names
+    another one."""
     sims, rows = reported.ROOT / 'sims', {}
     for file in sorted(sims.glob('*/*.json')):
         scene = json.loads(file.read_text(encoding='utf-8'))
@@ -303,7 +303,7 @@ def own_guards():
             values = ', '.join(f"{pointer.split('/')[-1]} {value:g}" for pointer, value in own.items())
             rows[name] = f'| [{name}](../../sims/{name}.json) | {values} | {WHY.get(name)} |'
     if rows.keys() != WHY.keys():
-        print(f'docs/evidence/stability.md is as it was: WHY is wrong about {sorted(rows.keys() ^ WHY.keys())}', file=sys.stderr)
+        print(f'docs/evidence/stability.md is unchanged: correct WHY for {sorted(rows.keys() ^ WHY.keys())}', file=sys.stderr)
         sys.exit(1)
     return '\n'.join(rows.values())
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is needed, builds everything and runs all tests; CTest's summary comes last.
+# Installs the dependencies, builds everything and runs all tests; CTest's summary is the last output.
 #   test.sh [ARGUMENTS OF CTEST…]      e.g. test.sh -R loader
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes docs/evidence/validation.md and validation.csv: every quantity with a known answer, as the tests of physics and of
-clumps of a build find it.
+"""Writes docs/evidence/validation.md and validation.csv: every quantity with a closed form, as computed by the tests of
+physics and clumps of a build.
 
   validate.py [BUILD]      BUILD is build unless given; exit status 1 if a test fails, and nothing is written
 """

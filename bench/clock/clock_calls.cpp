@@ -1,5 +1,5 @@
-// Stands before the C library's clock_gettime() when it is preloaded, and counts. At the end of the process the file
-// that BENCH_CLOCK_CALLS names gets the number of calls, and what one takes [s].
+// Replaces the C library's clock_gettime() when preloaded, and counts its calls. At the end of the process the file
+// named by BENCH_CLOCK_CALLS gets the number of calls and the time of one [s].
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -25,11 +25,11 @@ double now() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-[[gnu::destructor]] void tell() {
+[[gnu::destructor]] void write_counts() {
   const char* const name = std::getenv("BENCH_CLOCK_CALLS");
   if (name == nullptr) return;
   const unsigned long counted = calls.load();
-  // The least of some: others may have the core in between.
+  // The minimum of several: other processes may use the core in between.
   constexpr int many = 1000, times = 100;
   double each = 1;
   for (int time = 0; time < times; ++time) {

@@ -1,6 +1,6 @@
-// Contacts by code that knows one law, one material and spheres, and nothing else: what generality costs is the time of
-// contacts/linear-frictional over that of the faster of two forms of it. One takes pair by pair, as one writes it down;
-// the other is written for wide registers. Both have what of a pair never changes in its list.
+// Contacts by code for one law, one material and spheres only. The cost of generality is the time of
+// contacts/linear-frictional over that of the faster of two forms. One evaluates pair by pair; the other is written for
+// wide registers. Both keep constants of a pair in its list.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace grit::bench {
 namespace {
 
 struct Ball {
-  Four position, velocity, spin;  // the fourth: radius, nothing, 1
+  Four position, velocity, spin;  // the fourth: radius, unused, 1
 };
 struct Pair {
   unsigned a, b;
@@ -27,7 +27,7 @@ struct Sum {
   Four force, moment;
 };
 
-/// Of two that touch, and what they remember.
+/// A pair in contact and its history.
 struct Meeting {
   Triple branch, velocity;  // of b relative to a
   Triple arms, spins;       // sum of radii times spins; of spins
@@ -36,14 +36,14 @@ struct Meeting {
   Triple shear;
 };
 struct Answer {
-  Triple force, lever, shear;  // on b; of moments; to be remembered
-  double share;                // of the radii that are arms
+  Triple force, lever, shear;  // on b; of moments; history
+  double share;                // fraction of the radii that are arms
 };
 
-constexpr double modulus = 300e6, shear_ratio = 0.3;  // as dense.hpp's material has them
+constexpr double modulus = 300e6, shear_ratio = 0.3;  // as in the material of dense.hpp
 const double friction = std::tan(18 * std::numbers::pi / 180), damping = damping_of_restitution(0.85);
 
-/// Two reciprocals come of one division, which takes as long as many multiplications. Always inlined: else compilers
+/// Two reciprocals by one division, which is slower than several multiplications. Always inlined: otherwise compilers
 /// leave the loop in stages scalar.
 [[gnu::always_inline]] inline Answer law(const Meeting& m) {
   const Triple branch_before = m.branch - time_step * m.velocity;
@@ -68,7 +68,7 @@ const double friction = std::tan(18 * std::numbers::pi / 180), damping = damping
   return {force * normal + shear, cross(normal, shear), shear, distance / m.radii};
 }
 
-/// The dense grains, filed along a space-filling curve, with lists of neighbours as near as Dense has them.
+/// The dense grains in the order of a space-filling curve, with neighbour lists of the same skin as in Dense.
 class Bare {
  public:
   explicit Bare(std::size_t about) {
@@ -92,7 +92,7 @@ class Bare {
         const double stiffness = 2 * modulus * ra * rb / (ra + rb);
         pairs_.push_back({a, b, stiffness, 2 * damping * std::sqrt(stiffness / (1 / mass[a] + 1 / mass[b]))});
       }
-    // Padding: two that do not touch.
+    // Padding: a pair without contact.
     const auto nobody = static_cast<unsigned>(balls_.size());
     balls_.resize(balls_.size() + 2);
     balls_.back().position[0] = 1;
@@ -101,7 +101,7 @@ class Bare {
     sums_.resize(balls_.size());
   }
 
-  /// Forces and moments of all, pair by pair; returns how many touch.
+  /// Forces and moments of all pairs, one by one; returns the number of contacts.
   std::size_t one_by_one() {
     std::fill(sums_.begin(), sums_.end(), Sum{});
     std::size_t touching = 0;
@@ -124,11 +124,11 @@ class Bare {
     return touching;
   }
 
-  /// The same for a portion of pairs at a time, which stays in the first cache: which of them touch, what is to be
-  /// known of those, the law, which compilers make packed code of, and sums. The loops are short, and have no branches.
+  /// The same for blocks of pairs that fit into the first cache, in stages: find contacts, gather their data, evaluate the
+  /// law (packed code), add up. The loops are short and have no branches.
   std::size_t in_stages() {
     constexpr std::size_t portion = 128;
-    unsigned touch[portion], apart[portion];
+    unsigned contact[portion], apart[portion];
     Columns<portion> branch, velocity, arms, spins, memory, force, lever;
     double stiffness[portion], dashpot[portion];
 
@@ -141,22 +141,22 @@ class Bare {
         const Four &a = balls_[pairs_[p].a].position, &b = balls_[pairs_[p].b].position;
         const Four squares = (b - a) * (b - a);
         const double radii = a[3] + b[3];
-        const bool touches = squares[0] + squares[1] + squares[2] < radii * radii;
-        touch[count] = apart[gone] = static_cast<unsigned>(p);
-        count += touches, gone += !touches;
+        const bool contacts = squares[0] + squares[1] + squares[2] < radii * radii;
+        contact[count] = apart[gone] = static_cast<unsigned>(p);
+        count += contacts, gone += !contacts;
       }
       for (std::size_t k = 0; k < gone; ++k) memory_[apart[k]] = Four{};
       touching += count;
-      while (count % 8 != 0) touch[count++] = static_cast<unsigned>(pairs_.size() - 1);
+      while (count % 8 != 0) contact[count++] = static_cast<unsigned>(pairs_.size() - 1);
 
       for (std::size_t k = 0; k < count; k += 4) {
         Four rows[5][4];
         for (std::size_t i = 0; i < 4; ++i) {
-          const Pair& pair = pairs_[touch[k + i]];
+          const Pair& pair = pairs_[contact[k + i]];
           const Ball &a = balls_[pair.a], &b = balls_[pair.b];
           rows[0][i] = b.position - a.position, rows[1][i] = b.velocity - a.velocity;
           rows[2][i] = a.position[3] * a.spin + b.position[3] * b.spin, rows[3][i] = a.spin + b.spin;
-          rows[4][i] = memory_[touch[k + i]];
+          rows[4][i] = memory_[contact[k + i]];
           stiffness[k + i] = pair.stiffness, dashpot[k + i] = pair.dashpot;
         }
         branch.put(k, rows[0]), velocity.put(k, rows[1]), arms.put(k, rows[2]), spins.put(k, rows[3]);
@@ -173,8 +173,8 @@ class Bare {
         Four rows[3][4];
         force.take(k, rows[0]), lever.take(k, rows[1]), memory.take(k, rows[2]);
         for (std::size_t i = 0; i < 4; ++i) {
-          memory_[touch[k + i]] = rows[2][i];
-          add(pairs_[touch[k + i]], rows[0][i], rows[1][i]);
+          memory_[contact[k + i]] = rows[2][i];
+          add(pairs_[contact[k + i]], rows[0][i], rows[1][i]);
         }
       }
     }
@@ -183,7 +183,7 @@ class Bare {
   const std::vector<Sum>& sums() const { return sums_; }
 
  private:
-  /// What a contact does to its bodies; the arms of a and b in w.
+  /// Force and moments of a contact; the arms of a and b in w.
   void add(const Pair& pair, const Four& force, const Four& lever) {
     Sum &a = sums_[pair.a], &b = sums_[pair.b];
     a.force -= force, b.force += force;
@@ -196,7 +196,7 @@ class Bare {
   std::vector<Sum> sums_;
 };
 
-/// Whether sums of forces and moments are the same but for rounding.
+/// Whether sums of forces and moments are equal to round-off.
 bool same(const std::vector<Sum>& some, const std::vector<Sum>& others) {
   double force = 0, moment = 0, force_off = 0, moment_off = 0;
   const auto square = [](const Four& f) { return dot(three(f), three(f)); };

@@ -1,4 +1,4 @@
-// Vectors for bare.cpp, which shares none with grit.
+// Vectors for bare.cpp, independent of grit.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ inline Triple cross(Triple a, Triple b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// A row of one body or contact, which a register holds.
+/// A row of one body or contact, held in a register.
 using Four = double __attribute__((vector_size(32)));
 inline Triple three(const Four& f) { return {f[0], f[1], f[2]}; }
 
-/// The numbers of `size` rows, each sort by itself.
+/// The numbers of `size` rows, in separate arrays.
 template <std::size_t size>
 struct Columns {
   alignas(64) double x[size], y[size], z[size], w[size];

@@ -1,4 +1,4 @@
-// Dense grains for kernels that are timed alone: all that touches the kernel's inner types stands here.
+// Dense grains for single kernels. Internal types of the kernel are used here only.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace grit::bench {
 inline constexpr double spacing = 0.5e-3;  // m
 inline constexpr double time_step = 2.5e-7;
 
-/// About so many grains on a jumbled cubic lattice. Each touches some four and a half others, as in sand.
+/// Roughly `about` grains on a disturbed cubic lattice, with about 4.5 contacts each, as in sand.
 inline std::vector<test::Grain> grains(std::size_t about) {
   const int side = static_cast<int>(std::lround(std::cbrt(static_cast<double>(about))));
   auto all = test::jumble({side, side, side}, spacing, 0.01, 1);
@@ -24,14 +24,14 @@ inline std::vector<test::Grain> grains(std::size_t about) {
   return all;
 }
 
-/// The parameters that the dense box has.
+/// Parameters of the dense box.
 inline Description material(const std::string& law) {
   if (law == "hertz-mindlin") return {{"young_modulus", 3.64e9}, {"poisson_ratio", 0.3}, {"restitution", 0.85}};
   if (law == "linear-frictional") return {{"contact_modulus", 300e6}, {"restitution", 0.85}};
   return {{"contact_modulus", 300e6}};
 }
 
-/// Bodies, their contacts and what acts on them, without a scene's stages and guards.
+/// Bodies, contacts and forces, without stages and guards of a scene.
 class Dense {
  public:
   Dense(const std::string& law, std::size_t about)
@@ -50,17 +50,17 @@ class Dense {
     sum_.assign(bodies_.count() + 1, {});
     search();
     contacts();
-    search();  // now that it is known what touches
+    search();  // again, since contacts are known now
     contacts();
   }
 
   void search() { find(), rebuild(); }
-  /// Neighbours, and nothing done with them.
+  /// Neighbour search only.
   void find() {
-    skins_.lay_on(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0);
+    skins_.reset(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0);
     search_.build(bodies_, cell_, skins_);
   }
-  /// Files the contacts of what was found.
+  /// Builds the contact table from the pairs found.
   void rebuild() { pairs_.rebuild(bodies_, search_, false, law_->state(), {}, team_); }
   void contacts() {
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) {
@@ -70,11 +70,11 @@ class Dense {
       pairs_.evaluate(chunk, {*law_, bodies_, true, &no_shift_, time_step, skins_}, sum_.data(), nullptr);
     }
   }
-  /// What contacts across chunks do to their second bodies, alone.
+  /// Gathers forces of contacts between chunks for their second bodies.
   void gather() {
     for (std::size_t chunk = 0; chunk < chunks_of(bodies_.count()); ++chunk) pairs_.gather(chunk, sum_.data());
   }
-  /// All of the arithmetic, but nothing comes to move: else the grains would fly apart.
+  /// All of the arithmetic with a result of zero motion; otherwise the grains would fly apart.
   void motion() {
     MotionStep step{.settings = {},
                     .kick = 0,
@@ -90,11 +90,11 @@ class Dense {
 
   std::size_t count() const { return bodies_.count(); }
   std::size_t touching() const { return pairs_.touching_count(); }
-  /// Share of contacts between bodies of different chunks, which write a row.
+  /// Fraction of contacts between bodies of different chunks, which write a row.
   double across() const {
     std::size_t across = 0;
     for (std::size_t c = 0; c < pairs_.candidates(); ++c)
-      if (pairs_.touches(c) && pairs_.a(c) / chunk_bodies != pairs_.b(c) / chunk_bodies) ++across;
+      if (pairs_.contacts(c) && pairs_.a(c) / chunk_bodies != pairs_.b(c) / chunk_bodies) ++across;
     return static_cast<double>(across) / static_cast<double>(touching());
   }
 

@@ -1,4 +1,4 @@
-// What it costs to ask a wall's geometry which of 4096 spheres near it touch. A new geometry needs a line in `walls`.
+// Time to find the contacts of 4096 spheres near a wall. A new geometry needs a line in `walls`.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 namespace grit::bench {
 namespace {
 
-/// A file that is gone when the program ends.
+/// A file that is removed at the end of the program.
 class Scratch {
  public:
   explicit Scratch(const std::string& name)
@@ -50,7 +50,7 @@ const std::filesystem::path& sheet_of_triangles() {
   return sheet.path();
 }
 
-void touch(benchmark::State& state, Description wall) {
+void contact(benchmark::State& state, Description wall) {
   if (wall["type"] == "mesh") wall["path"] = sheet_of_triangles().string();
   auto plain = test::description("linear-rolling", {{"contact_modulus", 1e8}}, {{Vec3::Zero(), 1e-3}});
   plain["walls"]["wall"] = wall;
@@ -58,22 +58,22 @@ void touch(benchmark::State& state, Description wall) {
   const Scene scene = test::scene_of(plain);
   const LiveScene live(scene);
   const Geometry& geometry = *live.components().geometries.at("wall");
-  // A layer about z = 0, of which half overlaps the face, over somewhat more than the square [0, 1] × [0, 1] m.
+  // A layer about z = 0, half of which overlaps the face, slightly larger than the square [0, 1] × [0, 1] m.
   Random random(1);
   std::vector<Sphere> spheres;
   for (std::uint32_t i = 0; i < 4096; ++i)
     spheres.push_back(
         {Vec3(1.1 * random.uniform() - 0.05, 1.1 * random.uniform() - 0.05, 0.008 + 0.004 * random.uniform()), 0.01,
          i});
-  std::vector<Touch> touches;
+  std::vector<SurfaceContact> contacts;
   for (auto _ : state) {
-    touches.clear();
-    geometry.touch({}, spheres, touches);
-    benchmark::DoNotOptimize(touches.data());
+    contacts.clear();
+    geometry.find_contacts({}, spheres, contacts);
+    benchmark::DoNotOptimize(contacts.data());
   }
   state.counters["spheres_per_s"] =
       benchmark::Counter(static_cast<double>(spheres.size()), benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["touching_share"] = static_cast<double>(touches.size()) / static_cast<double>(spheres.size());
+  state.counters["touching_fraction"] = static_cast<double>(contacts.size()) / static_cast<double>(spheres.size());
 }
 
 [[maybe_unused]] const bool registered = [] {
@@ -94,9 +94,9 @@ void touch(benchmark::State& state, Description wall) {
         {"edge_b", {0, 1, 0}},
         {"depth", 0.01},
         {"wavelength", 0.1}}},
-      // Its lowest line is y = 0.5, z = 0; the layer leaves it 0.035 m to either side.
+      // Its lowest line is y = 0.5, z = 0; the layer meets it over 0.035 m to either side.
       {"cylinder", {{"type", "cylinder"}, {"start", {0, 0.5, 0.1}}, {"end", {1, 0.5, 0.1}}, {"radius", 0.1}}},
-      // As the cylinder, but a little wider at its end.
+      // As the cylinder, slightly wider at its end.
       {"cone",
        {{"type", "cone"},
         {"start", {0, 0.5, 0.1}},
@@ -109,7 +109,7 @@ void touch(benchmark::State& state, Description wall) {
   };
   for (const auto& [name, wall] : walls)
     benchmark::RegisterBenchmark((std::string("touch/") + name).c_str(),
-                                 [wall = wall](benchmark::State& state) { touch(state, wall); });
+                                 [wall = wall](benchmark::State& state) { contact(state, wall); });
   return true;
 }();
 

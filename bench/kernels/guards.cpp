@@ -1,4 +1,4 @@
-// What the guard of energies does every so many steps, beside a step.
+// The energy guard, and a step for comparison.
 #include <benchmark/benchmark.h>
 
 #include <map>
@@ -9,7 +9,7 @@
 namespace grit::bench {
 namespace {
 
-/// The dense grains as a scene, whose steps take them nowhere, on as many threads as asked.
+/// The dense grains as a scene without motion, on the given number of threads.
 Kernel& kernel_of(const benchmark::State& state) {
   static std::map<std::int64_t, std::unique_ptr<test::Trial>> made;
   std::unique_ptr<test::Trial>& trial = made[state.range(0)];

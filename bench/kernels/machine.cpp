@@ -1,4 +1,4 @@
-// What the machine allows one thread: memory traffic, arithmetic.
+// Limits of one thread: memory traffic, arithmetic.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace grit::bench {
 namespace {
 
-/// a = b + s c. Counts what a processor has to move: two arrays read, one fetched and written back.
+/// a = b + s c. Bytes: two arrays read, one loaded and written back.
 void triad(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0)) / (3 * sizeof(double));
   LargeArray<double> a(count, 0.0), b(count, 1.0), c(count, 2.0);
@@ -27,7 +27,7 @@ void triad(benchmark::State& state) {
 }
 BENCHMARK(triad)->Name("machine/triad")->Arg(24 << 10)->Arg(4 << 20)->Arg(600 << 20);
 
-/// Fused multiply-adds that do not wait for each other.
+/// Independent fused multiply-adds.
 void multiply_add(benchmark::State& state) {
 #if defined(__AVX512F__)
   constexpr std::size_t width = 8;

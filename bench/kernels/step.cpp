@@ -12,7 +12,7 @@ namespace {
 
 const char* const laws[] = {"linear-rolling", "linear-frictional", "hertz-mindlin"};
 
-/// The grains of a benchmark, which all of its repetitions use.
+/// The grains of a benchmark, shared by its repetitions.
 Dense& dense(benchmark::State& state, const std::string& law) {
   static std::map<std::pair<std::string, std::int64_t>, Dense> made;
   return made.try_emplace({law, state.range(0)}, law, static_cast<std::size_t>(state.range(0))).first->second;
@@ -22,11 +22,11 @@ void rate(benchmark::State& state, const char* what, std::size_t each) {
   state.counters[what] = benchmark::Counter(static_cast<double>(each), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// How many contacts a grain has, and which share of them is between chunks.
+/// Contacts per grain, and the fraction of them between chunks.
 void describe(benchmark::State& state, const Dense& grains) {
   state.counters["contacts_per_grain"] =
       2 * static_cast<double>(grains.touching()) / static_cast<double>(grains.count());
-  state.counters["across_share"] = grains.across();
+  state.counters["across_fraction"] = grains.across();
 }
 
 void contacts(benchmark::State& state, const std::string& law) {
@@ -56,7 +56,7 @@ void search(benchmark::State& state) {
   rate(state, "grains_per_s", grains.count());
 }
 
-/// Without finding them: each is a search whose first half is not timed.
+/// Without the search for pairs, the first half of each update, which is not timed.
 void rebuild(benchmark::State& state) {
   Dense& grains = dense(state, laws[0]);
   for (auto _ : state) {

@@ -1,1 +1,1 @@
-"""What the scripts of bench/ share: the machine, packings, runs of grit, runs of its peers, bounds."""
+"""What the scripts of bench/ share: the machine, packings, runs of grit and of other codes, bounds."""

@@ -1,6 +1,6 @@
-"""What is promised and what is wanted. docs/evidence/performance.md has the same in words."""
+"""Bounds and goals, as in docs/evidence/performance.md."""
 
-# grit's particle-steps per second over a peer's: (law, grains, threads, peer) → (promised, wanted)
+# Speed of grit over that of another code: (law, grains, threads, code) → (bound, goal)
 RATIOS = {
     ('rolling', 10000, 1, 'liggghts'): (4.5, 6),
     ('rolling', 10000, 1, 'lammps'): (4.5, 6),
@@ -17,7 +17,7 @@ MISSES = '**misses**'
 
 
 def verdict(figure, promised, wanted, at_most=False):
-    """In words, how a figure stands to its bounds; those of a ratio of costs are upper ones."""
+    """A text: whether a value meets its bound and goal; at_most: they are upper limits."""
     if promised is None:
         return ''
     holds = (lambda bound: figure <= bound) if at_most else (lambda bound: figure >= bound)

@@ -1,4 +1,4 @@
-"""Reads the loops of plugins out of their disassembly."""
+"""Reads loops of plugins from their disassembly."""
 import re
 import subprocess
 
@@ -9,7 +9,7 @@ BYTES = {'xmm': 16, 'ymm': 32, 'zmm': 64}
 
 
 def functions(objdump, file, *names):
-    """Whole name → instructions, each as text, of the functions that have one of `names` in theirs."""
+    """Full name → instructions as text, of the functions whose names contain one of `names`."""
     listing = subprocess.run([objdump, '-d', '-C', '--no-show-raw-insn', file], capture_output=True, text=True, check=True)
     found, current = {}, None
     for line in listing.stdout.splitlines():
@@ -22,8 +22,8 @@ def functions(objdump, file, *names):
 
 
 def flops(instructions, lanes):
-    """Arithmetic of one lane: a packed instruction counts once a number in its register, a fused multiply-add twice; a
-    loop takes `lanes` at a time."""
+    """Arithmetic of one lane: a packed instruction counts once per number of its register, a fused multiply-add twice; a
+    loop evaluates `lanes` at a time."""
     total = 0
     for code in instructions:
         if match := ARITHMETIC.match(code.split()[0]):

@@ -1,4 +1,4 @@
-"""Runs of grit, and what their run.json says."""
+"""Runs of grit and their run.json."""
 import json
 import os
 import re
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 class Window(NamedTuple):
-    """What happened in the stage named "timed"."""
+    """Results of the stage named "timed"."""
     grains: int
     steps: int
     seconds: float
@@ -28,7 +28,7 @@ class Window(NamedTuple):
     def seconds_per_contact(self):
         """Of one contact in one step."""
         if not self.contacts_per_grain:
-            raise Complaint('nothing touches in the stage that is timed; let the stages before take longer')
+            raise Complaint('there are no contacts in the timed stage; make the stages before it longer')
         return self.seconds / self.steps / (0.5 * self.contacts_per_grain * self.grains)
 
 
@@ -36,7 +36,7 @@ def program(path=None):
     path = Path(path or ROOT / 'build' / 'bin' / 'grit').resolve()
     if not (path.is_file() and os.access(path, os.X_OK)):
         raise Complaint(f'{path}: no such program; build it (cmake --preset release && cmake --build --preset release '
-                        '--target grit_app grit_plugins), or say where it is (--grit FILE)')
+                        '--target grit_app grit_plugins), or give its path (--grit FILE)')
     return path
 
 
@@ -44,8 +44,8 @@ def version(path):
     done = subprocess.run([path, '--version'], capture_output=True, text=True)
     if done.returncode != 0 or not done.stdout.startswith('grit '):
         said = (done.stderr or done.stdout).strip() or 'nothing'
-        raise Complaint(f'{path}: is no grit that runs here: exit status {done.returncode} of --version, and it said: '
-                        f'{said}; build it anew, or name another (--grit FILE)')
+        raise Complaint(f'{path}: does not run here as grit: exit status {done.returncode} of --version, output: '
+                        f'{said}; build it again, or give another (--grit FILE)')
     return done.stdout.strip()
 
 
@@ -63,7 +63,7 @@ class Done(NamedTuple):
 
 
 def _fresh(folder):
-    """Makes the folder, without what an earlier run said."""
+    """Makes the folder, without run.json of an earlier run."""
     Path(folder).mkdir(parents=True, exist_ok=True)
     file = Path(folder) / 'run.json'
     file.unlink(missing_ok=True)
@@ -72,12 +72,12 @@ def _fresh(folder):
 
 def _facts(path, file):
     if not file.is_file():
-        raise Complaint(f'{path}: ended well, but wrote no {file}; is it grit?')
+        raise Complaint(f'{path}: exit status 0, but wrote no {file}; is it grit?')
     return json.loads(file.read_text(encoding='utf-8'))
 
 
 def run(path, scene, folder, threads, settings=None, environment=None, friends=()):
-    """Runs a scene, pinned to as many cores as it has threads; all threads that there are, unless given."""
+    """Runs a scene, pinned to as many cores as it has threads; threads None: all."""
     file = _fresh(folder)
     threads = threads or len(os.sched_getaffinity(0))
     done = machine.run(command(path, scene, folder, threads, settings), threads, ROOT, environment, friends=friends)
@@ -85,32 +85,32 @@ def run(path, scene, folder, threads, settings=None, environment=None, friends=(
 
 
 def window(path, scene, folder, threads, settings=None, **more):
-    """Runs a scene whose last stage is "timed" and comes after another, which warms up."""
+    """Runs a scene whose last stage is "timed" and follows one for warm-up."""
     done = run(path, scene, folder, threads, settings, **more)
     before, timed = done.facts['stages'][-2:]
     if timed['name'] != 'timed':
         raise Complaint(f'{scene}: its last stage is "{timed["name"]}"; name it "timed"')
-    # Where a scene has its contacts summed up, those of the end count: they may change while it warms up.
+    # If the summary has the coordination number, its final value is used: it may change during the warm-up.
     contacts = re.search(r'^packing/coordination_number: .*final (\S+)', done.output, re.M)
     return Window(done.facts['bodies'], timed['step'] - before['step'], timed['wall_s'] - before['wall_s'],
                   float(contacts.group(1)) if contacts else done.facts['contacts_per_body'], done.others, done.facts)
 
 
 def probes(path, scene):
-    """Names of the probes of a description, with those of its scenario."""
+    """Names of the probes of a description, including those of its scenario."""
     said = subprocess.run([str(path), 'expand', str(scene)], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     return list(json.loads(said)['probes'])
 
 
 def all_stages(path, scene, folder, threads, settings=None):
-    """Seconds of all stages of a scene, probes and output too, and how many cores others kept busy meanwhile."""
+    """Seconds of all stages of a scene, with probes and output, and how many cores others kept busy meanwhile."""
     done = run(path, scene, folder, threads, settings)
-    # Not the run's own wall_s, which has neither probes nor output in it.
+    # Not the run's wall_s, which excludes probes and output.
     return done.facts['stages'][-1]['wall_s'], done.others
 
 
 def _started(path, scene, folder, threads, settings):
-    """A run that is watched while it goes on."""
+    """A run in progress."""
     return machine.started(command(path, scene, folder, threads, settings), threads, ROOT,
                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
 
@@ -122,11 +122,11 @@ def _ended(process):
 
 
 def peak_memory(path, scene, folder, threads, settings=None):
-    """The most memory that the process ever had in hand [bytes], what others took, and what run.json says."""
+    """Peak memory of the process [bytes], cores used by others, and run.json."""
     file, watch, peak = _fresh(folder), machine.Watch(), 0
     with _started(path, scene, folder, threads, settings) as process:
         while process.poll() is None:
-            # Not getrusage(): that begins with what this process had when it forked.
+            # Not getrusage(): it includes the memory of this process at the fork.
             try:
                 status = Path(f'/proc/{process.pid}/status').read_text(encoding='ascii')
             except OSError:
@@ -139,7 +139,7 @@ def peak_memory(path, scene, folder, threads, settings=None):
 
 
 def seconds_to_first_stage(path, scene, folder, threads, settings=None):
-    """From the start of the process to the end of its first stage, as run.json comes to say it; what others took."""
+    """Seconds from the start of the process until run.json has its first stage; cores used by others."""
     file, watch, seconds = _fresh(folder), machine.Watch(), None
     with _started(path, scene, folder, threads, settings) as process:
         while seconds is None and process.poll() is None:
@@ -148,5 +148,5 @@ def seconds_to_first_stage(path, scene, folder, threads, settings=None):
             time.sleep(0.002)
         _ended(process)
     if not _facts(path, file)['stages']:
-        raise Complaint(f'{path}: ended before its first stage did')
+        raise Complaint(f'{path}: ended before the end of its first stage')
     return seconds or watch.seconds(), watch.others()

@@ -1,4 +1,4 @@
-"""What the machine allows one core, measured where it is needed, and what a step of the dense box has to move and compute."""
+"""Measured limits of one core, and data and arithmetic of a step of the dense box."""
 import json
 import re
 import shutil
@@ -11,18 +11,18 @@ from . import disassembly, machine
 from .machine import Complaint, DISTURBED
 
 LINE = 64  # bytes
-# A body's rows of position, velocity and spin; what contacts did to it.
+# A body's rows of position, velocity and spin; its sum of forces and moments.
 BODY, SUM = 3 * 32, LINE
-# Two indices of a contact, and a bit of whether it touches.
+# Two indices of a contact, and a bit for contact.
 INDICES = 2 * 4 + 1 / 8
-# Which row, and for which body.
+# Index of a row, and of its body.
 LETTER = 2 * 4
 
 
 class Law(NamedTuple):
     kernel: int  # features of its loop in bench_kernels, as bits
     scene: int   # and in the dense box
-    fields: int  # numbers that a contact remembers
+    fields: int  # numbers of the contact history
 
 
 # Shear and rolling; shear and damping, in the box damping of shear too; shear and damping.
@@ -34,10 +34,10 @@ def plugins_of(program):
 
 
 def flops(law, plugins, scene=False):
-    """All arithmetic of a law's loop over pairs, by its disassembly, for one contact."""
+    """Arithmetic of one contact in a law's loop over pairs, from its disassembly."""
     objdump = shutil.which('objdump')
     if objdump is None:
-        raise Complaint('there is no `objdump`, by which flops are counted; install binutils')
+        raise Complaint('there is no `objdump` to count flops; install binutils')
     file = plugins / f'{law}.so'
     if not file.is_file():
         raise Complaint(f'{file}: no such plugin; build it (cmake --build --preset release --target grit_plugins)')
@@ -50,8 +50,8 @@ def flops(law, plugins, scene=False):
 
 
 def contact_cost(law, contacts_per_grain, across, each):
-    """Flops and bytes of one contact, everything fetched from memory once and written back once; `across` is the share of
-    contacts between chunks, which write a row from which the second body gathers; `each` the flops."""
+    """Flops and bytes of one contact, with one load and one store of all data; `across` is the fraction of contacts between
+    chunks, which write a row that the second body gathers; `each` is the number of flops."""
     grains = 2 / contacts_per_grain
     return each, INDICES + 2 * 8 * LAWS[law].fields + across * 2 * LINE + grains * (BODY + 2 * SUM)
 
@@ -66,7 +66,7 @@ class Limits(NamedTuple):
     memory: float  # bytes/s
     cache: float
     flops: float   # 1/s
-    across: float  # share of contacts between chunks, of the dense kernels
+    across: float  # fraction of contacts between chunks, in the dense kernels
     disturbed: bool
 
     def line(self):
@@ -74,7 +74,7 @@ class Limits(NamedTuple):
                 f'{self.flops * 1e-9:.0f} Gflop/s' + (' !' if self.disturbed else ''))
 
     def share(self, law, each, window):
-        """What one thread reached in the dense box, of what arithmetic, or caches or memory, allow it; in words."""
+        """Speed of one thread in the dense box over its limit by arithmetic, caches or memory; as text."""
         contacts = window.contacts_per_grain / 2
         pair, body = contact_cost(law, window.contacts_per_grain, self.across, each), \
             motion_cost(window.contacts_per_grain, self.across)
@@ -82,31 +82,31 @@ class Limits(NamedTuple):
         cached = window.facts['model']['bytes'] <= _last_cache()
         speed = window.particle_steps_per_second()
         allowed = min(self.flops / work, (self.cache if cached else self.memory) / size)
-        return f"{speed / allowed:.0%} of {'caches' if cached else 'memory'} or arithmetic"
+        return f"{speed / allowed:.0%}, {'caches' if cached else 'memory'} or arithmetic"
 
 
 class Shares:
-    """What runs of a program in the dense box reached of what the machine allows."""
+    """Speeds of a program in the dense box over the limits of the machine."""
 
     def __init__(self, program, allowed):
         self.program, self.allowed, self._flops = program, allowed, {}
 
     def of(self, law, threads, window):
-        """In words; none with more than one thread, as limits are those of a core."""
+        """As text; empty with more than one thread, as limits are those of a core."""
         if self.allowed is None or threads > 1:
             return ''
         try:
             if law not in self._flops:
                 self._flops[law] = flops(law, plugins_of(self.program), scene=True)
         except Complaint as complaint:
-            machine.say(f'no share of what the machine allows: {complaint}')
+            machine.say(f'no fraction of the limit: {complaint}')
             self.allowed = None
             return ''
         return self.allowed.share(law, self._flops[law], window)
 
 
 def _last_cache():
-    """Bytes; what the least of today's servers have, where the machine does not say."""
+    """Bytes; 16 MiB if unknown."""
     try:
         said = Path('/sys/devices/system/cpu/cpu0/cache/index3/size').read_text(encoding='ascii').strip()
         return int(said.rstrip('K')) << 10
@@ -115,22 +115,22 @@ def _last_cache():
 
 
 def of_kernels(kernels):
-    """Limits out of what bench_kernels wrote, by the names of kernels."""
-    across = [one['across_share'] for name, one in kernels.items() if name.startswith('contacts/') and 'across_share' in one]
+    """Limits from the results of bench_kernels, by name."""
+    across = [one['across_fraction'] for name, one in kernels.items() if name.startswith('contacts/') and 'across_fraction' in one]
     if not across:
-        raise KeyError('across_share')
+        raise KeyError('across_fraction')
     return Limits(kernels['machine/triad/629145600']['bytes_per_s'], kernels['machine/triad/4194304']['bytes_per_s'],
                   kernels['machine/multiply-add']['flops_per_s'], across[-1], False)
 
 
 def read(path):
-    """Name → what was measured, repetitions' statistics left out."""
+    """Name → result, without statistics of repetitions."""
     return {one['name']: one for one in json.loads(Path(path).read_text(encoding='utf-8'))['benchmarks']
             if one.get('run_type') != 'aggregate'}
 
 
 def kernels(program, pattern, cores=1):
-    """(name → what was measured, cores that others took) of the kernels whose names fit, on so many cores."""
+    """(name → result, cores used by others) of the kernels that match `pattern`, on `cores` cores."""
     built = Path(program).parent / 'bench_kernels'
     if not built.is_file():
         raise Complaint(f'{built}: no such program; build it (scripts/install-deps.sh installs Google Benchmark, then cmake '
@@ -150,8 +150,8 @@ def kernels(program, pattern, cores=1):
 
 
 def measured(program):
-    """(limits, how the table's head says it); no limits where the kernels are not built beside the program, or fail, or
-    have no time left."""
+    """(limits, their text for the head of the table); None if the kernels are not built beside the program, fail, or have no
+    time left."""
     kernels = Path(program).parent / 'bench_kernels'
     if not kernels.is_file():
         return None, f'not measured: no {kernels} (scripts/install-deps.sh installs Google Benchmark)'
@@ -163,7 +163,7 @@ def measured(program):
             limits = of_kernels(read(out))
         except (subprocess.CalledProcessError, machine.OutOfTime, OSError, ValueError, KeyError) as error:
             if isinstance(error, KeyError):
-                reason = f'measures no {error}; build it anew (--target bench_kernels)'
+                reason = f'measures no {error}; build it again (--target bench_kernels)'
             else:
                 told = isinstance(error, (subprocess.CalledProcessError, machine.OutOfTime))
                 reason = machine.reason(error) if told else repr(error)

@@ -1,4 +1,4 @@
-"""The machine that figures are taken on, and processes that are timed there."""
+"""The machine, and timed processes."""
 import contextlib
 import datetime
 import os
@@ -11,12 +11,12 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-# Other processes that take more than this share of one core during a run have disturbed it.
+# A run is disturbed if other processes take more than this fraction of one core.
 DISTURBED = 0.05
 
 
 class Complaint(Exception):
-    """Something that whoever called can mend: where, what was found, what is allowed, what to do."""
+    """An error that the caller can correct: where, what was found, what is allowed, what to do."""
 
 
 class Run(NamedTuple):
@@ -35,7 +35,7 @@ def facts():
 
 
 def head(state):
-    """The lines above a table: where and when its figures were taken."""
+    """The lines above a table: machine, date and command."""
     lines = [f"`{state['command']}`, {state['date']}",
              f"{state['cpu']}, {state['cores']} cores, {state['system']}; load at the start "
              + ' '.join(map(str, state['load_average']))]
@@ -45,16 +45,16 @@ def head(state):
 
 
 def cores(threads):
-    """The cores that so many threads are pinned to."""
+    """The cores to which so many threads are pinned."""
     mine = sorted(os.sched_getaffinity(0))
     if threads > len(mine):
-        raise Complaint(f'{threads} threads were asked for, but this process may use {len(mine)} cores; '
-                        'ask for fewer, or let it use more (taskset, cgroups)')
+        raise Complaint(f'found {threads} threads; this process may use {len(mine)} cores; use fewer threads, or allow more cores '
+                        '(taskset, cgroups)')
     return mine[:threads]
 
 
 def _all_busy():
-    # user, nice, system, irq, softirq; what the host of a virtual machine takes away is not seen
+    # user, nice, system, irq, softirq; time taken by the host of a virtual machine is not included
     ticks = [int(word) for word in Path('/proc/stat').read_text().split('\n', 1)[0].split()[1:]]
     return (ticks[0] + ticks[1] + ticks[2] + ticks[5] + ticks[6]) / os.sysconf('SC_CLK_TCK')
 
@@ -65,15 +65,15 @@ def _own_busy():
 
 
 def _busy_of(pid):
-    """CPU time of a process that goes on [s]."""
+    """CPU time of a running process [s]."""
     # After the name, which may have spaces: state is field 3, user and system time 14 and 15.
     words = Path(f'/proc/{pid}/stat').read_text(encoding='ascii', errors='replace').rpartition(')')[2].split()
     return (int(words[11]) + int(words[12])) / os.sysconf('SC_CLK_TCK')
 
 
 class Watch:
-    """How long something takes, and how many cores all others keep busy meanwhile: neither this process, nor those that
-    it has waited for, nor `friends`, by their ids, which must outlive it."""
+    """Elapsed time, and the number of cores that others keep busy meanwhile: without this process, its children, and
+    `friends` (process ids), which must outlive the watch."""
 
     def __init__(self, friends=()):
         self.friends = friends
@@ -92,15 +92,15 @@ class Watch:
 def pinned(command, threads):
     taskset = shutil.which('taskset')
     if taskset is None:
-        raise Complaint('there is no `taskset`, without which threads wander; install util-linux')
+        raise Complaint('there is no `taskset` to pin threads; install util-linux')
     return [taskset, '-c', ','.join(map(str, cores(threads))), *map(str, command)]
 
 
 @contextlib.contextmanager
 def started(command, threads, folder, environment=None, **streams):
-    """A command that goes on, pinned to as many cores as it has threads; when the block ends, so does all it began."""
+    """A running command, pinned to as many cores as it has threads. It and its children are killed at the end of the block."""
     environment = os.environ | {'OMP_NUM_THREADS': '1'} | (environment or {})
-    # A session of its own, so that what it started ends with it.
+    # A separate session, so that its children can be killed with it.
     with subprocess.Popen(pinned(command, threads), cwd=folder, env=environment, text=True, errors='replace',
                           start_new_session=True, **streams) as process:
         try:
@@ -111,14 +111,14 @@ def started(command, threads, folder, environment=None, **streams):
 
 
 class OutOfTime(Complaint):
-    """A run did not end within its time."""
+    """A run exceeded its time limit."""
 
 
 _deadline = None
 
 
 def end_within(seconds):
-    """From now on all runs together may take so long."""
+    """Limits the total time of all runs from now on."""
     global _deadline
     _deadline = time.monotonic() + seconds
 
@@ -146,7 +146,7 @@ def run(command, threads, folder, environment=None, timeout=1800, friends=()):
 
 
 def reason(error):
-    """What a Complaint or a CalledProcessError says, with the last words of the command that failed."""
+    """Message of a Complaint, or of a CalledProcessError with the last lines of its output."""
     if isinstance(error, Complaint):
         return str(error)
     said = (error.output or error.stderr or '').splitlines()[-20:]
@@ -158,9 +158,9 @@ def say(line):
 
 
 def main(work):
-    """Calls work() and turns what it raises into a line on standard error and an exit status."""
+    """Calls work() and turns exceptions into a line on standard error and an exit status."""
     name = os.path.relpath(sys.argv[0])
-    # Both ways of being stopped end what was started and clear up.
+    # Both signals stop started processes and clean up.
     for stop in (signal.SIGINT, signal.SIGTERM):
         signal.signal(stop, signal.default_int_handler)
     try:

@@ -1,4 +1,4 @@
-"""What scripts take: numbers and words of options, told at once if they cannot be."""
+"""Values of options: numbers and words, checked on reading."""
 import argparse
 import math
 from pathlib import Path
@@ -33,25 +33,25 @@ def _list(text, one, allowed):
 
 
 def counts(text):
-    return _list(text, count, 'it must be whole numbers of at least 1, each once, with commas between')
+    return _list(text, count, 'it must be whole numbers of at least 1, each once, separated by commas')
 
 
 def words(allowed):
-    """A reader of words out of `allowed`."""
+    """A reader of words in `allowed`."""
     def word(text):
         return text if text in allowed else _refuse(text, '')
-    return lambda text: _list(text, word, f'allowed are {", ".join(allowed)}, each once, with commas between')
+    return lambda text: _list(text, word, f'allowed are {", ".join(allowed)}, each once, separated by commas')
 
 
 def output(text):
-    """A file that can be written; it is looked at before anything is measured."""
+    """A file that can be written; checked before any measurement."""
     path = Path(text)
     new = not path.exists()
     try:
         with open(path, 'a', encoding='utf-8'):
             pass
     except OSError as error:
-        _refuse(text, f'it cannot be written: {error.strerror}; name another, or make its folder')
+        _refuse(text, f'it cannot be written: {error.strerror}; give another, or make its folder')
     if new:
         path.unlink()
     return path

@@ -1,4 +1,4 @@
-"""Periodic packings as text, `x y z r` a line in m: made by grit, made larger by repeating them, read for peers."""
+"""Periodic packings as text, lines `x y z r` in m: made by grit, repeated, and read for other codes."""
 import hashlib
 import json
 import math
@@ -11,13 +11,13 @@ from . import grit
 from .machine import Complaint, say
 
 ROOT = Path(__file__).resolve().parents[2]
-# Where packings and runs are kept.
+# Folder of packings and runs.
 STORE = Path(os.environ.get('GRIT_BENCH_STORE') or ROOT / 'results' / 'bench').resolve()
 PACK, PRESS = (ROOT / 'bench' / 'scenes' / name for name in ('pack.json', 'press.json'))
 PRESSURE = 150e3  # Pa
 
 UNIFORM = {'type': 'uniform', 'smallest': 0.25e-3, 'largest': 0.75e-3}
-# Equal mass in each of ten classes whose diameters grow by the same factor: grains of all sizes, most of them small.
+# Equal mass in each of ten classes that grow by a constant factor: grains of all sizes, most of them small.
 _SIEVES = [0.25e-3 * 10 ** (i / 10) for i in range(11)]
 WIDE = {'type': 'sieve', 'diameters': _SIEVES, 'passing': [i / 10 for i in range(11)]}
 
@@ -34,11 +34,11 @@ class Packing(NamedTuple):
     path: Path
     cell: Cell
     grains: int
-    digest: str  # the first letters of the file's SHA-256
+    digest: str  # first letters of the file's SHA-256
 
     def settings(self, cell=True):
-        """What turns a scene of bench/scenes into one of this packing, and of its cell."""
-        grains = {'/bodies/sand/grains/path': str(self.path)}
+        """Settings that make a scene of bench/scenes use this packing and its cell."""
+        grains = {'/bodies/sand/source/path': str(self.path)}
         if not cell:
             return grains
         return grains | {'/domain/low': list(self.cell.low), '/domain/high': list(self.cell.high)}
@@ -57,11 +57,11 @@ class Packing(NamedTuple):
 
 
 def read(path, side=None):
-    """A packing of any origin. Its cell stands in a comment, or is a cube from the origin whose side is given."""
+    """A packing of any origin. Its cell is given in a comment, or is a cube from the origin with the given side."""
     path = Path(path).resolve()
     if not path.is_file():
-        raise Complaint(f'{path}: no such packing; name a file of lines `x y z r` in m, or leave out --packing and '
-                        'one is made')
+        raise Complaint(f'{path}: no such packing; give a file of lines `x y z r` in m, or omit --packing to make '
+                        'one')
     grains, cell, digest = 0, None, hashlib.sha256()
     number = r'([-+0-9.eE]+)'
     with open(path, 'rb') as lines:
@@ -84,24 +84,24 @@ def read(path, side=None):
     if side is not None:
         cell = Cell((0.0,) * 3, (side,) * 3)
     if cell is None:
-        raise Complaint(f'{path}: does not say its cell; allowed is a comment `# cell x y z to x y z, m`, or say its '
-                        'side in m: --side 0.0109')
+        raise Complaint(f'{path}: has no cell; allowed is a comment `# cell x y z to x y z, m`, or give its side in m: '
+                        '--side 0.0109')
     return Packing(path, cell, grains, digest.hexdigest()[:12])
 
 
 def made(program, name, count, sizes, void_ratio, seed=1):
-    """A dense packing under PRESSURE that grit makes once; its folder's name has what it was made from. It shrinks to
-    `void_ratio` in one go."""
+    """A dense packing under PRESSURE, made once by grit; the folder name has a digest of its recipe. It is compacted to
+    `void_ratio` in one stage."""
     recipe = json.dumps([PACK.read_text(), PRESS.read_text(), PRESSURE, count, sizes, void_ratio, seed], sort_keys=True)
     folder = STORE / f'{name}-{count}-seed{seed}-{hashlib.sha256(recipe.encode()).hexdigest()[:8]}'
     if not folder.is_dir():
         say(f'making {folder} …')
-        # A cloud with 70 % of the volume empty lets grains be placed at once.
+        # With 70 % of the volume empty, grains of a cloud are placed quickly.
         side = (_solids(sizes, count) / 0.3) ** (1 / 3)
         part = folder.with_name(folder.name + '.part')
         done = grit.run(program, PACK, part, threads=None, settings={
-            '/seed': seed, '/domain/high': [side] * 3, '/bodies/sand/grains/high': [side] * 3,
-            '/bodies/sand/grains/count': count, '/bodies/sand/grains/sizes': sizes,
+            '/seed': seed, '/domain/high': [side] * 3, '/bodies/sand/source/high': [side] * 3,
+            '/bodies/sand/source/count': count, '/bodies/sand/source/sizes': sizes,
             '/stages/0/until/below': 1.2 * void_ratio, '/stages/1/until/below': void_ratio})
         _press(program, part, _pressure(done))
         _into_cell(part / 'packing.txt')
@@ -110,7 +110,7 @@ def made(program, name, count, sizes, void_ratio, seed=1):
 
 
 def _into_cell(path):
-    """Grains that have crossed a side since the last search stand outside of the cell; puts them back."""
+    """Moves grains back into the cell that have crossed a side since the last neighbour search."""
     lines = path.read_text(encoding='utf-8').splitlines()
     cell = read(path).cell
     with open(path, 'w', encoding='utf-8') as out:
@@ -123,14 +123,14 @@ def _into_cell(path):
 
 
 def _press(program, folder, pressure):
-    """Closes or opens the cell, again and again, until its grains rest under PRESSURE."""
-    # Pa per volumetric strain, for the first try; afterwards as found.
+    """Compresses or expands the cell repeatedly until its grains are at rest under PRESSURE."""
+    # Pa per volumetric strain, first guess; then as measured.
     stiffness = 8e7
     for _ in range(20):
         say(f'  {pressure / 1e3:.0f} kPa')
         if abs(pressure / PRESSURE - 1) < 0.05:
             return
-        # Not too far at once: what touches little is soft.
+        # Small steps: a loose packing is soft.
         strain = max(-0.005, min(0.005, (pressure - PRESSURE) / stiffness)) if pressure > 0.1 * PRESSURE else -0.01
         before = pressure
         rate = math.copysign(5.0, strain)
@@ -147,12 +147,12 @@ def _press(program, folder, pressure):
 
 
 def _pressure(done):
-    """The mean stress that a run ended with [Pa], from what it printed."""
+    """The final mean stress of a run [Pa], from its output."""
     return float(re.search(r'^packing/mean_stress: .*final (\S+)', done.output, re.M).group(1))
 
 
 def _run_once(program, scene, folder, settings):
-    """The packing that a scene ends with; the folder gets its name when all is done, so that none is half made."""
+    """The packing at the end of a scene; the folder is renamed when complete."""
     if not folder.is_dir():
         say(f'making {folder} …')
         part = folder.with_name(folder.name + '.part')
@@ -167,18 +167,18 @@ def _solids(sizes, count):
         a, b = sizes['smallest'], sizes['largest']
         mean_cube = (b**4 - a**4) / (4 * (b - a))
     else:
-        # In a class with its mass spread evenly over the diameter, numbers go with 1/d³.
+        # In a class with mass uniform over the diameter, numbers are proportional to 1/d³.
         number = mass = 0.0
         for a, b, low, high in zip(sizes['diameters'], sizes['diameters'][1:], sizes['passing'], sizes['passing'][1:]):
-            share = high - low
-            mass += share
-            number += share * (a + b) / (2 * a * a * b * b)
+            fraction = high - low
+            mass += fraction
+            number += fraction * (a + b) / (2 * a * a * b * b)
         mean_cube = mass / number
     return count * math.pi / 6 * mean_cube
 
 
 def repeated(packing, times):
-    """The packing set side by side so many times along each axis."""
+    """The packing repeated along each axis."""
     nx, ny, nz = times
     count = packing.grains * nx * ny * nz
     folder = STORE / f'repeated-{count}-{packing.digest}-{nx}x{ny}x{nz}'
@@ -207,12 +207,12 @@ def dense(program, grains):
 
 
 def wide(program, grains):
-    """Diameters 0.25 … 2.5 mm, of equal mass in classes that grow by the same factor."""
+    """Diameters 0.25 … 2.5 mm, with equal mass in classes that grow by a constant factor."""
     return made(program, 'wide', grains, WIDE, 0.4)
 
 
 def filled(program, scene, settings=None):
-    """The grains of bench/scenes/SCENE.json, as SCENE-fill.json leaves them, but for `settings`."""
+    """The grains for bench/scenes/SCENE.json, made by SCENE-fill.json with `settings`."""
     settings = settings or {}
     own, fill = PACK.with_name(f'{scene}.json'), PACK.with_name(f'{scene}-fill.json')
     digest = hashlib.sha256((fill.read_text() + own.read_text() + (json.dumps(settings) if settings else '')).encode()).hexdigest()[:8]

@@ -1,4 +1,4 @@
-"""The dense box in the other codes: what they are given, how they are run, what they say."""
+"""The dense box in the other codes: input, runs and results."""
 import json
 import math
 import re
@@ -16,7 +16,7 @@ INPUTS = ROOT / 'bench' / 'peers'
 PROGRAMS = {'yade': 'yade', 'liggghts': 'liggghts', 'lammps': 'lmp'}
 CODES = ('grit', *PROGRAMS)
 
-# What each code calls the law. bench/README.md says what still differs.
+# Name of the law in each code. Differences: bench/README.md.
 LAWS = {
     'rolling': {'grit': 'linear-rolling', 'liggghts': 'hooke/stiffness, epsd2', 'lammps': 'granular hooke, sds',
                 'yade': 'CohFrict 6D, moments'},
@@ -27,15 +27,15 @@ LAWS = {
 SCENES = {'rolling': 'dense-box.json', 'no-rolling': 'dense-box-no-rolling.json', 'hertz': 'dense-box-hertz.json'}
 
 TIME_STEP = 2.5e-7  # s
-RATE = 10.0         # 1/s, of the axis that shortens
-SKIN = 3e-5         # m; of 2e-5 … 15e-5 the best within noise, for LAMMPS and LIGGGHTS
+RATE = 10.0         # 1/s, along the axis that shortens
+SKIN = 3e-5         # m; the fastest of 2e-5 … 15e-5 within noise, for LAMMPS and LIGGGHTS
 MODULUS, SHEAR_TO_NORMAL, YOUNG, POISSON, RESTITUTION = 300e6, 0.3, 3.64e9, 0.3, 0.85
 # LAMMPS and LIGGGHTS have one stiffness for all pairs: modulus × 0.24 mm, the mean of 2 Ra Rb / (Ra + Rb) over contacts.
 STIFFNESS = MODULUS * 0.24e-3
 FRICTION = math.tan(math.radians(18))
 # 1/s. About 5 % of critical for the mean pair, which gives a restitution of 0.85.
 DAMPING = 8e4
-# LAMMPS multiplies Hertz's by √(overlap × reduced radius), 1.1e-5 m at the mean contact, which is softer than above.
+# LAMMPS multiplies this for Hertz by √(overlap × reduced radius), 1.1e-5 m at the mean contact, which is softer than above.
 DAMPING_HERTZ = 0.77 * DAMPING / 1.1e-5
 
 
@@ -56,16 +56,16 @@ def installed(code):
 
 class Timed(NamedTuple):
     speed: float     # particle-steps per second
-    contacts: float  # a grain
+    contacts: float  # per grain
     others: float    # cores that other processes kept busy meanwhile
-    of_critical: Optional[float] = None  # the time step over the critical one, where the code knows it
-    reached: str = ''                    # of what the machine allows, in words
+    of_critical: Optional[float] = None  # the time step over the critical one, if known
+    reached: str = ''                    # fraction of the limit of the machine, as text
 
 
 class Box:
-    """One packing, ready for every code."""
+    """One packing, for every code."""
 
-    shares = None  # of what the machine allows, if that is known
+    shares = None  # fractions of the limits of the machine, if known
 
     def __init__(self, packing, program):
         self.packing, self.program = packing, program
@@ -73,7 +73,7 @@ class Box:
         self._data = self._rows = None
 
     def run(self, code, law, threads, warm, steps):
-        """What the code reached: Timed."""
+        """Runs the code: Timed."""
         self.folder.mkdir(parents=True, exist_ok=True)
         return Timed(*getattr(self, '_' + code)(law, threads, warm, steps))
 
@@ -96,7 +96,7 @@ class Box:
                             'OMP_PROC_BIND': 'true', 'OMP_PLACES': 'cores'})
         found = re.search(r'^RESULT (\[.*\])', done.output, re.M)
         if not found:
-            raise Complaint('yade ended without a result; it said:\n' + done.output[-2000:])
+            raise Complaint('yade ended without a result; its output:\n' + done.output[-2000:])
         seconds, before, after = json.loads(found.group(1))
         return self.packing.grains * steps / seconds, (before + after) / 2, done.others
 
@@ -113,13 +113,13 @@ class Box:
                   'resistance': 'epsd2' if law == 'rolling' else 'off', 'kn': STIFFNESS,
                   'kt': SHEAR_TO_NORMAL * STIFFNESS, 'gamma': DAMPING, 'mu': FRICTION, 'rolling': 0.8, 'young': YOUNG,
                   'poisson': POISSON, 'restitution': RESTITUTION, 'half': RATE / 2, 'less': -RATE}
-        # It does not work out formulas within a command.
+        # LIGGGHTS does not evaluate formulas within a command.
         for axis, side, rate in zip('xyz', self.packing.cell.sides(), (RATE / 2, RATE / 2, -RATE)):
             values |= {f'{axis}high': side, f'v{axis}': rate * side / 2, f'v{axis}_low': -rate * side / 2}
         return self._molecular('liggghts', values, threads, warm, steps)
 
     def _molecular(self, code, values, threads, warm, steps):
-        """LAMMPS and LIGGGHTS, one rank a core."""
+        """LAMMPS and LIGGGHTS, one rank per core."""
         values |= {'data': self._atoms(), 'skin': SKIN, 'dt': TIME_STEP, 'warm': warm, 'steps': steps}
         command = [PROGRAMS[code], '-in', INPUTS / f'dense-box.{code}', '-log', 'none']
         for name, value in values.items():
@@ -131,11 +131,11 @@ class Box:
         loop = timed and re.search(rf'^Loop time of (\S+) on \d+ procs for {steps} steps', timed.group(1), re.M)
         contacts = re.findall(r'^CONTACTS (\S+)$', done.output, re.M)
         if not loop or len(contacts) != 2:
-            raise Complaint(f'{code} ended without a result; it said:\n{done.output[-2000:]}')
+            raise Complaint(f'{code} ended without a result; its output:\n{done.output[-2000:]}')
         return self.packing.grains * steps / float(loop.group(1)), sum(map(float, contacts)) / 2, done.others
 
     def _plain(self):
-        """The grains without a comment, from the cell's corner."""
+        """The grains without comments, relative to the corner of the cell."""
         path = self.folder / 'grains.txt'
         if self._rows is None:
             self._rows = path

@@ -16,9 +16,9 @@ class Plot:
 
     def place(self, x, y):
         wide, tall = self.WIDTH - self.LEFT - self.RIGHT, self.HEIGHT - self.TOP - self.BOTTOM
-        share = [math.log(value / low) / math.log(high / low)
+        along = [math.log(value / low) / math.log(high / low)
                  for value, low, high in zip((x, y), self.low, self.high)]
-        return self.LEFT + share[0] * wide, self.HEIGHT - self.BOTTOM - share[1] * tall
+        return self.LEFT + along[0] * wide, self.HEIGHT - self.BOTTOM - along[1] * tall
 
     def text(self, x, y, words, size=17, anchor='start', turn=''):
         self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" text-anchor="{anchor}"{turn}>{words}</text>')
@@ -31,7 +31,7 @@ class Plot:
     def axes(self):
         for axis in (0, 1):
             low, high = self.low[axis], self.high[axis]
-            # Tens alone are too few where there is but one.
+            # Powers of ten alone are too few on a short axis.
             steps = (1, 2, 5) if high < 100 * low else (1,)
             values = [step * 10.0 ** power for power in range(math.floor(math.log10(low)), math.ceil(math.log10(high)))
                       for step in steps]
@@ -55,10 +55,10 @@ class Plot:
 
 
 def write(svg, out):
-    """As an .svg, or else as a PNG."""
+    """As .svg or PNG."""
     if out.suffix == '.svg':
         out.write_text(svg, encoding='utf-8')
     elif shutil.which('rsvg-convert'):
         subprocess.run(['rsvg-convert', '--output', out], input=svg, text=True, check=True)
     else:
-        raise Complaint('there is no rsvg-convert for a PNG; install librsvg2-bin, or name an .svg (--out)')
+        raise Complaint('there is no rsvg-convert for a PNG; install librsvg2-bin, or give an .svg (--out)')

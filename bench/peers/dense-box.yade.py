@@ -1,4 +1,4 @@
-"""The dense box in YADE: `yade -jT -n -x dense-box.yade.py`; the numbers come from bench/compare as DENSE_BOX, in JSON."""
+"""The dense box in YADE: `yade -jT -n -x dense-box.yade.py`; values come from bench/compare in DENSE_BOX, as JSON."""
 import json
 import os
 import time
@@ -12,7 +12,7 @@ given = json.loads(os.environ['DENSE_BOX'])
 
 
 def along_curve(row, step=1e-3):
-    """Place on a space-filling curve. The other codes sort grains themselves; YADE keeps them as they come."""
+    """Index on a space-filling curve. The other codes sort grains themselves; YADE keeps the order of the input."""
     whole = [int(x / step) for x in row[:3]]
     return sum((whole[axis] >> bit & 1) << (3 * bit + axis) for bit in range(10) for axis in range(3))
 
@@ -25,7 +25,7 @@ a, b, c = given['sides']
 O.cell.hSize = Matrix3(a, 0, 0, 0, b, 0, 0, 0, c)
 common = dict(density=given['density'], frictionAngle=atan(given['mu']))
 if given['law'] == 'rolling':
-    # always_use_moment_law: else rolling resistance is off without cohesion.
+    # always_use_moment_law: otherwise there is no rolling resistance without cohesion.
     sand = CohFrictMat(young=given['modulus'], poisson=given['shear_to_normal'], isCohesive=False,
                        momentRotationLaw=True, alphaKr=0.7, alphaKtw=0, etaRoll=0.4, etaTwist=0, **common)
     loop = [[Ig2_Sphere_Sphere_ScGeom6D()], [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()],
@@ -41,7 +41,7 @@ else:
 O.materials.append(sand)
 for x, y, z, r in rows:
     O.bodies.append(utils.sphere(Vector3(x, y, z), r, material=sand))
-# A quarter of the smallest radius, tried from 0.15 to 1.2: the default, a half, is some 10 % slower here.
+# A quarter of the smallest radius is the fastest of 0.15 to 1.2; the default, a half, is about 10 % slower here.
 collider = InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=-0.25)
 O.engines = [ForceResetter(), collider, InteractionLoop(*loop),
              NewtonIntegrator(damping=0 if given['law'] == 'hertz' else 0.08)]

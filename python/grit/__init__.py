@@ -3,10 +3,10 @@
     import grit
     run = grit.open("results/box")
     run.status, run.bodies, run.description["title"]
-    run.series["packing/coordination_number"]         # numpy array; run.series.units(...) tells its unit
+    run.series["packing/coordination_number"]         # numpy array; run.series.units(...) returns its unit
     run.frames[-1].bodies["position"]                 # n × 3, m
 
-Units are SI, names those of docs/results.md. Nothing is kept open: a run that goes on can be read again and again.
+Units are SI; names are those of docs/results.md. No file is kept open, so that a running simulation can be read repeatedly.
 """
 
 import difflib
@@ -24,11 +24,11 @@ __all__ = ["open", "Run", "Series", "Frames", "Frame", "Table", "Wall", "Results
 
 
 class ResultsError(Exception):
-    """A folder or a file that is not what `grit run` writes, or not yet."""
+    """A folder or a file that `grit run` has not written, or not yet."""
 
 
 class UnknownName(KeyError):
-    """A name that is not there; says which are."""
+    """An unknown name; the message lists the known ones."""
 
     def __init__(self, what, name, names):
         super().__init__(name)
@@ -41,12 +41,12 @@ class UnknownName(KeyError):
 
 
 def open(folder):
-    """The run whose results are in a folder. Raises ResultsError where there are none."""
+    """The run in a results folder. Raises ResultsError if the folder holds no results."""
     return Run(folder)
 
 
-# A run flushes its series every second, which takes it some milliseconds; in between its file rests. Seconds. The system's ticks, by which
-# files are stamped, are finer than that.
+# Seconds. A run flushes its series every second, which takes some milliseconds; in between its file rests. _REST is longer than the
+# resolution of file times.
 _REST, _PATIENCE = 0.02, 5
 
 
@@ -59,40 +59,40 @@ def _stamp(path):
 
 
 def _is_being_written(path):
-    """Whether a run has its mark on the file: a lock that readers ask for and never take."""
+    """Whether a run has marked the file: a lock that readers query but never take."""
     with path.open("rb") as file:
         lock = struct.pack("hhqqi0q", fcntl.F_RDLCK, 0, 0, 0, 0)  # struct flock: type, whence, start, length, process
         try:
             return struct.unpack("hhqqi0q", fcntl.fcntl(file, fcntl.F_OFD_GETLK, lock))[0] != fcntl.F_UNLCK
-        except OSError:  # of a file system without locks
+        except OSError:  # file system without locks
             return False
 
 
 def _read(path, act):
-    """What `act` makes of an open file to which nobody has written meanwhile."""
+    """The result of `act` on the open file, repeated until the file was not written meanwhile."""
     until = time.monotonic() + _PATIENCE
     while True:
-        before, slip = _stamp(path), None
+        before, failure = _stamp(path), None
         rested = not 0 <= time.time_ns() - before[0] < _REST * 1e9 and not _is_being_written(path)
         try:
             with h5py.File(path, "r") as file:
                 found = act(file)
         except (OSError, RuntimeError, KeyError) as error:
-            slip = error
+            failure = error
         if rested and not _is_being_written(path) and _stamp(path) == before:
             break
         if time.monotonic() > until:
-            raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again, or look whether its run is halted")
+            raise ResultsError(f"{path}: has been written to for {_PATIENCE} s; try again, or check whether its run is suspended")
         time.sleep(_REST)
-    if isinstance(slip, KeyError):
-        raise slip
-    if slip:
-        raise ResultsError(f"{path}: cannot be read: {slip}; the file is damaged") from slip
+    if isinstance(failure, KeyError):
+        raise failure
+    if failure:
+        raise ResultsError(f"{path}: cannot be read: {failure}; the file is damaged") from failure
     return found
 
 
 class Table(Mapping):
-    """The datasets of a group by their names: each an array, rows first. Read when asked for."""
+    """The datasets of a group by name, as arrays whose first dimension is the row. Read on access."""
 
     def __init__(self, path, group, what):
         self._path, self._group, self._what = path, group, what
@@ -101,11 +101,11 @@ class Table(Mapping):
         return _read(self._path, lambda file: act(file[self._group] if self._group in file else {}))
 
     def _of(self, name, act):
-        def look(group):
+        def get(group):
             if name not in group or not isinstance(group[name], h5py.Dataset):
                 raise UnknownName(self._what, name, sorted(group))
             return act(group[name])
-        return self._use(look)
+        return self._use(get)
 
     def __getitem__(self, name):
         return self._of(name, lambda dataset: dataset[()])
@@ -120,19 +120,19 @@ class Table(Mapping):
         return f"<{self._what}s of {self._path}: {', '.join(self)}>"
 
     def units(self, name):
-        """UDUNITS spelling, "1" for plain numbers."""
+        """Unit in UDUNITS notation, "1" if dimensionless."""
         return self._of(name, lambda dataset: dataset.attrs["units"])
 
     def about(self, name):
-        """What it is, in words."""
+        """Description of the dataset."""
         return self._of(name, lambda dataset: dataset.attrs["long_name"])
 
     def all(self):
-        """All of them, read at one instant: {name: array}. Of a run that goes on they are as long as each other."""
+        """All datasets, read at one instant: {name: array}. They have equal lengths even while the run continues."""
         return self._use(lambda group: {name: group[name][()] for name in sorted(group)})
 
     def records(self):
-        """All of it as one structured array, a record a row."""
+        """All datasets as one structured array, one record per row."""
         columns = self.all()
         kinds = [(name, column.dtype, column.shape[1:]) for name, column in columns.items()]
         records = numpy.empty(len(next(iter(columns.values()), ())), dtype=kinds)
@@ -155,12 +155,12 @@ class Series(Mapping):
         return self._of(name, lambda dataset: dataset[()])
 
     def _of(self, name, act):
-        def look(file):
+        def get(file):
             probe, _, channel = str(name).partition("/")
             if probe not in file or channel not in file[probe]:
                 raise UnknownName("channel", name, _channels(file))
             return act(file[probe][channel])
-        return _read(self._path, look)
+        return _read(self._path, get)
 
     def __iter__(self):
         return iter(_read(self._path, _channels))
@@ -178,12 +178,12 @@ class Series(Mapping):
         return self._of(name, lambda dataset: dataset.attrs["long_name"])
 
     def probe(self, name):
-        """All channels of a probe, read at one instant: {channel: array}. Of a run that goes on they are as long as each other."""
-        def look(file):
+        """All channels of a probe, read at one instant: {channel: array}. They have equal lengths even while the run continues."""
+        def get(file):
             if name not in file:
                 raise UnknownName("probe", name, list(file))
             return {channel: dataset[()] for channel, dataset in file[name].items()}
-        return _read(self._path, look)
+        return _read(self._path, get)
 
 
 class Wall:
@@ -211,7 +211,7 @@ class Frame:
 
 
 class Frames(Sequence):
-    """The frames of a run, in their order. Those that are written meanwhile come along."""
+    """The frames of a run in order, including those written after the run was opened."""
 
     def __init__(self, folder):
         self._folder = folder
@@ -222,18 +222,18 @@ class Frames(Sequence):
     def __len__(self):
         return len(self._files())
 
-    def __getitem__(self, place):
+    def __getitem__(self, index):
         files = self._files()
-        if isinstance(place, slice):
-            return [Frame(path) for path in files[place]]
+        if isinstance(index, slice):
+            return [Frame(path) for path in files[index]]
         try:
-            return Frame(files[place])
+            return Frame(files[index])
         except IndexError:
-            raise IndexError(f"{self._folder}: there is no frame {place} of {len(files)}") from None
+            raise IndexError(f"{self._folder}: there is no frame {index} of {len(files)}") from None
 
 
 class Run:
-    """What a run left, or has left so far. Keys of run.json are attributes, as `status`, `time`, `bodies`, `description`."""
+    """The results of a finished or continuing run. Keys of run.json are attributes, such as `status`, `time`, `bodies`, `description`."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -241,9 +241,9 @@ class Run:
         try:
             self.json = json.loads(path.read_text())
         except (FileNotFoundError, NotADirectoryError):
-            raise ResultsError(f"{self.folder}: there is no run: it has no run.json; give a folder that 'grit run' has written") from None
+            raise ResultsError(f"{self.folder}: holds no run (no run.json); give a folder that 'grit run' has written") from None
         except ValueError as error:
-            raise ResultsError(f"{path}: is not JSON: {error}") from error
+            raise ResultsError(f"{path}: not JSON: {error}") from error
         self.series = Series(self.folder / "series.h5")
         self.frames = Frames(self.folder / "frames")
 

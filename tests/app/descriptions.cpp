@@ -1,4 +1,4 @@
-// Descriptions that cannot be run: exit status 2. And what `check`, `expand` and `schema` say of those that can.
+// Descriptions that cannot be run: exit status 2. Output of `check`, `expand` and `schema` for those that can.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -20,12 +20,12 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-TEST(Descriptions, EveryProblemIsToldAtOnceWithItsPlace) {
+TEST(Descriptions, AllProblemsAreReportedAtOnceWithTheirLocations) {
   const OwnFolder folder;
   folder.write("bad.json", R"({
   "contacts": {"type": "linear-roling"},
   "materials": {"sand": {"density": "2600 kPa"}},
-  "bodies": {"grains": {"type": "sphere", "materials": "sand", "grains": {"type": "list", "grains": [
+  "bodies": {"grains": {"type": "sphere", "materials": "sand", "source": {"type": "list", "bodies": [
     {"position": [0, 0, 0], "radius": "-1 mm"}
   ]}}},
   "walls": {"floor": {"type": "plane", "material": "steel"}},
@@ -44,15 +44,15 @@ TEST(Descriptions, EveryProblemIsToldAtOnceWithItsPlace) {
                       "allowed are hertz-mindlin, linear-frictional, linear-rolling"),
             HasSubstr("bad.json:3: /materials/sand/density: "), HasSubstr("kPa"), HasSubstr("kg/m^3"),
             HasSubstr("bad.json:4: /bodies/grains/materials: "), HasSubstr("\"material\""),
-            HasSubstr("bad.json:5: /bodies/grains/grains/grains/0/radius: found -1 mm; allowed is above 0 mm"),
-            HasSubstr("bad.json:7: /walls/floor/material: found the material \"steel\", which is not described"),
+            HasSubstr("bad.json:5: /bodies/grains/source/bodies/0/radius: found -1 mm; allowed is above 0 mm"),
+            HasSubstr("bad.json:7: /walls/floor/material: found the material \"steel\", which is not defined"),
             HasSubstr("bad.json:8: /stages/0/until/type: unknown condition \"step\"; did you mean \"steps\"?"),
             EndsWith("problems in the description\n")));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
-TEST(Descriptions, AStudyIsToldFromADescription) {
+TEST(Descriptions, AStudyIsDistinguishedFromADescription) {
   const OwnFolder folder;
   folder.write("study.json", R"({
   "scene": "two.json",
@@ -63,11 +63,11 @@ TEST(Descriptions, AStudyIsToldFromADescription) {
     const auto outcome = grit_in(folder.path(), {command, "study.json"});
     EXPECT_EQ(outcome.status, 2);
     EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study, of which this is the scene; allowed is a "
-                                       "description. 'grit chart study.json' runs a study"));
+                                       "description. 'grit study study.json' runs a study"));
   }
 }
 
-TEST(Descriptions, CheckSaysWhichMotionsComeToNothing) {
+TEST(Descriptions, CheckReportsMotionsWithoutEffect) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
   const auto check = [&](const std::string& lid, const std::string& floor = "{}", const std::string& stages = "") {
@@ -83,14 +83,12 @@ TEST(Descriptions, CheckSaysWhichMotionsComeToNothing) {
   };
   const std::string moves = R"({"velocity": [0, 0, "1 mm/s"]})",
                     follows = R"({"follow": {"wall": "lid", "axes": "z"}})";
-  EXPECT_THAT(
-      check(R"({"ramp_time": "1 ms"})"),
-      HasSubstr("  /walls/lid/motion/ramp_time: the wall has no velocity, spin or oscillation that could rise\n"));
+  EXPECT_THAT(check(R"({"ramp_time": "1 ms"})"),
+              HasSubstr("  /walls/lid/motion/ramp_time: the wall has no velocity, spin or oscillation\n"));
   const std::string brief = R"(/stages/0/until={"type": "time", "value": "0.5 ms"})";
-  EXPECT_THAT(
-      check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "1 ms"})", "{}", brief),
-      HasSubstr("  /walls/lid/motion/ramp_time: the wall never comes to its full speed: the ramp takes 0.001 s, "
-                "and the stage \"part\" 0.0005 s at most"));
+  EXPECT_THAT(check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "1 ms"})", "{}", brief),
+              HasSubstr("  /walls/lid/motion/ramp_time: the wall never reaches its full speed: the ramp takes 0.001 s, "
+                        "the stage \"part\" at most 0.0005 s"));
   EXPECT_THAT(check(R"({"ramp_time": "1 s"})", "{}",
                     R"(/stages/0={"name": "part", "until": {"type": "time", "value": "1 ms"}, "limit": "1 s", "change":
                        {"walls": {"lid": {"motion": {"velocity": [0, 0, "1 mm/s"], "ramp_time": "0.1 ms"}}}}})"),
@@ -98,18 +96,19 @@ TEST(Descriptions, CheckSaysWhichMotionsComeToNothing) {
       << "the stage has a shorter one";
   EXPECT_THAT(check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "0.4 ms"})", "{}", brief),
               testing::Not(HasSubstr("ramp_time")));
-  EXPECT_THAT(check(R"({"free": {"axes": "z", "mass": 1, "load": [0, "1 N", "1 N"]}})"),
-              HasSubstr("  /walls/lid/motion/free/load: it has a part along y, along which the wall is not free\n"));
+  EXPECT_THAT(
+      check(R"({"free": {"axes": "z", "mass": 1, "load": [0, "1 N", "1 N"]}})"),
+      HasSubstr("  /walls/lid/motion/free/load: it has a component along y, along which the wall is not free\n"));
   EXPECT_THAT(
       check(R"({"spin": [0, 0, "1 rad/s"]})", follows),
-      HasSubstr("  /walls/floor/motion/follow: the wall \"lid\" does not move along z; a turn is not followed\n"));
+      HasSubstr("  /walls/floor/motion/follow: the wall \"lid\" does not move along z; rotation is not followed\n"));
   EXPECT_THAT(check(moves, follows), testing::Not(HasSubstr("/motion/")));
   EXPECT_THAT(check("{}", follows, R"(/stages/0/change={"walls": {"lid": {"motion": )" + moves + "}}}"),
               testing::Not(HasSubstr("/motion/")))
       << "it moves later";
 }
 
-TEST(Descriptions, CheckEstimatesByWhatStagesUsuallyTake) {
+TEST(Descriptions, CheckEstimatesFromTypicalTimesOfStages) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
   const auto check = [&](const std::string& set) {
@@ -124,7 +123,7 @@ TEST(Descriptions, CheckEstimatesByWhatStagesUsuallyTake) {
     EXPECT_TRUE(std::regex_search(text, match, std::regex(pattern))) << text;
     return match.empty() ? -1.0 : std::stod(match[1]);
   };
-  const std::string usual = check("/stages/0/usual_time=3600 s"), unusual = check("/seed=2");
+  const std::string usual = check("/stages/0/typical_time=3600 s"), unusual = check("/seed=2");
   EXPECT_THAT(usual, HasSubstr("part            usually 3600 s, "));
   EXPECT_THAT(usual, HasSubstr(" (ends by its condition, 36000 s at most)\n"));
   EXPECT_THAT(unusual, HasSubstr("part            at most 36000 s, "));
@@ -135,7 +134,7 @@ TEST(Descriptions, CheckEstimatesByWhatStagesUsuallyTake) {
   EXPECT_EQ(found(unusual, "particle-steps/s: ([0-9.]+) h"), 0) << "nothing is known of it";
 }
 
-TEST(Descriptions, CheckSaysWhatHasNoEffect) {
+TEST(Descriptions, CheckReportsSettingsWithoutEffect) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
   const auto check = [&](std::vector<std::string> sets) {
@@ -148,70 +147,71 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   EXPECT_THAT(check({}), testing::Not(HasSubstr("without effect")));
   const auto idle =
       check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})", R"(/engines/hold={"type": "hold"})",
-             "/seed=7", "/bodies/grains/heavier_below=2 mm", "/bodies/grains/overlap=0.02", "/time_step/value=1e-9",
-             "/time_step/safety=0.5", "/materials/steel={}", "/materials/steel/density=7800",
+             "/seed=7", "/bodies/grains/density_scaling/below=2 mm", "/bodies/grains/overlap=0.02",
+             "/time_step/value=1e-9", "/time_step/safety=0.5", "/materials/steel={}", "/materials/steel/density=7800",
              R"(/probes/idle={"type": "packing"})",
              R"(/output/picture={"x": "packing/time", "y": ["packing/kinetic_energy"]})"});
   EXPECT_THAT(
-      idle, AllOf(HasSubstr("\nwithout effect\n"), HasSubstr("  /engines/damping: with these values it does nothing\n"),
-                  HasSubstr("  /output/picture/color: rotations are held"), HasSubstr("  /seed: nothing is random"),
-                  HasSubstr("  /bodies/grains/heavier_below: no grain is smaller\n"),
-                  HasSubstr("  /bodies/grains/overlap: it is looked at where bodies appear in a stage"),
-                  HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
-                  HasSubstr("  /probes/idle: it never looks")));
+      idle,
+      AllOf(HasSubstr("\nwithout effect\n"), HasSubstr("  /engines/damping: it has no effect with these values\n"),
+            HasSubstr("  /output/picture/color: rotations are held"), HasSubstr("  /seed: nothing is random"),
+            HasSubstr("  /bodies/grains/density_scaling/below: no body is smaller\n"),
+            HasSubstr("  /bodies/grains/overlap: it applies to bodies inserted by a stage"),
+            HasSubstr("  /time_step/safety: the step is given"), HasSubstr("  /materials/steel: no body"),
+            HasSubstr("  /probes/idle: it never samples")));
   EXPECT_THAT(idle, testing::Not(HasSubstr("/engines/hold")));
-  EXPECT_THAT(idle, testing::Not(HasSubstr("/materials/steel/"))) << "told with the material";
+  EXPECT_THAT(idle, testing::Not(HasSubstr("/materials/steel/"))) << "reported with the material";
   const std::string turning = R"(/probes/turns={"type": "rotations", "every_time": "3 s"})";
   const std::string smooth = "/materials/sand/friction_angle=0", law = "/contacts/type=linear-frictional";
   EXPECT_THAT(check({turning, smooth}),
-              AllOf(HasSubstr("  /probes/turns: it looks at rotations, and without friction nothing turns a sphere"),
-                    HasSubstr("  /probes/turns/every_time: 3 s is longer than its stages take, 1 s at most")));
+              AllOf(HasSubstr("  /probes/turns: it samples rotations, but without friction spheres do not rotate"),
+                    HasSubstr("  /probes/turns/every_time: 3 s is longer than its stages, 1 s at most")));
   EXPECT_THAT(check({turning, "/probes/turns/every_time=0.9 s"}), testing::Not(HasSubstr("without effect")));
-  const std::string late = R"(/bodies/late={"type": "sphere", "material": "sand", "stage": "part", "grains":
-      {"type": "list", "grains": [{"position": [0, "5 mm", 0], "radius": "1 mm"}]}})";
-  const std::string spinning = "/bodies/late/grains/grains/0/spin=[0, 0, 1]";
-  EXPECT_THAT(check({turning, smooth, late}), HasSubstr("nothing turns a sphere"));
-  EXPECT_THAT(check({turning, smooth, late, spinning}), testing::Not(HasSubstr("nothing turns a sphere")))
+  const std::string late = R"(/bodies/late={"type": "sphere", "material": "sand", "stage": "part", "source":
+      {"type": "list", "bodies": [{"position": [0, "5 mm", 0], "radius": "1 mm"}]}})";
+  const std::string spinning = "/bodies/late/source/bodies/0/spin=[0, 0, 1]";
+  EXPECT_THAT(check({turning, smooth, late}), HasSubstr("spheres do not rotate"));
+  EXPECT_THAT(check({turning, smooth, late, spinning}), testing::Not(HasSubstr("spheres do not rotate")))
       << "it comes with a spin";
   const std::string bottom = R"(/walls/bottom={"type": "plane", "point": [0, 0, "-2 mm"], "material": "sand"})";
   const auto moved = [](const std::string& motion) {
     return R"(/stages/0/change={"walls": {"bottom": {"motion": )" + motion + "}}}";
   };
   EXPECT_THAT(check({turning, smooth, bottom, moved(R"({"velocity": [0, 0, 1e-3]})")}),
-              HasSubstr("nothing turns a sphere"));
+              HasSubstr("spheres do not rotate"));
   EXPECT_THAT(check({turning, smooth, bottom, moved(R"({"spin": [0, 0, 1]})")}),
-              testing::Not(HasSubstr("nothing turns a sphere")));
+              testing::Not(HasSubstr("spheres do not rotate")));
   EXPECT_THAT(
       check({turning, smooth, R"(/materials/steel={"friction_angle": 0.5})", bottom, "/walls/bottom/material=steel"}),
-      HasSubstr("nothing turns a sphere"))
+      HasSubstr("spheres do not rotate"))
       << "the smaller friction counts";
   EXPECT_THAT(check({turning, smooth, R"(/stages/0/change={"materials": {"sand": {"friction_angle": 0.3}}})"}),
-              testing::Not(HasSubstr("nothing turns a sphere")));
-  EXPECT_THAT(check({turning, "/materials/sand/shear_to_normal_stiffness=0"}), HasSubstr("nothing turns a sphere"));
+              testing::Not(HasSubstr("spheres do not rotate")));
+  EXPECT_THAT(check({turning, "/materials/sand/shear_to_normal_stiffness=0"}), HasSubstr("spheres do not rotate"));
   EXPECT_THAT(check({smooth, "/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0.3"}),
-              AllOf(HasSubstr("  /materials/sand/rolling_stiffness: without friction nothing turns a sphere, so that "
-                              "no moment comes of it\n"),
-                    HasSubstr("  /materials/sand/rolling_limit: without friction nothing turns a sphere")));
+              AllOf(HasSubstr("  /materials/sand/rolling_stiffness: without friction spheres do not rotate, so that "
+                              "the moment is 0\n"),
+                    HasSubstr("  /materials/sand/rolling_limit: without friction spheres do not rotate")));
   EXPECT_THAT(check({law, smooth, "/contacts/shear_damping=true"}),
-              HasSubstr("  /contacts/shear_damping: without friction there is no shear force to damp"));
+              HasSubstr("  /contacts/shear_damping: without friction there is no shear force"));
   EXPECT_THAT(check({law, "/contacts/shear_damping=true"}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({"/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0"}),
-              HasSubstr("  /materials/sand/rolling_stiffness: rolling_limit is 0, so that no moment comes of it"));
+              HasSubstr("  /materials/sand/rolling_stiffness: rolling_limit is 0, so that the moment is 0"));
   EXPECT_THAT(check({"/materials/sand/rolling_limit=0"}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({"/materials/sand/rolling_stiffness=0", "/materials/sand/rolling_limit=0.3"}),
-              HasSubstr("  /materials/sand/rolling_limit: rolling_stiffness is 0, so that no moment comes of it"));
+              HasSubstr("  /materials/sand/rolling_limit: rolling_stiffness is 0, so that the moment is 0"));
   EXPECT_THAT(check({"/materials/sand/rolling_stiffness=0", R"(/materials/steel={"rolling_stiffness": 0})",
                      R"(/interfaces/sand+steel={"rolling_limit": 0.3})"}),
               AllOf(HasSubstr("  /interfaces/sand+steel/rolling_limit: rolling_stiffness is 0"),
-                    HasSubstr("  /interfaces/sand+steel: sand and steel never meet\n")));
+                    HasSubstr("  /interfaces/sand+steel: sand and steel never come into contact\n")));
   const std::string floor = R"(/walls/floor={"type": "plane", "point": [0, 0, "-2 mm"], "material": "steel"})";
   const std::string own = R"(/interfaces/sand+sand={"friction_angle": 0.3})";
   EXPECT_THAT(check({"/materials/steel={}", floor, own, R"(/interfaces/sand+steel={"friction_angle": 0.3})"}),
               testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({"/materials/steel={}", floor, R"(/interfaces/steel+steel={"friction_angle": 0.3})"}),
-              HasSubstr("  /interfaces/steel+steel: no two things of steel meet\n"));
+              HasSubstr("  /interfaces/steel+steel: no two bodies or walls of steel come into contact\n"));
   EXPECT_THAT(check({R"(/output/frames={"every_time": 1e-12})"}),
-              HasSubstr("  /output/frames/every_time: 1e-12 s is less than a step takes, "));
+              HasSubstr("  /output/frames/every_time: 1e-12 s is shorter than the time step, "));
   EXPECT_THAT(check({R"(/output/frames={"every_time": 1e-3})"}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({R"(/engines/damping={"type": "local-damping", "coefficient": 0})",
                      R"(/stages/0/change={"engines": {"damping": {"coefficient": 0.3}}})"}),
@@ -220,7 +220,8 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
   const std::string held = R"(/engines/hold={"type": "hold"})",
                     damped = R"(/engines/damping={"type": "local-damping"})";
   const auto later = [](const std::string& engines) { return R"(/stages/0/change={"engines": )" + engines + '}'; };
-  const auto turns_not = HasSubstr("  /probes/turns: it looks at rotations, and rotations are held: those are all 0\n");
+  const auto turns_not =
+      HasSubstr("  /probes/turns: it samples rotations, but rotations are held, so that they are all 0\n");
   EXPECT_THAT(check({turning, held, damped, later(R"({"damping": {"coefficient": 0.3}})")}), turns_not)
       << "a stage changes another engine";
   EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": false}})")}), testing::Not(turns_not));
@@ -231,7 +232,7 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
       testing::Not(HasSubstr("/time_step/safety")));
   EXPECT_THAT(check({"/materials/sand/rolling_stiffness=1", "/materials/sand/rolling_limit=0",
                      R"(/stages/0/change={"interfaces": {"sand+sand": {"rolling_limit": 0.3}}})"}),
-              testing::Not(HasSubstr("no moment comes of it")));
+              testing::Not(HasSubstr("the moment is 0")));
   EXPECT_THAT(check({"/time_step/allow_unstable=true"}), HasSubstr("  /time_step/allow_unstable: with this safety"));
   EXPECT_THAT(check({"/time_step/allow_unstable=true", "/time_step/safety=1.1"}),
               testing::Not(HasSubstr("without effect")));
@@ -240,7 +241,7 @@ TEST(Descriptions, CheckSaysWhatHasNoEffect) {
     return R"(/engines/weight={"type": "gravity", "acceleration": )" + g + '}';
   };
   EXPECT_THAT(check({planar, gravity("[0, 0, -9.81]")}),
-              HasSubstr("  /engines/weight: bodies are held along the axis that it acts along\n"));
+              HasSubstr("  /engines/weight: bodies are held along the axis on which it acts\n"));
   EXPECT_THAT(check({planar, gravity("[0, -1, -9.81]")}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check({planar, gravity("[0, 0, -9.81]"), later(R"({"planar": {"normal": "y"}})")}),
               testing::Not(HasSubstr("without effect")));
@@ -275,22 +276,23 @@ TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {
                         "--set", R"(/output/references={"a": {"of": "test/x", "value": 1}})", "--set",
                         R"(/output/summary=["packing/kinetic_energy", "packing/none"])"});
     EXPECT_EQ(outcome.status, 2) << does;
-    EXPECT_THAT(outcome.err,
-                AllOf(HasSubstr("--set: /output/picture/y/0: found \"packing/nope\", which no probe has as one number; "
-                                "allowed is one of packing/time, "),
-                      HasSubstr("/output/references/a/of: found \"test/x\""),
-                      HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")))
+    EXPECT_THAT(
+        outcome.err,
+        AllOf(HasSubstr("--set: /output/picture/y/0: found \"packing/nope\", which is not a scalar channel of any "
+                        "probe; allowed is one of packing/time, "),
+              HasSubstr("/output/references/a/of: found \"test/x\""),
+              HasSubstr("/output/summary/1: found \"packing/none\""), HasSubstr("3 problems")))
         << does;
   }
 }
 
-/// What shows only when the forces of the first instant are known has a place, too, and leaves no folder behind.
+/// Faults that show only at the first step are located, too, and leave no folder behind.
 TEST(Descriptions, AreRefusedForFaultsOfTheFirstInstant) {
   const std::string start = R"({
   "contacts": {"type": "linear-frictional"},
   "materials": {"sand": {"density": 2600}},
   "bodies": {
-    "sand": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [
+    "sand": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [
       {"position": [0, 0, 0.02], "radius": 0.005})";
   const std::string middle = R"(
     ]}}
@@ -317,9 +319,9 @@ TEST(Descriptions, AreRefusedForFaultsOfTheFirstInstant) {
   expect(start + middle + "1" + end + ",\n  \"time_step\": {\"value\": 1}}",
          "box.json:13: /time_step/value: the time step 1 s is above the critical one, ");
   expect(start + middle + "1" + end + ",\n  \"domain\": {\"low\": [-1, -1, 0], \"high\": [1, 1, 0.01]}}",
-         "box.json:5: /bodies/sand: a body at (0.000000, 0.000000, 0.020000) m lies outside the domain");
+         "box.json:5: /bodies/sand: a body at (0.000000, 0.000000, 0.020000) m is outside the domain");
   expect(start + middle + "1" + end + ",\n  \"output\": {\"summary\": [\"packing/none\"]}}",
-         "box.json:13: /output/summary/0: found \"packing/none\", which no probe has as one number");
+         "box.json:13: /output/summary/0: found \"packing/none\", which is not a scalar channel of any probe");
 }
 
 TEST(Descriptions, AreRefusedForTooManyMaterials) {
@@ -329,7 +331,7 @@ TEST(Descriptions, AreRefusedForTooManyMaterials) {
   folder.write("many.json", R"({
   "contacts": {"type": "linear-frictional"},
   "materials": {)" + materials + R"(},
-  "bodies": {"sand": {"type": "sphere", "material": "m0", "grains": {"type": "list", "grains": [
+  "bodies": {"sand": {"type": "sphere", "material": "m0", "source": {"type": "list", "bodies": [
     {"position": [0, 0, 0], "radius": 0.005}]}}},
   "stages": [{"name": "fall", "until": {"type": "time", "value": 0.01}, "limit": 1}]
 })");
@@ -338,7 +340,7 @@ TEST(Descriptions, AreRefusedForTooManyMaterials) {
   EXPECT_THAT(outcome.err, HasSubstr("many.json:3: /materials: found 256 materials; allowed is 255 or fewer"));
 }
 
-TEST(Descriptions, ProbesAndWallsThatFitNoSceneAreToldAtTheirPlaces) {
+TEST(Descriptions, ProbesAndWallsThatDoNotFitTheSceneAreLocated) {
   const OwnFolder folder;
   folder.write("base.json", two_grains);
   folder.write("two.json", R"({
@@ -372,12 +374,16 @@ TEST(Descriptions, ProbesAndWallsThatFitNoSceneAreToldAtTheirPlaces) {
     return outcome.err;
   };
   for (const std::string does : {"check", "run"}) {
-    EXPECT_THAT(refusal(does, {curve}),
-                HasSubstr("two.json:8: /probes/force/walls: there is no wall \"plat\"; the nearest name is \"plate\""));
-    EXPECT_THAT(refusal(does, {plate}),
-                HasSubstr("two.json:11: /probes/curve/curves/speed/formula: \"2 * plate_sped\": there is no"));
+    EXPECT_THAT(
+        refusal(does, {curve}),
+        HasSubstr(
+            "two.json:8: /probes/force/walls: found \"plat\", which is not a wall; the nearest name is \"plate\"; "
+            "allowed is one of the walls plate\n"));
+    EXPECT_THAT(
+        refusal(does, {plate}),
+        HasSubstr("two.json:11: /probes/curve/curves/speed/formula: found \"2 * plate_sped\": the unknown name"));
     EXPECT_THAT(refusal(does, {plate, R"(/probes/curve/curves/speed/formula="nothing")"}),
-                HasSubstr("--set: /probes/curve/curves/speed/formula: \"nothing\": there is no"));
+                HasSubstr("--set: /probes/curve/curves/speed/formula: found \"nothing\": the unknown name"));
     EXPECT_THAT(
         refusal(does, {plate, curve}),
         HasSubstr(
@@ -408,13 +414,13 @@ TEST(Descriptions, LetALaterServoPressOnTheSpecimenWhereItsPlaneHasNoArea) {
 })");
   const auto bare = grit_in(folder.path(), {"check", "two.json"});
   EXPECT_EQ(bare.status, 2);
-  EXPECT_THAT(bare.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo's pressure on a "
-                                  "geometry that has no area"));
+  EXPECT_THAT(bare.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo pressure on a "
+                                  "geometry without an area"));
   const std::string area = R"(/stages/1/change/walls/lid/motion/servo/area="specimen")";
   const auto open = grit_in(folder.path(), {"check", "two.json", "--set", area, "--set", "/domain={}"});
   EXPECT_EQ(open.status, 2);
-  EXPECT_THAT(open.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo that presses on "
-                                  "the specimen's cross-section, which is open"));
+  EXPECT_THAT(open.err, HasSubstr("two.json:8: /stages/1/change/walls/lid/motion/servo: found a servo on the "
+                                  "cross-section of the specimen, which is open"));
   for (const std::string does : {"check", "run"}) {
     const auto outcome = grit_in(folder.path(), {does, "two.json", "--set", area});
     EXPECT_EQ(outcome.status, 0) << does << ": " << outcome.err;
@@ -435,7 +441,7 @@ TEST(Descriptions, MayNameTheTimeOfSamplesWhereverChannelsAreNamed) {
   }
 }
 
-TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {
+TEST(Descriptions, CheckReportsWallsOutOfReach) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
   const auto check = [&](std::vector<std::string> sets) {
@@ -450,7 +456,7 @@ TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {
     return R"(/walls/lid={"type": "plane", "point": [0, 0, ")" + height +
            R"("], "normal": [0, 0, -1], "material": "sand"})";
   };
-  const auto told = HasSubstr("  /walls/lid: it stands still outside the domain");
+  const auto told = HasSubstr("  /walls/lid: it is at rest outside the domain");
   EXPECT_THAT(check({domain, lid("20 mm")}), told);
   EXPECT_THAT(check({domain, lid("20 mm"), R"(/specimen={"high": ["", "", "lid"]})"}), testing::Not(told))
       << "it bounds the specimen";
@@ -463,11 +469,11 @@ TEST(Descriptions, CheckSaysWhichWallsAreOutOfReach) {
       << "it comes in a stage";
 }
 
-TEST(Descriptions, CheckSaysWhereADepthHasMoreContactsThanScatterJustifies) {
+TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
   const OwnFolder folder;
   auto many = json::parse(two_grains);
   many["domain"] = {{"low", {0, 0, 0}}, {"high", {0.1, 0.1, 0.1}}, {"periodic", {false, true, false}}};
-  many["bodies"]["grains"]["grains"] = {{"type", "cloud"},
+  many["bodies"]["grains"]["source"] = {{"type", "cloud"},
                                         {"low", {0, 0, 0}},
                                         {"high", {0.1, 0.1, 0.1}},
                                         {"count", 40000},
@@ -477,13 +483,13 @@ TEST(Descriptions, CheckSaysWhereADepthHasMoreContactsThanScatterJustifies) {
     return grit_in(folder.path(), {"check", "many.json", "--set", set}).out;
   };
   // 2.5 contacts a grain; 1/√40 000 is 0.5 %.
-  EXPECT_THAT(check("/seed=2"), HasSubstr("  /domain/high/1: the cell repeats along y, and with 0.1 m there are some "
-                                          "100000 contacts, whose means scatter between samples by about 1/√contacts, "
-                                          "0.32 %; 0.04 m would give 0.5 % for 0.4 of the cost"));
-  EXPECT_THAT(check("/bodies/grains/grains/count=30000"), testing::Not(HasSubstr("1/√contacts")));
+  EXPECT_THAT(check("/seed=2"), HasSubstr("  /domain/high/1: the cell is periodic along y; a depth of 0.1 m has about "
+                                          "100000 contacts, so that means scatter between samples by about 1/√contacts "
+                                          "= 0.32 %; 0.04 m would give 0.5 % at 0.4 of the cost"));
+  EXPECT_THAT(check("/bodies/grains/source/count=30000"), testing::Not(HasSubstr("1/√contacts")));
   EXPECT_THAT(check("/domain/periodic=[true, true, false]"), testing::Not(HasSubstr("1/√contacts")))
       << "which of the two is its depth?";
-  EXPECT_THAT(check("/bodies/grains/grains/high/1=0.05"), testing::Not(HasSubstr("1/√contacts"))) << "a heap";
+  EXPECT_THAT(check("/bodies/grains/source/high/1=0.05"), testing::Not(HasSubstr("1/√contacts"))) << "a heap";
   EXPECT_THAT(check(R"(/engines/weight={"type": "gravity", "acceleration": [0, -9.81, 0]})"),
               testing::Not(HasSubstr("1/√contacts")));
   EXPECT_THAT(check(R"(/walls/floor={"type": "plane", "point": [0, 0, 0], "material": "sand"})"),
@@ -494,7 +500,7 @@ TEST(Descriptions, CheckSaysWhereADepthHasMoreContactsThanScatterJustifies) {
       << "a floor that ends";
 }
 
-TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
+TEST(Descriptions, CheckReportsAnExcessDepthBetweenPanesOfAScenario) {
   const std::string file = GRIT_SOURCE_DIR "/sims/direct-shear/quick.json";
   const OwnFolder folder;
   const auto check = [&](std::vector<std::string> sets) {
@@ -503,8 +509,8 @@ TEST(Descriptions, CheckSaysWhereADepthBetweenPanesOfAScenarioIsMore) {
     return grit_in(folder.path(), words).out;
   };
   EXPECT_THAT(check({"/scenario/depth=60 mm"}),
-              HasSubstr("  /scenario/depth: walls \"front\" and \"back\", which bound it along y, stand still and are "
-                        "smooth, and with 0.06 m there are some "));
+              HasSubstr("  /scenario/depth: its walls \"front\" and \"back\" along y are at rest and frictionless; a "
+                        "depth of 0.06 m has about "));
   EXPECT_THAT(check({"/scenario/depth=10 mm"}), testing::Not(HasSubstr("1/√contacts")));
   EXPECT_THAT(check({"/scenario/depth=60 mm", "/materials/sand/rolling_limit=0.4", "/walls/front/material=sand"}),
               testing::Not(HasSubstr("1/√contacts")))
@@ -525,18 +531,19 @@ TEST(Descriptions, AreRefusedWhereAStageAddsOrTakesAwayAWall) {
   const auto taken = outcome(R"({"bottom": null})"), all = outcome("null"),
              added = outcome(R"({"a": {"type": "plane", "point": [0, 0, "-3 mm"], "material": "sand"}})");
   EXPECT_EQ(taken.status, 2);
-  EXPECT_THAT(taken.err, HasSubstr("/stages/0/change/walls/bottom: found null, which would take a wall away; allowed"));
+  EXPECT_THAT(taken.err, HasSubstr("/stages/0/change/walls/bottom: found null, which would remove a wall; allowed"));
   EXPECT_EQ(all.status, 2);
-  EXPECT_THAT(all.err, HasSubstr("/stages/0/change/walls: found null, which would take a wall away"));
+  EXPECT_THAT(all.err, HasSubstr("/stages/0/change/walls: found null, which would remove a wall"));
   EXPECT_EQ(added.status, 2);
-  EXPECT_THAT(added.err, HasSubstr("/stages/0/change/walls/a: found a wall that the run does not begin with"));
+  EXPECT_THAT(added.err,
+              HasSubstr("/stages/0/change/walls/a: found a wall that does not exist at the start of the run"));
   EXPECT_EQ(outcome(R"({"bottom": {"point": [0, 0, "-3 mm"]}})").status, 0);
   const auto list = outcome("[]");
   EXPECT_EQ(list.status, 2);
-  EXPECT_THAT(list.err, testing::Not(HasSubstr("take a wall away")));
+  EXPECT_THAT(list.err, testing::Not(HasSubstr("remove a wall")));
 }
 
-TEST(Descriptions, CheckSaysWhichParametersOfAScenarioChangeNothing) {
+TEST(Descriptions, CheckReportsScenarioParametersWithoutEffect) {
   const OwnFolder folder;
   const auto check = [&](const std::string& file, std::vector<std::string> sets) {
     std::vector<std::string> words{"check", GRIT_SOURCE_DIR "/sims/interface-shear/" + file};
@@ -547,8 +554,8 @@ TEST(Descriptions, CheckSaysWhichParametersOfAScenarioChangeNothing) {
   };
   EXPECT_THAT(check("quick-flat.json", {}), testing::Not(HasSubstr("without effect")));
   EXPECT_THAT(check("quick-flat.json", {"/scenario/roughness=0.5", "/scenario/wavelength=15 mm"}),
-              AllOf(HasSubstr("\nwithout effect\n  /scenario/roughness: the scene is the same with a little more or "
-                              "less of it\n  /scenario/wavelength: "),
+              AllOf(HasSubstr("\nwithout effect\n  /scenario/roughness: the scene does not depend on it\n  "
+                              "/scenario/wavelength: "),
                     testing::Not(HasSubstr("/scenario/width"))));
   EXPECT_THAT(check("quick-flat.json", {"/scenario/roughness=0.5", "/scenario/surface=saw-tooth"}),
               testing::Not(HasSubstr("without effect")));
@@ -559,7 +566,7 @@ TEST(Descriptions, CheckCountsGrainsOfAllLayersInADepth) {
   const auto outcome = grit_in(
       folder.path(),
       {"check", GRIT_SOURCE_DIR "/sims/silo-quasistatic/quick-very-rough-layers.json", "--set", "/scenario/depth=0.2"});
-  EXPECT_THAT(outcome.out, HasSubstr("some 2368")) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("about 2368")) << outcome.err;
 }
 
 TEST(Descriptions, OneProblemIsOneLineAndTheCount) {
@@ -585,7 +592,7 @@ TEST(Descriptions, SetsAreCheckedToo) {
               AllOf(HasSubstr("--set: /guards/overlaps"), HasSubstr("did you mean \"overlap\"?")));
 }
 
-TEST(Descriptions, WhatIsNoDescriptionIsToldApart) {
+TEST(Descriptions, FilesThatAreNoDescriptionsAreRefused) {
   const OwnFolder folder;
   folder.write("empty.json", "");
   folder.write("comma.json", "{\n  \"seed\": 1,\n}\n");
@@ -604,7 +611,7 @@ TEST(Descriptions, WhatIsNoDescriptionIsToldApart) {
   EXPECT_THAT(said("child.json"), HasSubstr("parent.json"));
 }
 
-TEST(Descriptions, FilesThatCannotBeReadAreAMatterOfFiles) {
+TEST(Descriptions, FilesThatCannotBeReadEndWithStatus5) {
   const OwnFolder folder;
   std::filesystem::create_directory(folder / "directory.json");
   auto outcome = grit_in(folder.path(), {"run", "missing.json"});
@@ -615,7 +622,7 @@ TEST(Descriptions, FilesThatCannotBeReadAreAMatterOfFiles) {
   EXPECT_THAT(outcome.err, HasSubstr("directory.json: cannot be read: it is a directory"));
 }
 
-TEST(Check, SaysWhatWouldRun) {
+TEST(Check, ReportsTheRun) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
   const auto outcome = grit_in(folder.path(), {"check", "two.json", "--threads", "1"});
@@ -627,7 +634,7 @@ TEST(Check, SaysWhatWouldRun) {
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
-TEST(Check, SaysWhatComesLater) {
+TEST(Check, ReportsBodiesInsertedLater) {
   const OwnFolder folder;
   json scene = json::parse(two_grains);
   scene["bodies"]["late"] = scene["bodies"]["grains"];
@@ -638,7 +645,7 @@ TEST(Check, SaysWhatComesLater) {
   EXPECT_THAT(outcome.out, HasSubstr("bodies: 2, touching pairs at the start: 1\n  2 more in the stage part\n"));
 }
 
-/// What `expand` makes of a file, from this folder.
+/// The output of `expand` for a file, run in this folder.
 std::string expanded(const std::filesystem::path& folder, const std::string& file) {
   const auto outcome = grit_in(folder, {"expand", file});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -694,7 +701,7 @@ INSTANTIATE_TEST_SUITE_P(All, SmallSims, testing::ValuesIn(sims("quick")), name_
 TEST(Expand, NamesFilesSoThatTheyAreFoundFromAnywhere) {
   const OwnFolder folder;
   auto scene = json::parse(two_grains);
-  scene["bodies"]["grains"]["grains"] = {{"type", "file"}, {"path", "grains.txt"}};
+  scene["bodies"]["grains"]["source"] = {{"type", "file"}, {"path", "grains.txt"}};
   folder.write("inner/scene.json", scene.dump());
   folder.write("inner/grains.txt", "0 0 0 1e-3\n");
   folder.write("elsewhere/plain.json", expanded(folder.path(), "inner/scene.json"));

@@ -19,7 +19,7 @@ json with_stages(int count) {
     "materials": {"sand": {"density": 2600}, "steel": {"density": 7850}},
     "interfaces": {"sand+steel": {"friction_angle": "12 deg"}},
     "domain": {"low": [0, 0, 0], "high": ["10 mm", "10 mm", "10 mm"], "periodic": [true, true, false]},
-    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {"type": "cloud",
+    "bodies": {"grains": {"type": "sphere", "material": "sand", "source": {"type": "cloud",
       "low": [0, 0, "1 mm"], "high": ["10 mm", "10 mm", "8 mm"], "count": 100, "sizes": {"type": "uniform"}}}},
     "walls": {
       "floor": {"type": "plane", "material": "steel", "point": [0, 0, 0], "normal": [0, 0, 1]},

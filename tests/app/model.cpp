@@ -1,4 +1,4 @@
-// What a run stores and computes, as run.json says it.
+// The model in run.json: what a run stores and computes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ class ModelOfARun : public testing::Test {
  protected:
   ModelOfARun() { folder.write("two.json", two_grains); }
   json of(std::vector<std::string> settings) {
-    // One step, as memory is that of grains which touch.
+    // One step, so that the grains are still in contact when memory is counted.
     std::vector<std::string> words{
         "run", "two.json", "--out", "results", "--overwrite", "--set", "/stages/0/until/value=1"};
     for (const auto& one : settings) words.insert(words.end(), {"--set", one});
@@ -29,7 +29,7 @@ class ModelOfARun : public testing::Test {
   OwnFolder folder;
 };
 
-TEST_F(ModelOfARun, HasNoMemoryOfRollingWhereNothingResistsIt) {
+TEST_F(ModelOfARun, KeepsNoHistoryOfRollingWithoutRollingResistance) {
   const json with = of({"/contacts/type=linear-rolling"});
   EXPECT_THAT(with.at("law_parts"), ElementsAre("shear", "rolling"));
   EXPECT_EQ(with.at("contact_state").size(), 6u);
@@ -83,7 +83,7 @@ TEST_F(ModelOfARun, HasNoHistoryWithoutFriction) {
   }
 }
 
-TEST_F(ModelOfARun, RemembersOfEachSpringOnlyWhereItIs) {
+TEST_F(ModelOfARun, KeepsTheHistoryOfEachSpringOnlyWhereItExists) {
   const std::string law = "/contacts/type=linear-rolling", smooth = "/materials/sand/friction_angle=0",
                     no_rolling = "/materials/sand/rolling_limit=0",
                     twists = R"(/materials/sand={"twisting_stiffness": 1, "twisting_limit": 0.2})";
@@ -98,7 +98,7 @@ TEST_F(ModelOfARun, RemembersOfEachSpringOnlyWhereItIs) {
   EXPECT_LT(of({law, smooth}).at("bytes"), of({law}).at("bytes"));
 }
 
-TEST_F(ModelOfARun, TurnsAndMovesAreKeptOnlyWhereSomethingAsks) {
+TEST_F(ModelOfARun, RotationsAndDisplacementsAreKeptOnlyOnDemand) {
   const json plain = of({"/seed=2"});
   EXPECT_THAT(plain.at("body_state"), IsEmpty());
   EXPECT_EQ(plain.at("gravity"), false);
@@ -135,21 +135,21 @@ TEST_F(ModelOfARun, KnowsWallsClumpsAndTheLoop) {
   }
 }
 
-TEST_F(ModelOfARun, IsToldBeforehandHowFarOffClumpsMayBe) {
+TEST_F(ModelOfARun, CheckReportsTheErrorsOfClumps) {
   const auto outcome = grit_in(folder.path(), {"check", "two.json", "--set", R"(/bodies/grains/type="clump")", "--set",
                                                R"(/bodies/grains/shape={"type": "rod", "count": 3})"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, testing::HasSubstr("clumps grains: 2 of 3 spheres each; mass to "));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("clumps grains: 2 of 3 spheres each; errors: mass "));
 }
 
-TEST_F(ModelOfARun, IsOfOneMaterialHoweverWallsAreCalled) {
+TEST_F(ModelOfARun, IsOfOneMaterialWhateverTheNamesOfWallMaterials) {
   const json before = of({R"(/materials/frame={"density": 2600})",
                           R"(/walls/floor={"type": "plane", "material": "frame", "point": [0, 0, -1]})"});
   EXPECT_THAT(before.at("materials"), ElementsAre("sand", "frame"));
   EXPECT_EQ(before.at("one_material"), true);
   const json mixture = of(
       {R"(/materials/frame={"density": 2600})",
-       R"(/bodies/other={"type": "sphere", "material": "frame", "grains": {"type": "list", "grains": [{"position": [0, 0, 3], "radius": 0.1}]}})"});
+       R"(/bodies/other={"type": "sphere", "material": "frame", "source": {"type": "list", "bodies": [{"position": [0, 0, 3], "radius": 0.1}]}})"});
   EXPECT_EQ(mixture.at("one_material"), false);
 }
 

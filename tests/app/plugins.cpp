@@ -1,4 +1,4 @@
-// What is installed, and plugins that cannot be loaded: exit status 3.
+// Installed components, and plugins that cannot be loaded: exit status 3.
 #include <gmock/gmock.h>
 
 #include "scenes.hpp"
@@ -24,16 +24,16 @@ TEST(Plugins, ListsWhatIsInstalled) {
                     HasSubstr("scenario  direct-shear")));
 }
 
-TEST(Plugins, TellsOneInFull) {
+TEST(Plugins, ShowsOneInDetail) {
   const OwnFolder folder;
   const auto outcome = grit_in(folder.path(), {"plugins", "linear-rolling"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.out, AllOf(StartsWith("contact \"linear-rolling\" "), HasSubstr("linear-rolling.so\nSDK "),
-                                 HasSubstr("contact_modulus"), HasSubstr("of each interface of two materials"),
-                                 Not(HasSubstr("/../"))));
+  EXPECT_THAT(outcome.out,
+              AllOf(StartsWith("contact \"linear-rolling\" "), HasSubstr("linear-rolling.so\nSDK "),
+                    HasSubstr("contact_modulus"), HasSubstr("per interface of two materials"), Not(HasSubstr("/../"))));
 }
 
-TEST(Plugins, MissesAnUnknownNameWithTheNearest) {
+TEST(Plugins, AnUnknownNameIsRefusedWithTheNearest) {
   const OwnFolder folder;
   for (const char* command : {"plugins", "describe"}) {
     const auto outcome = grit_in(folder.path(), {command, "linear-roling"});
@@ -43,7 +43,7 @@ TEST(Plugins, MissesAnUnknownNameWithTheNearest) {
   EXPECT_THAT(grit_in(folder.path(), {"describe", "wall"}).err, HasSubstr("did you mean \"walls\"?"));
 }
 
-TEST(Describe, TellsSectionsAndComponents) {
+TEST(Describe, ShowsSectionsAndComponents) {
   const OwnFolder folder;
   auto outcome = grit_in(folder.path(), {"describe", "stages"});
   EXPECT_EQ(outcome.status, 0);
@@ -56,7 +56,7 @@ TEST(Describe, TellsSectionsAndComponents) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("\n  stages "), HasSubstr("\n  linear-rolling\n")));
 }
 
-/// A folder of plugins in which linear-rolling is no library.
+/// A plugin folder in which linear-rolling is not a library.
 std::string broken_plugins(const OwnFolder& folder) {
   folder.write("broken/contacts/linear-rolling.so", "no library");
   return (folder / "broken").string();

@@ -41,7 +41,7 @@ TEST_F(Reports, SayWhyARunFailed) {
   EXPECT_THAT(text("results/two/report.html"), AllOf(HasSubstr(">failed</span>"), HasSubstr("/guards/travel")));
 }
 
-TEST_F(Reports, AreMadeAnewOfOneOrSeveralFolders) {
+TEST_F(Reports, AreMadeAgainFromOneOrSeveralFolders) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   auto outcome = grit({"report", "results/two"});
   EXPECT_EQ(outcome.status, 0);
@@ -54,12 +54,12 @@ TEST_F(Reports, AreMadeAnewOfOneOrSeveralFolders) {
       << "or their curves would be one";
 }
 
-TEST_F(Reports, SayWhatIsLeftOut) {
+TEST_F(Reports, NameWhatIsOmitted) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
   folder.write("results/two/run.json", "{");
   const auto outcome = grit({"report", "results/two"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_EQ(outcome.err, "grit: left out: results/two/run.json: is not the JSON of a run\n");
+  EXPECT_EQ(outcome.err, "grit: omitted: results/two/run.json: is not the JSON of a run\n");
 }
 
 TEST_F(Reports, NeedFoldersOfRuns) {
@@ -160,14 +160,14 @@ TEST_F(Reports, FailWhereNothingOfARunCanBeRead) {
   folder.write("results/half/series.h5", "");
   const auto outcome = grit({"report", "--png", "results/half"});
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: results/half: nothing that can be read of it is drawn\n"),
-                                 HasSubstr("grit: left out: results/half/run.json: is not the JSON of a run\n"),
-                                 HasSubstr("grit: left out: results/half/series.h5")));
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("grit: results/half: holds nothing that can be drawn\n"),
+                                 HasSubstr("grit: omitted: results/half/run.json: is not the JSON of a run\n"),
+                                 HasSubstr("grit: omitted: results/half/series.h5")));
 }
 
 TEST_F(Reports, DrawTheOtherPicturesWhereAFrameIsDamaged) {
   ASSERT_EQ(grit({"run", "two.json", "--no-report"}).status, 0);
-  // Its attributes are there, which tell where layers begin.
+  // Its attributes remain; they name the stage, from which the layers start.
   ASSERT_EQ(shell(folder.path(),
                   "/usr/bin/python3 -c 'import h5py; del h5py.File(\"results/two/frames/000000.h5\", "
                   "\"r+\")[\"bodies/radius\"]'")
@@ -175,12 +175,12 @@ TEST_F(Reports, DrawTheOtherPicturesWhereAFrameIsDamaged) {
             0);
   const auto outcome = grit({"report", "--png", "results/two"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("grit: left out: results/two/frames/000000.h5"));
+  EXPECT_THAT(outcome.err, HasSubstr("grit: omitted: results/two/frames/000000.h5"));
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("grains.png"), HasSubstr("map-packing-stress.png"), Not(HasSubstr("layers.png"))));
 }
 
-// An endless plane has no triangles of its own: the floor of most tests.
+// An unbounded plane, such as most floors, has no triangles of its own.
 TEST_F(Reports, DrawPlanesWithoutAnExtent) {
   const auto drawn = [&](const std::string& wall) {
     EXPECT_EQ(grit({"run", "two.json", "--no-report", "--overwrite", "--set", "/walls/floor=" + wall}).status, 0);
@@ -192,15 +192,15 @@ TEST_F(Reports, DrawPlanesWithoutAnExtent) {
               HasSubstr(line));
   EXPECT_THAT(drawn(R"({"type": "plane", "point": [0, 0, "-1.5 mm"], "normal": [0, 1, 1], "material": "sand"})"),
               Not(HasSubstr(line)))
-      << "that is across no axis";
+      << "it is not normal to an axis";
 }
 
-// How far such a plane is drawn depends on the bodies, which are made once: a pipe cannot be read a second time.
+// The drawn extent of such a plane depends on the bodies. They are read only once, as a pipe cannot be read again.
 TEST_F(Reports, DrawPlanesAroundAPackingThatIsPiped) {
   const auto outcome =
       shell(folder.path(),
             "printf '0 0 0 0.001\\n0.002 0 0 0.001\\n' | \"" GRIT_BINARY
-            "\" run two.json --no-report --set '/bodies/grains/grains={\"type\": \"file\", \"path\": \"/dev/stdin\"}' "
+            "\" run two.json --no-report --set '/bodies/grains/source={\"type\": \"file\", \"path\": \"/dev/stdin\"}' "
             "--set '/walls/floor={\"type\": \"plane\", \"point\": [0, 0, -0.0015], \"normal\": [0, 0, 1], "
             "\"material\": \"sand\"}'");
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -59,7 +59,7 @@ TEST_F(Runs, CanBeRunAgainFromWhatTheyLeave) {
   EXPECT_EQ(run_json("first").at("description"), run_json("second").at("description"));
 }
 
-TEST_F(Runs, QuietOnesOnlySayWhatCameOfThem) {
+TEST_F(Runs, PrintOnlyResultsIfQuiet) {
   const auto outcome = grit({"run", "two.json", "--quiet"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -74,7 +74,7 @@ TEST_F(Runs, TakeSets) {
   EXPECT_EQ(run_json("set").at("description").at("stages").at(0).at("until").at("value"), 20);
 }
 
-TEST_F(Runs, SayWhichCurvesHaveNoValueAtTheEnd) {
+TEST_F(Runs, ReportCurvesWithoutAValueAtTheEnd) {
   auto scene = json::parse(two_grains);
   const auto curve = [](const char* formula) { return json{{"formula", formula}}; };
   scene["probes"]["test"] = {{"type", "formula"},
@@ -92,7 +92,7 @@ TEST_F(Runs, SayWhichCurvesHaveNoValueAtTheEnd) {
                                       "test/late: peak 3, final 3\n"));
 }
 
-TEST_F(Runs, DoNotReplaceOthersUnlessToldTo) {
+TEST_F(Runs, DoNotReplaceOthersWithoutOverwrite) {
   ASSERT_EQ(grit({"run", "two.json"}).status, 0);
   const auto before = text_of(folder / "results/two/run.json");
   const auto refused = grit({"run", "two.json"});
@@ -113,7 +113,7 @@ TEST_F(Runs, AreRefusedWhereAnotherOneWrites) {
            {"run", "two.json"}, {"run", "two.json", "--overwrite"}, {"run", "--resume", "results/two"}}) {
     const auto refused = grit(words);
     EXPECT_EQ(refused.status, 5) << words.back();
-    EXPECT_EQ(refused.err, "grit: results/two: another run writes there now; wait for it, or choose another folder\n")
+    EXPECT_EQ(refused.err, "grit: results/two: another run is writing there; wait for it, or choose another folder\n")
         << words.back();
   }
   ::close(other);
@@ -121,7 +121,7 @@ TEST_F(Runs, AreRefusedWhereAnotherOneWrites) {
   EXPECT_EQ(grit({"run", "two.json", "--overwrite"}).status, 0);
 }
 
-TEST_F(Runs, GoOneAfterTheOther) {
+TEST_F(Runs, RunOneAfterTheOther) {
   folder.write("other.json", two_grains);
   EXPECT_EQ(grit({"run", "two.json", "other.json", "--out", "both"}).status, 0);
   EXPECT_EQ(run_json("both/two").at("status"), "done");
@@ -134,7 +134,7 @@ TEST_F(Runs, AreAllReadBeforeTheFirstBegins) {
   EXPECT_FALSE(exists("results"));
 }
 
-TEST_F(Runs, GoOnWithTheNextWhenNumericsFail) {
+TEST_F(Runs, ContinueWithTheNextWhenNumericsFail) {
   auto scene = json::parse(two_grains);
   scene["guards"]["travel"] = 1e-6;
   folder.write("tight.json", scene.dump());
@@ -167,11 +167,11 @@ TEST_F(Runs, RefuseATimeStepAboveTheCriticalOne) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("critical"), HasSubstr("allow_unstable")));
 }
 
-TEST_F(Runs, NeedAPlaceToWrite) {
+TEST_F(Runs, NeedAWritableFolder) {
   auto outcome = grit({"run", "two.json", "--out", "two.json/results"});
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.err, HasSubstr("two.json/results: cannot make the folder of results: Not a directory"));
-  if (::geteuid() == 0) return;  // to whom every folder is open
+  EXPECT_THAT(outcome.err, HasSubstr("two.json/results: cannot create the results folder: Not a directory"));
+  if (::geteuid() == 0) return;  // root may write to any folder
   std::filesystem::create_directory(folder / "closed");
   std::filesystem::permissions(folder / "closed",
                                std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
@@ -180,7 +180,7 @@ TEST_F(Runs, NeedAPlaceToWrite) {
   EXPECT_THAT(outcome.err, HasSubstr("Permission denied"));
 }
 
-TEST_F(Runs, SayThatTheDiskIsFull) {
+TEST_F(Runs, ReportAFullDisk) {
   std::filesystem::create_directory(folder / "small");
   const std::string in_a_small_disk = "unshare -rm bash -c 'mount -t tmpfs -o size=48k tmpfs small && ";
   if (shell(folder.path(), in_a_small_disk + "true'").status != 0) GTEST_SKIP() << "no mounts for this user";
@@ -216,7 +216,7 @@ TEST_P(Interrupted, RunsAreSaved) {
   EXPECT_THAT(outcome.out, HasSubstr("report: results/two of them/report.html"));
   EXPECT_THAT(text_of(folder / "results/two of them/report.html"),
               AllOf(HasSubstr(">interrupted</span>"), HasSubstr("Interrupted in stage "), HasSubstr("(1 of 1), "),
-                    HasSubstr("'grit run --resume &quot;results/two of them&quot;' goes on.")));
+                    HasSubstr("'grit run --resume &quot;results/two of them&quot;' continues it.")));
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "results"))
     EXPECT_THAT(entry.path().string(), Not(EndsWith(".part")));
 }

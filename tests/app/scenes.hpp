@@ -1,4 +1,4 @@
-// Small descriptions that run in no time.
+// Small descriptions that run almost instantly.
 #pragma once
 
 namespace grit {
@@ -8,7 +8,7 @@ inline constexpr auto two_grains = R"({
   "title": "two grains",
   "contacts": {"type": "linear-rolling"},
   "materials": {"sand": {"density": 2600}},
-  "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [
+  "bodies": {"grains": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [
     {"position": [0, 0, 0], "radius": "1 mm"},
     {"position": ["1.999 mm", 0, 0], "radius": "1 mm"}
   ]}}},

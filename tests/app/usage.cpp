@@ -1,4 +1,4 @@
-// What the command says of itself, and of words that make no sense: exit status 0 and 1.
+// Help, version and wrong command lines: exit status 0 and 1.
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -84,15 +84,15 @@ TEST(Usage, WrongWordsAreNamed) {
   const OwnFolder folder;
   folder.write("two.json", two_grains);
   for (const auto& [words, said] : std::vector<Wrong>{
-           {{"rnu"}, "there is no command \"rnu\"; did you mean \"run\"? See 'grit --help'"},
-           {{"frobnicate"}, "there is no command \"frobnicate\"; see 'grit --help'"},
-           {{"--verbose"}, "there is no option \"--verbose\"; see 'grit --help'"},
-           {{"help", "rnu"}, "there is no command \"rnu\"; did you mean \"run\"?"},
+           {{"rnu"}, "unknown command \"rnu\"; did you mean \"run\"? See 'grit --help'"},
+           {{"frobnicate"}, "unknown command \"frobnicate\"; see 'grit --help'"},
+           {{"--verbose"}, "unknown option \"--verbose\"; see 'grit --help'"},
+           {{"help", "rnu"}, "unknown command \"rnu\"; did you mean \"run\"?"},
            {{"run"}, "no description was given; see 'grit run --help'"},
            {{"check"}, "no description was given; see 'grit check --help'"},
            {{"expand"}, "'grit expand' takes one description, not none; see 'grit expand --help'"},
            {{"expand", "two.json", "two.json"}, "takes one description, not 2"},
-           {{"schema", "two.json"}, "'grit schema' takes no file"},
+           {{"schema", "two.json"}, "'grit schema' takes no arguments"},
            {{"plugins", "box", "plane"}, "'grit plugins' takes one name, not 2"},
            {{"run", "two.json", "--frobnicate"}, "unrecognised option '--frobnicate'; see 'grit run --help'"},
            {{"run", "two.json", "--thr", "2"}, "unrecognised option '--thr'"},

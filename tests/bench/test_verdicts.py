@@ -88,10 +88,10 @@ class Rows(Given):
         self.assertIn(bounds.MISSES, out)
         self.assertEqual(status, 1)
 
-    def test_the_row_of_looks_has_no_bound(self):
+    def test_the_row_of_sampling_has_no_bound(self):
         self.told(**{'curves': {'end': 10.0}, 'every': {'end': 12.0}})
         with quiet():
-            status, out, errors = self.rows('looks')
+            status, out, errors = self.rows('sampling')
         self.assertIn('10.0 and 12.0 s', out, errors)
         self.assertNotIn(bounds.MISSES, out)
         self.assertEqual(status, 0)
@@ -125,11 +125,11 @@ class Rows(Given):
     def test_memory_is_taken_over_two_searches(self):
         self.told(**{'dense-box': {'rebuilds': 1}})
         status, out, errors = self.rows('--short', 'memory')
-        self.assertIn('1 search(es)', errors)
+        self.assertIn('1 neighbour search(es)', errors)
         self.assertEqual(status, 1)
         self.told(**{'dense-box': {'rebuilds': 2}})
         status, out, errors = self.rows('--short', 'memory')
-        self.assertIn('; 2 searches', out, errors)
+        self.assertIn('; 2 neighbour searches', out, errors)
         self.assertEqual(status, 0)
 
     def test_start_and_memory_are_marked_when_disturbed(self):
@@ -189,12 +189,12 @@ class Check(Given):
     def test_a_program_of_another_commit_is_refused(self):
         self.told(**{'earlier': {'revision': 'bad'}})
         status, _, errors = self.check('--reference-grit', self.fake)
-        self.assertIn('says that it is of "bad", not of c0ffee000000', errors)
+        self.assertIn('found revision "bad"; expected c0ffee000000', errors)
         self.assertEqual(status, 2)
 
     def test_what_is_no_grit_is_refused(self):
         status, _, errors = self.check('--reference-grit', '/bin/true')
-        self.assertIn('/true: is no grit that runs here', errors)
+        self.assertIn('/true: does not run here as grit', errors)
         self.assertEqual(status, 2)
 
     def test_no_verdict_beside_others(self):
@@ -319,7 +319,7 @@ class Measuring(Given):
             {'benchmarks': [{'name': 'machine/triad/629145600', 'bytes_per_s': 2e10},
                             {'name': 'machine/triad/4194304', 'bytes_per_s': 9e10},
                             {'name': 'machine/multiply-add', 'flops_per_s': 5e10},
-                            {'name': 'contacts/linear-rolling/10000', 'across_share': 0.25}]})
+                            {'name': 'contacts/linear-rolling/10000', 'across_fraction': 0.25}]})
             + '\nEND\nesac; done\n')
         kernels.chmod(0o755)
         with quiet():
@@ -329,7 +329,7 @@ class Measuring(Given):
         window = grit.Window(1000, 10, 1e-3, 4.0, 0.0, {'model': {'bytes': 1}})
         bytes_each = 2 * (8.125 + 96 + 0.25 * 128 + 0.5 * 224) + 256 + 0.5 * 72
         expected = 1e7 / min(5e10 / 694, 9e10 / bytes_each)
-        self.assertEqual(allowed.share('linear-rolling', 300, window), f'{expected:.0%} of caches or arithmetic')
+        self.assertEqual(allowed.share('linear-rolling', 300, window), f'{expected:.0%}, caches or arithmetic')
 
     def test_every_geometry_has_a_kernel(self):
         kernels = (BENCH / 'kernels' / 'geometry.cpp').read_text()

@@ -4,16 +4,16 @@
 #include <limits>
 #include <numbers>
 
-#include "grit/testing/fake_world.hpp"
 #include "bodies/random.hpp"
+#include "grit/testing/fake_world.hpp"
 
 namespace grit::averages_tests {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// n³ touching spheres of diameter d in a periodic cube; each touches three neighbours in +x, +y, +z, across the sides
-/// as well, with these normal forces.
+/// n³ spheres of diameter d in contact in a periodic cube; each has contacts with three neighbours along +x, +y, +z,
+/// also across the sides, with these normal forces.
 FakeWorld simple_cubic(int n, double d, const Vec3& push) {
   FakeWorld world;
   world.make_periodic(Vec3::Zero(), Vec3::Constant(n * d));
@@ -24,9 +24,9 @@ FakeWorld simple_cubic(int n, double d, const Vec3& push) {
   for (int z = 0; z < n; ++z)
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {
-        world.touch(at(x, y, z), at(x + 1, y, z), Vec3(d, 0, 0), Vec3(push[0], 0, 0));
-        world.touch(at(x, y, z), at(x, y + 1, z), Vec3(0, d, 0), Vec3(0, push[1], 0));
-        world.touch(at(x, y, z), at(x, y, z + 1), Vec3(0, 0, d), Vec3(0, 0, push[2]));
+        world.add_contact(at(x, y, z), at(x + 1, y, z), Vec3(d, 0, 0), Vec3(push[0], 0, 0));
+        world.add_contact(at(x, y, z), at(x, y + 1, z), Vec3(0, d, 0), Vec3(0, push[1], 0));
+        world.add_contact(at(x, y, z), at(x, y, z + 1), Vec3(0, 0, d), Vec3(0, 0, push[2]));
       }
   return world;
 }
@@ -40,7 +40,7 @@ TEST(VoidRatio, OfSimpleCubicPackingInAnyShiftedBox) {
   const double exact = 6 / std::numbers::pi - 1;
   Random random(1);
   for (int i = 0; i < 50; ++i) {
-    // Whole periods of the lattice, anywhere: also beyond the cell, and larger than it.
+    // Whole periods of the lattice at any position, also outside the cell and larger than it.
     const Vec3 low(8 * random.uniform() - 4, 8 * random.uniform() - 4, 8 * random.uniform() - 4);
     const Vec3 size(0.5 * (1 + random.below(4)), 0.5 * (1 + random.below(4)), 0.5 * (1 + random.below(4)));
     EXPECT_NEAR(void_ratio(world, {low, low + size}), exact, 1e-11);
@@ -80,14 +80,14 @@ TEST(MeanStress, OfALatticeIsForceOverTheAreaOfOneGrain) {
     const Vec3 size(d * (1 + random.below(5)), d * (1 + random.below(5)), d * (1 + random.below(5)));
     expect_near(mean_stress(world, {low, low + size}), exact, 1e-11);
   }
-  // Boxes whose faces hold whole planes of branches do not share them.
+  // Boxes whose faces contain whole planes of branches do not count them twice.
   expect_near(mean_stress(world, {Vec3::Constant(d), Vec3::Constant(2 * d)}), exact);
 }
 
 TEST(MeanStress, WeighsABranchByThePartInside) {
   FakeWorld world;
   const auto a = world.add(Vec3(0, 0, 0), 0.6), b = world.add(Vec3(1, 0, 0), 0.6);
-  world.touch(a, b, Vec3(1, 0, 0), Vec3(5, 7, 0));
+  world.add_contact(a, b, Vec3(1, 0, 0), Vec3(5, 7, 0));
   Mat3 whole = Mat3::Zero();
   whole(0, 0) = 5, whole(1, 0) = 7;  // force by branch
   const auto of = [&](double from, double to) {
@@ -106,7 +106,7 @@ TEST(MeanStress, ClipsASlantedBranchOnAllSides) {
   FakeWorld world;
   const auto a = world.add(Vec3(0, 0, 0), 1), b = world.add(Vec3(1, -2, 4), 1);
   const Vec3 branch(1, -2, 4), force(1, 2, -3);
-  world.touch(a, b, branch, force);
+  world.add_contact(a, b, branch, force);
   // x leaves 0.2 … 1, y leaves 0 … 0.7, z leaves 0.25 … 0.9
   const Region box{Vec3(0.2, -1.4, 1), Vec3(3, 3, 3.6)};
   expect_near(mean_stress(world, box), (0.7 - 0.25) / box.volume() * force * branch.transpose());
@@ -116,7 +116,7 @@ TEST(MeanStress, FollowsABranchAcrossAPeriodicSide) {
   FakeWorld world;
   world.make_periodic(Vec3::Zero(), Vec3::Ones());
   const auto a = world.add(Vec3(0.9, 0.5, 0.5), 0.2), b = world.add(Vec3(0.2, 0.5, 0.5), 0.2);
-  world.touch(a, b, Vec3(0.3, 0, 0), Vec3(10, 0, 0));
+  world.add_contact(a, b, Vec3(0.3, 0, 0), Vec3(10, 0, 0));
   const auto xx = [&](double from, double to) { return mean_stress(world, {Vec3(from, 0, 0), Vec3(to, 1, 1)})(0, 0); };
   EXPECT_NEAR(xx(0, 1), 3, 1e-12);
   EXPECT_NEAR(xx(0.5, 1), 1 / 0.5, 1e-12);
@@ -125,10 +125,10 @@ TEST(MeanStress, FollowsABranchAcrossAPeriodicSide) {
   EXPECT_NEAR(xx(0.5, 2.5), 3, 1e-12);  // two of them
 }
 
-TEST(MeanStress, TakesTheBranchToAWallUpToTheTouchingPoint) {
+TEST(MeanStress, TakesTheBranchToAWallUpToTheContactPoint) {
   FakeWorld world;
   const auto a = world.add(Vec3(0.5, 0.5, 0.1), 0.1);
-  world.touch_wall(a, 0, Vec3(0, 0, -0.1), Vec3(2, 0, -8));
+  world.add_wall_contact(a, 0, Vec3(0, 0, -0.1), Vec3(2, 0, -8));
   const Region box{Vec3::Zero(), Vec3::Ones()};
   Mat3 exact = Mat3::Zero();
   exact(0, 2) = -0.2, exact(2, 2) = 0.8;
@@ -142,7 +142,7 @@ TEST(MeanStress, OfAnEmptyOrEndlessBoxIsZero) {
   EXPECT_EQ(mean_stress(world, {Vec3::Zero(), Vec3(1, 1, infinity)}).norm(), 0);
 }
 
-TEST(Unrest, BringsVelocitiesUpToTime) {
+TEST(Equilibrium, BringsVelocitiesUpToTime) {
   FakeWorld world;
   world.time_step = 0.2, world.steps = 1;
   world.add(Vec3::Zero(), 0.1, Vec3(1, 2, 3), Vec3(4, 5, 6));
@@ -151,33 +151,33 @@ TEST(Unrest, BringsVelocitiesUpToTime) {
   world.moment[0] = {0, inertia * 20, 0, 0};
   // Half a step of 0.1 s adds (1, 0, −1) m/s and (0, 2, 0) rad/s.
   const double exact = 0.5 * mass * Vec3(2, 2, 2).squaredNorm() + 0.5 * inertia * Vec3(4, 7, 6).squaredNorm();
-  EXPECT_NEAR(unrest(world).kinetic_energy, exact, 1e-12 * exact);
+  EXPECT_NEAR(equilibrium(world).kinetic_energy, exact, 1e-12 * exact);
   world.steps = 0;  // velocities are of time 0 there
   const double start = 0.5 * mass * Vec3(1, 2, 3).squaredNorm() + 0.5 * inertia * Vec3(4, 5, 6).squaredNorm();
-  EXPECT_NEAR(unrest(world).kinetic_energy, start, 1e-12 * start);
+  EXPECT_NEAR(equilibrium(world).kinetic_energy, start, 1e-12 * start);
 }
 
-TEST(Unrest, ComparesNetForcesWithContactForces) {
+TEST(Equilibrium, ComparesNetForcesWithContactForces) {
   FakeWorld world;
   const auto a = world.add(Vec3::Zero(), 0.5), b = world.add(Vec3(1, 0, 0), 0.5);
-  EXPECT_EQ(unrest(world).unbalanced_force, 0);
+  EXPECT_EQ(equilibrium(world).unbalanced_force, 0);
   world.force[a] = {3, 0, 4, 0}, world.force[b] = {0, 1, 0, 0};
-  EXPECT_EQ(unrest(world).unbalanced_force, 0);  // nothing touches
-  world.touch(a, b, Vec3(1, 0, 0), Vec3(10, 7, 0));
-  world.touch_wall(b, 0, Vec3(0, 0, -0.5), Vec3(0, 9, -20));
-  EXPECT_NEAR(unrest(world).mean_contact_force, 15, 1e-12);
-  EXPECT_NEAR(unrest(world).unbalanced_force, 3.0 / 15, 1e-14);
+  EXPECT_EQ(equilibrium(world).unbalanced_force, 0);  // no contacts
+  world.add_contact(a, b, Vec3(1, 0, 0), Vec3(10, 7, 0));
+  world.add_wall_contact(b, 0, Vec3(0, 0, -0.5), Vec3(0, 9, -20));
+  EXPECT_NEAR(equilibrium(world).mean_contact_force, 15, 1e-12);
+  EXPECT_NEAR(equilibrium(world).unbalanced_force, 3.0 / 15, 1e-14);
 }
 
-TEST(Unrest, LeavesOutBodiesThatCannotMove) {
+TEST(Equilibrium, IgnoresFixedBodies) {
   FakeWorld world;
   const auto a = world.add(Vec3::Zero(), 0.5, Vec3(1, 0, 0)), b = world.add(Vec3(1, 0, 0), 0.5, Vec3(9, 0, 0));
   world.velocity[b].w = 0, world.spin[b].w = 0;
   world.force[a] = {3, 0, 0, 0}, world.force[b] = {100, 0, 0, 0};
   world.time_step = 0;
-  world.touch(a, b, Vec3(1, 0, 0), Vec3(10, 0, 0));
-  EXPECT_NEAR(unrest(world).unbalanced_force, 0.3, 1e-14);
-  EXPECT_NEAR(unrest(world).kinetic_energy, 0.5 / world.velocity[a].w, 1e-9);
+  world.add_contact(a, b, Vec3(1, 0, 0), Vec3(10, 0, 0));
+  EXPECT_NEAR(equilibrium(world).unbalanced_force, 0.3, 1e-14);
+  EXPECT_NEAR(equilibrium(world).kinetic_energy, 0.5 / world.velocity[a].w, 1e-9);
 }
 
 }  // namespace

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "grit/error.hpp"
 #include "bodies/sizes.hpp"
+#include "grit/error.hpp"
 
 namespace grit::cloud_tests {
 namespace {
 
 const Cell open_cell{Vec3::Constant(-1), Vec3::Constant(1)};
 
-/// The deepest overlap over the sum of radii, by looking at all pairs and all images.
+/// The maximum overlap over the sum of radii, over all pairs and images.
 double deepest_overlap(const std::vector<Row>& grains, const Cell& cell) {
   double worst = 0;
   for (std::size_t i = 0; i < grains.size(); ++i)
@@ -66,11 +66,11 @@ TEST(Cloud, GrainsLieInsideAndDoNotOverlap) {
   EXPECT_EQ(placed, wanted);
 }
 
-TEST(Cloud, GrainsStickOutOfPeriodicSidesAndKeepClearOfImages) {
+TEST(Cloud, GrainsCrossPeriodicSidesAndAvoidImages) {
   Random random(2);
   const Cell cell{Vec3(0, -1, 2), Vec3(1, 0, 3), {true, true, false}};
   const auto grains = place_at_random({cell.low, cell.high}, cell, wide_range(1500, 0.325, random), random);
-  EXPECT_LT(deepest_overlap(grains, cell), 1e-14);  // of rounding the shift
+  EXPECT_LT(deepest_overlap(grains, cell), 1e-14);  // round-off of the shift
   int sticking[3] = {};
   for (const auto& grain : grains)
     for (int k = 0; k < 3; ++k) {
@@ -106,7 +106,7 @@ TEST(Cloud, KeepsWithinAPartOfAPeriodicCell) {
   }
 }
 
-TEST(Cloud, KeepsClearOfOthers) {
+TEST(Cloud, AvoidsOtherBodies) {
   const Cell cell{Vec3::Zero(), Vec3::Ones(), {true, false, false}};
   const std::vector<Row> others{{0.02, 0.5, 0.5, 0.3}, {0.5, -0.02, 0.5, 0.05}, {0.6, 0.6, 0.6, 0.01}};
   Random random(4);
@@ -125,7 +125,7 @@ TEST(Cloud, OrderDoesNotRevealTheSize) {
   EXPECT_NEAR(static_cast<double>(large), 250, 4 * std::sqrt(500 * 0.25));
 }
 
-TEST(Cloud, PlacesAreEvenOverThePeriodicCell) {
+TEST(Cloud, PositionsAreUniformOverThePeriodicCell) {
   Random random(6);
   const Cell cell{Vec3::Zero(), Vec3::Ones(), {true, true, true}};
   const auto grains = place_at_random({cell.low, cell.high}, cell, std::vector<double>(20'000, 0.01), random);
@@ -148,17 +148,16 @@ TEST(Cloud, IsTheSameForTheSameSeedOnly) {
   EXPECT_NE(make(1), make(2));
 }
 
-TEST(Cloud, SaysWhatItReachedWhenThereIsNoRoom) {
+TEST(Cloud, ReportsTheSolidFractionReachedIfFull) {
   Random random(7);
   const Region box{Vec3::Zero(), Vec3::Ones()};
   try {
     place_at_random(box, open_cell, std::vector<double>(1000, 0.1), random);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(),
-                testing::ContainsRegex("only [0-9]+ of 1000 grains found a place in the box \\(0 0 0\\)"));
+    EXPECT_THAT(error.what(), testing::ContainsRegex("only [0-9]+ of 1000 grains fit into the box \\(0 0 0\\)"));
     EXPECT_THAT(error.what(), testing::ContainsRegex("solid fraction 0\\.[23][0-9]+"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("give a bigger box, fewer grains or smaller ones"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("use a larger box, or fewer or smaller grains"));
   }
 }
 
@@ -175,7 +174,7 @@ TEST(Cloud, RefusesBoxesThatCannotWork) {
   const Cell periodic{Vec3::Zero(), Vec3::Ones(), {true, true, true}};
   EXPECT_THAT(message({Vec3::Zero(), Vec3(1, 1, 0.4)}, open_cell),
               testing::HasSubstr("a grain of diameter 0.5 m does not fit into the box (0 0 0) … (  1   1 0.4) m"));
-  EXPECT_THAT(message({Vec3::Zero(), Vec3(1, 0, 1)}, open_cell), testing::HasSubstr("is empty or endless"));
+  EXPECT_THAT(message({Vec3::Zero(), Vec3(1, 0, 1)}, open_cell), testing::HasSubstr("is empty or infinite"));
   EXPECT_THAT(message({Vec3(-1, 0, 0), Vec3::Ones()}, periodic), testing::HasSubstr("leaves the periodic cell"));
   EXPECT_EQ(message({Vec3::Zero(), Vec3::Ones()}, periodic), "");
 }

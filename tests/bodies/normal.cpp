@@ -32,17 +32,17 @@ TEST(SameBits, ExpAndLogKeepToTheirBounds) {
   EXPECT_EQ(same_bits::log(1), 0);
 }
 
-TEST(Normal, ShareAgreesWithTheErrorFunction) {
+TEST(Normal, FractionAgreesWithTheErrorFunction) {
   for (int i = -3000; i <= 800; ++i) {
     const double z = 0.01 * i, exact = share_by_library(z);
-    ASSERT_NEAR(normal_share(z) / exact, 1, 1e-13) << z;
+    ASSERT_NEAR(normal_fraction(z) / exact, 1, 1e-13) << z;
   }
-  EXPECT_EQ(normal_share(-50), 0);
-  EXPECT_EQ(normal_share(50), 1);
+  EXPECT_EQ(normal_fraction(-50), 0);
+  EXPECT_EQ(normal_fraction(50), 1);
 }
 
 TEST(Normal, QuantileInvertsTheErrorFunctionToItsBound) {
-  // The share's own error, by the slope of the curve, is an error of z; what remains is the approximation's.
+  // The error of the fraction divided by the slope is an error of z; the rest is that of the approximation.
   double worst = 0;
   for (int i = -3000; i < 400; ++i) {
     const double z = 0.01 * i + 0.005;
@@ -59,7 +59,7 @@ TEST(Normal, QuantileInvertsTheErrorFunctionToItsBound) {
 }
 
 TEST(Normal, GivesTheSameBitsAsAnIndependentProgram) {
-  // The same formulas in Python, whose numbers never pass through a fused multiply–add.
+  // The same formulas in Python, without fused multiply–add.
   Random random(1);
   for (const double z : {0x1.10ce225352b8ep-1, 0x1.a3d5daeb32d73p-5, 0x1.7ea4498f9aa47p-3, -0x1.1a7a7edcabd89p-2,
                          0x1.0858cc5658fe3p-1, -0x1.107d04eadf01bp+0, -0x1.77d22ce5851b4p+0, -0x1.35a0de89936e9p-2})

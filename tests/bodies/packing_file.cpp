@@ -9,8 +9,8 @@
 #include <fstream>
 #include <limits>
 
-#include "grit/error.hpp"
 #include "bodies/random.hpp"
+#include "grit/error.hpp"
 
 namespace grit::packing_file_tests {
 namespace {
@@ -50,10 +50,10 @@ TEST_F(PackingFile, ReadsLinesCommentsAndBlanks) {
   EXPECT_EQ(grains[1].w, 7);
 }
 
-TEST_F(PackingFile, ComesBackToTheSameBits) {
+TEST_F(PackingFile, IsReadBackIdentically) {
   Random random(1);
   std::vector<Row> grains;
-  const auto number = [&] {  // any bits that are a finite number
+  const auto number = [&] {  // random bits of a finite number
     for (;;)
       if (const auto x = std::bit_cast<double>(random.bits()); std::isfinite(x)) return x;
   };
@@ -87,9 +87,9 @@ TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
   const auto found =
       problems("# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -4\n1e999 2 3 4\n");
   const std::pair<int, const char*> wanted[] = {
-      {3, "found 3 numbers; a grain is four: x y z radius"},
+      {3, "found 3 numbers; expected four: x y z radius"},
       {4, "z is \"x3\", not a number"},
-      {5, "found 5 numbers; a grain is four: x y z radius"},
+      {5, "found 5 numbers; expected four: x y z radius"},
       {6, "y is \"nan\", not a finite number in double's range"},
       {7, "radius is \"inf\", not a finite number in double's range"},
       {8, "radius is 0.000000 m; it must be above 0"},
@@ -105,23 +105,23 @@ TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
   EXPECT_THAT(DescriptionError(found).what(), testing::StartsWith(path_.string() + ":3: found 3 numbers"));
 }
 
-TEST_F(PackingFile, TellsOfTheFirstFaultsOnly) {
+TEST_F(PackingFile, ReportsTheFirstErrorsOnly) {
   std::string text;
   for (int i = 0; i < 50; ++i) text += "oops\n";
   const auto found = problems(text);
   ASSERT_EQ(found.size(), 11u);
-  EXPECT_EQ(found.back().message, "40 more lines are wrong");
+  EXPECT_EQ(found.back().message, "40 more lines have errors");
 }
 
 TEST_F(PackingFile, RefusesAFileWithoutGrains) {
   for (const char* text : {"", "# L 1\n# nothing\n\n"}) {
     const auto found = problems(text);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_EQ(found[0].message, "holds no grain; a line for each is needed: x y z radius, in m");
+    EXPECT_EQ(found[0].message, "contains no grains; write one line per grain: x y z radius, in m");
   }
 }
 
-TEST_F(PackingFile, SaysWhyAFileCannotBeReadOrWritten) {
+TEST_F(PackingFile, ReportsWhyAFileCannotBeReadOrWritten) {
   const auto message = [](const auto& act) -> std::string {
     try {
       act();
@@ -139,7 +139,7 @@ TEST_F(PackingFile, SaysWhyAFileCannotBeReadOrWritten) {
   EXPECT_THAT(message([&] { write_packing(folder_, {}); }), testing::HasSubstr("cannot write grains: "));
 }
 
-TEST_F(PackingFile, SaysThatTheDiskIsFull) {
+TEST_F(PackingFile, ReportsAFullDisk) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
   std::filesystem::create_symlink("/dev/full", path_.string() + ".part");
   const std::vector<Row> grains(1000, Row{1, 2, 3, 4});

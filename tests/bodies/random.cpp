@@ -70,7 +70,7 @@ TEST(Random, IntegersBelowALimitAreEquallyLikely) {
 }
 
 TEST(Random, LargeLimitsAreNotBiased) {
-  // Of 2^64 numbers, a plain product or remainder would give a third of these twice as often.
+  // A plain product or remainder of a 64-bit number would give a third of these twice as often.
   Random random(3);
   constexpr std::uint64_t limit = 3ull << 62;
   std::vector<int> found(12);
@@ -83,7 +83,7 @@ TEST(Random, LargeLimitsAreNotBiased) {
   EXPECT_EQ(random.below(1), 0u);
 }
 
-TEST(Random, NormalNumbersHaveNormalMomentsAndShares) {
+TEST(Random, NormalNumbersHaveNormalMomentsAndFractions) {
   Random random(4);
   constexpr int count = 1'000'000;
   std::vector<int> found(50);

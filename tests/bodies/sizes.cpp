@@ -13,7 +13,7 @@
 namespace grit::sizes_tests {
 namespace {
 
-/// The largest distance between a sample's curve and the wanted one; each grain weighs d^power.
+/// The maximum distance between the curve of a sample and the target; each grain has the weight d^power.
 double curve_error(std::vector<double> sample, int power, const std::function<double(double)>& wanted) {
   std::sort(sample.begin(), sample.end());
   const auto weight = [power](double d) { return std::pow(d, power); };
@@ -28,7 +28,7 @@ double curve_error(std::vector<double> sample, int power, const std::function<do
   return worst;
 }
 
-/// The share of the largest grain in the mass of all: what one grain more or less changes.
+/// Mass fraction of the largest grain: the effect of one grain.
 double share_of_largest(const std::vector<double>& sample) {
   double all = 0, largest = 0;
   for (const double d : sample) all += d * d * d, largest = std::max(largest, d * d * d);
@@ -53,7 +53,7 @@ TEST(Sizes, LinearIsEvenByMass) {
     const auto sample = draw_diameters(LinearSizes{0.25e-3, 0.75e-3}, count, random);
     ASSERT_EQ(sample.size(), count);
     EXPECT_LT(curve_error(sample, 3, [](double d) { return (d - 0.25e-3) / 0.5e-3; }), share_of_largest(sample));
-    EXPECT_LT(share_of_largest(sample), 9.0 / static_cast<double>(count));  // the bound itself goes with 1/N
+    EXPECT_LT(share_of_largest(sample), 9.0 / static_cast<double>(count));  // the bound is proportional to 1/N
   }
 }
 
@@ -77,10 +77,10 @@ TEST(Sizes, LogNormalIsTruncated) {
                                      LogNormalSizes{0.5e-3, 0.1, 1.1e-3, 1.5e-3}}) {  // far above: z = 8 … 11
     Random random(1);
     const auto sample = draw_diameters(sizes, 2000, random);
-    // Shares from the nearer tail, as the other one has lost its digits.
+    // Fractions from the nearer tail, as those from the other are inaccurate.
     const double sign = sizes.largest > sizes.median ? -1 : 1;
     const auto share = [&](double d) {
-      return 0.5 * std::erfc(-sign * std::log(d / sizes.median) / sizes.deviation / std::sqrt(2.0));
+      return 0.5 * std::erfc(-sign * std::log(d / sizes.median) / sizes.log_standard_deviation / std::sqrt(2.0));
     };
     const double first = share(sizes.smallest), last = share(sizes.largest);
     EXPECT_LT(curve_error(sample, 0, [&](double d) { return (share(d) - first) / (last - first); }), 0.51 / 2000);
@@ -100,7 +100,7 @@ TEST(Sizes, OrderIsRandomAndOfTheSeed) {
   const auto sample = draw_diameters(sizes, 1000, one);
   EXPECT_EQ(sample, draw_diameters(sizes, 1000, same));
   EXPECT_NE(sample, draw_diameters(sizes, 1000, other));
-  // Neighbours in the order do not know of each other.
+  // Neighbours in the order are uncorrelated.
   const double mean = std::accumulate(sample.begin(), sample.end(), 0.0) / 1000;
   double together = 0, alone = 0;
   for (std::size_t i = 1; i < sample.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(Sizes, OrderIsRandomAndOfTheSeed) {
   EXPECT_LT(std::abs(together / alone), 4 / std::sqrt(1000.0));
 }
 
-TEST(Sizes, SayWhatIsWrongWithASieveCurve) {
+TEST(Sizes, ReportErrorsInASieveCurve) {
   Random random(1);
   const auto message = [&](const SieveSizes& sizes) -> std::string {
     try {

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "grit/world.hpp"
 #include "bodies/random.hpp"
+#include "grit/world.hpp"
 
 namespace grit::sphere_box_tests {
 namespace {
@@ -38,8 +38,8 @@ long double rectangle_area(long double r, const Vec3& low, const Vec3& high) {
   return quadrant_area(r, low[0], low[1]) - quadrant_area(r, high[0], low[1]) - quadrant_area(r, low[0], high[1]) +
          quadrant_area(r, high[0], high[1]);
 }
-/// The same volume in quite another way: the discs' areas inside, integrated over z = sin t by the tanh–sinh rule
-/// between all heights at which a side or corner comes into reach.
+/// The same volume by another method: areas of discs inside the box, integrated over z = sin t by the tanh–sinh rule
+/// between all heights at which a side or corner starts to cut.
 double by_slices(const Vec3& low, const Vec3& high) {
   const long double from = std::max(low[2], -1.0), to = std::min(high[2], 1.0);
   if (from >= to) return 0;
@@ -76,7 +76,7 @@ TEST(SphereBox, InsideOutsideAndAround) {
   };
   EXPECT_DOUBLE_EQ(box(-0.5, 0.5), ball / 8);
   EXPECT_DOUBLE_EQ(box(-infinity, infinity), ball / 8);
-  EXPECT_EQ(box(0.3, 1), 0);  // beyond the corner, though within each face
+  EXPECT_EQ(box(0.3, 1), 0);  // outside the corner, although inside each face
   EXPECT_EQ(box(0.5, 1), 0);
   EXPECT_NEAR(box(-0.2, 0.2), 0.064, 1e-15);
   EXPECT_NEAR(box(-0.1, 0.25), 0.35 * 0.35 * 0.35, 1e-15);
@@ -100,7 +100,7 @@ TEST(SphereBox, CutByTwoOrThreePlanesThroughTheCentre) {
   const Vec3 all = Vec3::Constant(infinity);
   EXPECT_NEAR(sphere_box_volume(Vec3::Zero(), 1, Vec3(0, 0, -infinity), all), ball / 4, bound);
   EXPECT_NEAR(sphere_box_volume(Vec3::Zero(), 1, Vec3::Zero(), all), ball / 8, bound);
-  // One plane through the centre, two elsewhere: half of what the two leave.
+  // One plane through the centre, two elsewhere: half of the volume between the two.
   EXPECT_NEAR(2 * sphere_box_volume(Vec3::Zero(), 1, Vec3(0.3, 0, 0.4), all),
               sphere_box_volume(Vec3::Zero(), 1, Vec3(0.3, -infinity, 0.4), all), bound);
 }
@@ -110,7 +110,7 @@ TEST(SphereBox, EdgeAndCornerThatTouchTheSphereCutNothingOff) {
   const Vec3 all = Vec3::Constant(infinity);
   EXPECT_NEAR(sphere_box_volume(Vec3::Zero(), 1, Vec3(edge, edge, -infinity), all), 0, bound);
   EXPECT_NEAR(sphere_box_volume(Vec3::Zero(), 1, Vec3::Constant(corner), all), 0, bound);
-  // Columns whose edges lie on the sphere: all caps beyond their sides, none twice.
+  // Columns with edges on the sphere: all caps outside their sides, none twice.
   const double cap = pi * (1 - edge) * (1 - edge) * (2 + edge) / 3;
   EXPECT_NEAR(sphere_box_volume(Vec3::Zero(), 1, Vec3(-edge, -edge, -infinity), Vec3(edge, edge, infinity)),
               ball - 4 * cap, bound);
@@ -132,7 +132,7 @@ TEST(SphereBox, AgreesWithSlices) {
 TEST(SphereBox, AgreesWithSlicesWhereARootNearlyVanishes) {
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
-    // Corners and edges a hair inside or outside the sphere.
+    // Corners and edges slightly inside or outside the sphere.
     const double hair = std::pow(10, -16 + 12 * random.uniform()) * (random.below(2) == 0 ? 1 : -1);
     Vec3 low = anywhere(random, 1).cwiseAbs();
     if (random.below(2) == 0) low[random.below(3)] = 0;

@@ -1,4 +1,4 @@
-// Clumps that cannot be: where a description says so, what was found, what is allowed.
+// Invalid clumps: messages with line, value found and allowed values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@ using testing::StartsWith;
 
 class ClumpDescription : public testing::Test {
  protected:
-  /// What is said of a shape, which stands in line 5.
+  /// The problems of a shape in line 5.
   std::string problems_of(const std::string& shape) const {
     const auto file = folder.write("clumps.json", R"({
   "contacts": {"type": "linear-rolling"},
   "materials": {"sand": {"density": 2600}},
-  "bodies": {"grains": {"type": "clump", "material": "sand", "grains": {"type": "list", "grains": [{"position": [0, 0, 0], "radius": 1}]},
+  "bodies": {"grains": {"type": "clump", "material": "sand", "source": {"type": "list", "bodies": [{"position": [0, 0, 0], "radius": 1}]},
     "shape": )" + shape + R"(
   }},
   "stages": [{"name": "only", "until": {"type": "steps", "value": 1}, "limit": 1}]
@@ -49,13 +49,13 @@ TEST_F(ClumpDescription, OfAListNamesTheSphereAtFault) {
             in_line_5("/spheres/0/radius") + "found 0 m; allowed is above 0 m");
   EXPECT_EQ(list(unit + R"(, {"position": [0.1, 0, 0], "radius": 0.2})"),
             in_line_5("/spheres/1") +
-                "found sphere 2, which lies within sphere 1; allowed is one that sticks out of every "
-                "other; leave it out");
+                "found sphere 2, which is inside sphere 1; allowed is a sphere that is not inside "
+                "another; remove it");
   EXPECT_EQ(list(unit + R"(, {"position": [3, 0, 0], "radius": 1})"),
             in_line_5("/spheres/1") +
-                "found sphere 2, which does not hang together with sphere 1; allowed is one that "
-                "overlaps others, so that all are one body");
-  // Its centre on the surface, a millionth as large: half of it sticks out.
+                "found sphere 2, which is not connected with sphere 1; allowed is spheres that "
+                "overlap, so that all are connected");
+  // Centre on the surface, a millionth of the size: half of it protrudes.
   EXPECT_EQ(list(unit + R"(, {"position": [1, 0, 0], "radius": 1e-6})"), "");
 }
 
@@ -73,17 +73,18 @@ TEST_F(ClumpDescription, OfAFileNamesFileAndLine) {
   EXPECT_EQ(file("0 0 0 1\n1 0 0 1\n"), "");
   EXPECT_EQ(file("# x y z radius\n0 0 0 1\n1 0 0\n1 0 x 1\n0 0 0 -1\n"),
             place + path +
-                ":3: found 3 numbers; a grain is four: x y z radius; allowed is a file with a line a "
-                "sphere: x y z radius\n" +
-                place + path + ":4: z is \"x\", not a number; allowed is a file with a line a sphere: x y z radius\n" +
+                ":3: found 3 numbers; expected four: x y z radius; allowed is a file with one line "
+                "per sphere: x y z radius\n" +
                 place + path +
-                ":5: radius is -1.000000 m; it must be above 0; allowed is a file with a line a sphere: "
+                ":4: z is \"x\", not a number; allowed is a file with one line per sphere: x y z radius\n" + place +
+                path +
+                ":5: radius is -1.000000 m; it must be above 0; allowed is a file with one line per sphere: "
                 "x y z radius");
-  EXPECT_THAT(file("# nothing\n"), StartsWith(place + path + ": holds no grain"));
-  EXPECT_THAT(file("0 0 0 1\n3 0 0 1\n"), StartsWith(place + path + ": sphere 2, which does not hang together"));
+  EXPECT_THAT(file("# nothing\n"), StartsWith(place + path + ": contains no grains"));
+  EXPECT_THAT(file("0 0 0 1\n3 0 0 1\n"), StartsWith(place + path + ": sphere 2, which is not connected"));
   EXPECT_THAT(problems_of(R"({"type": "file", "path": "missing.txt"})"),
               testing::AllOf(StartsWith(place), HasSubstr("missing.txt: cannot read grains: No such file"),
-                             EndsWith("allowed is a file with a line a sphere: x y z radius")));
+                             EndsWith("allowed is a file with one line per sphere: x y z radius")));
 }
 
 }  // namespace

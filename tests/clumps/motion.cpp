@@ -12,7 +12,7 @@ namespace {
 
 const Description stuff{{"density", 2600}, {"contact_modulus", 1e7}};
 
-/// One clump by itself that spins about `axis` of its principal ones, and a little about the others.
+/// An isolated clump that spins about the principal axis `axis`, and slightly about the others.
 Description top(int axis, double speed, double little) {
   Description d = description("linear-rolling", stuff, {{Vec3::Zero(), 1e-3}});
   make_clumps(d, boomerang());
@@ -23,8 +23,8 @@ Description top(int axis, double speed, double little) {
   }());
   const Mat3 axes = still.world().clumps().front().axes;
   const Vec3 spin = axes * (speed * Vec3(Vec3::Unit(axis)) + little * Vec3::Ones());
-  d["bodies"]["grains"]["grains"]["grains"][0]["spin"] = vector(spin);
-  d["time_step"] = {{"value", 0.02 / speed}, {"allow_unstable", true}};  // nothing touches
+  d["bodies"]["grains"]["source"]["bodies"][0]["spin"] = vector(spin);
+  d["time_step"] = {{"value", 0.02 / speed}, {"allow_unstable", true}};  // no contacts
   return d;
 }
 
@@ -47,12 +47,13 @@ TEST(ClumpMotion, OfAFreeTopKeepsMomentumAndEnergy) {
   }
 }
 
-/// Dzhanibekov: about its middle axis a body turns over again and again, after a time that elliptic integrals know.
+/// Dzhanibekov effect: about its intermediate axis a body flips periodically, with a period given by elliptic
+/// integrals.
 TEST(ClumpMotion, AboutTheMiddleAxisTurnsOverInTime) {
   Trial trial(top(1, 100, 0.1));
   const ClumpView start = trial.world().clumps().front();
   const Vec3 inertia = start.inertia, l = start.axes.transpose() * start.momentum;
-  // Landau and Lifshitz, Mechanics, § 37; the sign of M² − 2 E I₂ says about which axis the body precesses.
+  // Landau and Lifshitz, Mechanics, § 37; the sign of M² − 2 E I₂ determines the axis of precession.
   const double e2 = l.cwiseProduct(l).cwiseQuotient(inertia).sum(), m2 = l.squaredNorm();
   double i1 = inertia[0], i3 = inertia[2];
   const double i2 = inertia[1];
@@ -89,24 +90,24 @@ TEST(ClumpMotion, KeepsItsSpheresWhereTheyAre) {
   const Vec3 way = trial.position(1) - before;
   const Vec3 velocity = xyz(trial.world().velocities()[index_of(trial.world(), 1)]);
   EXPECT_LT((way - 1e-5 * velocity).norm(), 1e-12 * way.norm() + 1e-17)
-      << "a sphere's velocity is its way over the step";
+      << "a sphere's velocity is its displacement over the step";
   trial.step(20000);
   EXPECT_NEAR(apart(0, 1), a, 1e-14);
   EXPECT_NEAR(apart(1, 2), b, 1e-14);
   EXPECT_NEAR(apart(2, 0), c, 1e-14);
 }
 
-/// Of two balls as spheres and as clumps of one sphere each, after 20 ms; most touches of walls that there were.
+/// Two balls as spheres and as clumps of one sphere each, after 20 ms; the maximum number of wall contacts.
 struct Twins {
   explicit Twins(Description d) : spheres(d), clumps((make_clumps(d, listed({ball({3, 4, 5}, 7)})), d)) {
     for (int round = 0; round < 200; ++round) {
       spheres.step(100), clumps.step(100);
-      for (const WallView& wall : spheres.world().walls()) most_touches = std::max(most_touches, wall.touches);
+      for (const WallView& wall : spheres.world().walls()) max_contacts = std::max(max_contacts, wall.contacts);
     }
   }
   double apart(std::uint32_t id) const { return (spheres.position(id) - clumps.position(id)).norm(); }
   Trial spheres, clumps;
-  std::uint32_t most_touches = 0;
+  std::uint32_t max_contacts = 0;
 };
 
 TEST(ClumpMotion, OfOneSphereIsThatOfTheSphere) {
@@ -120,12 +121,12 @@ TEST(ClumpMotion, OfOneSphereIsThatOfTheSphere) {
   };
   Description near = balls(2.1e-3);
   near["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
-  // Damping goes by the signs of velocities, which in a contact may be those of rounding: damped balls do not meet.
+  // Local damping depends on the signs of velocities, which in a contact may be round-off: damped balls do not meet.
   Description damped = balls(21e-3);
   damped["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
   const Twins rolling(near), flying(damped);
-  EXPECT_GT(rolling.most_touches, 0u);
-  // The union's mass and inertia are good to 1e-7.
+  EXPECT_GT(rolling.max_contacts, 0u);
+  // Mass and inertia of the union are accurate to 1e-7.
   for (const std::uint32_t id : {0u, 1u}) {
     EXPECT_LT(rolling.apart(id), 1e-5 * 1e-3) << id;
     EXPECT_LT(flying.apart(id), 1e-5 * 1e-3) << id;
@@ -161,13 +162,13 @@ TEST(ClumpMotion, InACollisionKeepsMomentaAndEnergy) {
     ASSERT_TRUE(touched && trial.world().contacts().empty());
     const double after = momenta(linear_after, angular_after);
     EXPECT_LT((linear_after - linear).norm(), 1e-12 * linear.norm());
-    // Forces of an instant and arms of the same instant: to round-off as well.
+    // Forces and arms are at the same instant: also to round-off.
     EXPECT_LT((angular_after - angular).norm(), 1e-9 * angular.norm());
     verify("kinetic energy after an undamped oblique hit of two clumps, " + law, after / energy, 1, 1e-4);
   }
 }
 
-/// Spheres of a clump that a deforming cell's sides cut are put back one by one.
+/// Spheres of a clump that crosses a side of a deforming cell are moved back one by one.
 TEST(ClumpMotion, IsTheSameAcrossThePeriodicSides) {
   Description d =
       description("linear-rolling", stuff,
@@ -185,7 +186,7 @@ TEST(ClumpMotion, IsTheSameAcrossThePeriodicSides) {
     return away.norm();
   };
   const double a = apart();
-  // A search may change the order of clumps.
+  // A neighbour search may change the order of clumps.
   const auto first_centre = [&] { return std::ranges::find(trial.world().clumps(), 0u, &ClumpView::id)->centre; };
   const Vec3 centre = first_centre();
   for (int round = 0; round < 20; ++round) {
@@ -194,7 +195,7 @@ TEST(ClumpMotion, IsTheSameAcrossThePeriodicSides) {
     ASSERT_NEAR(apart(), a, 1e-14);
     ASSERT_EQ(trial.kernel().state().pairs.touching_count(), 0u) << "a clump does not meet itself";
   }
-  // Put back by a search, they stay where they are put.
+  // After a neighbour search moved them back, they stay there.
   trial.kernel().request_rebuild();
   trial.step(2);
   const Cell& cell = trial.world().cell();

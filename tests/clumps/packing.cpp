@@ -1,4 +1,4 @@
-// Clumps among each other and at walls: forces, averages, time step, threads.
+// Packings of clumps with walls: forces, averages, time step, threads.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 const Description stuff{{"density", 2600}, {"contact_modulus", 1e8}, {"friction_angle", 0.5}};
 
-/// Clumps in a box of six walls that presses them together.
+/// Clumps compressed by six walls.
 Description pressed(int side_count, double pressure) {
   const double spacing = 2e-3, length = side_count * spacing;
   std::vector<Grain> grains;
@@ -54,14 +54,14 @@ TEST(ClumpPacking, RestsWithItsWeightOnTheFloor) {
   for (const ClumpView& clump : trial.world().clumps()) weight += 9.81 * clump.mass;
   verify("force on the floor below two clumps at rest over their weight",
          -trial.world().walls().front().force.z() / weight, 1, 1e-6);
-  EXPECT_LT(unrest(trial.world()).unbalanced_force, 1e-6);
+  EXPECT_LT(equilibrium(trial.world()).unbalanced_force, 1e-6);
 }
 
-/// For a body at rest the stress by contacts is that by the forces at its surface, whatever is inside.
+/// For a specimen at rest, the stress from contacts is that from the forces on its boundary.
 TEST(ClumpPacking, HasTheStressThatItsWallsFeel) {
   Trial trial(pressed(5, 5e4));
   trial.step(80000);
-  ASSERT_LT(unrest(trial.world()).unbalanced_force, 1e-3);
+  ASSERT_LT(equilibrium(trial.world()).unbalanced_force, 1e-3);
   const World& world = trial.world();
   Region all{Vec3::Constant(-1e-3), Vec3::Constant(11e-3)};
   Mat3 by_walls = Mat3::Zero();
@@ -97,8 +97,8 @@ TEST(ClumpPacking, IsTheSameBitsForAnyNumberOfThreads) {
   EXPECT_GT(trials.front()->kernel().state().pairs.touching_count(), 150u);
 }
 
-/// A rod between two plates, which it touches with both ends: the fastest mode is known, the bound must lie below it,
-/// and not far. Beyond the mode's limit it blows up.
+/// A rod between two plates, in contact at both ends: the fastest mode is known. The bound must be slightly below its
+/// critical step. Above it, the motion grows.
 TEST(ClumpPacking, IsStableUpToItsTimeStep) {
   const double r = 1e-3;
   Description d = description("linear-frictional", {{"density", 2600}, {"contact_modulus", 1e7}, {"friction_angle", 0}},
@@ -107,7 +107,7 @@ TEST(ClumpPacking, IsStableUpToItsTimeStep) {
   const double end = r * 2 / 3;  // radius of its spheres
   d["walls"]["floor"] = plane({0, 0, -0.999 * end}, Vec3::UnitZ());
   d["walls"]["lid"] = plane({0, 0, 0.999 * end}, -Vec3::UnitZ());
-  d["bodies"]["grains"]["grains"]["grains"][0]["velocity"] = {0, 0, 1e-6};
+  d["bodies"]["grains"]["source"]["bodies"][0]["velocity"] = {0, 0, 1e-6};
   d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
   const auto grows = [&](double step) {
     Description at = d;
@@ -126,7 +126,8 @@ TEST(ClumpPacking, IsStableUpToItsTimeStep) {
     return at;
   }());
   const ClumpView clump = trial.world().clumps().front();
-  // Four springs k = E r: heaving 4 k / m, pitching about the middle axis 4 k a² / I, a the arm of an end.
+  // Four springs k = E r: vertical motion 4 k / m, rotation about the intermediate axis 4 k a² / I, a the arm of an
+  // end.
   const double k = 1e7 * end, arm = r / 3;
   const double fastest = std::max(4 * k / clump.mass, 4 * k * arm * arm / clump.inertia[2]);
   const double limit = 2 / std::sqrt(fastest), bound = trial.kernel().critical_time_step();
@@ -144,7 +145,7 @@ TEST(ClumpPacking, RefusesACellInWhichAClumpWouldMeetItself) {
     Trial trial(d);
     FAIL() << "it ran";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("a body would meet another one twice"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("twice the reach of the largest body"));
   }
 }
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "grit/error.hpp"
 #include "bodies/clump_body.hpp"
 #include "bodies/clump_shape.hpp"
 #include "bodies/random.hpp"
+#include "grit/error.hpp"
 #include "support/verified.hpp"
 
 namespace grit::test::shape_tests {
@@ -16,10 +16,11 @@ namespace {
 
 using std::numbers::pi;
 
-/// Two unit spheres, centres `apart`: volume, and moments about the axis through both and across it, for a mass of 1.
+/// Two unit spheres with centres `apart`: volume, and moments of inertia about the common axis and across, for a mass
+/// of 1.
 struct Pair {
   explicit Pair(double apart) {
-    // Each half is a sphere cut at x = −h of its own centre: integrals of the discs' areas along x.
+    // Each half is a sphere cut at x = −h from its centre: integrals of the areas of discs along x.
     const double h = apart / 2;
     const auto power = [h](int n) { return (1 - std::pow(-h, n + 1)) / (n + 1); };  // ∫ xⁿ over −h … 1
     volume = 2 * pi * (power(0) - power(2));
@@ -38,7 +39,7 @@ TEST(ClumpShape, OfOneSphereIsTheSphere) {
   EXPECT_NEAR(xyz(shape.spheres.front()).norm(), 0, 1e-12);
   verify("volume of a sphere as a clump", shape.volume, 4 * pi / 3, 1e-5);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(shape.inertia[k], 0.4, 1e-5);
-  EXPECT_NEAR(shape.shares.front(), 1, 1e-5);
+  EXPECT_NEAR(shape.volume_fractions.front(), 1, 1e-5);
 }
 
 TEST(ClumpShape, OfTwoSpheresHasTheVolumeAndInertiaOfTheirUnion) {
@@ -53,16 +54,16 @@ TEST(ClumpShape, OfTwoSpheresHasTheVolumeAndInertiaOfTheirUnion) {
     verify("moment of inertia along the axis" + of, shape.inertia[0] * size * size, known.along, 1e-5);
     verify("moment of inertia across the axis" + of, shape.inertia[2] * size * size, known.across, 1e-5);
     EXPECT_NEAR(shape.inertia[1], shape.inertia[2], 1e-5);
-    EXPECT_NEAR(shape.shares[0], known.volume / (8 * pi / 3), 1e-5);
+    EXPECT_NEAR(shape.volume_fractions[0], known.volume / (8 * pi / 3), 1e-5);
     EXPECT_NEAR(shape.middle.norm(), 0, 1e-5);
   }
-  // Known to all: benchmarks of clumps.
+  // Known values of benchmarks with clumps.
   EXPECT_NEAR(Pair(0.5).volume, 5.72686, 5e-6);
   EXPECT_NEAR(Pair(1.0).volume, 7.06858, 5e-6);
   EXPECT_NEAR(Pair(1.5).volume, 8.01761, 5e-6);
 }
 
-TEST(ClumpShape, IsTheSameHoweverItIsTurnedMovedAndScaled) {
+TEST(ClumpShape, IsIndependentOfRotationTranslationAndScale) {
   const std::vector<Ball> balls{{0, 0, 0, 1}, {1.1, 0.2, 0, 0.8}, {-0.3, 0.9, 0.1, 0.6}};
   const Eigen::Quaterniond turn(0.4, -0.3, 0.7, 0.2);
   std::vector<Ball> turned;
@@ -73,7 +74,7 @@ TEST(ClumpShape, IsTheSameHoweverItIsTurnedMovedAndScaled) {
   const ClumpShape a = make_clump_shape(balls), b = make_clump_shape(turned);
   EXPECT_NEAR(a.volume, b.volume, 1e-5 * a.volume);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(a.inertia[k], b.inertia[k], 2e-5 * a.inertia[k]);
-  // Spheres lie about the centre of mass as they were given, whatever axes they are seen in.
+  // The arrangement of spheres about the centre of mass does not depend on the frame.
   for (std::size_t k = 1; k < balls.size(); ++k) {
     const Vec3 given = xyz(balls[k]) - xyz(balls[0]), seen = a.axes * (xyz(a.spheres[k]) - xyz(a.spheres[0]));
     EXPECT_NEAR((seen - given * a.spheres[0].w).norm(), 0, 1e-12);
@@ -83,12 +84,12 @@ TEST(ClumpShape, IsTheSameHoweverItIsTurnedMovedAndScaled) {
 TEST(ClumpShape, CountsNothingTwice) {
   std::vector<Ball> balls{{0, 0, 0, 1}, {0.8, 0, 0, 1}};
   const ClumpShape pair = make_clump_shape(balls);
-  balls.push_back({0.4, 0, 0, 0.9});  // sticks out of either, but not of both
+  balls.push_back({0.4, 0, 0, 0.9});  // protrudes from each, but not from both
   const ClumpShape filled = make_clump_shape(balls);
   EXPECT_NEAR(filled.volume, pair.volume, 1e-12);
   double shares = 0;
   for (std::size_t k = 0; k < balls.size(); ++k)
-    shares += filled.shares[k] * 4 * pi / 3 * std::pow(filled.spheres[k].w, 3);
+    shares += filled.volume_fractions[k] * 4 * pi / 3 * std::pow(filled.spheres[k].w, 3);
   EXPECT_NEAR(shares, filled.volume, 1e-12);
 }
 
@@ -102,7 +103,7 @@ TEST(ClumpShape, EnclosesItsSpheresAsTightlyAsCanBe) {
     double furthest = 0;
     for (const Ball& one : balls) furthest = std::max(furthest, (xyz(one) - xyz(large)).norm() + one.w);
     EXPECT_NEAR(furthest, large.w, 1e-11);
-    // None nearby is smaller: the largest distance is convex in the centre.
+    // No ball nearby is smaller: the maximum distance is a convex function of the centre.
     for (int nearby = 0; nearby < 200; ++nearby) {
       const Vec3 centre =
           xyz(large) + 1e-3 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
@@ -113,8 +114,8 @@ TEST(ClumpShape, EnclosesItsSpheresAsTightlyAsCanBe) {
   }
 }
 
-/// The reference's grain: enclosing sphere over clump 2.07, convex hull over clump 1.16, longest over shortest diameter
-/// 1.50, spheres of 0.5 to 0.6 of the diameter.
+/// The clump of the reference: volume of the enclosing sphere over that of the clump 2.07, of the convex hull 1.16;
+/// longest over shortest diameter 1.50; spheres of 0.5 to 0.6 of the diameter.
 TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
   ClumpBody body;
   Parameters parameters;
@@ -132,7 +133,7 @@ TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
   }
   verify("enclosing sphere over the asymmetric clump", 4 * pi / 3 / shape.volume, 2.07, 0.015);
 
-  // A spiral of them, even over the sphere.
+  // Directions on a spiral, uniform over the sphere.
   std::vector<Vec3> directions;
   const int count = 16000;
   for (int k = 0; k < count; ++k) {
@@ -152,10 +153,10 @@ TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
     reaches.push_back(reach(u));
   }
   verify("longest over shortest diameter of the asymmetric clump", longest / shortest, 1.50, 0.015);
-  // A point is in the hull if no plane that touches the hull has it on its other side. By so many planes that is 0.2 %
-  // too much: 1.151, 1.147 and 1.1455 by 4000, 16 000 and 40 000.
+  // A point is in the hull if it is on the inner side of all tangent planes. With this number of planes the volume is
+  // 0.2 % too large: 1.151, 1.147 and 1.1455 with 4000, 16 000 and 40 000.
   int inside = 0;
-  const int along = 50;  // of a grid
+  const int along = 50;  // points of a grid
   for (int k = 0; k < along * along * along; ++k) {
     const Vec3 place(k % along, k / along % along, k / (along * along));
     const Vec3 x = 2.4 * ((place + Vec3::Constant(0.5)) / along - Vec3::Constant(0.5));
@@ -166,11 +167,11 @@ TEST(ClumpShape, AsymmetricIsThatOfTheReference) {
   verify("convex hull over the asymmetric clump", std::pow(2.4 / along, 3) * inside / shape.volume, 1.16, 0.015);
 }
 
-/// Two spheres, of radius 1 at the origin and of radius r at a distance d along x, that cut each other at x = cut.
+/// Two spheres, of radius 1 at the origin and of radius r at the distance d along x, that intersect at x = cut.
 struct Unequal {
   Unequal(double r, double d) {
     const double cut = (d * d + 1 - r * r) / (2 * d);
-    // Of a ball, the part on the far side of a plane at −h from its centre; axis: the plane's normal, from that plane.
+    // The part of a ball beyond a plane at −h from its centre; axis: normal of the plane.
     const auto add = [&](double radius, double h, double centre, double side) {
       const auto power = [&](int n) { return (std::pow(radius, n + 1) - std::pow(-h, n + 1)) / (n + 1); };  // ∫ xⁿ
       const auto area = [&](int n) { return pi * (radius * radius * power(n) - power(n + 2)); };  // ∫ xⁿ A
@@ -188,7 +189,7 @@ struct Unequal {
   double volume = 0, first = 0, second = 0, along = 0, centre = 0, across = 0;
 };
 
-TEST(ClumpShape, KnowsHowFarOffItIs) {
+TEST(ClumpShape, EstimatesItsError) {
   Random random(7);
   for (int trial = 0; trial < 60; ++trial) {
     const double r = 0.2 + 0.8 * random.uniform(), d = 1 - r + 2 * r * (0.02 + 0.96 * random.uniform());
@@ -212,7 +213,7 @@ TEST(ClumpShape, KnowsHowFarOffItIs) {
   }
 }
 
-/// Of a long rod, whose moment about its axis is a thousandth of that across.
+/// A long rod, whose moment of inertia about its axis is a thousandth of that across.
 TEST(ClumpShape, OfALongRodHasItsInertiaAboutItsAxis) {
   const int count = 24;
   const double apart = 1.5;
@@ -222,7 +223,7 @@ TEST(ClumpShape, OfALongRodHasItsInertiaAboutItsAxis) {
     const Vec3 place = k * apart * along;
     balls.push_back({place.x(), place.y(), place.z(), 1});
   }
-  // Two caps make a pair; each of the others is a sphere cut at both sides.
+  // The two ends form a pair; each of the others is a sphere cut on both sides.
   const Pair caps(apart);
   const double h = apart / 2, volume = caps.volume + (count - 2) * 2 * pi * (h - std::pow(h, 3) / 3);
   const double about = caps.along * caps.volume + (count - 2) * pi * (h - 2 * std::pow(h, 3) / 3 + std::pow(h, 5) / 5);
@@ -236,17 +237,18 @@ TEST(ClumpShape, OfALongRodHasItsInertiaAboutItsAxis) {
   EXPECT_LT(shape.errors.inertia, 1e-3);
 }
 
-TEST(ClumpShape, IsRefusedWhereItIsTooFarOff) {
+TEST(ClumpShape, IsRejectedIfItsErrorIsTooLarge) {
   const std::vector<Ball> balls{{0, 0, 0, 1}, {1, 0, 0, 1}};
   try {
     make_clump_shape(balls, 12);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr("may be off by"), testing::HasSubstr("allowed is 0.1 %")));
+    EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr("the error of mass, centre or inertia"),
+                                         testing::HasSubstr("allowed is 0.1 %")));
   }
 }
 
-TEST(ClumpShape, MayHaveASphereThatHardlySticksOut) {
+TEST(ClumpShape, MayHaveASphereThatHardlyProtrudes) {
   for (const double r : {1e-3, 1e-6, 1e-8}) {
     const std::vector<Ball> balls{{0, 0, 0, 1}, {1, 0, 0, r}, {0.9, 0.3, 0, 0.2}};
     const Ball large = smallest_enclosing(balls);
@@ -258,18 +260,18 @@ TEST(ClumpShape, MayHaveASphereThatHardlySticksOut) {
   EXPECT_NEAR(smallest_enclosing(pair).w, 1 + 0.5e-6, 1e-9);
 }
 
-TEST(ClumpShape, IsRefusedWhereItIsNoBody) {
+TEST(ClumpShape, IsRejectedIfItIsNotOneBody) {
   const auto found = [](const std::vector<Ball>& balls) {
     const auto defect = clump_defect(balls);
     return defect ? defect->found : "nothing";
   };
   EXPECT_EQ(found({}), "0 spheres");
   EXPECT_EQ(found(std::vector<Ball>(65, Ball{0, 0, 0, 1})), "65 spheres");
-  EXPECT_EQ(found({{0, 0, 0, 1}, {2.1, 0, 0, 1}}), "sphere 2, which does not hang together with sphere 1");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {2.1, 0, 0, 1}}), "sphere 2, which is not connected with sphere 1");
   EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}, {4, 0, 0, 1}, {5, 0, 0, 1}}),
-            "sphere 3, which does not hang together with sphere 1");
-  EXPECT_EQ(found({{0.1, 0, 0, 0.2}, {0, 0, 0, 1}}), "sphere 1, which lies within sphere 2");
-  EXPECT_EQ(found({{0, 0, 0, 1}, {0, 0, 0, 1}}), "sphere 1, which lies within sphere 2");
+            "sphere 3, which is not connected with sphere 1");
+  EXPECT_EQ(found({{0.1, 0, 0, 0.2}, {0, 0, 0, 1}}), "sphere 1, which is inside sphere 2");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {0, 0, 0, 1}}), "sphere 1, which is inside sphere 2");
   EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}}), "nothing");
   EXPECT_THROW(make_clump_shape(std::vector<Ball>{{0, 0, 0, 1}, {2.1, 0, 0, 1}}), Error);
 }

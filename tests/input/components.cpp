@@ -19,7 +19,7 @@ struct SpringMaterial {
     p.add("contact_modulus", modulus).unit("Pa").symbol("E_c").above(0).doc("modulus of the spring");
     p.add("friction_angle", friction_angle)
         .unit("rad")
-        .symbol("mu")
+        .symbol("phi")
         .at_least(0)
         .below(std::numbers::pi / 2)
         .doc("angle of friction");
@@ -42,8 +42,8 @@ struct GlueMaterial {
   }
 };
 struct GlueInterface {
-  double share = 0.5;
-  void declare(Parameters& p) { p.add("share", share).at_least(0).at_most(1).doc("share of the strength"); }
+  double fraction = 0.5;
+  void declare(Parameters& p) { p.add("share", fraction).at_least(0).at_most(1).doc("fraction of the strength"); }
 };
 
 template <class Material, class Interface>
@@ -85,7 +85,7 @@ class Shape : public Geometry {
   Bounds bounds() const override { return {}; }
   double area() const override { return 0; }
   Vec3 normal() const override { return Vec3::Zero(); }
-  void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+  void find_contacts(const Pose&, std::span<const Sphere>, std::vector<SurfaceContact>&) const override {}
   bool near(const Pose&, const Vec3&, double) const override { return false; }
   std::vector<Vec3> triangles() const override { return {}; }
 };
@@ -93,7 +93,7 @@ class PlaneShape final : public Shape {
  public:
   void declare(Parameters& p) override {
     p.add("position", position_).unit("m").required().doc("a point of it");
-    p.add("normal", normal_).doc("towards the grains");
+    p.add("normal", normal_).doc("normal towards the bodies");
   }
   double area() const override { return 1; }
   Vec3 normal() const override { return normal_; }
@@ -122,7 +122,7 @@ class GravityEngine final : public Engine {
 class DampingEngine final : public Engine {
  public:
   void declare(Parameters& p) override {
-    p.add("ratio", ratio_).symbol("lambda").at_least(0).below(1).doc("share of the force");
+    p.add("ratio", ratio_).symbol("lambda").at_least(0).below(1).doc("fraction of the force");
   }
   Phase phase() const override { return Phase::settings; }
 
@@ -132,9 +132,9 @@ class DampingEngine final : public Engine {
 
 class CurveProbe final : public Probe {
  public:
-  void declare(Parameters& p) override { p.add("wall", wall_).required().doc("wall that it watches"); }
+  void declare(Parameters& p) override { p.add("wall", wall_).required().doc("name of the wall"); }
   std::vector<Channel> channels() const override { return {}; }
-  void sample(const World&, std::span<const std::span<double>>) override {}
+  void sample(const World&, ChannelValues&) override {}
 
  private:
   std::string wall_;
@@ -148,7 +148,7 @@ Description pile(std::int64_t grains, double height) {
            {{"grains",
              {{"type", "sphere"},
               {"material", "sand"},
-              {"grains",
+              {"source",
                {{"type", "cloud"},
                 {"low", {0, 0, 0}},
                 {"high", {height, height, height}},
@@ -164,11 +164,14 @@ class PileScenario final : public Scenario {
   void declare(Parameters& p) override {
     p.add("grains", grains_).at_least(1).doc("number of grains");
     p.add("height", height_).unit("m").above(0).doc("height of the cloud");
-    p.add("outline", outline_).file().doc("text file that nobody reads");
+    p.add("outline", outline_).file().doc("text file that is not read");
   }
   Description expand() const override {
-    if (grains_ > 1000) throw Error("a pile of " + std::to_string(grains_) + " grains; allowed are at most 1000");
-    if (height_ > 100) throw Error("/scenario/height: allowed are at most 100 m");
+    std::vector<ParameterError::Fault> faults;
+    if (height_ > 100) faults.push_back({"height", std::to_string(height_) + " m", "at most 100 m"});
+    if (grains_ > 1000) faults.push_back({"grains", std::to_string(grains_), "at most 1000"});
+    if (!faults.empty()) throw ParameterError(faults);
+    if (static_cast<double>(grains_) * height_ > 1e4) throw Error("the pile does not fit; allowed are fewer grains");
     return pile(grains_, height_);
   }
 

@@ -1,4 +1,4 @@
-// Whether a description file agrees with a JSON Schema, and whether the kernel takes it. For a test over sims/:
+// Whether a JSON Schema and the kernel accept a description file. For a test over sims/:
 //   const SchemaCheck schema(scene_schema(registry));
 //   for (const auto& file : files) EXPECT_EQ(schema.refusal(file), ""), EXPECT_EQ(kernel_refusal(file, registry), "");
 #pragma once
@@ -24,7 +24,7 @@ class SchemaCheck {
   std::unique_ptr<Parts> parts_;
 };
 
-/// Why the kernel refuses a file; empty if it reads all that its stages run with.
+/// Why the kernel refuses a file; empty if it accepts the file with all its stages.
 std::string kernel_refusal(const std::filesystem::path& file, const Registry& registry);
 
 }  // namespace grit

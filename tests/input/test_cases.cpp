@@ -1,5 +1,5 @@
-// Every file in good/ is accepted by kernel and schema; every one in bad/ is refused by both, with the texts that its
-// comment expects; those in bad/beyond_schema/ only by the kernel.
+// Kernel and schema accept every file in good/. Both refuse every file in bad/; the kernel with the texts expected in
+// the comment of the file. Only the kernel refuses files in bad/beyond_schema/.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -30,13 +30,13 @@ std::string problems_of(Document& document, const std::string& assignment) {
 
 }  // namespace
 
-TEST(Document, EveryValueKnowsItsLine) {
+TEST(Document, EveryValueHasItsLine) {
   const Folder folder;
   const auto document = Document::load(folder.write(
       "a.json", "{\n\"a\": 1\n,\"b\": [1,\n2\n],\"c\": {\"d\"\n:\ntrue}, \"e\":\n\"x\"\n,\"f\":-1.5e3\n}"));
   const auto line = [&](const char* pointer) { return document.origin(pointer).line; };
   EXPECT_EQ(line(""), 1);
-  EXPECT_EQ(line("/a"), 2);  // a number ends with the character behind it
+  EXPECT_EQ(line("/a"), 2);  // a number ends at the next character
   EXPECT_EQ(line("/b"), 3);
   EXPECT_EQ(line("/b/0"), 3);
   EXPECT_EQ(line("/b/1"), 4);
@@ -55,12 +55,12 @@ TEST(Document, CommentsAreDroppedWhateverTheyHold) {
   EXPECT_EQ(document.json().dump(), R"({"a":[{},2],"b":{}})");
 }
 
-TEST(Document, KeysThatStandTwiceAreAllFound) {
+TEST(Document, AllDuplicateKeysAreReported) {
   const Folder folder;
   const auto path = folder.write("a.json", "{\"a\": 1,\n\"a\": 2,\n\"b\": {\"c/d\": 1,\n\"c/d\": 1}}");
   EXPECT_EQ(problems_of(path),
-            path.string() + ":2: /a: the key \"a\" stands twice, first in line 1; keep one of them\n" + path.string() +
-                ":4: /b/c~1d: the key \"c/d\" stands twice, first in line 3; keep one of them");
+            path.string() + ":2: /a: the key \"a\" appears twice, first in line 1; keep one of them\n" + path.string() +
+                ":4: /b/c~1d: the key \"c/d\" appears twice, first in line 3; keep one of them");
 }
 
 TEST(Document, WhatIsNotJsonIsRefusedWithItsLine) {
@@ -94,13 +94,13 @@ TEST(Document, ExtendingMergesAndKeepsOrigins) {
   EXPECT_EQ(document.origin("/a/x").line, 1);
   EXPECT_EQ(document.origin("/a/y/0").source->name, top.string());
   EXPECT_EQ(document.origin("/a/y/0").line, 4);
-  EXPECT_EQ(document.origin("/a/y/1").line, 4);  // gone with the list that held it
+  EXPECT_EQ(document.origin("/a/y/1").line, 4);  // removed with its list
   EXPECT_EQ(document.origin("/b/z").pointer, "/b/z");
   EXPECT_EQ(document.origin("/c/q").line, 4);
   EXPECT_EQ(document.origin("/d/new/k").source->name, (folder.path() / "base/middle.json").string());
 }
 
-TEST(Document, EntriesOfAListAreMergedByTheirNumbers) {
+TEST(Document, EntriesOfAListAreMergedByIndex) {
   const auto merged = [](const char* patch) {
     Document document(Description::parse(R"({"l": [{"x": 1, "y": 2}, 3]})"), "base");
     document.merge(Document(Description::parse(patch), "patch"));
@@ -143,7 +143,7 @@ TEST(Document, SetTakesJsonOrText) {
   EXPECT_EQ(document.origin("/l/1").source->name, "test");
 }
 
-TEST(Document, MergingRefusesANumberThatIsOfNoEntry) {
+TEST(Document, MergingRefusesAnIndexBeyondTheList) {
   Document list(Description::parse(R"({"l": [{"a": 1}, {"a": 2}]})"), "base");
   for (const std::string number : {"2", "00"}) {
     Document patch(Description::parse("{}"), "test");
@@ -153,27 +153,28 @@ TEST(Document, MergingRefusesANumberThatIsOfNoEntry) {
       ADD_FAILURE() << list.json();
     } catch (const DescriptionError& error) {
       ASSERT_EQ(error.problems().size(), 1u);
-      EXPECT_EQ(error.problems()[0].message, "there is no entry \"" + number + "\" in /l, which has 2, counted from 0");
+      EXPECT_EQ(error.problems()[0].message,
+                "there is no entry \"" + number + "\" in /l, which has 2 entries, counted from 0");
       EXPECT_EQ(error.problems()[0].pointer, "/l/" + number);
       EXPECT_EQ(error.problems()[0].file, "--set");
     }
   }
   Document another(Description::parse(R"({"l": {"type": "other"}})"), "test");
   list.merge(another);
-  EXPECT_EQ(list.json(), Description::parse(R"({"l": {"type": "other"}})"))
-      << "a value of another kind takes its place";
+  EXPECT_EQ(list.json(), Description::parse(R"({"l": {"type": "other"}})")) << "a value of another kind replaces it";
 }
 
 TEST(Document, SetRefusesWhatItCannotDo) {
   Document document(Description::parse(R"({"a": 1, "l": [1]})"), "test");
   EXPECT_EQ(problems_of(document, "/a/b=1"), "--set: /a/b: there is nothing below /a, which is the number 1");
-  EXPECT_EQ(problems_of(document, "/l/1=1"), "--set: /l/1: there is no entry \"1\" in /l, which has 1, counted from 0");
+  EXPECT_EQ(problems_of(document, "/l/1=1"),
+            "--set: /l/1: there is no entry \"1\" in /l, which has 1 entries, counted from 0");
   EXPECT_EQ(problems_of(document, "/l/00=1"),
-            "--set: /l/00: there is no entry \"00\" in /l, which has 1, counted from 0");
+            "--set: /l/00: there is no entry \"00\" in /l, which has 1 entries, counted from 0");
   EXPECT_EQ(problems_of(document, "a=1"), "--set: a: found \"a\"; allowed is a JSON pointer, e.g. /stages/0/limit");
   EXPECT_EQ(problems_of(document, "/a~2=1"),
             "--set: /a~2: found \"/a~2\"; allowed is a JSON pointer, e.g. /stages/0/limit");
   EXPECT_THAT(problems_of(document, "/a"), HasSubstr("found \"/a\"; allowed is /pointer=value"));
-  EXPECT_THAT(problems_of(document, "/b={\"x\": 1, \"x\": 2}"), HasSubstr("--set:1: /x: the key \"x\" stands twice"));
+  EXPECT_THAT(problems_of(document, "/b={\"x\": 1, \"x\": 2}"), HasSubstr("--set:1: /x: the key \"x\" appears twice"));
   EXPECT_EQ(document.json(), Description::parse(R"({"a": 1, "l": [1]})"));
 }

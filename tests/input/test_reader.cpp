@@ -33,7 +33,7 @@ void Tall::declare(Parameters& p) {
       .doc("its parts");
 }
 
-/// Something of every kind that can be declared.
+/// A parameter of every kind that can be declared.
 struct Everything {
   double modulus = 3e8, share = 0.1;
   std::optional<double> limit;
@@ -127,7 +127,7 @@ TEST(Reader, FillsWhatWasDeclared) {
   EXPECT_EQ(x.checked, 1);
 }
 
-TEST(Reader, LeavesDefaultsWhereNothingIsSaid) {
+TEST(Reader, KeepsDefaultsOfMissingKeys) {
   Everything x;
   EXPECT_EQ(problems_of(x, Description::object()), "");
   EXPECT_EQ(x.modulus, 3e8);
@@ -143,12 +143,12 @@ TEST(Writer, WhatIsWrittenReadsTheSame) {
     const Description first = written(x);
     ASSERT_EQ(problems_of(y, first), "");
     EXPECT_EQ(written(y).dump(), first.dump());
-    // Through a file, too: numbers keep all their digits.
+    // As text, too: numbers keep all digits.
     EXPECT_EQ(Description::parse(first.dump(2)), first);
   }
 }
 
-TEST(Writer, TellsAllInSi) {
+TEST(Writer, WritesAllInSi) {
   Everything x;
   ASSERT_EQ(problems_of(x, Description::parse(full)), "");
   const Description all = written(x);
@@ -187,7 +187,7 @@ TEST(Reader, ReportsEveryProblemAtOnce) {
   EXPECT_EQ(x.modulus, 3e8);
 }
 
-TEST(Reader, ChecksComplainAtTheirKey) {
+TEST(Reader, ChecksReportTheirKey) {
   Everything x;
   EXPECT_EQ(problems_of(x, {{"count", 7}}), "test: /count: found 7; allowed is anything else");
 }
@@ -219,7 +219,7 @@ TEST(Reader, FilesAreThoseBesideTheDescription) {
   EXPECT_EQ(y.file, (std::filesystem::current_path() / "other.txt").string());
 }
 
-TEST(Reference, TellsEveryParameterInAColumn) {
+TEST(Reference, ListsEveryParameter) {
   Everything x;
   Parameters p;
   x.declare(p);

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "components.hpp"
+#include "description/current_scene.hpp"
 #include "folder.hpp"
 #include "input/scene.hpp"
 #include "plugins/parameter_values.hpp"
-#include "description/current_scene.hpp"
 
 using namespace grit;
 using testing::HasSubstr;
@@ -44,8 +44,8 @@ TEST_F(SceneTest, ReadsIntoTypes) {
   EXPECT_EQ(s.materials.at("sand").density, 2600);
   EXPECT_EQ(s.units_of("interfaces"), (std::vector<std::string>{"sand+steel", "sand+sand"}));
   EXPECT_EQ(s.domain.strain_rate, Vec3(0.01, 0, 0));
-  EXPECT_EQ(std::get<PlacedGrains>(s.bodies.at("wanderers").grains.value()).grains.at(0).radius, 1e-3);
-  EXPECT_EQ(std::get<FileGrains>(s.bodies.at("saved").grains.value()).path,
+  EXPECT_EQ(std::get<ListSource>(s.bodies.at("wanderers").source.value()).bodies.at(0).radius, 1e-3);
+  EXPECT_EQ(std::get<FileSource>(s.bodies.at("saved").source.value()).path,
             std::string(GRIT_SOURCE_DIR) + "/tests/input/good/grains.txt");
   EXPECT_EQ(s.walls.at("lid").motion.servo->pressure, 2e5);
   const OscillationDescription& shaken = *s.walls.at("cup").motion.oscillation;
@@ -83,7 +83,7 @@ TEST_F(SceneTest, ChangesAndRampsStay) {
   ASSERT_EQ(scene.stages[1].increments(), 3u);
   EXPECT_TRUE(current.advance_ramps(1).replaced);
   EXPECT_EQ(pressure(), 150e3);
-  EXPECT_FALSE(current.advance_ramps(2).replaced) << "one number is set";
+  EXPECT_FALSE(current.advance_ramps(2).replaced) << "only the number is set";
   EXPECT_EQ(pressure(), 100e3);
   EXPECT_EQ(current.advance_ramps(2).ramp, nullptr) << "done already";
   current.advance_ramps(3);
@@ -91,7 +91,7 @@ TEST_F(SceneTest, ChangesAndRampsStay) {
   EXPECT_EQ(at(now, "/materials/sand/friction_angle"), 10 * 0.017453292519943295);
 }
 
-TEST_F(SceneTest, RampsGoOneAfterTheOtherAndIntoLists) {
+TEST_F(SceneTest, RampsFollowEachOtherAndReachIntoLists) {
   const Scene scene = good(
       "plain",
       {R"(/stages/0/ramps=[{"pointer": "/walls/floor/motion/velocity/0", "from": 0, "to": "1 mm/s", "duration": 1, "increments": 2},
@@ -124,7 +124,7 @@ TEST_F(SceneTest, RampsGoOneAfterTheOtherAndIntoLists) {
   EXPECT_EQ(resolved(early.now()), resolved(now)) << "a stage that ends before its ramps do";
 }
 
-// What is described is a value: a copy has a life of its own.
+// A description is a value: a copy is independent.
 TEST_F(SceneTest, CopiesAreIndependent) {
   const Scene scene = good("everything");
   SceneDescription copy = *scene.description;
@@ -155,21 +155,21 @@ TEST_F(SceneTest, AScenarioBecomesAPlainDescription) {
   EXPECT_EQ(scene.description->title, "my pile");
   EXPECT_EQ(scene.description->seed, 3);
   EXPECT_EQ(scene.description->guards.overlap, 0.3);
-  const auto& cloud = std::get<CloudGrains>(scene.description->bodies.at("grains").grains.value());
+  const auto& cloud = std::get<CloudSource>(scene.description->bodies.at("grains").source.value());
   EXPECT_EQ(cloud.count, 100);
   EXPECT_EQ(cloud.high, Vec3(0.2, 0.2, 0.2));
   EXPECT_TRUE(scene.description->probes.contains("p"));
-  EXPECT_EQ(std::get<CloudGrains>(good("extended_scenario").description->bodies.at("grains").grains.value()).count, 50);
+  EXPECT_EQ(std::get<CloudSource>(good("extended_scenario").description->bodies.at("grains").source.value()).count, 50);
 }
 
-TEST_F(SceneTest, StagesOfAScenarioAreSetByTheirNumbers) {
+TEST_F(SceneTest, StagesOfAScenarioAreSetByIndex) {
   const Scene before = good("scenario"), after = good("scenario", {"/stages/0/limit=7.5"});
   ASSERT_EQ(after.description->stages.size(), before.description->stages.size());
   EXPECT_EQ(after.description->stages.at(0).limit, 7.5);
   EXPECT_EQ(after.description->stages.at(0).name, before.description->stages.at(0).name);
 }
 
-TEST_F(SceneTest, NullTakesAwayWhatAScenarioWrites) {
+TEST_F(SceneTest, NullRemovesKeysOfAScenario) {
   const Folder folder;
   const auto write = [&](const char* name, const char* text) { return folder.write(name, text); };
   const auto walls = [&](const std::filesystem::path& path, const std::vector<std::string>& sets = {}) {
@@ -182,7 +182,7 @@ TEST_F(SceneTest, NullTakesAwayWhatAScenarioWrites) {
   EXPECT_EQ(walls(folder.path() / "without.json"), "{}") << "the file that it extends lacks the key";
   EXPECT_EQ(walls(write("further.json", R"({"extends": "without.json", "seed": 4})")), "{}");
   EXPECT_EQ(walls(pile, {"/walls/floor=null"}), "{}");
-  // What is written again after it was taken away has nothing of what there was.
+  // A key that is written again after its removal has no old content.
   const char* const lid = R"({"lid":{"material":"sand"}})";
   EXPECT_EQ(walls(write("again.json", R"({"extends": "without.json", "walls": {"lid": {"material": "sand"}}})")), lid);
   write("none.json", R"({"scenario": {"type": "pile"}, "walls": null})");
@@ -205,7 +205,7 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
     "sand": {"density": "2600",
       "frictoin_angle": 0.3}
   },
-  "bodies": {"grains": {"type": "cube", "material": "snad", "grains": {"type": "cloud"}}},
+  "bodies": {"grains": {"type": "cube", "material": "snad", "source": {"type": "cloud"}}},
   "walls": {
     "floor": {"type": "plane", "position": [0, 0], "material": "wood"}, "side": {"type": "plane", "position": [0, 0, 1]},
     "lid": {"type": "plane", "position": [0, 0, 1], "material": "sand",
@@ -231,8 +231,8 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
     }
     EXPECT_THAT(found, testing::UnorderedElementsAre(
                            "19 /colour", "18 /seed", "4 /materials/sand/density", "5 /materials/sand/frictoin_angle",
-                           "7 /bodies/grains/type", "7 /bodies/grains/grains", "7 /bodies/grains/grains",
-                           "7 /bodies/grains/grains", "7 /bodies/grains/grains", "9 /walls/floor/position",
+                           "7 /bodies/grains/type", "7 /bodies/grains/source", "7 /bodies/grains/source",
+                           "7 /bodies/grains/source", "7 /bodies/grains/source", "9 /walls/floor/position",
                            "14 /stages/0/until/value", "16 /stages/0/change/guards/overlap", "9 /walls/floor/material",
                            "9 /walls/side", "11 /walls/lid/motion/follow/wall", "7 /bodies/grains/material"))
         << error.what();

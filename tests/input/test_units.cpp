@@ -46,7 +46,7 @@ TEST(Units, OtherFactorsAreRoundedToAnUlp) {
   EXPECT_TRUE(within_ulp(si("1 mm/min", "m/s"), 1e-3 / 60));
 }
 
-TEST(Units, WhatIsNotInTheTableIsNoQuantity) {
+TEST(Units, UnitsOutsideTheTableAreRefused) {
   for (const char* text : {"200", "200 m", "kPa", "200 kpa", "200 kPa ", " 200 kPa", "2,5 kPa", "0x10 Pa", "1e Pa",
                            "nan Pa", "inf Pa", ""})
     EXPECT_FALSE(parse_quantity(text, "Pa")) << text;

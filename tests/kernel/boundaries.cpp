@@ -16,7 +16,7 @@ TEST(Boundaries, BodiesReEnterAtTheOtherSideWithTheFlowThere) {
   set_velocity(state, 1, {1, 0, 0});
   const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), {0.5, 0, 0}, {}, must_not_escape);
   EXPECT_DOUBLE_EQ(state.bodies.position[1].x, -0.008);
-  EXPECT_DOUBLE_EQ(state.bodies.velocity[1].x, 0.5) << "the cell's far side moves by 0.5 m/s more";
+  EXPECT_DOUBLE_EQ(state.bodies.velocity[1].x, 0.5) << "the opposite side of the cell moves faster by 0.5 m/s";
   EXPECT_NEAR(wrapped.energy_gained, 0.5 * sphere_mass() * (0.25 - 1), 1e-12 * sphere_mass());
   EXPECT_EQ(state.bodies.position[0].x, -0.002) << "a body inside stays";
   EXPECT_THAT(wrapped.leaves, testing::Each(false));

@@ -22,7 +22,7 @@ TEST(DeformingCell, StrainsItsPeriodicAxesAboutItsCentre) {
 TEST(DeformingCell, GrowthOfPeriodsIsThatOfTheLastStep) {
   DeformingCell cell(periodic_x());
   cell.set_strain_rate({0.5, 0, 0}, 0);
-  EXPECT_EQ(cell.period_growth(0), Vec3(1, 0, 0)) << "before the first step: that of the rate";
+  EXPECT_EQ(cell.period_growth(0), Vec3(1, 0, 0)) << "before the first step: from the strain rate";
   cell.advance(0.1);
   EXPECT_NEAR(cell.period_growth(0.1).x(), 1, 1e-14) << "not 0.5 times the present 2.1";
   cell.set_strain_rate({1.5, 0, 0}, 0.1);

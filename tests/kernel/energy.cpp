@@ -19,7 +19,7 @@ class Energy : public testing::Test {
     evaluate(state_);
     view_.set_balance(balance_);
   }
-  /// Of the spring between the two [N/m].
+  /// Stiffness of the spring between them [N/m].
   double stiffness() const {
     return state_.settings.law
         ->stiffness({.radius_a = radius,
@@ -58,7 +58,7 @@ TEST_F(Energy, BalanceBeginsWhenAsked) {
   EXPECT_TRUE(balance_.is_kept());
   balance_.add_step(0.25);
   EXPECT_EQ(balance_.terms().walls, 0.25);
-  EXPECT_EQ(balance_.terms().closure_error, -0.25) << "work that no spring stores";
+  EXPECT_EQ(balance_.terms().closure_error, -0.25) << "work that is not stored in a spring";
   balance_.add_settings(0.5);
   EXPECT_EQ(balance_.terms().settings, 0.5);
 }
@@ -72,7 +72,7 @@ TEST_F(Energy, ChangesOfSettingsAreBooked) {
 }
 
 TEST_F(Energy, GuardTripsOnGainsAlone) {
-  guard_.check(state_, balance_);  // begins
+  guard_.check(state_, balance_);  // starts
   set_velocity(state_, 0, {0, 0, 0});
   guard_.check(state_, balance_);
   const double stored = balance_.elastic().total();
@@ -97,7 +97,7 @@ TEST_F(Energy, GuardCountsTheWorkOfWalls) {
 }
 
 TEST_F(Energy, GuardChecksOftenAtFirst) {
-  EXPECT_TRUE(guard_.due(7)) << "it has not begun";
+  EXPECT_TRUE(guard_.due(7)) << "it has not started";
   guard_.check(state_, balance_);
   for (const std::uint64_t step : {64u, 128u, 256u, 500u, 1000u}) EXPECT_TRUE(guard_.due(step)) << step;
   for (const std::uint64_t step : {1u, 63u, 512u, 501u}) EXPECT_FALSE(guard_.due(step)) << step;

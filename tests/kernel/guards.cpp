@@ -11,7 +11,7 @@
 namespace grit::test::guards_tests {
 namespace {
 
-/// What `work` fails with.
+/// The guard that `work` trips.
 template <class Work>
 std::pair<Guard, std::string> failure(Work work) {
   try {
@@ -90,7 +90,7 @@ TEST_F(Travel, IsRelativeToTheMeanFlow) {
   search(state_, passes_);
   state_.time.previous_dt = 1e-5;
   set_velocity(state_, 1, {0.002 * 1e5, 0, 0});
-  EXPECT_EQ(guard({-0.002 * 1e5, 0, 0}), Guard::none) << "both go with the flow, 200 m/s at 2 mm from the centre";
+  EXPECT_EQ(guard({-0.002 * 1e5, 0, 0}), Guard::none) << "both move with the flow, 200 m/s at 2 mm from the centre";
 }
 
 TEST(SpecimenRegion, IsTheCellWithoutWalls) {

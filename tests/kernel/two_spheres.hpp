@@ -1,4 +1,4 @@
-// A state of two equal spheres along x, made by hand.
+// A state of two equal spheres along x.
 #pragma once
 
 #include <limits>
@@ -18,7 +18,7 @@ inline Cell box(std::array<bool, 3> periodic = {false, false, false}) {
   return {Vec3::Constant(-0.01), Vec3::Constant(0.01), periodic};
 }
 
-/// A law by its name with one material, mixed.
+/// A law with one material, mixed.
 inline std::shared_ptr<ContactLaw> law(const std::string& name) {
   const auto law = installed().make<ContactLaw>(name);
   Parameters material;
@@ -50,7 +50,7 @@ inline void set_velocity(State& state, std::size_t body, const Vec3& v) {
   row = {v.x(), v.y(), v.z(), row.w};
 }
 
-/// Neighbour lists and contacts as they are.
+/// Updates neighbour lists and contacts.
 inline void search(State& state, Passes& passes) {
   passes.resize(state.bodies.count());
   state.lists.rebuild(state.bodies, state.cell, state.statistics, state.time.dt, 0, passes);
@@ -59,7 +59,7 @@ inline void search(State& state, Passes& passes) {
   state.wall_contacts.rebuild(state.bodies, state.surfaces, state.lists.skins(), state.settings.fields, {});
 }
 
-/// Evaluates contacts of the only chunk.
+/// Evaluates the contacts of the only chunk.
 inline void evaluate(State& state) {
   std::fill(state.sum.begin(), state.sum.end(), BodySum{});
   state.overlap = state.pairs.evaluate(0, state.instant(false), state.sum.data(), nullptr);

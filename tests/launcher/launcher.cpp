@@ -96,11 +96,13 @@ TEST(Launcher, RefusesWhatIsNotInstalled) {
     const auto outcome = prefix.run(isa);
     EXPECT_EQ(outcome.status, 2) << isa;
     EXPECT_THAT(outcome.out, IsEmpty());
-    EXPECT_THAT(outcome.err, StartsWith("grit: GRIT_ISA=" + isa + ": this instruction set is not installed in " +
-                                        (prefix.path() / LIBRARIES "/grit\n").string() +
-                                        "  there are: x86-64-v2, x86-64; this processor has: x86-64-v2, x86-64\n"
-                                        "  set GRIT_ISA to one that it has, unset it for the best of them, or install "
-                                        "another with scripts/package.sh\n"));
+    EXPECT_THAT(outcome.err,
+                StartsWith("grit: GRIT_ISA=" + isa + ": this instruction set is not installed in " +
+                           (prefix.path() / LIBRARIES "/grit\n").string() +
+                           "  installed: x86-64-v2, x86-64; supported by this processor: x86-64-v2, "
+                           "x86-64\n"
+                           "  set GRIT_ISA to a supported one, unset it to use the best, or install another "
+                           "with scripts/package.sh\n"));
   }
 }
 
@@ -109,19 +111,21 @@ TEST(Launcher, RefusesWhatTheProcessorLacks) {
   const auto outcome = Prefix(all_levels).run("x86-64-v4");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.out, IsEmpty());
-  EXPECT_THAT(outcome.err, AllOf(StartsWith("grit: GRIT_ISA=x86-64-v4: this processor lacks this instruction set\n"
-                                            "  there are: x86-64-v4, x86-64-v3, x86-64-v2; this processor has: "),
-                                 HasSubstr("set GRIT_ISA to one that it has")));
+  EXPECT_THAT(outcome.err,
+              AllOf(StartsWith("grit: GRIT_ISA=x86-64-v4: this processor does not support this instruction set\n"
+                               "  installed: x86-64-v4, x86-64-v3, x86-64-v2; supported by this "
+                               "processor: "),
+                    HasSubstr("set GRIT_ISA to a supported one")));
   const auto none = Prefix({"x86-64-v4"}).run("-");
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.err, AllOf(StartsWith("grit: this processor has none of the instruction sets installed in "),
-                              HasSubstr("there are: x86-64-v4; this processor has: none\n")));
+  EXPECT_THAT(none.err, AllOf(StartsWith("grit: this processor supports none of the instruction sets installed in "),
+                              HasSubstr("installed: x86-64-v4; supported by this processor: none\n")));
 }
 
 TEST(Launcher, SaysThatNothingIsInstalled) {
   const auto outcome = Prefix({}).run("-");
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("there are: none; this processor has: none\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("installed: none; supported by this processor: none\n"));
 }
 
 TEST(Launcher, SaysWhatCannotBeRun) {
@@ -131,7 +135,7 @@ TEST(Launcher, SaysWhatCannotBeRun) {
   fs::permissions(program, fs::perms::owner_read);
   const auto outcome = prefix.run("-");
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_EQ(outcome.err, "grit: " + program.string() + ": cannot be run: Permission denied\n");
+  EXPECT_EQ(outcome.err, "grit: " + program.string() + ": cannot be executed: Permission denied\n");
 }
 
 }  // namespace

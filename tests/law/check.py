@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compiles laws.cpp and compares what the compiler says of each law with the lines `// error: …` above it.
+"""Compiles laws.cpp and compares the compiler's messages for each law with the lines `// error: …` above it.
 
   check.py SOURCE COMPILER FLAG…      exit status 1 if a message is missing, or there is one that is not expected
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def expected(lines):
-    """By law: parts of the messages that it must give; and the lines that it stands in."""
+    """By law: parts of the expected messages; by line: the law."""
     messages, place, waiting, law = {}, {}, [], None
     for number, line in enumerate(lines, 1):
         if line.startswith('// error: '):
@@ -28,7 +28,7 @@ def given(text, place):
     for error in re.split(r'(?m)^(?=\S+:\d+:\d+: (?:fatal )?error: )', text)[1:]:
         law = re.search(r'check_law(?:<|\(\) \[with Law = )(?:somewhere::)?(\w+)[>\]]', error)
         line = re.match(r'\S+?laws\.cpp:(\d+):', error)
-        # What names no law explains the error before.
+        # A message without a law belongs to the previous error.
         name = law.group(1) if law else place.get(int(line.group(1))) if line else name
         errors.setdefault(name, []).append(error)
     return errors
@@ -45,15 +45,15 @@ def main():
     wrong = []
     for law, parts in messages.items():
         own = errors.pop(law, [])
-        wrong += [f'{law}: not said: {part}' for part in parts if not any(part in ' '.join(one.split()) for one in own)]
+        wrong += [f'{law}: missing: {part}' for part in parts if not any(part in ' '.join(one.split()) for one in own)]
         if not parts and own:
             wrong += [f'{law}: should compile: {one.splitlines()[0]}' for one in own]
-        # Besides these the compiler may repeat that a static_assert was not satisfied, but not say another message.
+        # The compiler may add notes on the failed static_assert, but no other message.
         said = [one for one in own if 'assertion failed' in one.splitlines()[0]]
         wrong += [f'{law}: not expected: {one.splitlines()[0]}' for one in said
                   if parts and not any(part in ' '.join(one.split()) for part in parts)]
     wrong += [f'not of a law: {one.splitlines()[0]}' for own in errors.values() for one in own]
-    print('\n'.join(wrong) or f'{len(messages)} laws: each is told what it lacks')
+    print('\n'.join(wrong) or f'{len(messages)} laws: all messages as expected')
     return 1 if wrong else 0
 
 

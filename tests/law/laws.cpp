@@ -1,5 +1,5 @@
-// Laws with one thing wrong each. check.py sees that the compiler says of each what stands above it, and nothing of
-// the others.
+// Laws with one error each. check.py verifies that the compiler gives the messages above each law, and none for the
+// others.
 #include "grit/contact/law.hpp"
 
 namespace somewhere {

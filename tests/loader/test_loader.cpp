@@ -101,10 +101,10 @@ TEST(Loader, SaysWhatThereIsForAnUnknownName) {
   const Registry registry({directory.path(), "/nowhere"});
   const auto error = error_of([&] { registry.make<BodyKind>("spehre"); });
   EXPECT_THAT(error, HasSubstr("unknown body plugin \"spehre\", perhaps \"sphere\""));
-  EXPECT_THAT(error, HasSubstr("there are: cylinder, sphere"));
+  EXPECT_THAT(error, HasSubstr("available: cylinder, sphere"));
   EXPECT_THAT(error,
               HasSubstr("searched: " + directory.path().string() + "/bodies, /nowhere/bodies (no such directory)"));
-  EXPECT_THAT(error, HasSubstr("put spehre.so there"));
+  EXPECT_THAT(error, HasSubstr("copy spehre.so there"));
   EXPECT_THAT(error, HasSubstr("--plugin-path or GRIT_PLUGIN_PATH"));
 }
 
@@ -117,13 +117,13 @@ TEST(Loader, GuessesNoNameThatIsFarOff) {
 
 TEST(Loader, SaysThatThereIsNothing) {
   const auto error = error_of([] { Registry({}).info("probe", "x"); });
-  EXPECT_THAT(error, AllOf(HasSubstr("there are: none"), HasSubstr("searched: no directory")));
+  EXPECT_THAT(error, AllOf(HasSubstr("available: none"), HasSubstr("searched: no directory")));
 }
 
 TEST(Loader, RefusesAKindThatIsNone) {
   const Registry registry({fixtures});
   EXPECT_THAT(error_of([&] { registry.names("prob"); }),
-              "unknown kind of plugin \"prob\", perhaps \"probe\"; there are body, contact, engine, geometry, probe, "
+              "unknown kind of plugin \"prob\", perhaps \"probe\"; allowed are body, contact, engine, geometry, probe, "
               "scenario");
   EXPECT_THAT(error_of([&] { registry.info("bodies", "good"); }), HasSubstr("unknown kind of plugin \"bodies\""));
 }
@@ -132,8 +132,9 @@ TEST(Loader, RefusesANameThatIsAPath) {
   const Registry registry({fixtures});
   for (const std::string name : {"../bodies/good", "/tmp/good", "./good", "good.so", "..", ".", "", "a\\b"}) {
     const auto error = error_of([&] { registry.make<BodyKind>(name); });
-    EXPECT_THAT(error, AllOf(HasSubstr('"' + name + "\" is not the name of a body plugin"),
-                             HasSubstr("a description cannot name a path"), HasSubstr("--plugin-path")));
+    EXPECT_THAT(error,
+                AllOf(HasSubstr('"' + name + "\" is not the name of a body plugin"),
+                      HasSubstr("allowed are letters, digits and hyphens, not a path"), HasSubstr("--plugin-path")));
   }
 }
 
@@ -167,7 +168,7 @@ TEST(Loader, RefusesASymbolThatReturnsNull) {
 TEST(Loader, NamesAPluginWhoseSymbolThrows) {
   EXPECT_THAT(make_error("throwing-entry"),
               AllOf(HasSubstr(file_of("throwing-entry") + "): its grit_plugin() threw: no luck today"),
-                    HasSubstr("mend the plugin")));
+                    HasSubstr("fix the plugin")));
   EXPECT_THAT(
       make_error("entry-throwing-int"),
       HasSubstr(file_of("entry-throwing-int") + "): its grit_plugin() threw: something that is not a std::exc"));
@@ -256,29 +257,29 @@ TEST(Loader, RefusesAnotherKind) {
 }
 
 TEST(Loader, RefusesAnotherName) {
-  EXPECT_THAT(
-      make_error("wrong-name"),
-      AllOf(HasSubstr(file_of("wrong-name") + "): name: expected \"wrong-name\", the file's, found \"another-name\""),
-            HasSubstr("rename the file")));
-  EXPECT_THAT(make_error("null-name"), HasSubstr("name: expected \"null-name\", the file's, found \"\""));
+  EXPECT_THAT(make_error("wrong-name"),
+              AllOf(HasSubstr(file_of("wrong-name") +
+                              "): name: expected \"wrong-name\" as in the file name, found \"another-name\""),
+                    HasSubstr("rename the file")));
+  EXPECT_THAT(make_error("null-name"), HasSubstr("name: expected \"null-name\" as in the file name, found \"\""));
 }
 
 TEST(Loader, RefusesAPluginThatCannotMakeItsKind) {
   EXPECT_THAT(make_error("no-maker"),
-              AllOf(HasSubstr(file_of("no-maker") + "): has no maker: PluginInfo::make_body is null"),
+              AllOf(HasSubstr(file_of("no-maker") + "): cannot create objects: PluginInfo::make_body is null"),
                     HasSubstr("set make_body to a function")));
 }
 
 TEST(Loader, RefusesAMakerThatMakesNothing) {
   EXPECT_THAT(make_error("null-maker"), AllOf(HasSubstr("body plugin \"null-maker\" (" + file_of("null-maker")),
-                                              HasSubstr("its maker returned null"), HasSubstr("return a new object")));
+                                              HasSubstr("returned null"), HasSubstr("return a new object")));
 }
 
 TEST(Loader, NamesAPluginWhoseMakerThrows) {
   EXPECT_THAT(make_error("throwing-maker"),
               AllOf(HasSubstr("body plugin \"throwing-maker\" (" + file_of("throwing-maker") +
-                              "): its maker threw: out of clay"),
-                    HasSubstr("mend the plugin")));
+                              "): its make_body() threw: out of clay"),
+                    HasSubstr("fix the plugin")));
 }
 
 TEST(Loader, NamesAPluginWhoseDeclareThrows) {

@@ -1,4 +1,4 @@
-// The kernel's own engines, and one with a memory.
+// The built-in engines, and one with state.
 #include "grit/testing/engine.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ EngineCase builtin(const std::string& name) {
           }};
 }
 
-/// Pushes bodies as they were pushed before, a little to the side, and remembers the latest pushes.
+/// Pushes bodies as in the previous step, slightly to the side, and keeps the latest forces.
 class Wind final : public Engine {
  public:
   void declare(Parameters&) override {}
@@ -29,7 +29,7 @@ class Wind final : public Engine {
     for (const double gust : gusts_) mean_ += 0.1 * (gust - mean_);
     for (Row& row : force) row.y += mean_;
   }
-  void remember(Memory& memory) override { memory(gusts_, mean_); }
+  void serialize(Archive& archive) override { archive(gusts_, mean_); }
 
  private:
   mutable std::deque<double> gusts_;

@@ -1,4 +1,4 @@
-// Scenes in a plane.
+// Planar motion.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ TEST(Planar, KeepsBodiesInTheirPlane) {
   EXPECT_GT((trial.position(0) - Vec3(0, 0, 1e-3)).norm(), 1e-4);
 }
 
-/// In a plane there is nothing to hold: the same bits as where all forces lie in it by themselves.
+/// If all forces lie in the plane already, results are identical.
 TEST(Planar, ChangesNothingWhereAllIsInThePlaneAlready) {
   Description d = description("linear-rolling", stuff,
                               {{{0, 0, 0.999e-3}, 1e-3, {0.3, 0, 0}}, {{2.1e-3, 0, 0.999e-3}, 1e-3, {-0.3, 0, 0}}});
@@ -53,15 +53,15 @@ TEST(Planar, RefusesClumps) {
     Trial trial(d);
     FAIL();
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("clumps turn about all axes"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("clumps rotate about all axes"));
   }
 }
 
 TEST(Planar, CloudLiesInTheMiddle) {
   Description d = description("linear-rolling", stuff, {{{0, 0, 0}, 1e-3}});
-  d["bodies"]["grains"]["grains"] = {
+  d["bodies"]["grains"]["source"] = {
       {"type", "cloud"}, {"low", {0, 0, 0}}, {"high", {0.02, 0.002, 0.02}},
-      {"count", 50},     {"flat", "y"},      {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 2e-3}}}};
+      {"count", 50},     {"plane_normal", "y"},      {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 2e-3}}}};
   d["engines"]["planar"] = {{"type", "planar"}};
   const Trial trial(d);
   ASSERT_EQ(trial.world().ids().size(), 50u);

@@ -21,7 +21,7 @@ struct Plate : Geometry {
   Bounds bounds() const override { return box; }
   double area() const override { return surface; }
   Vec3 normal() const override { return towards; }
-  void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+  void find_contacts(const Pose&, std::span<const Sphere>, std::vector<SurfaceContact>&) const override {}
   bool near(const Pose&, const Vec3&, double) const override { return false; }
   std::vector<Vec3> triangles() const override { return {}; }
 };
@@ -56,21 +56,21 @@ TEST(Walls, FixedWallsStay) {
   EXPECT_FALSE(walls.pose(0).turned());
 }
 
-TEST(Walls, RampedVelocityCoversHalfTheWayDuringTheRamp) {
+TEST(Walls, RampedVelocityCoversHalfTheDistanceDuringTheRamp) {
   Walls walls;
   walls.apply({plate({.velocity = {2, 0, -1}, .ramp_time = 0.5})});
   const double dt = 0.5 / 64;
   for (int i = 0; i < 64; ++i) {
     EXPECT_NEAR(walls.pose(0).shift.x(), std::pow(i * dt, 2) * 2, 1e-15) << "x = V t² / (2 T)";
     step(walls, dt);
-    EXPECT_NEAR(view(walls).velocity.x(), 2 * (i + 0.5) / 64, 1e-15) << "that of the step's middle";
+    EXPECT_NEAR(view(walls).velocity.x(), 2 * (i + 0.5) / 64, 1e-15) << "at the middle of the step";
   }
   for (int i = 0; i < 64; ++i) step(walls, dt);
   EXPECT_NEAR(walls.pose(0).shift.x(), 0.5 + 1, 1e-14);
   EXPECT_NEAR(walls.pose(0).shift.z(), -0.25 - 0.5, 1e-14);
 }
 
-TEST(Walls, FreeMassFallsAsLeapFrogHasIt) {
+TEST(Walls, FreeMassFallsAsInLeapFrog) {
   const double dt = 1e-3, mass = 4, weight = 9.81 * mass;
   Walls walls;
   walls.apply(
@@ -84,12 +84,12 @@ TEST(Walls, FreeMassFallsAsLeapFrogHasIt) {
   EXPECT_EQ(walls.pose(0).shift.y(), 0);
 }
 
-TEST(Walls, FreeMassOnASpringSwingsAtLeapFrogsFrequency) {
+TEST(Walls, FreeMassOnASpringOscillatesAtTheLeapFrogFrequency) {
   const double dt = 0.1, mass = 2, stiffness = 8, omega = std::sqrt(stiffness / mass);
   Walls walls;
   walls.apply({plate({.free = FreeDescription{.axes = "z", .mass = mass, .load = {0, 0, 1}}})});
   const double phase =
-      2 * std::asin(0.5 * omega * dt);  // a step, exactly: z(n+1) − 2 z(n) + z(n−1) = −(ω dt)² (z(n) − z0)
+      2 * std::asin(0.5 * omega * dt);  // per step, exactly: z(n+1) − 2 z(n) + z(n−1) = −(ω dt)² (z(n) − z0)
   const double rest = 1 / stiffness;
   for (int n = 0; n < 200; ++n) {
     // z(0) = z(−1) = 0, as the velocity half a step before the start is 0
@@ -111,7 +111,7 @@ TEST(Walls, PointComesBackAfterAFullTurn) {
   const Vec3 moved = about + quarter * (point - about) + Vec3(0.1 * time / 4, 0, 0);
   EXPECT_LT((walls.pose(0).to_world(point) - moved).norm(), 1e-12);
   EXPECT_LT((walls.point_velocity(0, moved) - (Vec3(0.1, 0, 0) + spin.cross(quarter * (point - about)))).norm(), 1e-11);
-  EXPECT_LT((view(walls).pose.to_world(point) - moved).norm(), 1e-11) << "as frames and pictures have it";
+  EXPECT_LT((view(walls).pose.to_world(point) - moved).norm(), 1e-11) << "as in frames and pictures";
   for (int n = steps / 4; n < steps; ++n) step(walls, dt);
   EXPECT_LT((walls.pose(0).to_world(point) - point - Vec3(0.1 * time, 0, 0)).norm(), 1e-12);
 }
@@ -125,12 +125,12 @@ TEST(Walls, TurnStaysARotation) {
   EXPECT_NEAR(turn.determinant(), 1, 3e-15);
 }
 
-/// How far an oscillation without a ramp has gone.
+/// Displacement of an oscillation without a ramp.
 double sine(const OscillationDescription& how, double time) {
   return std::sin(2 * std::numbers::pi * how.frequency * time + how.phase) - std::sin(how.phase);
 }
 
-TEST(Walls, OscillatesAlongItsSineWhateverTheSteps) {
+TEST(Walls, OscillatesAlongItsSineForAnyStep) {
   const Vec3 steady(0.3, 0, -0.1);
   for (const double phase : {0.0, 0.5 * std::numbers::pi, -2.5}) {
     const OscillationDescription how{.amplitude = {2e-3, 0, -1e-3}, .frequency = 40, .phase = phase};
@@ -155,7 +155,7 @@ TEST(Walls, OscillatesAlongItsSineWhateverTheSteps) {
   }
 }
 
-TEST(Walls, TurnsToAndFroAlongItsSine) {
+TEST(Walls, OscillatesInRotationAlongItsSine) {
   const Vec3 about(1, -2, 0.5), axis = Vec3(1, 2, -2) / 3, point(3, 1, 2);
   for (const double steady : {0.0, 4.0}) {
     const double swept = 0.7;
@@ -185,14 +185,14 @@ TEST(Walls, OscillationGrowsWithTheRampFromRest) {
   const double dt = 1e-3;
   step(walls, dt);
   const double omega = 2 * std::numbers::pi * how.frequency;
-  EXPECT_LT(std::abs(view(walls).velocity.y()), dt / 0.5 * omega) << "a share of its full speed";
+  EXPECT_LT(std::abs(view(walls).velocity.y()), dt / 0.5 * omega) << "a fraction of its full speed";
   for (int n = 2; n <= 800; ++n) {
     step(walls, dt);
     EXPECT_NEAR(walls.pose(0).shift.y(), std::min(1.0, n * dt / 0.5) * sine(how, n * dt), 1e-13) << n;
   }
 }
 
-TEST(Walls, OscillationGoesOnFromStageToStageAndThroughChanges) {
+TEST(Walls, OscillationContinuesAcrossStagesAndChanges) {
   OscillationDescription how{.amplitude = {0, 0, 2}, .frequency = 3, .phase = 0.4};
   const double dt = 1e-2;
   Walls walls;
@@ -204,7 +204,7 @@ TEST(Walls, OscillationGoesOnFromStageToStageAndThroughChanges) {
   };
   go(7);
   walls.apply(set());
-  EXPECT_NEAR(go(11), 2 * sine(how, 18 * dt), 1e-14) << "a stage that leaves it as it is";
+  EXPECT_NEAR(go(11), 2 * sine(how, 18 * dt), 1e-14) << "a stage that does not change it";
   EXPECT_NEAR(view(walls).stage_position.z(), 2 * (sine(how, 18 * dt) - sine(how, 7 * dt)), 1e-14);
 
   const double before = walls.pose(0).shift.z(), angle = 2 * std::numbers::pi * 3 * 18 * dt + how.phase;
@@ -214,21 +214,21 @@ TEST(Walls, OscillationGoesOnFromStageToStageAndThroughChanges) {
   go(4);
   EXPECT_NEAR(walls.pose(0).shift.z() - before, std::sin(angle + 2 * std::numbers::pi * 5 * 4 * dt) - std::sin(angle),
               1e-14)
-      << "the phase goes on, too";
+      << "the phase continues, too";
 
   const double later = walls.pose(0).shift.z();
   how.phase = -1;
   walls.apply(set());
-  EXPECT_NEAR(go(9) - later, sine(how, 9 * dt), 1e-14) << "another phase: it begins anew";
+  EXPECT_NEAR(go(9) - later, sine(how, 9 * dt), 1e-14) << "another phase: it starts again";
 
   const double last = walls.pose(0).shift.z();
   walls.apply({plate({})});
-  EXPECT_EQ(go(5), last) << "it ends where it is";
+  EXPECT_EQ(go(5), last) << "it stops at its position";
   walls.apply(set());
-  EXPECT_NEAR(go(6) - last, sine(how, 6 * dt), 1e-14) << "and begins anew";
+  EXPECT_NEAR(go(6) - last, sine(how, 6 * dt), 1e-14) << "and starts again";
 }
 
-TEST(Walls, TurnsAboutTheMiddleOfItsBoundsUnlessToldOtherwise) {
+TEST(Walls, RotatesAboutTheCentreOfItsBoundsByDefault) {
   Walls walls;
   const auto endless = std::make_shared<Plate>();
   endless->box.low.x() = -std::numeric_limits<double>::infinity();
@@ -259,11 +259,11 @@ struct Spring {
   double side, gap = 0, stiffness = 1e4, dt = 1e-3;
 };
 
-TEST(Walls, ServoTakesItsGainOfTheErrorAwayEachStep) {
+TEST(Walls, ServoCorrectsItsGainOfTheErrorPerStep) {
   for (const Vec3& towards : {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(-1, 0, 0), Vec3(0, 0.6, -0.8)}) {
     const std::string axis = towards.x() != 0 ? "x" : "z";
     Spring spring({.axis = axis, .pressure = 50, .max_velocity = 1e3, .gain = 0.3}, towards);
-    spring.gap = -1e-4;  // touching from the start: no approach at full speed
+    spring.gap = -1e-4;  // in contact from the start: no approach at full speed
     const double target = 50 * 2 * std::abs(towards[spring.axis]);
     double habit = 0;
     for (int n = 0; n < 40; ++n) {
@@ -277,10 +277,10 @@ TEST(Walls, ServoTakesItsGainOfTheErrorAwayEachStep) {
   }
 }
 
-TEST(Walls, ServoKeepsItsPressureOnWhatSwellsSteadily) {
+TEST(Walls, ServoKeepsItsPressureOnASteadilyExpandingSpecimen) {
   Spring spring({.axis = "z", .pressure = 50, .max_velocity = 1, .gain = 0.3}, {0, 0, -1});
   spring.gap = -100 / spring.stiffness;
-  const double swelling = 1e-3;  // m/s; held off by 1e-3 k dt / gain = 0.033 N without habit
+  const double swelling = 1e-3;  // m/s; an error of 1e-3 k dt / gain = 0.033 N without the mean velocity
   double largest = 0;
   for (int n = 0; n < 6000; ++n) {
     spring.advance();
@@ -311,18 +311,19 @@ TEST(Walls, ServoOverAnOpenSpecimenIsRefused) {
       spring.advance();
       FAIL();
     } catch (const Error& error) {
-      EXPECT_STREQ(error.what(),
-                   "wall \"lid\": found a servo that presses on the specimen's cross-section, which is open or empty; "
-                   "allowed is one between walls that /specimen names or bounds of the domain, across z");
+      EXPECT_STREQ(
+          error.what(),
+          "wall \"lid\": found a servo on the cross-section of the specimen, which is open or empty; allowed is a "
+          "cross-section bounded by walls of /specimen or by the domain, across z");
     }
   }
 }
 
-TEST(Walls, ServoThatFallsBehindIsTold) {
+TEST(Walls, ServoAtItsVelocityLimitIsReported) {
   Spring spring({.axis = "z", .pressure = 50, .max_velocity = 0.2, .gain = 0.3}, {0, 0, -1});
   spring.gap = 1;
   spring.advance(), spring.advance();
-  EXPECT_EQ(spring.walls.fallen_behind(), "") << "on its way";
+  EXPECT_EQ(spring.walls.fallen_behind(), "") << "still approaching";
   spring.gap = -3 * 100 / spring.stiffness;
   const double swelling = 1;  // m/s
   for (int n = 0; n < 20; ++n) {
@@ -330,18 +331,18 @@ TEST(Walls, ServoThatFallsBehindIsTold) {
     spring.advance();
   }
   const std::string told = spring.walls.fallen_behind(),
-                    words = "servo of wall \"lid\" fell behind at its max_velocity of 0.2 m/s: ";
+                    words = "servo of wall \"lid\" is limited by its max_velocity of 0.2 m/s: ";
   ASSERT_THAT(told, testing::StartsWith(words));
   EXPECT_NEAR(std::stod(told.substr(words.size())), view(spring.walls).pressure, 0.05);
   EXPECT_GT(view(spring.walls).pressure, 150);
-  EXPECT_THAT(told, testing::EndsWith(" Pa, to be kept at 50"));
-  for (int n = 0; n < 500; ++n) spring.advance();  // it stands
+  EXPECT_THAT(told, testing::EndsWith(" Pa, target 50"));
+  for (int n = 0; n < 500; ++n) spring.advance();  // it is at rest
   EXPECT_EQ(spring.walls.fallen_behind(), "");
   Spring held({.axis = "z", .force = -100, .max_velocity = 0.2, .gain = 0.3}, {0, 0, -1});
   held.gap = -1;
   held.advance(), held.advance();
   EXPECT_THAT(held.walls.fallen_behind(), testing::HasSubstr("m/s: -9998 N"));
-  EXPECT_THAT(held.walls.fallen_behind(), testing::EndsWith(" N, to be kept at -100"));
+  EXPECT_THAT(held.walls.fallen_behind(), testing::EndsWith(" N, target -100"));
 }
 
 TEST(Walls, ServoNeverExceedsItsVelocity) {
@@ -349,7 +350,7 @@ TEST(Walls, ServoNeverExceedsItsVelocity) {
   Spring spring(servo, {0, 0, -1});
   spring.gap = 0.0101;
   spring.advance();
-  EXPECT_EQ(view(spring.walls).velocity, Vec3(0, 0, -0.2)) << "closes at full speed while nothing touches";
+  EXPECT_EQ(view(spring.walls).velocity, Vec3(0, 0, -0.2)) << "closes at full speed without contact";
   spring.gap = -1e-6;
   spring.advance();
   EXPECT_EQ(view(spring.walls).velocity, Vec3(0, 0, -0.2)) << "far too little force";
@@ -359,10 +360,10 @@ TEST(Walls, ServoNeverExceedsItsVelocity) {
   Spring unloaded({.axis = "z", .pressure = 0, .max_velocity = 0.2}, {0, 0, -1});
   unloaded.gap = 1;
   unloaded.advance();
-  EXPECT_EQ(view(unloaded.walls).velocity, Vec3(0, 0, 0)) << "no pressure wanted and none there";
+  EXPECT_EQ(view(unloaded.walls).velocity, Vec3(0, 0, 0)) << "target and pressure are 0";
 }
 
-/// A wall without area and normal, as a closed mesh is, that is pushed against springs along x on either side.
+/// A wall without area and normal, such as a closed mesh, pressed against springs along x on both sides.
 TEST(Walls, ServoKeepsAForceWithoutAnArea) {
   for (const double force : {40.0, -40.0, 0.0}) {
     auto geometry = std::make_shared<Plate>();
@@ -370,7 +371,7 @@ TEST(Walls, ServoKeepsAForceWithoutAnArea) {
     Walls walls;
     walls.apply({{"ram", geometry, {.servo = ServoDescription{.axis = "x", .force = force, .max_velocity = 2}}}});
     step(walls, 1e-3);
-    EXPECT_EQ(view(walls).velocity.x(), force == 0 ? 0 : std::copysign(2, force)) << "closes while nothing touches";
+    EXPECT_EQ(view(walls).velocity.x(), force == 0 ? 0 : std::copysign(2, force)) << "closes without contact";
     const double stiffness = 1e4;
     const auto push = [&] { return -stiffness * walls.pose(0).shift.x(); };
     for (int n = 0; n < 2000; ++n) {
@@ -383,7 +384,7 @@ TEST(Walls, ServoKeepsAForceWithoutAnArea) {
   }
 }
 
-TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
+TEST(Walls, FollowersCopyOnlyTheirAxesInAnyOrder) {
   const auto behind = [](std::string leader, std::string axes, Vec3 own) {
     return MotionDescription{.velocity = own,
                              .follow = FollowDescription{.wall = std::move(leader), .axes = std::move(axes)}};
@@ -402,7 +403,7 @@ TEST(Walls, FollowersCopyOnlyTheirAxesWhateverTheirOrder) {
   EXPECT_NEAR(view(walls, 0).velocity.z(), sine(swing, 0.01) / 0.01, 1e-12);
 }
 
-TEST(Walls, SumsWhatBodiesDo) {
+TEST(Walls, SumsLoadsOfBodies) {
   Walls walls;
   walls.apply({plate({})});
   walls.add(0, {{1, 2, 30}, {1, 0, 0}, 5, 2});
@@ -410,12 +411,12 @@ TEST(Walls, SumsWhatBodiesDo) {
   EXPECT_EQ(view(walls).force, Vec3(2, 3, 40));
   EXPECT_EQ(view(walls).moment, Vec3(1, 1, 0));
   EXPECT_EQ(view(walls).pressure, 20) << "a lid pushed up is in compression";
-  EXPECT_EQ(view(walls).touches, 3u);
+  EXPECT_EQ(view(walls).contacts, 3u);
   EXPECT_EQ(walls.states()[0].stiffness, 11);
   walls.clear_forces();
   EXPECT_EQ(view(walls).force, Vec3::Zero());
   EXPECT_EQ(view(walls).moment, Vec3::Zero());
-  EXPECT_EQ(view(walls).touches, 0u);
+  EXPECT_EQ(view(walls).contacts, 0u);
   EXPECT_EQ(walls.states()[0].stiffness, 0);
 }
 
@@ -428,7 +429,7 @@ TEST(Walls, NewStageKeepsPosesAndStartsItsOwnRampAndPosition) {
   step(walls, 0.1);
   EXPECT_NEAR(view(walls, 1).position.x(), 1 + 0.025, 1e-15);
   EXPECT_NEAR(view(walls, 1).stage_position.x(), 0.025, 1e-15);
-  EXPECT_EQ(view(walls, 0).position, Vec3::Zero()) << "a wall that is new";
+  EXPECT_EQ(view(walls, 0).position, Vec3::Zero()) << "a new wall";
   walls.change({plate({.velocity = {4, 0, 0}, .ramp_time = 0.4})});
   step(walls, 0.1);
   EXPECT_NEAR(view(walls).stage_position.x(), 0.025 + 0.15, 1e-15) << "a change within the stage restarts nothing";
@@ -459,7 +460,7 @@ TEST(Walls, NewReferencePointMovesNothing) {
   EXPECT_EQ(view(walls).stage_position, Vec3::Zero());
 }
 
-TEST(Walls, RestoredWallsGoOnToTheSameBits) {
+TEST(Walls, RestoredWallsContinueIdentically) {
   std::vector<WallSetup> setups{
       plate({.velocity = {1, 0, 0},
              .spin = {0.1, 0.2, 0.3},
@@ -474,8 +475,8 @@ TEST(Walls, RestoredWallsGoOnToTheSameBits) {
   whole.change(setups);
   step(whole, 0.1);
   halved.apply(first);
-  restore_memory(halved, saved_memory(whole));
-  halved.change(setups);  // as of the increment of a ramp at which it stopped
+  restore_state(halved, saved_state(whole));
+  halved.change(setups);  // as at the increment of a ramp where it stopped
   for (int i = 0; i < 5; ++i) step(whole, 0.1), step(halved, 0.1);
   EXPECT_EQ(whole.pose(0).shift, halved.pose(0).shift);
   EXPECT_EQ(whole.pose(0).turn, halved.pose(0).turn);
@@ -483,15 +484,15 @@ TEST(Walls, RestoredWallsGoOnToTheSameBits) {
   EXPECT_EQ(view(whole).velocity, view(halved).velocity);
   try {
     Walls none;
-    restore_memory(halved, saved_memory(none));
+    restore_state(halved, saved_state(none));
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "a checkpoint with 0 walls, but the scene has 1; continue with the description that wrote it");
+                 "the checkpoint has 0 walls, but the description has 1; continue with the description that wrote it");
   }
 }
 
-TEST(Walls, SayWhichMotionCannotBe) {
+TEST(Walls, RejectInvalidMotions) {
   const ServoDescription servo{.axis = "z", .pressure = 1, .max_velocity = 1};
   const auto flat = [](double area, const Vec3& towards, const ServoDescription& how) -> std::vector<WallSetup> {
     auto geometry = std::make_shared<Plate>();
@@ -501,16 +502,16 @@ TEST(Walls, SayWhichMotionCannotBe) {
   };
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), servo)), "");
   EXPECT_EQ(complaint(flat(0, -Vec3::UnitZ(), servo)),
-            "wall \"lid\": found a servo's pressure on a geometry that has no area; allowed is one with an area (a "
-            "rectangle, or area where the geometry takes it), or a force in place of the pressure");
+            "wall \"lid\": found a servo pressure on a geometry without an area; allowed is a geometry with an area (a "
+            "rectangle, or its parameter area), or a force instead of the pressure");
   EXPECT_EQ(
       complaint(flat(1, Vec3::UnitX(), servo)),
-      "wall \"lid\": found a servo's pressure along z, to which the wall's normal is perpendicular; allowed is an "
-      "axis that the normal has a part of, or a force in place of the pressure");
+      "wall \"lid\": found a servo pressure along z, perpendicular to the normal of the wall; allowed is an axis along "
+      "which the normal has a component, or a force instead of the pressure");
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "z", .pressure = 1})),
-            "wall \"lid\": a servo needs a max_velocity above 0");
+            "wall \"lid\": a servo needs max_velocity above 0");
   EXPECT_EQ(complaint(flat(1, -Vec3::UnitZ(), {.axis = "xz", .pressure = 1, .max_velocity = 1})),
-            "wall \"lid\": a servo along \"xz\"; it acts along one axis");
+            "wall \"lid\": a servo along \"xz\"; allowed is one axis");
   EXPECT_EQ(complaint({plate({.velocity = {0, 0, 1}, .servo = servo})}),
             "wall \"lid\": two motions along z; choose velocity and oscillation, or one of servo, follow and free");
   EXPECT_EQ(complaint({plate(
@@ -522,16 +523,16 @@ TEST(Walls, SayWhichMotionCannotBe) {
             "");
   EXPECT_EQ(complaint(flat(0, Vec3::Zero(), {.axis = "z", .force = -3, .max_velocity = 1})), "");
   EXPECT_EQ(complaint(flat(1, Vec3::UnitZ(), {.axis = "z", .max_velocity = 1})),
-            "wall \"lid\": a servo keeps a pressure or a force, one of them");
+            "wall \"lid\": a servo needs either a pressure or a force");
   EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "z"}})}),
             "wall \"lid\": a free wall needs a mass above 0");
   EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "w", .mass = 1}})}),
-            "wall \"lid\": free along \"w\"; allowed are x, y and z");
+            "wall \"lid\": free along \"w\"; allowed is x, y or z");
   EXPECT_EQ(complaint({plate({.follow = FollowDescription{.wall = "base"}})}),
-            "wall \"lid\": follows the wall \"base\", which there is not");
+            "wall \"lid\": follows the wall \"base\", which does not exist");
   EXPECT_EQ(complaint({plate({.follow = FollowDescription{.wall = "b"}}, "a"),
                        plate({.follow = FollowDescription{.wall = "a"}}, "b")}),
-            "wall \"a\": follows itself, directly or by way of others");
+            "wall \"a\": follows itself, directly or through other walls");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// checkpoint.h5: that nothing but what was written comes back.
+// checkpoint.h5: damaged or foreign files are never read.
 #include "output/checkpoint.hpp"
 
 #include <gmock/gmock.h>
@@ -25,14 +25,14 @@ class CheckpointFile : public testing::Test {
                           {"output", {{"checkpoint_every", 600}}}};
     facts_.plugins = {{"probe", "strain", "1.0.0", folder_ / "strain.so", build_tag()}};
     checkpoint_ = {"shear", 0.25, 1000, {}};
-    for (int i = 0; i < 3'000'000; ++i) checkpoint_.memory.push_back(static_cast<std::byte>(i * i % 251));
+    for (int i = 0; i < 3'000'000; ++i) checkpoint_.state.push_back(static_cast<std::byte>(i * i % 251));
     write_checkpoint(path_, facts_, checkpoint_);
   }
   template <class Kind>
   std::string refusal() const {
     return error_of<Kind>([this] { read_checkpoint(path_, facts_); });
   }
-  /// One with other facts, as another build would have written it.
+  /// Writes one with other facts, as from another build.
   void rewrite(const std::string& facts, std::uint64_t format = 2) const {
     hdf5::File file(path_, hdf5::Mode::replace);
     file.set_attribute("format", format);
@@ -40,7 +40,7 @@ class CheckpointFile : public testing::Test {
     file.set_attribute("time", 0.25);
     file.set_attribute("step", std::uint64_t{1000});
     file.write_checked("facts", std::as_bytes(std::span(facts)));
-    file.write_checked("memory", checkpoint_.memory);
+    file.write_checked("state", checkpoint_.state);
     file.close();
   }
   std::string facts_text() const {
@@ -54,18 +54,18 @@ class CheckpointFile : public testing::Test {
   Checkpoint checkpoint_;
 };
 
-TEST_F(CheckpointFile, GivesBackWhatWasWritten) {
+TEST_F(CheckpointFile, ReadsBackWhatWasWritten) {
   const Checkpoint back = read_checkpoint(path_, facts_);
   EXPECT_EQ(back.stage, "shear");
   EXPECT_EQ(back.time, 0.25);
   EXPECT_EQ(back.step, 1000u);
-  EXPECT_TRUE(back.memory == checkpoint_.memory);
+  EXPECT_TRUE(back.state == checkpoint_.state);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "checkpoint.h5.part"));
   facts_.description["output"]["checkpoint_every"] = 5;
-  EXPECT_NO_THROW(read_checkpoint(path_, facts_)) << "how often it is written is of no consequence";
+  EXPECT_NO_THROW(read_checkpoint(path_, facts_)) << "the interval of checkpoints does not matter";
 }
 
-TEST_F(CheckpointFile, IsReplacedByAWholeOneOnly) {
+TEST_F(CheckpointFile, IsReplacedOnlyByACompleteOne) {
   std::filesystem::create_directory(folder_ / "checkpoint.h5.part");  // so that it cannot be written
   checkpoint_.step = 2000;
   EXPECT_NE(error_of<FileError>([this] { write_checkpoint(path_, facts_, checkpoint_); }), "");
@@ -78,13 +78,13 @@ TEST_F(CheckpointFile, OfAnotherDescriptionIsRefused) {
   EXPECT_THAT(refusal<Error>(),
               AllOf(HasSubstr("checkpoint.h5: is of another description"),
                     HasSubstr("\n  /walls/lid/pressure: found 200000.0, allowed 100000.0"),
-                    HasSubstr("\n  /seed: found 3, allowed nothing"), HasSubstr("begin anew (--overwrite)")));
+                    HasSubstr("\n  /seed: found 3, allowed nothing"), HasSubstr("start again (--overwrite)")));
 }
 
 TEST_F(CheckpointFile, OfAnotherBuildOfAPluginIsRefused) {
   std::ofstream(folder_ / "strain.so", std::ios::app) << ", built again";
-  EXPECT_THAT(refusal<PluginError>(),
-              AllOf(HasSubstr("plugins were built otherwise"), HasSubstr("/probe strain/build/checksum: found ")));
+  EXPECT_THAT(refusal<PluginError>(), AllOf(HasSubstr("written with other builds of plugins"),
+                                            HasSubstr("/probe strain/build/checksum: found ")));
   facts_.plugins[0].version = "1.1.0";
   EXPECT_THAT(refusal<PluginError>(), HasSubstr("/probe strain/version: found \"1.1.0\", allowed \"1.0.0\""));
   facts_.plugins.clear();
@@ -101,12 +101,12 @@ TEST_F(CheckpointFile, OfAnotherGritIsRefused) {
   rewrite(facts_text(), 1);
   EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5: found format 1, allowed 2"));
   rewrite("{");
-  EXPECT_THAT(refusal<FileError>(), HasSubstr("is no JSON"));
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("its facts are not JSON"));
 }
 
 TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
   const auto size = std::filesystem::file_size(path_);
-  for (const double place : {0.3, 0.6, 0.9}) {  // in the memory: it is nearly all of the file
+  for (const double place : {0.3, 0.6, 0.9}) {  // in the state, which is nearly all of the file
     std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
     const auto at = static_cast<std::streamoff>(place * static_cast<double>(size));
     file.seekg(at);
@@ -114,13 +114,13 @@ TEST_F(CheckpointFile, ThatIsDamagedIsRefused) {
     file.seekp(at);
     file.put(byte);
     file.close();
-    EXPECT_THAT(refusal<FileError>(), AllOf(HasSubstr("checkpoint.h5/memory"), HasSubstr("no whole checkpoint")));
+    EXPECT_THAT(refusal<FileError>(), AllOf(HasSubstr("checkpoint.h5/state"), HasSubstr("not a complete checkpoint")));
     write_checkpoint(path_, facts_, checkpoint_);
   }
   std::filesystem::resize_file(path_, size / 2);
-  EXPECT_THAT(refusal<FileError>(), HasSubstr("no whole checkpoint"));
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("not a complete checkpoint"));
   std::ofstream(path_) << "not a checkpoint";
-  EXPECT_THAT(refusal<FileError>(), HasSubstr("no whole checkpoint"));
+  EXPECT_THAT(refusal<FileError>(), HasSubstr("not a complete checkpoint"));
   std::filesystem::remove(path_);
   EXPECT_THAT(refusal<FileError>(), HasSubstr("checkpoint.h5"));
 }

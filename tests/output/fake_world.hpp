@@ -1,4 +1,4 @@
-// Worlds whose numbers tell a body from another.
+// Worlds whose values identify each body.
 #pragma once
 
 #include "grit/testing/fake_world.hpp"
@@ -8,7 +8,7 @@ namespace grit {
 struct NumberedWorld : FakeWorld {
   NumberedWorld() { stage_name = "shear"; }
 
-  /// A grain whose velocity and spin can be told from its id.
+  /// A grain whose velocity and spin follow from its id.
   void add(std::uint32_t number, const Vec3& centre, double radius) {
     const double n = number;
     const auto index = FakeWorld::add(centre, radius, {n, n + 0.25, n + 0.5}, {-n, 2 * n, 3 * n});

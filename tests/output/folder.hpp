@@ -1,4 +1,4 @@
-// A folder of a test, and what errors say.
+// A test's folder, and error messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace grit {
 
 using Folder = OwnFolder;
 
-/// What the error of type E says that `act` throws.
+/// The message of the error of type E that `act` throws.
 template <class E, class Act>
 std::string error_of(Act act) {
   try {

@@ -9,7 +9,7 @@
 namespace grit::folder_lock_tests {
 namespace {
 
-TEST(FolderLocks, AreForOneAtATime) {
+TEST(FolderLocks, AreHeldByOneAtATime) {
   const OwnFolder folder;
   std::optional<FolderLock> first(folder.path());
   EXPECT_TRUE(first->held());
@@ -19,7 +19,7 @@ TEST(FolderLocks, AreForOneAtATime) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(FolderLocks, LastAsLongAsWhatWasStartedMeanwhile) {
+TEST(FolderLocks, LastAsLongAsChildProcesses) {
   const OwnFolder folder;
   std::optional<FolderLock> lock(folder.path());
   std::optional<Program> started(std::in_place, std::vector<std::string>{"sleep", "1000"}, folder.path());

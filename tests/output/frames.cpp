@@ -33,8 +33,8 @@ NumberedWorld three_grains() {
   world.wall[1].pressure = 2e5;
   const Vec3 along(-1, 0, 0), force(1, 2, 3);
   const Contact pair{0, 2, false, 0, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
-  const Contact touch{1, 1, true, 23, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
-  world.contact = {pair, touch};
+  const Contact contact{1, 1, true, 23, 0.2 * along, along, force, Vec3::Zero(), 4, 0.01};
+  world.contact = {pair, contact};
   return world;
 }
 
@@ -92,11 +92,11 @@ TEST(Frames, PlaceContactsWallsAndFields) {
 
   const std::vector<FieldGroup> ragged{{"chains", {{"strength", "N", "", 3, {1, 2, 3, 4}}}}};
   EXPECT_THAT(error_of<PluginError>([&] { Frames(folder.path(), lid).write(three_grains(), ragged); }),
-              HasSubstr("probe 'chains': its field 'strength' has 4 numbers, which are not whole rows of 3"));
+              HasSubstr("probe 'chains': found 4 values in field 'strength'; allowed are whole rows of 3"));
   EXPECT_FALSE(std::filesystem::exists(folder / "frames/000000.h5")) << "a frame that failed is no frame";
 }
 
-TEST(Frames, DrawWallsAsTheirStageHasThem) {
+TEST(Frames, HaveTheWallShapesOfTheirStage) {
   const Folder folder;
   std::vector<WallShape> shapes = lid;
   shapes.push_back({"lid", {Vec3(0, 0, -7), Vec3(1, 0, -7), Vec3(0, 1, -7)}, "open"});
@@ -111,7 +111,7 @@ TEST(Frames, DrawWallsAsTheirStageHasThem) {
   }
 }
 
-TEST(Frames, TurnWallsAboutTheirReferencePoint) {
+TEST(Frames, RotateWallsAboutTheirReferencePoint) {
   const Folder folder;
   auto world = three_grains();
   Mat3 quarter;
@@ -122,8 +122,8 @@ TEST(Frames, TurnWallsAboutTheirReferencePoint) {
   EXPECT_THAT(file.group("walls").dataset("lid").read<double>(), ElementsAre(1, -1, 0.5, 1, 0, 0.5, 0, -1, 0.5));
 }
 
-// A square of four triangles with their tips in its middle; a ball rests on the second and one on the last.
-TEST(Frames, TellTheForceOnEachFacetOfAMesh) {
+// A square of four triangles that meet at its centre; one ball rests on the second triangle and one on the last.
+TEST(Frames, HaveTheForceOnEachFacetOfAMesh) {
   const std::vector<Vec3> corner{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   std::vector<Vec3> facets;
   for (std::size_t i = 0; i < 4; ++i) facets.insert(facets.end(), {Vec3::Zero(), corner[i], corner[(i + 1) % 4]});
@@ -158,7 +158,7 @@ TEST(Frames, TellTheForceOnEachFacetOfAMesh) {
   EXPECT_LE((on_facet[3] + Vec3(0, 0, g * trial.mass(1))).norm(), 1e-9 * g * trial.mass(1));
 }
 
-/// Whether the data item names a dataset of the stated dimensions.
+/// Whether the data item names a dataset with the given dimensions.
 void check_item(const boost::property_tree::ptree& item, const std::filesystem::path& folder) {
   const auto text = item.get_value<std::string>();
   const auto colon = text.find(':');
@@ -169,7 +169,7 @@ void check_item(const boost::property_tree::ptree& item, const std::filesystem::
   EXPECT_EQ(file.dataset(text.substr(colon + 2)).shape(), stated) << text;
 }
 
-TEST(Frames, IndexNamesWhatIsThere) {
+TEST(Frames, IndexNamesAllDatasets) {
   const Folder folder;
   Frames frames(folder.path(), lid);
   auto world = three_grains();
@@ -207,7 +207,7 @@ TEST(Frames, IndexNamesWhatIsThere) {
                                  Pair("lid", ElementsAre(2, 2))));
 }
 
-TEST(Frames, GoOnFromACount) {
+TEST(Frames, ContinueFromACount) {
   const Folder folder;
   auto world = three_grains();
   {

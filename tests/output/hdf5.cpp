@@ -59,7 +59,7 @@ TEST(Hdf5, GrowsAndShortens) {
   EXPECT_THAT(rows.read<double>(), ElementsAre(0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 40, 41));
 }
 
-TEST(Hdf5, SaysWhatIsWrongWithAFile) {
+TEST(Hdf5, ReportsFaultsOfAFile) {
   const Folder folder;
   EXPECT_THAT(error_of<FileError>([&] { hdf5::File(folder / "none.h5", hdf5::Mode::read); }),
               testing::AllOf(HasSubstr("none.h5: cannot read: "), HasSubstr("No such file or directory")));
@@ -81,8 +81,8 @@ TEST(Hdf5, SaysWhatIsWrongWithAFile) {
   EXPECT_THAT(error_of<FileError>([&] { rows.append(std::span<const double>(three)); }), HasSubstr("a row has 2"));
 }
 
-// A limit on the size of files stands in for a full disk: write() fails all the same.
-TEST(Hdf5, SaysThatTheDiskIsFull) {
+// A limit on file size replaces a full disk: write() fails in the same way.
+TEST(Hdf5, ReportsAFullDisk) {
   const Folder folder;
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);

@@ -19,7 +19,7 @@ using testing::SizeIs;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Cells of 1 mm side by side, of these values.
+/// Cells of 1 mm side by side with these values.
 MapPicture row_of(const std::vector<double>& values, bool about_zero) {
   MapPicture picture;
   picture.panels = {{"value", about_zero}};
@@ -29,7 +29,7 @@ MapPicture row_of(const std::vector<double>& values, bool about_zero) {
   return picture;
 }
 
-/// Colours of the tiles, and where they are.
+/// Colours and rectangles of the tiles.
 struct Tile {
   std::string colour;
   double x, y, wide, high;
@@ -50,7 +50,7 @@ std::set<std::string> colours(const MapPicture& picture) {
 
 constexpr const char *white = "#f6f6f4", *red = "#a01228", *blue = "#144e8c", *dark = "#440154", *bright = "#fde725";
 
-// Whether zero parts a field is the field's own: what an instant has of it changes nothing.
+// The palette is a property of the field, whatever the values at an instant.
 TEST(MapPicture, HasThePaletteOfItsFieldWhateverTheNumbers) {
   EXPECT_EQ(colours(row_of({-2, 0, 2}, true)), (std::set<std::string>{blue, white, red}));
   EXPECT_EQ(colours(row_of({0, 2}, true)), (std::set<std::string>{white, red})) << "no negative number there";
@@ -74,7 +74,7 @@ TEST(MapPicture, HasAxesWithUnitsAndWalls) {
   const auto all = tiles(picture);
   const auto lowest = std::ranges::max_element(all, {}, [](const Tile& tile) { return tile.y + tile.high; });
   EXPECT_NEAR(number_of(walls[0], "y1"), lowest->y + lowest->high, 1.5) << "where the cells end";
-  // A tick is where its number says: 0 is the middle of the first cell, 3 that of the last.
+  // Ticks are at their values: 0 is the centre of the first cell, 3 that of the last.
   const auto texts = elements(svg, "text", "m");
   const auto place = [&](const std::string& number) {
     for (const auto& text : texts)
@@ -95,7 +95,7 @@ TEST(MapPicture, HasEnoughTicksWhereStepsFallBadly) {
   EXPECT_GE(upwards, 8u);
 }
 
-/// By pixel of the box of all tiles, how many cover it.
+/// Number of tiles at each pixel of their bounding box.
 struct Cover {
   int wide, high;
   std::vector<int> count;
@@ -118,7 +118,7 @@ Cover cover_of(const std::vector<Tile>& all) {
   return cover;
 }
 
-// Cells that have moved with what they are of: rows slid over each other, rows and columns drawn apart.
+// Cells that move with the material: rows shifted relative to each other, rows and columns moved apart.
 TEST(MapPicture, HasNoCracksBetweenCellsThatMoved) {
   MapPicture picture;
   picture.panels = {{"strain", true}};
@@ -134,7 +134,7 @@ TEST(MapPicture, HasNoCracksBetweenCellsThatMoved) {
     for (int column = 0; column < cover.wide; ++column) {
       const int here = cover.at(row, column);
       twice += here > 1;
-      // Well within the sheared sheet, by the row of cells that is the nearest.
+      // Well within the sheared sheet, relative to the nearest row of cells.
       const double z = 1.2 * 11 + 0.5 - (row + 0.5) / scale, k = std::clamp(std::round(z / 1.2), 0.0, 11.0),
                    x = (column + 0.5) / scale - 0.5 - 0.1 * k;
       if (x > 0.5 && x < 1.3 * 19 - 0.5) seams += here == 0;
@@ -143,7 +143,7 @@ TEST(MapPicture, HasNoCracksBetweenCellsThatMoved) {
   EXPECT_EQ(twice, 0);
 }
 
-// Columns that have slid past each other by half a cell, and rows and columns that have moved apart.
+// Columns shifted relative to each other by half a cell; rows and columns moved apart.
 TEST(MapPicture, HasNoHolesWhereGapsCross) {
   MapPicture picture;
   picture.panels = {{"strain", true}};
@@ -159,14 +159,14 @@ TEST(MapPicture, HasNoHolesWhereGapsCross) {
       const int here = cover.at(row, column);
       const double x = (column + 0.5) / scale, z = (cover.high - row - 0.5) / scale;  // from the corner of all
       if (z > 0.52 && z < 1.6 * 2 + 0.98) holes += here == 0;
-      // No more than they reach, but for the gaps: the first column ends below, the second begins above.
+      // No further than the cells, except in gaps: the first column ends below, the second begins above.
       if ((x < 0.98 && z > 1.6 * 2 + 1.02) || (x > 1.62 && x < 2.58 && z < 0.48)) beyond += here > 0;
     }
   EXPECT_EQ(holes, 0);
   EXPECT_EQ(beyond, 0);
 }
 
-TEST(MapPicture, LeavesTheRimOfAPlaceWithoutACellAsItIs) {
+TEST(MapPicture, KeepsTheEdgesOfEmptyRegions) {
   MapPicture picture;
   picture.panels = {{"value", false}};
   for (int i = 0; i < 3; ++i)
@@ -177,7 +177,7 @@ TEST(MapPicture, LeavesTheRimOfAPlaceWithoutACellAsItIs) {
   EXPECT_NEAR(area / (wide * wide), 8, 0.05);
 }
 
-/// Each panel's title and where its frame begins and ends.
+/// Title and frame of each panel.
 struct PanelPlace {
   double title, left, top, right;
 };
@@ -192,7 +192,7 @@ std::vector<PanelPlace> panels_of(const MapPicture& picture) {
   return all;
 }
 
-/// Cells of 1 mm in so many rows and columns, with so many values.
+/// Cells of 1 mm in rows and columns, each with so many values.
 MapPicture sheet_of(int columns, int rows, std::size_t values) {
   MapPicture picture;
   for (std::size_t k = 0; k < values; ++k) picture.panels.push_back({"stress " + std::to_string(k), true});
@@ -207,7 +207,7 @@ TEST(MapPicture, StandsSideBySideWhereItIsTallOrOfMany) {
   const auto narrow = panels_of(sheet_of(4, 9, 3));
   ASSERT_THAT(narrow, SizeIs(3));
   EXPECT_EQ(narrow[0].top, narrow[2].top);
-  EXPECT_GT(narrow[1].left, narrow[0].right + 92) << "with its colours between";
+  EXPECT_GT(narrow[1].left, narrow[0].right + 92) << "with its colour bar in between";
   const auto wide = panels_of(sheet_of(20, 8, 3));
   EXPECT_EQ(wide[0].left, wide[2].left) << "below each other";
   const auto tensor = panels_of(sheet_of(20, 8, 9));
@@ -243,7 +243,7 @@ TEST(MapPicture, HasNoWallOnItsFrame) {
   EXPECT_GT(number_of(wall, "x1"), number_of(frame, "x") + 3);
 }
 
-TEST(MapPicture, LeavesPlacesWithoutCellsFree) {
+TEST(MapPicture, LeavesRegionsWithoutCellsEmpty) {
   MapPicture picture = row_of({1, 2}, false);
   picture.cells[1].x = 3e-3;  // two cells are missing between
   const auto all = tiles(picture);
@@ -255,7 +255,7 @@ TEST(MapPicture, LeavesPlacesWithoutCellsFree) {
   EXPECT_EQ(closed[0].x + closed[0].wide, closed[1].x);
 }
 
-// What has gone wrong hides nothing of the rest.
+// Invalid values do not affect the rest.
 TEST(MapPicture, CopesWithHugeNumbers) {
   const double huge = 1e300;
   for (const bool about_zero : {false, true}) {
@@ -263,7 +263,7 @@ TEST(MapPicture, CopesWithHugeNumbers) {
     picture.walls = {{-10, 0, 10, 0}};
     const auto whole = tiles(picture);
     picture.walls = {{-huge, 0, huge, 0}, {-1e25, 0, 1e25, 0}};
-    picture.cells[4].values = {-huge};  // of the colour of its neighbour before
+    picture.cells[4].values = {-huge};  // had the colour of its neighbour
     picture.cells.push_back({huge, 0, 1e-3, 1e-3, {0}}), picture.cells.push_back({0, -1e20, 1e-3, 1e-3, {0}});
     picture.cells.push_back({2e-3, 0, huge, 1e-3, {0}}), picture.cells.push_back({2e-3, 0, 1e-3, 1e18, {0}});
     const auto seen = tiles(picture);
@@ -275,7 +275,7 @@ TEST(MapPicture, CopesWithHugeNumbers) {
     const std::string text = draw(picture);
     EXPECT_THAT(text, testing::Not(testing::AnyOf(HasSubstr("e+"), HasSubstr("inf"), HasSubstr("nan"))));
     EXPECT_THAT(elements(parsed(text), "line", "wall"), SizeIs(1));
-    EXPECT_THAT(text, HasSubstr("4 of the cells far from all others, not shown"));
+    EXPECT_THAT(text, HasSubstr("4 outlying cells not shown"));
   }
   for (const double all : {huge, 1e29}) {
     MapPicture picture = row_of({all, -all, all}, false);

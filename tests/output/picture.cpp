@@ -38,7 +38,7 @@ TEST(Scale, TicksAreMultiplesOfOneTwoOrFive) {
   EXPECT_THAT(ticks(3, 3, 5), ElementsAre(3));
 }
 
-// Ranges of all sizes, aligned with steps and not, about zero and far from it.
+// Ranges of all sizes, aligned with steps and not, around zero and far from it.
 TEST(Scale, AxesHaveFourToEightTicks) {
   for (double span = 1e-6; span < 1e6; span *= 1.07)
     for (const double from : {0.0, -0.37, 0.93, -1.0, 5.77})
@@ -70,7 +70,7 @@ TEST(Scale, AxesAreAsFineAsNumbersFit) {
   EXPECT_EQ(axis_ticks(0, 7, AxisEnds::kept, [](const AxisTicks&) { return false; }).marks.size(), 4u) << "0 2 4 6";
 }
 
-// A range as wide as the rounding of its ends has no steps to count.
+// A range as narrow as the rounding error of its ends has no steps.
 TEST(Scale, AxesEndWhereNumbersDo) {
   EXPECT_LE(axis_ticks(1e10, 1e10 + 4e-6, AxisEnds::whole_steps).marks.size(), 8u);
   for (const AxisEnds ends : {AxisEnds::kept, AxisEnds::whole_steps}) {
@@ -116,7 +116,7 @@ TEST(Scale, UnitsAreReadable) {
   EXPECT_EQ(readable("N m", 0).unit, "N m");
 }
 
-TEST(Scale, UnitsAreWrittenAsPeopleDo) {
+TEST(Scale, UnitsAreWrittenForDisplay) {
   const std::pair<const char*, const char*> all[] = {{"m s-1", "m/s"},
                                                      {"m/s", "m/s"},
                                                      {"m.s-1", "m/s"},
@@ -137,10 +137,10 @@ TEST(Scale, UnitsAreWrittenAsPeopleDo) {
                                                      {"J m0", "J"}};
   for (const auto& [unit, written] : all) EXPECT_EQ(written_unit(unit), written) << unit;
   for (const char* other : {"100 Pa", "m**2", "m2s", "m//s", "m/", "m-", "degree from here-1-2"})
-    EXPECT_EQ(written_unit(other), other) << "not understood, and so left alone";
+    EXPECT_EQ(written_unit(other), other) << "not understood, and therefore unchanged";
 }
 
-TEST(Scale, NamesAreWrittenAsPeopleDo) {
+TEST(Scale, NamesAreWrittenForDisplay) {
   EXPECT_EQ(spelled("shear_stress"), "shear stress");
   EXPECT_EQ(spelled("sigma_1"), "σ₁");
   EXPECT_EQ(spelled("sigma_12_left"), "σ₁₂ left");
@@ -148,7 +148,7 @@ TEST(Scale, NamesAreWrittenAsPeopleDo) {
   EXPECT_EQ(spelled("sigma_left"), "σ left");
   EXPECT_EQ(spelled("gradient_strip_1"), "gradient strip 1");
   EXPECT_EQ(spelled("sigmas"), "sigmas");
-  EXPECT_EQ(channel_label("slip", "share"), "slip: share");
+  EXPECT_EQ(channel_label("slip", "fraction"), "slip: fraction");
   EXPECT_EQ(channel_label("test", "sigma_1"), "σ₁");
   EXPECT_EQ(channel_label("packing", "time"), "time");
   EXPECT_EQ(with_symbols("asin((sigma_1 - sigma_3) / a_1), mu_eff: not mu, nor shear_stress"),
@@ -173,7 +173,7 @@ std::vector<double> ys_of(const SvgElement& polyline) {
   return ys;
 }
 
-TEST(Picture, HasACurveARunAndMarksThePeak) {
+TEST(Picture, HasACurvePerRunAndMarksThePeak) {
   Picture picture{.title = "dense & loose <sand>", .facts = "facts", .panels = {}, .grains = {}};
   picture.panels.push_back({{"shear displacement", "m"},
                             {"stress ratio"},
@@ -221,7 +221,7 @@ TEST(Picture, HasTicksOnBothAxesThatDoNotTouch) {
     for (std::size_t i = 0; i < panels; ++i)
       picture.panels.push_back({{"strain"}, {"force", "N"}, {{"", {0, 1.7e-3, 3.1e-3}, {0, 1234, 987}}}});
     const auto svg = parsed(draw(picture));
-    // Numbers below the axes come row by row of each panel: those of one panel rise.
+    // Numbers below the axes are in rows of panels: those of one panel increase.
     std::size_t ticks = 0;
     double last = -1, row = -1;
     for (const auto& text : elements(svg, "text", "m")) {
@@ -348,7 +348,7 @@ TEST(Picture, LeavesNoRoomForWallsThatAreFarAway) {
     EXPECT_EQ(with[i].get<double>("<xmlattr>.r"), without[i].get<double>("<xmlattr>.r"));
 }
 
-TEST(Picture, HasAColourALayer) {
+TEST(Picture, HasAColourPerLayer) {
   GrainView view;
   view.value = {"layer", "1"};
   view.symmetric = false, view.layers = 3;
@@ -365,7 +365,7 @@ TEST(Picture, HasAColourALayer) {
                              testing::Not(HasSubstr(".c3{fill"))));
 }
 
-/// As a tall narrow silo is.
+/// A view like that of a tall narrow silo.
 GrainView column_of_grains() {
   GrainView view;
   view.value = {"displacement", "m"}, view.note = "x +";
@@ -384,7 +384,7 @@ TEST(Picture, FitsItsFrameToTheGrains) {
     right = std::max(right, number_of(disc, "cx") + number_of(disc, "r"));
   for (const auto& piece : elements(svg, "rect", "c0")) bar = std::min(bar, number_of(piece, "x"));
   EXPECT_GT(bar, right + 10);
-  EXPECT_LT(bar, right + 40) << "colours are beside what they are of";
+  EXPECT_LT(bar, right + 40) << "the colour bar is beside the view";
   for (const auto& text : elements(svg, "text", "axis")) {
     EXPECT_EQ(text.data(), "displacement [mm]");
     EXPECT_GE(number_of(text, "x"), bar);
@@ -400,7 +400,7 @@ TEST(Picture, HasNoWordsOverTheLengthOfANarrowView) {
     if (text.data().starts_with("x →")) EXPECT_GT(number_of(text, "y"), bar + 10) << "in a line of its own";
 }
 
-TEST(Picture, HasNoRoomForColoursThatThereAreNot) {
+TEST(Picture, HasNoSpaceForAMissingColourBar) {
   GrainView view;
   for (int i = 0; i < 10; ++i) view.discs.push_back({1.0 * i, 0, 0.5, nan});
   const auto svg = parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view}));
@@ -451,7 +451,7 @@ TEST(Picture, CopesWithNothing) {
   EXPECT_THAT(draw(picture), testing::Not(HasSubstr("inf")));
 }
 
-// What has gone wrong hides nothing of the rest, and leaves no number that a browser cannot take.
+// Invalid values do not affect the rest, and no number is written that a browser cannot read.
 TEST(Picture, CopesWithHugeNumbers) {
   const double huge = 1e300;
   Curve curve{"run", {}, {}};
@@ -483,7 +483,7 @@ TEST(Picture, CopesWithHugeNumbers) {
   EXPECT_GT(number_of(wall(strayed, 1), "x2"), 900);
 }
 
-TEST(Picture, TellsAllHugeNumbersFromNone) {
+TEST(Picture, CopesWithOnlyHugeNumbers) {
   const std::vector<double> most(3, 1.7e308), large{1e29, 1e29, 1e29};
   for (const auto& numbers : {most, large}) {
     GrainView view;
@@ -499,7 +499,7 @@ TEST(Scale, TicksEndWhereNumbersHaveNoDigitsLeft) {
   EXPECT_THAT(ticks(-1.7e308, 1.7e308, 7), ElementsAre(-1.7e308));
 }
 
-TEST(GrainView, LeavesOutWhatIsFarFromAllOthers) {
+TEST(GrainView, OmitsOutliers) {
   NumberedWorld world;
   for (std::uint32_t i = 0; i <= 9; ++i) world.add(i, {0.1 * i, i / 9.0, 0}, 0.01);
   const auto whole = grain_view(world, {}, "xz", "speed");
@@ -511,12 +511,12 @@ TEST(GrainView, LeavesOutWhatIsFarFromAllOthers) {
   ASSERT_EQ(seen.discs.size(), whole.discs.size());
   for (std::size_t i = 0; i < seen.discs.size(); ++i) EXPECT_EQ(seen.discs[i].x, whole.discs[i].x);
   EXPECT_THAT(draw({.title = "", .facts = "10 grains", .panels = {}, .grains = seen}),
-              HasSubstr("10 grains  ·  4 far from all others, not shown"));
+              HasSubstr("10 grains  ·  4 outliers not shown"));
   world.add(14, {0.5, 0.5, 1.5}, 1.4);
   EXPECT_EQ(grain_view(world, {}, "xz", "speed").left_out, 4u) << "large, and on top of the others";
 }
 
-TEST(GrainView, LooksAlongTheAxisAndCountsClockwise) {
+TEST(GrainView, IsSeenAlongTheAxisWithClockwiseRotationsPositive) {
   NumberedWorld world;
   world.add(1, {1, 0, 3}, 0.1);
   world.rotation = {Vec3(0.1, 0.2, 0.3)};
@@ -528,8 +528,8 @@ TEST(GrainView, LooksAlongTheAxisAndCountsClockwise) {
   EXPECT_THAT((std::array{side.x, side.y, side.value}), ElementsAre(0, 3, -0.1));
   world.rotation.clear();
   EXPECT_TRUE(std::isnan(grain_view(world, {}, "xz", "rotation").discs.at(0).value));
-  EXPECT_THAT(error_of<Error>([&] { grain_view(world, {}, "zx", "rotation"); }), HasSubstr("there is no view 'zx'"));
-  EXPECT_THAT(error_of<Error>([&] { grain_view(world, {}, "xz", "age"); }), HasSubstr("there is no color 'age'"));
+  EXPECT_THAT(error_of<Error>([&] { grain_view(world, {}, "zx", "rotation"); }), HasSubstr("found the view 'zx'"));
+  EXPECT_THAT(error_of<Error>([&] { grain_view(world, {}, "xz", "age"); }), HasSubstr("found the color 'age'"));
 }
 
 TEST(GrainView, TakesTheMiddleThirdBackToFront) {

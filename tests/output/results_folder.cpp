@@ -7,10 +7,10 @@
 #include <optional>
 #include <sstream>
 
+#include "bodies/packing_file.hpp"
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
-#include "bodies/packing_file.hpp"
 
 namespace grit::results_folder_tests {
 namespace {
@@ -151,7 +151,7 @@ TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
   std::ofstream(folder / "run/notes.txt") << "mine";
   std::ofstream(folder / "run/checkpoint.h5") << "old";
   EXPECT_THAT(error_of<FileError>([&] { ResultsFolder(options(folder / "run")); }),
-              AllOf(HasSubstr("run: holds a run already (run.json is there)"), HasSubstr("choose another folder")));
+              AllOf(HasSubstr("run: holds a run already (run.json)"), HasSubstr("choose another folder")));
   auto again = options(folder / "run");
   again.existing = Existing::overwrite;
   ResultsFolder results(again);
@@ -170,7 +170,7 @@ TEST(ResultsFolder, IsOfOneRunAtATime) {
   for (const Existing existing : {Existing::refuse, Existing::overwrite, Existing::resume}) {
     second.existing = existing;
     EXPECT_THAT(error_of<FileError>([&] { ResultsFolder results(second); }),
-                HasSubstr("run: another run writes there now; wait for it, or choose another folder"));
+                HasSubstr("run: another run is writing there; wait for it, or choose another folder"));
   }
   EXPECT_EQ(text_of(folder / "run/run.json"), before);
   EXPECT_TRUE(std::filesystem::exists(folder / "run/series.h5"));
@@ -178,7 +178,7 @@ TEST(ResultsFolder, IsOfOneRunAtATime) {
   EXPECT_NO_THROW(ResultsFolder results(second));
 }
 
-TEST(ResultsFolder, GoesOnWithARun) {
+TEST(ResultsFolder, ContinuesAResumedRun) {
   const Folder folder;
   auto world = world_of_two();
   std::vector<std::byte> extent;
@@ -189,14 +189,14 @@ TEST(ResultsFolder, GoesOnWithARun) {
       sample(results, world, 0.001 * static_cast<double>(world.steps), 0.5);
       results.frame(world, {});
       results.stage_ended(world, "step " + std::to_string(world.steps));
-      if (world.steps == 20) results.flush(), extent = saved_memory(results);
+      if (world.steps == 20) results.flush(), extent = saved_state(results);
     }
     results.checkpoint({"stage", 0, 20, {}});
   }
   auto more = options(folder / "run");
   more.existing = Existing::resume;
   ResultsFolder results(more);
-  restore_memory(results, extent);
+  restore_state(results, extent);
   world.steps = 20;
   results.begin(world, probes);
   world.steps = 21;
@@ -208,7 +208,7 @@ TEST(ResultsFolder, GoesOnWithARun) {
   EXPECT_THAT(series.group("test").dataset("step").read<int>(), ElementsAre(10, 20, 21));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/frames/000002.h5"));
   EXPECT_TRUE(std::filesystem::exists(folder / "run/frames/000001.h5"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5")) << "of a run that is done nobody needs it";
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5")) << "it is not needed after the end of the run";
   EXPECT_THAT(text_of(folder / "run/picture.svg"),
               testing::ContainsRegex("points=\"[0-9.]+,[0-9.]+ [0-9.]+,[0-9.]+ [0-9.]+,[0-9.]+\""))
       << "two points before the checkpoint and one after it";
@@ -218,11 +218,11 @@ TEST(ResultsFolder, GoesOnWithARun) {
   EXPECT_EQ(run.at("resumed"), 1);
 }
 
-TEST(ResultsFolder, SaysWhyItCannotBeMade) {
+TEST(ResultsFolder, ReportsWhyItCannotBeCreated) {
   const Folder folder;
   std::ofstream(folder / "file") << "x";
   EXPECT_THAT(error_of<FileError>([&] { ResultsFolder(options(folder / "file/run")); }),
-              AllOf(HasSubstr("file/run: cannot make the folder of results: "), HasSubstr("Not a directory")));
+              AllOf(HasSubstr("file/run: cannot create the results folder: "), HasSubstr("Not a directory")));
 }
 
 TEST(ResultsFolder, DrawsCurvesOverTime) {

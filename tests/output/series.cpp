@@ -26,7 +26,7 @@ void append(Series& series, std::uint64_t step) {
   if (step % 2 == 0) series.append(1, 0.5 * s, step, profile);
 }
 
-TEST(Series, HasAGroupAProbeAndADatasetAChannel) {
+TEST(Series, HasAGroupPerProbeAndADatasetPerChannel) {
   const Folder folder;
   Series series(folder / "series.h5", probes);
   for (std::uint64_t step = 0; step < 5; ++step) append(series, step);
@@ -49,7 +49,7 @@ TEST(Series, HasAGroupAProbeAndADatasetAChannel) {
   EXPECT_THAT(profile.dataset("velocity").read<double>(1, 2), ElementsAre(2, 3, 4, 4, 5, 6));
 }
 
-// The reader is a process of its own, begun before the file is opened: else the library would hand out the open one.
+// The reader is a separate process, started before the file is opened: else the library would return the open file.
 TEST(Series, CanBeReadWhileItIsWritten) {
   const Folder folder;
   int written[2];
@@ -70,7 +70,7 @@ TEST(Series, CanBeReadWhileItIsWritten) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(Series, GoesOnFromACheckpoint) {
+TEST(Series, ContinuesFromACheckpoint) {
   const Folder folder;
   {
     Series series(folder / "series.h5", probes);
@@ -92,16 +92,17 @@ TEST(Series, GoesOnFromACheckpoint) {
   }
   const std::vector<std::uint64_t> too_many{9, 3}, too_few{6};
   EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", probes, too_many); }),
-              testing::AllOf(HasSubstr("series.h5/test/time: has 8 samples of the 9"), HasSubstr("--overwrite")));
+              testing::AllOf(HasSubstr("series.h5/test/time: has 8 of the 9 samples at the checkpoint"),
+                             HasSubstr("--overwrite")));
   EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", probes, too_few); }),
-              HasSubstr("a run with 1 probes, but the description has 2"));
+              HasSubstr("is of a run with 1 probes, but the description has 2"));
   auto other = probes;
   other[1].channels[0].shape = {4};
   EXPECT_THAT(error_of<FileError>([&] { Series(folder / "series.h5", other, kept); }),
               testing::AllOf(HasSubstr("series.h5/profile/velocity"), HasSubstr("another shape")));
 }
 
-// A child writes and says after each flush how many samples it has flushed; it is killed in the midst of that.
+// A child process writes and reports the number of samples after each flush; it is killed in between.
 TEST(Series, SurvivesSigkill) {
   const Folder folder;
   for (int attempt = 0; attempt < 30; ++attempt) {

@@ -1,5 +1,4 @@
-// What readers meet of series.h5 while it is being written: every state of the file, one after each of the writer's
-// calls of the system.
+// Every state of series.h5 that a reader can find while it is being written: after each system call of the writer.
 #include <gmock/gmock.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -16,7 +15,7 @@ namespace {
 std::function<void()> after_each_write;
 }
 
-// HDF5 finds these before those of the system.
+// HDF5 calls these instead of the system's.
 extern "C" ssize_t pwrite(int file, const void* bytes, size_t size, off_t at) {
   const auto written = syscall(SYS_pwrite64, file, bytes, size, at);
   if (after_each_write) after_each_write();
@@ -49,14 +48,14 @@ void append(Series& series, std::uint64_t sample) {
   series.append(1, s, sample, profile);
 }
 
-/// As it is an hour later: readers wait until a file has rested.
+/// Sets the file time an hour back: readers wait until a file has rested.
 void write_file(const std::filesystem::path& path, const std::string& bytes) {
   std::filesystem::create_directories(path.parent_path());
   std::ofstream(path, std::ios::binary) << bytes;
   std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - 1h);
 }
 
-/// Why it is not what some flush left; empty where it is.
+/// Why the file is not the result of a flush; empty if it is.
 std::string torn(const std::filesystem::path& folder) {
   try {
     const SeriesFile series(folder);
@@ -67,7 +66,7 @@ std::string torn(const std::filesystem::path& folder) {
       samples = channel.samples;
       const auto width = channel.values.size() / std::max<std::size_t>(1, channel.samples);
       for (std::size_t i = 0; i < channel.values.size(); ++i)
-        if (channel.values[i] != static_cast<double>(i / width)) return "numbers that nobody wrote";
+        if (channel.values[i] != static_cast<double>(i / width)) return "numbers that were never written";
     }
     return samples ? "" : "no channel";
   } catch (const FileError& error) {
@@ -75,7 +74,7 @@ std::string torn(const std::filesystem::path& folder) {
   }
 }
 
-/// Bytes of a file of so many samples.
+/// The bytes of a file with so many samples.
 std::string series_of(const Folder& folder, std::uint64_t samples) {
   const auto path = folder / "whole.h5";
   Series series(path, probes);
@@ -84,7 +83,7 @@ std::string series_of(const Folder& folder, std::uint64_t samples) {
   return text_of(path);
 }
 
-TEST(SeriesBeingWritten, BearsAMarkWheneverItDoesNotFitTogether) {
+TEST(SeriesBeingWritten, IsMarkedWheneverItIsInconsistent) {
   const Folder folder;
   const auto path = folder / "series.h5";
   struct State {
@@ -103,7 +102,7 @@ TEST(SeriesBeingWritten, BearsAMarkWheneverItDoesNotFitTogether) {
       append(series, sample);
       if (sample % 500 == 499) series.flush(), look();
     }
-  }  // not closed in good order
+  }  // not closed
   const std::vector<std::uint64_t> kept(2, 1500);
   Series again(path, probes, kept);
   look();
@@ -122,11 +121,11 @@ TEST(SeriesBeingWritten, BearsAMarkWheneverItDoesNotFitTogether) {
     if (!fault.empty()) faults.push_back(fault);
     if (!states[i].marked) ++rests;
   }
-  EXPECT_EQ(rests, 7u) << "it was flushed so often";
+  EXPECT_EQ(rests, 7u) << "number of flushes";
   // As readers used to meet them.
   EXPECT_THAT(faults,
               AllOf(Contains(HasSubstr("truncated file")), Contains(HasSubstr("addr overflow")),
-                    Contains("numbers that nobody wrote"), Contains("as many samples as a flush of another channel")));
+                    Contains("numbers that were never written"), Contains("as many samples as a flush of another channel")));
 }
 
 TEST(SeriesBeingWritten, IsWaitedFor) {
@@ -145,7 +144,7 @@ TEST(SeriesBeingWritten, IsWaitedFor) {
   EXPECT_EQ(read.get().samples, 10u);
 }
 
-TEST(SeriesBeingWritten, ThatIsCutOffIsSaidWhereNobodyWrites) {
+TEST(SeriesBeingWritten, IsReportedAsTruncatedWithoutAWriter) {
   const Folder folder;
   const std::string whole = series_of(folder, 3000);
   const auto path = folder / "series.h5";
@@ -160,7 +159,7 @@ TEST(SeriesBeingWritten, ThatIsCutOffIsSaidWhereNobodyWrites) {
   EXPECT_EQ(torn(folder.path()), "");
 }
 
-TEST(WritingMark, GoesWithItsWriter) {
+TEST(WritingMark, EndsWithItsWriter) {
   const Folder folder;
   const auto path = folder / "file";
   EXPECT_FALSE(is_being_written(path));

@@ -9,11 +9,11 @@
 namespace grit::shell_word_tests {
 namespace {
 
-TEST(ShellWord, StaysAsItIsWhereAShellTakesItSo) {
+TEST(ShellWord, IsPlainIfPossible) {
   for (const char* word : {"results/quick-rn-0.25", "../a_b/C:1,2", "größe"}) EXPECT_EQ(shell_word(word), word);
 }
 
-TEST(ShellWord, IsQuotedWhereItIsNot) {
+TEST(ShellWord, IsQuotedIfNecessary) {
   EXPECT_EQ(shell_word("my results/two"), "\"my results/two\"");
   EXPECT_EQ(shell_word("it's"), "\"it's\"");
   EXPECT_EQ(shell_word(R"(/a={"type": "b"})"), R"('/a={"type": "b"}')");

@@ -1,4 +1,4 @@
-// Who is so far from all others that a picture which shows it shows nothing else.
+// Detection of outliers.
 #include "output/strays.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace grit::strays_tests {
 namespace {
 
-/// 0, 1, … 100 along x, all at one height.
+/// Bodies at 0, 1, … 100 along x, at the same height.
 std::vector<double> row() {
   std::vector<double> positions;
   for (int i = 0; i <= 100; ++i) positions.insert(positions.end(), {static_cast<double>(i), 0, 7});
@@ -23,8 +23,8 @@ std::size_t held(const std::vector<double>& positions, const Far& far) {
 }
 
 TEST(Strays, AreBeyondTheFences) {
-  // Without the body at 50 the middle half goes from 24 to 75, or from 25 to 76: fences three times as far off, and 5
-  // diameters, are at -134 and 234.
+  // Without the body at 50 the middle half is from 24 to 75, or from 25 to 76. Fences at three times its width and 5
+  // diameters are at -134 and 234.
   for (const auto& [x, strays] : {std::pair(233.0, 0), {235.0, 1}, {-133.0, 0}, {-135.0, 1}}) {
     std::vector<double> positions = row();
     positions[3 * 50] = x;
@@ -33,15 +33,15 @@ TEST(Strays, AreBeyondTheFences) {
   }
 }
 
-TEST(Strays, AreLookedForAlongEachAxis) {
+TEST(Strays, AreDetectedAlongEachAxis) {
   std::vector<double> positions = row();
   positions[3 * 10 + 2] = 11.9;
-  EXPECT_EQ(held(positions, far_to_see), 101u) << "5 diameters above a layer of no height";
+  EXPECT_EQ(held(positions, far_to_see), 101u) << "5 diameters above a layer of zero height";
   positions[3 * 10 + 2] = 12.1;
   EXPECT_EQ(held(positions, far_to_see), 100u);
 }
 
-TEST(Strays, AreThoseThatAreNowhereToo) {
+TEST(Strays, IncludePositionsThatAreNotFinite) {
   std::vector<double> positions = row();
   positions[0] = std::numeric_limits<double>::quiet_NaN();
   positions[4] = std::numeric_limits<double>::infinity();
@@ -51,7 +51,7 @@ TEST(Strays, AreThoseThatAreNowhereToo) {
 TEST(Strays, AreNoneAmongFew) {
   EXPECT_EQ(held({}, far_to_see), 0u);
   EXPECT_EQ(held({1, 2, 3}, far_to_see), 1u);
-  EXPECT_EQ(held({0, 0, 0, 1000, 0, 0}, far_to_see), 2u) << "nobody can say which of two is far from the others";
+  EXPECT_EQ(held({0, 0, 0, 1000, 0, 0}, far_to_see), 2u) << "of two, none is an outlier";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Pictures taken apart.
+// Parses SVG pictures.
 #pragma once
 
 #include <boost/property_tree/xml_parser.hpp>
@@ -17,7 +17,7 @@ inline SvgElement parsed(const std::string& svg) {
   return tree;
 }
 
-/// Elements of a name, with the given word in their class if there is one.
+/// Elements of a name, and with the given word in their class unless it is empty.
 inline std::vector<SvgElement> elements(const SvgElement& tree, const std::string& name, const std::string& word = {}) {
   std::vector<SvgElement> found;
   for (const auto& [tag, child] : tree) {
@@ -35,7 +35,7 @@ inline std::string text_of(const SvgElement& element, const std::string& attribu
   return element.get<std::string>("<xmlattr>." + attribute, "");
 }
 
-/// What is written, in order.
+/// The texts, in order.
 inline std::vector<std::string> words_of(const SvgElement& tree, const std::string& word = {}) {
   std::vector<std::string> words;
   for (const auto& text : elements(tree, "text", word)) words.push_back(text.data());

@@ -99,7 +99,7 @@ TEST_P(Chosen, IsWhatTheLoopOfTheLawIsMadeOf) {
   }
 }
 
-TEST_P(Chosen, GivesTheSameBitsAgain) {
+TEST_P(Chosen, GivesIdenticalValuesAgain) {
   run(folder, isa, "once"), run(folder, isa, "again");
   EXPECT_EQ(text_of(folder / "once" / "packing.txt"), text_of(folder / "again" / "packing.txt"));
 }

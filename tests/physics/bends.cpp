@@ -1,4 +1,4 @@
-// A ball that rolls over a bend of its floor keeps its friction; about an edge it pivots without slip.
+// The friction of a ball that rolls over a bend of its floor is continuous; about an edge it pivots without slip.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace grit::test::bends_tests {
 namespace {
 
-// So heavy that the ball presses its way 7e-4 of its radius into the floor; gravity leans, so that friction is asked
-// for: 2/7 of what pulls along.
+// The overlap by the weight is 7e-4 of the radius. Gravity is inclined, so that friction is 2/7 of its tangential
+// component.
 constexpr double radius = 1e-3, gravity = 2e4, lean = 0.2, speed = 0.02, sunk = 7e-4 * radius, ahead = 1e-4;
 
 struct Law {
@@ -25,7 +25,7 @@ struct Law {
   }
 };
 
-/// A ball that comes rolling to x = 0, and `aside` of its way along y.
+/// A ball that rolls towards x = 0, with `aside` of its velocity along y.
 Description rolling_ball(const Law& law, double aside) {
   const Vec3 way = Vec3(1, aside, 0).normalized();
   const Grain ball{Vec3(0, 0, radius - sunk) - ahead / way.x() * way, radius, speed * way,
@@ -42,7 +42,7 @@ Description rolling_ball(const Law& law, double aside) {
   return d;
 }
 
-/// Two pieces of floor that meet at x = 0, where it rises by `bend`.
+/// Two floors that meet at x = 0 at an angle `bend`.
 std::vector<Vec3> bent_floor(double bend) {
   const Vec3 first(-5 * radius, 0, 0), second(5 * radius * std::cos(bend), 0, 5 * radius * std::sin(bend)),
       side(0, 5 * radius, 0);
@@ -50,7 +50,7 @@ std::vector<Vec3> bent_floor(double bend) {
           -side,        second - side, second + side, -side,        second + side, side};
 }
 
-/// What the floor does to the ball along itself, in one contact.
+/// Friction of the floor on the ball, in one contact.
 struct Hold {
   Vec3 normal, friction;
 };
@@ -63,7 +63,7 @@ Hold hold(const Trial& trial) {
 
 class Bends : public testing::TestWithParam<std::tuple<Law, double>> {};
 
-// Over a valley the normal jumps, and nothing else may; over a ridge it turns, and friction changes as pivoting asks.
+// In a valley only the normal may jump; over a ridge it rotates, and friction changes as pivoting requires.
 TEST_P(Bends, AreNoJerkToABallThatRolls) {
   const auto& [law, bend] = GetParam();
   Errors jerk("friction's jump at a bend beyond what the bend, its turn and the floor before it make, over friction");
@@ -78,7 +78,7 @@ TEST_P(Bends, AreNoJerkToABallThatRolls) {
     Hold last = hold(trial);
     double ordinary = 0, turned = 0;  // change of friction in one step away from the bend
     for (int step = 0; trial.position(0).x() < 0.3 * ahead + near; ++step) {
-      ASSERT_LT(step, 20000) << "it got across";
+      ASSERT_LT(step, 20000) << "it crossed the bend";
       trial.step();
       const Hold now = hold(trial);
       const double change = (now.friction - last.friction).norm(), turn = (now.normal - last.normal).norm();
@@ -96,11 +96,11 @@ TEST_P(Bends, AreNoJerkToABallThatRolls) {
   jerk.verify(0), turning.verify(1e-3);
 }
 
-// Off an edge a ball tips as one rigid body that turns about it: its centre goes (R − δ) ω, not R ω. Shear springs are
-// stiff, so that how much they give as more and more friction is asked for is less than that.
+// A ball tips over an edge as a rigid body that rotates about it: the velocity of its centre is (R − δ) ω, not R ω.
+// Shear springs are stiff, so that their deformation by the growing friction is smaller than this difference.
 TEST(Edge, IsPivotedAboutWithoutSlip) {
   constexpr double ball = 0.01, depth = 0.01 * ball, g = 9.81, density = 2600, pi = std::numbers::pi;
-  const double modulus = density * 4 / 3 * pi * ball * ball * g / depth;  // pressed in as deep by its weight
+  const double modulus = density * 4 / 3 * pi * ball * ball * g / depth;  // same overlap by its weight
   Description d = description("linear-frictional",
                               {{"contact_modulus", modulus},
                                {"density", density},

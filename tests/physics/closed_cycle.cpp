@@ -1,13 +1,13 @@
-// Closed ways of two spheres leave no shear force behind: there and back, around a square, around each other. Where
-// springs stiffen with the overlap, what is left around a square follows from the order of its sides.
+// Closed paths of two spheres leave no shear force: back and forth, around a square, around each other. For springs
+// whose stiffness grows with the overlap, the force left after a square depends on the order of its sides.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 #include <numbers>
 
-#include "grit/plugin.hpp"
 #include "bodies/random.hpp"
+#include "grit/plugin.hpp"
 #include "support/scene.hpp"
 #include "support/verified.hpp"
 
@@ -18,13 +18,13 @@ using std::numbers::pi;
 
 struct Place {
   Vec3 position;
-  double angle = 0;  ///< turned about z
+  double angle = 0;  ///< rotation about z
 };
-/// Where body `id` is to be at a share 0 … 1 of the way.
+/// Prescribed position of body `id` at a fraction 0 … 1 of the path.
 using Way = std::function<Place(std::uint32_t id, double share)>;
 
-/// Leads bodies along a way: each is so heavy that nothing else moves it. Forces give it the velocity of the coming
-/// step.
+/// Moves bodies along a path: each is so heavy that nothing else moves it. The engine's forces give it the velocity of
+/// the next step.
 struct Leader final : Engine {
   static inline Way way;
   static inline double steps = 0;
@@ -47,7 +47,7 @@ struct Leader final : Engine {
 constexpr double radius_a = 1e-3, radius_b = 2e-3, modulus = 1e8;
 
 struct Course {
-  double most = 0, left = 0, radial = 0;  ///< shear force: the largest, and what is left [N]; of the last force [N]
+  double most = 0, left = 0, radial = 0;  ///< maximum and final shear force [N]; final radial force [N]
   Vec3 force = Vec3::Zero();              ///< the last shear force on the second body
 };
 Course lead(const Way& way, double steps, const std::string& law = "linear-rolling") {
@@ -90,7 +90,7 @@ TEST(ClosedCycle, ThereAndBackLeavesNothing) {
         },
         400, law);
     ASSERT_GT(course.most, 1e-3) << law;
-    // Round-off of places of 3 mm against ways of 1 µm.
+    // Round-off of positions of 3 mm, relative to displacements of 1 µm.
     verify(std::string("shear force left there and back, over the largest, ") + law, course.left / course.most, 0,
            1e-12, 1);
   }
@@ -118,13 +118,13 @@ TEST(ClosedCycle, PairThatTurnsAsOneStoresNothing) {
         return id == 0 ? Place{Vec3::Zero(), angle} : Place{reach * Vec3(std::cos(angle), std::sin(angle), 0), angle};
       },
       1000);
-  // Against the spring of one radius of slip. The chord of a step is shorter than its arc by (2 π/1000)²/24.
+  // Relative to the force of a slip of one radius. The chord of a step is shorter than its arc by (2 π/1000)²/24.
   verify("shear force in a pair that turns as one, over that of a radius of slip",
          course.most / (modulus * radius_a * radius_a), 0, 1e-4, 1);
 }
 
 TEST(ClosedCycle, StoredForceTurnsWithThePairAndComesBack) {
-  // Sheared a little, then around each other once, then sheared back.
+  // Slight shear, one revolution about each other, shear back.
   const auto way = [](std::uint32_t id, double share) {
     const double turn = 2 * pi * std::clamp(2 * share - 0.5, 0.0, 1.0);
     const double shear = 2e-4 * (std::clamp(4 * share, 0.0, 1.0) - std::clamp(4 * share - 3, 0.0, 1.0));
@@ -134,24 +134,24 @@ TEST(ClosedCycle, StoredForceTurnsWithThePairAndComesBack) {
   const Course whole = lead(way, 16000);
   const Course coarse = lead(way, 8000);
   ASSERT_GT(whole.most, 1e-3);
-  // The chord of a step is shorter than its arc: in all 2 π · 3 mm · (2 π/8000)²/24, beside 0.6 µm of shear.
+  // The chord of a step is shorter than its arc: in total 2 π · 3 mm · (2 π/8000)²/24, for 0.6 µm of shear.
   verify("shear force left after a turn of a sheared pair, over the largest", whole.left / whole.most, 0, 2e-3, 1);
   EXPECT_LT(whole.left, 0.3 * coarse.left) << "of second order in the step";
 }
 
-/// A ball, too heavy to move, on a floor that is led along the sides of a polygon in x, shear, and z, pressing; it
-/// begins at the first overlap.
+/// A ball, too heavy to move, on a floor that is moved along the sides of a polygon in x (shear) and z (compression);
+/// it starts at the first overlap.
 struct Floor {
   static constexpr double radius = 1e-3, overlap = 1e-6, dt = 1e-3;
-  static constexpr int steps = 250;  // a side
+  static constexpr int steps = 250;  // per side
 
   struct Corner {
     double force;                  ///< of the shear spring on the floor, along x [N]
-    double lost, stored, elastic;  ///< by the ledger since the start, in the shear spring, in both springs [J]
-    double closure;                ///< error of the ledger [J]
+    double lost, stored, elastic;  ///< by the energy balance since the start, in the shear spring, in both springs [J]
+    double closure;                ///< error of the energy balance [J]
   };
 
-  /// What there is at the end of each side.
+  /// State at the end of each side.
   static std::vector<Corner> led(const std::string& law, const std::vector<Vec3>& sides) {
     Description d =
         description(law, {{"density", 1e30}, {"friction_angle", 1.3}}, {{{0, 0, radius - overlap}, radius}});
@@ -170,7 +170,7 @@ struct Floor {
       t.begin_stage(i + 1, "side" + std::to_string(i));
       t.kernel().find_forces();
       t.step(steps);
-      const EnergyLedger now = t.world().energies();
+      const Energies now = t.world().energies();
       corners.push_back({t.kernel().state().walls.states()[0].force.x(), now.friction, now.elastic_shear, now.elastic(),
                          now.closure_error});
     }
@@ -203,9 +203,9 @@ TEST(ClosedCycle, LinearSpringsForgetASquareInEitherOrder) {
     }
 }
 
-// While a grows, dF = K(a) du; while it shrinks, F goes with a. With r = a₁/a₂ = K₁/K₂ a square that is sheared first
-// makes r (F + K₁ d − K₂ d) of F, so that n of them leave −K₁ d (1 − rⁿ); one that is pressed first makes
-// r (F + K₂ d) − K₁ d = r F of it, which is nothing.
+// While the contact radius a grows, dF = K(a) du; while it shrinks, F is proportional to a. With r = a₁/a₂ = K₁/K₂, a
+// square that is sheared first turns F into r (F + K₁ d − K₂ d), so that n of them leave −K₁ d (1 − rⁿ). A square that
+// is compressed first turns F into r (F + K₂ d) − K₁ d = r F, which stays 0.
 TEST(ClosedCycle, HertzAndMindlinsSpringsLeaveWhatTheirRuleSays) {
   const double poisson = 0.3, modulus = 70e9, way = sheared.x();
   const double shear_modulus = modulus / (2 * (1 + poisson)) / (2 * (2 - poisson));
@@ -221,10 +221,10 @@ TEST(ClosedCycle, HertzAndMindlinsSpringsLeaveWhatTheirRuleSays) {
   double before[2] = {0, 0};
   for (int n = 1; n <= cycles; ++n) {
     const auto corner = static_cast<std::size_t>(4 * n - 1);
-    // The floor goes along x, and the ball holds it back.
+    // The floor moves along x against the friction of the ball.
     left.add(sheared_first[corner].force / (shallow * way) - (1 - std::pow(r, n)));
     none.add(pressed_first[corner].force / (shallow * way));
-    // A spring that holds F gives (1 − r) of its energy away where it is pressed, and as much where it is eased.
+    // A spring with the force F loses (1 − r) of its energy in compression, and as much in unloading.
     const double held = std::pow(r, n - 1), back = 1 - std::pow(r, n);
     lost.add((sheared_first[corner].lost - before[0]) / whole - (1 - r) * (r * held * held + back * back));
     lost.add((pressed_first[corner].lost - before[1]) / whole - (1 - r));

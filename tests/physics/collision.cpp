@@ -1,4 +1,5 @@
-// Two spheres that meet head-on or aslant: duration, energy, restitution, and how fast the step's error vanishes.
+// Head-on and oblique collisions of two spheres: duration, energy, restitution, and order of the error in the time
+// step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ using std::numbers::pi;
 constexpr double modulus = 1e8, radius_a = 1e-3, radius_b = 1.5e-3, density = 2500, speed = 1;
 double mass(double radius) { return density * 4 / 3 * pi * radius * radius * radius; }
 
-/// The linear law's spring between the two, and what follows from it.
+/// The spring of the linear law between both, and derived values.
 struct Spring {
   double stiffness = 2 * modulus * radius_a * radius_b / (radius_a + radius_b);
   double reduced_mass = 1 / (1 / mass(radius_a) + 1 / mass(radius_b));
@@ -24,7 +25,7 @@ struct Spring {
   double duration = pi / frequency;
 };
 
-/// Spheres that are `gap` apart and close in along x; no net momentum. They miss the middle by `offset`.
+/// Spheres with a gap that approach along x without net momentum, eccentric by `offset`.
 Description pair(const std::string& law, Description material, double gap, double dt, double offset = 0) {
   material["density"] = density;
   const double share = mass(radius_b) / (mass(radius_a) + mass(radius_b));
@@ -41,11 +42,11 @@ double overlap(const Trial& t) { return radius_a + radius_b - (t.position(1) - t
 double closing_speed(const Trial& t) { return (t.velocity(0) - t.velocity(1)).x(); }
 
 struct Hit {
-  double duration, overlap, force, speed;  ///< s; the largest [m], [N]; of separation [m/s]
-  double last_inside, first_outside;       ///< overlaps of the two steps between which they part [m]
+  double duration, overlap, force, speed;  ///< s; maxima [m], [N]; of separation [m/s]
+  double last_inside, first_outside;       ///< overlaps of the steps before and after separation [m]
 };
 
-/// Runs from the first touch, at time 0, until the spheres have parted.
+/// Runs from first contact, at time 0, until separation.
 Hit collide(const Description& d) {
   Trial t(d);
   Hit hit{};
@@ -57,14 +58,14 @@ Hit collide(const Description& d) {
   } while (overlap(t) > 0);
   hit.first_outside = overlap(t);
   hit.speed = -closing_speed(t);
-  hit.duration = t.world().time() + hit.first_outside / hit.speed;  // back along the straight way since they parted
+  hit.duration = t.world().time() + hit.first_outside / hit.speed;  // less the free flight since separation
   return hit;
 }
 
 TEST(Collision, LastsHalfAPeriodOfTheSpring) {
   const Spring spring;
   const Hit hit = collide(pair("linear-rolling", smooth(), 0, spring.duration / 400));
-  // Leap-frog's frequency is too high by (ω dt)²/24 = 2.57e-6; where the last step ends adds a part of third order.
+  // The leap-frog frequency is too high by (ω dt)²/24 = 2.57e-6; the end of the last step adds a term of third order.
   verify("duration of a linear collision [s]", hit.duration, spring.duration, 3e-6);
   verify("overlap of a linear collision [m]", hit.overlap, speed / spring.frequency, 1e-5);
   verify("force of a linear collision [N]", hit.force, speed * std::sqrt(spring.stiffness * spring.reduced_mass), 1e-5);
@@ -86,8 +87,8 @@ TEST(Collision, ErrorIsOfSecondOrderInTheStep) {
 }
 
 TEST(Collision, EnergyComesBackButForThePartingStep) {
-  // The spring of leap-frog is exact for the energy ½ m v² + ½ k x(t) x(t + dt); that product is not zero in the step
-  // in which the spheres meet and in that in which they part, but (v dt/2)² at most.
+  // Leap-frog conserves the energy ½ m v² + ½ k x(t) x(t + dt) of a spring exactly; in the steps of first contact and
+  // of separation this product is not zero, but at most (v dt/2)².
   const Spring spring;
   for (const double safety : {0.1, 0.01}) {
     Trial limits(pair("linear-rolling", smooth(), 0, 1e-9));
@@ -111,16 +112,16 @@ TEST(Collision, EnergyIsKeptWhileTheyTouch) {
   const double dt = spring.duration / 50, angle = spring.frequency * dt;
   const auto elastic = [](const Trial& t) {
     const double ratio = t.kernel().kinetic_energy_ratio();
-    return std::isfinite(ratio) ? unrest(t.world()).kinetic_energy / ratio : 0.0;
+    return std::isfinite(ratio) ? equilibrium(t.world()).kinetic_energy / ratio : 0.0;
   };
   const double energy = 0.5 * spring.reduced_mass * speed * speed;
   Trial straight(pair("linear-rolling", smooth(), 0, dt));
   double least = energy;
   for (int i = 0; i < 48; ++i) {
     straight.step();
-    const double kinetic = unrest(straight.world()).kinetic_energy, stored = elastic(straight);
+    const double kinetic = equilibrium(straight.world()).kinetic_energy, stored = elastic(straight);
     least = std::min(least, kinetic);
-    // At full steps leap-frog's kinetic energy differs from the one it keeps by ⅛ (ω dt)² k x² to the last bit.
+    // At full steps the kinetic energy differs from the conserved one by exactly ⅛ (ω dt)² k x².
     EXPECT_NEAR(kinetic + stored - angle * angle / 4 * stored, energy, 1e-12 * energy) << i;
   }
   EXPECT_LT(least, 0.01 * energy) << "all of it went through the spring";
@@ -128,9 +129,9 @@ TEST(Collision, EnergyIsKeptWhileTheyTouch) {
   Trial aslant(pair("linear-rolling", smooth(), 0, dt, 0.7 * (radius_a + radius_b)));
   for (int i = 0; i < 80; ++i) {
     aslant.step();
-    EXPECT_NEAR(unrest(aslant.world()).kinetic_energy + elastic(aslant), energy, angle * angle / 4 * energy) << i;
+    EXPECT_NEAR(equilibrium(aslant.world()).kinetic_energy + elastic(aslant), energy, angle * angle / 4 * energy) << i;
   }
-  EXPECT_EQ(aslant.spin(0).norm() + aslant.spin(1).norm(), 0) << "nothing turns smooth spheres";
+  EXPECT_EQ(aslant.spin(0).norm() + aslant.spin(1).norm(), 0) << "smooth spheres do not rotate";
 }
 
 struct Damped {
@@ -151,7 +152,7 @@ TEST_P(Restitution, OutIsIn) {
     for (const int halves : {0, 1}) {
       const double dt = p.duration / (4000 << halves);
       error[halves] = collide(pair(p.law, material, 0, dt)).speed / speed - e;
-      // The dashpot sees the velocity of half a step ago: an error of first order, largest where it is strongest.
+      // The dashpot uses the velocity of half a step ago: an error of first order, largest for the strongest dashpot.
       EXPECT_NEAR(error[halves], 0, 1e-4 / (1 << halves)) << e;
 
       Description floor = description(p.law, material, {{{0, 0, radius_a}, radius_a, {0, 0, -speed}}});

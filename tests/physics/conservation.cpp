@@ -1,4 +1,4 @@
-// What an isolated cloud keeps whatever its contacts do.
+// Conservation of momentum and angular momentum in an isolated cloud.
 #include <gtest/gtest.h>
 
 #include "support/packing.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 struct Momenta {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  ///< about the origin
-  double linear_size = 0, angular_size = 0;            ///< what they are sums of
+  double linear_size = 0, angular_size = 0;            ///< sums of absolute values
 };
 Momenta momenta(const World& world) {
   Momenta sum;
@@ -27,7 +27,7 @@ TEST(Conservation, CloudKeepsMomentumAndAngularMomentum) {
   Random random(1);
   for (Grain& g : grains) {
     g.radius *= 0.7 + 0.3 * random.uniform();
-    g.velocity -= 1000 * g.position;  // they fall together, and fly apart again
+    g.velocity -= 1000 * g.position;  // they move towards each other, and apart again
   }
   Description d = description("linear-rolling",
                               {{"contact_modulus", 1e7}, {"twisting_stiffness", 0.5}, {"twisting_limit", 0.2}}, grains);
@@ -38,8 +38,8 @@ TEST(Conservation, CloudKeepsMomentumAndAngularMomentum) {
   for (int i = 0; i < 1500; ++i) t.step(), most = std::max(most, t.kernel().state().pairs.touching_count());
   const Momenta after = momenta(t.world());
   EXPECT_GT(most, 150u);
-  // Each pair's two forces, and the arms of its moments, cancel; sums over 1500 steps leave round-off alone. Positions
-  // of whole and velocities of half steps belong together here: a drift goes along its velocity.
+  // Forces and moments of each pair cancel; sums over 1500 steps leave only round-off. Positions at full steps and
+  // velocities at half steps can be combined here: a body moves along its velocity.
   verify("momentum of a cloud after 1500 steps, change over the sum of its bodies'",
          (after.linear - before.linear).norm() / before.linear_size, 0, 2e-15, 1);
   verify("angular momentum of a cloud after 1500 steps, change over the sum of its bodies'",

@@ -1,5 +1,5 @@
-// What the springs of one contact with a wall do by themselves: how far a small load moves a ball that sticks, how fast
-// one that spins on the spot comes to rest, and how one that hits aslant and sticks comes away.
+// Springs of one contact with a wall: displacement of a sticking ball by a small load, time until a spinning ball
+// rests, and rebound of a ball that sticks in an oblique impact.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 constexpr double radius = 0.01, density = 2500, modulus = 1e8, poisson = 0.3, shear_ratio = 0.3, g = 9.81;
 const double mass = density * 4 / 3 * pi * radius * radius * radius;
-/// Of two like solids.
+/// Effective modulus of two equal solids.
 constexpr double plane_modulus = modulus / (2 * (1 - poisson * poisson)),
                  shear_modulus = modulus / (4 * (2 - poisson) * (1 + poisson));
 
@@ -28,7 +28,7 @@ Description material(const std::string& law, double friction) {
   return m;
 }
 
-/// As deep as its weight presses it in.
+/// Overlap by the weight.
 double sunk(const std::string& law) {
   const double curved = 4.0 / 3 * plane_modulus * std::sqrt(radius);
   return law == "hertz-mindlin" ? std::pow(mass * g / curved, 2.0 / 3) : mass * g / (modulus * radius);
@@ -45,7 +45,7 @@ Description on_floor(const std::string& law, const Description& solid, double le
   return d;
 }
 
-/// How far a load along the wall moves the ball, as it comes to rest [m].
+/// Displacement of the ball by a load along the wall [m].
 double moved(const Description& d) {
   Trial t(d);
   while (t.world().time() < 0.3) t.step();
@@ -68,7 +68,7 @@ TEST(ContactSprings, GiveWayInRollingAsTheirStiffnessSays) {
   for (const std::string law : {"linear-rolling", "hertz-mindlin"}) {
     Description solid = material(law, 1);
     solid["rolling_stiffness"] = ratio, solid["rolling_limit"] = 1;
-    // What shears the contact turns it as well: K_r = β K_s r².
+    // The load also rotates the ball: K_r = β K_s r².
     verify("way of a ball that resists rolling along a wall under a small load, " + law + " [m]",
            moved(on_floor(law, solid, load)), load * mass * g / shear_stiffness(law) * (1 + 1 / ratio), 1e-3);
   }
@@ -80,7 +80,7 @@ TEST(ContactSprings, TwistingBringsASpinOnTheSpotToRest) {
   solid["twisting_stiffness"] = 1, solid["twisting_limit"] = limit;
   Description d = on_floor("linear-rolling", solid, 0);
   d["engines"].erase("damping");
-  d["bodies"]["grains"]["grains"]["grains"][0]["spin"] = {0, 0, spin};
+  d["bodies"]["grains"]["source"]["bodies"][0]["spin"] = {0, 0, spin};
   Trial t(d);
   while (t.world().time() < 0.01) t.step();
   const double first = t.world().time(), before = t.spin(0).z();
@@ -88,10 +88,10 @@ TEST(ContactSprings, TwistingBringsASpinOnTheSpotToRest) {
   verify("deceleration of a ball that spins on the spot [rad/s²]",
          (before - t.spin(0).z()) / (t.world().time() - first), 2.5 * limit * g / radius, 1e-9);
   while (t.world().time() < 0.1) t.step();
-  EXPECT_LT(std::abs(t.spin(0).z()), 0.02 * spin) << "swings about its rest";
+  EXPECT_LT(std::abs(t.spin(0).z()), 0.02 * spin) << "oscillates about rest";
 }
 
-// A contact point that sticks swings by its own spring with 2/7 of the mass while the ball is pressed and let go.
+// A sticking contact point oscillates with its own spring and 2/7 of the mass during loading and unloading.
 TEST(ContactSprings, LinearOnesThatStickSwingAsLongAsTheContactLasts) {
   const double duration = pi / std::sqrt(modulus * radius / mass);
   for (const std::string law : {"linear-frictional", "linear-rolling"})
@@ -100,7 +100,7 @@ TEST(ContactSprings, LinearOnesThatStickSwingAsLongAsTheContactLasts) {
       solid["shear_to_normal_stiffness"] = ratio;
       const Vec3 in = aslant(0.01, 60);
       const Rebound out = from_plane(law, solid, solid, radius, in, Vec3::Zero(), duration / 2000);
-      // The point is fast when the contact ends, which is known to a step.
+      // The point is fast at the end of the contact, which is known to one step.
       const double allowed = ratio < 0.5 ? 1e-4 : 1e-3;
       const double turned = 2.0 / 7 * (1 - std::cos(pi * std::sqrt(3.5 * ratio)));
       char at[64];
@@ -126,8 +126,8 @@ TEST(ContactSprings, DashpotsInShearTakeTheirShare) {
     Trial t(d);
     do t.step();
     while (t.position(0).z() < radius);
-    // The contact ends where it would begin to pull; until then the point slides there and back as a damped spring has
-    // it, of the same part of critical.
+    // The contact ends where tension would begin; until then the contact point moves as a damped oscillator with the
+    // same fraction of critical damping.
     const double part = damping_of_restitution(restitution), slow = std::sqrt(1 - part * part);
     const double phase = 2 * std::acos(part) / slow * std::sqrt(3.5 * ratio);
     const double point = std::exp(-part * phase) * (std::cos(slow * phase) - part / slow * std::sin(slow * phase));
@@ -138,16 +138,16 @@ TEST(ContactSprings, DashpotsInShearTakeTheirShare) {
   }
 }
 
-/// Hertz's spring and Mindlin's, which sticks, as a system of differential equations.
+/// Hertz's spring and Mindlin's spring without slip, as a system of differential equations.
 struct Swing {
-  double overlap = 0, closing, force = 0, sliding;  ///< m, m/s; of shear [N]; of the point of contact [m/s]
+  double overlap = 0, closing, force = 0, sliding;  ///< m, m/s; shear force [N]; velocity of the contact point [m/s]
 };
 Swing rate(const Swing& s) {
   const double depth = std::max(s.overlap, 0.0), contact = std::sqrt(radius * depth);
   Swing r{};
   r.overlap = s.closing, r.closing = -4.0 / 3 * plane_modulus * contact * depth / mass;
   r.sliding = -3.5 * s.force / mass;
-  // What eases the contact takes its share of the force.
+  // Unloading reduces the shear force in proportion.
   r.force =
       8 * shear_modulus * contact * s.sliding + (s.closing < 0 && depth > 0 ? s.force * 0.5 * s.closing / depth : 0);
   return r;
@@ -162,7 +162,7 @@ TEST(ContactSprings, HertzAndMindlinsThatStickFollowTheirEquations) {
     Swing s{.closing = -in.z(), .sliding = in.x()};
     const double deepest = std::pow(1.25 * mass * in.z() * in.z() / (4.0 / 3 * plane_modulus * std::sqrt(radius)), 0.4);
     const double duration = 2.9432 * deepest / -in.z(), dt = duration / 200000;
-    do {  // Runge and Kutta's, of fourth order
+    do {  // fourth-order Runge–Kutta
       const Swing a = rate(s), b = rate(along(s, a, dt / 2)), c = rate(along(s, b, dt / 2)), d = rate(along(s, c, dt));
       s = along(along(along(along(s, a, dt / 6), b, dt / 3), c, dt / 3), d, dt / 6);
     } while (s.overlap > 1e-6 * deepest);

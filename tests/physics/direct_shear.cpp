@@ -1,5 +1,5 @@
-// The direct shear test from one end to the other, in a box of some 650 grains: dense sand peaks and dilates, loose
-// sand hardens and contracts.
+// Complete direct shear tests in a box of about 650 grains: dense sand has a peak and dilates, loose sand hardens and
+// contracts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ Sheared sheared(double void_ratio, int seed) {
                   "/seed=" + std::to_string(seed)},
                  curves);
   EXPECT_NEAR(curves.void_ratio_before_shear, void_ratio, 0.01);
-  // One of ten boxes so small leaves this for an instant, by 1.6 %, as its sand slips.
+  // In one of ten such small boxes a slip event exceeds this briefly, by 1.6 %.
   if (seed == 1) {
     for (const double pressure : curves.channel["normal_stress"]) EXPECT_NEAR(pressure, 200e3, 0.01 * 200e3);
   }
@@ -33,7 +33,7 @@ Sheared sheared(double void_ratio, int seed) {
   return curves;
 }
 
-/// Of so few grains each box has a strength of its own, the more so as bits of a sum decide which: three are one test.
+/// With so few grains the strength scatters from box to box, even by round-off: each test is the mean of three.
 template <class Measure>
 double mean_of_three(double void_ratio, Measure measure) {
   double sum = 0;

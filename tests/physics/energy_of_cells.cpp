@@ -1,17 +1,17 @@
-// Where the work of a cell that strains goes.
+// Work of a deforming cell.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "energy_ledger.hpp"
+#include "energy_balance.hpp"
 #include "support/clump.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test::energy_ledger_tests {
+namespace grit::test::energy_balance_tests {
 namespace {
 
-// All spheres go with the mean flow, so that each contact is as deep as the cell says.
-TEST(EnergyLedger, ACellsWorkIsStoredInALattice) {
+// All spheres move with the mean flow, so that overlaps follow from the strain of the cell.
+TEST(Energies, ACellsWorkIsStoredInALattice) {
   constexpr int side = 3;
   const double spacing = 1.99 * radius, modulus = 1e8;
   std::vector<Grain> list;
@@ -22,7 +22,7 @@ TEST(EnergyLedger, ACellsWorkIsStoredInALattice) {
       periodic("linear-rolling", {{"contact_modulus", modulus}}, list, Vec3::Constant(side * spacing), {-40, 0, 10}));
   const double kinetic = lattice.world().energies().kinetic;
   lattice.step(2000);
-  const EnergyLedger now = lattice.world().energies();
+  const Energies now = lattice.world().energies();
   const Cell& cell = lattice.world().cell();
   double stored = 0;
   const auto spring = [&](double apart) { return 0.5 * modulus * radius * std::pow(2 * radius - apart, 2); };
@@ -34,8 +34,8 @@ TEST(EnergyLedger, ACellsWorkIsStoredInALattice) {
   EXPECT_LE(std::abs(now.closure_error), 1e-9 * stored);
 }
 
-// Apart from each other, they go with the mean flow, and on at the other side with what flows there.
-TEST(EnergyLedger, ACellsWorkMovesWhatGoesThroughIt) {
+// Without contacts, they move with the mean flow and re-enter with the flow of the opposite side.
+TEST(Energies, ACellsWorkMovesWhatGoesThroughIt) {
   for (const bool clumped : {false, true}) {
     SCOPED_TRACE(clumped);
     Description d = periodic("linear-rolling", {}, {{Vec3::Constant(0.012), radius, {3, -2, 1}, {20, 30, 10}}},
@@ -45,14 +45,14 @@ TEST(EnergyLedger, ACellsWorkMovesWhatGoesThroughIt) {
     Kept one(d);
     const double before = one.world().energies().kinetic;
     for (int round = 0; round < 20; ++round) one.kernel().request_rebuild(), one.step(1000);
-    const EnergyLedger now = one.world().energies();
+    const Energies now = one.world().energies();
     EXPECT_GT(std::abs(now.kinetic - before), 0.01 * before);
     EXPECT_LE(std::abs(now.closure_error), 2e-8 * now.kinetic);
   }
 }
 
-/// A packing in a cell that is pressed along two axes and stretched along the third.
-EnergyLedger strained_packing(double share_of_critical, bool clumped, double friction, double damping = 0) {
+/// A packing in a cell compressed along two axes and extended along the third.
+Energies strained_packing(double share_of_critical, bool clumped, double friction, double damping = 0) {
   Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", friction}},
                            jumble({6, 6, 6}, 1e-3, 0.005, 5), Vec3::Constant(6e-3), {-40, -30, 20});
   if (friction == 0) d["materials"]["grain"]["rolling_limit"] = 0;
@@ -65,27 +65,28 @@ EnergyLedger strained_packing(double share_of_critical, bool clumped, double fri
   return cell.world().energies();
 }
 
-TEST(EnergyLedger, OfAStrainedPackingClosesBetterWithShorterSteps) {
+TEST(Energies, OfAStrainedPackingClosesBetterWithShorterSteps) {
   for (const bool clumped : {false, true}) {
     const std::string of = clumped ? "clumps" : "spheres";
-    const double smooth = closure_share(strained_packing(0.05, clumped, 0, 0.2));
+    const double smooth = closure_fraction(strained_packing(0.05, clumped, 0, 0.2));
     verify("closure error of smooth " + of + " in a cell that strains, over all that is turned over", smooth, 0, 1e-3,
            1.0);
-    const EnergyLedger rough = strained_packing(0.05, clumped, 0.3);
+    const Energies rough = strained_packing(0.05, clumped, 0.3);
     EXPECT_GT(std::abs(rough.cell), 0.3 * turnover(rough));
     EXPECT_GT(rough.friction, 0.1 * turnover(rough));
-    // What is left is the law's, of the order of overlap over radius.
+    // The rest is due to the law, of the order of overlap over radius.
     verify("closure error of rough " + of + " in a cell that strains, over all that is turned over",
-           closure_share(rough), 0, 5e-3, 1.0);
+           closure_fraction(rough), 0, 5e-3, 1.0);
     if (clumped) continue;
-    verify("closure error of smooth spheres in a cell that strains, over that at half of the step",
-           closure_share(strained_packing(0.2, false, 0, 0.2)) / closure_share(strained_packing(0.1, false, 0, 0.2)), 4,
-           0.1);
+    verify(
+        "closure error of smooth spheres in a cell that strains, over that at half of the step",
+        closure_fraction(strained_packing(0.2, false, 0, 0.2)) / closure_fraction(strained_packing(0.1, false, 0, 0.2)),
+        4, 0.1);
   }
 }
 
-// Along a slow strain, bodies are in balance.
-TEST(EnergyLedger, ACellsWorkIsThatOfItsStresses) {
+// In slow deformation, bodies are in equilibrium.
+TEST(Energies, ACellsWorkIsThatOfItsStresses) {
   Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},
                            jumble({6, 6, 6}, 1e-3, 0, 5), Vec3::Constant(6e-3), {-8, -6, 4});
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
@@ -110,7 +111,7 @@ TEST(EnergyLedger, ACellsWorkIsThatOfItsStresses) {
          1, 0.01);
 }
 
-TEST(EnergyLedger, AChangeOfTheStrainRateIsPutInBySettings) {
+TEST(Energies, AChangeOfTheStrainRateIsPutInBySettings) {
   for (const bool clumped : {false, true}) {
     std::vector<Grain> apart = jumble({6, 6, 6}, 1e-3, 0.05, 5);
     for (Grain& grain : apart) grain.radius *= 0.85;
@@ -129,20 +130,20 @@ TEST(EnergyLedger, AChangeOfTheStrainRateIsPutInBySettings) {
     Kept cell(d);
     for (const int next : {1, 2}) {
       cell.step(300);
-      const EnergyLedger before = cell.world().energies();
+      const Energies before = cell.world().energies();
       cell.begin_stage(static_cast<std::size_t>(next), next == 1 ? "fast" : "slow");
       cell.kernel().find_forces();
-      const EnergyLedger now = cell.world().energies();
+      const Energies now = cell.world().energies();
       const double scale = now.kinetic + turnover(now);
       EXPECT_NEAR(now.closure_error, before.closure_error, 1e-6 * scale);
       EXPECT_NEAR(now.kinetic - before.kinetic, now.settings - before.settings, 1e-3 * scale);
       EXPECT_GT(std::abs(now.settings - before.settings), 0.05 * scale);
     }
     cell.step(300);
-    const EnergyLedger now = cell.world().energies();
+    const Energies now = cell.world().energies();
     EXPECT_LE(std::abs(now.closure_error), 2e-3 * (now.kinetic + turnover(now)));
   }
 }
 
 }  // namespace
-}  // namespace grit::test::energy_ledger_tests
+}  // namespace grit::test::energy_balance_tests

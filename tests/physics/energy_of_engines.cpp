@@ -4,33 +4,33 @@
 #include <cmath>
 #include <functional>
 
-#include "energy_ledger.hpp"
+#include "energy_balance.hpp"
 #include "grit/plugin.hpp"
 #include "support/clump.hpp"
 #include "support/verified.hpp"
 
-namespace grit::test::energy_ledger_tests {
+namespace grit::test::energy_balance_tests {
 namespace {
 
 Description hold(bool translation, bool rotation) {
   return {{"type", "hold"}, {"translation", translation}, {"rotation", rotation}};
 }
 
-TEST(EnergyLedger, WhatHoldsGrainsPressesTheirSpring) {
+TEST(Energies, WhatHoldsGrainsPressesTheirSpring) {
   const double speed = 0.1, modulus = 1e8;
   Description d = grains("linear-rolling", {{"contact_modulus", modulus}},
                          {{Vec3::Zero(), radius, {speed, 0, 0}}, {{2 * radius, 0, 0}, radius, {-speed, 0, 0}}});
   d["engines"]["hold"] = hold(true, true);
   Kept pair(d);
   pair.step(1000);
-  const EnergyLedger now = pair.world().energies();
+  const Energies now = pair.world().energies();
   const double overlap = 2 * speed * pair.world().time(), stored = 0.5 * modulus * radius * overlap * overlap;
-  EXPECT_EQ(now.kinetic, 2 * kinetic_at(speed)) << "they do not feel the spring";
+  EXPECT_EQ(now.kinetic, 2 * kinetic_at(speed)) << "the spring does not act on them";
   verify("work of what holds two grains at their speeds over what their spring stores", now.engines / stored, 1, 1e-9);
   EXPECT_LE(std::abs(now.closure_error), 1e-9 * stored);
 }
 
-TEST(EnergyLedger, WhatHoldsAGrainLiftsIt) {
+TEST(Energies, WhatHoldsAGrainLiftsIt) {
   for (const bool clumped : {false, true}) {
     Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius, {0.5, 0, 2}}});
     if (clumped) make_clumps(d, boomerang());
@@ -39,14 +39,14 @@ TEST(EnergyLedger, WhatHoldsAGrainLiftsIt) {
     d["time_step"]["value"] = fall_step;
     Kept lift(d);
     lift.step(1000);
-    const EnergyLedger now = lift.world().energies();
+    const Energies now = lift.world().energies();
     const double height = 2 * lift.world().time();
     EXPECT_NEAR(now.engines, lift.mass(0) * 9.81 * height, 1e-10 * now.engines);
     EXPECT_LE(std::abs(now.closure_error), 1e-10 * now.engines);
   }
 }
 
-TEST(EnergyLedger, WhatHoldsASpinRubs) {
+TEST(Energies, WhatHoldsASpinRubs) {
   const double overlap = 1e-5 * radius, spin = 50, angle = 0.2, modulus = 1e8, shear = 0.3;
   Description d =
       grains("linear-frictional",
@@ -56,7 +56,7 @@ TEST(EnergyLedger, WhatHoldsASpinRubs) {
   d["engines"]["hold"] = hold(true, true);
   Kept rub(d);
   rub.step(3000);
-  const EnergyLedger now = rub.world().energies();
+  const Energies now = rub.world().energies();
   const double stiffness = modulus * radius, limit = std::tan(angle) * stiffness * overlap;
   const double way = spin * radius * rub.world().time(), loaded = limit / (shear * stiffness);
   ASSERT_GT(way, 10 * loaded);
@@ -66,8 +66,8 @@ TEST(EnergyLedger, WhatHoldsASpinRubs) {
          1.0);
 }
 
-// As it is held, it turns on while its momentum stays, and presses and rubs with one sphere after the other.
-TEST(EnergyLedger, WhatHoldsAClumpPressesAndRubs) {
+// A held clump continues to rotate with constant momentum; its spheres compress the wall and slide on it in turn.
+TEST(Energies, WhatHoldsAClumpPressesAndRubs) {
   for (const double friction : {0.0, 0.2}) {
     Description d = grains("linear-frictional", {{"contact_modulus", 1e7}, {"friction_angle", friction}},
                            {{{0, 0, 0.66 * radius}, radius, {0.3, 0, -0.01}, {20, 30, 40}}});
@@ -78,7 +78,7 @@ TEST(EnergyLedger, WhatHoldsAClumpPressesAndRubs) {
     d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
     Kept clump(d);
     clump.step(4000);
-    const EnergyLedger now = clump.world().energies();
+    const Energies now = clump.world().energies();
     EXPECT_GT(now.elastic(), 0.1 * now.engines);
     if (friction > 0) EXPECT_GT(now.friction, 0.1 * now.engines);
     verify(std::string("closure error over the work of what holds a clump on a ") +
@@ -87,7 +87,7 @@ TEST(EnergyLedger, WhatHoldsAClumpPressesAndRubs) {
   }
 }
 
-TEST(EnergyLedger, IsWholeAfterBodiesAreLetGo) {
+TEST(Energies, IsWholeAfterBodiesAreLetGo) {
   Description d = grains("linear-rolling", {},
                          {{Vec3::Zero(), radius, {0.1, 0, 0}}, {{1.995 * radius, 0, 0}, radius, {-0.1, 0.05, 0}}});
   d["engines"]["hold"] = hold(true, true);
@@ -97,29 +97,29 @@ TEST(EnergyLedger, IsWholeAfterBodiesAreLetGo) {
                          {"limit", 1}});
   Kept pair(d);
   pair.step(100);
-  const EnergyLedger held = pair.world().energies();
+  const Energies held = pair.world().energies();
   pair.begin_stage(1, "free");
   pair.kernel().find_forces();
   pair.step(3000);
-  const EnergyLedger now = pair.world().energies();
+  const Energies now = pair.world().energies();
   EXPECT_GT(held.engines, 0.1 * held.elastic());
   EXPECT_NEAR(now.engines, held.engines, 0.05 * held.engines) << "half a step of the last hundred";
-  EXPECT_LE(closure_share(now), 1e-3);
+  EXPECT_LE(closure_fraction(now), 1e-3);
 }
 
-TEST(EnergyLedger, WhatHoldsBodiesAtRestDoesNothing) {
+TEST(Energies, WhatHoldsBodiesAtRestDoesNothing) {
   Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius}, {{1.99 * radius, 0, 0}, radius}});
   d["engines"]["hold"] = hold(true, true);
   Kept pair(d);
   pair.step(100);
-  const EnergyLedger now = pair.world().energies();
+  const Energies now = pair.world().energies();
   EXPECT_GT(now.elastic(), 0);
   EXPECT_EQ(now.engines, 0);
   EXPECT_EQ(now.kinetic, 0);
   EXPECT_EQ(now.closure_error, 0);
 }
 
-/// Pushes bodies by what a test says.
+/// Applies the forces of a test to bodies.
 struct Push final : Engine {
   using Act = std::function<void(const World&, std::span<Row> force, std::span<Row> moment)>;
   static inline Act act;
@@ -141,7 +141,7 @@ void pushed(Description& d, Push::Act act) {
   d["engines"]["push"] = {{"type", "push"}};
 }
 
-TEST(EnergyLedger, AConstantForceDoesItsWorkAlongTheWay) {
+TEST(Energies, AConstantForceDoesItsWorkAlongTheWay) {
   const Vec3 push(2e-3, -1e-3, 3e-3);
   Description d = grains("linear-rolling", {}, {{Vec3::Zero(), radius, {0, 0.1, 0}}});
   d["time_step"]["value"] = fall_step;
@@ -150,12 +150,12 @@ TEST(EnergyLedger, AConstantForceDoesItsWorkAlongTheWay) {
   });
   Kept way(d);
   way.step(1000);
-  const EnergyLedger now = way.world().energies();
+  const Energies now = way.world().energies();
   verify("work of an engine's constant force over force times way", now.engines / push.dot(way.position(0)), 1, 1e-12);
   EXPECT_LE(std::abs(now.closure_error), 1e-12 * now.engines);
 }
 
-/// A body in an engine's spring that is turned on and off: closure over the largest work.
+/// A body on a spring of an engine that is switched on and off: closure error over the largest work.
 double closure_in_a_spring(double dt, bool clumped, const Vec3& strain_rate = Vec3::Zero()) {
   const double stiffness = 1, frequency = 300;
   Description d = periodic("linear-rolling", {}, {{Vec3(0.0196, 0.01, 0.01), radius, {0.5, 0, 1}, {100, 200, -300}}},
@@ -166,7 +166,7 @@ double closure_in_a_spring(double dt, bool clumped, const Vec3& strain_rate = Ve
   pushed(d, [=](const World& world, std::span<Row> force, std::span<Row> moment) {
     const double now = stiffness * (1 + 0.5 * std::sin(frequency * world.time()));
     for (std::size_t i = 0; i < force.size(); ++i) {
-      if (world.ids()[i] != 0) continue;  // of a clump, one sphere alone
+      if (world.ids()[i] != 0) continue;  // only one sphere of a clump
       const Vec3 pull = now * (Vec3::Constant(0.01) - xyz(world.positions()[i]));
       force[i] = {pull.x(), pull.y(), pull.z(), 0}, moment[i] = {1e-9, -2e-9, 3e-9, 0};
     }
@@ -177,7 +177,7 @@ double closure_in_a_spring(double dt, bool clumped, const Vec3& strain_rate = Ve
   return std::abs(swing.world().energies().closure_error) / largest;
 }
 
-TEST(EnergyLedger, ClosesAroundAnEnginesSpring) {
+TEST(Energies, ClosesAroundAnEnginesSpring) {
   for (const bool clumped : {false, true})
     for (const bool strained : {false, true}) {
       const Vec3 rate = strained ? Vec3(-20, 15, 10) : Vec3::Zero();
@@ -191,4 +191,4 @@ TEST(EnergyLedger, ClosesAroundAnEnginesSpring) {
 }
 
 }  // namespace
-}  // namespace grit::test::energy_ledger_tests
+}  // namespace grit::test::energy_balance_tests

@@ -1,4 +1,4 @@
-// Surfaces that are made of flat faces, and the same as a mesh: the same touches.
+// Surfaces of plane faces have the same contacts as equal meshes.
 #include <gmock/gmock.h>
 
 #include <random>
@@ -12,7 +12,7 @@ namespace {
 struct Faceted {
   std::string name;
   Description wall, as_mesh;
-  Vec3 low, high;  ///< centres, where the surface is seen from in front
+  Vec3 low, high;  ///< region of centres in front of the surface
   double radius;
   std::function<bool(const Vec3&)> in_front = [](const Vec3&) { return true; };
 };
@@ -25,11 +25,11 @@ std::shared_ptr<const Geometry> geometry(Description wall) {
   return LiveScene(scene).components().geometries.at("wall");
 }
 
-std::vector<Touch> by_overlap(const Geometry& geometry, const Sphere& sphere) {
-  std::vector<Touch> touches;
-  geometry.touch({}, {&sphere, 1}, touches);
-  std::ranges::sort(touches, {}, [](const Touch& t) { return std::tuple(t.overlap, t.normal.x()); });
-  return touches;
+std::vector<SurfaceContact> by_overlap(const Geometry& geometry, const Sphere& sphere) {
+  std::vector<SurfaceContact> contacts;
+  geometry.find_contacts({}, {&sphere, 1}, contacts);
+  std::ranges::sort(contacts, {}, [](const SurfaceContact& t) { return std::tuple(t.overlap, t.normal.x()); });
+  return contacts;
 }
 
 void expect_like_its_mesh(const Faceted& one) {
@@ -40,7 +40,7 @@ void expect_like_its_mesh(const Faceted& one) {
     for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i + 1], corners[i + 2]);
   const StlFile file(stl_text(corners));
   Description wall = one.as_mesh;
-  wall["type"] = "mesh", wall["path"] = file.path(), wall["scale"] = 1.0, wall["merge"] = 1e-12;
+  wall["type"] = "mesh", wall["path"] = file.path(), wall["scale"] = 1.0, wall["merge_distance"] = 1e-12;
   const auto mesh = geometry(wall);
 
   std::mt19937_64 random(5);
@@ -92,7 +92,7 @@ TEST(Faceted, ARectangleIsTouchedLikeItsMesh) {
 }
 
 TEST(Faceted, ASawToothIsTouchedLikeItsMesh) {
-  // Over the sheet: past its ends a mesh is a thin sheet, whose faces are seen from behind.
+  // Above the sheet: past its ends, centres are behind the faces of the mesh.
   const auto grooves = [](const std::string& name, double radius, double down, const Description& more,
                           const Description& crease = Description::object()) {
     const auto surface = geometry(with(with(sheet, {{"type", "saw-tooth"}}), more))->triangles();
@@ -112,7 +112,7 @@ TEST(Faceted, ASawToothIsTouchedLikeItsMesh) {
   grooves("grain above groove", 0.25, 0.01, {{"depth", 0.01}});
   grooves("ratchet", 0.1, 0.06,
           {{"depth", 0.06}, {"inclination", "30 deg"}, {"second_inclination", "70 deg"}, {"floor", 0.05}});
-  grooves("shallow", 0.1, 0.02, {{"depth", 0.02}, {"inclination", "5 deg"}}, {{"crease", 0.0}});
+  grooves("shallow", 0.1, 0.02, {{"depth", 0.02}, {"inclination", "5 deg"}}, {{"feature_angle", 0.0}});
 }
 
 }  // namespace

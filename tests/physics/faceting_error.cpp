@@ -1,4 +1,4 @@
-// A curved surface and triangles that have their corners on it: by how much forces differ, and how fast that falls.
+// A curved surface and meshes with their corners on it: differences of forces, and their order in the size of facets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,12 +13,12 @@ namespace grit::test::faceting_error_tests {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double radius = 0.05, overlap = 0.02, row = 2.5 * radius;  // of the grains; from one to the next
+constexpr double radius = 0.05, overlap = 0.02, row = 2.5 * radius;  // of the grains; spacing of grains
 constexpr int count = 400;
-/// Numbers that fill [0, 1) evenly, and no less so where it is cut into equal parts.
+/// Low-discrepancy numbers in [0, 1).
 double evenly(int i) { return std::fmod(i * std::numbers::phi, 1); }
 
-/// What a wall does to each of the grains.
+/// Forces of a wall on the grains.
 std::vector<Vec3> forces(Description wall, const std::vector<Grain>& grains) {
   Description d = description("linear-frictional", {{"contact_modulus", 1e6}}, grains);
   wall["material"] = "grain";
@@ -33,14 +33,14 @@ std::vector<Vec3> forces(Description wall, const std::vector<Grain>& grains) {
   return sum;
 }
 
-/// Root mean squares over all grains.
+/// Root-mean-square errors over all grains.
 struct Difference {
-  double strength = 0, direction = 0;  ///< of the forces' lengths over what they should be; of their directions [rad]
+  double strength = 0, direction = 0;  ///< of magnitudes, relative; of directions [rad]
 };
 Difference difference(const std::vector<Vec3>& found, const std::vector<Vec3>& known) {
   Difference sum;
   for (std::size_t i = 0; i < known.size(); ++i) {
-    EXPECT_GT(known[i].norm(), 0) << "grain " << i << " touches";
+    EXPECT_GT(known[i].norm(), 0) << "grain " << i << " has no contact";
     sum.strength += std::pow(found[i].norm() / known[i].norm() - 1, 2);
     sum.direction += (found[i].normalized() - known[i].normalized()).squaredNorm();
   }
@@ -52,7 +52,7 @@ void add_strip(std::vector<Vec3>& corners, const Vec3& a, const Vec3& b, const V
   corners.insert(corners.end(), {a, b, b + along, a, b + along, a + along});
 }
 
-/// Forces of a surface against those of meshes of it, of n strips a turn or a wave, which `strips(n)` makes.
+/// Compares forces of a surface with those of its meshes with n strips per turn or wavelength, made by `strips(n)`.
 template <class Strips>
 void expect_second_order(const std::string& name, const Description& analytic, const std::vector<Grain>& grains,
                          const Description& more, Strips strips) {
@@ -60,7 +60,8 @@ void expect_second_order(const std::string& name, const Description& analytic, c
   std::vector<double> sizes, strengths, directions;
   for (const int n : {32, 64, 128, 256}) {
     const StlFile file(stl_text(strips(n)));
-    Description mesh{{"type", "mesh"}, {"path", file.path()}, {"scale", 1.0}, {"merge", 1e-12}, {"open", true}};
+    Description mesh{
+        {"type", "mesh"}, {"path", file.path()}, {"scale", 1.0}, {"merge_distance", 1e-12}, {"open", true}};
     mesh.update(more);
     const Difference off = difference(forces(mesh, grains), known);
     sizes.push_back(1.0 / n), strengths.push_back(off.strength), directions.push_back(off.direction);
@@ -69,7 +70,7 @@ void expect_second_order(const std::string& name, const Description& analytic, c
   verify("order at which their direction does, " + name, order(sizes, directions), 1, 0.01);
 }
 
-// Grains on a helix, none of which touches another.
+// Grains on a helix, not in contact with each other.
 void expect_cylinder_at_second_order(bool inside) {
   const double length = (count + 1) * row, from_axis = inside ? 1 - radius + overlap : 1 + radius - overlap;
   std::vector<Grain> grains;

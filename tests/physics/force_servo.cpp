@@ -1,4 +1,4 @@
-// A servo on a force moves walls that have neither area nor normal.
+// A servo with a target force moves walls without area and normal.
 #include <gtest/gtest.h>
 
 #include "support/scene.hpp"

@@ -1,4 +1,4 @@
-// A box between real walls, grooved and round: what the void-ratio probe finds is known in closed form.
+// Void ratio between grooved and round walls, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double diameter = 1e-3;
 
-/// 4 × 4 × 4 grains, each by itself, whose lattice begins at `low`.
+/// 4 × 4 × 4 separate grains on a lattice that starts at `low`.
 std::vector<Grain> grains_from(const Vec3& low) {
   std::vector<Grain> grains;
   for (int x = 0; x < 4; ++x)
@@ -22,21 +22,15 @@ std::vector<Grain> grains_from(const Vec3& low) {
   return grains;
 }
 
-/// The volume before the walls that the probe's void ratio of the whole specimen amounts to [m³].
+/// The volume in front of the walls that follows from the probe's void ratio of the whole specimen [m³].
 double free_volume(Description d) {
   d["probes"]["void"].update({{"type", "void-ratio"}, {"every_steps", 1}});
   const Trial t(d);
   const auto probe = t.scene().description->probes.at("void").probe.make();
   probe->prepare(t.world());
-  std::vector<std::vector<double>> rooms;
-  for (const Channel& channel : probe->channels()) {
-    std::size_t size = 1;
-    for (const std::size_t extent : channel.shape) size *= extent;
-    rooms.emplace_back(size);
-  }
-  const std::vector<std::span<double>> spans(rooms.begin(), rooms.end());
-  probe->sample(t.world(), spans);
-  return (1 + rooms.at(0).at(0)) * 64 * std::numbers::pi / 6 * diameter * diameter * diameter;
+  ChannelValues values("probe void", probe->channels());
+  probe->sample(t.world(), values);
+  return (1 + values["void_ratio"]) * 64 * std::numbers::pi / 6 * diameter * diameter * diameter;
 }
 
 Description sheet(const char* type, double z, bool up) {
@@ -48,7 +42,7 @@ Description sheet(const char* type, double z, bool up) {
           {"material", "grain"}};
 }
 
-/// Between a floor and a lid, flat sides around.
+/// Between a floor and a lid, with flat sides.
 Description between(const Description& floor, const Description& lid) {
   Description d = description("linear-frictional", {{"density", 2600}}, grains_from(Vec3::Zero()));
   d["walls"]["sides"] = {{"type", "box"},  {"low", {0, 0, -5e-3}},        {"high", {4.8e-3, 4.8e-3, 1e-2}},
@@ -64,7 +58,7 @@ TEST(GroovedVoidRatio, IsThatUpToTeethAndWaves) {
   Description teeth = sheet("saw-tooth", 0, true), waves = sheet("sinusoidal", 0, true);
   EXPECT_NEAR(free_volume(between(sheet("rectangle", 0, true), flat)), area * side, 1e-12 * area * side);
   teeth.update({{"depth", 0.5e-3}, {"spacing", 1.6e-3}, {"floor", 0.4e-3}});
-  // Three grooves with two flanks of 45° and a floor; a land of 0.2 mm is left by each.
+  // Three grooves with two flanks of 45° and a floor, with lands of 0.2 mm.
   const double grooves = 3 * side * 0.5e-3 * (0.4e-3 + 0.5e-3);
   EXPECT_NEAR(free_volume(between(teeth, flat)), area * side + grooves, error);
   EXPECT_GT(grooves, 100 * error);
@@ -86,7 +80,7 @@ TEST(GroovedVoidRatio, IsThatInsideOfACylinderAndAFunnel) {
   constexpr double pi = std::numbers::pi;
   EXPECT_NEAR(free_volume(d), pi * radius * radius * height, error * 2 * pi * radius * height);
 
-  // 45°, and it goes on above the lid, so that the region's corners lie behind it and not beyond its rim.
+  // 45°; it extends above the lid, so that the region's corners are behind it and not beyond its rim.
   constexpr double low = radius, high = radius + height;
   d["walls"]["round"] = {{"type", "cone"},
                          {"start", {0, 0, 0}},

@@ -1,5 +1,5 @@
-// Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 1 to 3, by whole runs: overlap, force and duration of
-// elastic impacts after Hertz, and rebounds with dashpots.
+// Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 1 to 3, as complete runs: overlap, force and duration of
+// elastic Hertzian impacts, and rebound with dashpots.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 struct Impact {
   const char* name;
   double modulus, poisson, density, radius, speed;
-  bool plane;  ///< rigid; else an identical sphere that comes as fast from the other side
+  bool plane;  ///< rigid; otherwise an identical sphere with the opposite velocity
 
   friend void PrintTo(const Impact& impact, std::ostream* out) { *out << impact.name; }
   double mass() const { return density * 4 / 3 * std::numbers::pi * std::pow(radius, 3); }
@@ -62,7 +62,7 @@ TEST_P(ChungOoi, OverlapForceAndDuration) {
     for (const Contact& contact : t.world().contacts()) force = std::max(force, contact.normal_force);
   } while (t.position(0).z() < impact.radius);
   const double speed = t.velocity(0).z(), duration = t.world().time() - (t.position(0).z() - impact.radius) / speed;
-  // The step, of second order: (dt/duration)² = 6e-8, and what the largest of a step misses.
+  // Error of second order in the step: (dt/duration)² = 6e-8, and sampling of the maxima.
   verify("overlap [m]", overlap, impact.overlap(), 1e-7);
   verify("force [N]", force, impact.force(), 1e-7);
   verify("duration [s]", duration, impact.duration(), 1e-7);
@@ -76,7 +76,7 @@ TEST_P(ChungOoi, ReboundsAsTheRestitutionSays) {
     Trial t(scene(impact, e, impact.duration() / 4000));
     do t.step();
     while (t.position(0).z() < impact.radius);
-    // Velocities half a step old in the dashpot: first order, a fifth of dt/duration at most.
+    // The dashpot uses velocities half a step old: first order, at most a fifth of dt/duration.
     char what[48];
     std::snprintf(what, sizeof what, "restitution of %.1f, error absolute", e);
     verify(what, t.velocity(0).z() / impact.speed, e, 1e-4, 1);

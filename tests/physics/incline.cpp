@@ -1,5 +1,5 @@
-// One sphere on a plane: sliding, rolling without slip, resting; each limit from both sides. The plane is level and
-// gravity leans, so that nothing but the physics is aslant.
+// A sphere on a plane: sliding, rolling without slip, at rest; each limit from both sides. The plane is horizontal and
+// gravity is inclined.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double g = 9.81, radius = 0.01, density = 2500, modulus = 1e8, young = 1e11, poisson = 0.3;
 
-/// A sphere that lies on the plane, pressed in by its weight; friction is a coefficient.
+/// A sphere on the plane with the overlap by its weight; `friction` is a coefficient.
 Description on_plane(const std::string& law, double friction, double slope, Description material = {}) {
   const double angle = std::atan(slope), stiffness = modulus * radius;
   const double mass = density * 4 / 3 * std::numbers::pi * std::pow(radius, 3), weight = mass * g * std::cos(angle);
@@ -28,13 +28,13 @@ Description on_plane(const std::string& law, double friction, double slope, Desc
   d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {g * std::sin(angle), 0, -g * std::cos(angle)}}};
   return d;
 }
-/// Shear that is damped, so that the spring of a new contact soon rests.
+/// Damped shear, so that the spring of a new contact comes to rest soon.
 Description frictional(double friction, double slope) {
   Description d = on_plane("linear-frictional", friction, slope, {{"restitution", 0.3}});
   d["contacts"]["shear_damping"] = true;
   return d;
 }
-/// Resistance to rolling; local damping stills the springs of a sphere that stays, and leaves its limits as they are.
+/// Rolling resistance; local damping brings the springs of a sticking sphere to rest and does not change the limits.
 Description resisting(const std::string& law, double friction, double limit, double slope, double damping) {
   Description d = on_plane(law, friction, slope, {{"rolling_limit", limit}, {"rolling_stiffness", 0.7}});
   if (damping > 0) d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", damping}};
@@ -44,7 +44,7 @@ Description resisting(const std::string& law, double friction, double limit, dou
 struct Rates {
   double acceleration, spinning;  ///< m/s², rad/s²
 };
-/// Over the second half of a time, by least squares: springs that nothing damps swing on, and their swing averages out.
+/// By least squares over the second half of a time: oscillations of undamped springs average out.
 Rates rates(const Description& d, double time) {
   Trial t(d);
   while (t.world().time() < 0.5 * time) t.step();
@@ -68,7 +68,7 @@ TEST(Incline, SphereSlidesBelowTwoSeventhsOfTheSlope) {
     for (const double share : {0.3, 0.9, 0.99}) {
       const double friction = share * 2.0 / 7 * slope;
       const Rates now = rates(frictional(friction, slope), 0.2);
-      // Friction's arm is the radius less an overlap of 1e-5 of it.
+      // The arm of friction is the radius less an overlap of 1e-5 of it.
       along.add((now.acceleration - (down(slope) - friction * normal(slope))) / g);
       EXPECT_NEAR(now.spinning * radius / (2.5 * friction * normal(slope)), 1, 2e-5) << slope << ' ' << share;
       EXPECT_GT(now.acceleration - now.spinning * radius, 0.9 * (1 - share) * down(slope)) << "it slips";
@@ -81,7 +81,7 @@ TEST(Incline, SphereRollsAboveTwoSeventhsOfTheSlope) {
   for (const double slope : {0.3, 1.0})
     for (const double share : {1.01, 1.1, 3.0}) {
       const Rates now = rates(frictional(share * 2.0 / 7 * slope, slope), 0.2);
-      // 5/7 is that of a point of contact at the radius; the overlap is 1e-5 of it.
+      // 5/7 holds for a contact point at the radius; the overlap is 1e-5 of it.
       along.add((now.acceleration - 5.0 / 7 * down(slope)) / g);
       EXPECT_NEAR(now.spinning * radius, now.acceleration, 1e-11 * g) << slope << ' ' << share;
     }
@@ -91,7 +91,7 @@ TEST(Incline, SphereRollsAboveTwoSeventhsOfTheSlope) {
 TEST(Incline, SlippingSphereRollsAtFiveSeventhsOfItsSpeed) {
   const double friction = 0.3, speed = 0.5;
   Description d = frictional(friction, 0);
-  d["bodies"]["grains"]["grains"]["grains"][0]["velocity"] = {speed, 0, 0};
+  d["bodies"]["grains"]["source"]["bodies"][0]["velocity"] = {speed, 0, 0};
   Trial t(d);
   const auto slip = [&] { return t.velocity(0).x() - radius * t.spin(0).y(); };
   double before = slip(), rolls_at = 0;
@@ -99,7 +99,7 @@ TEST(Incline, SlippingSphereRollsAtFiveSeventhsOfItsSpeed) {
   before = slip(), rolls_at = t.world().time();
   t.step(10);
   const double end = 2 * speed / (7 * friction * g);
-  // Slip falls at 7/2 μ g to the end, but for the 1e-7 m over which the spring was first stretched.
+  // Slip decreases at 7/2 μ g until the end, except for the 1e-7 m of initial spring elongation.
   verify("time that a slipping sphere takes to roll [s]", rolls_at + before / (3.5 * friction * g), end, 2e-5);
   while (t.world().time() < 2 * end) t.step();
   verify("speed of a slipping sphere when it rolls, over that at first", t.velocity(0).x() / speed, 5.0 / 7, 7e-6);

@@ -1,4 +1,4 @@
-// The interface shear test from one end to the other, in boxes of 600 to 1600 grains.
+// Complete interface shear tests in boxes of 600 to 1600 grains.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,12 +22,12 @@ TEST(InterfaceShear, OnAFlatSurfaceSlidesAtItsFrictionAngle) {
   EXPECT_NEAR(curves.mean("friction_angle", 0.3, 1), 16, 0.2);
   EXPECT_NEAR(curves.mean("wall_contact_factor", 0.3, 1), 1, 0.01);
   EXPECT_NEAR(curves.mean("normal_stress", 0, 1), 100e3, 0.01 * 100e3);
-  EXPECT_GT(curves.mean("slip/share", 0.8, 1), 0.6);  // before it slides the sand is sheared by some 0.15 mm
+  EXPECT_GT(curves.mean("slip/fraction", 0.8, 1), 0.6);  // before sliding, the sand is sheared by about 0.15 mm
   EXPECT_NEAR(curves.mean("volumetric_strain", 0.8, 1), 0, 3e-3);
 }
 
-// Grabowski (2024), over R_n = 0.25 and 1: peaks 31° and 49°, dilation 1.8 and 3.9 %, slip 70 and 2 %. Boxes of 16
-// grains scatter by some degrees; found are 25.9° and 42.6° in the mean, 1.4 and 3.6 %, and over R_n = 0.01 18.2°.
+// Grabowski (2024), on R_n = 0.25 and 1: peaks 31° and 49°, dilation 1.8 and 3.9 %, slip 70 and 2 %. Boxes of 16 grains
+// scatter by some degrees; the means found are 25.9° and 42.6°, 1.4 and 3.6 %, and 18.2° on R_n = 0.01.
 TEST(InterfaceShear, RougherTeethBearMoreDilateMoreAndSlipLess) {
   const auto over = [](const char* roughness) {
     Curves curves;
@@ -40,24 +40,25 @@ TEST(InterfaceShear, RougherTeethBearMoreDilateMoreAndSlipLess) {
   };
   const Curves rough = over("0.25"), very_rough = over("1");
   const auto angle = [](const Curves& curves) { return curves.mean("friction_angle", 0.3, 1); };
-  EXPECT_GT(angle(rough), 18 + 4) << "the surface's own is 18";
+  EXPECT_GT(angle(rough), 18 + 4) << "that of the surface is 18";
   EXPECT_GT(angle(very_rough), angle(rough) + 8);
   const auto strain = [](const Curves& curves) { return curves.mean("volumetric_strain", 0.9, 1); };
   EXPECT_GT(strain(rough), 0.006);
   EXPECT_GT(strain(very_rough), strain(rough) + 0.01);
-  const auto slip = [](const Curves& curves) { return curves.mean("slip/share", 0.9, 1); };
+  const auto slip = [](const Curves& curves) { return curves.mean("slip/fraction", 0.9, 1); };
   EXPECT_GT(slip(rough), 0.5);
-  EXPECT_LT(slip(very_rough), 0.2) << "it shears in itself";
-  // What it was prepared as: looked at as it began to settle, and as it had.
+  EXPECT_LT(slip(very_rough), 0.2) << "it shears internally";
+  // State after preparation: sampled at the start and at the end of settling.
   const auto& spread = rough.channel.at("prepared-cells/standard_deviation");
   ASSERT_EQ(spread.size(), 2u);
   EXPECT_NEAR(spread.back(), 0.044, 0.02);
   EXPECT_NEAR(rough.channel.at("prepared-cells/mean").back(), 0.587, 0.02) << "0.57 in the interior";
-  EXPECT_NEAR(rough.channel.at("prepared-chains/anisotropy").back(), 0.055, 0.05) << "even, but for chance";
+  EXPECT_NEAR(rough.channel.at("prepared-chains/anisotropy").back(), 0.055, 0.05) << "homogeneous, except for scatter";
   EXPECT_NEAR(rough.channel.at("prepared-chains/chains").back(), 46, 20);
 }
 
-// Grabowski (2024): 0.29 on the flat surface, 0.80 over waves of d/l = 0.24, residual 0.69. Found is 0.73 in the mean.
+// Grabowski (2024): 0.29 on the flat surface, 0.80 on a sinusoidal surface of d/l = 0.24, residual 0.69. The mean found
+// is 0.73.
 TEST(InterfaceShear, WavesBearMoreThanWhatIsFlat) {
   Curves curves;
   run_to_the_end("sims/interface-shear/quick-dl-0240.json",

@@ -1,5 +1,4 @@
-// Regular packings of equal spheres in a periodic cell: elastic constants, speed of sound and strength have closed
-// forms.
+// Regular packings of equal spheres in a periodic cell: closed forms of elastic constants, speed of sound and strength.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,14 +13,14 @@ namespace {
 
 constexpr double radius = 5e-4, diameter = 2 * radius, density = 2500;
 
-/// Where spheres are that touch, in an orthogonal cell that repeats; lengths in diameters.
+/// Positions of spheres in contact in an orthogonal periodic cell; lengths in diameters.
 struct Lattice {
   Vec3 cell;
   std::vector<Vec3> places;
   int neighbours;
 };
 const double root2 = std::numbers::sqrt2, bcc = 2 / std::numbers::sqrt3;
-// Along the cubic axes, and turned by 45 degrees about z.
+// Along the cubic axes, and rotated by 45 degrees about z.
 const Lattice simple_cubic{Vec3::Ones(), {Vec3::Zero()}, 6};
 const Lattice simple_cubic_turned{{root2, root2, 1}, {Vec3::Zero(), {root2 / 2, root2 / 2, 0}}, 6};
 const Lattice face_centred{
@@ -53,7 +52,7 @@ const Law hertz_mindlin{
     [](double overlap) { return young / (1 - poisson * poisson) * std::sqrt(radius / 2 * overlap); },
     [](double overlap) { return 2 * young / (2 - poisson) / (1 + poisson) * std::sqrt(radius / 2 * overlap); }};
 
-/// As many cells as it takes, pressed together by `squeeze` of a diameter.
+/// As many cells as needed, compressed by `squeeze` of a diameter.
 Description packed(const Lattice& lattice, const Law& law, double squeeze, std::array<int, 3> cells) {
   const double scale = diameter * (1 - squeeze);
   std::vector<Grain> grains;
@@ -71,7 +70,7 @@ Description packed(const Lattice& lattice, const Law& law, double squeeze, std::
                  {"periodic", {true, true, true}}};
   return d;
 }
-/// No body meets another twice.
+/// So that no body meets another twice.
 std::array<int, 3> enough(const Lattice& lattice) {
   std::array<int, 3> cells{};
   for (int k = 0; k < 3; ++k) cells[k] = static_cast<int>(std::ceil(2.5 / lattice.cell[k]));
@@ -87,8 +86,7 @@ Vec3 pressure(const World& world) {
   return sum / size(world).prod();
 }
 
-/// Stresses over `strain` that it gives rise to, tension and extension positive. By symmetry all bodies go with the
-/// mean flow.
+/// Stresses over `strain`, tension and extension positive. By symmetry all bodies move with the mean flow.
 Vec3 response(const Lattice& lattice, const Law& law, double squeeze, double strain, const Vec3& direction) {
   constexpr double dt = 1e-9;
   constexpr int steps = 10;
@@ -116,7 +114,8 @@ class LatticeIn : public testing::TestWithParam<Elastic> {};
 
 TEST_P(LatticeIn, ElasticConstantsAreThoseOfItsSprings) {
   const Elastic& p = GetParam();
-  // What a strain changes is small against the squeeze, and that against the diameter: the forms hold for no squeeze.
+  // The change by the strain is small relative to the overlap, and the overlap to the diameter: closed forms for
+  // overlap 0.
   constexpr double squeeze = 1e-5, strain = 1e-9;
   const Vec3 along = response(p.straight, p.law, squeeze, strain, {1, 0, 0});
   const Vec3 sheared = response(p.turned, p.law, squeeze, strain, {1, -1, 0});
@@ -158,7 +157,7 @@ TEST(Lattice, SoundGoesAsFastAsItsStiffnessAndDensitySay) {
   const double frequency = 2 * corner * std::sin(wave / 2);
   const double spacing = diameter * (1 - squeeze), speed = 1e-3 * squeeze * diameter * frequency;
   Description d = packed(simple_cubic, linear_rolling, squeeze, {layers, 3, 3});
-  for (Description& grain : d["bodies"]["grains"]["grains"]["grains"])
+  for (Description& grain : d["bodies"]["grains"]["source"]["bodies"])
     grain["velocity"] = {speed * std::sin(wave * double(grain["position"][0]) / spacing), 0, 0};
   const double dt = 0.05 / corner;
   d["time_step"]["value"] = dt;
@@ -170,7 +169,7 @@ TEST(Lattice, SoundGoesAsFastAsItsStiffnessAndDensitySay) {
       sum += t.velocity(id).x() * std::sin(wave * (std::floor(t.position(id).x() / spacing) + 0.25));
     return 2 * sum / static_cast<double>(count);
   };
-  // At full steps the velocity is a cosine, of a frequency that leap-frog raises.
+  // At full steps the velocity is a cosine, with the frequency of the leap-frog scheme.
   const double turn = 2 * std::asin(0.5 * frequency * dt);
   double before = 0, now = amplitude();
   int zeros = 0, step = 0;
@@ -180,16 +179,16 @@ TEST(Lattice, SoundGoesAsFastAsItsStiffnessAndDensitySay) {
     ASSERT_NEAR(now, speed * std::cos(turn * step), 1e-8 * speed) << step;
     zeros += before * now < 0 ? 1 : 0;
   }
-  const double period = (step - 1 + before / (before - now)) * dt / 0.75;  // a cosine is zero for the second time at ¾
+  const double period = (step - 1 + before / (before - now)) * dt / 0.75;  // second zero of a cosine: ¾ of the period
   const double found = layers * spacing / period;
   const double long_wave = std::sqrt(stiffness / spacing / (mass / std::pow(spacing, 3)));
-  // 64 layers are slower by the discrete chain's (π/64)²/6, a step is faster by (ω dt)²/24.
+  // A discrete chain of 64 layers is slower by (π/64)²/6; the time step makes it faster by (ω dt)²/24.
   verify("speed of a wave 64 layers long [m/s]", found, long_wave * std::sin(wave / 2) / (wave / 2), 2e-6);
   verify("the same against √(C11/ρ)", found, long_wave, 5e-4);
 }
 
 TEST(Lattice, FaceCentredPackingIsAsStrongAsThorntonSays) {
-  // Compressed along z, extended along x and y by as much: contacts across z slide and keep their overlap, those in the
+  // Compressed along z and extended equally along x and y: contacts across z slide at constant overlap, those in the
   // plane open. doi 10.1680/geot.1979.29.4.441
   for (const Law* law : {&linear_rolling, &linear_frictional, &hertz_mindlin})
     for (const double angle : {5.0, 18.0, 30.0, 40.0}) {
@@ -212,9 +211,9 @@ TEST(Lattice, FaceCentredPackingIsAsStrongAsThorntonSays) {
 }
 
 TEST(Lattice, SixSpheresBetweenWallsAreAsStrongAsThorntonSays) {
-  // A cell of the face-centred packing between smooth walls: one above, four in the plane, one below. The lids come
-  // closer and the sides give way so that contacts across keep their overlap and slide; those in the plane open. Each
-  // lid bears four contacts, each side what four of them press towards it.
+  // A cell of the face-centred packing between smooth walls: one above, four in the plane, one below. The lids approach
+  // and the sides move outwards so that contacts across slide at constant overlap; those in the plane open. Each lid
+  // carries four contacts, each side the lateral components of four.
   constexpr double squeeze = 1e-5, sunk = squeeze * diameter;
   for (const Law* law : {&linear_rolling, &linear_frictional, &hertz_mindlin})
     for (const double angle : {5.0, 18.0, 30.0}) {
@@ -231,7 +230,7 @@ TEST(Lattice, SixSpheresBetweenWallsAreAsStrongAsThorntonSays) {
       d["materials"]["smooth"]["friction_angle"] = 0;
       if (law == &linear_rolling)
         d["materials"]["grain"]["rolling_limit"] = d["materials"]["smooth"]["rolling_limit"] = 0;
-      // So slow that what still swings moves faster, or local damping would brake the way.
+      // So slow that residual oscillations are faster; otherwise local damping would act on the steady motion.
       constexpr double speed = 1e-6;
       for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0}) {

@@ -1,6 +1,7 @@
-// Spheres that hit a plane or each other aslant or spinning: Chung & Ooi (2011), doi 10.1007/s10035-011-0277-0, tests 4
-// to 8, where sliding has a closed form, and where the contact sticks for a while, against the law's own equations;
-// linear laws against their closed forms, and by the seventh and eighth.
+// Oblique and spinning impacts of spheres on a plane or on each other: Chung & Ooi (2011), doi
+// 10.1007/s10035-011-0277-0, tests 4 to 8. Sliding contacts are compared with closed forms, contacts that stick for
+// some time with a numerical solution of the law's equations. Linear laws are compared with their closed forms, also in
+// tests 7 and 8.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +22,7 @@ struct Material {
   double young, poisson, density, friction, restitution;
 
   double mass(double radius) const { return density * 4 / 3 * pi * radius * radius * radius; }
-  /// Largest one of an elastic impact on a rigid plane [m].
+  /// Maximum overlap of an elastic impact on a rigid plane [m].
   double overlap(double radius, double speed) const {
     const double spring = 4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(radius);
     return std::pow(1.25 * mass(radius) * speed * speed / spring, 0.4);
@@ -34,8 +35,8 @@ struct Material {
             {"friction_angle", std::atan(friction)},
             {"restitution", restitution}};
   }
-  /// Young's as the modulus of the law, whose shear spring is soon at its limit: its dashpot, if it has one, presses at
-  /// once.
+  /// Young's modulus as the modulus of the law. Its shear spring reaches the limit soon; a dashpot, if any, acts
+  /// immediately.
   Description linear(const std::string& law) const {
     Description m{{"density", density},
                   {"contact_modulus", young},
@@ -45,13 +46,13 @@ struct Material {
     else m["restitution"] = restitution;
     return m;
   }
-  /// Of an elastic impact by a linear law on what is alike.
+  /// Duration of an elastic impact of two equal bodies with a linear law.
   double linear_duration(double radius) const { return pi * std::sqrt(mass(radius) / (2 * young * radius)); }
   /// linear-rolling has no dashpot.
   double restitution_by(const std::string& law) const { return law == "linear-rolling" ? 1 : restitution; }
 };
 
-// Two for each test, with the figures that scripts of YADE and PySPH for these tests have.
+// Two materials for each test, with the values of the scripts of YADE and PySPH for these tests.
 const std::vector<Material> of_fourth{{"oxide", 380e9, 0.23, 4000, 0.092, 0.98},
                                       {"alloy", 70e9, 0.33, 2700, 0.092, 0.98}};
 const std::vector<Material> of_fifth{{"steel", 208e9, 0.3, 7850, 0.3, 1}, {"polyethylene", 1e9, 0.4, 1400, 0.3, 1}};
@@ -64,21 +65,21 @@ std::string at(const Material& m, const char* format, double value) {
   return ", " + m.name + text;
 }
 
-/// A ball on its way through a contact with what is rigid and at rest.
+/// A ball in contact with a rigid body at rest.
 struct Course {
   double depth = 0, closing, along, spin, shear = 0;  ///< m, m/s, m/s, rad/s; on the ball [N]
-  double pushed = 0;  ///< of the normal impulse, what passed before friction was at its limit [N s]
+  double pushed = 0;                                  ///< normal impulse before friction reached its limit [N s]
 };
 Course after(const Course& c, const Course& rate, double dt) {
   return {c.depth + dt * rate.depth, c.closing + dt * rate.closing, c.along + dt * rate.along,
           c.spin + dt * rate.spin,   c.shear + dt * rate.shear,     c.pushed};
 }
 
-/// Hertz's spring with its dashpot, and Mindlin's up to Coulomb's limit, as a system of differential equations.
+/// Hertz's spring with its dashpot and Mindlin's spring with Coulomb's limit, as a system of differential equations.
 struct Equations {
   Material material;
   double radius, reduced_radius;
-  double nearer;  ///< of the overlap, what the arm of friction is shorter by: on a sphere R / (R + its radius)
+  double nearer;  ///< reduction of the arm of friction over the overlap: on a sphere R / (R + its radius)
   double mass = material.mass(radius);
   double damping = 2 * std::sqrt(5.0 / 6) * damping_of_restitution(material.restitution);
 
@@ -89,7 +90,7 @@ struct Equations {
   }
   Course rate(const Course& c) const {
     const double shear_modulus = material.young / (2 * (2 - material.poisson) * (1 + material.poisson));
-    // Within a step, too, nothing beyond the limit acts.
+    // The limit also holds within a step.
     const double limit = material.friction * normal(c), shear = std::clamp(c.shear, -limit, limit);
     const double eased = c.closing < 0 && c.depth > 0 ? 0.5 * c.closing / c.depth * c.shear : 0;
     return {.depth = c.closing,
@@ -98,7 +99,7 @@ struct Equations {
             .spin = -2.5 * (radius - nearer * c.depth) * shear / (mass * radius * radius),
             .shear = eased - 8 * shear_modulus * contact(c) * (c.along - radius * c.spin)};
   }
-  /// Runge and Kutta's, of fourth order; what is beyond the limit of friction slips.
+  /// Fourth-order Runge–Kutta; shear above the friction limit slips.
   Course rebound(Course c) const {
     const double deepest = material.overlap(radius, c.closing), dt = 2.9432 * deepest / c.closing / 50000;
     bool slides = false;
@@ -114,7 +115,7 @@ struct Equations {
   }
 };
 
-/// Errors are over the speed that the point of contact comes with.
+/// Errors are relative to the initial speed of the contact point.
 void verify_rebound(const std::string& at, const Rebound& found, const Course& known, double scale, double radius,
                     double allowed) {
   verify("tangential speed" + at + ", error over that of the contact before [m/s]", found.velocity.x(), known.along,
@@ -156,16 +157,16 @@ TEST(ObliqueImpact, FollowsItsEquationsAtSmallAnglesOfTheFourthTest) {
   }
 }
 
-/// Of the point of contact, from the normal [°].
+/// Angle of the velocity of the contact point to the normal [°].
 double rebound_angle(double along, double spin, double leaving, double radius) {
   return std::atan((along - radius * spin) / leaving) * 180 / pi;
 }
 
-// The points with which Chung and Ooi's fourth test is compared, with spins turned about. Their restitutions lie by the
-// closed form of sliding within 0.4 % at all its angles: more evenly than what was measured, below.
+// Reference points of Chung and Ooi's test 4, with the sign of spins changed. Their restitutions are within 0.4 % of
+// the closed form of sliding at all angles: they scatter less than the measurements below.
 TEST(ObliqueImpact, LiesByThePointsGivenForTheFourthTest) {
   struct Point {
-    double angle, restitution, spin, rebound;  ///< °; tangential; rad/s; of the point of contact [°]
+    double angle, restitution, spin, rebound;  ///< °; tangential; rad/s; of the contact point [°]
   };
   constexpr double radius = 2.5e-3, speed = 3.9;
   const Material& m = of_fourth[0];
@@ -180,7 +181,7 @@ TEST(ObliqueImpact, LiesByThePointsGivenForTheFourthTest) {
     const Course known = equations.rebound({.closing = -in.z(), .along = in.x(), .spin = 0});
     const double leaves = rebound_angle(out.velocity.x(), out.spin.y(), out.velocity.z(), radius);
     const std::string here = at(m, " at %g°", p.angle);
-    // Speeds err by a share of that of the contact before, so that their angle does by its tangent.
+    // The error of velocities is relative to the initial one, so that of the angle grows with its tangent.
     verify("rebound angle of the point of contact" + here + ", error over a tangent before of 1 [°]", leaves,
            rebound_angle(known.along, known.spin, -known.closing, radius), 1e-3, in.x() / -in.z() * 180 / pi);
     beside("tangential restitution" + here, out.velocity.x() / in.x(), p.restitution, p.restitution);
@@ -189,8 +190,8 @@ TEST(ObliqueImpact, LiesByThePointsGivenForTheFourthTest) {
   }
 }
 
-// Of Kharaz, Gorham and Salman (2001), doi 10.1016/S0032-5910(01)00283-2, figures as read off theirs for an example of
-// Lethe. The plate was glass; friction and restitution are the law's, so that it acts by its stiffness alone.
+// Measurements of Kharaz, Gorham and Salman (2001), doi 10.1016/S0032-5910(01)00283-2, digitised for an example of
+// Lethe. The plate was glass; friction and restitution are given, so that only its stiffness matters.
 TEST(ObliqueImpact, LiesByWhatWasMeasuredForTheFourthTest) {
   constexpr double radius = 2.5e-3, speed = 3.9;
   const Material& m = of_fourth[0];
@@ -234,7 +235,7 @@ TEST(ObliqueImpact, LiesByWhatWasMeasuredForTheFourthTest) {
 
 TEST(ObliqueImpact, SlidesAsChungAndOoisFifthTestSays) {
   constexpr double radius = 1e-5, normal = 5;
-  // Slides from first to last above tan θ = μ (7 − 1/κ), κ = 2 (1 − ν) / (2 − ν) (Maw, Barber and Fawcett 1976).
+  // Slides throughout above tan θ = μ (7 − 1/κ), κ = 2 (1 − ν) / (2 − ν) (Maw, Barber and Fawcett 1976).
   for (const Material& m : of_fifth)
     for (const double ratio : {2.0, 3.0, 6.0, 12.0}) {
       const Rebound out = off_rigid_plane(m, radius, {ratio * normal, 0, -normal}, Vec3::Zero());
@@ -256,12 +257,13 @@ TEST(ObliqueImpact, FollowsItsEquationsAtSmallAnglesOfTheFifthTest) {
   }
 }
 
-constexpr double radius = 0.1, normal = 0.2;  // of the sixth to the eighth
-/// Per mass, of a contact that slides all the time [m/s].
+constexpr double radius = 0.1, normal = 0.2;  // of tests 6 to 8
+/// Impulse over mass of a contact that slides throughout [m/s].
 double sliding_impulse(const Material& m) { return m.friction * (1 + m.restitution) * normal; }
 
-// The dashpot presses from the first instant, when the shear spring is not loaded yet: the slower the sphere spins, the
-// more friction comes short of its limit. That is the law's own and no error of the step: the equations say how much.
+// The dashpot acts from the first instant, when the shear spring is not loaded yet: the slower the sphere spins, the
+// more friction stays below its limit. This is a property of the law, not an error of the time step; the equations
+// include it.
 TEST(ObliqueImpact, SpinTurnsIntoSpeedAsChungAndOoisSixthTestSays) {
   for (const Material& m : of_sixth) {
     const double impulse = sliding_impulse(m);
@@ -270,7 +272,7 @@ TEST(ObliqueImpact, SpinTurnsIntoSpeedAsChungAndOoisSixthTestSays) {
       const Rebound out = off_rigid_plane(m, radius, {0, 0, -normal}, {0, spin, 0});
       const Course known = equations.rebound({.closing = normal, .along = 0, .spin = spin});
       const std::string from = at(m, " from %g rad/s", spin);
-      EXPECT_GT(known.pushed, 0) << "does not slide at first";
+      EXPECT_GT(known.pushed, 0) << "sticks at first";
       if (spin == 10)
         verify("share of friction's impulse that comes short" + from, 1 - out.velocity.x() / impulse,
                1 - known.along / impulse, 1e-3, 1);
@@ -293,7 +295,7 @@ TEST(ObliqueImpact, FollowsItsEquationsAtSlowSpinsOfTheSixthTest) {
   }
 }
 
-/// Of two alike that meet head-on, each at this speed, and spin so about one axis.
+/// Two equal spheres that collide head-on, each at this speed, with these spins about one axis.
 std::array<Rebound, 2> off_each_other(const Material& m, double speed, double spin, double other_spin,
                                       const std::string& law = "hertz-mindlin") {
   const bool hertz = law == "hertz-mindlin";
@@ -307,7 +309,7 @@ std::array<Rebound, 2> off_each_other(const Material& m, double speed, double sp
   return {Rebound{t.velocity(0), t.spin(0)}, Rebound{t.velocity(1), t.spin(1)}};
 }
 
-// The one is the other in a mirror, so that their surfaces roll on each other and no shear law shows.
+// The motion is mirror-symmetric: the surfaces roll on each other without shear.
 TEST(ObliqueImpact, OppositeSpinsRollOnEachOtherAsChungAndOoisSeventhTestSays) {
   for (const std::string law : {"hertz-mindlin", "linear-frictional", "linear-rolling"}) {
     const std::string by = law == "hertz-mindlin" ? "" : ", " + law;
@@ -320,15 +322,15 @@ TEST(ObliqueImpact, OppositeSpinsRollOnEachOtherAsChungAndOoisSeventhTestSays) {
           const double before = i == 0 ? spin : -spin;
           tangential.add(out[i].velocity.x() / normal), turning.add(out[i].spin.y() / before - 1);
         }
-        EXPECT_GT(out[0].velocity.z(), 0) << "they part";
+        EXPECT_GT(out[0].velocity.z(), 0) << "they separate";
       }
     tangential.verify(1e-14);
     turning.verify(1e-14);
   }
 }
 
-// Half a turn makes each of these the other: where they touch stays at rest, as on a rigid plane. Half of the overlap,
-// twice the stiffness: all equations are those of the sixth test. So slow that the line of centres hardly turns.
+// A rotation by 180° exchanges the two: the contact point stays at rest, as on a rigid plane. With half the overlap and
+// twice the stiffness, all equations are those of test 6. Slow, so that the line of centres hardly rotates.
 TEST(ObliqueImpact, LikeSpinsRubOnEachOtherAsOnAPlane) {
   Errors other("the second of two that spin alike, difference from the first over their speed before");
   for (const Material& m : of_sixth) {
@@ -347,7 +349,7 @@ TEST(ObliqueImpact, LikeSpinsRubOnEachOtherAsOnAPlane) {
 
 constexpr double heavy_radius = 0.5;
 
-/// Off a sphere that is a million times as dense and a thousand times as stiff.
+/// Rebound from a sphere that is a million times as dense and a thousand times as stiff.
 Rebound off_heavy_sphere(const Material& m, double spin, const std::string& law = "hertz-mindlin") {
   const bool hertz = law == "hertz-mindlin";
   const Description light = hertz ? m.hertz() : m.linear(law);
@@ -356,7 +358,7 @@ Rebound off_heavy_sphere(const Material& m, double spin, const std::string& law 
   Description d = description(law, light, {{{0, 0, radius}, radius, {0, 0, -normal}, {0, spin, 0}}});
   Description list = d["bodies"]["grains"];
   list["material"] = "heavy";
-  list["grains"]["grains"] = Description::array({{{"position", {0, 0, -heavy_radius}}, {"radius", heavy_radius}}});
+  list["source"]["bodies"] = Description::array({{{"position", {0, 0, -heavy_radius}}, {"radius", heavy_radius}}});
   d["bodies"]["target"] = list;
   d["materials"]["heavy"] = heavy;
   d["time_step"]["value"] = (hertz ? m.duration(radius, normal) : m.linear_duration(radius)) / 8000;
@@ -383,13 +385,13 @@ TEST(ObliqueImpact, FollowsItsEquationsAtSlowSpinsOfTheEighthTest) {
     const Equations equations{m, radius, reduced, reduced / heavy_radius};
     for (const double spin : {0.2, 1.0, 2.0, 4.0, 10.0}) {
       const Course known = equations.rebound({.closing = normal, .along = 0, .spin = spin});
-      // The heavy sphere gives way by a thousandth of what the light one does.
+      // The deformation of the heavy sphere is a thousandth of that of the light one.
       verify_rebound(at(m, " from %g rad/s", spin), off_heavy_sphere(m, spin), known, radius * spin, radius, 3e-4);
     }
   }
 }
 
-// The linear law on the balls of the first six tests, its modulus being theirs of Young.
+// The linear law for the balls of tests 1 to 6, with their Young's modulus as contact modulus.
 TEST(ObliqueImpact, LinearLawHitsAsItsSpringSaysWithTheBallsOfTheFirstThreeTests) {
   struct Ball {
     const char* name;
@@ -400,7 +402,7 @@ TEST(ObliqueImpact, LinearLawHitsAsItsSpringSaysWithTheBallsOfTheFirstThreeTests
                         Ball{"aluminium", 70e9, 2700, 0.1, 0.2, true}, Ball{"magnesium", 40e9, 1800, 0.1, 0.2, true},
                         Ball{"oxide", 380e9, 4000, 0.0025, 3.9, true}, Ball{"iron", 100e9, 7000, 0.0025, 3.9, true}})
     for (const double restitution : {1.0, 0.5}) {
-      // Of two alike each goes half the way: twice the spring, and twice the overlap.
+      // Two equal spheres move half the distance each: twice the stiffness and twice the overlap.
       const double stiffness = (b.plane ? 1 : 2) * b.modulus * b.radius,
                    mass = b.density * 4 / 3 * pi * std::pow(b.radius, 3);
       const double turn = std::sqrt(stiffness / mass), share = b.plane ? 1 : 2;
@@ -450,7 +452,7 @@ TEST(ObliqueImpact, LinearLawSlidesAsCoulombSaysWithTheBallsOfTheFourthToSixthTe
     for (const double spin : {20.0, 40.0}) slide(m, radius, {0, 0, -normal}, spin, at(m, " from %g rad/s", spin));
 }
 
-/// A linear spring pair on a plane; κ = 2/7 has the contact point swing as long as the normal spring does.
+/// Linear springs on a plane; with κ = 2/7 the contact point oscillates with the period of the normal spring.
 struct Linear {
   static constexpr double modulus = 1e8, radius = 1e-3, density = 2500;
   double mass = density * 4 / 3 * pi * radius * radius * radius;
@@ -473,9 +475,9 @@ TEST(ObliqueImpact, StickingContactGivesBackAllOfItsTangentialSpeed) {
   for (const std::string law : {"linear-rolling", "linear-frictional"}) {
     const Description material = Linear::material(law, 2.0 / 7, 10);
     for (const double angle : {5.0, 30.0, 60.0, 80.0}) {
-      const Vec3 in = aslant(0.01, angle);  // slow, so that it stays round
+      const Vec3 in = aslant(0.01, angle);  // slow, so that the overlap is small
       const Rebound out = from_plane(law, material, material, ball.radius, in, Vec3::Zero(), ball.duration / 500);
-      // The contact point comes back as fast as it went: 2/7 of its velocity are the centre's.
+      // The velocity of the contact point is reversed: 2/7 of its change is that of the centre.
       const std::string at = ", " + law + " at " + std::to_string(int(angle)) + "°";
       verify("tangential speed" + at + " [m/s]", out.velocity.x(), in.x() * (1 - 2 * 2.0 / 7), 2e-4);
       verify("spin" + at + " [rad/s]", out.spin.y(), 2.5 * 2 * 2.0 / 7 * in.x() / ball.radius, 2e-4);
@@ -483,14 +485,14 @@ TEST(ObliqueImpact, StickingContactGivesBackAllOfItsTangentialSpeed) {
   }
 }
 
-// Slides from first to last above tan θ = 7 μ, if that is above μ over the ratio of stiffnesses too.
+// Slides throughout above tan θ = 7 μ, if that is also above μ over the ratio of stiffnesses.
 TEST(ObliqueImpact, LinearLawsSlideAsCoulombSays) {
   const Linear ball;
   constexpr double friction = 0.1, speed = 0.01;
   for (const std::string law : {"linear-rolling", "linear-frictional"})
     for (const double restitution : {1.0, 0.6}) {
       if (law == "linear-rolling" && restitution < 1) continue;
-      // A dashpot presses at once, when the shear spring is not loaded yet: that has to be soon.
+      // A dashpot acts immediately, when the shear spring is not loaded yet; the spring must be loaded soon.
       Description material = Linear::material(law, restitution < 1 ? 10 : 0.3, friction);
       if (restitution < 1) material["restitution"] = restitution;
       for (const double angle : {45.0, 55.0, 65.0, 75.0, 85.0}) {

@@ -1,4 +1,4 @@
-// A packing in a box of smooth walls: what the contacts inside carry is what the walls feel.
+// A packing in a box of smooth walls: the stress from contacts equals that from wall forces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,11 +22,11 @@ Description boxed() {
   d["specimen"] = {{"low", {"low_x", "low_y", "low_z"}}, {"high", {"high_x", "high_y", "high_z"}}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.7}};
   d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
-  d["time_step"]["steps_per_impact"] = 0;  // it comes to rest: what grains do on the way is of no account
+  d["time_step"]["steps_per_impact"] = 0;  // only the state at rest matters
   return d;
 }
 
-/// Σ over walls of force ⊗ point of touch + Σ over bodies of net force ⊗ place, over the volume.
+/// (Σ over walls of force ⊗ contact point + Σ over bodies of net force ⊗ position) / volume.
 Mat3 from_outside(const World& world) {
   Mat3 sum = Mat3::Zero();
   for (const Contact& c : world.contacts())
@@ -40,38 +40,32 @@ TEST(PackingStress, OfContactsIsThatOfWalls) {
   Trial t(boxed());
   t.step(20);
   Mat3 inside = mean_stress(t.world(), t.world().specimen());
-  // Newton's law, moved about: it holds at every instant to round-off.
+  // Follows from Newton's law at every instant, to round-off.
   EXPECT_LT((inside - from_outside(t.world())).norm(), 1e-14 * inside.norm()) << inside << "\n\n"
                                                                               << from_outside(t.world());
 
-  while (unrest(t.world()).unbalanced_force > 1e-10 && t.world().step() < 120000) t.step(100);
-  ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-10);
+  while (equilibrium(t.world()).unbalanced_force > 1e-10 && t.world().step() < 120000) t.step(100);
+  ASSERT_LT(equilibrium(t.world()).unbalanced_force, 1e-10);
   inside = mean_stress(t.world(), t.world().specimen());
   Mat3 outside = Mat3::Zero();
   const auto walls = t.world().walls();
   for (int axis = 0; axis < 3; ++axis)
     for (const WallView& wall : walls)
       if (wall.name == std::string("high_") + "xyz"[axis]) outside.col(axis) = wall.force / wall.area;
-  // At rest but for the net forces that are left.
+  // At rest except for residual net forces.
   EXPECT_LT((inside.diagonal() - outside.diagonal()).norm(), 1e-9 * inside.norm());
-  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(inside(axis, axis), 1e3) << "pressed";
+  for (int axis = 0; axis < 3; ++axis) EXPECT_GT(inside(axis, axis), 1e3) << "compressed";
   EXPECT_NEAR(inside(0, 1), inside(1, 0), 1e-9 * inside.norm()) << "moments balance";
   EXPECT_EQ(outside(0, 1), 0) << "smooth walls";
 }
 
-/// What a probe of the description says at this instant, by channel.
-std::map<std::string, std::vector<double>> sampled(const Trial& t, const std::string& name) {
+/// Values of a probe of the description at this instant.
+ChannelValues sampled(const Trial& t, const std::string& name) {
   const auto probe = t.scene().description->probes.at(name).probe.make();
   probe->prepare(t.world());
-  std::map<std::string, std::vector<double>> rooms;
-  std::vector<std::span<double>> spans;
-  for (const Channel& channel : probe->channels()) {
-    std::size_t size = 1;
-    for (const std::size_t extent : channel.shape) size *= extent;
-    spans.emplace_back(rooms[channel.name] = std::vector<double>(size));
-  }
-  probe->sample(t.world(), spans);
-  return rooms;
+  ChannelValues values("probe " + name, probe->channels());
+  probe->sample(t.world(), values);
+  return values;
 }
 
 TEST(PackingStress, OfEachSliceBearsWhatItsWallsPressWith) {
@@ -79,26 +73,26 @@ TEST(PackingStress, OfEachSliceBearsWhatItsWallsPressWith) {
   for (const char* axis : {"x", "y", "z"})
     d["probes"][axis] = {{"type", "stress"}, {"along", axis}, {"slices", 13}, {"every_steps", 1000}};
   Trial t(d);
-  while (unrest(t.world()).unbalanced_force > 1e-10 && t.world().step() < 120000) t.step(100);
-  ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-10);
+  while (equilibrium(t.world()).unbalanced_force > 1e-10 && t.world().step() < 120000) t.step(100);
+  ASSERT_LT(equilibrium(t.world()).unbalanced_force, 1e-10);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string letter{"xyz"[axis]};
     const auto walls = t.world().walls();
     const auto wall = std::ranges::find_if(walls, [&](const WallView& view) { return view.name == "high_" + letter; });
     ASSERT_NE(wall, walls.end());
     const Vec3 pressed = wall->force / wall->area;
-    const auto values = sampled(t, letter);
-    const auto& profile = values.at("stress_profile_" + letter + letter);
-    // The other walls are smooth: any section across the axis bears along it what the wall at its end feels.
+    const ChannelValues values = sampled(t, letter);
+    const auto profile = values.list("stress_profile_" + letter + letter);
+    // The other walls are smooth: the normal force on any section across the axis is that of the end wall.
     for (std::size_t s = 0; s < 13; ++s)
       EXPECT_NEAR(profile[s], pressed[axis], 1e-8 * pressed.norm()) << letter << ", slice " << s;
-    EXPECT_GT(pressed.norm(), 1e3) << "pressed";
+    EXPECT_GT(pressed.norm(), 1e3) << "compressed";
   }
 }
 
 TEST(PackingStress, CouplesChangeAsForcesAreAsymmetric) {
-  // Between a rough floor and a rough lid, periodic sideways, at rest: from section to section the couple stress
-  // changes by what the stress has of a skew part in between, as moments of grains are in equilibrium.
+  // At rest between a rough floor and a rough lid, periodic laterally: as moments on grains are in equilibrium, the
+  // change of couple stress from section to section equals the skew part of the stress in between.
   Description d = description("linear-rolling", {{"contact_modulus", 1e7}}, jumble({6, 6, 6}, 1e-3, 0, 12));
   d["domain"] = {{"low", {0, 0, -1e-3}}, {"high", {side_length, side_length, side_length + 1e-3}}};
   d["domain"]["periodic"] = {true, true, false};
@@ -111,36 +105,36 @@ TEST(PackingStress, CouplesChangeAsForcesAreAsymmetric) {
   constexpr std::size_t slices = 600;
   d["probes"]["z"] = {{"type", "stress"}, {"slices", slices}, {"every_steps", 1000}};
   Trial t(d);
-  while (unrest(t.world()).unbalanced_force > 1e-7 && t.world().step() < 60000) t.step(100);
-  ASSERT_LT(unrest(t.world()).unbalanced_force, 1e-7);
-  const auto values = sampled(t, "z");
+  while (equilibrium(t.world()).unbalanced_force > 1e-7 && t.world().step() < 60000) t.step(100);
+  ASSERT_LT(equilibrium(t.world()).unbalanced_force, 1e-7);
+  const ChannelValues values = sampled(t, "z");
   const double thickness = side_length / slices;
   const auto couple_at = [&](std::size_t s) {
-    const auto of = [&](const char* ij) { return values.at("couple_stress_profile_" + std::string(ij))[s]; };
+    const auto of = [&](const char* ij) { return values.list("couple_stress_profile_" + std::string(ij))[s]; };
     return Vec3(of("xz"), of("yz"), of("zz"));
   };
   const auto skew_at = [&](std::size_t s) {
-    const auto of = [&](const char* ij) { return values.at("stress_profile_" + std::string(ij))[s]; };
+    const auto of = [&](const char* ij) { return values.list("stress_profile_" + std::string(ij))[s]; };
     return Vec3(of("zy") - of("yz"), of("xz") - of("zx"), of("yx") - of("xy"));
   };
-  // From the middle between the first two layers of grains to that between the last two.
+  // From midway between the first two layers of grains to midway between the last two.
   const std::size_t from = 100, to = 500;
   Vec3 changed = couple_at(to) - couple_at(from), balance = changed;
   for (std::size_t s = from; s < to; ++s) balance += 0.5 * thickness * (skew_at(s) + skew_at(s + 1));
   double largest = 0;
   for (std::size_t s = from; s <= to; ++s) largest = std::max(largest, couple_at(s).norm());
   EXPECT_LT(balance.norm(), 1e-4 * largest) << balance.transpose() << " of " << changed.transpose();
-  EXPECT_GT(changed.norm(), 1e-3 * largest) << "something to balance";
+  EXPECT_GT(changed.norm(), 1e-3 * largest) << "not zero";
 }
 
 Mat3 stress_at_rest(const Description& d) {
   Trial t(d);
   t.step(10000);
-  EXPECT_LT(unrest(t.world()).unbalanced_force, 1e-4);
+  EXPECT_LT(equilibrium(t.world()).unbalanced_force, 1e-4);
   return mean_stress(t.world(), t.world().specimen());
 }
 
-/// linear-rolling whose pairs are evaluated one by one, by plain scalars.
+/// linear-rolling with pairs evaluated one by one as scalars.
 class ScalarTwin final : public ContactLaw {
  public:
   static PluginInfo plugin() {
@@ -204,7 +198,7 @@ TEST(PackingStress, IsTheSameInSinglePrecision) {
   verify("mean stress after 10 000 steps in single precision against double, Pa", rounded.trace() / 3,
          exact.trace() / 3, 5e-6);
   EXPECT_LT((rounded - exact).norm(), 1e-4 * exact.norm());
-  EXPECT_GT((rounded - exact).norm(), 0) << "the arithmetic was double";
+  EXPECT_GT((rounded - exact).norm(), 0) << "evaluated in double precision";
 }
 
 }  // namespace

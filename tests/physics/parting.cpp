@@ -1,5 +1,5 @@
-// What springs still hold when a contact parts: no step ends where the normal force does, which is what would let
-// friction and rolling take the last of it.
+// Spring energy left when a contact opens: the normal force vanishes within a step, so that friction and rolling do not
+// dissipate the rest.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double radius = 1e-3, speed = 0.1;
 
-/// An impact at 45° of a ball that spins, on a plane or on another ball, with friction and rolling resistance that hold
-/// nearly all, at the step that grit chooses.
+/// An impact at 45° of a spinning ball on a plane or on another ball, with high friction and rolling resistance, at the
+/// default time step.
 Description impact(const std::string& law, bool wall) {
   std::vector<Grain> balls{{{0, 0, 1.01 * radius}, radius, {speed, 0, -speed}, {50, 20, 0}}};
   if (!wall) balls.push_back({{0, 0, -1.01 * radius}, radius, {-speed, 0, speed}});
@@ -31,12 +31,12 @@ TEST_P(Parting, IsBookedAsFrictionAndRolling) {
   const auto& [law, wall] = GetParam();
   Trial trial(impact(law, wall), 1, BodyState::energy);
   const World& world = trial.world();
-  EnergyLedger before = world.energies();
+  Energies before = world.energies();
   const auto touching = [&] { return world.contacts().size() > 0; };
   for (int steps = 0; !touching() && steps < 100000; ++steps) trial.step(1);
   ASSERT_TRUE(touching());
   while (touching()) before = world.energies(), trial.step(1);
-  const EnergyLedger after = world.energies();
+  const Energies after = world.energies();
   ASSERT_GT(before.elastic_shear, 1e-5 * before.kinetic);
   EXPECT_EQ(after.elastic(), 0);
   EXPECT_NEAR(after.friction - before.friction, before.elastic_shear, 1e-9 * before.elastic_shear);

@@ -1,4 +1,4 @@
-// Surfaces made of several walls: edges between coplanar faces are not felt, shared ones count once.
+// Surfaces of several walls: edges between coplanar faces have no effect, shared edges count once.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace grit::test::seams_tests {
 namespace {
 
-// So heavy that the ball presses its way 7e-4 of its radius into the floor.
+// The overlap by the weight is 7e-4 of the radius.
 constexpr double radius = 1e-3, tile = 4e-3, gravity = 2e4;
 
 Description rectangle(const Vec3& corner, const Vec3& a, const Vec3& b) {
@@ -44,7 +44,7 @@ Description mesh(const StlFile& file) {
   return {{"type", "mesh"}, {"path", file.path()}, {"scale", 1.0}, {"open", true}, {"material", "grain"}};
 }
 
-/// Two triangles for each tile of the floor, whose diagonals go this way and that.
+/// Two triangles per tile of the floor, with alternating diagonals.
 std::vector<Vec3> triangle_floor() {
   std::vector<Vec3> corners;
   for (int x = -1; x <= 1; ++x)
@@ -56,13 +56,13 @@ std::vector<Vec3> triangle_floor() {
   return corners;
 }
 
-/// Paths over an edge, along an edge, over a vertex, and askew.
+/// Paths over an edge, along an edge, over a vertex, and oblique.
 struct Path {
   Vec3 from, velocity;
 };
 class Seams : public testing::TestWithParam<std::tuple<std::string, int, double>> {
  protected:
-  /// Rolls a ball over a floor that `add_floor` makes of pieces, and over a plane.
+  /// Rolls a ball over a floor made of pieces by `add_floor`, and over a plane.
   template <class AddFloor>
   void expect_not_felt(AddFloor add_floor) const;
 };
@@ -93,7 +93,7 @@ void Seams::expect_not_felt(AddFloor add_floor) const {
     moment.add((xyz(on_tiles.world().moments()[0]) - xyz(on_whole.world().moments()[0])).norm() / (weight * radius));
   }
   force.verify(1e-12), moment.verify(1e-12);
-  EXPECT_GT(on_whole.position(0).x(), 0.6 * tile) << "it got across";
+  EXPECT_GT(on_whole.position(0).x(), 0.6 * tile) << "it crossed the tile";
   EXPECT_GT(touching, 10000) << "it rolled on the floor";
 }
 
@@ -108,8 +108,8 @@ INSTANTIATE_TEST_SUITE_P(All, Seams,
                          testing::Combine(testing::Values("linear-frictional", "linear-rolling", "hertz-mindlin"),
                                           testing::Range(0, 4), testing::Values(0.05, 0.5)));
 
-/// Balls beside the joint of two rectangles askew in space, where the edge of the one is as near as the face of the
-/// other but for rounding.
+/// Balls next to the joint of two coplanar rectangles with an arbitrary orientation, where the edge of one and the face
+/// of the other are equally near, except for rounding.
 TEST(SeamsAskew, AreNotFeltBesideTheJoint) {
   Errors aside("sideways force on a ball beside a seam askew in space, over its weight");
   for (const double angle : {0.0, 0.3, 0.83, 1.9, 2.6}) {
@@ -154,7 +154,7 @@ TEST(Corners, AreTouchedOnceByEachFace) {
 }
 
 TEST(Corners, AnEdgeThatTwoFacesShareCountsOnce) {
-  // The ball hangs over the edge of a step, touched by its top and its side at the same edge.
+  // The ball overlaps the edge of a step: its top and its side give contacts at the same edge.
   const Vec3 out = Vec3(1, 0, 1).normalized();
   Description d = description("linear-frictional", {{"friction_angle", 0.3}}, {{0.999 * radius * out, radius}});
   d["walls"]["top"] = rectangle(Vec3(-tile, -tile, 0), tile * Vec3::UnitX(), 2 * tile * Vec3::UnitY());
@@ -176,7 +176,7 @@ TEST(Corners, AShallowValleyKeepsBothFaces) {
   EXPECT_EQ(Trial(d).world().contacts().size(), 2u);
 }
 
-/// Balls at one height side by side along y, from place to place along x; force on each, over that of a plane.
+/// Balls at the same height at points along x, side by side along y; force on each over that of a plane.
 std::vector<Vec3> forces_along(const std::vector<double>& places, double overlap, const Description& walls) {
   std::vector<Grain> grains;
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -192,7 +192,7 @@ std::vector<Vec3> forces_along(const std::vector<double>& places, double overlap
   return forces;
 }
 
-/// What lands without friction do to such a ball, each at its closest place.
+/// Force of frictionless lands on such a ball, each at its closest point.
 Vec3 by_each(double x, double overlap, const std::vector<std::pair<double, double>>& lands) {
   Vec3 force = Vec3::Zero();
   for (const auto& [from, to] : lands) {
@@ -202,7 +202,7 @@ Vec3 by_each(double x, double overlap, const std::vector<std::pair<double, doubl
   return force;
 }
 
-/// From over one land to over the next.
+/// From above one land to above the next.
 constexpr double groove = 40e-6, land = 60e-6, pressed = 2e-6;
 
 void expect_each_land_once(const std::string& of, const Description& walls,
@@ -241,7 +241,7 @@ TEST(Gaps, AreClosedByAWallBetween) {
   const auto sheet = [](double from, double to) {
     return rectangle(Vec3(from, -1, 0), (to - from) * Vec3::UnitX(), 2 * Vec3::UnitY());
   };
-  // The ball reaches over the narrow one in the middle.
+  // The ball extends over the narrow sheet in the middle.
   const std::vector<Vec3> forces =
       forces_along({-0.01e-3, 0, 0.01e-3, 0.02e-3, 0.03e-3}, pressed,
                    {{"left", sheet(-tile, 0)}, {"middle", sheet(0, 0.02e-3)}, {"right", sheet(0.02e-3, tile)}});

@@ -1,5 +1,5 @@
-// A round silo whose wall carries all that friction allows, against Janssen (1895), Z. Ver. Dtsch. Ing. 39, 1045:
-// σ(y) = ρ g D / (4 K μ) (1 − exp(−4 K μ y / D)), y from the surface. A plane one at rest, on walls of three
+// A cylindrical silo with fully mobilised wall friction, compared with Janssen (1895), Z. Ver. Dtsch. Ing. 39, 1045:
+// σ(y) = ρ g D / (4 K μ) (1 − exp(−4 K μ y / D)), y from the surface. A plane silo at rest, with walls of three
 // roughnesses.
 #include <gtest/gtest.h>
 
@@ -19,24 +19,24 @@ namespace {
 
 constexpr double wide = 10e-3, across = std::numbers::pi * wide * wide / 4, g = 9.81, slice = 2.5e-3;
 
-/// Of touches of the wall, sums of forces [N].
+/// Sums of forces of wall contacts [N].
 struct Friction {
-  double normal = 0, size = 0, upwards = 0;  ///< pressing; rubbing, whatever its direction; its part against gravity
-  double along_slip = 0;                     ///< what `normal` times the part of the slip against gravity comes to
+  double normal = 0, size = 0, upwards = 0;  ///< normal; magnitude of friction; its component against gravity
+  double along_slip = 0;  ///< sum of normal force times the component of the slip direction against gravity
 
   void add(const Friction& other) {
     normal += other.normal, size += other.size, upwards += other.upwards, along_slip += other.along_slip;
   }
 };
 
-/// Means over the last 0.2 s of the raising, slice by slice from the bottom up.
+/// Means over the last 0.2 s of raising the wall, by slices from the bottom up.
 struct Raised : Curves {
   static constexpr std::size_t most = 24;
-  std::array<double, most> vertical{}, lateral{}, shear{};  ///< Pa: in the sand; on the wall
+  std::array<double, most> vertical{}, lateral{}, shear{};  ///< in the sand and on the wall [Pa]
   double bottom = 0, wall = 0, weight = 0, centre = 0;      ///< N; m
   int samples = 0;
-  double slipping = 0;  ///< the largest friction of a touch of the wall, over its normal force
-  Friction all, slid;   ///< of its touches, and of those that it passes at half its own speed or faster
+  double slipping = 0;  ///< largest ratio of friction to normal force of a wall contact
+  Friction all, slid;   ///< of all wall contacts; of those with a slip of at least half the wall's speed
 
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override {
     Curves::sample(probe, world, values);
@@ -80,28 +80,28 @@ struct Raised : Curves {
   }
 
  private:
-  /// Of the grain's surface over the wall's [m/s].
-  static Vec3 slip(const World& world, const Contact& touch) {
-    const Vec3 surface = xyz(world.velocities()[touch.a]) + xyz(world.spins()[touch.a]).cross(touch.branch);
-    const Vec3 passing = surface - world.walls()[touch.b].velocity;
-    return passing - passing.dot(touch.normal) * touch.normal;
+  /// Velocity of the grain's surface relative to the wall [m/s].
+  static Vec3 slip(const World& world, const Contact& contact) {
+    const Vec3 surface = xyz(world.velocities()[contact.a]) + xyz(world.spins()[contact.a]).cross(contact.branch);
+    const Vec3 passing = surface - world.walls()[contact.b].velocity;
+    return passing - passing.dot(contact.normal) * contact.normal;
   }
 
   std::vector<std::string> probe_names_;
   double start_ = -1;
 };
 
-/// Mean of silos filled to about so many times their width: one alone may be 5 % off another.
+/// Mean of several silos filled to about this multiple of their width: single ones differ by 5 %.
 Raised raised(int times, int fillings = 2) {
   const double more = times / 3.0;
   Raised mean;
   for (int seed = 1; seed <= fillings; ++seed) {
     Raised silo;
     run_to_the_end("sims/round-silo/quick.json",
-                   {"/bodies/sand/grains/count=" + std::to_string(std::lround(2500 * more)),
-                    "/bodies/sand/grains/high/2=" + std::to_string(95e-3 * more),
+                   {"/bodies/sand/source/count=" + std::to_string(std::lround(2500 * more)),
+                    "/bodies/sand/source/high/2=" + std::to_string(95e-3 * more),
                     "/walls/wall/end/2=" + std::to_string(0.15 * more), "/seed=" + std::to_string(seed),
-                    "/guards/travel=0.1"},  // grains fall from as high as the silo is
+                    "/guards/travel=0.1"},  // grains fall from the height of the silo
                    silo);
     for (std::size_t i = 0; i < Raised::most; ++i) {
       mean.vertical[i] += silo.vertical[i] / fillings;
@@ -118,7 +118,7 @@ Raised raised(int times, int fillings = 2) {
 
 TEST(Silo, CarriesItsFillingAsJanssenSays) {
   const Raised high = raised(8, 1), tall = raised(5), low = raised(3);
-  // K and μ are means of what is measured, over the slices that are full.
+  // K and μ are means of measured values over the full slices.
   const double surface = 2 * tall.centre, density = tall.weight / (g * across * surface);
   const auto full = static_cast<std::size_t>(surface / slice);
   ASSERT_LE(full, tall.vertical.size());
@@ -135,8 +135,8 @@ TEST(Silo, CarriesItsFillingAsJanssenSays) {
   verify("stress on the bottom, filled to 5 D, over Janssen's", tall.bottom / across / janssen(surface), 1, 0.06);
   verify("stress on the bottom, filled to 3 D, over that at 5 D", low.bottom / tall.bottom,
          janssen(2 * low.centre) / janssen(surface), 0.1);
-  // By his law the wall carries what is above five diameters, all but 1 % of its weight. One filling to eight is within
-  // 3 % of another.
+  // By Janssen's formula the wall carries the sand above five diameters, except for 1 % of its weight. Fillings to
+  // eight diameters differ by up to 3 %.
   verify("stress on the bottom, filled to 8 D, over that at 5 D", high.bottom / tall.bottom,
          janssen(2 * high.centre) / janssen(surface), 0.08);
   EXPECT_GT(high.weight, 1.59 * tall.weight);
@@ -144,27 +144,27 @@ TEST(Silo, CarriesItsFillingAsJanssenSays) {
   verify("weight that bottom and wall carry, filled to 5 D", (tall.bottom + tall.wall) / tall.weight, 1, 0.01);
   verify("weight that bottom and wall carry, filled to 3 D", (low.bottom + low.wall) / low.weight, 1, 0.01);
   RecordProperty("K", std::to_string(lateral / vertical));
-  // The wall's own 12°, beside the grains' 25°. Where it slides over a grain friction is that, against the slip.
+  // Wall friction is 12°, that of the grains 25°. At sliding contacts friction is that of the wall, against the slip.
   const double friction = std::tan(12 * std::numbers::pi / 180);
-  verify("largest friction of a touch of the wall, over its normal force", tall.slipping, friction, 1e-9);
-  verify("friction of touches that the wall slides over, over their normal force", tall.slid.size / tall.slid.normal,
+  verify("largest friction of a contact of the wall, over its normal force", tall.slipping, friction, 1e-9);
+  verify("friction of contacts that the wall slides over, over their normal force", tall.slid.size / tall.slid.normal,
          friction, 1e-3);
   verify("its part along the wall's way, over that of their slip", tall.slid.upwards / tall.slid.along_slip, friction,
          2e-3);
   EXPECT_GT(tall.slid.normal, 0.6 * tall.all.normal);
-  // Of all, some roll and bear less, and of what is borne some is around the wall and lifts nothing.
+  // Some grains roll and carry less, and some friction acts circumferentially.
   verify("shear over lateral stress on the wall that is raised", shear / lateral, friction, 0.12);
-  verify("the same of touches that roll or slip, whatever the direction", tall.all.size / tall.all.normal, friction,
+  verify("the same of contacts that roll or slip, whatever the direction", tall.all.size / tall.all.normal, friction,
          0.04);
-  EXPECT_LT(tall.bottom, 0.3 * tall.weight) << "or nothing was carried by the wall";
+  EXPECT_LT(tall.bottom, 0.3 * tall.weight) << "most of the weight is carried by the wall";
 }
 
-/// What a small plane silo of some 600 grains does, means over a few fillings.
+/// Results of a small plane silo of about 600 grains, means over a few fillings.
 struct Plane {
   double at_rest = 0;             ///< T/G of one wall after filling
-  double friction_at_rest = 0;    ///< φ_w [deg] then
-  double void_ratio = 0;          ///< of its middle then, half a mean diameter off the panes
-  double friction_in_motion = 0;  ///< φ_w [deg] once the bottom goes down
+  double friction_at_rest = 0;    ///< φ_w at rest [deg]
+  double void_ratio = 0;          ///< at rest, of the middle, half a mean diameter off the panes
+  double friction_in_motion = 0;  ///< φ_w while the bottom moves down [deg]
 };
 Plane plane(double roughness) {
   constexpr int fillings = 3;
@@ -183,9 +183,9 @@ Plane plane(double roughness) {
         std::ranges::find_if(way, [](double settlement) { return settlement > 0; }) - way.begin());
     if (moved == 0) throw std::logic_error("no sample of the silo at rest");
     const auto at_rest = [&](const char* curve) { return silo.channel.at(curve)[moved - 1]; };
-    EXPECT_NEAR(at_rest("bottom_share") + 2 * at_rest("wall_shear_share"), 1, 0.01)
+    EXPECT_NEAR(at_rest("bottom_fraction") + 2 * at_rest("wall_shear_fraction"), 1, 0.01)
         << "R_n " << roughness << ", " << seed;
-    mean.at_rest += at_rest("wall_shear_share") / fillings;
+    mean.at_rest += at_rest("wall_shear_fraction") / fillings;
     mean.friction_at_rest += at_rest("wall_friction_angle") / fillings;
     mean.void_ratio += silo.channel.at("middle/void_ratio").back() / fillings;
     const double half_way = 0.5 * (1 + static_cast<double>(moved) / static_cast<double>(way.size()));
@@ -195,8 +195,8 @@ Plane plane(double roughness) {
 }
 
 // Grabowski (2024), on walls of R_n = 0.01, 0.25 and 1 of a silo of 200 000 grains at e0 = 0.60: T/G = 0.12, 0.22 and
-// 0.25 at rest, φ_w = 18°, 30° and 36°. So few grains tell T of the last two apart only where walls slip. If friction
-// becomes the grains' own under the stress of the filling, φ_w is 10° at R_n = 1.
+// 0.25 at rest, φ_w = 18°, 30° and 36°. With so few grains, T of the last two differs significantly only if walls slip.
+// If friction is raised to its final value under the full stress of the filling, φ_w is 10° at R_n = 1.
 TEST(PlaneSilo, RougherWallsCarryMore) {
   const Plane smooth = plane(0.01), rough = plane(0.25), very_rough = plane(1);
   EXPECT_GT(smooth.at_rest, 0);
@@ -205,29 +205,30 @@ TEST(PlaneSilo, RougherWallsCarryMore) {
   EXPECT_GT(rough.friction_at_rest, smooth.friction_at_rest + 5);
   EXPECT_GT(very_rough.friction_at_rest, rough.friction_at_rest + 3);
   for (const Plane& silo : {smooth, rough, very_rough}) EXPECT_NEAR(silo.void_ratio, 0.6, 0.03);
-  EXPECT_NEAR(smooth.friction_in_motion, 18, 0.5) << "the wall's own";
+  EXPECT_NEAR(smooth.friction_in_motion, 18, 0.5) << "that of the wall";
   EXPECT_GT(rough.friction_in_motion, smooth.friction_in_motion + 5);
   EXPECT_GT(very_rough.friction_in_motion, rough.friction_in_motion + 5);
 }
 
-// What has left and what is there is what there was, however it is counted.
+// Discharged and remaining mass add up to the initial mass.
 TEST(PlaneSilo, LetsAShareOfItsSandOutAndCountsIt) {
   Curves silo;
-  run_to_the_end(
-      "sims/silo-discharge/quick.json",
-      {"/scenario/width=24e-3", "/scenario/height=20e-3", "/scenario/shares=[0.3]", "/scenario/wall_pieces=1"}, silo);
-  const auto& share = silo.channel.at("discharged_share");
+  run_to_the_end("sims/silo-discharge/quick.json",
+                 {"/scenario/width=24e-3", "/scenario/height=20e-3", "/scenario/discharged_fractions=[0.3]",
+                  "/scenario/wall_segments=1"},
+                 silo);
+  const auto& share = silo.channel.at("discharged_fraction");
   EXPECT_EQ(share.front(), 0);
   EXPECT_GE(share.back(), 0.3);
   const double all = silo.channel.at("weight").front() / 9.81, left = silo.channel.at("discharged_mass").back();
-  const double gone = silo.channel.at("flow/bodies").back();
-  EXPECT_LT(left, 0.3 * all + 12 * left / gone) << "some leave together";
+  const double gone = silo.channel.at("flow/discharged_bodies").back();
+  EXPECT_LT(left, 0.3 * all + 12 * left / gone) << "several grains leave at once";
   EXPECT_NEAR(silo.channel.at("weight").back() / 9.81 + left, all, 1e-6 * all);
-  EXPECT_NEAR(silo.channel.at("flow/mass").back(), left, 1e-9 * all);
-  const double mean = 2600 * std::numbers::pi / 6 * 3.75e-9;  // kg; diameters are even from 1 to 2 mm
+  EXPECT_NEAR(silo.channel.at("flow/discharged_mass").back(), left, 1e-9 * all);
+  const double mean = 2600 * std::numbers::pi / 6 * 3.75e-9;  // kg; diameters are uniform from 1 to 2 mm
   EXPECT_NEAR(left / gone, mean, 0.1 * mean);
   // kg/s; 0.0231 to 0.0240 flow in the silo of 36 mm (plugins/scenarios/silo-discharge/README.md).
-  EXPECT_NEAR(silo.mean("flow/rate", 0.75, 1), 0.0235, 0.005);
+  EXPECT_NEAR(silo.mean("flow/discharge_rate", 0.75, 1), 0.0235, 0.005);
 }
 
 }  // namespace

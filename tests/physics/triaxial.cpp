@@ -1,4 +1,4 @@
-// The triaxial test from one end to the other, in a cell of some 500 grains.
+// Complete triaxial tests in a cell of about 500 grains.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,9 +30,9 @@ Compressed compressed(const std::vector<std::string>& sets) {
 
 TEST(Triaxial, StartsFromTheSameStressOnAllSidesAndKeepsTheLateralOne) {
   const Compressed usual = compressed({});
-  // Love–Weber over the whole specimen, touches of walls and all: what the walls bear, found another way.
+  // Love–Weber stress over the whole specimen with wall contacts: the stress on the walls by another method.
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(usual.stress_before(i, i), 200e3, 0.01 * 200e3) << i;
-  // Walls without friction leave off-diagonal components to how few grains happen to lie: up to 5 % in one specimen.
+  // With frictionless walls, off-diagonal components depend on the random packing: up to 5 % in one specimen.
   Mat3 mean = usual.stress_before;
   constexpr int specimens = 4;
   for (int seed = 2; seed <= specimens; ++seed)
@@ -42,13 +42,13 @@ TEST(Triaxial, StartsFromTheSameStressOnAllSidesAndKeepsTheLateralOne) {
     for (int j = 0; j < i; ++j) EXPECT_NEAR(mean(i, j), 0, 0.025 * 200e3) << i << ' ' << j;
   for (const char* lateral : {"sigma_2", "sigma_3"})
     for (const double stress : usual.channel.at(lateral)) EXPECT_NEAR(stress, 200e3, 0.02 * 200e3);
-  // Walls keep grains apart, so a specimen is higher than its interior's void ratio says, here by 2.3 %.
+  // Packing is looser at walls, so a specimen is larger than by the void ratio of its interior, here by 2.3 %.
   EXPECT_NEAR(usual.channel.at("axial_strain").back(), 0.15, 0.005);
   EXPECT_GT(usual.mean("friction_angle", 0.5, 1), 28);
 }
 
 // Peyneau & Roux (2008), Phys. Rev. E 78, 011307, doi:10.1103/PhysRevE.78.011307: 5.76° ± 0.22° in the limit of many
-// grains; so few scatter about it. Without friction they rest at a void ratio of 0.59 to 0.60, and no other can be had.
+// grains; small specimens scatter about it. Frictionless grains come to rest at a void ratio of 0.59 to 0.60 only.
 TEST(Triaxial, FrictionlessGrainsBearNextToNoDeviator) {
   const Compressed frictionless = compressed(
       {"/scenario/friction_angle=0", "/scenario/compaction_friction_angle=0.07", "/scenario/void_ratio=0.60"});
@@ -63,8 +63,8 @@ TEST(Triaxial, PlaneStrainPressesOnTheWallsThatStand) {
   EXPECT_LT(sigma_2, 0.8 * sigma_1);
 }
 
-/// Means over packings of a description of sims/triaxial; friction angles [deg] of a twentieth of the test, so that no
-/// single slip counts as a peak, nor a single packing's.
+/// Means over packings of a description of sims/triaxial; friction angles [deg] averaged over a twentieth of the test,
+/// so that single slip events do not count as a peak.
 struct Course {
   double peak = 0, at = 0, late = 0, volumetric_strain = 0, least_volumetric_strain = 0;
 };
@@ -92,10 +92,10 @@ Course course(const std::string& file, int packings, const std::vector<std::stri
   return mean;
 }
 
-// The critical state: one friction angle, whatever the packing was; what is denser peaks and dilates on its way there.
+// Critical state: the same friction angle for all initial packings; dense packings have a peak and dilate.
 TEST(Triaxial, LooseSandHardensAndContractsWhereDenseSandPeaksAndDilates) {
-  // What is dense is far from all bounds at twice the rate; what is loose contracts by little, the less the faster. Of
-  // six loose packings the strain at the end was -0.5 ± 0.5 %, and -2.3 ± 0.3 % at the least.
+  // Dense packings are far from all bounds even at twice the rate; loose ones contract little, and less at higher
+  // rates. For six loose packings the volumetric strain was -0.5 ± 0.5 % at the end and -2.3 ± 0.3 % at the minimum.
   const Course dense = course("quick.json", 2, {"/scenario/inertial_number=2e-3"}),
                loose = course("quick-loose.json", 4);
   EXPECT_LT(dense.at, 0.1);

@@ -1,5 +1,5 @@
-// What resists rolling and twisting, at a pair and at a wall, where nothing else acts: centres are held, and there is
-// no friction. A spring swings as its stiffness says, and at its limit it brakes as that says.
+// Rolling and twisting resistance in isolation, for a pair and at a wall: centres are held, and there is no friction. A
+// spring oscillates according to its stiffness, and at its limit the deceleration follows from the limit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double modulus = 1e8, poisson = 0.3, shear_ratio = 0.4, turning_ratio 
 
 struct Turning {
   std::string law, kind;  ///< "rolling" or "twisting"
-  bool wall;              ///< or a sphere of another radius
+  bool wall;              ///< wall, or a sphere of another radius
 
   friend void PrintTo(const Turning& turning, std::ostream* out) { *out << turning.words(); }
   std::string words() const { return kind + (wall ? " on a wall, " : " on another, ") + law; }

@@ -1,4 +1,4 @@
-// Walls that go to and fro as a sine, and what they do to grains.
+// Sinusoidal oscillation of walls, and their effect on grains.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double radius = 1e-3, gravity = 9.81, frequency = 40, omega = 2 * std::numbers::pi * frequency;
 
-/// A grain that lies on a plate, which starts at its lower end with an upward acceleration of `strength` × g.
+/// A grain on a plate that starts at its lowest point with an upward acceleration of `strength` × g.
 Description on_a_plate(double strength, double restitution) {
   const double modulus = 1e8, stiffness = modulus * radius,
                weight = 2500 * 4.0 / 3 * std::numbers::pi * std::pow(radius, 3) * gravity;
@@ -29,7 +29,7 @@ Description on_a_plate(double strength, double restitution) {
   return d;
 }
 
-/// Time in which the grain has no contact, of some periods, and when it first had none [periods].
+/// Time without contact over some periods, and the time of the first loss of contact [periods].
 struct Flight {
   double first = HUGE_VAL;
   std::size_t steps = 0;
@@ -54,7 +54,7 @@ TEST(VibratingWall, IsLeftByAGrainWhereItAcceleratesDownwardsFasterThanGravity) 
     Trial trial(on_a_plate(strength, 0.1));
     const Flight found = flight(trial, 6);
     EXPECT_GT(found.steps, 0u) << strength;
-    // From the lower end on to where A ω² sin(ψ) = g.
+    // From the lowest point to A ω² sin(ψ) = g.
     verify("period in which a grain leaves a plate that vibrates at " + std::string(strength < 1.5 ? "1.02 g" : "2 g"),
            found.first, 0.25 + std::asin(1 / strength) / (2 * std::numbers::pi), 3e-3);
   }
@@ -79,15 +79,15 @@ TEST(VibratingWall, PutsInAsMuchEnergyAsIsLost) {
   Trial bouncing(d, 1, BodyState::energy);
   bouncing.world().energies();
   while (bouncing.world().time() * frequency < 20) bouncing.step();
-  const EnergyLedger now = bouncing.world().energies();
+  const Energies now = bouncing.world().energies();
   EXPECT_GT(now.walls, 0);
   EXPECT_GT(now.viscosity, 0.5 * now.walls);
   verify("closure error over the work of a plate on which a grain bounces", now.closure_error / now.walls, 0, 1e-3,
          1.0);
 }
 
-/// A floor that rocks about its middle, with a ball that rolls on it to and fro.
-TEST(VibratingWall, ThatRocksKeepsTheLedgerClosed) {
+/// A floor that rocks about its middle, with a ball that rolls back and forth.
+TEST(VibratingWall, ThatRocksClosesTheEnergyBalance) {
   Description d = on_a_plate(1, 0.3);
   d["materials"]["grain"]["friction_angle"] = 0.5;
   d["walls"]["plate"]["motion"] = {
@@ -102,7 +102,7 @@ TEST(VibratingWall, ThatRocksKeepsTheLedgerClosed) {
     turned = std::max(turned, std::abs(plate.normal.x()));
     kinetic = std::max(kinetic, trial.world().energies().kinetic);
   }
-  EXPECT_NEAR(turned, std::sin(0.1), 1e-4) << "twice the angle, from one end";
+  EXPECT_NEAR(turned, std::sin(0.1), 1e-4) << "twice the amplitude, from one end";
   verify("closure error over the largest kinetic energy of a ball on a floor that rocks",
          trial.world().energies().closure_error / kinetic, 0, 1e-2, 1.0);
 }
@@ -120,7 +120,7 @@ TEST(VibratingWall, ThatIsTooFastForTheStepIsRefused) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "wall \"plate\": oscillates at 8e+04 Hz, of which a period has 12.5 steps of 1e-06 s; allowed are 20 "
+                 "wall \"plate\": oscillates at 8e+04 Hz, with 12.5 steps of 1e-06 s per period; allowed is 20 "
                  "or more: lower the frequency, or shorten the time step by /time_step/safety or /time_step/value");
   }
 }

@@ -33,7 +33,7 @@ SCENE = {
     "title": "two grains that fall",
     "contacts": {"type": "linear-rolling"},
     "materials": {"sand": {"contact_modulus": "1 MPa"}},
-    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [
+    "bodies": {"grains": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [
         {"position": [0, 0, "2 mm"], "radius": "1 mm"}, {"position": [0, "3 mm", "2 mm"], "radius": "1 mm"}]}}},
     "walls": {"floor": {"type": "rectangle", "corner": ["-10 mm", "-10 mm", 0], "edge_a": ["20 mm", 0, 0], "edge_b": [0, "20 mm", 0], "material": "sand"}},
     "engines": {"gravity": {"type": "gravity"}},
@@ -213,7 +213,7 @@ class Results(unittest.TestCase):
 
     def test_no_run_is_said(self):
         for folder in (self.folder / "nowhere", self.folder, self.folder / "fall.json"):
-            with self.assertRaisesRegex(grit.ResultsError, "there is no run: it has no run.json; give a folder that 'grit run' has written"):
+            with self.assertRaisesRegex(grit.ResultsError, r"holds no run \(no run.json\); give a folder that 'grit run' has written"):
                 grit.open(folder)
 
     def test_what_is_torn_or_missing_is_said(self):
@@ -229,7 +229,7 @@ class Results(unittest.TestCase):
         with self.assertRaisesRegex(grit.ResultsError, "000001.h5: cannot be read"):
             run.frames[1]
         (target / "run.json").write_text('{"status": ')
-        with self.assertRaisesRegex(grit.ResultsError, "run.json: is not JSON"):
+        with self.assertRaisesRegex(grit.ResultsError, "run.json: not JSON"):
             grit.open(target)
 
 

@@ -32,8 +32,8 @@ SCENE = {
     "contacts": {"type": "linear-rolling"},
     "materials": {"sand": {"contact_modulus": "1 MPa"}},
     "bodies": {
-        "single": {**GRAIN, "grains": {"type": "list", "grains": [{"position": [0, 0, "1 mm"], "radius": "1 mm"}]}},
-        "pair": {"type": "clump", "material": "sand", "shape": {"type": "rod"}, "grains": {"type": "list", "grains": [{"position": [0, 0, "3.2 mm"], "radius": "1 mm"}]}},
+        "single": {**GRAIN, "source": {"type": "list", "bodies": [{"position": [0, 0, "1 mm"], "radius": "1 mm"}]}},
+        "pair": {"type": "clump", "material": "sand", "shape": {"type": "rod"}, "source": {"type": "list", "bodies": [{"position": [0, 0, "3.2 mm"], "radius": "1 mm"}]}},
     },
     "walls": {"box": {"type": "box", "low": ["-5 mm", "-5 mm", 0], "high": ["5 mm", "5 mm", "9 mm"], "open": ["z_high"], "material": "sand"},
               "shelf": {"type": "plane", "point": [0, 0, "-1 mm"], "extent": "20 mm", "material": "sand"}},

@@ -21,7 +21,7 @@ case \$1 in
   run)
     told=\$('$1' check "\${@:2}")
     ! grep --after-context=9 'without effect' <<< "\$told" ;;
-  chart) '$1' "\$@" --dry ;;
+  study) '$1' "\$@" --dry-run ;;
   *) '$1' "\$@" ;;
 esac
 end
@@ -123,7 +123,7 @@ self_test() {
   local unchecked=(
     $'```sh\nbuild/bin/grit run sims/column/quick.json \\\n  --set /probes/energy/stages/0=nothing\n```'
     $'```sh\nbuild/bin/grit run sims/column/quick.json --set \'/probes/other={"type": "void-ratio",\n  "stages": ["look"]}\'\n```'
-    $'```sh\nbuild/bin/grit chart sims/column/quick.json\n```'
+    $'```sh\nbuild/bin/grit study sims/column/quick.json\n```'
     $'```sh\nbuild/bin/grit run \'sims/column/quick.json\n```'
   )
   ln -s "$root/sims" "$copy/sims"

@@ -1,5 +1,5 @@
-"""What tests of pages share: a scene, its runs' files, and headless Chromium by its debugging pipe: JSON messages with a zero byte
-between them, nothing but Python's own library."""
+"""Shared parts of page tests: a scene, files of its runs, and headless Chromium by its debugging pipe: JSON messages separated by
+zero bytes, with the standard library only."""
 
 import base64
 import contextlib
@@ -13,12 +13,12 @@ import tempfile
 import time
 
 
-# Grains that fall into a box; tests say how long, and who looks.
+# Grains falling into a box; tests set stages and probes.
 BOX_OF_GRAINS = {
     "title": "grains in a <box> & a probe",
     "contacts": {"type": "linear-rolling"},
     "materials": {"sand": {"density": 2600, "contact_modulus": "1 MPa", "friction_angle": "30 deg"}},
-    "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
+    "bodies": {"grains": {"type": "sphere", "material": "sand", "source": {
         "type": "cloud", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "10 mm"], "count": 40,
         "sizes": {"type": "uniform", "smallest": "1 mm", "largest": "1.5 mm"}}}},
     "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["8 mm", "6 mm", "12 mm"], "open": ["z_high"], "material": "sand"}},
@@ -37,7 +37,7 @@ def find_chromium():
 
 
 def skip(why):
-    """Ends the tests with the status by which CTest knows that they were skipped."""
+    """Ends the tests with the status that CTest reports as skipped."""
     print("skipped:", why)
     sys.exit(77)
 
@@ -68,7 +68,7 @@ class Browser:
         if os.geteuid() == 0:
             words.append("--no-sandbox")
 
-        def connect():  # the pipe's ends are numbers 3 and 4
+        def connect():  # the ends of the pipe are descriptors 3 and 4
             ends = os.dup(to_browser), os.dup(from_browser)
             os.dup2(ends[0], 3)
             os.dup2(ends[1], 4)
@@ -82,7 +82,7 @@ class Browser:
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        # Workers have sessions of their own, and begin when these are listened to.
+        # Workers have separate sessions, and start when these are attached.
         self.call("Target.setAutoAttach", autoAttach=True, waitForDebuggerOnStart=True, flatten=True)
         self.resize(width, height)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
@@ -143,7 +143,7 @@ class Browser:
         return time.monotonic() - began
 
     def evaluate(self, expression):
-        """The value of a JavaScript expression, or what its promise comes to."""
+        """The value of a JavaScript expression, or of its promise."""
         answer = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in answer:
             details = answer["exceptionDetails"]
@@ -151,13 +151,13 @@ class Browser:
         return answer["result"].get("value")
 
     def wait(self, condition):
-        """Until a JavaScript expression is true."""
+        """Waits until a JavaScript expression is true."""
         promise = f"new Promise((done) => {{ const look = () => ({condition}) ? done(true) : setTimeout(look, 20); look(); }})"
         return self.evaluate(promise)
 
     @contextlib.contextmanager
     def paused(self):
-        """Within it no script of the page goes on, but those of its workers."""
+        """Pauses the scripts of the page, but not those of its workers."""
         self.call("Debugger.enable")
         self.send("Runtime.evaluate", self.session, expression="debugger")
         deadline, message = time.monotonic() + self.timeout, {}
@@ -169,7 +169,7 @@ class Browser:
         self.call("Debugger.disable")
 
     def complaints(self):
-        """What went to the console as an error or a warning, and what was thrown."""
+        """Errors and warnings of the console, and uncaught exceptions."""
         said = []
         for event in self.events:
             of = event["params"]
@@ -182,7 +182,7 @@ class Browser:
         return said
 
     def requests(self):
-        """Addresses that the page asked for, its own file and data within it apart."""
+        """Addresses that the page requested, except its own file and embedded data."""
         asked = [event["params"]["request"]["url"] for event in self.events if event["method"] == "Network.requestWillBeSent"]
         return [url for url in asked[1:] if not url.startswith(("data:", "blob:"))]
 

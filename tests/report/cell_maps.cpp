@@ -1,4 +1,4 @@
-// Maps of cells: the numbers of the frames, what is a map, what scales of colours reach.
+// Maps of cells: numbers of the frames, selection of maps, ranges of colour scales.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ FieldGroup two_cells(double density, double shear) {
 
 json made_of(CellMaps& maps) { return maps.result(); }
 
-TEST(CellMaps, HaveABoxWithoutWhatIsFarFromAllOthers) {
+TEST(CellMaps, HaveABoxWithoutCellsFarFromAllOthers) {
   DataElements data;
   CellMaps maps(data, 1 << 20);
   FieldGroup group = two_cells(1000, 0.5);
@@ -83,7 +83,7 @@ TEST(CellMaps, HasOneScaleForAStage) {
   EXPECT_EQ(fields.at(0).at("ranges").at("shear"), json::parse("[[1000, 2400]]"));
   EXPECT_EQ(fields.at(0).at("signed"), json::parse("[false]"));
   EXPECT_EQ(fields.at(1).at("ranges").at("shear").at(1), json({-1, 1}));
-  EXPECT_EQ(fields.at(1).at("signed"), json({true, true})) << "E_zz too, though it is positive throughout";
+  EXPECT_EQ(fields.at(1).at("signed"), json({true, true})) << "E_zz too, although it is positive throughout";
 }
 
 TEST(CellMaps, HasABoxForAStage) {
@@ -113,7 +113,7 @@ TEST(CellMaps, LeavesTheFarthestOfManyCellsToTheEndsOfTheScale) {
   EXPECT_NEAR(range.at(1).get<double>(), 990, 2);
 }
 
-TEST(CellMaps, LeavesEachProbeItsShareOfTheRoom) {
+TEST(CellMaps, GivesEachProbeTheSameSpace) {
   FieldGroup many = two_cells(1, 1), few = two_cells(1, 1);
   many.name = "many";
   for (Field& field : many.fields)
@@ -128,7 +128,7 @@ TEST(CellMaps, LeavesEachProbeItsShareOfTheRoom) {
   EXPECT_THAT(all.at(1).at("frames"), SizeIs(5));
 }
 
-TEST(CellMaps, HasRoomForSomeFramesOnly) {
+TEST(CellMaps, HasSpaceForSomeFramesOnly) {
   DataElements data;
   CellMaps maps(data, 100);  // a frame has 18 numbers of 4 bytes
   maps.add(0, "shear", {two_cells(1, 1)});
@@ -146,10 +146,11 @@ TEST(CellMaps, HasNoMapOfBookkeeping) {
   FieldGroup counted{"counted", {group.fields[0], group.fields[1], group.fields[2]}};
   maps.add(0, "shear", {group, counted});
   const json all = made_of(maps);
-  ASSERT_THAT(all, SizeIs(1)) << "of the other one nothing is left";
+  ASSERT_THAT(all, SizeIs(1)) << "the other one has no other field";
   ASSERT_THAT(all.at(0).at("fields"), SizeIs(2));
   EXPECT_EQ(all.at(0).at("fields").at(0).at("name"), "density");
-  EXPECT_GT(all.at(0).at("fields").at(0).at("rank"), all.at(0).at("fields").at(1).at("rank")) << "strain tells more";
+  EXPECT_GT(all.at(0).at("fields").at(0).at("rank"), all.at(0).at("fields").at(1).at("rank"))
+      << "strain is more informative";
   EXPECT_THAT(numbers_of<float>(data.html(), all.at(0).at("frames").at(0).at("data")), SizeIs(2 * (6 + 1 + 2)));
 }
 
@@ -180,7 +181,7 @@ TEST(CellMaps, AreTablesWithCentreAndSize) {
   const json maps = json_of(report_page(std::span(&path, 1)).html).at("runs").at(0).at("grains").at("maps");
   ASSERT_THAT(maps, SizeIs(1));
   EXPECT_EQ(maps.at(0).at("probe"), "cells");
-  ASSERT_THAT(maps.at(0).at("fields"), SizeIs(2)) << "of as many rows as there are cells";
+  ASSERT_THAT(maps.at(0).at("fields"), SizeIs(2)) << "with as many rows as cells";
   EXPECT_EQ(maps.at(0).at("fields").at(1).at("components"), json({"zz", "xz"}));
 }
 

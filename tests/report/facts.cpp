@@ -22,7 +22,7 @@ RunResults run_with(const Description& json, const std::vector<std::pair<std::st
   return run;
 }
 
-TEST(Facts, SayWhatARunCost) {
+TEST(Facts, ReportTheCostOfARun) {
   const auto facts = cost_facts(run_with({{"bodies", 12345},
                                           {"contacts_per_body", 4.5},
                                           {"time", 0.0425},
@@ -35,24 +35,24 @@ TEST(Facts, SayWhatARunCost) {
   EXPECT_EQ(fact(facts, "bodies").note, "4.50 contacts each");
   EXPECT_EQ(fact(facts, "simulated").value, "42.5 ms");
   EXPECT_EQ(fact(facts, "simulated").note, "2\u202f000\u202f000 steps");
-  EXPECT_EQ(fact(facts, "took").value, "75 s");
-  EXPECT_EQ(fact(facts, "took").note, "1 thread");
+  EXPECT_EQ(fact(facts, "run time").value, "75 s");
+  EXPECT_EQ(fact(facts, "run time").note, "1 thread");
   EXPECT_EQ(fact(facts, "speed").value, "12.5 M");
 }
 
-TEST(Facts, SayHowFarToTrustARun) {
+TEST(Facts, ReportTheReliabilityOfARun) {
   const Description json = {
       {"time_step_s", 8e-7},
       {"critical_time_step_s", 1e-6},
       {"description", {{"materials", {{"a", {{"contact_modulus", 3e8}}}, {"b", {{"contact_modulus", 6e8}}}}}}}};
   const auto facts =
-      trust_facts(run_with(json, {{"closure_share", {0, -0.02, 0.005}},
+      trust_facts(run_with(json, {{"closure_fraction", {0, -0.02, 0.005}},
                                   {"inertial_number", {std::numeric_limits<double>::quiet_NaN(), 9e-4, 1e-5}},
                                   {"mean_stress", {1e5, 2e5}},
                                   {"largest_overlap", {1e-6, 2e-5}}}),
                   1e-3);
   EXPECT_EQ(fact(facts, "time step").value, "800 ns");
-  EXPECT_EQ(fact(facts, "time step").note, "0.8 of the critical one");
+  EXPECT_EQ(fact(facts, "time step").note, "0.8 of the critical time step");
   EXPECT_EQ(fact(facts, "energy closure").value, "2 %");
   EXPECT_TRUE(fact(facts, "energy closure").doubtful);
   EXPECT_EQ(fact(facts, "inertial number").value, "0.0009");
@@ -62,17 +62,18 @@ TEST(Facts, SayHowFarToTrustARun) {
   EXPECT_FALSE(fact(facts, "largest overlap").doubtful);
 }
 
-TEST(Facts, SayHowToHaveTheEnergiesOfARunThatKeepsNone) {
+TEST(Facts, ReportHowToAddAnEnergyBalance) {
   const Description json = {{"status", "done"}, {"description", {{"probes", Description::object()}}}};
   const Fact none = fact(trust_facts(run_with(json, {}), 0), "energy closure");
-  EXPECT_EQ(none.value, "not kept");
+  EXPECT_EQ(none.value, "not measured");
   EXPECT_THAT(none.note, testing::HasSubstr(R"(--set '/probes/energy={"type": "energy", "every_steps": 1000}')"));
   EXPECT_FALSE(none.doubtful);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(fact(trust_facts(run_with(json, {{"closure_share", {nan, nan}}}), 0), "energy closure").value, "unknown");
+  EXPECT_EQ(fact(trust_facts(run_with(json, {{"closure_fraction", {nan, nan}}}), 0), "energy closure").value,
+            "unknown");
 }
 
-TEST(Facts, SayWhereARunWasInterrupted) {
+TEST(Facts, ReportTheStageOfAnInterruption) {
   Description json = {{"status", "interrupted"},
                       {"stage", "shear"},
                       {"time", 0.0475},
@@ -84,7 +85,7 @@ TEST(Facts, SayWhereARunWasInterrupted) {
   EXPECT_EQ(where_interrupted(run_with({{"status", "interrupted"}}, {})), "");
 }
 
-TEST(Facts, TrustIsOfTheLastStageAndNotOfItsPreparation) {
+TEST(Facts, ReliabilityRefersToTheLastStage) {
   const std::vector<std::pair<std::string, std::vector<double>>> series{{"time", {0.1, 0.2, 0.3, 0.4}},
                                                                         {"inertial_number", {0.4, 0.3, 1e-4, 2e-4}}};
   Description json = {{"status", "done"}, {"stages", {{{"time", 0.25}}, {{"time", 0.4}}}}};
@@ -96,10 +97,10 @@ TEST(Facts, TrustIsOfTheLastStageAndNotOfItsPreparation) {
   EXPECT_EQ(fact(trust_facts(run_with(json, series), 0), "inertial number").value, "0.4");
 }
 
-TEST(Facts, DoubtFastShearUnlessGrainsAreToFlow) {
+TEST(Facts, MarkFastShearWithoutGravity) {
   const std::vector<std::pair<std::string, std::vector<double>>> fast{{"inertial_number", {4e-3}}};
   EXPECT_TRUE(fact(trust_facts(run_with(Description::object(), fast), 0), "inertial number").doubtful);
-  // What is marked does not read as the limit.
+  // A marked value is not rounded to the limit.
   for (const auto& [inertial, words, doubtful] :
        {std::tuple(1.004e-3, "0.001", false), std::tuple(1.006e-3, "0.00101", true)}) {
     const Fact told =
@@ -111,7 +112,7 @@ TEST(Facts, DoubtFastShearUnlessGrainsAreToFlow) {
   EXPECT_FALSE(fact(trust_facts(run_with(falling, fast), 0), "inertial number").doubtful);
 }
 
-TEST(Facts, SayNothingOfWhatIsNotKnown) {
+TEST(Facts, OmitUnknownValues) {
   EXPECT_THAT(cost_facts(run_with(Description::object(), {})), testing::IsEmpty());
   EXPECT_THAT(trust_facts(run_with({{"time_step_s", nullptr}}, {{"largest_overlap", {1e-6}}}), 0), testing::IsEmpty());
   EXPECT_EQ(status_of(run_with(Description::object(), {})), "unknown");
@@ -128,7 +129,7 @@ TEST(Facts, WaitForTheFirstStageToEnd) {
   };
   EXPECT_THAT(names(), testing::ElementsAre("bodies"));
   json["time"] = 0.1, json["steps"] = 100;
-  EXPECT_THAT(names(), testing::ElementsAre("bodies", "simulated", "took", "speed", "time step"));
+  EXPECT_THAT(names(), testing::ElementsAre("bodies", "simulated", "run time", "speed", "time step"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures the page of many grains: how long it takes to make, how large it is, how fast it opens and moves in Chromium.
+"""Measures the page of many grains: time to make it, size, speed of opening and moving in Chromium.
 
 usage: large_page.py GRIT [GRAINS [FRAMES]]     200 000 grains and 20 frames unless given; not among the tests
 """
@@ -13,13 +13,13 @@ import time
 from browser import GRAINS, Browser, find_chromium, h5py_or_skip, skip
 
 h5py = h5py_or_skip()
-import numpy  # which comes with it
+import numpy  # comes with h5py
 
 CHROMIUM = find_chromium()
 
 
 def write_frames(folder, grains, frames):
-    """A sheared box, at random, with three contacts a grain."""
+    """A random sheared box, with three contacts per grain."""
     (folder / "frames").mkdir(parents=True)
     random = numpy.random.default_rng(1)
     low = random.random((grains, 3)) * [0.06, 0.02, 0.04]

@@ -1,4 +1,4 @@
-// Grains by the layers in which they were when a stage began, without a browser.
+// Grains coloured by layers at the start of a stage, without a browser.
 #include <gmock/gmock.h>
 
 #include <boost/property_tree/ptree.hpp>
@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Instants of a run: a stage, and heights of grains by id; a grain without a height is not there.
+/// Instants of a run: stage, and heights of grains by id; a grain without a height does not exist.
 struct Instant {
   const char* stage;
   std::vector<std::optional<double>> heights;
@@ -65,7 +65,7 @@ std::optional<std::string> drawn(const std::filesystem::path& folder) {
   return layers_picture(run);
 }
 
-/// What the page is told: frame and stage.
+/// Frame and stage on the page.
 nlohmann::json on_the_page(const std::filesystem::path& folder) {
   return json_of(report_page(std::span(&folder, 1)).html).at("runs").at(0).at("grains").at("layers");
 }
@@ -78,11 +78,11 @@ TEST(Layers, AreOfTheStartOfTheLastStage) {
   const auto svg = drawn(folder / "run");
   ASSERT_TRUE(svg);
   EXPECT_THAT(classes(*svg), ElementsAre("c0", "c3", "c7", "c9")) << "of ten, from 1 to 11";
-  EXPECT_THAT(*svg, HasSubstr("layers by z when shear began"));
+  EXPECT_THAT(*svg, HasSubstr("layers by z at the start of shear"));
   EXPECT_EQ(on_the_page(folder / "run"), begin(1, "shear"));
 }
 
-TEST(Layers, AreBetweenThoseThatAreNotFarFromAllOthers) {
+TEST(Layers, IgnoreGrainsFarFromAllOthers) {
   const Folder folder;
   write(folder / "run", {{"shear", {1, 4.5, 8.5, 11, -900, 2000}}, {"shear", {5, 5, 5, 5, 5, 5}}});
   EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c0", "c3", "c7", "c9", "c0", "c9"));
@@ -94,11 +94,11 @@ TEST(Layers, AreOfTheStageInWhichGrainsBeginToLeave) {
         {{"fill", {1, 2, {}, 11}}, {"out", {1, 2, 6, 11}}, {"out", {{}, 2, 6, 11}}, {"more", {{}, 1, 1, 1}}});
   EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c1", "c5", "c9"));
   EXPECT_EQ(on_the_page(folder / "run"), begin(1, "out"));
-  // The first frame of that stage has lost one already, and what comes later has no layer.
+  // The first frame of that stage has already lost one, and later bodies have no layer.
   write(folder / "other", {{"fill", {1, 2, 11}}, {"out", {{}, 2, 11}}, {"out", {{}, 2, 11, 7}}});
   const std::string svg = drawn(folder / "other").value();
   EXPECT_THAT(classes(svg), ElementsAre("c1", "c9", "n"));
-  EXPECT_THAT(svg, HasSubstr("layers by z when out began"));
+  EXPECT_THAT(svg, HasSubstr("layers by z at the start of out"));
   EXPECT_EQ(on_the_page(folder / "other"), begin(0, "out"));
 }
 
@@ -109,7 +109,7 @@ TEST(Layers, AreDrawnWithoutAFrameThatIsDamaged) {
   EXPECT_THAT(classes(drawn(folder / "run").value()), ElementsAre("c0", "c2", "c9"));
 }
 
-TEST(Layers, AreNotDrawnOfTheFrameTheyAreOf) {
+TEST(Layers, AreNotDrawnForTheFrameThatDefinesThem) {
   const Folder folder;
   write(folder / "run", {{"fill", {1, 2}}, {"shear", {1, 2}}});
   EXPECT_FALSE(drawn(folder / "run"));

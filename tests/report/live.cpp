@@ -1,4 +1,4 @@
-// The page of a run that goes on: what is new is given, and given once.
+// The page of a run in progress: new data are sent once.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -26,7 +26,7 @@ json channel_of(const json& report, const std::string& name) {
 
 void set_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 
-TEST(LivePage, SaysWhereThereIsNothingYet) {
+TEST(LivePage, ReportsARunWithoutResults) {
   const Folder folder;
   LivePage page(folder / "run", "1");
   EXPECT_FALSE(page.refresh());
@@ -39,7 +39,7 @@ TEST(LivePage, SaysWhereThereIsNothingYet) {
   EXPECT_EQ(news, json({{"run", "1"}}));
 }
 
-TEST(LivePage, GivesWhatIsNewAndKeepsTheNumbersOfTheRest) {
+TEST(LivePage, SendsNewDataAndKeepsTheNumbersOfTheRest) {
   const Folder folder;
   SmallRun(folder / "run").write();
   LivePage page(folder / "run", "1");
@@ -47,11 +47,11 @@ TEST(LivePage, GivesWhatIsNewAndKeepsTheNumbersOfTheRest) {
   ASSERT_TRUE(page.refresh());
   const json first = page.news(nothing);
   EXPECT_THAT(std::string(first.at("head")), HasSubstr("a small run"));
-  EXPECT_EQ(first.at("elements").size(), first.at("used").size()) << "all of it";
+  EXPECT_EQ(first.at("elements").size(), first.at("used").size()) << "all elements";
   EXPECT_FALSE(page.refresh()) << "nothing was written";
   EXPECT_EQ(page.since(), first.at("since"));
 
-  // The same run, of which the ratio came out otherwise, which the stress has as its first component.
+  // The same run with another ratio, which is also the first component of the stress.
   SmallRun other(folder / "run");
   other.ratio[1] = 0.5;
   other.options.existing = Existing::overwrite;
@@ -70,10 +70,10 @@ TEST(LivePage, GivesWhatIsNewAndKeepsTheNumbersOfTheRest) {
   EXPECT_LT(same.at("data"), first.at("since"));
 
   const json all = page.news(nothing);
-  EXPECT_EQ(all.at("elements").size(), all.at("used").size()) << "for who knows nothing";
+  EXPECT_EQ(all.at("elements").size(), all.at("used").size()) << "for a page without data";
 }
 
-TEST(LivePage, HasAsAWholeWhatItHasInParts) {
+TEST(LivePage, IsTheSameCompleteAndInParts) {
   const Folder folder;
   SmallRun(folder / "run").write();
   LivePage page(folder / "run", "1");
@@ -87,7 +87,7 @@ TEST(LivePage, HasAsAWholeWhatItHasInParts) {
     EXPECT_EQ(between(html, "id=\"data-" + number + "\">", "</script>"), std::string(text));
 }
 
-TEST(LivePage, MayAskWhereItCameFromAndAPageFromDiskMayNot) {
+TEST(LivePage, MayContactItsServerAndAPageFromDiskMayNot) {
   const Folder folder;
   SmallRun(folder / "run").write();
   const auto place = folder / "run";
@@ -101,7 +101,7 @@ TEST(LivePage, MayAskWhereItCameFromAndAPageFromDiskMayNot) {
   EXPECT_THAT(closed, Not(HasSubstr("class Follower")));
 }
 
-TEST(LivePage, ShowsWhatCanBeReadOfAFolderInPieces) {
+TEST(LivePage, ShowsReadablePartsOfADamagedFolder) {
   const Folder folder;
   SmallRun(folder / "run").write();
   set_file(folder / "run/series.h5", "not HDF5");
@@ -118,7 +118,7 @@ TEST(LivePage, StaysAsItIsWhileTheSeriesAreBeingWritten) {
   SmallRun(folder / "run").write();
   const auto series = folder / "run/series.h5";
   const std::string whole = text_of(series);
-  // An hour ago: what was written just now has to rest.
+  // An hour ago: recent files have to settle.
   const auto write = [&](const std::string& bytes) {
     set_file(series, bytes);
     std::filesystem::last_write_time(series, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
@@ -135,7 +135,7 @@ TEST(LivePage, StaysAsItIsWhileTheSeriesAreBeingWritten) {
     EXPECT_EQ(page.html(), html);
     EXPECT_EQ(page.since(), known);
   }
-  // As a writer that was killed leaves it.
+  // As left by a killed writer.
   EXPECT_TRUE(page.refresh());
   EXPECT_THAT(page.html(), AllOf(HasSubstr("What could not be read"), HasSubstr("series.h5: cannot read")));
   write(whole);
@@ -143,8 +143,8 @@ TEST(LivePage, StaysAsItIsWhileTheSeriesAreBeingWritten) {
   EXPECT_THAT(page.html(), Not(HasSubstr("What could not be read")));
 }
 
-// run.json is a pipe here: while it is read, something else changes for certain.
-TEST(LivePage, TellsWhatCannotBeReadInAFolderThatChangesOnlyIfItLasts) {
+// run.json is a pipe here, so that something else changes while it is read.
+TEST(LivePage, ReportsUnreadableFilesInAChangingFolderOnlyIfTheyPersist) {
   const Folder folder;
   SmallRun(folder / "run").write();
   const auto json = folder / "run/run.json";
@@ -164,7 +164,7 @@ TEST(LivePage, TellsWhatCannotBeReadInAFolderThatChangesOnlyIfItLasts) {
   for (std::size_t look = 0; look < 3; ++look) EXPECT_FALSE(told(look));
   EXPECT_TRUE(told(3));
   EXPECT_THAT(page.html(), HasSubstr("000007.h5: cannot read"));
-  EXPECT_TRUE(told(4)) << "and again, as it lasts";
+  EXPECT_TRUE(told(4)) << "and again, as it persists";
 }
 
 }  // namespace

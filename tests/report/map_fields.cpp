@@ -1,4 +1,4 @@
-// What fields of cells are as maps, by their names, units and words alone.
+// Properties of cell fields as maps, from their names, units and docs.
 #include "report/map_fields.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ std::vector<bool> signs(const Field& field) {
   return all;
 }
 
-TEST(MapFields, AreSignedByWhatTheyAre) {
+TEST(MapFields, AreSignedByKind) {
   using testing::Each;
   using testing::ElementsAre;
   EXPECT_THAT(signs(field("velocity", "m s-1", "mean", 3)), Each(true));
@@ -32,16 +32,16 @@ TEST(MapFields, AreSignedByWhatTheyAre) {
   EXPECT_TRUE(is_signed(field("rotation", "rad", "mean of the grains, positive clockwise"), 0));
 }
 
-TEST(MapFields, AreOfferedTheMostTellingFirst) {
+TEST(MapFields, AreOfferedTheMostInformativeFirst) {
   std::vector<Field> all{field("correlation", "1", ""), field("coordination_number", "1", ""), field("my_own", "1", ""),
                          field("stress", "Pa", "", 9), field("void_ratio", "1", "")};
-  std::ranges::stable_sort(all, {}, telling_rank);
+  std::ranges::stable_sort(all, {}, field_rank);
   std::vector<std::string> names;
   for (const Field& one : all) names.push_back(one.name);
   EXPECT_THAT(names, testing::ElementsAre("void_ratio", "stress", "coordination_number", "my_own", "correlation"));
 }
 
-TEST(MapFields, LeaveOutWhatOnlyCounts) {
+TEST(MapFields, OmitCounters) {
   for (const char* name : {"id", "bodies", "began_at"}) EXPECT_TRUE(is_bookkeeping(field(name, "1", ""))) << name;
   for (const char* name : {"void_ratio", "coordination_number", "my_own"})
     EXPECT_FALSE(is_bookkeeping(field(name, "1", ""))) << name;

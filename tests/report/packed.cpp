@@ -12,7 +12,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Packed, ComesBackWhateverItsLength) {
+TEST(Packed, IsRestoredAtAnyLength) {
   for (std::size_t length = 0; length < 70; ++length) {
     std::vector<std::uint8_t> bytes(length);
     for (std::size_t i = 0; i < length; ++i) bytes[i] = static_cast<std::uint8_t>(i * 37 + length);
@@ -50,18 +50,18 @@ TEST(DataElements, AreNumbered) {
   EXPECT_THAT(numbers_of<float>(data.html(), 1), ElementsAre(3));
 }
 
-TEST(DataElements, KeepTheNumbersOfWhatIsTheSame) {
+TEST(DataElements, KeepTheNumbersOfEqualData) {
   DataElements first;
   first.add_numbers<float>(std::vector<float>{1, 2});
   first.add_numbers<float>(std::vector<float>{3});
   DataElements second = first.next();
-  EXPECT_GT(second.end(), first.end()) << "two states differ even where nothing is new";
+  EXPECT_GT(second.end(), first.end()) << "two states differ even without new data";
   EXPECT_EQ(second.add_numbers<float>(std::vector<float>{3}), 1u);
   EXPECT_GE(second.add_numbers<float>(std::vector<float>{4}), first.end());
   EXPECT_EQ(second.texts().size(), 2u);
   DataElements third = second.next();
   EXPECT_GE(third.add_numbers<float>(std::vector<float>{1, 2}), second.end())
-      << "a number of the first one may not come again";
+      << "a number of the first one is not reused";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a page holds: the numbers of the results, and clear words for what could not be read.
+// Content of a page: the numbers of the results, and messages on unreadable files.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ TEST(ReportPage, HasTheCurvesToTheLastBit) {
   const auto page = page_of(folder / "run");
   EXPECT_THAT(page.problems, IsEmpty());
   const json shown = json_of(page.html).at("runs").at(0);
-  EXPECT_EQ(shown.at("probes").at(0).at("name"), "test") << "curves of the test come first";
+  EXPECT_EQ(shown.at("probes").at(0).at("name"), "test") << "curves of the test are first";
   EXPECT_EQ(shown.at("probes").at(0).at("channels").at(0).at("name"), "time");
 
   const json ratio = channel_of(shown, "test", "stress_ratio");
@@ -63,7 +63,7 @@ TEST(ReportPage, HasTheCurvesToTheLastBit) {
   EXPECT_EQ(numbers_of<double>(page.html, stress.at("data")).at(14), 2e5);
 }
 
-TEST(ReportPage, WritesUnitsAndNamesAsPicturesDo) {
+TEST(ReportPage, WritesUnitsAndNamesAsInPictures) {
   const Folder folder;
   SmallRun run(folder / "run");
   ResultsFolder results(run.options);
@@ -87,7 +87,7 @@ TEST(ReportPage, WritesUnitsAndNamesAsPicturesDo) {
   EXPECT_EQ(told("speed"), "speed [mm/s] of m s-1: mean");
 }
 
-TEST(ReportPage, HasTheGrainsToATenThousandth) {
+TEST(ReportPage, HasTheGrainsWithinQuantisation) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.write();
@@ -118,7 +118,7 @@ TEST(ReportPage, HasTheGrainsToATenThousandth) {
   EXPECT_THAT(std::vector(before.begin(), before.begin() + 3), ElementsAre(32768, 65535, 0)) << "x by id";
   const auto x_of_7 = static_cast<std::uint16_t>(before[2] + after[2]);
   EXPECT_NEAR(2 * x_of_7 / 65535.0, 0.5, 2e-5);
-  EXPECT_EQ(after[0], 0) << "what has not moved";
+  EXPECT_EQ(after[0], 0) << "a body that has not moved";
   EXPECT_EQ(grains.at("stages").at("shear").at("ranges").at("speed"), 5);
   EXPECT_THAT(std::vector(after.begin() + 9, after.begin() + 12), ElementsAre(0, 0, 65535)) << "speed";
   EXPECT_EQ(grains.at("stages").at("shear").at("ranges").at("rotation"), 1);
@@ -145,7 +145,7 @@ TEST(ReportPage, HasScalesForEachStage) {
   EXPECT_EQ(shear[11], 65535) << "the fastest of its stage";
 }
 
-TEST(ReportPage, LeavesOutGrainsThatAreNowhere) {
+TEST(ReportPage, OmitsGrainsWithoutAPosition) {
   const Folder folder;
   SmallRun run(folder / "run");
   ResultsFolder results(run.options);
@@ -163,7 +163,7 @@ TEST(ReportPage, LeavesOutGrainsThatAreNowhere) {
   EXPECT_THAT(planes_of(page.html, last.at("data")), SizeIs(2 * (3 + 1 + 3)));
 }
 
-TEST(ReportPage, LooksWhereTheGrainsAreThoughOneIsFarAway) {
+TEST(ReportPage, ShowsTheGrainsAlthoughOneIsFarAway) {
   const Folder folder;
   SmallRun run(folder / "run");
   for (int i = 0; i < 40; ++i)
@@ -181,12 +181,12 @@ TEST(ReportPage, LooksWhereTheGrainsAreThoughOneIsFarAway) {
   const json grains = json_of(page.html).at("runs").at(0).at("grains"), &frames = grains.at("frames");
   EXPECT_FALSE(frames.at(0).contains("strays"));
   EXPECT_EQ(frames.at(1).at("strays"), 1);
-  EXPECT_EQ(frames.at(1).at("high").at(2), 3) << "where the others are";
-  EXPECT_EQ(frames.at(2).at("unplaced"), 1) << "the others would share one of 65 536 places";
+  EXPECT_EQ(frames.at(1).at("high").at(2), 3) << "the box of the others";
+  EXPECT_EQ(frames.at(2).at("unplaced"), 1) << "the others would have the same quantised position";
   EXPECT_EQ(grains.at("high").at(2), 20);
 }
 
-TEST(ReportPage, KnowsWhereTheNumbersOfAListAre) {
+TEST(ReportPage, HasTheCoordinatesOfLists) {
   const Folder folder;
   SmallRun run(folder / "run");
   ResultsFolder results(run.options);
@@ -230,7 +230,7 @@ TEST(ReportPage, HasTheContactsAboveTheMean) {
   EXPECT_EQ(grains.at("frames").at(0).at("contacts"), 0) << "within the limit";
 }
 
-TEST(ReportPage, HasWallsAndWhereTheyGo) {
+TEST(ReportPage, HasWallsAndTheirDisplacements) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.write();
@@ -244,7 +244,7 @@ TEST(ReportPage, HasWallsAndWhereTheyGo) {
   EXPECT_THAT(json_of(page.html).at("runs").at(0).at("grains").at("frames").at(1).at("walls"), IsEmpty());
 }
 
-TEST(ReportPage, HasWallsThatBecomeOthers) {
+TEST(ReportPage, HasWallsThatChange) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.options.walls.push_back({"floor", {{0, 0, -3}, {1, 0, -3}, {0, 1, -3}}, "open"});
@@ -266,7 +266,7 @@ TEST(ReportPage, HasWallsThatBecomeOthers) {
   EXPECT_EQ(grains.at("frames").at(2).at("walls"), json({{1, 0.375, 0, 0}}));
 }
 
-TEST(ReportPage, TurnsWallsAsLongAsThereIsRoom) {
+TEST(ReportPage, RotatesWallsWithinTheLimit) {
   const Folder folder;
   SmallRun run(folder / "run");
   ResultsFolder results(run.options);
@@ -287,11 +287,11 @@ TEST(ReportPage, TurnsWallsAsLongAsThereIsRoom) {
   EXPECT_EQ(grains.at("frames").at(2).at("walls").at(0).at(0), 2);
   page = page_of(folder / "run", {.wall_bytes = 36});
   grains = json_of(page.html).at("runs").at(0).at("grains");
-  ASSERT_THAT(grains.at("walls"), SizeIs(1)) << "of three corners of three floats";
+  ASSERT_THAT(grains.at("walls"), SizeIs(1)) << "three corners of three floats";
   EXPECT_EQ(grains.at("frames").at(2).at("walls").at(0).at(0), 0);
 }
 
-TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
+TEST(ReportPage, OmitsFramesEvenlyBeyondTheLimit) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.write();
@@ -307,10 +307,10 @@ TEST(ReportPage, LeavesFramesOutEvenlyRatherThanGrowWithoutBound) {
   ASSERT_THAT(three.at("frames"), SizeIs(3));
   const double times[] = {1, 1, 2};  // of the first, the third and the last
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(three.at("frames").at(i).at("time"), times[i]);
-  EXPECT_THAT(frames(0).at("frames"), SizeIs(2)) << "the first and the last are always there";
+  EXPECT_THAT(frames(0).at("frames"), SizeIs(2)) << "the first and the last are always included";
 }
 
-TEST(ReportPage, ShowsWhatCanBeReadOfAHalfWrittenFolder) {
+TEST(ReportPage, ShowsReadablePartsOfAHalfWrittenFolder) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.write();
@@ -373,7 +373,7 @@ TEST(ReportPage, PutsRunsSideBySide) {
   EXPECT_THAT(page.html,
               AllOf(HasSubstr("<h1>Runs side by side</h1>"), HasSubstr("one</th>"), HasSubstr("other</th>")));
   EXPECT_THAT(page.html, HasSubstr("<td class=\"name\" colspan=\"2\">a small run</td>"))
-      << "what is the same is said once";
+      << "a common note is written once";
   EXPECT_THAT(page.html, HasSubstr("largest overlap<small>of the mean diameter, in the last stage</small></td><td>"));
 }
 

@@ -1,4 +1,4 @@
-// Curves, profiles, chains and maps of runs, without a browser.
+// Pictures of curves, profiles, chains and maps of runs, without a browser.
 #include "report/pictures.hpp"
 
 #include <gmock/gmock.h>
@@ -70,13 +70,13 @@ TEST(CurvePictures, ShowTheReferencesOfTheDescription) {
   ASSERT_THAT(curve, SizeIs(1));
   ASSERT_THAT(elements(svg, "polyline", "r0"), SizeIs(1));
   ASSERT_THAT(elements(svg, "polyline", "r1"), SizeIs(1));
-  // JSON sorts nothing here: the first of the two is "the peak", as the description has it, or "measured".
+  // JSON keeps the order: the first of the two is "the peak", as in the description, or "measured".
   const auto of_run = numbers_in(text_of(curve[0], "points"));
   bool level = false, measured = false;
   for (const char* name : {"r0", "r1"}) {
     const auto points = numbers_in(text_of(elements(svg, "polyline", name)[0], "points"));
     ASSERT_THAT(points, SizeIs(4));
-    // From the run's first point to its last at the height of 3; from 0 to its place at u = 2 mm, where it is 2.
+    // From the first point of the run to the last at a height of 3; from 0 to u = 2 mm, where it is 2.
     level =
         level || (points[1] == points[3] && points[0] == of_run[0] && points[2] == of_run[8] && points[1] == of_run[7]);
     measured = measured || (points[0] == of_run[0] && points[2] == of_run[4] && points[3] == of_run[5]);
@@ -86,15 +86,15 @@ TEST(CurvePictures, ShowTheReferencesOfTheDescription) {
   EXPECT_THAT(run.problems, ElementsAre(HasSubstr("reference lost: nowhere.csv: cannot be read")));
 }
 
-TEST(CurvePictures, LayRunsOverEachOther) {
+TEST(CurvePictures, ShowSeveralRuns) {
   const Folder folder;
   write_test(folder / "dense", 1, {{"peak", {{"of", "test/ratio"}, {"value", 3}}}});
   write_test(folder / "loose", 0.5, {{"peak", {{"of", "test/ratio"}, {"value", 1}}}});
   write_test(folder / "again", 2);
   std::vector<RunResults> runs{read_results(folder / "dense"), read_results(folder / "loose"),
                                read_results(folder / "again")};
-  runs[2].probes[0].channels.clear();  // has none of it
-  tell_apart(runs);
+  runs[2].probes[0].channels.clear();  // does not have it
+  make_names_unique(runs);
   const auto svg = parsed(*curves_picture(runs));
   EXPECT_THAT(elements(svg, "polyline", "k0"), SizeIs(1));
   EXPECT_THAT(elements(svg, "polyline", "k1"), SizeIs(1));
@@ -115,7 +115,7 @@ TEST(CurvePictures, OfOneRunHaveNoLegend) {
   EXPECT_THAT(words_of(parsed(*curves_picture(std::span(&run, 1)))), Not(Contains("dense")));
 }
 
-TEST(CurvePictures, SayInALineWhatRan) {
+TEST(CurvePictures, DescribeTheRunInOneLine) {
   const Folder folder;
   write_test(folder / "dense", 1);
   RunResults run = read_results(folder / "dense");
@@ -126,7 +126,7 @@ TEST(CurvePictures, SayInALineWhatRan) {
                           "2.2 million particle-steps/s"));
 }
 
-TEST(CurvePictures, HaveNoPanelOfNothing) {
+TEST(CurvePictures, HaveNoEmptyPanel) {
   const Folder folder;
   write_test(folder / "dense", 1);
   RunResults run = read_results(folder / "dense");
@@ -134,7 +134,7 @@ TEST(CurvePictures, HaveNoPanelOfNothing) {
   EXPECT_FALSE(curves_picture(std::span(&run, 1)).has_value());
 }
 
-TEST(CurvePictures, HaveNoPanelOfWhatIsZeroThroughoutUnlessItIsAskedFor) {
+TEST(CurvePictures, HaveNoPanelOfZeroUnlessItIsNamed) {
   const Folder folder;
   write_test(folder / "dense", 1);
   RunResults run = read_results(folder / "dense");
@@ -148,14 +148,14 @@ TEST(CurvePictures, HaveNoPanelOfWhatIsZeroThroughoutUnlessItIsAskedFor) {
   EXPECT_THAT(drawn(), HasSubstr(">ratio<"));
 }
 
-TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
+TEST(ProfilePictures, HavePositionsAtSomeInstants) {
   const Folder folder;
   SmallRun run(folder / "run");
   ResultsFolder results(run.options);
   const std::vector<ProbeGroup> probes{{"moved",
-                                        {{"place", "m", "where", {3}},
-                                         {"gradient", "1", "slope", {3}, "place"},
-                                         {"still", "1", "zero", {3}, "place"},
+                                        {{"position", "m", "where", {3}},
+                                         {"gradient", "1", "slope", {3}, "position"},
+                                         {"still", "1", "zero", {3}, "position"},
                                          {"direction", "degree", "where to", {3}},
                                          {"force", "N", "by direction", {3}, "direction"}}},
                                        {"packing", {{"e", "1", "void ratio", {}}}}};
@@ -179,7 +179,7 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
     const auto lines = elements(svg, "polyline", name);
     ASSERT_THAT(lines, SizeIs(1));
     const auto points = numbers_in(text_of(lines[0], "points"));
-    ASSERT_THAT(points, SizeIs(4)) << "what is not a number is a gap";
+    ASSERT_THAT(points, SizeIs(4)) << "NaN is a gap";
     rises.push_back(points[1] - points[3]);
   }
   EXPECT_NEAR(rises[1] / rises[0], 2, 0.01);
@@ -194,8 +194,8 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   const auto outline = elements(round, "polyline", "k0");
   ASSERT_THAT(outline, SizeIs(1));
   const auto points = numbers_in(text_of(outline[0], "points"));
-  ASSERT_THAT(points, SizeIs(2 * 16)) << "five points a direction, and back";
-  // The middles of the three directions: 1 N to the right, 2 N up, 3 N to the left of the middle.
+  ASSERT_THAT(points, SizeIs(2 * 16)) << "five points per direction, and back";
+  // The middles of the three directions: 1 N to the right, 2 N up, 3 N to the left of the centre.
   const double middle_x = points[2 * 7], middle_y = points[2 * 2 + 1], newton = points[2 * 2] - middle_x;
   EXPECT_GT(newton, 10);
   EXPECT_NEAR(points[2 * 12 + 1], middle_y, 0.02);
@@ -203,13 +203,13 @@ TEST(ProfilePictures, HaveThePlacesOfSomeInstants) {
   EXPECT_NEAR((middle_x - points[2 * 12]) / newton, 3, 0.01);
 }
 
-TEST(ProfilePictures, TellTheAxisAndHowFarATestHasGone) {
+TEST(ProfilePictures, NameTheAxisAndTheProgressOfTheTest) {
   const Folder folder;
   SmallRun run(folder / "run");
   run.options.facts.description["output"] = {{"picture", {{"x", "test/u"}}}};
   ResultsFolder results(run.options);
   const std::vector<ProbeGroup> probes{
-      {"moved", {{"place", "m", "middle of each, along z", {2}}, {"e", "1", "", {2}, "place"}}},
+      {"moved", {{"position", "m", "middle of each, along z", {2}}, {"e", "1", "", {2}, "position"}}},
       {"test", {{"u", "m", "way", {}}}}};
   results.begin(run.world, probes);
   for (int i = 0; i < 7; ++i) {
@@ -229,7 +229,7 @@ TEST(ProfilePictures, TellTheAxisAndHowFarATestHasGone) {
   EXPECT_THAT(report_page(std::span(&where, 1)).html, HasSubstr("\"label\":\"z\""));
 }
 
-/// The small run with a probe that tells of chains, its rows the contacts between grains with these forces.
+/// The small run with a probe of chains; its rows are the contacts between grains with these forces.
 void write_chains(const std::filesystem::path& folder, const std::vector<double>& force) {
   SmallRun run(folder);
   for (const std::size_t k : {0u, 1u, 2u}) run.world.contact[k].normal_force = 4.0 - 2 * (k > 0);
@@ -243,7 +243,7 @@ void write_chains(const std::filesystem::path& folder, const std::vector<double>
   results.finish(run.world, {});
 }
 
-TEST(LinearChainPictures, GoAlongTheLinksOfChains) {
+TEST(LinearChainPictures, FollowTheLinksOfChains) {
   const Folder folder;
   write_chains(folder / "run", {4, 2});
   RunResults run = read_results(folder / "run");
@@ -251,9 +251,9 @@ TEST(LinearChainPictures, GoAlongTheLinksOfChains) {
   ASSERT_TRUE(picture.has_value());
   const auto svg = parsed(*picture);
   const auto links = elements(svg, "line", "link");
-  ASSERT_THAT(links, SizeIs(1)) << "of the other contact no chain is told";
+  ASSERT_THAT(links, SizeIs(1)) << "the other contact belongs to no chain";
   EXPECT_THAT(*picture, HasSubstr("3 linear chains"));
-  // From the grain at (0, 1) to (1, 2): up and to the right alike.
+  // From the grain at (0, 1) to (1, 2): the same distance up and to the right.
   EXPECT_NEAR(number_of(links[0], "x2") - number_of(links[0], "x1"),
               number_of(links[0], "y1") - number_of(links[0], "y2"), 0.05);
   EXPECT_GT(number_of(links[0], "x2"), number_of(links[0], "x1"));
@@ -265,8 +265,9 @@ TEST(ForceChainPictures, HaveTheContactsAboveTheMean) {
   RunResults run = read_results(folder / "run");
   const auto picture = force_chains_picture(run);
   ASSERT_TRUE(picture.has_value());
-  EXPECT_THAT(elements(parsed(*picture), "line", "link"), SizeIs(1)) << "of 4, 2 and 2 N";
-  EXPECT_THAT(*picture, HasSubstr("contacts above the mean of 2.67 N, as wide as their normal force, 4 N at most"));
+  EXPECT_THAT(elements(parsed(*picture), "line", "link"), SizeIs(1)) << "forces of 4, 2 and 2 N";
+  EXPECT_THAT(*picture,
+              HasSubstr("contacts above the mean of 2.67 N, width proportional to normal force, at most 4 N"));
 }
 
 TEST(LinearChainPictures, AreOnThePage) {
@@ -276,22 +277,22 @@ TEST(LinearChainPictures, AreOnThePage) {
   const std::string html = report_page(std::span(&path, 1)).html;
   const auto frame = json_of(html).at("runs").at(0).at("grains").at("frames").at(0);
   ASSERT_EQ(frame.at("linear_contacts"), 1);
-  // Low and high half of the grain's place by id (of 2, 5, 7 the last), branch, force.
+  // Low and high half of the grain's index by id (the last of 2, 5, 7), branch, force.
   const auto numbers = planes_of(html, frame.at("linear_chains"));
   ASSERT_THAT(numbers, SizeIs(6));
   EXPECT_EQ(numbers[0], 2);
-  EXPECT_EQ(numbers[2], 65535) << "as far as contacts reach";
+  EXPECT_EQ(numbers[2], 65535) << "the largest branch";
   EXPECT_EQ(numbers[5], 65535) << "the strongest";
 }
 
-TEST(LinearChainPictures, AreNotOfRowsThatAreOtherContacts) {
+TEST(LinearChainPictures, IgnoreRowsOfOtherContacts) {
   const Folder folder;
   write_chains(folder / "run", {4, 3});
   RunResults run = read_results(folder / "run");
   EXPECT_FALSE(chains_picture(run).has_value());
 }
 
-TEST(MapPictures, SayWhatTheyShowOnce) {
+TEST(MapPictures, NameTheirContentOnce) {
   const Folder folder;
   SmallRun run(folder / "run");
   ResultsFolder results(run.options);
@@ -328,13 +329,13 @@ TEST(MapPictures, HaveWallsAxesAndTheirFieldsPalette) {
   results.finish(run.world, {});
   RunResults read = read_results(folder / "run");
   const auto pictures = map_pictures(read);
-  ASSERT_THAT(pictures, SizeIs(2)) << "nobody looks at a map of counts";
+  ASSERT_THAT(pictures, SizeIs(2)) << "no map of counts";
   for (const auto& [name, svg] : pictures) {
     EXPECT_THAT(words_of(parsed(svg), "axis"), testing::UnorderedElementsAre("x [m]", "z [m]")) << name;
     EXPECT_THAT(elements(parsed(svg), "line", "wall"), Not(IsEmpty())) << name;
   }
   EXPECT_EQ(pictures[0].name, "map-cells-rotation");
-  EXPECT_THAT(pictures[0].svg, HasSubstr("fill=\"#144e8c\"")) << "the scale goes on below zero";
+  EXPECT_THAT(pictures[0].svg, HasSubstr("fill=\"#144e8c\"")) << "the scale continues below zero";
   EXPECT_EQ(pictures[1].name, "map-cells-void_ratio");
   EXPECT_THAT(pictures[1].svg, testing::AllOf(HasSubstr("fill=\"#440154\""), Not(HasSubstr("fill=\"#144e8c\""))));
 }

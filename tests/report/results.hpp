@@ -1,4 +1,4 @@
-// Folders of results that tests write, and the data of pages, taken apart by other means than the page's.
+// Folders of results written by tests, and data of pages, decoded independently of the page.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace grit {
 
-/// Three grains, two of which press on each other and one on a wall, at two instants; a probe of three channels.
+/// Three grains at two instants, two in contact with each other and one with a wall; a probe with three channels.
 struct SmallRun {
   FakeWorld world;
   std::vector<double> ratio{0, 0.1 + 0.2, std::numeric_limits<double>::quiet_NaN(), -1e-310, 1.0 / 3};
@@ -31,9 +31,9 @@ struct SmallRun {
     world.add({2, 1, 3}, 0.125);
     world.id = {7, 2, 5};  // not in the order of bodies
     world.rotation = {{0, 0.5, 0}, {0, -1, 0}, {0, 0, 0}};
-    world.touch(0, 1, {1, 0, 1}, {4, 0, 4});
-    world.touch(1, 2, {1, 1, 1}, {0.1, 0.1, 0.1});
-    world.touch_wall(0, 0, {0, 0, -0.5}, {0, 0, -20});
+    world.add_contact(0, 1, {1, 0, 1}, {4, 0, 4});
+    world.add_contact(1, 2, {1, 1, 1}, {0.1, 0.1, 0.1});
+    world.add_wall_contact(0, 0, {0, 0, -0.5}, {0, 0, -20});
     const Vec3 zero = Vec3::Zero();
     world.wall.push_back({"floor", zero, zero, zero, zero, zero, zero, 0, 0, zero, 0});
     world.stage_name = "shear";
@@ -43,7 +43,7 @@ struct SmallRun {
     options.walls = walls;
   }
 
-  /// Writes it all.
+  /// Writes all files.
   void write(const RunSummary& summary = {}) {
     const std::vector<ProbeGroup> probes{
         {"packing", {{"largest_overlap", "m", "largest overlap", {}}}},
@@ -77,7 +77,7 @@ inline nlohmann::json json_of(const std::string& page) {
   return nlohmann::json::parse(between(page, "id=\"report\">", "</script>"));
 }
 
-/// Base64 and zlib's format undone.
+/// Decodes base64 and zlib's format.
 inline std::string unpacked(const std::string& text) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string deflated;

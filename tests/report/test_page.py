@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What a browser makes of a report: every curve is that of series.h5, frames turn, files are saved, nothing is fetched.
+"""A report in a browser: curves equal series.h5, frames are shown, files are saved, nothing is fetched.
 
 usage: test_page.py GRIT     exit status 77 where there is no Chromium or no h5py
 """
@@ -15,7 +15,7 @@ import xml.etree.ElementTree
 from browser import BOX_OF_GRAINS, GRAINS, MAP, Browser, find_chromium, h5py_or_skip, skip, write_scene
 
 h5py = h5py_or_skip()
-import numpy  # which comes with it
+import numpy  # comes with h5py
 
 CHROMIUM = find_chromium()
 GRIT = None
@@ -66,7 +66,7 @@ class Page(unittest.TestCase):
 
     def open(self, name):
         self.browser.open(self.folder / name)
-        self.browser.evaluate("document.querySelector('figure.chart').scrollIntoView({block: 'center'})")  # drawn when seen
+        self.browser.evaluate("document.querySelector('figure.chart').scrollIntoView({block: 'center'})")  # drawn when visible
         self.browser.wait(DRAWN)
 
     def press(self, key, text=""):
@@ -74,7 +74,7 @@ class Page(unittest.TestCase):
             self.browser.call("Input.dispatchKeyEvent", type=kind, key=key, text=text if kind == "keyDown" else "")
 
     def saved(self, figure, button):
-        """Name and, as text of one letter a byte, content of what a button saves."""
+        """Name and content of the file that a button saves, as text with one letter per byte."""
         self.browser.evaluate("save.last = null")
         self.browser.evaluate(f"[...document.querySelector('{figure}').querySelectorAll('button')].find((b) => b.textContent === '{button}').click()")
         self.browser.wait("save.last")
@@ -82,10 +82,10 @@ class Page(unittest.TestCase):
             "save.last.blob.arrayBuffer().then((b) => Array.from(new Uint8Array(b)))")
 
     def test_linear_chains_are_lines_of_their_own(self):
-        # A column of five that press on each other, of which three bear more than the mean, and two that hardly touch.
+        # A column of five in contact, of which three carry more than the mean, and two with a weak contact.
         grains = [{"position": ["4 mm", "3 mm", f"{0.5 + 0.99 * k} mm"], "radius": "0.5 mm"} for k in range(5)]
         grains += [{"position": [f"{x} mm", "1 mm", "8 mm"], "radius": "0.5 mm"} for x in (1, 1.999)]
-        run(self.folder, "column", bodies={"grains": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": grains}}},
+        run(self.folder, "column", bodies={"grains": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": grains}}},
             stages=[{"name": "stand", "until": {"type": "steps", "value": 2}, "limit": "1 s"}], output={"frames": {"every_steps": 2}},
             probes={"packing": {"type": "packing", "every_steps": 1}, "forces": {"type": "force-chains", "every_steps": 1}})
         subprocess.run([GRIT, "report", "column"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
@@ -119,7 +119,7 @@ class Page(unittest.TestCase):
         with h5py.File(self.folder / "one/series.h5") as series:
             for probe, group in series.items():
                 for name, channel in group.items():
-                    if name in ("time", "step") or not channel[()].any():  # what is 0 throughout has no chart
+                    if name in ("time", "step") or not channel[()].any():  # a channel that is 0 throughout has no chart
                         continue
                     shown = evaluate(f"""(async () => {{
                         const figure = [...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{probe}' && chart.name === '{name}');
@@ -137,7 +137,7 @@ class Page(unittest.TestCase):
                     compared += 1
         self.assertGreater(compared, 10)
 
-    def test_what_is_zero_throughout_is_a_line(self):
+    def test_zero_channels_share_a_line(self):
         self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
         self.browser.wait("document.querySelectorAll('details.probe .charts').length === 2")
         lines = self.browser.evaluate("Object.fromEntries([...document.querySelectorAll('details.probe')].filter((part) => part.querySelector('.zero')).map((part) => [part.charts.name, part.querySelector('.zero').textContent]))")
@@ -169,7 +169,7 @@ class Page(unittest.TestCase):
         self.browser.wait("document.querySelector('details.probe')")
         self.assertEqual(self.browser.evaluate(unfolded), ["packing", "walls"])
 
-    def test_profiles_tell_their_axis_and_where_the_test_was(self):
+    def test_profiles_name_their_axis_and_the_progress_of_the_test(self):
         run(self.folder, "moving", probes={"packing": SCENE["probes"]["packing"], "moved": LISTS["moved"]},
             output={"picture": {"x": "packing/void_ratio_overall", "y": ["moved/zone_thickness"]}})
         subprocess.run([GRIT, "report", "moving"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
@@ -198,7 +198,7 @@ class Page(unittest.TestCase):
         with h5py.File(self.folder / "one/series.h5") as series:
             self.assertEqual([float(v) for v in x], list(series["packing/void_ratio"][()]))
 
-    def test_values_are_told_under_the_pointer_and_by_keys(self):
+    def test_values_are_shown_at_the_pointer_and_by_keys(self):
         area = self.browser.evaluate("(({left, right, top, bottom}) => ({left, right, top, bottom}))(document.querySelector('figure.chart').chart.area())")
         self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=(area["left"] + area["right"]) / 2, y=(area["top"] + area["bottom"]) / 2)
         self.browser.wait("document.querySelector('figure.chart .values').textContent")
@@ -212,7 +212,7 @@ class Page(unittest.TestCase):
         self.press("ArrowRight")
         self.assertEqual(self.browser.evaluate("document.querySelector('figure.chart').chart.places[0]"), place + 1)
 
-    def test_frames_turn_by_slider_keys_and_play(self):
+    def test_frames_change_by_slider_keys_and_play(self):
         last = len(list((self.folder / "one/frames").iterdir())) - 1
         frame = "document.querySelector('.stage').dataset.frame"
         self.assertEqual(self.browser.evaluate(frame), str(last))
@@ -276,8 +276,8 @@ class Page(unittest.TestCase):
     def size_of_png(self):
         return self.browser.evaluate("createImageBitmap(save.last.blob).then(({width, height}) => [width, height])")
 
-    def test_files_are_the_same_whatever_the_page_is_read_in(self):
-        """As wide as print needs, on white, in any window and by day and night."""
+    def test_files_do_not_depend_on_the_mode_of_the_page(self):
+        """Of a width for print, on white, in any window, in light and dark mode."""
         def files():
             self.open("one/report.html")
             self.go(5)
@@ -313,10 +313,10 @@ class Page(unittest.TestCase):
                 seen.add(bytes(self.saved("figure.grains", "PNG")[1]))
         self.assertEqual(len(seen), 9)
 
-    def test_runs_lie_over_each_other(self):
+    def test_runs_share_charts(self):
         self.open("both.html")
         self.assertEqual(self.browser.evaluate("document.querySelector('figure.chart').chart.series.map((one) => one.label)"), ["one", "two"])
-        self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('header td:not(.name) small')).display"), "block", "a note is no part of its number")
+        self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('header td:not(.name) small')).display"), "block", "a note is separate from its number")
         self.assertTrue(self.browser.evaluate("[...document.querySelector('[name=run]').options].map((one) => one.text).join() === 'one,two'"))
         first = self.saved("figure.grains", "PNG")[1]
         self.browser.evaluate("(() => { const choice = document.querySelector('[name=run]'); choice.value = 1; choice.dispatchEvent(new Event('change')); })()")
@@ -325,7 +325,7 @@ class Page(unittest.TestCase):
         self.assertTrue(name.startswith("two-"))
         self.assertNotEqual(first, second)
 
-    def test_runs_of_different_tests_lie_over_each_other_where_they_can(self):
+    def test_runs_of_different_tests_share_charts_where_possible(self):
         formulas = lambda **curves: {"test": {"type": "formula", "every_time": "2 ms", "curves": {name: {"formula": formula} for name, formula in curves.items()}}}
         picture = lambda x: {"output": {"picture": {"x": f"test/{x}", "y": ["test/shared"]}}}
         run(self.folder, "push", probes=formulas(way="2 * time", ratio="time / 3", shared="time", never="(time - time) / 0"), **picture("way"))
@@ -343,9 +343,9 @@ class Page(unittest.TestCase):
         last = dict(shown)["shared"]
         self.assertEqual([name for name, _ in last], ["push", "pour"])
         self.assertTrue(last[0][1] > 0 > last[1][1])
-        self.assertNotIn("never", dict(shown), "no run can fill it")
+        self.assertNotIn("never", dict(shown), "no run has finite values")
 
-    def test_what_is_not_finite_is_a_gap(self):
+    def test_infinite_values_are_gaps(self):
         run(self.folder, "broken", probes={"test": {"type": "formula", "every_time": "1 ms", "curves": {
             "late": {"formula": "time < 0.02 ? 1 / 0 : time < 0.03 ? time : time < 0.04 ? (time - time) / 0 : -time"}}}}, output={})
         self.browser.open(self.folder / "broken/report.html")
@@ -374,7 +374,7 @@ class Page(unittest.TestCase):
             return chart.outline({shownX: [10, 30, 50], shownY: Float64Array.of(1, Infinity, NaN), s: '0'}).map(({x}) => x === null); })()""")
         self.assertEqual(points, [False] * 5 + [True] * 10 + [False])
 
-    def test_spectra_go_by_powers_of_ten(self):
+    def test_spectra_have_logarithmic_axes(self):
         self.browser.open(self.folder / "lists/report.html")
         self.browser.evaluate("document.querySelectorAll('details.probe').forEach((part) => (part.open = true))")
         chart = "[...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'pressure_density').chart"
@@ -385,7 +385,7 @@ class Page(unittest.TestCase):
             frequency, density = series["listening/frequency"][-1], series["listening/pressure_density"][-1]
         self.assertEqual(frequency[0], 0)
         low, high = self.browser.evaluate(f"{chart}.xDomain")
-        self.assertEqual((low, high), (frequency[1], frequency[-1]), "zero has no place there")
+        self.assertEqual((low, high), (frequency[1], frequency[-1]), "zero is not drawn")
         low, high = self.browser.evaluate(f"{chart}.yDomain.map(Math.log10)")
         numpy.testing.assert_allclose([low % 1, high % 1], 0, atol=1e-9)
         self.assertGreaterEqual(10**high, density[1:].max() * (1 - 1e-9))
@@ -421,18 +421,18 @@ class Page(unittest.TestCase):
                 for other in boxes[:i]:
                     self.assertTrue(right <= other[0] or other[1] <= left or end <= other[2] + 1 or other[3] <= top + 1, f"entry {i} at {width}")
 
-    def test_one_grain_far_away_leaves_the_others_in_sight(self):
-        bodies = {**SCENE["bodies"], "lost": {"type": "sphere", "material": "sand", "grains": {"type": "list", "grains": [{"position": ["4 mm", "3 mm", "500 mm"], "radius": "0.5 mm"}]}}}
+    def test_the_others_are_shown_if_one_grain_is_far_away(self):
+        bodies = {**SCENE["bodies"], "lost": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [{"position": ["4 mm", "3 mm", "500 mm"], "radius": "0.5 mm"}]}}}
         run(self.folder, "lost", bodies=bodies)
         self.browser.open(self.folder / "lost/report.html")
         self.browser.wait(f"{GRAINS}?.painted")
         self.assertEqual(self.browser.evaluate(f"{GRAINS}.now.count"), 41)
         extent = self.browser.evaluate(f"{GRAINS}.extent()")
         self.assertLess(extent["high"][2], 0.0125)
-        self.assertIn("far from all others, and out of sight at first: 1", self.browser.evaluate(f"{GRAINS}.about.textContent"))
+        self.assertIn("far from all others and initially out of view: 1", self.browser.evaluate(f"{GRAINS}.about.textContent"))
         self.browser.evaluate(f"{GRAINS}.change({{colour: 'layers'}})")
         self.browser.wait(f"{GRAINS}.layers && {GRAINS}.now === {GRAINS}.painted")
-        self.assertGreater(len(set(self.browser.evaluate(f"[...{GRAINS}.layers.values()]"))), 7, "layers are of the others")
+        self.assertGreater(len(set(self.browser.evaluate(f"[...{GRAINS}.layers.values()]"))), 7, "layers are those of the others")
 
     def test_layers_are_those_of_the_start_of_a_stage(self):
         self.go(5)
@@ -452,7 +452,7 @@ class Page(unittest.TestCase):
         numpy.testing.assert_allclose(shown[1], [(by_id[one] - 1) / 9 for one in shown[0]], atol=1e-6)
 
     def test_a_graphics_processor_and_none_draw_the_same(self):
-        for view, zoom, most in (("xz", 1, 0.6), ("yz", 1, 0.6), ("xy", 1, 0.6), ("xz", 12, 0.15)):  # so near that points would be too large
+        for view, zoom, most in (("xz", 1, 0.6), ("yz", 1, 0.6), ("xy", 1, 0.6), ("xz", 12, 0.15)):  # so close that points would be too large
             colours, off, apart = self.browser.evaluate(f"""(async () => {{ const view = {GRAINS}, {{painter}} = view;
                 const {{low, high}} = view.extent(), {{now}} = view, middle = (axis) => (low[axis] + high[axis]) / 2;
                 const pan = {zoom} === 1 ? [0, 0] : [view.frames.metres(0, now.x[7]) - middle(0), view.frames.metres(2, now.z[7]) - middle(2)];
@@ -470,7 +470,7 @@ class Page(unittest.TestCase):
                 const a = pixels(GlPainter), b = pixels(PixelPainter), differences = a.map((value, i) => Math.abs(value - b[i]));
                 return [new Set(new Uint32Array(a.buffer)).size, differences.reduce((sum, one) => sum + one, 0) / a.length, differences.filter((one) => one > 100).length / a.length]; }})()""")
             self.assertGreater(colours, 20)
-            self.assertLess(off, most, "of 255, on the average")
+            self.assertLess(off, most, "mean difference, of 255")
             self.assertLess(apart, 2e-3)
 
     def test_grains_have_dark_rims(self):
@@ -490,7 +490,7 @@ class Page(unittest.TestCase):
                 prototype.getParameter = () => '{renderer}';
                 try {{ return painterFor(make('canvas')).constructor.name; }} finally {{ prototype.getParameter = getParameter; }} }})()"""), painter)
 
-    def test_what_takes_long_is_drawn_fine_when_it_rests(self):
+    def test_slow_drawings_are_refined_at_rest(self):
         coarse = self.browser.evaluate(f"""(() => {{ const view = {GRAINS}, {{painter}} = view, draw = painter.draw.bind(painter), answers = [];
             painter.draw = (what) => (answers.push(draw(what)), answers.at(-1));
             painter.took = 1e9;
@@ -499,7 +499,7 @@ class Page(unittest.TestCase):
         self.assertEqual(coarse, [False, True])
         self.browser.wait(f"{GRAINS}.painter.took < 1e9")
 
-    def test_grains_are_taken_from_the_nearest_on(self):
+    def test_grains_are_sorted_by_depth(self):
         ways = self.browser.evaluate("""(() => { const list = Uint16Array.of(500, 65535, 0, 500, 7, 40000);
             return [ordered(list, 0, 65535, true), ordered(list, 0, 65535, false), ordered(list, 7.5, Infinity, true), ordered(list, -Infinity, 6, false)].map((places) => [...places]); })()""")
         self.assertEqual(ways, [[2, 4, 0, 3, 5, 1], [1, 5, 3, 0, 4, 2], [0, 3, 5, 1], [2]])
@@ -517,7 +517,7 @@ class Page(unittest.TestCase):
         heights = self.browser.evaluate(f"""Promise.all([0, 4].map(async (frame) => (await {GRAINS}.frames.walls(frame)).find(({{name}}) => name === 'gate').corners[2]))""")
         numpy.testing.assert_allclose(heights, [0.011, -0.02], rtol=1e-6)
 
-    def test_what_the_picture_names_is_seen_first(self):
+    def test_channels_of_the_picture_are_first(self):
         shown = "[...document.querySelectorAll('details.probe')[0].querySelectorAll('figure.chart')].filter((figure) => !figure.hidden).map(({chart}) => chart.name)"
         self.assertEqual(self.browser.evaluate(shown), ["coordination_number"])
         count = self.browser.evaluate("document.querySelectorAll('details.probe')[0].querySelectorAll('figure.chart').length")
@@ -528,15 +528,15 @@ class Page(unittest.TestCase):
         self.browser.evaluate("document.querySelector('.more').click()")
         self.assertEqual(len(self.browser.evaluate(shown)), 1)
 
-    def test_what_is_farther_down_is_drawn_as_well(self):
-        # So that it is there when the page is printed.
+    def test_charts_out_of_view_are_drawn(self):
+        # For printing.
         self.browser.open(self.folder / "lists/report.html")
         charts = "[...document.querySelectorAll('figure.chart')]"
         self.browser.wait(f"{charts}.every(({{dataset}}) => dataset.drawn)")
-        self.assertTrue(self.browser.evaluate(f"{charts}.at(-1).getBoundingClientRect().top > innerHeight + 400"), "else it would have been seen")
+        self.assertTrue(self.browser.evaluate(f"{charts}.at(-1).getBoundingClientRect().top > innerHeight + 400"), "it is out of view")
 
     def test_playing_is_not_doubled(self):
-        # Stopped and started again between two frames: who played before does so no longer.
+        # Stopped and started again between two frames: the first player stops.
         ended_at, last = self.browser.evaluate(f"""(async () => {{ const {{player}} = {GRAINS};
             await player.go(0);
             const first = player.start();
@@ -549,11 +549,11 @@ class Page(unittest.TestCase):
         self.assertEqual(last, len(list((self.folder / "one/frames").iterdir())) - 1)
         self.assertLess(ended_at, last)
 
-    def test_times_are_written_as_people_do(self):
+    def test_times_have_readable_units(self):
         for seconds, largest, written in ((0, 0, "0 s"), (0.06, 0.06, "60 ms"), (-0.5, -0.5, "−500 ms"), (2.5e-5, 2.5e-5, "25 µs"), (0.06, 3, "0.06 s"), (1234.5, 1234.5, "1235 s")):
             self.assertEqual(self.browser.evaluate(f"writtenTime({seconds}, {largest})"), written)
 
-    def test_the_grain_under_a_finger_is_told(self):
+    def test_the_grain_under_a_finger_is_shown(self):
         self.go(5)
         for colour, told in (("layers", r"layer \d+$"), ("rotation", r"rotation −?[\d.]+°$"), ("speed", "speed .* [mµn]?m/s$")):
             self.browser.evaluate(f"{GRAINS}.change({{colour: '{colour}', cut: 0}})")
@@ -568,13 +568,13 @@ class Page(unittest.TestCase):
             self.assertRegex(said, told)
 
     def test_axes_go_from_tick_to_tick(self):
-        # With zero where it is near, no tick more for noise about one, and something where nothing changes.
+        # With zero if it is near, no extra tick for noise about one, and a minimum range for a constant.
         for span, wanted in (([0, 1.03], [0, 1]), ([0.4, 1], [0, 1]), ([-0.03, 1], [0, 1]), ([-0.2, 1], [-0.2, 1]), ([99, 101], [99, 101]), ([7, 7], [3.5, 10.5]), ([0, 0], [-1, 1])):
             numpy.testing.assert_allclose(self.browser.evaluate(f"settled({span}).ends"), wanted, atol=1e-12)
 
     def test_units_stand_behind_numbers_and_labels(self):
         for unit, behind, beside in (("kg/m³", "7 kg/m³", "it [kg/m³]"), ("°", "7°", "it [°]"), ("1", "7", "it"), ("", "7", "it")):
-            self.assertEqual(self.browser.evaluate(f"told(7, {{shown_unit: '{unit}'}})"), behind)
+            self.assertEqual(self.browser.evaluate(f"valueWithUnit(7, {{shown_unit: '{unit}'}})"), behind)
             self.assertEqual(self.browser.evaluate(f"withUnit('it', '{unit}')"), beside)
 
     def go(self, frame):
@@ -601,7 +601,7 @@ class Page(unittest.TestCase):
                     self.assertEqual(shown["components"], "xx xy xz yx yy yz zx zy zz".split() if name == "stress" else [])
         self.assertGreater(compared, 100)
 
-    def test_maps_turn_with_the_grains_and_keep_their_colours(self):
+    def test_maps_follow_the_frames_and_keep_their_colours(self):
         self.browser.evaluate(f"{MAP}.takeField('packing/stress')")
         scales, pictures = set(), set()
         for number in (1, 3, 5):
@@ -613,7 +613,7 @@ class Page(unittest.TestCase):
         self.assertEqual(len(scales), 1)
         self.assertEqual(len(pictures), 3)
 
-    def test_maps_tell_values_and_are_saved(self):
+    def test_maps_show_values_and_are_saved(self):
         self.browser.evaluate(f"{MAP}.takeField('packing/coordination_number')")
         self.go(5)
         place = self.browser.evaluate(f"""(() => {{ const map = {MAP}, {{cells}} = map.now, {{left, top}} = map.stage.getBoundingClientRect();
@@ -629,7 +629,7 @@ class Page(unittest.TestCase):
         self.assertIn(f"coordination number {float(format(wanted[place['i']], '.4g')):g}", told)
         name, svg = self.saved("figure.map", "SVG")
         self.assertEqual(name, f"one-packing-{field}-005.svg")
-        self.assertEqual(len(xml.etree.ElementTree.fromstring(bytes(svg).decode()).findall(f".//{SVG}image")), 2, "cells that meet, and what their colours mean")
+        self.assertEqual(len(xml.etree.ElementTree.fromstring(bytes(svg).decode()).findall(f".//{SVG}image")), 2, "cells, and the colour bar")
         lines = bytes(self.saved("figure.map", "CSV")[1]).decode().splitlines()
         self.assertEqual(len(lines), len(cells) + 1)
         self.assertTrue(lines[0].startswith("x [m],y [m],z [m],size x [m],size y [m],size z [m]," + field))
@@ -643,14 +643,14 @@ class Page(unittest.TestCase):
         words = [text.text for text in root.findall(f".//{SVG}text")]
         for wanted in ("x [mm]", "z [mm]", "void ratio", "0", "2", "8"):
             self.assertIn(wanted, words)
-        # The box's sides at 0 and 8 mm and its floor, where the axes say that they are.
+        # The sides of the box at 0 and 8 mm and its floor, at the coordinates of the axes.
         layout = f"{MAP}.arranged(fileSize, views.xz)"
         across = self.browser.evaluate(f"(() => {{ const layout = {layout}; return [layout.across(0), layout.across(8e-3), layout.down(0)]; }})()")
         walls = [[float(line.get(name)) for name in ("x1", "y1", "x2", "y2")] for line in root.findall(f".//{SVG}g/{SVG}line")]
         for x in across[:2]:
             self.assertTrue(any(abs(x1 - x) < 0.01 and abs(x2 - x) < 0.01 and abs(y1 - y2) > 20 for x1, y1, x2, y2 in walls), "a side")
         self.assertTrue(any(abs(y1 - across[2]) < 0.01 and abs(y2 - across[2]) < 0.01 for _, y1, _, y2 in walls), "the floor")
-        # Along a line of pixels through the cells there is nothing but their colours.
+        # A line of pixels through the cells contains only their colours.
         seen, expected = self.browser.evaluate(f"""(async () => {{ const map = {MAP}, layout = {layout}, {{cells}} = map.now, {{frame}} = layout;
             const {{owner, width, height}} = map.paint(new CanvasPen(make('canvas').getContext('2d')), filesLook(), layout, filePixels);
             const values = cells.list(map.place(map.field, 0)), row = Math.floor((layout.down(cells.centre[2][map.shown[0]]) - frame.top) * filePixels);
@@ -660,30 +660,30 @@ class Page(unittest.TestCase):
         self.assertEqual(len(set(seen)), expected, "all cells of a row")
 
     def test_cells_that_have_moved_apart_meet(self):
-        """Of two by two cells, ten pixels wide, in rows that gape and overlap; and one that is by itself."""
+        """Two by two cells, ten pixels wide, in rows with gaps and overlaps; and an isolated one."""
         owner = self.browser.evaluate("""(() => { const {x, y} = {x: [10, 22, 11, 20, 60], y: [10, 10, 21, 21, 10]}, half = x.map(() => 5);
             return [...cellsByPixel({x, y, w: half, h: half}, 70, 30)]; })()""")
         image = numpy.array(owner).reshape(30, 70)
         self.assertEqual(list(image[10, 4:28]), [-1] + [0] * 11 + [1] * 11 + [-1])
-        self.assertNotIn(-1, image[6:25, 7:24], "whatever cells have moved apart, and where four of them have")
-        self.assertEqual(list(image[21, 6:25]), [2] * 10 + [3] * 9, "half of an overlap for each")
-        self.assertEqual(set(image[10, 27:55]), {-1}, "what is far from others stays so")
+        self.assertNotIn(-1, image[6:25, 7:24], "gaps between two and four cells are closed")
+        self.assertEqual(list(image[21, 6:25]), [2] * 10 + [3] * 9, "each gets half of an overlap")
+        self.assertEqual(set(image[10, 27:55]), {-1}, "the isolated cell stays isolated")
         self.assertEqual(list(image[10, 55:66]), [4] * 10 + [-1])
 
     def test_no_hole_is_left_where_gaps_cross(self):
-        """Of four by three cells, ten pixels wide, whose columns have slid past each other by half a cell and have moved apart, as rows have."""
+        """Four by three cells, ten pixels wide, with columns shifted by half a cell, and gaps between columns and rows."""
         centres = [(10 + 16 * i, 10 + 16 * j + 5 * (i % 2)) for i in range(4) for j in range(3)]
         owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
             return [...cellsByPixel({{x: centres.map((one) => one[0]), y: centres.map((one) => one[1]), w: half, h: half}}, 68, 58)]; }})()""")
         image = numpy.array(owner).reshape(58, 68)
         self.assertNotIn(-1, image[10:47, 5:63])
-        for i in range(4):  # no more than they reach, but for the gaps
+        for i in range(4):  # no larger than the cells, except for gaps
             first = 5 + 5 * (i % 2)
             column = image[:, 10 + 16 * i]
             self.assertEqual([k for k in range(58) if column[k] >= 0], list(range(first, first + 42)))
         self.assertEqual(set(image[:, :5].flat) | set(image[:, 63:].flat) | set(image[52:].flat), {-1})
 
-    def test_a_cell_that_is_missing_leaves_its_place(self):
+    def test_a_missing_cell_leaves_a_hole(self):
         centres = [(10 + 10 * i, 10 + 10 * j) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
         owner = self.browser.evaluate(f"""(() => {{ const centres = {json.dumps(centres)}, half = centres.map(() => 5);
             return [...cellsByPixel({{x: centres.map((one) => one[0]), y: centres.map((one) => one[1]), w: half, h: half}}, 40, 40)]; }})()""")
@@ -692,7 +692,7 @@ class Page(unittest.TestCase):
         self.assertEqual(int((image < 0).sum()), 40 * 40 - 8 * 100)
 
     def test_axes_have_four_to_eight_ticks(self):
-        """1, 2 or 5 times a power of ten apart."""
+        """With a spacing of 1, 2 or 5 times a power of ten."""
         counts = self.browser.evaluate("""(() => { const counts = [];
             for (let i = 0; i < 500; ++i) {
                 const high = 10 ** (-6 + 12 * i / 500), step = tickStep(-0.04 * high, high), lead = step / 10 ** Math.floor(Math.log10(step * 1.0001));
@@ -707,7 +707,7 @@ class Page(unittest.TestCase):
             self.assertGreaterEqual(shown[1], high - 0.03 * (high - low) - 1e-12)
             for end in shown:
                 self.assertAlmostEqual(end / step, round(end / step), 6)
-                self.assertEqual(end, float(f"{end:.10g}"), "as a tick there is, to the last bit")
+                self.assertEqual(end, float(f"{end:.10g}"), "a tick, to the last bit")
             self.assertIn(round((shown[1] - shown[0]) / step) + 1, range(4, 9))
         for low, high, tall in ((-0.72, 0.72, 240), (-59, 59, 194), (0, 441, 240), (0.53, 0.86, 126)):
             words = self.browser.evaluate(f"""(() => {{ const words = [], pen = {{image() {{}}, line() {{}}, text: (x, y, said) => words.push(said)}};
@@ -726,7 +726,7 @@ class Page(unittest.TestCase):
             finally:
                 self.browser.resize(1400, 1000)
 
-    def test_a_colour_scale_is_of_the_field_and_not_of_its_values(self):
+    def test_a_colour_scale_depends_on_the_field_and_not_on_its_values(self):
         for number in (1, 5):
             self.go(number)
             for field, component, table in (("void_ratio", 0, "sequential"), ("stress", 0, "sequential"), ("stress", 2, "diverging"), ("stress", 8, "sequential")):
@@ -740,13 +740,13 @@ class Page(unittest.TestCase):
                 if table == "diverging":
                     self.assertEqual(low, -high)
 
-    def test_the_most_telling_map_is_the_first(self):
+    def test_the_most_informative_map_is_the_first(self):
         self.assertEqual(self.browser.evaluate("[...document.querySelector('[name=field]').options].map(({value}) => value)"),
                          ["packing/void_ratio", "packing/stress", "packing/coordination_number"])
         self.assertEqual(self.browser.evaluate(f"{MAP}.state.field"), "packing/void_ratio")
 
     def list_chart(self, probe, name):
-        """Of a chart of lists its kind and its series as [label, x, y]."""
+        """Kind and series, as [label, x, y], of a chart of lists."""
         return self.browser.evaluate(f"""(async () => {{
             const {{chart}} = [...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{probe}' && chart.name === '{name}');
             await chart.draw();
@@ -758,7 +758,7 @@ class Page(unittest.TestCase):
         self.browser.wait("[...document.querySelectorAll('.times .clock')].filter((clock) => clock.textContent).length === 3")
         numbers = lambda row: [float(value) for value in row]
         with h5py.File(self.folder / "lists/series.h5") as series:
-            for probe, name, at, kind in (("moved", "profile", "place", "ListChart"), ("moved", "fluctuation", "place", "ListChart"),
+            for probe, name, at, kind in (("moved", "profile", "position", "ListChart"), ("moved", "fluctuation", "position", "ListChart"),
                                           ("forces", "force_by_direction", "direction", "PolarChart"), ("forces", "contacts_by_direction", "direction", "PolarChart")):
                 found, shown = self.list_chart(probe, name)
                 self.assertEqual(found, kind)
@@ -769,11 +769,11 @@ class Page(unittest.TestCase):
                     numpy.testing.assert_array_equal(numbers(x), series[f"{probe}/{at}"][i])
                     numpy.testing.assert_array_equal(numbers(y), series[f"{probe}/{name}"][i])
             self.assertFalse(self.browser.evaluate("[...document.querySelectorAll('figure.chart')].some(({chart}) => ['place', 'direction'].includes(chart.name))"))
-            # Another time alone, then that one kept beside a third.
+            # Another time only, then that one together with a third.
             act = "(() => {{ const box = [...document.querySelectorAll('details.probe')].find((part) => part.querySelector('summary').textContent.startsWith('{}')), slider = box.querySelector('[name=sample]'); {} }})()"
             press = "[...box.querySelectorAll('.times button')].find((button) => button.textContent === '{}').click();"
             turn = "slider.value = {}; slider.dispatchEvent(new Event('input'));"
-            self.browser.evaluate(act.format("forces", press.format("alone") + turn.format(500) + press.format("keep") + turn.format(250)))
+            self.browser.evaluate(act.format("forces", press.format("only this") + turn.format(500) + press.format("keep") + turn.format(250)))
             _, shown = self.list_chart("forces", "force_by_direction")
             time = series["forces/time"][()]
             samples = [max(i for i, t in enumerate(time) if t <= part * (time[-1] - time[0]) + time[0]) for part in (0.5, 0.25)]
@@ -781,12 +781,12 @@ class Page(unittest.TestCase):
         chart = "[...document.querySelectorAll('figure.chart')].find(({chart}) => chart.name === 'force_by_direction')"
         root = xml.etree.ElementTree.fromstring(self.browser.evaluate(f"{chart}.chart.view.toSVG()"))
         self.assertGreater(len(root.findall(".//{http://www.w3.org/2000/svg}path")), 5)
-        # Pointing upwards tells the numbers of about 90°.
+        # Pointing upwards shows the values near 90°.
         area = self.browser.evaluate(f"(() => {{ {chart}.scrollIntoView({{block: 'center'}}); const {{left, right, top, bottom}} = {chart}.chart.area(); return {{left, right, top, bottom}}; }})()")
         self.browser.call("Input.dispatchMouseEvent", type="mouseMoved", x=(area["left"] + area["right"]) / 2 + 1, y=0.7 * area["top"] + 0.3 * area["bottom"])
         self.browser.wait(f"{chart}.querySelector('.values').textContent.includes('direction 85°')")
 
-    def test_keys_go_through_the_same_abscissa_in_all_runs(self):
+    def test_keys_select_the_same_abscissa_in_all_runs(self):
         self.open("both.html")
         self.browser.evaluate("document.querySelector('figure.chart').focus()")
         for _ in range(7):
@@ -801,7 +801,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.evaluate(name % 2), "one-two-packing-coordination_number")
         self.assertEqual(self.browser.evaluate(name % 40), "one-and-39-more-packing-coordination_number")
 
-    def test_long_series_are_drawn_by_what_is_seen_of_them(self):
+    def test_long_series_are_drawn_by_their_extremes(self):
         count, lowest, highest, gap = self.browser.evaluate("""(() => { const y = Float64Array.from({length: 100001}, (_, i) => Math.sin(i));
             y[5000] = -7, y[70000] = 9, y[30000] = NaN;
             const places = [...pointsToDraw(y, 800)];
@@ -810,7 +810,7 @@ class Page(unittest.TestCase):
         self.assertTrue(lowest and highest and gap)
         self.assertTrue(self.browser.evaluate("[...pointsToDraw(Float64Array.of(1, 2, 3), 800)].join() === '0,1,2'"))
 
-    def test_figures_say_in_words_what_they_show(self):
+    def test_figures_have_a_description_as_text(self):
         with h5py.File(self.folder / "one/series.h5") as series:
             last = series["packing/time"][-1]
         said = self.browser.evaluate("document.querySelector('figure.chart .plot[role=img]').getAttribute('aria-label')")
@@ -819,7 +819,7 @@ class Page(unittest.TestCase):
         self.go(5)
         self.assertRegex(self.browser.evaluate("document.querySelector('.map .stage[role=img]').getAttribute('aria-label')"), r"^\w[\w ]* of \d+ cells of packing at ")
 
-    def test_a_phone_and_the_dark_have_it_too(self):
+    def test_phones_and_dark_mode(self):
         self.browser.resize(400, 800)
         self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
         try:
@@ -831,7 +831,7 @@ class Page(unittest.TestCase):
             self.browser.resize(1400, 1000)
             self.browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "light"}])
 
-    def test_what_is_read_in_the_dark_is_printed_on_white(self):
+    def test_dark_mode_is_printed_on_white(self):
         emulate = lambda media: self.browser.call("Emulation.setEmulatedMedia", media=media, features=[{"name": "prefers-color-scheme", "value": "dark"}])
         shown = """new Promise((done) => setTimeout(done, 300)).then(() => {
             const ink = (canvas) => { const {width, height} = canvas, copy = new OffscreenCanvas(width, height).getContext('2d', {willReadFrequently: true});
@@ -856,8 +856,8 @@ class Page(unittest.TestCase):
         finally:
             self.browser.call("Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": "light"}])
 
-    def test_a_stage_that_shrinks_squeezes_no_grain(self):
-        """As when a page is printed: nothing is drawn between."""
+    def test_shrinking_does_not_distort_grains(self):
+        """As in printing: without a redraw."""
         wide, shrunk = self.browser.evaluate(f"""(() => {{ const {{canvas, stage}} = {GRAINS}, size = () => {{
                 const {{width, height}} = canvas.getBoundingClientRect(), scale = Math.min(width / canvas.width, height / canvas.height);
                 return getComputedStyle(canvas).objectFit === 'contain' ? [scale, scale] : [width / canvas.width, height / canvas.height]; }};
@@ -880,7 +880,7 @@ class Page(unittest.TestCase):
             covered = self.browser.evaluate(f"""(() => {{ const {{canvas}} = {GRAINS};
                 const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, 0.7 * canvas.width, 0.8 * canvas.height).data.buffer);
                 return pixels.filter((pixel) => pixel !== 0).length / pixels.length; }})()""")
-            self.assertGreater(covered, 0.1, "where the scale of colours is not, and the bar of length")
+            self.assertGreater(covered, 0.1, "apart from the colour scale and the scale bar")
         finally:
             self.browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The page that a run serves while it goes: who gets it, what a browser makes of it, and that the run does not notice.
+"""The page that a run serves: access, its behaviour in a browser, and no influence on the run.
 
-usage: test_watch.py GRIT     exit status 77 where there is no h5py; without Chromium the tests of a browser are left out
+usage: test_watch.py GRIT     exit status 77 where there is no h5py; without Chromium the browser tests are skipped
 """
 
 import filecmp
@@ -22,7 +22,7 @@ h5py = h5py_or_skip()
 CHROMIUM = find_chromium()
 GRIT = None
 
-# It ends when it is told to: a second of it takes hours.
+# It ends when interrupted: one simulated second takes hours.
 SCENE = {
     **BOX_OF_GRAINS,
     "title": "grains that are watched",
@@ -34,7 +34,7 @@ SHORT = [{"name": "fall", "until": {"type": "time", "value": "0.3 s"}, "limit": 
 
 
 class WatchedRun:
-    """A run with --watch; ended by Ctrl-C with the block, if it has not ended before."""
+    """A run with --watch; interrupted at the end of the block, if it has not ended before."""
 
     def __init__(self, folder, name, *words, **changes):
         write_scene(folder, name, {**SCENE, **changes})
@@ -57,7 +57,7 @@ class WatchedRun:
         return self.process.wait()
 
     def ask(self, path="/", method="GET", host=None):
-        """Status, header and body of an answer."""
+        """Status, headers and body of a response."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         connection.putrequest(method, path, skip_host=True)
         connection.putheader("Host", f"127.0.0.1:{self.port}" if host is None else host)
@@ -72,7 +72,7 @@ class WatchedRun:
 
 
 def samples(report):
-    """Of the first channel of the first probe of a page's JSON."""
+    """Values of the first channel of the first probe in a page's JSON."""
     return report["runs"][0]["probes"][0]["channels"][0]["samples"] if report["runs"] else 0
 
 
@@ -86,7 +86,7 @@ class Served(unittest.TestCase):
     def tearDownClass(cls):
         cls.place.cleanup()
 
-    def test_only_this_machine_gets_it(self):
+    def test_only_this_machine_has_access(self):
         with WatchedRun(self.folder, "asked") as run:
             for host in ("localhost", f"localhost:{run.port}", "127.0.0.1", "[::1]:9000"):
                 status, headers, body = run.ask(host=host)
@@ -119,19 +119,19 @@ class Served(unittest.TestCase):
                     self.assertEqual(other.recv(100), b"")
                 except ConnectionResetError:
                     pass
-            self.assertEqual(run.ask()[0], 200, "it is still there")
+            self.assertEqual(run.ask()[0], 200, "it is still running")
 
-    def test_a_port_in_use_is_said_before_anything_runs(self):
+    def test_a_port_in_use_is_reported_before_the_run(self):
         with socket.create_server(("127.0.0.1", 0)) as other:
             port = other.getsockname()[1]
             write_scene(self.folder, "refused", SCENE)
             ended = subprocess.run([GRIT, "run", "refused.json", "--out", "refused", "--watch", "--port", str(port)], cwd=self.folder,
                                    capture_output=True, text=True)
         self.assertEqual(ended.returncode, 1)
-        self.assertEqual(ended.stderr, f"grit: --port {port}: 127.0.0.1 has this port in use; give another, or none for one that is free\n")
+        self.assertEqual(ended.stderr, f"grit: --port {port}: this port of 127.0.0.1 is in use; give another, or omit --port to get a free one\n")
         self.assertFalse((self.folder / "refused").exists())
 
-    def test_ports_that_are_none_are_said(self):
+    def test_invalid_ports_are_reported(self):
         write_scene(self.folder, "none", SCENE)
         for words, said in ((["--watch", "--port", "65536"], 'grit: --port takes a number from 1 to 65535, not "65536"\n'),
                             (["--watch", "--port", "http"], 'grit: --port takes a number from 1 to 65535, not "http"\n'),
@@ -139,7 +139,7 @@ class Served(unittest.TestCase):
             ended = subprocess.run([GRIT, "run", "none.json", *words], cwd=self.folder, capture_output=True, text=True)
             self.assertEqual((ended.returncode, ended.stderr), (1, said))
 
-    def test_what_is_new_is_given_once(self):
+    def test_new_data_are_sent_once(self):
         with WatchedRun(self.folder, "news") as run:
             news = run.news(0)
             while samples(news.get("report", {"runs": []})) < 1:
@@ -149,9 +149,9 @@ class Served(unittest.TestCase):
                 later = run.news(news["since"])
             self.assertGreater(samples(later["report"]), samples(news["report"]))
             self.assertGreaterEqual(min(map(int, later["elements"]), default=news["since"]), news["since"])
-            self.assertLess(set(map(int, later["elements"])), set(later["used"]), "curves that are as they were are not sent again")
+            self.assertLess(set(map(int, later["elements"])), set(later["used"]), "unchanged curves are not sent again")
             self.assertIn("fall", later["progress"])
-            # A reader who waits at the end gets the last state.
+            # A reader waiting at the end gets the last state.
             run.process.send_signal(signal.SIGINT)
             while not later["ended"]:
                 later = run.news(later.get("since", news["since"]))
@@ -162,7 +162,7 @@ class Served(unittest.TestCase):
             with self.assertRaises(ConnectionRefusedError):
                 run.ask()
 
-    def test_the_run_does_not_notice(self):
+    def test_the_run_is_not_affected(self):
         write_scene(self.folder, "alone", {**SCENE, "stages": SHORT})
         subprocess.run([GRIT, "run", "alone.json", "--out", "alone", "--threads", "1", "--quiet"], cwd=self.folder, check=True, stdout=subprocess.DEVNULL)
         with WatchedRun(self.folder, "seen", stages=SHORT) as run:
@@ -182,12 +182,12 @@ class Served(unittest.TestCase):
                 for name in alone["bodies"]:
                     self.assertEqual(alone["bodies"][name][()].tobytes(), seen["bodies"][name][()].tobytes())
 
-    def test_a_run_goes_on_where_its_server_is_gone(self):
-        # Long enough to tell that process several times how far it is.
+    def test_a_run_continues_without_its_server(self):
+        # Long enough for several progress reports to that process.
         stages = [dict(SHORT[0], until={"type": "time", "value": "3 s"}, limit="10 s")]
         with WatchedRun(self.folder, "left", stages=stages) as run:
             children = pathlib.Path(f"/proc/{run.process.pid}/task/{run.process.pid}/children")
-            run.ask()  # by now it is there
+            run.ask()  # it is running now
             subprocess.run(["kill", "-KILL", children.read_text().strip()], check=True)
             self.assertEqual(run.process.wait(), 0)
         self.assertEqual(json.loads((self.folder / "left/run.json").read_text())["status"], "done")
@@ -205,17 +205,17 @@ class InABrowser(unittest.TestCase):
         self.place.cleanup()
 
     def shown(self):
-        """How many samples the first curve shows, and how many frames there are."""
+        """Number of samples in the first curve, and number of frames."""
         return self.browser.evaluate(f"[document.querySelector('figure.chart').chart.series[0].x.length, {GRAINS}.frames.count]")
 
     def seen(self, condition):
-        """Whether it holds; not while the page gives way to another one."""
+        """Whether it holds; false while the page is replaced by another one."""
         try:
             return self.browser.evaluate(f"!!({condition})")
         except PageError:
             return False
 
-    def test_it_fills_without_a_reload(self):
+    def test_it_updates_without_a_reload(self):
         wait, evaluate = self.browser.wait, self.browser.evaluate
         with WatchedRun(self.folder, "watched") as run:
             self.browser.open(run.address)
@@ -225,10 +225,10 @@ class InABrowser(unittest.TestCase):
             evaluate("document.querySelector('header details').open = true")
             wait(f"document.querySelector('figure.chart').chart.series[0].x.length > {curve} && {GRAINS}.frames.count > {frames + 1}")
             self.assertIn("fall", evaluate("document.querySelector('.progress').textContent"))
-            wait(f"{GRAINS}.painted?.number === {GRAINS}.frames.count - 1")  # goes along with the last frame
-            self.assertTrue(evaluate("document.querySelector('header details').open"), "what was unfolded stays so")
+            wait(f"{GRAINS}.painted?.number === {GRAINS}.frames.count - 1")  # follows the last frame
+            self.assertTrue(evaluate("document.querySelector('header details').open"), "an open section stays open")
 
-            # Who looks at another frame, or another abscissa, is left there.
+            # Another frame or abscissa stays selected.
             evaluate(f"{GRAINS}.player.go(1)")
             wait(f"{GRAINS}.painted?.number === 1")
             step = evaluate(f"{GRAINS}.json.frames[1].step")
@@ -256,7 +256,7 @@ class InABrowser(unittest.TestCase):
                     self.assertEqual([float(value) for value in got], list(group[name][()]))
             self.assertEqual(evaluate(f"{GRAINS}.frames.count"), len(list((self.folder / "watched/frames").glob("*.h5"))))
 
-    def test_maps_profiles_and_directions_go_along(self):
+    def test_maps_profiles_and_directions_are_updated(self):
         wait, evaluate = self.browser.wait, self.browser.evaluate
         probes = {**SCENE["probes"], "forces": {"type": "force-chains", "every_steps": 200}, "moved": {"type": "displacements", "every_steps": 200}}
         found = "[...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{}' && chart.name === '{}').chart".format
@@ -269,7 +269,7 @@ class InABrowser(unittest.TestCase):
             for chart in (forces, moved):
                 evaluate(f"{chart}.draw()")
             evaluate(f"{MAP}.takeField('packing/stress')")
-            # Cells are unpacked in the background, those of each frame that comes, and there are none meanwhile.
+            # Cells of each new frame are decoded in the background; until then there are none.
             frame, end = evaluate(f"""(async () => {{ while (!{MAP}.now) await new Promise((go) => setTimeout(go, 20));
                 return [{MAP}.now.number, {moved}.group.choice.now]; }})()""")
             # One slider stays at its time, the other at the end.
@@ -297,9 +297,9 @@ class InABrowser(unittest.TestCase):
                 shown = evaluate(f"Array.from({MAP}.now.cells.list({MAP}.place({MAP}.field, 0)), String)")
                 self.assertEqual([float(value) for value in shown], frame["probes/packing/stress"][:].reshape(len(shown), 9)[:, 0].astype("float32").tolist())
 
-    def test_a_run_that_fails_is_shown_to_who_looks(self):
-        # Grains never come to such a rest within so short a time.
-        # It goes on for longer than a browser that was just started takes to ask.
+    def test_a_failed_run_is_shown(self):
+        # Grains do not come to rest within such a short time.
+        # It runs longer than a newly started browser takes to request the page.
         stages = [dict(SHORT[0], until={"type": "time", "value": "20 s"}, limit="100 s"),
                   {"name": "rest", "until": {"type": "unbalanced-force", "below": 1e-15}, "limit": "10 ms"}]
         with WatchedRun(self.folder, "failing", stages=stages) as run:
@@ -312,11 +312,11 @@ class InABrowser(unittest.TestCase):
             message = json.loads((self.folder / "failing/run.json").read_text())["message"]
             self.assertIn("/stages/1", message)
             self.assertEqual(self.browser.evaluate("document.querySelector('.message').textContent"), message)
-            # What it had reached is all there.
+            # All its results are complete.
             with h5py.File(self.folder / "failing/series.h5") as series:
                 self.browser.wait(f"document.querySelector('figure.chart')?.chart.series?.[0].x.length === {len(series['packing/time'])}")
             self.assertEqual(self.browser.evaluate(f"{GRAINS}.frames.count"), len(list((self.folder / "failing/frames").glob("*.h5"))))
-            self.assertEqual([one for one in self.browser.complaints() if "ERR_CONNECTION_REFUSED" not in one], [], "but that it is gone")
+            self.assertEqual([one for one in self.browser.complaints() if "ERR_CONNECTION_REFUSED" not in one], [], "only refused connections")
 
     def test_a_page_that_is_busy_when_the_run_ends_gets_the_last_state(self):
         with WatchedRun(self.folder, "busy") as run:
@@ -329,8 +329,8 @@ class InABrowser(unittest.TestCase):
             with h5py.File(self.folder / "busy/series.h5") as series:
                 self.assertEqual(self.shown(), [len(series["packing/time"]), len(list((self.folder / "busy/frames").glob("*.h5")))])
 
-    def test_frames_that_are_taken_back_are_taken_back(self):
-        # As by a run that goes on from a checkpoint before its first frame.
+    def test_removed_frames_disappear(self):
+        # As in a run resumed from a checkpoint before its first frame.
         drawn = "document.querySelector('figure.grains')?.grains.painted"
         with WatchedRun(self.folder, "back") as run:
             self.browser.open(run.address)
@@ -341,10 +341,10 @@ class InABrowser(unittest.TestCase):
                 await Follower.prototype.showFrames(grains, maps);
                 return [grains.children.length, maps.children.length]; })()""")
             self.assertEqual(left, [0, 0])
-            self.browser.wait(drawn)  # there is news
+            self.browser.wait(drawn)  # new data arrived
             self.assertEqual(self.browser.complaints(), [])
 
-    def test_it_asks_for_nothing_else(self):
+    def test_it_requests_nothing_else(self):
         with WatchedRun(self.folder, "asking") as run:
             self.browser.open(run.address)
             self.browser.wait("document.querySelector('figure.chart[data-drawn]') && document.querySelector('figure.grains')?.grains.painted")

@@ -1,4 +1,4 @@
-// Runs that are interrupted or killed and go on: --resume.
+// Runs that are interrupted or killed and resumed: --resume.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
@@ -19,12 +19,12 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Grains that fall into a box, some seconds; probes that remember.
+/// Grains falling into a box, some seconds; probes that keep data between samples.
 constexpr auto falling = R"({
   "title": "grains that fall",
   "contacts": {"type": "linear-rolling"},
   "materials": {"sand": {"density": 2600, "contact_modulus": "10 MPa"}},
-  "bodies": {"grains": {"type": "sphere", "material": "sand", "grains": {
+  "bodies": {"grains": {"type": "sphere", "material": "sand", "source": {
     "type": "cloud", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "20 mm"], "count": 60,
     "sizes": {"type": "uniform", "smallest": "2 mm", "largest": "2.5 mm"}}}},
   "walls": {"box": {"type": "box", "low": [0, 0, 0], "high": ["10 mm", "10 mm", "30 mm"], "open": ["z_high"], "material": "sand"}},
@@ -52,7 +52,7 @@ class Resume : public testing::Test {
   Outcome grit(std::vector<std::string> words) const { return grit_in(folder.path(), std::move(words)); }
   json run_json(const std::string& results) const { return json::parse(text_of(folder / (results + "/run.json"))); }
 
-  /// Waits for what a run is to do, which is the one program that a test has at a time. Fails where that ends first.
+  /// Waits until the run of the test meets a condition. Fails if the run ends first.
   template <class Condition>
   static void wait_until(Condition holds, const std::string& what) {
     siginfo_t ended{};
@@ -72,7 +72,7 @@ class Resume : public testing::Test {
     ASSERT_EQ(outcome.status, 130) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("'grit run --resume " + out + "' goes on"));
   }
-  /// Kills a run once it has written another checkpoint than the one that is there.
+  /// Kills a run after it has written a new checkpoint.
   void kill(const std::string& out, std::vector<std::string> more = {}) const {
     const auto path = folder / (out + "/checkpoint.h5");
     const auto written = [&] {
@@ -148,7 +148,7 @@ TEST_F(Resume, GivesTheSameAsARunThatWasNeverStopped) {
   EXPECT_EQ(again.out, "part: done already\n");
 }
 
-TEST_F(Resume, GoesOnWithWhatAKilledRunLeft) {
+TEST_F(Resume, ContinuesAKilledRun) {
   ASSERT_EQ(grit(run("whole")).status, 0);
   kill("killed");
   EXPECT_EQ(run_json("killed").at("status"), "running");
@@ -160,7 +160,7 @@ TEST_F(Resume, GoesOnWithWhatAKilledRunLeft) {
   expect_same_results("whole", "killed");
 }
 
-TEST_F(Resume, BeginsAtTheBeginningWithoutACheckpoint) {
+TEST_F(Resume, StartsFromTheBeginningWithoutACheckpoint) {
   const auto outcome =
       grit(run("new", {"--resume", "--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -168,33 +168,34 @@ TEST_F(Resume, BeginsAtTheBeginningWithoutACheckpoint) {
   EXPECT_EQ(run_json("new").at("resumed"), 0);
 }
 
-TEST_F(Resume, RefusesWhatIsOfAnotherRun) {
+TEST_F(Resume, RefusesAnotherRun) {
   interrupt("part");
   const auto before = text_of(folder / "part/run.json");
   const auto other = grit(run("part", {"--resume", "--set", "/seed=7"}));
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, AllOf(HasSubstr("part: holds a run of another description:\n  /seed: found 7, allowed 1"),
                                HasSubstr("'grit run --resume part'"), HasSubstr("--overwrite")));
-  // A plugin that has been built again.
+  // A rebuilt plugin.
   std::filesystem::create_directories(folder / "mine/probes");
   std::filesystem::copy(GRIT_PLUGIN_DIR "/probes/energy.so", folder / "mine/probes");
   std::ofstream(folder / "mine/probes/energy.so", std::ios::app) << "built again";
   const auto plugin = grit(run("part", {"--resume", "--plugin-path", "mine"}));
   EXPECT_EQ(plugin.status, 3);
-  EXPECT_THAT(plugin.err, AllOf(HasSubstr("plugins were built otherwise"), HasSubstr("/probe energy/build/checksum")));
+  EXPECT_THAT(plugin.err,
+              AllOf(HasSubstr("written with other builds of plugins"), HasSubstr("/probe energy/build/checksum")));
   // Half of a checkpoint.
   const auto checkpoint = folder / "part/checkpoint.h5";
   std::filesystem::copy(checkpoint, folder / "whole.h5");
   std::filesystem::resize_file(checkpoint, std::filesystem::file_size(checkpoint) / 2);
   const auto half = grit({"run", "part", "--resume"});
   EXPECT_EQ(half.status, 5);
-  EXPECT_THAT(half.err, AllOf(HasSubstr("part/checkpoint.h5"), HasSubstr("no whole checkpoint")));
-  EXPECT_EQ(text_of(folder / "part/run.json"), before) << "nothing was touched";
+  EXPECT_THAT(half.err, AllOf(HasSubstr("part/checkpoint.h5"), HasSubstr("not a complete checkpoint")));
+  EXPECT_EQ(text_of(folder / "part/run.json"), before) << "nothing was changed";
   std::filesystem::rename(folder / "whole.h5", checkpoint);
   EXPECT_EQ(grit({"run", "part", "--resume", "--no-report"}).status, 0);
 }
 
-TEST_F(Resume, TellsWhatMakesNoSense) {
+TEST_F(Resume, ReportsInvalidRequests) {
   const auto both = grit(run("part", {"--resume", "--overwrite"}));
   EXPECT_EQ(both.status, 1);
   EXPECT_THAT(both.err, HasSubstr("--resume goes on with results, --overwrite replaces them"));
@@ -206,7 +207,7 @@ TEST_F(Resume, TellsWhatMakesNoSense) {
   EXPECT_EQ(grit({"run", "empty", "--resume"}).status, 5);
 }
 
-TEST_F(Resume, KeepsTheCheckpointWhereAGuardTrips) {
+TEST_F(Resume, KeepsTheCheckpointIfAGuardTrips) {
   const auto outcome =
       grit(run("failed", {"--set", "/output/checkpoint_every=1e-6", "--set", "/guards={\"travel\": 1e-3}"}));
   EXPECT_EQ(outcome.status, 4) << outcome.err;
@@ -217,7 +218,7 @@ TEST_F(Resume, KeepsTheCheckpointWhereAGuardTrips) {
                                HasSubstr("its last checkpoint is kept: with another /guards/travel --resume")));
 }
 
-TEST_F(Resume, GoesOnWithOtherGuards) {
+TEST_F(Resume, ContinuesWithOtherGuards) {
   const auto whole = [&](const char* name, const std::string& guards, bool resume) {
     auto words = run(name, {"--set", "/output/checkpoint_every=1e-6", "--set", "/guards=" + guards});
     if (resume) words.push_back("--resume");
@@ -229,12 +230,12 @@ TEST_F(Resume, GoesOnWithOtherGuards) {
   EXPECT_THAT(on.err, HasSubstr("goes on from step"));
   EXPECT_EQ(whole("never", "{\"travel\": 0.05}", false).status, 0);
   expect_same_results("stopped", "never");
-  // That of overlap sets the step of springs that stiffen.
+  // The guard of overlap sets the time step of springs that stiffen.
   EXPECT_EQ(whole("other", "{\"travel\": 1e-3}", false).status, 4);
   const auto overlap = whole("other", "{\"travel\": 0.05, \"overlap\": 0.4}", true);
   EXPECT_EQ(overlap.status, 2);
   EXPECT_THAT(overlap.err, AllOf(HasSubstr("/guards/overlap: found 0.4"), Not(HasSubstr("/guards/travel"))));
-  // A run that is done has kept to the guards that it had, not to others.
+  // A completed run met its own guards, not others.
   const auto done = whole("stopped", "{\"travel\": 0.04}", true);
   EXPECT_EQ(done.status, 2);
   EXPECT_THAT(done.err, HasSubstr("/guards/travel: found 0.04, allowed 0.05"));

@@ -22,7 +22,7 @@ constexpr double radius = 1e-3, modulus = 1e7, density = 2600;
 constexpr double mass = density * 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
 const Description stuff{{"density", density}, {"contact_modulus", modulus}};
 
-/// Grains, and others that come in a second stage.
+/// Grains, and others that appear in a second stage.
 Description first_and_late(const std::vector<Grain>& first, const std::vector<Grain>& late) {
   Description d = description("linear-rolling", stuff, first);
   d["bodies"]["late"] = description("", {}, late)["bodies"]["grains"];
@@ -45,7 +45,7 @@ std::vector<std::uint32_t> sorted_ids(const World& world) {
   return ids;
 }
 
-TEST(Arrivals, FallFromTheirPlaceWithTheirVelocity) {
+TEST(Arrivals, FallFromTheirPositionWithTheirVelocity) {
   const Vec3 place(0, 0, 9e-3), gravity(0, 0, -9.81), velocity(0.02, 0, 0.05), extra(0, 0.01, 0);
   Description d = first_and_late({{Vec3::Zero(), radius}}, {{place, radius, velocity, {0, 3, 0}}});
   d["bodies"]["late"]["velocity"] = vector(extra);
@@ -64,10 +64,10 @@ TEST(Arrivals, FallFromTheirPlaceWithTheirVelocity) {
   EXPECT_LT((trial.velocity(1) - (start + gravity * t)).norm(), 1e-13);
   EXPECT_EQ(trial.spin(1), Vec3(0, 3, 0));
   const double all = trial.world().time();
-  EXPECT_LT((trial.position(0) - 0.5 * gravity * all * all).norm(), 1e-15) << "who was there goes on as before";
+  EXPECT_LT((trial.position(0) - 0.5 * gravity * all * all).norm(), 1e-15) << "the earlier grain is not affected";
 }
 
-TEST(Arrivals, GetIdsThatNobodyHad) {
+TEST(Arrivals, GetUnusedIds) {
   Description d = first_and_late({{Vec3::Zero(), radius}, {{-7e-3, 0, 0}, radius, {-1, 0, 0}}},
                                  {{{0, 3e-3, 0}, radius}, {{0, 6e-3, 0}, radius}});
   d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-x"}}};
@@ -77,11 +77,11 @@ TEST(Arrivals, GetIdsThatNobodyHad) {
   EXPECT_DOUBLE_EQ(trial.kernel().state().discharged_fraction(), 0.5);
   begin_second(trial);
   EXPECT_THAT(sorted_ids(trial.world()), ElementsAre(0, 2, 3));
-  EXPECT_DOUBLE_EQ(trial.kernel().state().discharged_fraction(), 0.25) << "of all that has come";
+  EXPECT_DOUBLE_EQ(trial.kernel().state().discharged_fraction(), 0.25) << "of all bodies so far";
   EXPECT_EQ(trial.position(3), Vec3(0, 6e-3, 0));
 }
 
-/// A box full of grains that are pushed about, and as many that come to another place.
+/// A box full of moving grains, and as many that appear elsewhere.
 Description crowded() {
   const Vec3 low(0, 0, 20e-3);
   Description d = first_and_late(jumble({7, 7, 7}, 1e-3, 0.1, 4), jumble({7, 7, 7}, 1e-3, 0.1, 5, low));
@@ -94,14 +94,14 @@ Description crowded() {
   return d;
 }
 
-TEST(Arrivals, LeaveMemoriesToTheLastBit) {
+TEST(Arrivals, KeepContactHistoryToTheLastBit) {
   Description without = crowded();
   without["bodies"].erase("late");
   Trial trial(crowded()), alone(without);
   for (Trial* t : {&trial, &alone}) t->step(100);
   const std::vector<std::uint32_t> order(trial.world().ids().begin(), trial.world().ids().end());
   begin_second(trial), begin_second(alone);
-  alone.kernel().find_forces();  // which newcomers have found at once
+  alone.kernel().find_forces();  // which new bodies find at once
   const Memories after = memories(trial), expected = memories(alone);
   ASSERT_GT(expected.size(), 400u);
   EXPECT_GT(after.size(), expected.size());
@@ -112,7 +112,7 @@ TEST(Arrivals, LeaveMemoriesToTheLastBit) {
   EXPECT_FALSE(std::equal(order.begin(), order.end(), trial.world().ids().begin())) << "in a new order of bodies";
 }
 
-TEST(Arrivals, ElsewhereChangeNothing) {
+TEST(Arrivals, ElsewhereChangeNoOthers) {
   Description without = crowded();
   without["bodies"].erase("late");
   Trial trial(crowded()), alone(without);
@@ -120,13 +120,13 @@ TEST(Arrivals, ElsewhereChangeNothing) {
   double apart = 0;
   for (std::uint32_t id = 0; id < 343; ++id)
     apart = std::max(apart, (trial.position(id) - alone.position(id)).norm() / radius);
-  EXPECT_LT(apart, 1e-11) << "sums go in another order";
+  EXPECT_LT(apart, 1e-11) << "the order of sums differs";
   EXPECT_EQ(trial.world().ids().size(), 686u);
 }
 
 TEST(Arrivals, AreTheSameBitsForAnyNumberOfThreads) {
   Description d = crowded();
-  d["bodies"]["late"]["grains"] = cloud({-3e-3, -3e-3, 7.7e-3}, {9e-3, 9e-3, 20e-3}, 500, 0.8e-3, 1.2e-3);
+  d["bodies"]["late"]["source"] = cloud({-3e-3, -3e-3, 7.7e-3}, {9e-3, 9e-3, 20e-3}, 500, 0.8e-3, 1.2e-3);
   Trial one(d, 1), three(d, 3);
   for (Trial* t : {&one, &three}) t->step(60), begin_second(*t);
   ASSERT_TRUE(same_bits(one.kernel(), three.kernel()));
@@ -136,7 +136,7 @@ TEST(Arrivals, AreTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.world().ids().size(), 843u);
 }
 
-/// Touching pairs of one that was there and one that has come.
+/// Contacts of an earlier body with a new one.
 std::size_t meetings(const World& world, std::uint32_t first_late) {
   return static_cast<std::size_t>(std::ranges::count_if(world.contacts(), [&](const Contact& c) {
     return !c.with_wall && (world.ids()[c.a] < first_late) != (world.ids()[c.b] < first_late);
@@ -144,14 +144,14 @@ std::size_t meetings(const World& world, std::uint32_t first_late) {
 }
 
 TEST(Arrivals, OfACloudKeepClearOfOthersAndTheirImages) {
-  // Some stick out across the side x = 6 mm, and in again at x = 0.
+  // Some extend across the side x = 6 mm, and in again at x = 0.
   std::vector<Grain> first;
   for (int y = 0; y < 3; ++y)
     for (int z = 0; z < 4; ++z) first.push_back({{5.9e-3, (2 * y + 1) * 1e-3, (2 * z + 1) * 1e-3}, 0.5e-3});
   Description d = first_and_late(first, {});
   d["domain"] = {{"low", {0, 0, -1}}, {"high", {6e-3, 6e-3, 1}}, {"periodic", {true, true, false}}};
   for (const double width : {1.1e-3, 6e-3}) {
-    d["bodies"]["late"]["grains"] = cloud({0, 0, 0}, {width, 6e-3, 8e-3}, 8, 0.9e-3, 1e-3);
+    d["bodies"]["late"]["source"] = cloud({0, 0, 0}, {width, 6e-3, 8e-3}, 8, 0.9e-3, 1e-3);
     Trial trial(d);
     begin_second(trial);
     EXPECT_EQ(trial.world().ids().size(), 20u);
@@ -161,7 +161,7 @@ TEST(Arrivals, OfACloudKeepClearOfOthersAndTheirImages) {
 
 TEST(Arrivals, OfACloudDependOnTheSeedAndNotOnOtherStages) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {});
-  d["bodies"]["late"]["grains"] = cloud({5e-3, 5e-3, 5e-3}, {15e-3, 15e-3, 15e-3}, 5, 0.9e-3, 1e-3);
+  d["bodies"]["late"]["source"] = cloud({5e-3, 5e-3, 5e-3}, {15e-3, 15e-3, 15e-3}, 5, 0.9e-3, 1e-3);
   const auto place = [](const Description& with) {
     Trial trial(with);
     begin_second(trial);
@@ -171,7 +171,7 @@ TEST(Arrivals, OfACloudDependOnTheSeedAndNotOnOtherStages) {
   Description other = d;
   other["bodies"]["more"] = d["bodies"]["late"];
   other["bodies"]["more"].erase("stage");
-  other["bodies"]["more"]["grains"] = cloud({-15e-3, -15e-3, -15e-3}, {-5e-3, -5e-3, -5e-3}, 5, 0.9e-3, 1e-3);
+  other["bodies"]["more"]["source"] = cloud({-15e-3, -15e-3, -15e-3}, {-5e-3, -5e-3, -5e-3}, 5, 0.9e-3, 1e-3);
   EXPECT_EQ(place(other), plain);
   other["seed"] = 2;
   EXPECT_NE(place(other), plain);
@@ -179,13 +179,13 @@ TEST(Arrivals, OfACloudDependOnTheSeedAndNotOnOtherStages) {
     Description at_start = d;
     at_start["bodies"]["late"].erase("stage");
     return Trial(at_start).position(5);
-  }()) << "a stage has its own numbers";
+  }()) << "a stage has its own random numbers";
 }
 
 std::string refusal(const Description& d) {
   const Done done = run(d);
   EXPECT_EQ(done.summary().status, "failed");
-  EXPECT_EQ(done.notes.finished, 1) << "what there was is recorded";
+  EXPECT_EQ(done.notes.finished, 1) << "the state before is recorded";
   return done.summary().message;
 }
 
@@ -195,51 +195,48 @@ TEST(Arrivals, InsideOthersAreRefused) {
   d["guards"]["overlap"] = 0.1;
   const std::string found = refusal(d);
   EXPECT_THAT(found, HasSubstr("stage \"second\""));
-  EXPECT_THAT(found,
-              HasSubstr("body 2 at (0, 0, 0.0014) m of the group \"late\" appears inside body 0: they overlap by "
-                        "0.2 of the smaller radius, more than /bodies/late/overlap 0.01; place it"));
+  EXPECT_THAT(found, HasSubstr("body 2 at (0, 0, 0.0014) m of group \"late\" appears inside body 0: they overlap by "
+                               "0.2 of the smaller radius, more than /bodies/late/overlap 0.01; place it"));
   d["bodies"]["late"]["overlap"] = 0.21;
   d["guards"]["overlap"] = 0.3;
   EXPECT_EQ(run(d).summary().status, "done") << run(d).summary().message;
   // Across a periodic side, and more than one.
   d["bodies"]["late"]["overlap"] = 0.01;
   d["domain"]["periodic"] = {false, false, true};
-  d["bodies"]["grains"]["grains"]["grains"][0]["position"] = {0, 0, -4.9e-3};
-  d["bodies"]["late"]["grains"]["grains"][0]["position"] = {0, 0, 4e-3};
-  d["bodies"]["late"]["grains"]["grains"][1]["position"] = {0, 1.2e-3, -4.9e-3};
-  EXPECT_THAT(refusal(d),
-              HasSubstr("body 1 at (0, 0, 0.004) m of the group \"late\" appears inside body 0: they overlap "
-                        "by 0.9 of the smaller radius, more than /bodies/late/overlap 0.01, the deepest of "
-                        "2 such pairs"));
+  d["bodies"]["grains"]["source"]["bodies"][0]["position"] = {0, 0, -4.9e-3};
+  d["bodies"]["late"]["source"]["bodies"][0]["position"] = {0, 0, 4e-3};
+  d["bodies"]["late"]["source"]["bodies"][1]["position"] = {0, 1.2e-3, -4.9e-3};
+  EXPECT_THAT(refusal(d), HasSubstr("body 1 at (0, 0, 0.004) m of group \"late\" appears inside body 0: they overlap "
+                                    "by 0.9 of the smaller radius, more than /bodies/late/overlap 0.01, the deepest of "
+                                    "2 such pairs"));
 }
 
 TEST(Arrivals, InsideWallsAreRefused) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 4e-3}, radius}, {{0, 0, 1.4e-3}, 0.5 * radius}});
   d["walls"]["roof"] = plane({0, 0, 4.7e-3}, -Vec3::UnitZ());
   d["guards"]["overlap"] = 0.4;
-  EXPECT_THAT(
-      refusal(d),
-      HasSubstr("stage \"second\": body 1 at (0, 0, 0.004) m of the group \"late\" appears inside wall \"roof\": "
-                "they overlap by 0.3 of its radius, more than /bodies/late/overlap 0.01, the deepest of 2 such "
-                "pairs; place it in front of the wall"));
+  EXPECT_THAT(refusal(d),
+              HasSubstr("stage \"second\": body 1 at (0, 0, 0.004) m of group \"late\" appears inside wall \"roof\": "
+                        "they overlap by 0.3 of its radius, more than /bodies/late/overlap 0.01, the deepest of 2 such "
+                        "pairs; place it in front of the wall"));
   d["bodies"]["late"]["overlap"] = 0.301;
   EXPECT_EQ(run(d).summary().status, "done") << run(d).summary().message;
   d["bodies"]["late"]["overlap"] = 0.299;
   d["walls"]["roof"]["point"] = {0, 0, 3.5e-3};
   EXPECT_THAT(refusal(d), HasSubstr("wall \"roof\": they overlap by 1.5 of its radius, more than /bodies/late/overlap "
                                     "0.299; place it"))
-      << "its centre is behind";
-  d["bodies"]["late"]["grains"] = cloud({5e-3, 5e-3, 0}, {7e-3, 7e-3, 2e-3}, 1, 2e-3, 2e-3);
+      << "its centre is behind the wall";
+  d["bodies"]["late"]["source"] = cloud({5e-3, 5e-3, 0}, {7e-3, 7e-3, 2e-3}, 1, 2e-3, 2e-3);
   d["walls"]["roof"]["point"] = {0, 0, 1.5e-3};
-  EXPECT_THAT(refusal(d), HasSubstr("wall \"roof\": they overlap by 0.5 of its radius")) << "clouds know of no walls";
-  // Where the wall is by then.
+  EXPECT_THAT(refusal(d), HasSubstr("wall \"roof\": they overlap by 0.5 of its radius")) << "clouds ignore walls";
+  // At the position of the wall at that time.
   d["walls"]["roof"]["motion"]["velocity"] = {0, 0, 50};
   d["stages"][0]["until"]["value"] = 6;
   d["guards"]["travel"] = 0.2;
   EXPECT_EQ(run(d).summary().status, "done") << run(d).summary().message;
 }
 
-/// The last sample of a run that fails as the second stage begins, by a probe that looks there alone.
+/// The last sample of a run that fails at the start of the second stage, by a probe of that stage only.
 double seen_at_failure(Description d, const std::string& why, std::function<double(const World&)> what) {
   d["probes"]["last"] = {{"type", "watch"}, {"stages", {"second"}}};
   watched() = std::move(what);
@@ -267,8 +264,8 @@ TEST(Arrivals, ThatAreRefusedLeaveTheWorldAsItWas) {
   expect([](const World& w) { return w.forces()[index_of(w, 1)].z; }, modulus * radius * overlap);
 }
 
-TEST(Arrivals, ThatTripAGuardAreSeenWithTheirForces) {
-  // The first of many that are put in another order then; the small one makes the time step too long.
+TEST(Arrivals, ThatTripAGuardAreRecordedWithTheirForces) {
+  // The first of many bodies, which are then reordered; the small one makes the time step too long.
   std::vector<Grain> first;
   for (int i = 0; i < 40; ++i) first.push_back({{(i * 17 % 40) * 3e-3, 0, 0}, radius});
   const double small = 0.1 * radius, overlap = 0.005 * small;
@@ -287,13 +284,14 @@ TEST(Arrivals, ThatTripAGuardAreSeenWithTheirForces) {
 
 TEST(Arrivals, WithoutRoomOrOutsideAreRefused) {
   Description d = first_and_late({{Vec3::Zero(), 2 * radius}}, {});
-  d["bodies"]["late"]["grains"] = cloud({-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}, 1, 0.9e-3, 1e-3);
+  d["bodies"]["late"]["source"] = cloud({-1e-3, -1e-3, -1e-3}, {1e-3, 1e-3, 1e-3}, 1, 0.9e-3, 1e-3);
   EXPECT_THAT(refusal(d), testing::AllOf(HasSubstr("stage \"second\": group \"late\": cloud: only 0 of 1 grains"),
-                                         HasSubstr("what is there by then takes room as well")));
+                                         HasSubstr("bodies of other groups take space, too")));
   d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 6e-3}, radius}});
   d["domain"] = {{"low", {-5e-3, -5e-3, -5e-3}}, {"high", {5e-3, 5e-3, 5e-3}}};
-  EXPECT_THAT(refusal(d), testing::EndsWith("group \"late\": a body at (0.000000, 0.000000, 0.006000) m lies outside the "
-                                            "domain; enlarge /domain or move the body"));
+  EXPECT_THAT(refusal(d),
+              testing::EndsWith("group \"late\": a body at (0.000000, 0.000000, 0.006000) m is outside the "
+                                "domain; enlarge /domain or move the body"));
 }
 
 /// Two grains, of which one leaves, then two more; three are gone in the end.
@@ -303,39 +301,41 @@ Description leaving() {
                                  {{{-3e-3, 0, -5e-3}, radius, down}, {{-6e-3, 0, 9e-3}, radius, down}});
   d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
   d["stages"][0]["until"] = {{"type", "time"}, {"value", 1.5e-3}};
-  d["stages"][1]["until"] = {{"type", "left"}, {"share", 0.75}};
+  d["stages"][1]["until"] = {{"type", "discharged"}, {"fraction", 0.75}};
   return d;
 }
 
-TEST(Arrivals, CountInTheShareThatProbesWaitFor) {
+TEST(Arrivals, CountInTheIntervalOfDischargedMass) {
   Description d = leaving();
-  d["probes"]["half"] = {{"type", "watch"}, {"every_left", 0.5}};
+  d["probes"]["half"] = {{"type", "watch"}, {"every_discharged", 0.5}};
   watched() = [](const World& w) { return static_cast<double>(w.ids().size()); };
   const Done done = run(d);
   watched() = {};
   EXPECT_EQ(done.summary().status, "done") << done.summary().message;
   EXPECT_THAT(done.notes.values_of("half"), ElementsAre(2, 1, 1, 1))
-      << "one of two; the end of the stage; two of four, which end the other";
+      << "one of two; the end of the stage; two of four, which ends the other stage";
 }
 
 TEST(Arrivals, CountInTheProgressFromTheStart) {
   std::set<double> seen;
-  RunControl control;
-  control.progress_every = 0;
-  control.progress = [&](const Progress& now) {
-    if (now.stage == "second") seen.insert(std::round(1e6 * now.fraction.value()) / 1e6);
+  const auto watch_progress = [&](Simulation& simulation) {
+    simulation.on_progress(
+        [&](const Progress& now) {
+          if (now.stage == "second") seen.insert(std::round(1e6 * now.fraction.value()) / 1e6);
+        },
+        0);
   };
-  EXPECT_EQ(run(leaving(), control).summary().status, "done");
+  EXPECT_EQ(run(leaving(), watch_progress).summary().status, "done");
   EXPECT_THAT(seen, ElementsAre(0, 0.5)) << "of the two that are still to leave";
 }
 
-TEST(Arrivals, OfAFileThatIsNotThereAreRefusedAtTheStart) {
+TEST(Arrivals, OfAMissingFileAreRefusedAtTheStart) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {});
-  d["bodies"]["late"]["grains"] = {{"type", "file"}, {"path", "/nowhere/grains.txt"}};
+  d["bodies"]["late"]["source"] = {{"type", "file"}, {"path", "/nowhere/grains.txt"}};
   EXPECT_THROW(run(d), FileError);
 }
 
-TEST(Arrivals, OfAnotherMaterialPushByBoth) {
+TEST(Arrivals, OfAnotherMaterialHaveMixedStiffness) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 1.995 * radius}, radius}});
   d["materials"]["hard"] = {{"density", 2 * density}, {"contact_modulus", 4 * modulus}};
   d["bodies"]["late"]["material"] = "hard";
@@ -349,7 +349,7 @@ TEST(Arrivals, OfAnotherMaterialPushByBoth) {
   EXPECT_NEAR(trial.world().solid_density(), 1.5 * density, 1e-9 * density);
 }
 
-TEST(Arrivals, CountInWhatIsKnownOfAll) {
+TEST(Arrivals, CountInPropertiesOfAll) {
   Description d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 5e-3}, 0.4 * radius}, {{0, 0, 9e-3}, radius}});
   d["time_step"] = {{"safety", 0.5}};
   Trial trial(d, 1, BodyState::rotation | BodyState::displacement);
@@ -358,7 +358,7 @@ TEST(Arrivals, CountInWhatIsKnownOfAll) {
   const std::size_t memory = trial.kernel().state().bytes();
   begin_second(trial);
   EXPECT_NEAR(trial.world().mean_diameter(), 2 * radius * 2.4 / 3, 1e-15);
-  // √(m/k) goes with the radius.
+  // √(m/k) is proportional to the radius.
   EXPECT_NEAR(trial.world().dt(), 0.4 * before, 1e-9 * before);
   EXPECT_GT(trial.kernel().state().bytes(), memory);
   ASSERT_EQ(trial.world().rotations().size(), 3u);
@@ -366,8 +366,8 @@ TEST(Arrivals, CountInWhatIsKnownOfAll) {
   EXPECT_EQ(trial.world().forces().size(), 3u);
 }
 
-// What turned and moved in the preparation leaves no mark on the test.
-TEST(Stages, CountRotationsAndDisplacementsAnew) {
+// Rotations and displacements of the preparation do not count in the test.
+TEST(Stages, ResetRotationsAndDisplacements) {
   Description d = first_and_late({{Vec3::Zero(), radius, {0.1, 0, 0}, {0, 20, -5}}}, {{{0, 0, 9e-3}, radius}});
   Trial trial(d, 1, BodyState::rotation | BodyState::displacement);
   const auto turned_by = [&](double time) {
@@ -395,8 +395,8 @@ TEST(Arrivals, BringTheirEnergy) {
   const double brought = 0.5 * mass * 0.01 + 0.2 * mass * radius * radius * 400;
   EXPECT_NEAR(trial.world().energies().settings, brought, 1e-12 * brought);
   EXPECT_LT(std::abs(trial.world().energies().closure_error), 1e-12 * brought);
-  // One that presses on another brings what the contact stores as well.
-  d["bodies"]["late"]["grains"]["grains"][0]["position"][2] = 1.995 * radius;
+  // One that appears in contact also adds the energy stored in the contact.
+  d["bodies"]["late"]["source"]["bodies"][0]["position"][2] = 1.995 * radius;
   d["engines"].erase("gravity");
   d["time_step"]["value"] = 5e-7;
   Trial pressed(d, 1, BodyState::energy);
@@ -404,7 +404,7 @@ TEST(Arrivals, BringTheirEnergy) {
   begin_second(pressed);
   EXPECT_NEAR(pressed.world().energies().settings, brought + 0.5 * modulus * radius * 25e-12, 1e-9 * brought);
   pressed.step(2000);
-  EXPECT_TRUE(pressed.world().contacts().empty()) << "they have parted";
+  EXPECT_TRUE(pressed.world().contacts().empty()) << "they have separated";
   EXPECT_LT(std::abs(pressed.world().energies().closure_error), 2e-3 * brought);
 }
 
@@ -422,7 +422,7 @@ TEST(Arrivals, MayBeClumps) {
   ASSERT_EQ(trial.world().ids().size(), 7u);
   ASSERT_EQ(trial.world().clumps().size(), 2u);
   EXPECT_EQ(trial.world().clumps()[1].id, 1u);
-  EXPECT_EQ(trial.world().volume_shares().size(), 7u);
+  EXPECT_EQ(trial.world().volume_fractions().size(), 7u);
   EXPECT_EQ(trial.world().mean_diameter(), always.world().mean_diameter());
   EXPECT_EQ(trial.world().clump_of()[index_of(trial.world(), 0)], no_clump);
   trial.kernel().find_forces();
@@ -448,8 +448,8 @@ TEST(Arrivals, OfClumpsFollowClumps) {
 /// A layer falls onto the floor and comes to rest, then another on top of it.
 Description two_layers() {
   Description d = first_and_late({}, {});
-  d["bodies"]["grains"]["grains"] = cloud({0, 0, 0}, {6e-3, 6e-3, 4.5e-3}, 80, 0.8e-3, 1.2e-3);
-  d["bodies"]["late"]["grains"] = cloud({0, 0, 4.5e-3}, {6e-3, 6e-3, 9e-3}, 80, 0.8e-3, 1.2e-3);
+  d["bodies"]["grains"]["source"] = cloud({0, 0, 0}, {6e-3, 6e-3, 4.5e-3}, 80, 0.8e-3, 1.2e-3);
+  d["bodies"]["late"]["source"] = cloud({0, 0, 4.5e-3}, {6e-3, 6e-3, 9e-3}, 80, 0.8e-3, 1.2e-3);
   d["domain"] = {{"low", {0, 0, -1e-3}}, {"high", {6e-3, 6e-3, 20e-3}}, {"periodic", {true, true, false}}};
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
   d["engines"]["gravity"] = {{"type", "gravity"}};

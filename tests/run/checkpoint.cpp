@@ -1,4 +1,4 @@
-// A run that was stopped anywhere and goes on says, to the last bit, what one says that was never stopped.
+// A run that was stopped at any step and resumed gives the same bits as an uninterrupted one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ Description box(const std::string& law, const std::array<int, 3>& sides, std::ui
   return d;
 }
 
-/// A lid that presses more and more, then a bottom that slides, with the ledger of energies.
+/// A lid with increasing pressure, then a sliding bottom, with the energy balance.
 Description servo(const std::string& law = "linear-rolling") {
   Description d = box(law, {10, 8, 9}, 5);
   d["stages"] = {stage("press", steps(170)), stage("slide", {{"type", "time"}, {"value", 0.2e-3}})};
@@ -70,7 +70,7 @@ Description servo(const std::string& law = "linear-rolling") {
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", 2e-5}};
   return d;
 }
-/// A lid that is so fast for what it shall press with that it has to brake before what it meets.
+/// A lid so fast for its pressure that it has to brake before contact.
 Description braking() {
   Description d = servo();
   auto& height = d["walls"]["lid"]["corner"][2];
@@ -84,7 +84,7 @@ Description stiffening() {
   d["materials"]["grain"] = {{"density", 2600}, {"young_modulus", 1e7}, {"poisson_ratio", 0.2}, {"restitution", 0.5}};
   return d;
 }
-/// A lid that lies on the grains freely, a side that turns and one that shakes, faster and faster.
+/// A free lid on the grains, a rotating side and one that oscillates at increasing frequency.
 Description loose() {
   Description d = box("linear-frictional", {7, 6, 6}, 8);
   d["walls"]["lid"]["motion"] = {{"free", {{"axes", "z"}, {"mass", 1e-3}, {"load", {0, 0, -0.01}}}}};
@@ -101,7 +101,7 @@ Description loose() {
   return d;
 }
 
-/// Clumps in a cell that repeats, fall on a floor; others follow.
+/// Clumps in a periodic cell fall on a floor; others follow.
 Description clumps() {
   Description d = description("linear-rolling", sand, jumble({6, 6, 5}, 1.2 * spacing, 0.05, 9));
   make_clumps(d, boomerang());
@@ -111,7 +111,7 @@ Description clumps() {
   d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0.5, 0, -9.81}}};
   d["bodies"]["late"] = d["bodies"]["grains"];
   d["bodies"]["late"]["stage"] = "more";
-  d["bodies"]["late"]["grains"] = {{"type", "cloud"},
+  d["bodies"]["late"]["source"] = {{"type", "cloud"},
                                    {"low", {0, 0, 0.02}},
                                    {"high", {side, side, 0.03}},
                                    {"count", 20},
@@ -122,7 +122,7 @@ Description clumps() {
   return d;
 }
 
-/// Grains run out of a slot, others come from above twice, what stays comes to rest.
+/// Grains discharge through a slot, others appear above twice, the rest comes to rest.
 Description silo() {
   const Vec3 low = Vec3::Zero(), high = spacing * Vec3(10, 5, 7);
   Description d = description("linear-rolling", sand, jumble({10, 5, 7}, spacing, 0.3, 4));
@@ -139,7 +139,7 @@ Description silo() {
   for (const char* when : {"second", "third"}) {
     d["bodies"][when] = d["bodies"]["grains"];
     d["bodies"][when]["stage"] = when;
-    d["bodies"][when]["grains"] = {{"type", "cloud"},
+    d["bodies"][when]["source"] = {{"type", "cloud"},
                                    {"low", {0, 0, 0.012}},
                                    {"high", {high.x(), high.y(), 0.02}},
                                    {"count", 40},
@@ -147,15 +147,15 @@ Description silo() {
     d["bodies"][when]["velocity"] = {0, 0, -0.5};
   }
   d["stages"] = {
-      stage("first", {{"type", "left"}, {"share", 0.02}}), stage("second", steps(400)),
+      stage("first", {{"type", "discharged"}, {"fraction", 0.02}}), stage("second", steps(400)),
       stage("third", {{"type", "any"}, {"of", {steps(900), {{"type", "unbalanced-force"}, {"below", 0.01}}}}})};
   report(d, 50);
   d["probes"]["flow"] = {{"type", "flow"}, {"every_steps", 25}, {"window", 2e-3}, {"pattern", {{"depth_axis", "y"}}}};
-  d["probes"]["left"] = {{"type", "packing"}, {"every_left", 0.01}};
+  d["probes"]["left"] = {{"type", "packing"}, {"every_discharged", 0.01}};
   return d;
 }
 
-/// A box of grains sheared by its bottom, looked at by every probe, several of which remember what they saw.
+/// A box of grains sheared by its bottom, with every probe, several of which keep data between samples.
 Description every_probe() {
   Description d = box("linear-rolling", {9, 6, 7}, 12);
   d["walls"]["bottom"]["motion"]["velocity"] = {0.4, 0, 0};
@@ -169,14 +169,14 @@ Description every_probe() {
                              {"points", 8},        {"windows", 3},  {"every_steps", 1}};
   d["probes"]["formula"] = {{"type", "formula"}, {"every_displacement", {{"wall", "bottom"}, {"value", 1e-5}}}};
   d["probes"]["formula"]["curves"]["pressure"] = {{"formula", "lid_pressure"}, {"unit", "Pa"}};
-  for (const char* type : {"coarse-graining", "displacements", "energy", "rotations", "strain", "strain-pictures",
+  for (const char* type : {"coarse-graining", "displacements", "energy", "rotations", "strain", "image-correlation",
                            "stress", "void-ratio", "walls"})
     d["probes"][type] = {{"type", type}, {"every_steps", 40}};
-  d["probes"]["strain-pictures"]["pixels_per_diameter"] = 10;
+  d["probes"]["image-correlation"]["pixels_per_diameter"] = 10;
   return d;
 }
 
-/// The place at which two recordings part; empty where they are the same.
+/// The position at which two recordings differ; empty if they are equal.
 std::string parting(const Taped& a, const Taped& b) {
   const auto& x = a.tape.entries;
   const auto& y = b.tape.entries;
@@ -230,13 +230,13 @@ TEST_P(Resume, AnywhereGivesTheSameBits) {
   ASSERT_EQ(summary.status, "done") << summary.message;
   ASSERT_GT(summary.rebuilds, 2u);
   const std::uint64_t end = summary.steps;
-  // Also one step apart: where nothing but a search, or the begin of a stage, lies between.
+  // Also one step apart: with only a search, or the start of a stage, in between.
   expect_same_when_stopped(d_, whole_, {end / 2});
   expect_same_when_stopped(d_, whole_, {1, end / 3, end / 3 + 20, 4 * end / 5});
 }
 
-/// Checkpoints by the clock change nothing, and each is as good as another.
-TEST_P(Resume, ByTheClockChangesNothing) {
+/// Checkpoints at wall-clock intervals change nothing, and a run can be resumed from each.
+TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
   const Taped often(d_, 2, {}, nullptr, {}, 1e-9);
   EXPECT_EQ(parting(whole_, often), "");
   const auto& checkpoints = often.tape.checkpoints;
@@ -255,10 +255,10 @@ INSTANTIATE_TEST_SUITE_P(Of, Resume,
                                          Case{"every_probe", every_probe}),
                          [](const auto& info) { return info.param.name; });
 
-/// At the steps around a search, where lists are new or worn out.
+/// At the steps around a search, where lists are new or expired.
 TEST(Checkpoint, JustBeforeAndAfterASearch) {
   Description d = cell();
-  d["probes"]["packing"]["every_steps"] = 1;  // which lets the run stop at any step
+  d["probes"]["packing"]["every_steps"] = 1;  // so that the run can stop at any step
   std::vector<std::pair<std::uint64_t, std::uint64_t>> searches;
   const Taped whole(d, 1, [&](const Kernel& now) {
     const std::uint64_t step = now.world().step(), rebuilds = now.state().lists.rebuilds();
@@ -271,16 +271,16 @@ TEST(Checkpoint, JustBeforeAndAfterASearch) {
   expect_same_when_stopped(d, whole, {at - 2, at - 1, at, at + 1});
 }
 
-TEST(Checkpoint, KeepsWhatAnInterruptedRunAddsOutOfTheNextOne) {
+TEST(Checkpoint, OmitsTheExtraSamplesOfAnInterruptedRun) {
   const Description d = servo();
   const Taped part(d, 1, [](const Kernel& now) { return now.world().step() >= 60; });
   const Checkpoint& last = part.tape.checkpoints.back();
   EXPECT_EQ(part.tape.entries.back().what, "frame");
-  EXPECT_EQ(part.tape.entries.back().step, last.step) << "the run shows where it stopped";
+  EXPECT_EQ(part.tape.entries.back().step, last.step) << "the run records where it stopped";
   EXPECT_EQ(last.stage, "press");
 }
 
-TEST(Checkpoint, IsThereWhereAStageWaitsForRest) {
+TEST(Checkpoint, IsWrittenWhileAStageWaitsForRest) {
   const Description d = silo();
   const Taped whole(d, 1);
   ASSERT_EQ(whole.tape.summary.stage, "third");
@@ -304,14 +304,14 @@ TEST(Checkpoint, OfAnotherSceneIsRefused) {
   const Checkpoint good = part.tape.checkpoints.back();
   EXPECT_THAT(error_of(cell(), good), HasSubstr("continue with the description that wrote it"));
   Checkpoint half = good;
-  half.memory.resize(half.memory.size() / 2);
-  EXPECT_THAT(error_of(servo(), half), HasSubstr("more is to be remembered than was saved"));
+  half.state.resize(half.state.size() / 2);
+  EXPECT_THAT(error_of(servo(), half), HasSubstr("the saved state is too short"));
   Checkpoint longer = good;
-  longer.memory.emplace_back();
+  longer.state.emplace_back();
   EXPECT_THAT(error_of(servo(), longer), HasSubstr("holds more than this simulation restores"));
 }
 
-/// A force that grows with the number of times that it acted, an engine's own memory.
+/// A force that grows with the number of its calls, the state of an engine.
 class Drumbeat final : public Engine {
  public:
   explicit Drumbeat(bool saves) : saves_(saves) {}
@@ -321,8 +321,8 @@ class Drumbeat final : public Engine {
     ++beats_;
     for (Row& one : force) one.x += 1e-6 * std::sin(beats_);
   }
-  void remember(Memory& memory) override {
-    if (saves_) memory(beats_);
+  void serialize(Archive& archive) override {
+    if (saves_) archive(beats_);
   }
 
  private:
@@ -330,7 +330,7 @@ class Drumbeat final : public Engine {
   mutable double beats_ = 0;
 };
 
-TEST(Checkpoint, KeepsWhatEnginesRemember) {
+TEST(Checkpoint, KeepsTheStateOfEngines) {
   const auto drum = [](const char* name, bool saves) {
     PluginInfo info;
     info.kind = "engine", info.name = name, info.version = "1.0.0", info.doc = "pushes all bodies along x";

@@ -1,4 +1,4 @@
-// The critical time step keeps up with contacts that form and part between searches.
+// The critical time step follows contacts that form and open between searches.
 #include "contact/critical_step.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double radius = 5e-4;
 
-/// Grains at rest that do not touch, and one in their midst that six others fly at.
+/// Grains at rest without contact, and one in their middle that six others approach.
 std::vector<Grain> ambush(double speed) {
   std::vector<Grain> grains;
   const Vec3 middle = Vec3::Constant(10 * radius);
@@ -43,7 +43,7 @@ Description description_of(const std::vector<Grain>& grains) {
   return d;
 }
 
-TEST(CriticalStep, KeepsUpWithContactsBetweenSearches) {
+TEST(CriticalStep, FollowsContactsBetweenSearches) {
   Trial t(description_of(ambush(8)));
   const auto critical = [&] { return t.kernel().critical_time_step(); };
   const double alone = critical();
@@ -54,7 +54,7 @@ TEST(CriticalStep, KeepsUpWithContactsBetweenSearches) {
   const std::uint64_t searches = t.kernel().state().lists.rebuilds();
   EXPECT_DOUBLE_EQ(critical(), Trial(description_of(as_they_are(t.world()))).kernel().critical_time_step());
   while (t.kernel().state().pairs.touching_count() > 0) t.step();
-  EXPECT_EQ(t.kernel().state().lists.rebuilds(), searches) << "no search helped";
+  EXPECT_EQ(t.kernel().state().lists.rebuilds(), searches) << "without a search";
   t.step(25);
   EXPECT_DOUBLE_EQ(critical(), alone);
 }

@@ -14,7 +14,7 @@ namespace {
 
 const Description stuff{{"density", 2600}, {"contact_modulus", 1e7}};
 
-/// One grain falls beside a floor on which others rest, and out of the domain.
+/// One grain falls next to a floor on which others rest, and leaves the domain.
 Description falling() {
   Description d = description("linear-rolling", stuff,
                               {{{8e-3, 0, 1e-3}, 1e-3},
@@ -40,18 +40,18 @@ TEST(Departures, AreKeptAndCounted) {
   EXPECT_EQ(gone.mass, mass);
   EXPECT_LT(gone.position.z(), -0.01);
   EXPECT_GT(gone.position.z(), -0.0115) << "found within a skin of the side";
-  // Damping lessens what gravity adds: z = ½ (1 − λ) g t².
+  // Damping reduces the acceleration by gravity: z = ½ (1 − λ) g t².
   EXPECT_NEAR(gone.time, std::sqrt(2 * (1e-3 - gone.position.z()) / (0.8 * 9.81)), 1e-4);
   EXPECT_EQ(trial.world().ids().size(), 3u);
   EXPECT_NEAR(trial.kernel().state().discharged_fraction(), 0.25, 1e-12);
   EXPECT_LT(std::abs(trial.world().energies().closure_error), 5e-3 * mass * 9.81 * 0.01);
 }
 
-/// Others keep their contacts, and what those remember: forces go on without a jump.
+/// Other bodies keep their contacts and contact history: forces continue without a jump.
 TEST(Departures, LeaveOthersAlone) {
   Trial trial(falling());
   Description without = falling();
-  without["bodies"]["grains"]["grains"]["grains"].erase(0);
+  without["bodies"]["grains"]["source"]["bodies"].erase(0);
   Trial others(without);
   trial.world().departures();
   for (int k = 0; k < 60000 && trial.world().departures().empty(); ++k) trial.step(), others.step();
@@ -82,14 +82,14 @@ TEST(Departures, OfAClumpAreOneOfTheWholeClump) {
   EXPECT_EQ((trial.position(3) - before).norm(), 0);
 }
 
-TEST(Departures, OfTheLastClumpLeaveNothingOfIt) {
+TEST(Departures, OfTheLastClumpRemoveAllOfIt) {
   Description d = description("linear-rolling", stuff, {{{0, 0, 0}, 1e-3, {0, 0, -1}}});
   make_clumps(d, boomerang());
   d["bodies"]["others"] = {
       {"type", "sphere"},
       {"material", "grain"},
-      {"grains",
-       {{"type", "list"}, {"grains", {{{"position", {0, 0, 6e-3}}, {"radius", 1e-3}, {"velocity", {1e-3, 0, 0}}}}}}}};
+      {"source",
+       {{"type", "list"}, {"bodies", {{{"position", {0, 0, 6e-3}}, {"radius", 1e-3}, {"velocity", {1e-3, 0, 0}}}}}}}};
   d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {0, 0, -1e-3}}};
   d["domain"] = {{"low", {-0.01, -0.01, -0.01}}, {"high", {0.01, 0.01, 0.01}}, {"open_sides", {"-z"}}};
   Trial trial(d, 1, BodyState::energy);
@@ -110,9 +110,9 @@ TEST(Departures, AreTheSameBitsForAnyNumberOfThreads) {
   d["domain"] = {{"low", {-1e-3, -1e-3, 2e-3}},
                  {"high", {15e-3, 15e-3, 15e-3}},
                  {"open_sides", {"-z", "+x", "-x", "+y", "-y", "+z"}}};
-  d["bodies"]["grains"]["grains"]["grains"] = [&] {
+  d["bodies"]["grains"]["source"]["bodies"] = [&] {
     Description kept = Description::array();
-    for (const auto& grain : d["bodies"]["grains"]["grains"]["grains"])
+    for (const auto& grain : d["bodies"]["grains"]["source"]["bodies"])
       if (grain["position"][2] > 2.2e-3) kept.push_back(grain);
     return kept;
   }();
@@ -129,18 +129,18 @@ TEST(Departures, AreTheSameBitsForAnyNumberOfThreads) {
 TEST(Departures, EndAStage) {
   const Trial still(falling());
   Condition condition;
-  condition.is.choose("left");
-  std::get<LeftCondition>(condition.is.value()).share = 0.2;
+  condition.is.choose("discharged");
+  std::get<DischargedCondition>(condition.is.value()).fraction = 0.2;
   Trial trial(falling());
   const StageStart start{};
   EXPECT_FALSE(is_met(condition, trial.kernel(), start));
   while (trial.world().departures().empty() && trial.world().time() < 0.2) trial.step();
   EXPECT_TRUE(is_met(condition, trial.kernel(), start));
-  // A later stage's way is from what had left before.
-  std::get<LeftCondition>(condition.is.value()).share = 0.5;
+  // The progress of a later stage counts from the mass discharged before.
+  std::get<DischargedCondition>(condition.is.value()).fraction = 0.5;
   EXPECT_NEAR(progress(condition, trial.kernel(), start).value(), 0.25 / 0.5, 1e-12);
-  EXPECT_NEAR(progress(condition, trial.kernel(), {.share_left = 0.2}).value(), 0.05 / 0.3, 1e-12);
-  EXPECT_EQ(progress(condition, trial.kernel(), {.share_left = 0.5}), 1) << "there before it began";
+  EXPECT_NEAR(progress(condition, trial.kernel(), {.discharged_fraction = 0.2}).value(), 0.05 / 0.3, 1e-12);
+  EXPECT_EQ(progress(condition, trial.kernel(), {.discharged_fraction = 0.5}), 1) << "reached before it began";
 }
 
 TEST(Departures, ThroughAnotherSideAreAnError) {
@@ -149,7 +149,7 @@ TEST(Departures, ThroughAnotherSideAreAnError) {
   Trial trial(d);
   try {
     trial.step(5000);
-    FAIL() << "it went on";
+    FAIL() << "it continued";
   } catch (const NumericsError& e) {
     EXPECT_THAT(e.what(), testing::HasSubstr("left the domain through its lower x side"));
     EXPECT_THAT(e.what(), testing::HasSubstr("/domain/open_sides"));

@@ -21,7 +21,7 @@ constexpr double radius = 1e-3, modulus = 1e7, density = 2600, rate = 20, dt = 1
 double volume(double r) { return 4.0 / 3 * std::numbers::pi * r * r * r; }
 Description steps(int n) { return {{"type", "steps"}, {"value", n}}; }
 
-/// Grows in its first stage, which is the only one.
+/// Grows in its only stage.
 Description growing(Description d, double how_fast = rate) {
   d["stages"][0]["growth"]["rate"] = how_fast;
   return d;
@@ -59,10 +59,10 @@ TEST(Growth, RaisesRadiusMassAndInertiaTogether) {
   EXPECT_NEAR(trial.world().solid_density(), density, 1e-9);
 }
 
-TEST(Growth, MakesTwoGrainsTouchAndPressAsTheirLawSays) {
+TEST(Growth, BringsTwoGrainsIntoContactAccordingToTheirLaw) {
   const double gap = 0.02 * radius, distance = 2 * radius + gap;
   Grown trial(two(gap));
-  // r = distance / 2 after ln(1.01) / rate, in the middle of a step or not.
+  // r = distance / 2 after ln(1.01) / rate, not necessarily at the end of a step.
   const auto touching = static_cast<std::size_t>(std::ceil(std::log(1.01) / rate / dt));
   trial.step(touching - 1);
   EXPECT_TRUE(trial.world().contacts().empty());
@@ -111,7 +111,7 @@ Description crowd(bool clumps, double how_fast = 30, const std::string& law = "l
   const char* const stiffness = law == "hertz-mindlin" ? "young_modulus" : "contact_modulus";
   Description d = description(law, {{stiffness, law == "hertz-mindlin" ? 1e8 : 1e7}, {"density", density}},
                               jumble({8, 8, 8}, spacing, 0.01, 5));
-  for (Description& grain : d["bodies"]["grains"]["grains"]["grains"])
+  for (Description& grain : d["bodies"]["grains"]["source"]["bodies"])
     grain["radius"] = (clumps ? 1.0 : 0.9) * grain["radius"].get<double>();
   if (clumps) make_clumps(d, boomerang());
   const char* const names[3][2] = {{"left", "right"}, {"front", "back"}, {"bottom", "top"}};
@@ -123,9 +123,9 @@ Description crowd(bool clumps, double how_fast = 30, const std::string& law = "l
 }
 
 TEST(Growth, FindsEachContact) {
-  // They come to touch one after the other, far beyond the first skins, which growth alone uses up before.
+  // They come into contact one after the other, far beyond the first skins, which growth alone uses up.
   Description d = crowd(false, 60);
-  for (Description& grain : d["bodies"]["grains"]["grains"]["grains"])
+  for (Description& grain : d["bodies"]["grains"]["source"]["bodies"])
     grain["radius"] = 0.6 * grain["radius"].get<double>(), grain.erase("velocity"), grain.erase("spin");
   Grown trial(d);
   EXPECT_EQ(trial.kernel().state().pairs.touching_count(), 0u);
@@ -137,11 +137,11 @@ TEST(Growth, FindsEachContact) {
       for (std::size_t j = 0; j < i; ++j) touching += (xyz(x[i]) - xyz(x[j])).norm() < x[i].w + x[j].w;
     ASSERT_EQ(trial.kernel().state().pairs.touching_count(), touching) << "step " << trial.world().step();
   }
-  EXPECT_GT(trial.kernel().state().pairs.touching_count(), 600u) << "it came to a packing";
+  EXPECT_GT(trial.kernel().state().pairs.touching_count(), 600u) << "it reached a packing";
   EXPECT_GT(trial.kernel().state().lists.rebuilds(), 10u);
 }
 
-TEST(Growth, GivesTheSameBitsForAnyNumberOfThreadsAndWhoeverLooks) {
+TEST(Growth, GivesTheSameBitsForAnyNumberOfThreadsAndObservers) {
   for (const bool clumps : {false, true}) {
     const Description d = crowd(clumps, clumps ? 100 : 30);
     Grown asked(d, 1);
@@ -183,7 +183,7 @@ TEST(Growth, ScalesAClumpAsAWhole) {
   for (int k = 0; k < 3; ++k)
     EXPECT_NEAR(after.inertia[k], std::pow(factor, 5) * before.inertia[k], 1e-11 * after.inertia[k]);
   EXPECT_NEAR(trial.world().solid_density(), density_before, 1e-9);
-  // What is added moves along: a free clump neither slows down nor spins less.
+  // Added mass has the velocity of the clump: a free clump keeps its velocity and spin.
   EXPECT_NEAR((after.velocity - before.velocity).norm(), 0, 1e-15);
   const double turning =
       before.momentum.dot(before.axes * (before.axes.transpose() * before.momentum).cwiseQuotient(before.inertia));
@@ -193,7 +193,7 @@ TEST(Growth, ScalesAClumpAsAWhole) {
   EXPECT_NEAR(after.centre.x(), 1 + 0.1 * 1000 * dt + (before.centre.x() - 1), 1e-9);
 }
 
-/// What is lacking after 3 ms of growth, over what it put in.
+/// Closure error after 3 ms of growth, over the energy input.
 double closure_of_growth(Description d, double safety, double friction_angle) {
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
   d["materials"]["grain"]["friction_angle"] = friction_angle;
@@ -201,13 +201,13 @@ double closure_of_growth(Description d, double safety, double friction_angle) {
   Grown trial(d, 1, BodyState::energy);
   trial.world().energies();
   while (trial.world().time() < 3e-3) trial.step();
-  const EnergyLedger now = trial.world().energies();
-  EXPECT_GT(now.settings, 10 * now.kinetic) << "growth alone drives this";
+  const Energies now = trial.world().energies();
+  EXPECT_GT(now.settings, 10 * now.kinetic) << "growth is the only input";
   EXPECT_GT(now.elastic() + now.dissipated(), 0.9 * now.settings);
   return std::abs(now.closure_error) / now.settings;
 }
 
-TEST(Growth, LedgerHasWhatItPutsIn) {
+TEST(Growth, EnergyBalanceContainsItsInput) {
   struct Case {
     const char* law;
     bool clumps;
@@ -215,11 +215,11 @@ TEST(Growth, LedgerHasWhatItPutsIn) {
   for (const Case& c : {Case{"linear-rolling", false}, Case{"hertz-mindlin", false}, Case{"linear-rolling", true}}) {
     SCOPED_TRACE(std::string(c.law) + (c.clumps ? ", clumps" : ""));
     const Description d = crowd(c.clumps, c.clumps ? 100 : 30, c.law);
-    // Shear that clumps load deep and unload shallow leaves a thousandth, which does not shrink with the step.
+    // Clumps load shear at large and unload at small overlap: an error of 1e-3, independent of the step.
     const double friction_angle = c.clumps ? 0 : 0.3;
     const double coarse = closure_of_growth(d, 0.4, friction_angle), fine = closure_of_growth(d, 0.1, friction_angle);
     EXPECT_LT(coarse, 2e-3);
-    EXPECT_LT(fine, 0.2 * coarse) << "what is missing is the time step's, at its second order";
+    EXPECT_LT(fine, 0.2 * coarse) << "the error is of second order in the time step";
   }
 }
 
@@ -229,7 +229,7 @@ TEST(Growth, LengthensTheCriticalTimeStep) {
   Grown trial(d);
   const double before = trial.kernel().critical_time_step();
   while (trial.radius_of(0) < 1.3 * radius) trial.step();
-  // dt ∝ √(m / k) ∝ r; it was looked at when bodies had grown by a few hundredths last.
+  // dt ∝ √(m / k) ∝ r; last evaluated a few percent of growth before.
   EXPECT_NEAR(trial.kernel().critical_time_step() / before, 1.3, 0.05);
 }
 
@@ -254,14 +254,14 @@ TEST(Growth, EndsAtAVoidRatioOrAMeanStress) {
   EXPECT_EQ(pressed.summary().steps % 10, 0u);
 }
 
-TEST(Growth, StopsWhereItIsTooFast) {
+TEST(Growth, StopsIfItIsTooFast) {
   Description d = two(radius);
   d["guards"]["travel"] = 0.05;
   d["stages"][0]["growth"]["rate"] = 0.06 / dt;
   const Done done = run(d);
   EXPECT_EQ(done.summary().status, "failed");
   EXPECT_THAT(done.summary().message, HasSubstr("the largest body grows by 0.06184 of the smallest radius in one step, "
-                                                "more than /guards/travel 0.05; let bodies grow more slowly"));
+                                                "more than /guards/travel 0.05; reduce the growth rate of the stage"));
 }
 
 std::string refusal(const Description& d) {
@@ -273,7 +273,7 @@ std::string refusal(const Description& d) {
   return "";
 }
 
-TEST(Growth, IsRefusedWhereItMakesNoSense) {
+TEST(Growth, IsRefusedIfItMakesNoSense) {
   Description d = two(radius);
   EXPECT_EQ(refusal(d), "");
   d["stages"][0]["growth"] = {{"rate", "20 mm"}};
@@ -283,8 +283,10 @@ TEST(Growth, IsRefusedWhereItMakesNoSense) {
   d["stages"][0]["growth"] = Description::object();
   EXPECT_THAT(refusal(d), HasSubstr("/stages/0/growth: missing key \"rate\" [1/s]"));
   d = two(radius);
-  d["bodies"]["grains"]["heavier_below"] = 3 * radius;
-  EXPECT_THAT(refusal(d), HasSubstr("/bodies/grains/heavier_below: found heavier grains where bodies grow in a stage"));
+  d["bodies"]["grains"]["density_scaling"]["below"] = 3 * radius;
+  EXPECT_THAT(
+      refusal(d),
+      HasSubstr("/bodies/grains/density_scaling: found density scaling together with growth of bodies in a stage"));
   d = two(radius);
   d["stages"][0]["until"] = {{"type", "mean-stress"}};
   EXPECT_THAT(refusal(d), HasSubstr("found neither below nor above"));

@@ -1,4 +1,4 @@
-// Each guard trips where it should, saying what, who, when and what to do; none trips on a run that is fine.
+// Each guard stops a run at its limit, and reports the cause, body, time and remedy; none stops a good run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Pushes every body with a force that is not a number from the fifth step on.
+/// Applies a force of NaN to every body from the fifth step on.
 class Poison final : public Engine {
  public:
   void declare(Parameters&) override {}
@@ -48,7 +48,7 @@ TEST(Guards, LeaveAGoodRunAlone) {
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
   d["engines"]["gravity"] = {{"type", "gravity"}};
   d["domain"] = {{"low", {-1, -1, -1}}, {"high", {1, 1, 1}}};
-  d["time_step"]["safety"] = 0.1;  // a bounce may win (ω dt)²/4 of the energy
+  d["time_step"]["safety"] = 0.1;  // an impact may gain (ω dt)²/4 of the energy
   EXPECT_EQ(complaint(d, 20000), "") << "a bouncing ball neither gains energy nor leaves";
 }
 
@@ -58,7 +58,7 @@ TEST(Guards, Overlap) {
   EXPECT_THAT(text, testing::MatchesRegex(
                         "step [0-9]+, time [0-9.e-]+ s: body 0 at \\(.*\\) m overlaps body 1 by 0\\.[0-9]+ of its "
                         "radius, more than /guards/overlap 0\\.2; the contact modulus may be too low for this "
-                        "load, or bodies began inside each other"));
+                        "load, or bodies overlapped at the start"));
   Description allowed = two(0, 2);
   EXPECT_EQ(complaint(allowed, 200), "");
   allowed["guards"]["overlap"] = 0.02;
@@ -86,7 +86,7 @@ TEST(Guards, WallThatPassesThroughBodies) {
   EXPECT_EQ(complaint(d, 3), "") << "however fast it slides along itself";
   d["walls"]["lid"]["motion"]["velocity"] = {0, 0, 51};
   EXPECT_THAT(complaint(d, 3), HasSubstr("wall \"lid\" moves 0.051 of the smallest radius in one step, more than "
-                                         "/guards/travel 0.05; a wall that fast passes through bodies"));
+                                         "/guards/travel 0.05; a wall this fast passes through bodies"));
 }
 
 TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {
@@ -105,15 +105,15 @@ TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {
   }
   ASSERT_GT(overlap, 5e-6);
   ASSERT_EQ(t.kernel().state().lists.rebuilds(), 1u);
-  // k grows as the root of the overlap; the limit of a ball between plates is 2 / sqrt(2 k / m).
+  // k ∝ √overlap; the limit of a ball between plates is 2 / sqrt(2 k / m).
   const double mass = 2600 * 4 / 3 * std::numbers::pi * 1e-9, modulus = 1e8 / (1 - 0.04) / 2;
   const double k = 2 * modulus * std::sqrt(1e-3 * overlap);
-  EXPECT_LE(least, 0.8 * 2 / std::sqrt(2 * k / mass) * 1.05) << "a fifth more overlap is 5 % of the step";
+  EXPECT_LE(least, 0.8 * 2 / std::sqrt(2 * k / mass) * 1.05) << "20 % more overlap changes the step by 5 %";
   EXPECT_LT(least, 0.8 * first);
 }
 
 TEST(TimeStep, IsShortEnoughForAnImpactBeforeItBegins) {
-  // A wall strikes one that rests, two meet, and one falls.
+  // A wall hits a body at rest, two bodies collide, and one falls.
   const Description solid{{"young_modulus", 1e8}, {"poisson_ratio", 0.2}, {"friction_angle", 0}};
   const Description lid = plane({0, 0, 2.3e-3}, -Vec3::UnitZ()), floor = plane(Vec3::Zero(), Vec3::UnitZ());
   Description struck = description("hertz-mindlin", solid, {{{0, 0, 1e-3}, 1e-3}});
@@ -131,15 +131,15 @@ TEST(TimeStep, IsShortEnoughForAnImpactBeforeItBegins) {
       for (const Contact& c : t.world().contacts()) overlap = std::max(overlap, c.overlap);
     }
     ASSERT_GT(overlap, 5e-6);
-    // Two alike that go as deep.
+    // Two equal bodies with the same overlap.
     const double mass = 2600 * 4 / 3 * std::numbers::pi * 1e-9, modulus = 1e8 / (1 - 0.04) / 2;
     const double k = 2 * modulus * std::sqrt(0.5e-3 * overlap);
     EXPECT_LE(before, 0.8 * 2 / std::sqrt(2 * k / mass) * 1.05);
-    EXPECT_GE(before, 0.8 * 2 / std::sqrt(2 * k / mass) * 0.8) << "not shorter than it need be";
+    EXPECT_GE(before, 0.8 * 2 / std::sqrt(2 * k / mass) * 0.8) << "not shorter than necessary";
   }
 }
 
-TEST(Guards, LeaveTheForcesOfWhereTheRunStopped) {
+TEST(Guards, KeepTheForcesAtTheStop) {
   const double modulus = 1e6, radius = 1e-3;
   Description d = description("linear-frictional", {{"contact_modulus", modulus}, {"friction_angle", 0}},
                               {{{0, 0, 0}, radius, {0.5, 0, 0}}, {{2.0001 * radius, 0, 0}, radius, {-0.5, 0, 0}}});
@@ -154,8 +154,8 @@ TEST(Guards, LeaveTheForcesOfWhereTheRunStopped) {
   EXPECT_EQ(f[0].x, -f[1].x);
 }
 
-TEST(Guards, EnergyFromNowhere) {
-  // ω dt = 2.2: each touch throws the ball back faster.
+TEST(Guards, SpuriousEnergy) {
+  // ω dt = 2.2: each impact increases the speed of the ball.
   Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
                               {{{0, 0, 1.01e-3}, 1e-3}});
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
@@ -165,15 +165,15 @@ TEST(Guards, EnergyFromNowhere) {
   d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
   EXPECT_THAT(complaint(d, 3000),
               testing::MatchesRegex(
-                  "step [0-9]+, time [0-9.e-]+ s: energy came from nowhere: [0-9.e+-]+ J more than was put in, "
+                  "step [0-9]+, time [0-9.e-]+ s: energy was created: [0-9.e+-]+ J more than the work done, "
                   "[0-9.e+-]+ of the largest energy so far; /guards/energy allows 0\\.05; the time step may be "
                   "too large for the stiffest contact; try a smaller /time_step/safety"));
   d["time_step"]["value"] = 0.1 * dt;
   EXPECT_EQ(complaint(d, 3000), "");
 }
 
-TEST(Guards, EnergyFromNowhereInAStageThatIsSoonOver) {
-  // As above; over before any look but that at its end.
+TEST(Guards, SpuriousEnergyInAShortStage) {
+  // As above; the stage ends before the first regular check.
   Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
                               {{{0, 0, 1.0001e-3}, 1e-3, {0, 0, -0.1}}});
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
@@ -190,7 +190,7 @@ TEST(Guards, EnergyFromNowhereInAStageThatIsSoonOver) {
   EXPECT_NO_THROW(stable.kernel().end_stage());
 }
 
-std::string complaint_by_ledger(const Description& d, std::size_t steps) {
+std::string complaint_by_energy(const Description& d, std::size_t steps) {
   try {
     Trial t(d, 1, BodyState::energy);
     t.world().energies();
@@ -201,7 +201,7 @@ std::string complaint_by_ledger(const Description& d, std::size_t steps) {
   return "";
 }
 
-/// Rough grains without dashpots that fly about in a periodic cell; `turn`: ω dt of two in contact.
+/// A gas of rough grains without dashpots in a periodic cell; `turn`: ω dt of two in contact.
 Description rough_gas(double turn) {
   constexpr double modulus = 1e7, spacing = 1e-3, density = 2500, radius = 0.5 * spacing;
   std::vector<Grain> grains = jumble({5, 5, 5}, 1.3 * spacing, 0.3, 3);
@@ -216,21 +216,21 @@ Description rough_gas(double turn) {
   return d;
 }
 
-TEST(Guards, EnergyFromNowhereThatFrictionHides) {
+TEST(Guards, SpuriousEnergyHiddenByFriction) {
   const std::size_t steps = 20000;
-  EXPECT_EQ(complaint(rough_gas(1.56), steps), "") << "friction takes what appears";
-  EXPECT_THAT(complaint_by_ledger(rough_gas(1.56), steps),
-              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: energy came from nowhere: [0-9.e+-]+ J more than "
-                                    "was put in, [0-9.e+-]+ of the largest energy so far and of what was dissipated; "
+  EXPECT_EQ(complaint(rough_gas(1.56), steps), "") << "friction dissipates the gain";
+  EXPECT_THAT(complaint_by_energy(rough_gas(1.56), steps),
+              testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: energy was created: [0-9.e+-]+ J more than "
+                                    "the work done, [0-9.e+-]+ of the largest energy so far plus dissipation; "
                                     "/guards/energy allows 0\\.05; the time step may be too large for the stiffest "
                                     "contact; try a smaller /time_step/safety"));
-  EXPECT_EQ(complaint_by_ledger(rough_gas(0.156), steps), "");
+  EXPECT_EQ(complaint_by_energy(rough_gas(0.156), steps), "");
   Description chosen = rough_gas(1);
   chosen["time_step"] = Description::object();
-  EXPECT_EQ(complaint_by_ledger(chosen, steps), "") << "at the step that grit chooses";
+  EXPECT_EQ(complaint_by_energy(chosen, steps), "") << "at the default time step";
 }
 
-TEST(Guards, EnergyFromNowhereWhereItIsPulledAlongAPeriodicAxis) {
+TEST(Guards, SpuriousEnergyWithAForceAlongAPeriodicAxis) {
   // ω dt = 2.2, as above.
   Description d = description("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0}, {"rolling_limit", 0}},
                               {{{0.05, 0, 1.01e-3}, 1e-3}});
@@ -240,13 +240,13 @@ TEST(Guards, EnergyFromNowhereWhereItIsPulledAlongAPeriodicAxis) {
   const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
   d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
   d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
-  EXPECT_EQ(complaint(d, 3000), "") << "there is no potential, and nobody asked for the ledger";
-  EXPECT_THAT(complaint_by_ledger(d, 3000), HasSubstr("energy came from nowhere"));
+  EXPECT_EQ(complaint(d, 3000), "") << "there is no potential, and no energy balance";
+  EXPECT_THAT(complaint_by_energy(d, 3000), HasSubstr("energy was created"));
   d["time_step"]["value"] = 0.1 * dt;
-  EXPECT_EQ(complaint_by_ledger(d, 3000), "");
+  EXPECT_EQ(complaint_by_energy(d, 3000), "");
 }
 
-TEST(Guards, EnergyFromNowhereWhileACellDoesWorkOrBodiesAreHeld) {
+TEST(Guards, SpuriousEnergyWhileACellDoesWorkOrBodiesAreHeld) {
   // ω dt = 2.2, as above.
   for (const bool held : {false, true}) {
     Description d =
@@ -260,10 +260,10 @@ TEST(Guards, EnergyFromNowhereWhileACellDoesWorkOrBodiesAreHeld) {
     const double mass = 2600 * 4.18879e-9, dt = 2.2 / std::sqrt(1e4 / mass);
     d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
     d["guards"] = {{"overlap", 1e9}, {"travel", 1e9}};
-    EXPECT_EQ(complaint(d, 3000), "") << "nobody asked for the ledger";
-    EXPECT_THAT(complaint_by_ledger(d, 3000), HasSubstr("energy came from nowhere"));
+    EXPECT_EQ(complaint(d, 3000), "") << "no energy balance";
+    EXPECT_THAT(complaint_by_energy(d, 3000), HasSubstr("energy was created"));
     d["time_step"]["value"] = 0.1 * dt;
-    EXPECT_EQ(complaint_by_ledger(d, 3000), "");
+    EXPECT_EQ(complaint_by_energy(d, 3000), "");
   }
 }
 
@@ -280,18 +280,18 @@ TEST(Guards, NotANumber) {
   EXPECT_EQ(complaint(d, 5), "");
   EXPECT_THAT(complaint(d, 6),
               testing::MatchesRegex("step 6, time 6e-06 s: body [01] at .* has a velocity that is not a number; "
-                                    "two bodies may have begun at one place, or the time step is too large"));
+                                    "two bodies may have started at the same point, or the time step is too large"));
 }
 
 TEST(Guards, LeftTheDomain) {
   Description d = two(1e-3, 1);
   d["domain"] = {{"low", {-2e-3, -2e-3, -2e-3}}, {"high", {6e-3, 2e-3, 2e-3}}};
-  d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {30, 0, 0};
+  d["bodies"]["grains"]["source"]["bodies"][1]["velocity"] = {30, 0, 0};
   EXPECT_THAT(complaint(d, 1000),
               testing::MatchesRegex("step [0-9]+, time [0-9.e-]+ s: body 1 at \\(0.006.*\\) m left the domain "
                                     "through its upper x side; close the domain there with a wall, make it "
                                     "larger, or name the side in /domain/open_sides"));
-  d["bodies"]["grains"]["grains"]["grains"][1]["velocity"] = {0, 0, -30};
+  d["bodies"]["grains"]["source"]["bodies"][1]["velocity"] = {0, 0, -30};
   EXPECT_THAT(complaint(d, 1000), HasSubstr("left the domain through its lower z side"));
 }
 
@@ -300,14 +300,14 @@ TEST(Guards, StepAboveTheCriticalOne) {
   d["time_step"]["value"] = 1e-4;
   EXPECT_THAT(complaint(d, 1),
               testing::MatchesRegex("step 0, time 0 s: the time step 0.0001 s is above the critical one, "
-                                    "[0-9.e-]+ s; leave out /time_step/value, or say \"allow_unstable\": true"));
+                                    "[0-9.e-]+ s; remove /time_step/value, or set /time_step/allow_unstable to true"));
   d["time_step"]["allow_unstable"] = true;
   d["guards"] = {{"travel", 1e9}, {"overlap", 1e9}};
   EXPECT_EQ(complaint(d, 1), "");
 }
 
 TEST(Guards, CountTheWorkOfAServoByTheForcesAtBothEndsOfAStep) {
-  // A servo moves because of the force at the start of a step; by that alone its work would come out far too small.
+  // A servo moves according to the force at the start of a step; with this force alone its work would be far too small.
   constexpr double radius = 1e-3;
   Description d = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, radius}, radius}});
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());

@@ -1,4 +1,4 @@
-// What contacts remember outlives searches and new orders of the bodies.
+// Contact history is kept in searches and reorderings of the bodies.
 #include <gtest/gtest.h>
 
 #include "support/memories.hpp"
@@ -24,7 +24,7 @@ double apart(const Memories& a, const Memories& b) {
   double difference = 0, size = 0;
   for (const auto& [pair, state] : a)
     for (std::size_t f = 0; f < state.size(); ++f) {
-      // Shear forces, in newtons, are some thousand times the moments; each field against its own size.
+      // Shear forces [N] are some thousand times the moments [N m]; each field is compared to its own magnitude.
       const double other = b.contains(pair) ? b.at(pair)[f] : std::numeric_limits<double>::infinity();
       difference = std::max(difference, std::abs(state[f] - other) * (f < 3 ? 1 : 1e3));
       size = std::max(size, std::abs(state[f]));
@@ -32,7 +32,7 @@ double apart(const Memories& a, const Memories& b) {
   return difference / size;
 }
 
-TEST(History, OutlivesASearchAndANewOrder) {
+TEST(History, IsKeptInASearchAndAReordering) {
   Trial t(packing(3));
   t.step(30);
   std::size_t moved = 0;
@@ -50,12 +50,12 @@ TEST(History, OutlivesASearchAndANewOrder) {
     moved += !std::equal(order.begin(), order.end(), t.world().ids().begin());
     t.step(25);
   }
-  EXPECT_GE(moved, 2u) << "bodies were put in order anew";
+  EXPECT_GE(moved, 2u) << "bodies were reordered";
 }
 
-TEST(History, GoesAlongWhenTwoBodiesChangePlaces) {
-  // A pair that lies aslant crosses the cells by which bodies are ordered: now one comes first, now the other. Held on
-  // their way, the two press on each other and roll.
+TEST(History, IsKeptWhenTwoBodiesSwapIndices) {
+  // An inclined pair crosses the cells by which bodies are ordered, so that their order alternates. On a prescribed
+  // path, the two are pressed together and roll.
   const double r = 1e-3, speed = 5, lie = 0.98 * std::sqrt(2) * r;
   std::vector<Grain> grains{{{-0.5 * lie, lie - 2 * r, 0}, r, {0, speed, 0}, {0, 0, 20}},
                             {{0.5 * lie, -2 * r, 0}, r, {0, speed, 0}, {0, 10, 20}},
@@ -81,7 +81,7 @@ TEST(History, GoesAlongWhenTwoBodiesChangePlaces) {
   EXPECT_GT(never_swapped, 50u);
 }
 
-TEST(History, SearchingAtEveryStepOrRarelyGivesTheSameWay) {
+TEST(History, SearchingAtEveryStepOrRarelyGivesTheSamePath) {
   Trial rarely(packing()), always(packing());
   std::size_t swapped = 0;
   for (int i = 0; i < 150; ++i) {
@@ -94,7 +94,7 @@ TEST(History, SearchingAtEveryStepOrRarelyGivesTheSameWay) {
   double worst = 0;
   for (std::uint32_t id = 0; id < 343; ++id)
     worst = std::max(worst, (rarely.position(id) - always.position(id)).norm() / 1e-3);
-  // Sums in another order differ at round-off, which colliding grains let grow.
+  // The order of sums causes round-off, which collisions amplify.
   EXPECT_LT(worst, 1e-11);
   EXPECT_LT(apart(memories(rarely), memories(always, &swapped)), 1e-7);
   EXPECT_GT(swapped, 100u);

@@ -1,4 +1,4 @@
-// The neighbour search misses no pair: against every body with every other, and step by step in a run of fast grains.
+// The neighbour search misses no pair: against brute force over all pairs, and at each step of a run with fast grains.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,7 @@ namespace {
 
 using Pair = std::tuple<std::uint32_t, std::uint32_t, int>;  // a < b by index, image of b
 
-/// All pairs nearer than their skins, by trying all.
+/// All pairs closer than their skins, by brute force.
 std::set<Pair> brute_force(std::span<const Row> x, const Cell& cell, const Skins& skins) {
   const Vec3 period = cell.high - cell.low;
   std::set<Pair> pairs;
@@ -31,7 +31,7 @@ std::set<Pair> brute_force(std::span<const Row> x, const Cell& cell, const Skins
   return pairs;
 }
 
-/// Radii over a decade, about as many of each size in volume; every fourth body sits on a side, an edge or a corner.
+/// Radii over a decade, about as many of each size in volume; every fourth body is on a side, an edge or a corner.
 Bodies scattered(std::size_t count, const Vec3& low, const Vec3& high, double smallest, Random& random) {
   Bodies bodies;
   for (std::size_t i = 0; i < count; ++i) {
@@ -57,7 +57,7 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
       const Bodies bodies = scattered(700, low, high, 0.1, random);
       NeighbourSearch search;
       Skins skins;
-      skins.lay_on(skin, 0);
+      skins.reset(skin, 0);
       search.build(bodies, cell, skins);
       std::vector<Candidate> found;
       for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
@@ -80,18 +80,18 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
     }
 }
 
-/// At every step, what touches is what brute force says, and no step goes by without a search for too long.
+/// At every step, the contacts are those of brute force, and searches are not overdue.
 void expect_no_missed_pair(const Description& d, std::size_t steps) {
   Trial t(d);
   Skins none;
-  none.lay_on(std::vector(chunks_of(t.world().positions().size()), 0.0), 0);
+  none.reset(std::vector(chunks_of(t.world().positions().size()), 0.0), 0);
   for (std::size_t i = 0; i < steps; ++i, t.step()) {
     std::set<Pair> touching;
     const World& world = t.world();
     const ContactTable& pairs = t.kernel().state().pairs;
     for (std::size_t c = 0; c < pairs.candidates(); ++c)
-      if (pairs.touches(c)) touching.emplace(pairs.a(c), pairs.b(c), pairs.image(c));
-    // Bodies may lie beyond a periodic side until the next search; images then count from where they lie.
+      if (pairs.contacts(c)) touching.emplace(pairs.a(c), pairs.b(c), pairs.image(c));
+    // Bodies may lie beyond a periodic side until the next search; images then refer to their actual position.
     ASSERT_EQ(touching, brute_force(world.positions(), world.cell(), none)) << "step " << world.step();
     std::set<std::tuple<std::uint32_t, std::uint32_t>> on_walls, on_walls_too;
     for (const Contact& c : world.contacts())
@@ -99,10 +99,10 @@ void expect_no_missed_pair(const Description& d, std::size_t steps) {
     for (std::uint32_t w = 0; w < world.walls().size(); ++w) {
       const auto& state = t.kernel().state().walls;
       for (std::uint32_t a = 0; a < world.positions().size(); ++a) {
-        std::vector<Touch> touch;
+        std::vector<SurfaceContact> contact;
         const Sphere sphere{xyz(world.positions()[a]), world.positions()[a].w, a};
-        state.geometry(w).touch(state.pose(w), {&sphere, 1}, touch);
-        if (!touch.empty()) on_walls_too.emplace(a, w);
+        state.geometry(w).find_contacts(state.pose(w), {&sphere, 1}, contact);
+        if (!contact.empty()) on_walls_too.emplace(a, w);
       }
     }
     ASSERT_EQ(on_walls, on_walls_too) << "step " << world.step();
@@ -111,7 +111,7 @@ void expect_no_missed_pair(const Description& d, std::size_t steps) {
   EXPECT_LT(t.kernel().state().lists.rebuilds(), steps / 2) << "the skin is used";
 }
 
-const Vec3 block(3e-3, 3e-3, 3e-3);  // where a solid box turns
+const Vec3 block(3e-3, 3e-3, 3e-3);  // position of a rotating solid box
 
 /// Some large, most small, so that they have room to fly.
 std::vector<Grain> loose(const std::array<int, 3>& count, double speed) {
@@ -149,8 +149,8 @@ TEST(NeighbourSearch, MissesNoPairOfFastGrainsBetweenMovingWalls) {
   expect_no_missed_pair(d, 900);
 }
 
-TEST(NeighbourSearch, MissesNoPairWhereAWallBeginsToTurn) {
-  // Nobody else moves before it is hit: whether a search is due, the wall alone says.
+TEST(NeighbourSearch, MissesNoPairWhereAWallStartsToRotate) {
+  // Nothing else moves before it is hit: only the wall makes a search due.
   auto grains = loose({6, 6, 6}, 0);
   const Vec3 clear(2.1e-3, 8e-4, 8e-4);
   std::erase_if(grains,
@@ -175,7 +175,7 @@ TEST(NeighbourSearch, MissesNoPairWhereFastGrainsMeetSlowOnes) {
 }
 
 TEST(NeighbourSearch, MissesNoPairOfAMixtureOfOneToAHundred) {
-  // Dust all around a boulder, falling on it while it flies away.
+  // Dust around a boulder that falls on it while it flies away.
   constexpr double large = 25e-3, small = 0.25e-3;
   constexpr int dust = 600;
   std::vector<Grain> grains{{Vec3::Zero(), large, {3, 0, 0}}};

@@ -1,4 +1,4 @@
-// Periodic sides: no body can tell where they are, at rest or in a cell that deforms.
+// Periodic sides: their position has no effect on bodies, at rest or in a deforming cell.
 #include <gtest/gtest.h>
 
 #include "support/packing.hpp"
@@ -42,7 +42,7 @@ double apart(const Trial& a, const Trial& b, std::uint32_t bodies) {
   compare([](const Trial& t, std::uint32_t id) {
     const Cell& cell = t.world().cell();
     const std::size_t i = index_of(t.world(), id);
-    // Velocities are half a step old, and so is their flow.
+    // Velocities are half a step old, and so is the mean flow.
     const Vec3 v = xyz(t.world().velocities()[i]), dt = Vec3::Constant(t.kernel().state().time.previous_dt);
     const Vec3 from_middle = xyz(t.world().positions()[i]) - 0.5 * (cell.low + cell.high);
     const Vec3 before = from_middle.cwiseQuotient(Vec3::Ones() + cell.strain_rate.cwiseProduct(dt));
@@ -52,7 +52,7 @@ double apart(const Trial& a, const Trial& b, std::uint32_t bodies) {
 }
 
 TEST(Periodic, GrainsThatMeetAcrossASideFeelTheSame) {
-  // Aslant and spinning, through a face, an edge and a corner.
+  // Oblique, with spin, through a face, an edge and a corner.
   const std::vector<Grain> two{{{2.2e-3, 3e-3, 3.1e-3}, 0.5e-3, {3, 1, 0.5}, {100, 200, -300}},
                                {{3.4e-3, 3.5e-3, 3.6e-3}, 0.8e-3, {-1, -0.5, 0}, {0, -500, 50}}};
   for (const Vec3& shift : {Vec3(3.2e-3, 0, 0), Vec3(3.2e-3, 3.75e-3, 0), Vec3(-2.8e-3, 3.75e-3, 4.65e-3)}) {
@@ -66,7 +66,7 @@ TEST(Periodic, GrainsThatMeetAcrossASideFeelTheSame) {
       ASSERT_LT(apart(middle, across, 2), 1e-9) << middle.world().step();
     }
     EXPECT_GT(touching, 50u);
-    EXPECT_EQ(middle.kernel().state().pairs.touching_count(), 0u) << "they came and went";
+    EXPECT_EQ(middle.kernel().state().pairs.touching_count(), 0u) << "they have collided and separated";
   }
 }
 
@@ -74,20 +74,20 @@ TEST(Periodic, PackingMayBeShiftedAndWrapped) {
   const auto grains = jumble({6, 7, 8}, 1e-3, 0.1, 9);
   const auto bodies = static_cast<std::uint32_t>(grains.size());
   for (const Vec3& rate : {Vec3(0, 0, 0), Vec3(-30, 20, -10)}) {
-    // With a mean flow bodies begin at rest in it wherever they are.
+    // With a mean flow all bodies start at rest relative to it.
     Trial one(in_cell(grains, Vec3::Zero(), rate)), other(in_cell(grains, {1.3e-3, -2.9e-3, 5.1e-3}, rate));
     EXPECT_LT(apart(one, other, bodies), 1e-12);
     one.step(60), other.step(60);
     EXPECT_GT(one.kernel().state().pairs.touching_count(), 500u);
-    // Sums in another order part at round-off, and colliding grains part faster.
+    // The order of sums causes round-off, which collisions amplify.
     EXPECT_LT(apart(one, other, bodies), 1e-9) << rate.transpose();
   }
 }
 
-/// Where a body is tells how far it has gone only if what it jumps by at a side is known.
-TEST(Periodic, DisplacementsGoOnAcrossSides) {
+/// Displacements need the jumps of positions at periodic sides.
+TEST(Periodic, DisplacementsContinueAcrossSides) {
   for (const Vec3& rate : {Vec3(0, 0, 0), Vec3(-30, 20, -10)}) {
-    // Across several sides, back and forth, past each other and changing places in memory.
+    // Across several sides, back and forth, past each other and swapping indices.
     std::vector<Grain> grains{{{2e-3, 3e-3, 3e-3}, 0.5e-3, {40, 3, -25}}, {{4.5e-3, 1e-3, 7e-3}, 0.4e-3, {-30, 0, 7}}};
     Trial t(in_cell(grains, Vec3::Zero(), rate), 1, BodyState::displacement);
     std::vector<Vec3> gone(2, Vec3::Zero());
@@ -104,10 +104,10 @@ TEST(Periodic, DisplacementsGoOnAcrossSides) {
   }
 }
 
-TEST(Periodic, TakesABodyJustPastASideAndNoneFarther) {
+TEST(Periodic, AcceptsABodyJustPastASideAndNoneFarther) {
   const auto at = [](double x) {
     Description d = in_cell({{Vec3(3e-3, 3e-3, 3e-3), 1e-3}}, Vec3::Zero());
-    d["bodies"]["grains"]["grains"]["grains"][0]["position"][0] = x;
+    d["bodies"]["grains"]["source"]["bodies"][0]["position"][0] = x;
     return d;
   };
   const Trial past(at(-0.9e-3));
@@ -116,7 +116,7 @@ TEST(Periodic, TakesABodyJustPastASideAndNoneFarther) {
 }
 
 TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {
-  // Too far apart to touch, from any place, for 25 % of strain: positions keep their places in the cell.
+  // Without contact up to 25 % of strain: relative positions in the cell are constant.
   auto grains = jumble({6, 7, 8}, 1e-3, 0, 10);
   for (Grain& g : grains) g.radius *= 0.3;
   Trial t(in_cell(grains, {0.3e-3, 0, 0}, {-50, 40, 0}));
@@ -148,7 +148,7 @@ TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {
   one.step(20), other.step(20);
   for (Trial* t : {&one, &other}) t->begin_stage(then, 0, "then"), t->kernel().find_forces();
   one.step(20), other.step(20);
-  // The flow of the step before the change counts by its new rate: dt ε̇² over the cell, against what grains do.
+  // The flow of the step before the change is taken with the new rate: dt ε̇² over the cell, small against grain motion.
   EXPECT_LT(apart(one, other, 6 * 7 * 8), 5e-5);
 }
 

@@ -10,7 +10,7 @@ using testing::ElementsAre;
 
 class Evaluation : public testing::Test {
  protected:
-  // 0 looks at 1 and 2, 2 looks at 3.
+  // 0 reads 1 and 2, 2 reads 3.
   Evaluation() {
     readiness_.build({{1, 2}, {}, {3}, {}});
     readiness_.restart();
@@ -24,15 +24,15 @@ class Evaluation : public testing::Test {
   Readiness readiness_;
 };
 
-TEST_F(Evaluation, InRisingOrderLetsEachMoveAtOnce) {
+TEST_F(Evaluation, InAscendingOrderLetsEachMoveAtOnce) {
   EXPECT_THAT(in_order({0, 1, 2, 3}), ElementsAre(true, true, true, true));
 }
 
-TEST_F(Evaluation, HoldsBackThoseThatOthersHaveYetToLookAt) {
+TEST_F(Evaluation, HoldsBackBodiesThatOthersStillRead) {
   EXPECT_THAT(in_order({3, 1, 0, 2}), ElementsAre(false, false, true, true));
 }
 
-TEST_F(Evaluation, BeginsAnew) {
+TEST_F(Evaluation, StartsAgain) {
   in_order({0, 1, 2, 3});
   readiness_.restart();
   EXPECT_THAT(in_order({3, 2, 1, 0}), ElementsAre(false, false, false, true));

@@ -1,4 +1,4 @@
-// The same bits for any number of threads, and whether or not forces are asked for.
+// The same bits for any number of threads, with or without queries of forces.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,7 +11,7 @@ namespace {
 
 const Description sand{{"contact_modulus", 1e6}, {"density", 2600}};
 
-/// 2744 grains between six walls: a lid presses by a servo, another slides along.
+/// 2744 grains between six walls: a servo-controlled lid, another wall slides.
 Description boxed() {
   const double spacing = 1e-3;
   const Vec3 low = Vec3::Zero(), high = Vec3::Constant(14 * spacing);
@@ -64,32 +64,31 @@ void expect_same_bits(const Description& d) {
     }
   }
   EXPECT_GT(asked.kernel().state().pairs.touching_count(), 2744u) << "a packing";
-  EXPECT_GT(asked.kernel().state().lists.rebuilds(), 8u) << "bodies are put in order anew in between";
+  EXPECT_GT(asked.kernel().state().lists.rebuilds(), 8u) << "bodies are reordered in between";
 }
 
-/// The ledger of energies takes loops of its own, and is summed in one order, whether or not forces are asked for.
-void expect_ledger_changes_nothing(const Description& d) {
+/// The energy balance uses separate loops and a fixed order of sums, with or without queries of forces.
+void expect_energies_change_nothing(const Description& d) {
   Trial without(d, 2), with(d, 2, BodyState::energy), other(d, 7, BodyState::energy);
   for (Trial* trial : {&with, &other}) trial->world().energies();
   without.step_on(700), with.step_on(700), other.step(700);
   EXPECT_TRUE(same_bits(without.kernel(), with.kernel()));
-  const EnergyLedger a = with.world().energies(), b = other.world().energies();
+  const Energies a = with.world().energies(), b = other.world().energies();
   EXPECT_GT(a.friction, 0);
-  for (const auto entry :
-       {&EnergyLedger::kinetic, &EnergyLedger::elastic_normal, &EnergyLedger::elastic_shear,
-        &EnergyLedger::elastic_rolling, &EnergyLedger::friction, &EnergyLedger::rolling, &EnergyLedger::viscosity,
-        &EnergyLedger::local_damping, &EnergyLedger::gravitational, &EnergyLedger::walls, &EnergyLedger::cell,
-        &EnergyLedger::engines, &EnergyLedger::settings, &EnergyLedger::closure_error})
+  for (const auto entry : {&Energies::kinetic, &Energies::elastic_normal, &Energies::elastic_shear,
+                           &Energies::elastic_rolling, &Energies::friction, &Energies::rolling, &Energies::viscosity,
+                           &Energies::local_damping, &Energies::gravitational, &Energies::walls, &Energies::cell,
+                           &Energies::engines, &Energies::settings, &Energies::closure_error})
     EXPECT_EQ(a.*entry, b.*entry);
 }
 
 TEST(SameBits, WhetherOrNotEnergiesAreKept) {
-  expect_ledger_changes_nothing(boxed());
-  expect_ledger_changes_nothing(periodic());
-  expect_ledger_changes_nothing(stiffening());
+  expect_energies_change_nothing(boxed());
+  expect_energies_change_nothing(periodic());
+  expect_energies_change_nothing(stiffening());
   Description held = periodic();
   held["engines"]["hold"] = {{"type", "hold"}}, held["guards"]["overlap"] = 0.9;
-  expect_ledger_changes_nothing(held);
+  expect_energies_change_nothing(held);
 }
 
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
@@ -128,7 +127,7 @@ TEST(SameBits, OfOneThatFallsAndShortensTheTimeStep) {
   EXPECT_LT(asked.world().dt(), 0.8 * first);
 }
 
-TEST(SameBits, AreToldFromOthers) {
+TEST(SameBits, DifferFromOthers) {
   Trial one(periodic()), other(periodic());
   EXPECT_TRUE(same_bits(one.kernel(), other.kernel()));
   one.step();

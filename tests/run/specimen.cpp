@@ -1,4 +1,4 @@
-// Where the part of the world ends that averages are taken over.
+// Bounds of the specimen, the region over which averages are taken.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,8 +32,8 @@ TEST(Specimen, EndsAtTheNearFaceOfABlock) {
   EXPECT_EQ(above.low, Vec3(0, 0, 2.5));
 }
 
-/// A floor with grooves from z = 0 to −0.1, tips 0.4 apart and flat between; above it waves from z = 1 to 0.8, a sheet
-/// with two sides, a cone of 45° that bodies are in, and a solid block.
+/// A floor with grooves from z = 0 to −0.1, tips 0.4 apart and flat between; above it a sinusoidal surface from z = 1
+/// to 0.8, a sheet with two sides, a hollow cone of 45°, and a solid block.
 class Clearances : public testing::Test {
  protected:
   Clearances() {
@@ -55,7 +55,7 @@ class Clearances : public testing::Test {
     started_.emplace(scene_of(d));
     kernel_ = &started_->kernel;
   }
-  /// From wall `name`, which is to be nearer than 3.
+  /// From wall `name`, at a distance below 3.
   Clearance from(const std::string& name, const Vec3& point) const {
     const auto found = kernel_->world().clearance(index(name), point, 3);
     if (!found) throw Error("too far from " + name);

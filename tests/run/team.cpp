@@ -8,7 +8,7 @@
 namespace grit::team_tests {
 namespace {
 
-TEST(Team, HandsOnWhatWorkThrowsAndWorksOn) {
+TEST(Team, ForwardsExceptionsAndContinues) {
   for (const unsigned threads : {1u, 3u}) {
     Team team(threads);
     auto faulty = [](std::size_t chunk) {

@@ -1,22 +1,22 @@
 // Closed forms of silos and sand, against published values, limits, and the balances that they come from.
-#include "grit/toolkit/closed_forms.hpp"
+#include "grit/toolkit/analytical_solutions.hpp"
 
 #include <gtest/gtest.h>
 
-namespace grit::closed_forms {
+namespace grit::analytical_solutions {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
 /// 0.2 × 0.5 × 0.6 m.
-PlaneSilo silo(double rubbing_walls, double unit_weight, double stress_ratio, double wall_friction_angle) {
+PlaneSilo silo(double walls_with_friction, double unit_weight, double stress_ratio, double wall_friction_angle) {
   return {.width = 0.2,
           .height = 0.5,
           .depth = 0.6,
           .unit_weight = unit_weight,
           .stress_ratio = stress_ratio,
           .wall_friction = std::tan(wall_friction_angle * degree),
-          .rubbing_walls = rubbing_walls};
+          .walls_with_friction = walls_with_friction};
 }
 
 // Grabowski (2024), table 5.3, of grooved walls with R_n = 1, 0.25 and 0.01.
@@ -32,14 +32,14 @@ TEST(PlaneSilo, GivesTheForcesOfTheReference) {
 TEST(PlaneSilo, BearsItsWholeWeightOnTheBottomWhereItIsShallow) {
   PlaneSilo shallow = silo(2, 16e3, 0.5, 30);
   shallow.height = 1e-5;
-  EXPECT_NEAR(shallow.bottom_share(), 1, 2e-5);
+  EXPECT_NEAR(shallow.bottom_fraction(), 1, 2e-5);
   EXPECT_NEAR(shallow.bottom_force(), 16e3 * 0.2 * 1e-5 * 0.6, 1e-4 * shallow.weight());
   EXPECT_NEAR(shallow.vertical_stress(1e-5), 0.16, 1e-5);
   const PlaneSilo smooth = silo(2, 16e3, 0.5, 0);
-  EXPECT_EQ(smooth.bottom_share(), 1);
-  EXPECT_EQ(smooth.wall_shear_share(), 0);
+  EXPECT_EQ(smooth.bottom_fraction(), 1);
+  EXPECT_EQ(smooth.wall_shear_fraction(), 0);
   // A liquid with K = 0.5: K γ h² / 2 times the depth, over the weight.
-  EXPECT_NEAR(smooth.wall_normal_share(), 0.5 * 0.5 / (2 * 0.2), 1e-12);
+  EXPECT_NEAR(smooth.wall_normal_fraction(), 0.5 * 0.5 / (2 * 0.2), 1e-12);
 }
 
 TEST(PlaneSilo, TendsToStressesThatDoNotDependOnTheHeightWhereItIsDeep) {
@@ -53,10 +53,10 @@ TEST(PlaneSilo, TendsToStressesThatDoNotDependOnTheHeightWhereItIsDeep) {
 
 TEST(PlaneSilo, IsInBalance) {
   const PlaneSilo two = silo(2, 16e3, 0.45, 27), one = silo(1, 16e3, 0.45, 27);
-  EXPECT_NEAR(two.bottom_share() + 2 * two.wall_shear_share(), 1, 1e-12);
-  EXPECT_NEAR(one.bottom_share() + one.wall_shear_share(), 1, 1e-12);
-  EXPECT_GT(one.bottom_share(), two.bottom_share());
-  EXPECT_NEAR(two.wall_shear_share() / two.wall_normal_share(), std::tan(27 * degree), 1e-12);
+  EXPECT_NEAR(two.bottom_fraction() + 2 * two.wall_shear_fraction(), 1, 1e-12);
+  EXPECT_NEAR(one.bottom_fraction() + one.wall_shear_fraction(), 1, 1e-12);
+  EXPECT_GT(one.bottom_fraction(), two.bottom_fraction());
+  EXPECT_NEAR(two.wall_shear_fraction() / two.wall_normal_fraction(), std::tan(27 * degree), 1e-12);
   EXPECT_EQ(two.vertical_stress(0), 0);
   // γ b = b dσ/dz + 2 K μ σ, with a central difference; and N is the sum of the horizontal stress.
   const double z = 0.3, dz = 1e-4, friction = 2 * 0.45 * std::tan(27 * degree);
@@ -64,14 +64,14 @@ TEST(PlaneSilo, IsInBalance) {
   EXPECT_NEAR(0.2 * slope + friction * two.vertical_stress(z), 0.2 * 16e3, 1e-3);
   double pressed = 0;
   for (int i = 0; i < 1000; ++i) pressed += two.horizontal_stress((i + 0.5) * 0.5e-3) * 0.5e-3 * 0.6;
-  EXPECT_NEAR(pressed / two.weight(), two.wall_normal_share(), 1e-6);
+  EXPECT_NEAR(pressed / two.weight(), two.wall_normal_fraction(), 1e-6);
 }
 
 TEST(PlaneSilo, HasNoSeamWhereFrictionVanishes) {
   PlaneSilo before = silo(2, 16e3, 0.5, 0), after = before;
   const double seam = 1e-4 * 0.2 / (2 * 0.5 * 0.5);
   before.wall_friction = seam * (1 - 1e-6), after.wall_friction = seam * (1 + 1e-6);
-  EXPECT_NEAR(before.wall_normal_share(), after.wall_normal_share(), 1e-8);
+  EXPECT_NEAR(before.wall_normal_fraction(), after.wall_normal_fraction(), 1e-8);
 }
 
 TEST(Rankine, IsThatOfAMohrCircleThatTouchesTheEnvelope) {
@@ -110,4 +110,4 @@ TEST(Beverloo, GrowsWithThePowerOfThreeHalvesOfWhatIsOpen) {
 }
 
 }  // namespace
-}  // namespace grit::closed_forms
+}  // namespace grit::analytical_solutions

@@ -11,16 +11,16 @@
 #include <set>
 #include <sstream>
 
-#include "motion/builtin.hpp"
-#include "input/scene.hpp"
-#include "input/schema.hpp"
 #include "bodies/clump_body.hpp"
 #include "bodies/make_bodies.hpp"
 #include "bodies/sphere_body.hpp"
+#include "input/scene.hpp"
+#include "input/schema.hpp"
+#include "motion/builtin.hpp"
 #include "schema_check.hpp"
-#include "simulation/driver.hpp"
 #include "study/variants.hpp"
 #include "support/packing.hpp"
+#include "support/recorded.hpp"
 #include "support/scene.hpp"
 
 namespace grit {
@@ -112,15 +112,15 @@ TEST_P(QuickSims, RunAWhile) {
     document.set(stage + R"(/until={"type": "steps", "value": 50})");
     if (document.json().at("stages")[i].contains("expect")) document.erase(stage + "/expect");
   }
-  test::Started started(read_scene(document, registry()), 2);
-  auto& [scene, live, kernel] = started;
   Silent recorder;
-  run(scene, live, kernel, recorder, {});
+  Simulation simulation = test::recorded(read_scene(document, registry()), recorder, 2);
+  run_recorded(simulation);
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
   EXPECT_EQ(recorder.summary.steps, 50 * stages);
-  ASSERT_EQ(recorder.summary.probes.size(), scene.description->probes.size());
+  const auto& probes = simulation.parts().opened->scene.description->probes;
+  ASSERT_EQ(recorder.summary.probes.size(), probes.size());
   for (const auto& [name, samples, seconds] : recorder.summary.probes) {
-    EXPECT_EQ(scene.description->probes.count(name), 1u);
+    EXPECT_EQ(probes.count(name), 1u);
     EXPECT_GE(samples, 1u) << name << " looks at the end of a stage at least";
     EXPECT_GT(seconds, 0) << name;
   }
@@ -237,7 +237,7 @@ TEST(References, OfADescriptionStandBesideClosedForms) {
 }
 
 /// A small direct shear test with these probes as it is sheared; frames ask them for their fields too.
-std::unique_ptr<test::Started> sheared(const std::map<std::string, std::string>& probes) {
+Simulation sheared(const std::map<std::string, std::string>& probes) {
   Document document = load_document(sims_folder / "direct-shear/quick.json",
                                     {"/scenario/width=6e-3", "/scenario/height=4e-3"}, registry());
   document.set("/probes={}");
@@ -247,12 +247,12 @@ std::unique_ptr<test::Started> sheared(const std::map<std::string, std::string>&
   document.set(R"(/output={"frames": {"every_steps": 10000}})");
   const std::size_t last = document.json().at("stages").size() - 1;
   document.set("/stages/" + std::to_string(last) + R"(/until={"type": "steps", "value": 200})");
-  auto started = std::make_unique<test::Started>(read_scene(document, registry()), 2);
   Silent recorder;
-  run(started->scene, started->live, started->kernel, recorder, {});
+  Simulation simulation = test::recorded(read_scene(document, registry()), recorder, 2);
+  run_recorded(simulation);
   EXPECT_EQ(recorder.summary.status, "done") << recorder.summary.message;
-  EXPECT_EQ(started->kernel.world().stage(), "shear");
-  return started;
+  EXPECT_EQ(simulation.world().stage(), "shear");
+  return simulation;
 }
 
 TEST(Probes, AllAtOnceChangeNotOneBit) {
@@ -267,9 +267,9 @@ TEST(Probes, AllAtOnceChangeNotOneBit) {
   std::map<std::string, std::string> all;
   for (const std::string& name : registry().names("probe")) all[name] = asked.contains(name) ? asked.at(name) : "";
   EXPECT_GE(all.size(), 16u);
-  const auto without = sheared({}), with = sheared(all);
-  EXPECT_GT(with->kernel.state().pairs.touching_count(), 100u);
-  EXPECT_TRUE(test::same_bits(without->kernel, with->kernel));
+  Simulation without = sheared({}), with = sheared(all);
+  EXPECT_GT(test::kernel_of(with).state().pairs.touching_count(), 100u);
+  EXPECT_TRUE(test::same_bits(test::kernel_of(without), test::kernel_of(with)));
 }
 
 class Studies : public testing::TestWithParam<std::filesystem::path> {};

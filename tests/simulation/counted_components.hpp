@@ -1,4 +1,4 @@
-// Components that count how often they are made and prepared, and an engine that remembers.
+// Components that count how often they are made and prepared, and an engine with state.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace grit::test {
 
-/// What has happened to components since it was last set to zero.
+/// Events of components since the last reset.
 struct Counts {
   int engines = 0, geometries = 0, prepared = 0;
 };
@@ -16,7 +16,7 @@ inline Counts& counts() {
   return all;
 }
 
-/// Counts its calls, and adds up its strength at each; pushes nothing.
+/// Counts its calls, and sums its strength; applies no force.
 class Tally final : public Engine {
  public:
   Tally() { ++counts().engines, last() = this; }
@@ -27,7 +27,7 @@ class Tally final : public Engine {
   }
   Phase phase() const override { return Phase::forces; }
   void forces(const World&, std::span<Row>, std::span<Row>) const override { ++calls, sum += strength; }
-  void remember(Memory& memory) override { memory(calls, sum); }
+  void serialize(Archive& archive) override { archive(calls, sum); }
 
   static Tally*& last() {
     static Tally* made = nullptr;
@@ -41,7 +41,7 @@ class Tally final : public Engine {
   mutable double sum = 0;
 };
 
-/// A square that can be prepared once only, and not where `spoilt`.
+/// A square that can be prepared once only, and not if `spoilt`.
 class Square final : public Geometry {
  public:
   Square() { ++counts().geometries; }
@@ -59,7 +59,7 @@ class Square final : public Geometry {
   Bounds bounds() const override { return {{-1, -1, height}, {1, 1, height}}; }
   double area() const override { return 4; }
   Vec3 normal() const override { return Vec3::UnitZ(); }
-  void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+  void find_contacts(const Pose&, std::span<const Sphere>, std::vector<SurfaceContact>&) const override {}
   bool near(const Pose&, const Vec3&, double) const override { return false; }
   std::vector<Vec3> triangles() const override { return {}; }
 

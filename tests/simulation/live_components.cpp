@@ -71,13 +71,13 @@ TEST(LiveComponents, RampsSetNumbersOfLiveInstances) {
   const auto more = friction();
   EXPECT_NE(none, some);
   EXPECT_NE(some, more);
-  EXPECT_EQ(counts().engines, made) << "none was made anew";
+  EXPECT_EQ(counts().engines, made) << "none was made again";
   live.begin_stage();
-  EXPECT_EQ(tally.strength, 1) << "as before the ramp, which set it from outside";
-  EXPECT_EQ(friction(), more) << "where a ramp ended stays";
+  EXPECT_EQ(tally.strength, 1) << "the value before the ramp, which set it from outside";
+  EXPECT_EQ(friction(), more) << "the end value of a ramp is kept";
 }
 
-TEST(LiveComponents, GoesToWhereARunWas) {
+TEST(LiveComponents, AdvancesToTheStateOfARun) {
   Description d = counted();
   d["stages"] = Description::array({stage_of("a", 1), stage_of("b", 1)});
   d["stages"][0]["ramps"] = Description::array({ramp_of("/engines/tally/strength", 0, 8, 1, 4)});
@@ -91,7 +91,7 @@ TEST(LiveComponents, GoesToWhereARunWas) {
   EXPECT_EQ(tally.strength, 4);
 }
 
-TEST(LiveComponents, AGeometryIsPreparedOnceAndReplacedWhereItChanges) {
+TEST(LiveComponents, AGeometryIsPreparedOnceAndReplacedIfItChanges) {
   Description d = counted();
   for (const char* name : {"a", "b", "c"}) d["stages"].push_back(stage_of(name, 1));
   d["stages"][0]["change"] = {{"walls", {{"square", {{"motion", {{"velocity", {0, 0, 1}}}}}}}}};
@@ -101,12 +101,13 @@ TEST(LiveComponents, AGeometryIsPreparedOnceAndReplacedWhereItChanges) {
   const Scene scene = scene_of(d);
   counts() = {};
   LiveScene live(scene);
-  EXPECT_EQ(counts().prepared, 4) << "as the run begins, as stages change it, and as a ramp begins and ends";
+  EXPECT_EQ(counts().prepared, 4)
+      << "at the start of the run, at changes by stages, and at the start and end of a ramp";
   const auto square = [&] { return live.components().geometries.at("square"); };
   const auto first = square();
   live.begin_stage();
   for (std::size_t k = 1; k <= 5; ++k) live.advance_ramps(k);
-  EXPECT_EQ(square(), first) << "how it moves is not its shape";
+  EXPECT_EQ(square(), first) << "a change of motion is no change of shape";
   EXPECT_EQ(counts().prepared, 4);
   live.begin_stage();
   EXPECT_NE(square(), first);
@@ -119,7 +120,7 @@ TEST(LiveComponents, AGeometryIsPreparedOnceAndReplacedWhereItChanges) {
   EXPECT_EQ(square()->bounds().low.z(), 4);
 }
 
-// ---- faults that show once components are made
+// ---- faults found when components are made
 
 std::string refusal(const Description& plain) {
   const Scene scene = scene_of(plain);
@@ -131,7 +132,7 @@ std::string refusal(const Description& plain) {
   return "";
 }
 
-TEST(LiveComponents, FaultsHaveThePlaceOfTheirComponent) {
+TEST(LiveComponents, FaultsHaveThePositionOfTheirComponent) {
   Description d = counted();
   d["stages"] = Description::array({stage_of("a", 1), stage_of("b", 1)});
   EXPECT_EQ(refusal(d), "");

@@ -1,4 +1,4 @@
-// The cost of a stage does not depend on how many there are, nor that of a ramp on its increments.
+// The cost of a stage does not depend on the number of stages, nor that of a ramp on the number of increments.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -10,7 +10,7 @@
 namespace grit::test {
 namespace {
 
-/// Stages in which everything that may change does.
+/// Stages that change everything that a stage may change.
 Description with_stages(int count) {
   Description d = counted();
   for (int i = 0; i < count; ++i) {
@@ -59,7 +59,7 @@ TEST(ManyIncrements, MakeNoComponentsAndTakeNoMemory) {
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 20000) << "kB, for 200 000 increments";
   EXPECT_LT(counts().engines, 10) << "to read them, and one to run";
   EXPECT_EQ(counts().prepared, 1);
-  EXPECT_EQ(done.started->live.now().walls.at("square").motion.velocity.z(), 1);
+  EXPECT_EQ(live_of(*done.simulation).now().walls.at("square").motion.velocity.z(), 1);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ Description drop() {
 }
 SimulationOptions options() { return {.plugin_path = {GRIT_PLUGIN_DIR}}; }
 double height(const Simulation& simulation) { return simulation.world().positions()[0].z; }
-/// The leap-frog from rest: the first kick is half a step.
+/// Leap-frog from rest: the first kick is half a step.
 double fallen(double steps) { return -0.5 * g * dt * dt * steps * steps; }
 
 TEST(PublicSimulation, RunsStageAfterStage) {
@@ -40,7 +40,7 @@ TEST(PublicSimulation, RunsStageAfterStage) {
   EXPECT_TRUE(simulation.run());
   EXPECT_NEAR(height(simulation), fallen(200), 1e-12);
   EXPECT_TRUE(simulation.done());
-  EXPECT_TRUE(simulation.run()) << "there is nothing left to do";
+  EXPECT_TRUE(simulation.run()) << "it is complete";
 }
 
 TEST(PublicSimulation, StepsThroughTheEndsOfStages) {
@@ -54,7 +54,7 @@ TEST(PublicSimulation, StepsThroughTheEndsOfStages) {
   EXPECT_EQ(height(stepped), height(whole)) << "the same bits";
 }
 
-TEST(PublicSimulation, TellsWhatARunTakes) {
+TEST(PublicSimulation, EstimatesTheCostOfARun) {
   Simulation simulation(drop(), options());
   const Forecast forecast = simulation.check();
   EXPECT_EQ(forecast.bodies, 1u);
@@ -86,7 +86,7 @@ TEST(PublicSimulation, ReportsProgressAndCanBeInterrupted) {
   EXPECT_EQ(simulation.world().step(), 40u);
   EXPECT_THAT(fractions, testing::ElementsAre(0.08, 0.16, 0.24, 0.32, 0.4));
   simulation.interrupt_when({});
-  EXPECT_TRUE(simulation.run()) << "an interrupted simulation can go on";
+  EXPECT_TRUE(simulation.run()) << "an interrupted simulation can continue";
   EXPECT_NEAR(height(simulation), fallen(200), 1e-12);
 }
 
@@ -116,7 +116,7 @@ TEST(PublicSimulation, RefusesWhatCannotBeSet) {
   EXPECT_THAT(problem("seed", 7).message, testing::HasSubstr("allowed is a JSON pointer"));
 }
 
-TEST(PublicSimulation, GoesOnFromACheckpointWithWhatWasSet) {
+TEST(PublicSimulation, ContinuesFromACheckpointWithValuesThatWereSet) {
   Simulation simulation(drop(), options());
   simulation.step(30);
   simulation.set("/engines/gravity/acceleration", {0, 0, -1.0});
@@ -151,7 +151,7 @@ TEST(PublicSimulation, ReadsFilesAndTexts) {
 TEST(PublicSimulation, PlacesFaultsOfTheFirstInstant) {
   Description d = drop();
   d["bodies"]["others"] = d["bodies"]["grains"];
-  d["bodies"]["others"]["grains"]["grains"][0]["position"] = {0, 0, 2e-3};
+  d["bodies"]["others"]["source"]["bodies"][0]["position"] = {0, 0, 2e-3};
   Simulation simulation(d, options());
   try {
     simulation.run();

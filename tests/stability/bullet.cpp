@@ -1,5 +1,5 @@
-// A grain that is shot through a packing, slow to as fast as the guard allows: no contact is missed, and neighbours are
-// sought as often as its speed asks for.
+// A grain shot through a packing, at speeds up to the limit of the guard: no contact is missed, and neighbours are
+// searched as often as its speed requires.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,11 +12,11 @@ namespace grit::test::bullet_tests {
 namespace {
 
 constexpr double spacing = 1e-3, dt = 2e-7;
-/// A skin lasts so many steps, but has at least and at most so many mean diameters.
+/// Target duration of a skin in steps, and its minimum and maximum in mean diameters.
 constexpr double steps_of_skin = 100, least_skin = 0.03, most_skin = 0.4;
 
-/// A block of grains that just touch, at rest, and one outside that flies `travel` of its radii a step through it, or
-/// past it.
+/// A block of grains at rest that just touch, and one grain that flies through it or past it with `travel` radii per
+/// step.
 Description shot(double travel, bool past = false) {
   auto grains = jumble({7, 7, 7}, spacing, 0, 4);
   const double radius = 0.4 * spacing;
@@ -41,7 +41,7 @@ TEST(Bullet, MeetsAllGrainsOnItsWayAndHasNeighboursSoughtInTime) {
     }
     EXPECT_EQ(missed, 0u) << travel;
     EXPECT_GT(compared, 5000u);
-    // The last twentieth of a skin is not used.
+    // The last twentieth of a skin is a reserve.
     Trial flight(shot(travel, true));
     const double mean = flight.world().mean_diameter(), way = travel * 0.4 * spacing;
     const double skin = std::clamp(steps_of_skin * way, least_skin * mean, most_skin * mean);

@@ -1,5 +1,5 @@
-// A clump of two spheres that is held at one end, from nearly a sphere to a rod: the longest stable step, found from
-// both sides, beside the one that grit reckons with.
+// A clump of two spheres held at one end, from nearly a sphere to a rod: the largest stable step, found from both
+// sides, compared with the critical step of grit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,11 +14,11 @@ namespace {
 
 constexpr double size = 1e-3, modulus = 1e7, trembling = 1e-9;
 
-/// Radius of its spheres, and how far from its middle they are.
+/// Radius of its spheres, and their distance from its centre.
 double end_of(double spacing) { return size / (1 + spacing); }
 double arm_of(double spacing) { return spacing * end_of(spacing); }
 
-/// Two plates hold one of its ends, and it trembles up and down and about its middle.
+/// Two plates hold one of its ends; it oscillates vertically and about its centre.
 Description held_at_one_end(double spacing) {
   Description d =
       description("linear-frictional", {{"density", 2600}, {"contact_modulus", modulus}, {"friction_angle", 0}},
@@ -41,7 +41,7 @@ TEST(Clump, HeldAtOneEndStartsToGrowWhereItsMassAndInertiaSay) {
     const Trial trial(known);
     ASSERT_EQ(trial.world().contacts().size(), 2u) << spacing;
     const ClumpView clump = trial.world().clumps().front();
-    // Two springs k = E r, a from its middle: ω² = 2 k (1/m + a²/I).
+    // Two springs k = E r at the distance a from its centre: ω² = 2 k (1/m + a²/I).
     const double k = modulus * end_of(spacing), arm = arm_of(spacing);
     const double by_mass = 2 / std::sqrt(2 * k / clump.mass);
     const double predicted = by_mass / std::sqrt(1 + clump.mass * arm * arm / clump.inertia[2]);

@@ -1,4 +1,4 @@
-// How the error of a collision falls with the time step, for each law, and how it grows towards the critical one.
+// Error of a collision as a function of the time step, for each law, up to the critical step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,16 +16,16 @@ constexpr double radius = 1e-3, density = 2500, speed = 0.1;
 struct Law {
   std::string name, law;
   Description material;
-  double order, error;  ///< the least, from 0.2 to 0.0125 of the critical step; the largest, at the latter
-  double predicted;     ///< order where the line is straight
-  double straight;      ///< which it is from this share of the critical step down to an eighth of it
+  double order, error;  ///< minimum order from 0.2 to 0.0125 of the critical step; maximum error at the latter
+  double predicted;     ///< predicted order in the straight part of the line
+  double straight;      ///< the straight part, from this fraction of the critical step down to an eighth of it
 };
 
-// Second order where springs alone act and what begins within a step begins at rest: an error in the share of the step
-// in which they touch first is shortened away by sliding. Else first: a spring that sticks from first touch on has been
-// stretched for a whole step then, dashpots see velocities that are half a step old, and Mindlin's spring is as stiff
-// in a step as at its end. Where the shear spring sways as long as the normal one presses, κ = 2/7, what it was
-// stretched too much pushes to and fro alike: of κ = 0.3 little is left, and shows in short steps alone.
+// Second order if only springs act and sliding limits the shear force at first contact, which removes the error of the
+// first partial step. Otherwise first order: a spring that sticks from first contact on is stretched for a whole step,
+// dashpots use velocities that are half a step old, and Mindlin's spring has the stiffness of the end of the step. For
+// κ = 2/7, where the shear spring oscillates with the duration of the contact, the excess elongation cancels: for κ =
+// 0.3 little is left, which shows only at small steps.
 const std::vector<Law>& laws() {
   static const std::vector<Law> all{
       {"linear-frictional",
@@ -75,9 +75,9 @@ std::array<double, 12> after(const Law& law, double dt) {
   bool touched = false;
   for (int step = 0; step < 10000000; ++step) {
     t.step();
-    const bool touches = !t.world().contacts().empty();
-    if (touched && !touches) break;
-    touched |= touches;
+    const bool contacts = !t.world().contacts().empty();
+    if (touched && !contacts) break;
+    touched |= contacts;
   }
   std::array<double, 12> result{};
   for (int body = 0; body < 2; ++body)
@@ -98,11 +98,11 @@ class Convergence : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(Convergence, OfAnObliqueCollisionInTheTimeStep) {
   const Law& law = laws()[GetParam()];
-  // Of the linear spring of this modulus; Hertz's contact of the larger one takes about as long.
+  // Duration with the linear spring of this modulus; the Hertzian contact with the larger modulus takes about as long.
   const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
   const double critical = 2 / std::sqrt(1e7 * 1.2 * radius / mass * (1 + 1 / 3.375));
   const auto exact = after(law, critical / 20000);
-  // Where in a step the contact begins is chance: the mean over several steps that differ a little.
+  // The phase of first contact within a step is random: mean over several slightly different steps.
   const auto error = [&](double share) {
     double sum = 0;
     const int trials = 8;

@@ -1,27 +1,26 @@
-// No guard trips in what sims/ has: its small descriptions run to their end.
+// No guard trips in the small descriptions of sims/: all run to their end.
 #include <gtest/gtest.h>
 
 #include "support/mapped.hpp"
 #include "support/notes.hpp"
+#include "support/recorded.hpp"
 
 namespace grit::test::false_alarms_tests {
 namespace {
 
-/// Returns how many grains there were. The guard of energies goes by what is stored, or by the ledger.
-std::size_t expect_done(const std::string& file, const std::vector<std::string>& sets, bool by_ledger) {
-  const StateRequest also = by_ledger ? StateRequest(BodyState::energy) : StateRequest();
-  Scene described = load_scene(std::string(GRIT_SOURCE_DIR) + "/sims/" + file, sets, installed());
-  const StateRequest state = requested_state(LiveScene(described).components(), also);
-  Started started(std::move(described), 2, state);
-  auto& [scene, live, kernel] = started;
-  kernel.find_forces();
-  kernel.world().energies();
+/// Returns the number of grains. The energy guard uses the stored energy, or the energy balance.
+std::size_t expect_done(const std::string& file, const std::vector<std::string>& sets, bool by_energy) {
+  const StateRequest also = by_energy ? StateRequest(BodyState::energy) : StateRequest();
+  Scene scene = load_scene(std::string(GRIT_SOURCE_DIR) + "/sims/" + file, sets, installed());
+  const std::size_t stages = scene.stages.size();
+  const StateRequest state = requested_state(LiveScene(scene).components(), also);
   Notes notes;
-  run(scene, live, kernel, notes, {});
+  Simulation simulation = recorded(std::move(scene), notes, 2, state);
+  run_recorded(simulation);
   EXPECT_EQ(notes.summary.status, "done") << notes.summary.message;
-  EXPECT_EQ(notes.ended.size(), scene.stages.size());
-  EXPECT_GT(kernel.world().step(), 1000u);
-  return kernel.world().positions().size();
+  EXPECT_EQ(notes.ended.size(), stages);
+  EXPECT_GT(simulation.world().step(), 1000u);
+  return simulation.world().positions().size();
 }
 
 class FalseAlarms : public testing::TestWithParam<bool> {};

@@ -1,5 +1,5 @@
-// A wall that is free with a mass, on a grain between it and the floor: the step at which the two together start to
-// grow, found from both sides, from walls far lighter than the grain to far heavier ones.
+// A free wall with a mass on a grain above the floor: the step at which oscillations of both start to grow, found from
+// both sides, for walls far lighter to far heavier than the grain.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -18,7 +18,7 @@ constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modul
 const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
 constexpr double squeeze = 1e-3;  // of the radius
 
-/// Side by side, `grains` of them; the wall's mass is over theirs.
+/// `grains` grains side by side; the wall's mass is relative to theirs.
 Description under_a_lid(double wall_mass, double restitution, int grains = 1) {
   Description m{{"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}};
   if (restitution < 1) m["restitution"] = restitution;
@@ -34,8 +34,8 @@ Description under_a_lid(double wall_mass, double restitution, int grains = 1) {
   return d;
 }
 
-/// Spectral radius of a leap-frog step of grain and wall: positions and velocities, dashpots with the velocities of
-/// half a step ago.
+/// Spectral radius of a leap-frog step of grain and wall: positions and velocities; dashpots use the velocities of half
+/// a step ago.
 double spectral_radius(double wall_mass, double restitution, double dt) {
   const double dashpot = 2 * damping_of_restitution(restitution) * std::sqrt(stiffness * mass), lid = wall_mass * mass;
   Eigen::Matrix2d spring, damping, inverse;
@@ -69,7 +69,7 @@ TEST(FreeWall, StartsToGrowAboveTheStepThatIsSaidToBeSafe) {
       const double found = found_limit(under_a_lid(wall, e), limit);
       EXPECT_NEAR(found / limit, 1, 5e-3);
       EXPECT_LE(said, 1.0001 * limit);
-      EXPECT_GE(said, 0.5 * limit) << "not shorter than it need be";
+      EXPECT_GE(said, 0.5 * limit) << "not much shorter than necessary";
       const std::string name = "restitution " + std::to_string(e).substr(0, 3);
       map_point(map, name, wall, found / fixed);
       map_point(map, "predicted, " + name, wall, limit / fixed);

@@ -1,5 +1,5 @@
-// A sphere that hits a plane: no law makes energy, at any angle, friction, restitution and step. LAMMPS once gained 34
-// % at a friction of 0.5 and 76 degrees.
+// Impact of a sphere on a plane: no law creates energy, at any angle, friction, restitution and step. LAMMPS once
+// gained 34 % at a friction of 0.5 and 76 degrees.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using std::numbers::pi;
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, young = 1e9, speed = 1;
 const double mass = density * 4 / 3 * pi * radius * radius * radius;
 
-/// κ, the ratio of shear to normal stiffness, is 2 (1 − ν) / (2 − ν) of a solid.
+/// κ, the ratio of shear to normal stiffness, is 2 (1 − ν) / (2 − ν) for a solid.
 Description material(const std::string& law, double friction, double restitution, double shear_ratio) {
   Description m{{"density", density}, {"friction_angle", std::atan(friction)}};
   if (law == "hertz-mindlin") m["young_modulus"] = young, m["poisson_ratio"] = 2 - 2 / (2 - shear_ratio);
@@ -31,15 +31,15 @@ Description material(const std::string& law, double friction, double restitution
   return m;
 }
 
-/// Of an elastic contact [s].
+/// Duration of an elastic contact [s].
 double duration(const std::string& law, double poisson, double normal_speed) {
   if (law != "hertz-mindlin") return pi / std::sqrt(modulus * radius / mass);
-  // Two like solids.
+  // Two equal solids.
   const double spring = 4.0 / 3 * young / (2 * (1 - poisson * poisson)) * std::sqrt(radius);
   return 2.9432 * std::pow(1.25 * mass * normal_speed * normal_speed / spring, 0.4) / normal_speed;
 }
 
-/// Energy after over before.
+/// Energy after over energy before.
 double left(const std::string& law, double degrees, double friction, double restitution, double shear_ratio,
             double steps, double away) {
   const Description solid = material(law, friction, restitution, shear_ratio);
@@ -49,8 +49,8 @@ double left(const std::string& law, double degrees, double friction, double rest
   return (out.velocity.squaredNorm() + 0.4 * spin * spin) / (speed * speed);
 }
 
-/// What may be left of the energy at most. What the parting step makes of the product of its two overlaps, as in
-/// Collision, is a share (ω dt)²/4 of what is left along the normal; dashpots see velocities that are half a step old.
+/// Maximum allowed energy ratio. The step of separation may add, by the product of its two overlaps as in Collision, a
+/// fraction (ω dt)²/4 of the remaining normal energy; dashpots use velocities that are half a step old.
 double bound(double degrees, double restitution, double turn) {
   const double along = std::pow(std::cos(degrees * pi / 180), 2), square = restitution * restitution;
   const double parting = turn * turn / (4 - turn * turn);
@@ -59,15 +59,15 @@ double bound(double degrees, double restitution, double turn) {
 
 constexpr int count = 24;  // impacts side by side
 
-/// Energy after over before, of each impact's ball that has come with the speed `fast`, once it touches no more.
-template <class Touches, class Ball>
-std::array<double, count> left_of_each(Trial& t, double fast, const Touches& touches, const Ball& ball) {
+/// Energy after over energy before for the ball of each impact, of initial speed `fast`, after separation.
+template <class ContactCounts, class Ball>
+std::array<double, count> left_of_each(Trial& t, double fast, const ContactCounts& contacts, const Ball& ball) {
   std::array<bool, count> touched{};
   std::array<double, count> left{};
   for (int steps = 0; steps < 10000 && std::ranges::count(left, 0.0) > 0; ++steps) {
     t.step();
     for (std::uint32_t i = 0; i < count; ++i) {
-      const bool now = touches(i);
+      const bool now = contacts(i);
       if (touched[i] && !now && left[i] == 0) {
         const double spin = t.spin(ball(i)).norm() * radius;
         left[i] = (t.velocity(ball(i)).squaredNorm() + 0.4 * spin * spin) / (fast * fast);
@@ -75,7 +75,7 @@ std::array<double, count> left_of_each(Trial& t, double fast, const Touches& tou
       touched[i] = touched[i] || now;
     }
   }
-  EXPECT_EQ(std::ranges::count(left, 0.0), 0) << "all have parted";
+  EXPECT_EQ(std::ranges::count(left, 0.0), 0) << "all are separated";
   return left;
 }
 
@@ -86,14 +86,14 @@ TEST_P(ImpactEnergy, NeverGrowsMoreThanThePartingStepMakes) {
   const auto& by_angle = "energy after an impact over that before, " + law + "|degrees from the normal";
   const auto& by_step = "most that an impact gains, of its energy|steps that the contact lasts";
   std::map<double, double> gained;
-  int cases = 0;  // each begins at another part of a step
+  int cases = 0;  // each starts at another phase of a step
   for (const double restitution : {1.0, 0.5}) {
     if (law == "linear-rolling" && restitution < 1) continue;  // has no dashpots
     for (const double friction : {0.1, 0.3, 0.5, 1.0})
       for (double angle = 4; angle < 90; angle += 8) {
         double most = 0;
         for (const double ratio : {0.3, 0.8, 1.0}) {
-          if (law == "hertz-mindlin" && ratio < 2.0 / 3) continue;  // of no solid
+          if (law == "hertz-mindlin" && ratio < 2.0 / 3) continue;  // not possible for a solid
           for (const double steps : {20.0, 60.0, 200.0}) {
             const double turn = pi / steps, away = std::fmod(0.2 * static_cast<double>(cases++), 1);
             const double now = left(law, angle, friction, restitution, ratio, steps, away);
@@ -116,7 +116,7 @@ TEST_P(ImpactEnergy, NeverGrowsMoreThanThePartingStepMakes) {
   }
 }
 
-/// Impacts of one speed, which begin at all parts of a step that grit has chosen.
+/// Impacts of one speed that start at all phases of the default step.
 TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
   const std::string law = GetParam();
   const auto& map = "most that is left of the energy of a head-on impact at the chosen step|restitution";
@@ -141,11 +141,11 @@ TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
             t, fast, [&](std::uint32_t i) { return t.position(i).z() < radius; }, [](std::uint32_t i) { return i; });
         const double sum = std::accumulate(left.begin(), left.end(), 0.0);
         const double turn = pi * dt / duration(law, solid.value("poisson_ratio", 0.0), -v.z());
-        EXPECT_LT(turn, pi / 4) << "it lasts four steps at least";
+        EXPECT_LT(turn, pi / 4) << "it takes at least four steps";
         const double most = std::ranges::max(left);
         EXPECT_LT(most, bound(degrees, restitution, turn));
         if (degrees == 0) {
-          EXPECT_LT(sum / count, 1.01 * restitution * restitution) << "in the mean of all parts of a step";
+          EXPECT_LT(sum / count, 1.01 * restitution * restitution) << "mean over all phases of a step";
           if (fast == 1)
             map_point(map, law, restitution, most),
                 map_point(map, "predicted bound, " + law, restitution, bound(0, restitution, turn));
@@ -153,7 +153,7 @@ TEST_P(ImpactEnergy, NeverGrowsMoreAtTheStepThatGritChooses) {
       }
 }
 
-/// The same of two alike, whose contact is over sooner by √2. Each pair begins at another part of a step.
+/// The same for two equal spheres, whose contact is shorter by √2. Each pair starts at another phase of a step.
 TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
   const std::string law = GetParam();
   const auto& map = "most that is left of the energy of two that hit each other head-on at the chosen step|restitution";
@@ -165,7 +165,7 @@ TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
         SCOPED_TRACE(std::to_string(restitution) + ", " + std::to_string(degrees) + " degrees, " +
                      std::to_string(fast));
         const Description solid = material(law, 0.5, restitution, 0.8);
-        const Vec3 v = aslant(fast, degrees);  // of the upper one; the lower comes as fast
+        const Vec3 v = aslant(fast, degrees);  // of the upper one; the lower has the opposite velocity
         const auto pairs = [&](double dt) {
           std::vector<Grain> grains;
           for (int i = 0; i < count; ++i) {
@@ -178,7 +178,7 @@ TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
         Description d = description(law, solid, pairs(1e-6));
         const double dt = Trial(d).world().dt();
         d["bodies"] = description(law, solid, pairs(dt))["bodies"];
-        Trial t(d);  // with the guards that everybody has
+        Trial t(d);  // with the default guards
         const auto left = left_of_each(
             t, fast, [&](std::uint32_t i) { return (t.position(2 * i) - t.position(2 * i + 1)).norm() < 2 * radius; },
             [](std::uint32_t i) { return 2 * i; });
@@ -189,8 +189,7 @@ TEST_P(ImpactEnergy, OfTwoNeverGrowsMoreThanTheGuardAllows) {
         EXPECT_LT(most, bound(degrees, restitution, law == "hertz-mindlin" ? pi / 7 : turn));
         EXPECT_LT(most, 1.05);
         most_gained = std::max(most_gained, most - 1);
-        if (degrees == 0)
-          EXPECT_NEAR(std::sqrt(sum / count), restitution, 0.03) << "in the mean of all parts of a step";
+        if (degrees == 0) EXPECT_NEAR(std::sqrt(sum / count), restitution, 0.03) << "mean over all phases of a step";
         if (degrees == 0 && fast == 1)
           map_point(map, law, restitution, most),
               map_point(map, "predicted bound, " + law, restitution, bound(0, restitution, turn));

@@ -1,12 +1,12 @@
-// Undamped grains that hit each other again and again: what one impact gains or loses is chance, but in the mean of all
-// parts of a step at which it may begin it gains.
+// Undamped grains that collide repeatedly: the gain or loss of energy in one impact is random, but the mean over all
+// phases of a step at which it may start is a gain.
 //
-// Where two meet at a normal speed w, a share φ of a step's way w dt beyond first touch, the sum that leap-frog makes
-// of the work of a force k δ^α differs from the integral by k (w dt)^(α+1) ζ(−α, φ), ζ Hurwitz's (Euler and Maclaurin);
-// where they part, by as much the other way. Over all φ that has no mean and a variance of 2 Γ(1+α)²
-// ζ(2+2α)/(2π)^(2+2α) (Hurwitz). The gain of an impact in the mean follows from its variance b(E): leap-frog keeps
-// volumes of phase space, dx dw = dt dφ dE of the way in, so that an even spread over E must stay even; diffusion then
-// needs a drift of b'(E)/2, with b ~ E^(α+1).
+// If two grains meet at a normal speed w with a phase φ, the fraction of the displacement w dt of a step after first
+// contact, the leap-frog sum of the work of a force k δ^α differs from the integral by k (w dt)^(α+1) ζ(−α, φ), with
+// Hurwitz's ζ (Euler–Maclaurin); at separation, by as much with the opposite sign. Over all φ the mean is zero and the
+// variance is 2 Γ(1+α)² ζ(2+2α)/(2π)^(2+2α) (Hurwitz). The mean gain of an impact follows from its variance b(E):
+// leap-frog conserves phase-space volume, dx dw = dt dφ dE on approach, so that a uniform distribution over E must stay
+// uniform; diffusion then requires a drift of b'(E)/2, with b ~ E^(α+1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,13 +34,13 @@ struct Spring {
     else m["contact_modulus"] = modulus;
     return m;
   }
-  /// Of a head-on impact of two, by radii, reduced mass and speed [s].
+  /// Duration of a head-on impact, from radii, reduced mass and speed [s].
   double duration(double a, double b, double mass, double fast) const {
     if (exponent == 1) return pi * std::sqrt(mass * (a + b) / (2 * modulus * a * b));
     const double stiffness = 4.0 / 3 * young / (2 * (1 - poisson * poisson)) * std::sqrt(a * b / (a + b));
     return hertz * std::pow(1.25 * mass * fast * fast / stiffness, 0.4) / fast;
   }
-  /// Of the energy's gain in an impact of so many steps, over the energy: in the mean of all parts of a step.
+  /// Relative gain of energy in an impact of this many steps: mean over all phases of a step.
   double variance(double steps) const {
     // k dt^(α+1) w^(α−1) over the reduced mass.
     const double edge = exponent == 1 ? std::pow(pi / steps, 2) : 1.25 * std::pow(hertz / steps, 2.5);
@@ -55,11 +55,10 @@ struct Spring {
   friend void PrintTo(const Spring& spring, std::ostream* out) { *out << spring.law; }
 };
 
-constexpr double radius = 1e-3, speed = 0.1;  // of each of two that meet head-on
+constexpr double radius = 1e-3, speed = 0.1;  // of each of two grains that collide head-on
 const double mass = density * 4 / 3 * pi * radius * radius * radius;
 
-/// Adds what impacts of this step gain that begin at all parts of it; `first` of them in [0, 1) is where the first
-/// does.
+/// Adds the gains of impacts with this step that start at all phases; `first` in [0, 1) is the phase of the first.
 void add_gains(const Spring& spring, double dt, double first, std::vector<double>& gains) {
   constexpr int phases = 128;
   std::vector<Grain> grains;
@@ -73,7 +72,7 @@ void add_gains(const Spring& spring, double dt, double first, std::vector<double
   d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
   Trial t(d);
   t.step(static_cast<std::size_t>(spring.duration(radius, radius, mass / 2, 2 * speed) / dt) + 5);
-  EXPECT_EQ(t.world().contacts().size(), 0u) << "all have parted";
+  EXPECT_EQ(t.world().contacts().size(), 0u) << "all are separated";
   for (std::uint32_t i = 0; i < 2 * phases; i += 2) {
     const double fast = (t.velocity(i + 1) - t.velocity(i)).x() / (2 * speed);
     EXPECT_GT(fast, 0);
@@ -91,13 +90,13 @@ struct Gain {
   Gain(double mean, double variance) : mean(mean), variance(variance) {}
 };
 
-/// Of impacts that take these steps, half a step more or less, as many of each.
+/// For impacts of this many steps, plus or minus half a step, equally distributed.
 Gain gain_of_pairs(const Spring& spring, double steps) {
   constexpr int lengths = 16;
   std::vector<double> gains;
   for (int length = 0; length < lengths; ++length) {
     const double now = steps - 0.5 + (length + 0.5) / lengths;
-    // Not in the same places for all: the corner at φ = 0 would weigh too much or too little.
+    // With different phases for each: the kink at φ = 0 would have too much or too little weight.
     add_gains(spring, spring.duration(radius, radius, mass / 2, 2 * speed) / now,
               std::fmod((length + 0.5) * std::numbers::phi, 1), gains);
   }
@@ -113,7 +112,7 @@ TEST_P(ManyImpacts, GainInTheMeanWhatTheirVarianceAsksFor) {
   for (const double steps : {5.0, 7.0, 10.0, 14.0, 20.0, 30.0, 40.0, 60.0}) {
     const Gain found = gain_of_pairs(spring, steps);
     const double predicted = spring.gain(steps);
-    // What is left out is of the next orders in the step: 1/n² of the mean, and 1/n of the variance of Hertz's.
+    // Neglected terms: 1/n² of the mean, and 1/n of the variance for Hertz.
     EXPECT_NEAR(found.mean / predicted, 1, 0.02 + 7 / (steps * steps)) << steps;
     EXPECT_NEAR(found.variance / spring.variance(steps), 1, 0.01 + 1.1 / steps + 3 / (steps * steps)) << steps;
     if (steps >= 7) worst = std::max(worst, std::abs(found.mean / predicted - 1));
@@ -123,8 +122,9 @@ TEST_P(ManyImpacts, GainInTheMeanWhatTheirVarianceAsksFor) {
   figure("mean gain of impacts of seven steps or more, distance from what is predicted, of it", worst);
 }
 
-/// Two that are alone take as many steps at any speed, so that where in a step they met says where they part: the
-/// variance is anything from none to twice that of chance, and how it changes with the speed goes into the mean too.
+/// Isolated pairs take the same number of steps at any speed, so that the phase at contact determines that at
+/// separation: the variance is between zero and twice that of random phases, and its change with speed contributes to
+/// the mean.
 TEST_P(ManyImpacts, GainLessAtASmallerSafety) {
   const Spring& spring = GetParam();
   for (const double safety : {0.8, 0.4, 0.2, 0.1}) {
@@ -147,8 +147,8 @@ TEST_P(ManyImpacts, GainLessAtASmallerSafety) {
   }
 }
 
-/// Undamped grains of several sizes in a periodic cell. Each impact that begins is taken to gain what it would in the
-/// mean; what is left to chance is the root of the sum of the variances.
+/// Undamped grains of several sizes in a periodic cell. Each impact is assumed to gain the mean; the standard deviation
+/// is the root of the sum of the variances.
 TEST_P(ManyImpacts, HeatAGasByTheirSum) {
   const Spring& spring = GetParam();
   constexpr double spacing = 2.6e-3, fast = 0.5;
@@ -159,7 +159,8 @@ TEST_P(ManyImpacts, HeatAGasByTheirSum) {
   Description d = description(spring.law, spring.material(), grains);
   d["domain"] = {
       {"low", {0, 0, 0}}, {"high", vector(Vec3::Constant(side * spacing))}, {"periodic", {true, true, true}}};
-  // Coarse, so that it heats at once. Linear impacts take 4 to 6 of these steps; Hertz's do by their speeds.
+  // Large steps, for fast heating. Linear impacts take 4 to 6 of these steps; the number for Hertz depends on the
+  // speed.
   const double middle = 0.33 * spacing, half = 0.5 * density * 4 / 3 * pi * middle * middle * middle;
   const double dt = spring.duration(middle, middle, half, 1.15 * fast) / (spring.exponent == 1 ? 5 : 4.3);
   d["time_step"] = {{"value", dt}, {"allow_unstable", true}};
@@ -167,7 +168,7 @@ TEST_P(ManyImpacts, HeatAGasByTheirSum) {
   Trial t(d);
   const World& world = t.world();
   const auto energy = [&] {
-    double sum = unrest(world).kinetic_energy;
+    double sum = equilibrium(world).kinetic_energy;
     for (const Contact& c : world.contacts()) sum += c.normal_force * c.overlap / (spring.exponent + 1);
     return sum;
   };
@@ -190,7 +191,7 @@ TEST_P(ManyImpacts, HeatAGasByTheirSum) {
     for (const Contact& c : world.contacts()) {
       const auto pair = std::minmax(world.ids()[c.a], world.ids()[c.b]);
       if (now.insert(pair); touched.contains(pair)) continue;
-      const Row &va = world.velocities()[c.a], &vb = world.velocities()[c.b];  // before this contact's first push
+      const Row &va = world.velocities()[c.a], &vb = world.velocities()[c.b];  // before the first force of this contact
       const double closing = (xyz(va) - xyz(vb)).dot(c.normal), reduced = 1 / (va.w + vb.w);
       if (closing <= 0) continue;
       const double own = 0.5 * reduced * closing * closing;

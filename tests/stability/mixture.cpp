@@ -1,4 +1,4 @@
-// Dust that falls on a boulder which flies away, up to 1 : 100: no contact is missed, and few pairs are looked at.
+// Dust falling on a boulder that moves away, size ratio up to 1 : 100: no contact is missed, and few pairs are tested.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double small = 0.25e-3;
 
-/// As many grains as have room, but not more than some hundred, a little above all of the boulder.
+/// As many grains as fit, up to some hundred, slightly above the boulder.
 std::vector<Grain> dusty_boulder(double ratio) {
   const double large = ratio * small;
   const int dust = std::min(600, static_cast<int>(1.2 * (ratio + 1) * (ratio + 1)));

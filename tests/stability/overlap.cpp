@@ -1,5 +1,4 @@
-// Two grains that begin inside each other: what is refused, what a guard stops, what survives, and the energy that
-// appears.
+// Two grains with an initial overlap: limits of refusal, of guards and of survival, and the energy released.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ namespace {
 constexpr double radius = 1e-3, density = 2500, modulus = 1e7;
 const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
 
-/// At rest, `overlap` radii deep in each other.
+/// At rest, with an overlap of `overlap` radii.
 Description inside(const std::string& law, double overlap, double safety) {
   Description m{{"density", density}, {"friction_angle", 0}};
   m[law == "hertz-mindlin" ? "young_modulus" : "contact_modulus"] = modulus;
@@ -25,7 +24,7 @@ Description inside(const std::string& law, double overlap, double safety) {
   return d;
 }
 
-/// What stopped it before the two had parted; empty if nothing did.
+/// The error before separation; empty if there was none.
 std::string stopped(const Description& d) {
   try {
     Trial t(d);
@@ -36,7 +35,7 @@ std::string stopped(const Description& d) {
   return "";
 }
 
-/// The deepest start, in radii, that a guard lets pass.
+/// The largest initial overlap, in radii, that a guard allows.
 double deepest(const std::string& law, double safety) {
   double low = 1e-4, high = 1;
   while (high > 1.0002 * low) {
@@ -46,10 +45,10 @@ double deepest(const std::string& law, double safety) {
   return low;
 }
 
-/// The same of a linear spring: each goes half of what the leap-frog makes of the overlap in its fastest step, which
-/// the travel guard allows to be 0.05 radii; the overlap guard allows 0.2.
+/// The same for a linear spring: in its fastest step each grain moves half of the change of overlap by leap-frog, of
+/// which the travel guard allows 0.05 radii; the overlap guard allows 0.2.
 double predicted_deepest(double safety) {
-  const double square = 4 * safety * safety;  // (ω dt)²; the critical step of two grains is exactly theirs
+  const double square = 4 * safety * safety;  // (ω dt)²; the critical step is exact for two grains
   double overlap = 1, way = 0, fastest = 0;
   for (bool first = true; overlap > 0; first = false) {
     way += (first ? 0.5 : 1) * square * overlap;
@@ -76,7 +75,7 @@ TEST(Overlap, BeyondTheGuardsLimitIsStoppedAtTheStart) {
   for (const double overlap : {0.2001, 1.0, 1.9, 2.0}) {
     const std::string said = stopped(inside("linear-frictional", overlap, 0.05));
     EXPECT_THAT(said, testing::StartsWith("step 0, time 0 s: body 0 at (0, 0, 0) m overlaps body 1 by ")) << overlap;
-    EXPECT_THAT(said, testing::HasSubstr("or bodies began inside each other"));
+    EXPECT_THAT(said, testing::HasSubstr("or bodies overlapped at the start"));
   }
   EXPECT_THAT(stopped(inside("linear-frictional", 0.15, 0.8)), testing::HasSubstr("moves 0."));
 }

@@ -1,5 +1,5 @@
-// Two materials of which one is far stiffer or heavier than the other: the longest stable step, found from both sides,
-// beside the one that grit reckons with.
+// Two materials, one far stiffer or heavier than the other: the largest stable step, found from both sides, compared
+// with the critical step of grit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,8 +22,8 @@ Description material(double stiffer, double heavier) {
           {"shear_to_normal_stiffness", shear_ratio}};
 }
 
-/// A simple cubic lattice of two materials that take turns, each grain moving against all of its neighbours along x as
-/// the fastest mode has it.
+/// A simple cubic lattice of two alternating materials; each grain moves against all of its neighbours along x, as in
+/// the fastest mode.
 Description chequered(double stiffer, double heavier) {
   constexpr int sides = 4;
   constexpr double spacing = 2 * radius * (1 - squeeze);
@@ -46,7 +46,7 @@ Description chequered(double stiffer, double heavier) {
   return d;
 }
 
-/// Two of the six contacts press, four shear; springs in line.
+/// Two of the six contacts are compressed, four sheared; springs in series.
 double limit_of_chequered(double stiffer, double heavier) {
   const double stiffness = 2 * modulus * radius * stiffer / (1 + stiffer);
   return 2 / std::sqrt((2 + 4 * shear_ratio) * stiffness / mass * (1 + 1 / heavier));
@@ -57,8 +57,8 @@ const std::vector<double>& ratios() {
   return all;
 }
 
-/// Found at `ratio` and mapped beside what is predicted and what grit says; nothing is unstable that it allows. Returns
-/// what it says over what is found.
+/// Finds the limit at `ratio` and records it with the prediction and the critical step of grit; no step that grit
+/// allows is unstable. Returns the critical step of grit over the limit found.
 double expect_bound(const std::string& name, double ratio, const Description& d, double predicted) {
   SCOPED_TRACE(name + " 1 : " + std::to_string(ratio));
   const double found = found_limit(d, predicted), said = critical(d);
@@ -74,12 +74,12 @@ TEST(Ratios, HeavierGrainsAmongLightOnes) {
   double least = 1;
   for (const double ratio : ratios())
     least = std::min(least, expect_bound("heavier", ratio, chequered(1, ratio), limit_of_chequered(1, ratio)));
-  EXPECT_GT(least, 0.7) << "not shorter than it need be";
+  EXPECT_GT(least, 0.7) << "not much shorter than necessary";
   figure("bound over the longest stable step, of heavier grains among light ones, at least", least);
 }
 
 TEST(Ratios, StifferGrainsAmongSoftOnes) {
-  // Two stiff ones may meet: the step is one that is good for them, too.
+  // Two stiff grains may meet: the step is also stable for them.
   for (const double ratio : ratios()) {
     const Description d = chequered(ratio, 1);
     const double share = expect_bound("stiffer", ratio, d, limit_of_chequered(ratio, 1));
@@ -94,7 +94,7 @@ TEST(Ratios, StifferAndHeavierGrainsAmongOthers) {
     expect_bound("stiffer and heavier", ratio, chequered(ratio, ratio), limit_of_chequered(ratio, ratio));
 }
 
-/// A grain between two plates of a material that is stiffer.
+/// A grain between two plates of a stiffer material.
 Description between_plates(const std::string& law, double ratio) {
   const bool hertz = law == "hertz-mindlin";
   const auto solid = [&](double stiffer) {
@@ -118,7 +118,7 @@ TEST(Ratios, SoftGrainBetweenStiffPlates) {
   double least = 1;
   for (const std::string law : {"linear-frictional", "hertz-mindlin"})
     for (const double ratio : ratios()) {
-      // Linear springs are the grain's, whatever the plate; Hertz's compliances add up.
+      // Linear springs have the stiffness of the grain for any plate; for Hertz, compliances add up.
       const double reduced = modulus / (1 - 0.25 * 0.25) / (1 + 1 / ratio);
       const double spring =
           law == "hertz-mindlin" ? 2 * reduced * std::sqrt(radius * squeeze * radius) : modulus * radius;
@@ -126,7 +126,7 @@ TEST(Ratios, SoftGrainBetweenStiffPlates) {
       const double limit = 2 / std::sqrt(2 * spring / mass);
       least = std::min(least, expect_bound("grain between stiffer plates, " + law, ratio, d, limit));
     }
-  EXPECT_GT(least, 0.99) << "not shorter than it need be";
+  EXPECT_GT(least, 0.99) << "not much shorter than necessary";
   figure("bound over the longest stable step, of a grain between stiffer plates, at least", least);
 }
 

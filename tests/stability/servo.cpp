@@ -1,5 +1,5 @@
-// A servo-controlled wall on a stack of grains: the gain and the step at which the two together start to grow, found
-// from both sides; and how hard it presses on few or stiff grains that it closes on, however fast.
+// A servo-controlled wall on a stack of grains: the gain and the step at which oscillations start to grow, found from
+// both sides; and its force on few or stiff grains that it approaches at any speed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <utility>
 
-#include "motion/walls.hpp"
 #include "grit/contact/restitution.hpp"
 #include "grit/error.hpp"
+#include "motion/walls.hpp"
 #include "support/growth.hpp"
 #include "support/mapped.hpp"
 
@@ -20,9 +20,9 @@ namespace {
 constexpr double radius = 1e-3, density = 2500, modulus = 1e8, stiffness = modulus * radius;
 const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
 constexpr double squeeze = 1e-3;                          // of the radius
-constexpr double habit_steps = 30, dashpots_counted = 3;  // as engines/walls has them
+constexpr double habit_steps = 30, dashpots_counted = 3;  // as in core/src/motion/walls.cpp
 
-/// Grains one on the other between the floor and a lid that presses them together by `squeeze`.
+/// A stack of grains between the floor and a lid that compresses them by `squeeze`.
 Description stack(int grains, double gain, double restitution = 1) {
   const Description m{
       {"density", density}, {"contact_modulus", modulus}, {"friction_angle", 0}, {"restitution", restitution}};
@@ -46,19 +46,19 @@ Description stack(int grains, double gain, double restitution = 1) {
   return d;
 }
 
-/// Spectral radius of one step of grains, wall and its habit, with the same rules.
+/// Spectral radius of one step of grains, wall and its mean velocity, with the same rules.
 double spectral_radius(int grains, double gain, double dt, double restitution) {
   const int n = grains, size = 2 * n + 3;
   const double turn = dt * dt * stiffness / mass, ratio = damping_of_restitution(restitution),
                at_wall = 2 * ratio / std::sqrt(turn), between = at_wall / std::sqrt(2);  // c / (k dt)
   Eigen::MatrixXd step(size, size);
   for (int column = 0; column < size; ++column) {
-    // Places and dt · velocities of the grains; of the wall its place, dt · habit and dt · velocity.
+    // Positions and dt · velocities of the grains; position, dt · mean velocity and dt · velocity of the wall.
     Eigen::VectorXd s = Eigen::VectorXd::Unit(size, column);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n + 2), u = x;
     x.segment(1, n) = s.head(n), x[n + 1] = s[2 * n];
     u.segment(1, n) = s.segment(n, n), u[n + 1] = s[2 * n + 2];
-    Eigen::VectorXd pushes(n + 1);  // force over k of the contact below each grain, and of the lid's
+    Eigen::VectorXd pushes(n + 1);  // force over k of the contact below each grain, and of that with the lid
     for (int i = 0; i <= n; ++i)
       pushes[i] = x[i] - x[i + 1] + (i == 0 || i == n ? at_wall : between) * (u[i] - u[i + 1]);
     for (int i = 0; i < n; ++i) s[n + i] += turn * (pushes[i] - pushes[i + 1]);
@@ -71,7 +71,7 @@ double spectral_radius(int grains, double gain, double dt, double restitution) {
   return step.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// The shortest step [s] that is unstable; a little growth is round-off of an eigenvalue of 1.
+/// The smallest unstable step [s]; small growth is round-off of an eigenvalue of 1.
 double predicted_limit(int grains, double gain, double restitution = 1) {
   double low = 0, high = 2.5 * std::sqrt(mass / stiffness);
   for (int halving = 0; halving < 40; ++halving) {
@@ -90,7 +90,7 @@ TEST(Servo, OnAStackStartsToGrowWhereItsEigenvaluesSay) {
       const double limit = predicted_limit(grains, gain), said = critical(stack(grains, gain));
       const double found = found_limit(stack(grains, gain), limit);
       EXPECT_NEAR(found / limit, 1, 1e-2);
-      EXPECT_LT(growth(stack(grains, gain), 0.8 * said, 4000), 20) << "stable at the step that grit chooses";
+      EXPECT_LT(growth(stack(grains, gain), 0.8 * said, 4000), 20) << "stable at the default step";
       map_point(map, name, gain, found / said);
       map_point(map, "predicted, " + name, gain, limit / said);
       if (grains == 1 && gain == 0.3) figure("stable step over the critical one, of a servo of gain 0.3", found / said);
@@ -117,7 +117,7 @@ TEST(Servo, OnDashpotsStartsToGrowWhereItsEigenvaluesSay) {
         map_point(map, "predicted, " + name, restitution, limit / said);
       }
     }
-  EXPECT_GT(least, 0.8) << "stable at the step that grit chooses";
+  EXPECT_GT(least, 0.8) << "stable at the default step";
   figure("stable step over the critical one, of a servo on dashpots", least);
 }
 
@@ -142,18 +142,18 @@ TEST(Servo, KeepsItsForceOnDashpotsAtAnyStep) {
       }
 }
 
-/// One square metre, on what is below.
+/// A wall of one square metre.
 struct Plate : Geometry {
   void declare(Parameters&) override {}
   Bounds bounds() const override { return {Vec3::Zero(), Vec3(1, 1, 0)}; }
   double area() const override { return 1; }
   Vec3 normal() const override { return -Vec3::UnitZ(); }
-  void touch(const Pose&, std::span<const Sphere>, std::vector<Touch>&) const override {}
+  void find_contacts(const Pose&, std::span<const Sphere>, std::vector<SurfaceContact>&) const override {}
   bool near(const Pose&, const Vec3&, double) const override { return false; }
   std::vector<Vec3> triangles() const override { return {}; }
 };
 
-/// The share of the force's error that is left after so many steps, on a spring without a mass.
+/// Fraction of the force error left after a number of steps, on a massless spring.
 double left(double gain, int steps) {
   constexpr double spring = 1e4, pressure = 100, dt = 1e-3;
   Walls walls;
@@ -180,7 +180,7 @@ TEST(Servo, OnAHeavySpecimenStartsToGrowJustAboveTwiceTheErrorAStep) {
   figure("gain that a servo on a heavy specimen may have", limit);
   constexpr double most = 1;
   EXPECT_NO_THROW(Trial{stack(1, most)});
-  EXPECT_THROW(Trial{stack(1, 1.0001 * most)}, Error) << "half of that is the most that is allowed";
+  EXPECT_THROW(Trial{stack(1, 1.0001 * most)}, Error) << "half of that is the maximum allowed";
   figure("gain of a servo that is taken", most);
 }
 
@@ -192,16 +192,16 @@ TEST(Servo, GuardTripsWhereAnUnstableStepWasAskedFor) {
   EXPECT_THROW(t.step(100000), NumericsError);
 }
 
-// What a lid presses with that closes, over what it shall keep. Ways of a step are told in overlaps that one grain has
-// under that force: with linear springs max_velocity · dt · k / F.
+// Force of an approaching lid over its target. Displacements per step are relative to the overlap of one grain under
+// the target force: with linear springs max_velocity · dt · k / F.
 const std::string closing_map =
     "peak of the force of a servo that closes, over the one that it keeps|"
     "way in a step at max_velocity over the overlap under that force";
 constexpr double overlap_kept = 1e-4 * radius, force_kept = stiffness * overlap_kept;
-/// Of its last step's way, what a lid has gone when it touches.
+/// Fraction of the lid's last displacement before first contact.
 constexpr auto starts = {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.99};
 
-/// On springs without a mass that end at one height.
+/// On massless springs of equal height.
 double peak_on_springs(int springs, double way, double start, bool brakes) {
   constexpr double dt = 1e-3;
   Walls walls;
@@ -242,20 +242,20 @@ TEST(Servo, WouldBearAWholeStepsWayIfItDidNotBrake) {
   }
 }
 
-/// Grains on the floor in rows, and a lid that closes on them.
+/// Rows of grains on the floor, and an approaching lid.
 struct Layer {
   std::string law = "linear-frictional";
   int a_side = 1;
-  double uneven = 0;            ///< from the highest to the lowest, over the overlap of one under the force kept
-  bool one_stands_out = false;  ///< of which the others are the lowest
+  double uneven = 0;            ///< height difference over the overlap of one grain under the target force
+  bool one_stands_out = false;  ///< one grain is the highest; all others are the lowest
   double restitution = 1;
   double gain = 0.3;
 };
-/// `way` of a step over the overlap under the force kept.
+/// `way`: displacement per step over the overlap under the target force.
 Description closing(const Layer& layer, double way, double start) {
   const double reach = way * overlap_kept, dt = 0.5 * std::sqrt(mass / stiffness);
   Description m{{"density", density}, {"friction_angle", 0}, {"restitution", layer.restitution}};
-  // Hertz's, of two that are alike, as far away under the force kept.
+  // Hertzian contact of two equal bodies with the same overlap under the target force.
   if (layer.law == "hertz-mindlin")
     m["young_modulus"] = 1.5 * force_kept / std::sqrt(radius * std::pow(overlap_kept, 3)), m["poisson_ratio"] = 0;
   else m["contact_modulus"] = modulus;
@@ -276,10 +276,10 @@ Description closing(const Layer& layer, double way, double start) {
                        {"material", "grain"}};
   d["walls"]["lid"]["motion"]["servo"] = {
       {"axis", "z"}, {"force", -force_kept}, {"max_velocity", reach / dt}, {"gain", layer.gain}};
-  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};  // Hertz's springs are asked for what it may reach
+  d["time_step"] = {{"value", dt}, {"allow_unstable", true}};  // for Hertz, the critical step depends on the overlap
   return d;
 }
-/// Of the force on the lid, over the one kept.
+/// Maximum force on the lid over the target.
 double peak_on(const Description& d, int steps = 600) {
   Trial t(d);
   double peak = 0;
@@ -307,7 +307,7 @@ TEST(Servo, BrakesBeforeGrainsThatItClosesOn) {
       double found = 0;
       for (const double start : starts) {
         const double peak = peak_on(closing(layer, way, start));
-        EXPECT_GT(peak, 0.9) << "it arrives";
+        EXPECT_GT(peak, 0.9) << "it reaches the grains";
         found = std::max(found, peak);
       }
       EXPECT_LT(found, 1.6);
@@ -323,7 +323,7 @@ TEST(Servo, ClosesAsFastAsItMayWhereNothingWouldBearTooMuch) {
     Trial t(closing(layer, way, 0.1));
     const double fastest = t.scene().description->walls.at("lid").motion.servo->max_velocity;
     bool braked = false;
-    while (t.world().walls()[1].touches == 0) {
+    while (t.world().walls()[1].contacts == 0) {
       t.step();
       braked = braked || t.world().walls()[1].velocity.z() != -fastest;
     }
@@ -332,29 +332,30 @@ TEST(Servo, ClosesAsFastAsItMayWhereNothingWouldBearTooMuch) {
 }
 
 TEST(Servo, BrakesBeforeDampedGrainsByHowFastItNearsThem) {
-  for (const double share : {0.0, 0.9}) {  // of the lid's speed, that they have
+  for (const double share : {0.0, 0.9}) {  // speed of the grains over that of the lid
     Description d = closing({.a_side = 4, .restitution = 0.3}, 0.05, 0.1);
     const double fastest = d["walls"]["lid"]["motion"]["servo"]["max_velocity"];
-    for (Description& grain : d["bodies"]["grains"]["grains"]["grains"])
+    for (Description& grain : d["bodies"]["grains"]["source"]["bodies"])
       grain["velocity"] = vector({0, 0, -share * fastest});
     d["walls"].erase("floor");
     Trial t(d);
     bool braked = false;
-    for (int step = 0; step < 100 && t.world().walls()[0].touches == 0; ++step) {
+    for (int step = 0; step < 100 && t.world().walls()[0].contacts == 0; ++step) {
       t.step();
       braked = braked || t.world().walls()[0].velocity.z() != -fastest;
     }
-    EXPECT_GT(t.world().walls()[0].touches, 0);
+    EXPECT_GT(t.world().walls()[0].contacts, 0);
     EXPECT_EQ(braked, share == 0) << "of the speed: " << share;
   }
 }
 
-// A lid that is braked in every other step makes dashpots' losses, which see it half a step late, more than it puts in.
+// If a lid slows down in every other step, dashpots, which use velocities half a step old, dissipate more than its
+// work.
 TEST(Servo, DrivesACloudOfDampedGrainsBeforeItSteadily) {
   Description d = description("linear-frictional", {{"restitution", 0.4}, {"contact_modulus", 2e7}}, {});
-  d["bodies"]["grains"]["grains"] = {
+  d["bodies"]["grains"]["source"] = {
       {"type", "cloud"}, {"low", {0, 0, 0}}, {"high", {0.012, 0.008, 0.024}}, {"count", 300}};
-  d["bodies"]["grains"]["grains"]["sizes"] = {{"type", "uniform"}, {"smallest", 1.2e-3}, {"largest", 2e-3}};
+  d["bodies"]["grains"]["source"]["sizes"] = {{"type", "uniform"}, {"smallest", 1.2e-3}, {"largest", 2e-3}};
   d["domain"] = {{"low", {0, 0, -5e-3}}, {"high", {0.012, 0.008, 0.035}}, {"periodic", {true, true, false}}};
   d["walls"]["lid"] = {{"type", "rectangle"},
                        {"corner", {0, 8e-3, 0.025}},
@@ -371,8 +372,8 @@ TEST(Servo, DrivesACloudOfDampedGrainsBeforeItSteadily) {
     const double now = t.world().walls()[0].velocity.z();
     jumps += std::abs(now - std::exchange(before, now)) / 0.5;
   }
-  const EnergyLedger now = t.world().energies();
-  EXPECT_LT(jumps / steps, 0.02) << "of max_velocity, in a step";
+  const Energies now = t.world().energies();
+  EXPECT_LT(jumps / steps, 0.02) << "change per step over max_velocity";
   EXPECT_NEAR(now.closure_error / now.walls, 0, 0.02);
 }
 
@@ -387,7 +388,7 @@ TEST(Servo, GuardStopsALidThatGoesTooFarInAStep) {
       EXPECT_THAT(error.what(), testing::HasSubstr("wall \"lid\" moves 0.0505 of the smallest radius in one step"));
       EXPECT_THAT(error.what(), testing::HasSubstr("make it slower"));
     }
-    // Allowed to go further than neighbours are known, it looks for them.
+    // If the displacement may exceed the skin, it searches neighbours.
     Description far = closing({}, 10 * travel, start);
     far["guards"]["travel"] = 1;
     EXPECT_LT(peak_on(far), 1.3);
@@ -403,7 +404,7 @@ TEST(Servo, BrakesTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(a.position, b.position);
     EXPECT_EQ(a.force, b.force);
   }
-  EXPECT_GT(one.world().walls()[1].touches, 1);
+  EXPECT_GT(one.world().walls()[1].contacts, 1);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A small grain that hits a large one: none sticks, none gains energy, whatever the ratio of their sizes.
+// Impact of a small grain on a large one: no sticking and no gain of energy at any size ratio.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,8 +17,8 @@ struct Outcome {
   double rebound;  ///< normal speed of separation over that of approach
 };
 
-/// The small one flies at the large one at an angle to the line of centres; both spin free. At the step that grit
-/// chooses unless there is a safety; they are a share `away` of a step's way apart at first.
+/// The small grain hits the large one at an angle to the line of centres; both rotate freely. Uses the default step
+/// unless `safety` is given; the initial gap is a fraction `away` of the displacement in a step.
 Outcome collide(const std::string& law, double ratio, double angle, std::optional<double> safety = {},
                 double away = 0) {
   const double small = large / ratio;
@@ -30,7 +30,7 @@ Outcome collide(const std::string& law, double ratio, double angle, std::optiona
   if (safety) d["time_step"]["safety"] = *safety;
   d["guards"] = {{"energy", 1e9}, {"travel", 1}, {"overlap", 1}};
   const Vec3 apart = touching - away * Trial(d).world().dt() * velocity;
-  d["bodies"]["grains"]["grains"]["grains"][1]["position"] = vector(apart);
+  d["bodies"]["grains"]["source"]["bodies"][1]["position"] = vector(apart);
   Trial t(d);
   const auto energy = [&] {
     double sum = 0;
@@ -44,9 +44,9 @@ Outcome collide(const std::string& law, double ratio, double angle, std::optiona
   bool touched = false;
   for (int step = 0; step < 1000000; ++step) {
     t.step();
-    const bool touches = !t.world().contacts().empty();
-    if (touched && !touches) break;
-    touched |= touches;
+    const bool contacts = !t.world().contacts().empty();
+    if (touched && !contacts) break;
+    touched |= contacts;
   }
   const Vec3 normal = (t.position(1) - t.position(0)).normalized();
   return {energy() / before, (t.velocity(1) - t.velocity(0)).dot(normal) / (speed * std::cos(angle))};
@@ -73,7 +73,7 @@ TEST_P(SizeRatio, NeitherMakesGrainsStickNorGainEnergy) {
     }
     EXPECT_GT(least_rebound, 0.5) << "ratio " << ratio << ": it sticks";
     worst = std::max(worst, most_usual), most_gained = std::max(most_gained, most_energy - 1);
-    // (π/7)²/4: what seven steps of an impact may make of its energy.
+    // (π/7)²/4: maximum relative gain in an impact of seven steps.
     EXPECT_LT(most_usual, 0.05) << "ratio " << ratio;
     EXPECT_LT(most_energy, 1.05) << "ratio " << ratio;
     map_point("error of the rebound at a fifth of the critical step|ratio of sizes", GetParam(), ratio, most);

@@ -1,5 +1,5 @@
-// A block and a ball on a slope at the edge of sliding and of rolling: the angle of friction from both sides, and what
-// creeps below it. The plane is level and gravity leans.
+// A block and a ball on a slope at the limits of sliding and rolling: the friction angle from both sides, and creep
+// below it. The plane is horizontal and gravity is inclined.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double g = 9.81, radius = 0.01, density = 2500, modulus = 1e8;
 struct Edge {
   std::string name, law;
   double friction, rolling_limit;
-  bool turns;  ///< a ball; else a block, which is a sphere that does not turn
+  bool turns;  ///< a ball; otherwise a block, a sphere without rotation
 
   double limit() const { return turns ? std::min(rolling_limit, friction) : friction; }
   /// Steady acceleration at a slope above the limit [m/s²].
@@ -31,7 +31,7 @@ Trial on_slope(const Edge& edge, double slope, double damping) {
   Description m{{"density", density}, {"friction_angle", std::atan(edge.friction)}};
   m[edge.law == "hertz-mindlin" ? "young_modulus" : "contact_modulus"] = modulus;
   if (edge.law == "linear-rolling") m["rolling_limit"] = edge.turns ? edge.rolling_limit : 0;
-  // As deep in as its weight presses it.
+  // Overlap by its weight.
   const double mass = density * 4 / 3 * std::numbers::pi * std::pow(radius, 3), weight = mass * g * std::cos(angle);
   const double curved = 4.0 / 3 * modulus / (2 * (1 - 0.3 * 0.3)) * std::sqrt(radius);
   const double sunk = edge.law == "hertz-mindlin" ? std::pow(weight / curved, 2.0 / 3) : weight / (modulus * radius);
@@ -47,7 +47,7 @@ void until(Trial& t, double time) {
   while (t.world().time() < time) t.step();
 }
 
-/// Mean speed [m/s] when what slid at first, as the springs swung, has come to rest.
+/// Mean speed [m/s] after initial slip by oscillations of the springs has ended.
 double creep(const Edge& edge, double slope) {
   Trial t = on_slope(edge, slope, 0.3);
   until(t, 1);
@@ -55,7 +55,7 @@ double creep(const Edge& edge, double slope) {
   until(t, 1.2);
   return (t.position(0).x() - place) / 0.2;
 }
-/// Undamped; the swing of the springs averages out.
+/// Undamped; oscillations of the springs average out.
 double acceleration(const Edge& edge, double slope) {
   Trial t = on_slope(edge, slope, 0);
   until(t, 0.5);

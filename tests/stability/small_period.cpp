@@ -1,4 +1,4 @@
-// Periodic cells down to where a grain would meet another one twice, or itself: as right as large ones above that
+// Periodic cells down to the length at which a grain would meet another one twice, or itself: correct above that
 // length, refused below.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace grit::test::small_period_tests {
 namespace {
 
 constexpr double radius = 1e-3;
-/// Twice the reach of two equal grains at rest, with the thinnest skins that there are: 0.03 of a diameter.
+/// Twice the reach of two equal grains at rest, with the minimum skin of 0.03 of a diameter.
 constexpr double shortest = 4 * (radius + 0.03 * 2 * radius);
 
 Description repeating(const std::vector<Grain>& grains, const Vec3& period) {
@@ -23,8 +23,8 @@ Description repeating(const std::vector<Grain>& grains, const Vec3& period) {
   return d;
 }
 
-/// What touches, by trying every image, a grain's own included: the contacts of this many grains with all others.
-std::size_t touches(const World& world) {
+/// Contacts of the first grains with all others, by testing every image, own images included.
+std::size_t contacts(const World& world) {
   const auto x = world.positions();
   const Vec3 period = world.cell().high - world.cell().low;
   std::size_t found = 0;
@@ -39,16 +39,16 @@ std::size_t touches(const World& world) {
   return found / 2;
 }
 
-/// Largest difference between the contacts found and those that there are, over so many steps of grains that fly about.
+/// Largest difference between contacts found and actual contacts, over a number of steps of moving grains.
 std::size_t missed(double period, int steps) {
   constexpr double spacing = 2.05 * radius;
-  // Two layers of four along each axis but the short one.
+  // Two layers of four along each axis except the short one.
   auto grains = jumble({4, 4, 2}, spacing, 1, 5);
   for (Grain& g : grains) g.position.z() *= period / (2 * spacing), g.radius = radius;
   Trial t(repeating(grains, {4 * spacing, 4 * spacing, period}));
   std::size_t worst = 0, most = 0;
   for (int i = 0; i < steps; ++i, t.step()) {
-    const auto there = static_cast<std::ptrdiff_t>(touches(t.world()));
+    const auto there = static_cast<std::ptrdiff_t>(contacts(t.world()));
     const auto found = static_cast<std::ptrdiff_t>(t.kernel().state().pairs.touching_count());
     worst = std::max(worst, static_cast<std::size_t>(std::abs(there - found)));
     most = std::max(most, static_cast<std::size_t>(there));
@@ -72,7 +72,7 @@ bool refused(double period) {
   return stops([&] { missed(period, 1); });
 }
 
-/// The longest period that is refused, by halving: `refused` says of one whether it is.
+/// The longest refused period, by bisection; `refused` returns whether a period is refused.
 template <class Refused>
 double longest(Refused refused) {
   double low = 2 * radius, high = 8 * radius;
@@ -120,10 +120,11 @@ TEST(SmallPeriod, SaysWhereWhatIsAllowedAndWhatToDo) {
     Trial t(repeating(one, {0.01, 0.01, 0.999 * shortest}));
     FAIL();
   } catch (const NumericsError& error) {
-    EXPECT_STREQ(error.what(),
-                 "step 0, time 0 s: /domain is 0.004236 m long along z, where it repeats; a body would meet another "
-                 "one twice in less than 0.00424 m, twice the reach of the largest; make the domain longer along this "
-                 "axis, bound it by walls, or compress it less");
+    EXPECT_STREQ(
+        error.what(),
+        "step 0, time 0 s: /domain has a period of 0.004236 m along z, below the minimum of 0.00424 m, twice "
+        "the reach of the largest body; make the domain longer along this axis, use walls instead, or compress "
+        "it less");
   }
 }
 
@@ -136,11 +137,11 @@ TEST(SmallPeriod, CellThatShrinksStopsBeforeItIsTooShort) {
     t.step(100000);
     FAIL();
   } catch (const NumericsError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("m long along z, where it repeats"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("m along z, below the minimum of "));
     const double period = t.world().cell().high.z() - t.world().cell().low.z();
     EXPECT_LT(period, shortest);
-    // Looked at whenever neighbours are sought, which is before two grains have come nearer by both skins.
-    EXPECT_GT(period, 4 * radius) << "before a grain touches another twice";
+    // Checked at every neighbour search, before two grains have approached by both skins.
+    EXPECT_GT(period, 4 * radius) << "before a grain is in contact with another twice";
   }
 }
 

@@ -1,5 +1,5 @@
-// Springs that stiffen as they are pressed, at the step that grit chooses by itself: what presses feels Hertz's force
-// all the way, and what hits, falls or is poured gains nothing.
+// Springs whose stiffness grows with overlap, at the default step: compression follows Hertz's force, and impacts,
+// falls and pouring gain no energy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,12 +25,12 @@ Description glass(double young, double restitution) {
           {"restitution", restitution}};
 }
 
-/// Hertz's, of a sphere and a wall of one material [N].
+/// Hertzian force of a sphere and a wall of the same material [N].
 double hertz(double young, double r, double overlap) {
   return 4.0 / 3 * young / (2 * (1 - poisson * poisson)) * std::sqrt(r) * std::pow(std::max(overlap, 0.0), 1.5);
 }
 
-/// A ball between a floor and a lid that comes down; both are small.
+/// A ball between a floor and a descending lid; both are small.
 Description press(double young, double speed) {
   const Vec3 low = Vec3::Constant(-2 * radius), high = Vec3::Constant(2 * radius);
   Description d = description("hertz-mindlin", glass(young, 1), {{{0, 0, radius}, radius}});
@@ -39,13 +39,13 @@ Description press(double young, double speed) {
   return d;
 }
 
-/// So slow that the ball hardly swings between the two [m/s].
+/// So slow that the ball hardly oscillates between them [m/s].
 double slow(double young, double deepest) {
   const double period = 2 * pi / std::sqrt(3 * hertz(young, radius, deepest) / deepest / mass);
   return 2 * deepest / (3000 * period);
 }
 
-/// Presses until the ball is so deep in both walls: the largest error of their forces on the way, over Hertz's.
+/// Compresses to this overlap at both walls; returns the maximum error of their forces relative to Hertz.
 double error_of_pressing(const Description& d, double young, double deepest) {
   const double speed = slow(young, deepest), least = 0.02 * hertz(young, radius, deepest);
   Trial t(d);
@@ -75,7 +75,7 @@ TEST(Stiffening, WhatIsPressedPushesBackAsHertzSays) {
 TEST(Stiffening, AnotherThatIsPressedHarderHidesNothing) {
   constexpr double young = 1e9, deepest = 2e-3 * radius, large = 10 * radius, squeezed = 5e-3 * large;
   Description d = press(young, slow(young, deepest));
-  d["bodies"]["grains"]["grains"]["grains"].push_back(
+  d["bodies"]["grains"]["source"]["bodies"].push_back(
       {{"position", {5 * large, 0, large - squeezed}}, {"radius", large}});
   const Vec3 low(4 * large, -large, 0), high(6 * large, large, 0);
   d["walls"]["low"] = side(2, 0, low, high, true);
@@ -91,7 +91,7 @@ TEST(Stiffening, WhatFallsComesBackNoHigher) {
       d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
       d["engines"]["gravity"] = {{"type", "gravity"}};
       Trial t(d);
-      // To the top of its first jump.
+      // To the top of its first bounce.
       bool touched = false;
       while (!touched || t.velocity(0).z() > 0) t.step(), touched = touched || t.position(0).z() < radius;
       const double rise = (t.position(0).z() - radius) / height;
@@ -101,7 +101,7 @@ TEST(Stiffening, WhatFallsComesBackNoHigher) {
   figure("height that is gained by a fall", most);
 }
 
-/// Closure of the ledger of some grains that fall into a box and come to rest, over what fell.
+/// Closure error of the energy balance of grains that fall into a box and come to rest, over their initial energy.
 double closure_of_a_pour(double young, double restitution) {
   Description m = glass(young, restitution);
   m["friction_angle"] = 0.4, m["poisson_ratio"] = 0.25;
@@ -117,7 +117,7 @@ double closure_of_a_pour(double young, double restitution) {
   Trial t(d, 1, BodyState::energy);
   t.world().energies();
   while (t.world().time() < 0.1) t.step();
-  const EnergyLedger now = t.world().energies();
+  const Energies now = t.world().energies();
   EXPECT_GT(now.viscosity, 0.02 * -now.gravitational);
   EXPECT_GT(t.kernel().state().pairs.touching_count(), 30u);
   return std::abs(now.closure_error / now.gravitational);
@@ -134,18 +134,17 @@ TEST(Stiffening, WhatIsPouredGainsNothing) {
   figure("closure error of what is poured", most);
 }
 
-/// What a packing does when all its walls have come in.
+/// State of a packing after compression by its walls.
 struct Pressed {
-  double force;    ///< on a wall [N]
-  double closure;  ///< error of the ledger over the work of walls
-  double unrest;   ///< kinetic over elastic energy
+  double force;        ///< on a wall [N]
+  double closure;      ///< error of the energy balance over the work of walls
+  double equilibrium;  ///< kinetic over elastic energy
 };
 
-/// A cubic packing of a hundred and twenty-five grains that its walls press from first touch on. Beside it one rattles
-/// between two plates that soon still it: what it hits with at first sets the step, for about as deep an overlap as the
-/// packing's in the end, and nobody goes far enough later to have it looked at. For that the packing begins without
-/// overlaps that would ask for a shorter step, and the plates damp little, since dashpots would. `safety` is 0 for the
-/// usual one.
+/// A cubic packing of 125 grains, compressed by its walls from first contact on. Next to it one grain bounces between
+/// two plates that soon bring it to rest: its first impact sets the step, for about the final overlap of the packing,
+/// and later displacements are too small for a new evaluation. For that, the packing starts without overlaps, and the
+/// plates have little damping, as both would require a shorter step. `safety` 0: the default.
 Pressed pressed_packing(double safety) {
   constexpr double young = 1e8, deepest = 3e-3 * radius, inwards = 6e-5, rattling = 0.0262, gap = 3e-7;
   constexpr int sides = 5;
@@ -163,7 +162,7 @@ Pressed pressed_packing(double safety) {
   const Vec3 low = Vec3::Zero(), high = Vec3::Constant(2 * sides * radius), apart = 30 * radius * Vec3::UnitX();
   d["bodies"]["lone"] = d["bodies"]["grains"];
   d["bodies"]["lone"]["material"] = "plates";
-  d["bodies"]["lone"]["grains"]["grains"] =
+  d["bodies"]["lone"]["source"]["bodies"] =
       Description::array({{{"position", vector(apart + Vec3(radius, radius, radius + gap))},
                            {"radius", radius},
                            {"velocity", {0, 0, rattling}}}});
@@ -179,27 +178,27 @@ Pressed pressed_packing(double safety) {
   if (safety > 0) d["time_step"]["safety"] = safety;
   Trial t(d, 1, BodyState::energy);
   t.world().energies();
-  // Half the walls' way for each of the contacts along an axis.
+  // The displacement of a wall is divided among the contacts along an axis.
   while (inwards * t.world().time() < 0.5 * sides * deepest) t.step();
-  const EnergyLedger now = t.world().energies();
+  const Energies now = t.world().energies();
   double force = 0;
   for (const WallView& wall : t.world().walls())
     if (wall.name.starts_with("low_") || wall.name.starts_with("high_")) force += wall.force.norm() / 6;
   return {force, std::abs(now.closure_error / now.walls), now.kinetic / now.elastic()};
 }
 
-// A packing asks for a shorter step than two grains do that are pressed as deep: 20 k_s/m against 7. Were the step set
-// anew from half of the impact's overlap on, instead of 0.15, a twenty-fifth of the walls' work would be lost from the
-// ledger and the walls feel 4 % less; at 0.4 nothing shows.
+// A packing requires a shorter step than two grains with the same overlap: 20 k_s/m, not 7. If the step were set again
+// only from half of the impact's overlap on, instead of 0.15, the error of the energy balance would be 4 % of the
+// walls' work and the forces on the walls 4 % lower; at 0.4 there is no effect.
 TEST(Stiffening, PackingThatIsPressedPushesBackAsAtATenthOfTheStep) {
   const Pressed usual = pressed_packing(0), fine = pressed_packing(0.08);
   for (const Pressed& one : {usual, fine}) {
     EXPECT_LT(one.closure, 1e-4);
-    EXPECT_LT(one.unrest, 1e-4);
+    EXPECT_LT(one.equilibrium, 1e-4);
   }
   EXPECT_NEAR(usual.force / fine.force, 1, 1e-3);
   figure("error of the force of a packing that is pressed", std::abs(usual.force / fine.force - 1));
-  EXPECT_GT(usual.force, 25 * 0.5 * hertz(1e8, radius, 1.5e-3 * radius)) << "pressed";
+  EXPECT_GT(usual.force, 25 * 0.5 * hertz(1e8, radius, 1.5e-3 * radius)) << "compressed";
 }
 
 }  // namespace

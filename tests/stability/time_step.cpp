@@ -1,5 +1,5 @@
-// The longest stable step of systems whose fastest mode is known, found from both sides, beside the critical step that
-// grit reckons with.
+// The largest stable step of systems whose fastest mode is known, found from both sides, compared with the critical
+// step of grit.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -25,7 +25,7 @@ Description material(double restitution) {
   return m;
 }
 
-/// A sphere between two plates that press on it and do not move; it starts towards one of them.
+/// A sphere compressed by two fixed plates; it starts towards one of them.
 Description pressed(double restitution, bool rough) {
   Description m = material(restitution);
   if (!rough) m["friction_angle"] = 0;
@@ -36,7 +36,7 @@ Description pressed(double restitution, bool rough) {
   return d;
 }
 
-/// What is found, what is predicted and what grit says, over the step of the undamped spring.
+/// The limit found, the prediction and the critical step of grit, over the critical step of the undamped spring.
 void map_step(const std::string& name, double restitution, const Description& d, double predicted) {
   const auto& map = "longest stable step, over 2 √(m/k) of one spring|restitution";
   const double spring = 2 * std::sqrt(mass / stiffness);
@@ -48,7 +48,7 @@ void map_step(const std::string& name, double restitution, const Description& d,
 TEST(TimeStep, SphereBetweenPlatesStartsToGrowWhereItIsSaidTo) {
   for (const double e : {1.0, 0.8, 0.5, 0.2, 0.05}) {
     SCOPED_TRACE("restitution " + std::to_string(e));
-    // Both contacts act along one line: twice the spring, twice the dashpot.
+    // Both contacts act along one line: twice the stiffness and twice the damping.
     const double dashpot = 2 * damping_of_restitution(e) * std::sqrt(stiffness * mass);
     const double limit = limit_of(2 * stiffness / mass, 2 * dashpot / mass);
     expect_limit(pressed(e, false), limit);
@@ -80,14 +80,14 @@ TEST(TimeStep, LatticeStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     for (const double e : {1.0, 0.5, 0.1}) {
       if (law == "linear-rolling" && e < 1) continue;  // has no dashpots
       SCOPED_TRACE(law + ", restitution " + std::to_string(e));
-      // Against neighbours twice as far as against a fixed point: two of them press, four shear.
+      // Relative displacements are twice those to a fixed point: two contacts are compressed, four sheared.
       const double dashpot = 2 * damping_of_restitution(e) * std::sqrt(stiffness * mass / 2);
       const double limit = limit_of((4 + 8 * shear_ratio) * stiffness / mass, 4 * dashpot / mass);
       const Description d = lattice(law, e);
       expect_limit(d, limit);
       map_step("lattice, " + law, e, d, limit);
       EXPECT_LE(critical(d), limit);
-      EXPECT_GE(critical(d), 0.5 * limit) << "not shorter than it need be";
+      EXPECT_GE(critical(d), 0.5 * limit) << "not much shorter than necessary";
     }
 }
 
@@ -102,7 +102,7 @@ TEST(TimeStep, LatticeDampedInShearStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     expect_limit(d, limit);
     map_step("lattice, damped in shear", e, d, limit);
     EXPECT_LE(critical(d), limit);
-    EXPECT_GE(critical(d), 0.5 * limit) << "not shorter than it need be";
+    EXPECT_GE(critical(d), 0.5 * limit) << "not much shorter than necessary";
   }
 }
 
@@ -116,11 +116,11 @@ TEST(TimeStep, BallThatResistsRollingStartsToGrowWhereItsRockingSays) {
     Description d = description("linear-rolling", m, {{Vec3::Zero(), radius, Vec3::Zero(), {0, turning, 0}}});
     d["walls"]["low"] = plane({0, 0, -(1 - squeeze) * radius}, Vec3::UnitZ());
     d["walls"]["high"] = plane({0, 0, (1 - squeeze) * radius}, -Vec3::UnitZ());
-    // About its centre: two springs in shear at arms of a radius, two in rolling of K_r = β K_s r².
+    // About its centre: two shear springs with the radius as arm, two rolling springs K_r = β K_s r².
     const double limit = 2 / std::sqrt(5 * shear_ratio * (1 + rolling) * stiffness / mass);
     expect_limit(d, limit);
     EXPECT_LE(critical(d), limit);
-    EXPECT_GE(critical(d), 0.9 * limit) << "not shorter than it need be";
+    EXPECT_GE(critical(d), 0.9 * limit) << "not much shorter than necessary";
     const double spring = 2 * std::sqrt(mass / stiffness);
     map_point(map, "found", rolling, found_limit(d, limit) / spring);
     map_point(map, "predicted", rolling, limit / spring),
@@ -128,7 +128,7 @@ TEST(TimeStep, BallThatResistsRollingStartsToGrowWhereItsRockingSays) {
   }
 }
 
-/// Grains that came to rest without friction in a periodic cell that presses them, rough and trembling from now on.
+/// Grains compressed in a periodic cell without friction until at rest, then with friction and small random velocities.
 Description packed(double friction, double shear_to_normal = shear_ratio) {
   auto grains = jumble({4, 4, 4}, 1e-3, 0, 9);
   constexpr double closer = 0.92, side = 4e-3 * closer;
@@ -145,8 +145,8 @@ Description packed(double friction, double shear_to_normal = shear_ratio) {
   Description loose = cell(grains, 0);
   loose["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}};
   Trial t(loose);
-  while (unrest(t.world()).unbalanced_force > 1e-11 && t.world().step() < 200000) t.step(100);
-  EXPECT_LT(unrest(t.world()).unbalanced_force, 1e-11);
+  while (equilibrium(t.world()).unbalanced_force > 1e-11 && t.world().step() < 200000) t.step(100);
+  EXPECT_LT(equilibrium(t.world()).unbalanced_force, 1e-11);
   EXPECT_GT(t.kernel().state().pairs.touching_count(), 2 * grains.size()) << "dense";
   Random random(2);
   const auto about = [&] { return 1e-12 * (2 * random.uniform() - 1); };
@@ -160,7 +160,7 @@ TEST(TimeStep, DensePackingStartsToGrowAboveTheStepThatIsSaidToBeSafe) {
     const Description d = packed(friction);
     const double said = critical(d), found = found_limit(d, 1.2 * said);
     EXPECT_LE(said, found);
-    EXPECT_GE(said, 0.5 * found) << "not shorter than it need be";
+    EXPECT_GE(said, 0.5 * found) << "not much shorter than necessary";
     EXPECT_LT(growth(d, 0.99 * said, 4000), 1e3);
   }
 }
@@ -174,7 +174,7 @@ double limit_of_all_modes(const World& world, double shear_to_normal) {
     const Mat3 along = c.normal * c.normal.transpose(), across = Mat3::Identity() - along;
     const Mat3 turn{
         {0, -c.normal.z(), c.normal.y()}, {c.normal.z(), 0, -c.normal.x()}, {-c.normal.y(), c.normal.x(), 0}};
-    // Of the surface of b over that of a, by ways of both and by turns; what presses turns with the branch.
+    // Relative displacement of the surfaces by displacements and rotations; the normal force rotates with the branch.
     Eigen::Matrix<double, 3, 12> slip, apart;
     slip << -Mat3::Identity(), a * turn, Mat3::Identity(), b * turn;
     apart << -Mat3::Identity(), Mat3::Zero(), Mat3::Identity(), Mat3::Zero();
@@ -215,7 +215,7 @@ TEST(TimeStep, DensePackingStartsToGrowWhereItsEigenvaluesSay) {
 }
 
 TEST(TimeStep, AtTheDefaultSafetyNothingGrows) {
-  // Many dashpots on one body: the damping of each alone would allow steps beyond the limit.
+  // Many dashpots on one body: bounds from single dashpots would allow unstable steps.
   for (const double e : {1.0, 0.5, 0.1, 0.02})
     for (const Description& d : {pressed(e, true), lattice("linear-frictional", e)})
       EXPECT_LT(growth(d, 0.8 * critical(d), 4000), 20) << "restitution " << e;

@@ -1,5 +1,5 @@
-// How fast a grain may fly at a thin wall or at another grain before it is on the other side within a step, and that
-// the guard stops it long before.
+// The speed at which a grain passes through a thin wall or another grain within a step, and that the guard stops it
+// long before.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr double radius = 1e-3, dt = 1e-6;
 
-/// A grain with `travel` radii a step towards a thin wall or a grain that is heavy; the contact so stiff that it turns
-/// back what it stops within a step or two. `offset`: of a step, where it begins.
+/// A grain that moves with `travel` radii per step towards a thin wall or a heavy grain; the contact is so stiff that
+/// it reflects the grain within one or two steps. `offset`: initial phase of a step.
 Description shot(bool at_wall, double travel, double offset) {
   const double speed = travel * radius / dt;
   std::vector<Grain> grains{{Vec3(0, 0, 3 * radius + offset * speed * dt), radius, {0, 0, -speed}}};
@@ -33,7 +33,7 @@ Description shot(bool at_wall, double travel, double offset) {
   return d;
 }
 
-/// Of 40 shots that begin at different parts of a step, the share that is seen to touch.
+/// Fraction of 40 shots with different phases of a step that have a contact.
 double seen(bool at_wall, double travel) {
   constexpr int shots = 40;
   int count = 0;
@@ -46,7 +46,7 @@ double seen(bool at_wall, double travel) {
   return static_cast<double>(count) / shots;
 }
 
-/// A step can pass over what is `thick` radii through: the ways in a step between which that begins.
+/// Displacements per step at which grains start to pass an obstacle of `thick` radii.
 void expect_limit(bool at_wall, double thick) {
   EXPECT_EQ(seen(at_wall, 0.97 * thick), 1) << "none is missed below";
   EXPECT_LT(seen(at_wall, 1.06 * thick), 1) << "some are above";

@@ -30,14 +30,14 @@ class Batch : public testing::Test {
   int count = 0;
 };
 
-TEST_F(Batch, TellsHowEachEndedAndKeepsWhatItSaid) {
+TEST_F(Batch, ReportsHowEachEndedAndKeepsItsOutput) {
   run({shell_job("echo out; echo err >&2; exit 3"), shell_job("kill -9 $$"), shell_job("read line || exit 5")}, 2);
   EXPECT_THAT(status, testing::ElementsAre(3, -9, 5)) << "standard input is empty";
   EXPECT_EQ(text_of(folder / "log1/log.txt"), "out\nerr\n");
 }
 
-TEST_F(Batch, HasNoMoreAtWorkThanAsked) {
-  // Each waits for the other of its pair, so that they end only if both are at work.
+TEST_F(Batch, RunsNoMoreAtOnceThanRequested) {
+  // Each waits for the other of its pair, so that they end only if both are running.
   const auto pair = [&](const std::string& own, const std::string& other) {
     return shell_job("cd " + folder.path().string() + "; touch " + own + "; while [ ! -e " + other +
                      " ]; do sleep 0.01; done");

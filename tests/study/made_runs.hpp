@@ -1,4 +1,4 @@
-// Runs that never ran: folders with the results that a test wants.
+// Fake runs: folders with given results.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace grit {
 
-/// series.h5 with probe "test": x, y, and a profile of as many numbers a sample as y has samples.
+/// series.h5 with probe "test": x, y, and a profile with as many values per sample as y has samples.
 inline void make_series(const std::filesystem::path& folder, const std::vector<double>& x,
                         const std::vector<double>& y) {
   std::filesystem::create_directories(folder);
@@ -35,7 +35,7 @@ inline void make_run_json(const std::filesystem::path& folder, double cost, cons
       {"status", status}, {"message", message}, {"cpu_s", cost}, {"steps", 10 * cost}, {"bodies", 7}};
 }
 
-/// A run whose only figure is a value.
+/// A run with a single value as its metric.
 inline void make_run(const std::filesystem::path& folder, double cost, double value) {
   make_run_json(folder, cost);
   make_series(folder, {0, 1}, {0, value});

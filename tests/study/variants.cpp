@@ -15,7 +15,7 @@ StudyDescription study_of(const std::string& settings, const std::string& more =
   const OwnFolder folder;
   folder.write("scene.json", "{}");
   return load_study(folder.write("study.json", R"({"scene": "scene.json", "settings": )" + settings + R"(,
-    "figures": {"peak": {"type": "maximum", "of": "test/y"}})" +
+    "metrics": {"peak": {"type": "maximum", "of": "test/y"}})" +
                                                    more + "}"));
 }
 
@@ -53,7 +53,7 @@ TEST(Variants, TheUsualMayBeTheFinest) {
               ElementsAre("rate=2", "usual"));
 }
 
-TEST(Variants, SetWhatTheStudyTheLevelsAndTheSeedSay) {
+TEST(Variants, SetTheValuesOfTheStudyTheLevelsAndTheSeed) {
   const auto study = study_of(two_settings, R"(, "set": {"/title": "x"}, "seeds": {"pointer": "/s", "values": [4]})");
   EXPECT_THAT(sets_of(study, variants(study).back(), 4),
               ElementsAre("/title=\"x\"", "/rate=1", "/a=0.1", "/b=null", "/s=4"));
@@ -65,7 +65,7 @@ TEST(Variants, HaveFoldersWithoutOddCharacters) {
   EXPECT_EQ(folder_of({{}, "modulus=300 MPa, a/b=../x"}, 2), "runs/modulus=300_MPa,_a_b=.._x/seed-2");
 }
 
-TEST(Studies, SayWhatIsWrong) {
+TEST(Studies, ReportErrors) {
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1]}})"), HasSubstr("/settings/r/values"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 1]}})"), HasSubstr("the level \"1\" twice"));
   EXPECT_THAT(problems_of(R"({"r": {"pointers": ["/r"], "values": [1, 2], "usual": "3"}})"),
@@ -84,8 +84,8 @@ TEST(Studies, NothingIsChangedTwice) {
   EXPECT_THAT(
       problems_of(R"({"r": {"pointers": ["/a", "/r"], "values": [[1, 1], [2, 2]]},
                               "s": {"pointers": ["/r"], "values": [3, 4]}})"),
-      HasSubstr("/settings/s/pointers/0: found /r, of which /settings/r/pointers/1 changes /r; allowed is what no "
-                "other setting and no seed changes"));
+      HasSubstr("/settings/s/pointers/0: found /r, of which /settings/r/pointers/1 changes /r; allowed is a value that "
+                "no other setting and no seed changes"));
   EXPECT_THAT(
       problems_of(R"({"r": {"pointers": ["/t/step"], "values": [1, 2]}, "s": {"pointers": ["/t"], "values": [3, 4]}})"),
       HasSubstr("/settings/s/pointers/0: found /t, of which /settings/r/pointers/0 changes /t/step"));
@@ -98,26 +98,26 @@ TEST(Studies, NothingIsChangedTwice) {
       << "what is set for all runs may be varied in some";
 }
 
-TEST(Studies, AFigureIsOfAChannelAndHasTheReferenceOfItsKind) {
-  const auto figure = [](const std::string& text) {
+TEST(Studies, AMetricIsOfAChannelAndHasTheReferenceOfItsKind) {
+  const auto metric = [](const std::string& text) {
     const OwnFolder folder;
     folder.write("scene.json", "{}");
     try {
       load_study(folder.write("study.json", R"({"scene": "scene.json", "settings": {"r": {"pointers": ["/r"],
-        "values": [1, 2]}}, "figures": {"f": )" +
+        "values": [1, 2]}}, "metrics": {"f": )" +
                                                 text + "}}"));
     } catch (const DescriptionError& error) {
       return std::string(error.what());
     }
     return std::string();
   };
-  EXPECT_EQ(figure(R"({"type": "curve", "of": "test/y", "against": "test/x"})"), "");
-  EXPECT_THAT(figure(R"({"type": "last", "of": "y"})"), HasSubstr("/figures/f/of: found \"y\""));
-  EXPECT_THAT(figure(R"({"type": "curve", "of": "test/y", "value": 1})"), HasSubstr("/figures/f/value"));
-  EXPECT_THAT(figure(R"({"type": "last", "of": "test/y", "value": 0})"),
-              HasSubstr("/figures/f/value: found 0 without a scale"));
-  EXPECT_EQ(figure(R"({"type": "last", "of": "test/y", "value": 0, "scale": 2})"), "");
-  EXPECT_THAT(figure(R"({"type": "largest", "of": "test/y"})"), HasSubstr("unknown figure \"largest\""));
+  EXPECT_EQ(metric(R"({"type": "curve", "of": "test/y", "against": "test/x"})"), "");
+  EXPECT_THAT(metric(R"({"type": "last", "of": "y"})"), HasSubstr("/metrics/f/of: found \"y\""));
+  EXPECT_THAT(metric(R"({"type": "curve", "of": "test/y", "value": 1})"), HasSubstr("/metrics/f/value"));
+  EXPECT_THAT(metric(R"({"type": "last", "of": "test/y", "value": 0})"),
+              HasSubstr("/metrics/f/value: found 0 without a scale"));
+  EXPECT_EQ(metric(R"({"type": "last", "of": "test/y", "value": 0, "scale": 2})"), "");
+  EXPECT_THAT(metric(R"({"type": "largest", "of": "test/y"})"), HasSubstr("unknown metric \"largest\""));
 }
 
 }  // namespace

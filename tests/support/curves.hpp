@@ -9,9 +9,7 @@
 #include <vector>
 
 #include "input/scene.hpp"
-#include "bodies/make_bodies.hpp"
-#include "simulation/driver.hpp"
-#include "support/scene.hpp"
+#include "support/recorded.hpp"
 
 namespace grit::test {
 
@@ -50,8 +48,8 @@ struct Curves : Recorder {
 
 /// Runs a description of the repository with `sets` ("/pointer=value") to its end on two threads.
 inline void run_to_the_end(const std::string& file, const std::vector<std::string>& sets, Curves& curves) {
-  Started started(load_scene(std::string(GRIT_SOURCE_DIR) + "/" + file, sets, installed()), 2);
-  run(started.scene, started.live, started.kernel, curves, {});
+  Simulation simulation = recorded(load_scene(std::string(GRIT_SOURCE_DIR) + "/" + file, sets, installed()), curves, 2);
+  run_recorded(simulation);
   EXPECT_EQ(curves.summary.status, "done") << curves.summary.message;
 }
 

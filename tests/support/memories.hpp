@@ -15,15 +15,15 @@ inline Memories memories(const Trial& t, std::size_t* swapped = nullptr) {
   const auto ids = t.world().ids();
   Memories all;
   for (std::size_t c = 0; c < state_now.pairs.candidates(); ++c) {
-    if (!state_now.pairs.touches(c)) continue;
+    if (!state_now.pairs.contacts(c)) continue;
     const std::uint32_t a = ids[state_now.pairs.a(c)], b = ids[state_now.pairs.b(c)];
     auto state = state_now.pairs.state(c);
     for (std::size_t f = 0; f < fields.size() && a > b; ++f) state[f] *= fields[f].swap;
     if (swapped != nullptr) *swapped += a > b;
     all[std::minmax(a, b)] = std::move(state);
   }
-  state_now.wall_contacts.each([&](const WallContacts::Touching& touch) {
-    all[{ids[touch.touch->body], 1000 + touch.touch->wall}].assign(touch.state.begin(), touch.state.end());
+  state_now.wall_contacts.each([&](const WallContacts::Touching& contact) {
+    all[{ids[contact.contact->body], 1000 + contact.contact->wall}].assign(contact.state.begin(), contact.state.end());
   });
   return all;
 }

@@ -8,8 +8,7 @@
 
 #include "grit/plugin.hpp"
 #include "grit/probe.hpp"
-#include "simulation/driver.hpp"
-#include "support/scene.hpp"
+#include "support/recorded.hpp"
 
 namespace grit::test {
 
@@ -71,20 +70,22 @@ class Watch final : public Probe {
  public:
   void declare(Parameters&) override {}
   std::vector<Channel> channels() const override { return {{"value", "1", "what the test asks for", {}}}; }
-  void sample(const World& world, std::span<const std::span<double>> values) override {
-    values[0][0] = watched() ? watched()(world) : 0;
+  void sample(const World& world, ChannelValues& values) override {
+    values["value"] = watched() ? watched()(world) : 0;
   }
 };
 
 /// A description that has been run.
 struct Done {
-  Notes notes;
-  std::unique_ptr<Started> started;
-  Kernel* kernel = nullptr;
+  std::unique_ptr<Notes> recorder = std::make_unique<Notes>();
+  Notes& notes = *recorder;
+  std::unique_ptr<Simulation> simulation;
+  const Kernel* kernel = nullptr;
   const RunSummary& summary() const { return notes.summary; }
 };
 
-inline Done run(const Description& plain, const RunControl& control = {}) {
+/// `prepare` gets the simulation before it runs.
+inline Done run(const Description& plain, const std::function<void(Simulation&)>& prepare = {}) {
   static const PluginInfo watch = [] {
     PluginInfo info;
     info.kind = "probe", info.name = "watch", info.version = "1.0.0", info.doc = "what a test asks for";
@@ -93,9 +94,10 @@ inline Done run(const Description& plain, const RunControl& control = {}) {
   }();
   installed().add(watch);
   Done done;
-  done.started = std::make_unique<Started>(scene_of(plain), 1, StateRequest());
-  done.kernel = &done.started->kernel;
-  grit::run(done.started->scene, done.started->live, *done.kernel, done.notes, control);
+  done.simulation = std::make_unique<Simulation>(recorded(scene_of(plain), done.notes, 1, StateRequest()));
+  done.kernel = &kernel_of(*done.simulation);
+  if (prepare) prepare(*done.simulation);
+  run_recorded(*done.simulation);
   return done;
 }
 

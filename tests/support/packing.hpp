@@ -50,13 +50,13 @@ inline bool same_bits(const Kernel& a, const Kernel& b) {
       a.state().pairs.candidates() != b.state().pairs.candidates())
     return false;
   for (std::size_t c = 0; c < a.state().pairs.candidates(); ++c)
-    if (a.state().pairs.touches(c) != b.state().pairs.touches(c) || a.state().pairs.a(c) != b.state().pairs.a(c) ||
+    if (a.state().pairs.contacts(c) != b.state().pairs.contacts(c) || a.state().pairs.a(c) != b.state().pairs.a(c) ||
         a.state().pairs.b(c) != b.state().pairs.b(c) || a.state().pairs.state(c) != b.state().pairs.state(c))
       return false;
   const auto wall_memory = [](const Kernel& s) {
     std::vector<double> all;
     s.state().wall_contacts.each([&](const WallContacts::Touching& t) {
-      all.push_back(t.touch->body), all.push_back(t.touch->wall);
+      all.push_back(t.contact->body), all.push_back(t.contact->wall);
       all.insert(all.end(), t.state.begin(), t.state.end());
     });
     return all;

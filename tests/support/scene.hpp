@@ -49,12 +49,12 @@ inline Description description(const std::string& law, const Description& materi
                     {"spin", vector(g.spin)}});
   Description d = Description::parse(R"({
     "contacts": {}, "materials": {},
-    "bodies": {"grains": {"type": "sphere", "material": "grain", "grains": {"type": "list"}}},
+    "bodies": {"grains": {"type": "sphere", "material": "grain", "source": {"type": "list"}}},
     "stages": [{"name": "only", "until": {"type": "steps", "value": 1}, "limit": 1e9}]
   })");
   d["contacts"]["type"] = law;
   d["materials"]["grain"] = material;
-  d["bodies"]["grains"]["grains"]["grains"] = std::move(list);
+  d["bodies"]["grains"]["source"]["bodies"] = std::move(list);
   return d;
 }
 

@@ -1,7 +1,6 @@
 // All that a run reports, kept in memory bit by bit; the checkpoints that it saves; and runs that go on from them.
 #pragma once
 
-#include <atomic>
 #include <cstring>
 #include <functional>
 #include <optional>
@@ -9,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/driver.hpp"
 #include "support/notes.hpp"
+#include "support/recorded.hpp"
 
 namespace grit::test {
 
@@ -53,12 +52,11 @@ struct Tape final : Recorder {
       for (const Field& field : group.fields) add(field.values.begin(), field.values.end());
   }
   void stage_ended(const World& world, const std::string& what) override { note("end of " + what, world); }
-  void remember(Memory& memory) override {
+  void serialize(Archive& archive) override {
     std::uint64_t count = entries.size();
-    memory(count);
+    archive(count);
     entries.resize(count);
   }
-  void checkpoint(const Checkpoint& one) override { checkpoints.push_back(one); }
   void finish(const World&, const RunSummary& how) override { summary = how; }
 
  private:
@@ -70,29 +68,28 @@ struct Tape final : Recorder {
 
 /// A run on tape. `tape` is what was recorded before the checkpoint, and maybe after.
 struct Taped {
-  Started started;
-  Kernel* kernel = &started.kernel;
   Tape tape;
+  Simulation simulation;
+  const Kernel* kernel;
 
   /// `stop` is asked at every sample and, every eighth step, between two steps.
   Taped(const Description& plain, unsigned threads, std::function<bool(const Kernel&)> stop = {},
         const Checkpoint* resume = nullptr, std::vector<Tape::Entry> before = {}, double checkpoint_every = 0)
-      : started(scene_of(plain), threads) {
+      : simulation(recorded(scene_of(plain), tape, threads)), kernel(&kernel_of(simulation)) {
     tape.entries = std::move(before);
-    std::atomic<bool> stops = false;
+    bool stops = false;
     const auto look = [&](const World&) {
       if (stop && stop(*kernel)) stops = true;
     };
     tape.look = look;
-    RunControl control;
-    control.interrupted = &stops;
-    control.progress = [&](const Progress&) { look(kernel->world()); };
-    control.progress_every = 0;
-    control.resume = resume;
-    control.checkpoint_every = checkpoint_every;
-    grit::run(started.scene, started.live, *kernel, tape, control);
+    simulation.interrupt_when([&] { return stops; });
+    simulation.on_progress([&](const Progress&) { look(kernel->world()); }, 0);
+    simulation.on_checkpoint([&](const Checkpoint& one) { tape.checkpoints.push_back(one); }, checkpoint_every);
+    if (resume != nullptr) simulation.resume(*resume);
+    run_recorded(simulation);
     tape.look = {};
   }
+  Taped(const Taped&) = delete;
 };
 
 }  // namespace grit::test

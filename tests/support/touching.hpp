@@ -13,7 +13,7 @@ using Touching = std::set<std::pair<std::uint32_t, std::uint32_t>>;
 inline Touching found(const Kernel& kernel) {
   Touching pairs;
   for (std::size_t c = 0; c < kernel.state().pairs.candidates(); ++c)
-    if (kernel.state().pairs.touches(c)) pairs.emplace(kernel.state().pairs.a(c), kernel.state().pairs.b(c));
+    if (kernel.state().pairs.contacts(c)) pairs.emplace(kernel.state().pairs.a(c), kernel.state().pairs.b(c));
   return pairs;
 }
 /// Not across periodic sides.

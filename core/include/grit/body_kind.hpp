@@ -1,4 +1,4 @@
-// A kind of body: what its size says about its volume and inertia.
+// Kinds of bodies: volume and inertia as functions of size.
 #pragma once
 
 #include <vector>
@@ -8,32 +8,34 @@
 
 namespace grit {
 
-/// How far off what was integrated of a shape may be; 0 where it is known in closed form.
+/// Estimated errors of a shape's numerical integration; 0 where a closed form is known.
 struct ShapeErrors {
-  double mass = 0;     ///< over the mass
-  double centre = 0;   ///< distance over the radius of the enclosing sphere
-  double inertia = 0;  ///< the largest of a principal moment over itself
+  double mass = 0;     ///< relative to the mass
+  double centre = 0;   ///< of the centre of mass, over the radius of the enclosing sphere
+  double inertia = 0;  ///< largest relative error of the principal moments
 };
 
-/// Spheres that are fixed to each other and move as one, in units of the radius of the smallest sphere that encloses
-/// them. The origin is the centre of mass of their union, of uniform density, and the axes are its principal ones.
+/// Spheres that are fixed to each other and move as one rigid body. The unit of length is the radius of the smallest
+/// enclosing sphere. The origin is the centre of mass of their union at uniform density; the axes are its principal
+/// axes.
 struct ClumpShape {
   std::vector<Row> spheres;      ///< centre, w: radius
-  std::vector<double> shares;    ///< of each sphere's volume: what of it counts, where spheres that overlap share alike
-  Vec3 middle = Vec3::Zero();    ///< of the enclosing sphere
-  Mat3 axes = Mat3::Identity();  ///< columns: these axes, as seen in the frame in which the spheres were given
+  std::vector<double> volume_fractions;    ///< fraction of each sphere's volume that counts; overlaps are divided equally
+  Vec3 middle = Vec3::Zero();    ///< centre of the enclosing sphere
+  Mat3 axes = Mat3::Identity();  ///< columns: the principal axes in the frame in which the spheres were given
   double volume = 0;             ///< of the union
-  Vec3 inertia = Vec3::Zero();   ///< principal moments for a mass of 1
+  Vec3 inertia = Vec3::Zero();   ///< principal moments of inertia for a mass of 1
   ShapeErrors errors = {};       ///< of volume, centre of mass and inertia
 };
 
+/// Base class of plugins of kind "body".
 class BodyKind {
  public:
   virtual ~BodyKind() = default;
   virtual void declare(Parameters& parameters) = 0;
-  /// Once, after the parameters were set. Throws ParameterError for values that it cannot work with.
+  /// Called once after the parameters were set. Throws ParameterError for values that are not possible.
   virtual void prepare() {}
-  /// What it is made of, if it is not a sphere; then radii are those of the enclosing sphere.
+  /// The spheres of a clump; null for a single sphere. Radii are then those of the enclosing sphere.
   virtual const ClumpShape* clump() const { return nullptr; }
   virtual double volume(double radius) const = 0;                ///< m³
   virtual double inertia(double radius, double mass) const = 0;  ///< kg m², about any axis through the centre

@@ -1,4 +1,4 @@
-// How a translation unit was built: what the loader compares before it uses anything else of a plugin.
+// How a translation unit was built. The loader compares this tag before it uses anything else of a plugin.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace grit {
 
-/// Raised whenever anything that crosses the plugin boundary changes.
-inline constexpr std::uint32_t sdk_version = 11;
+/// Incremented with every change of an interface between grit and plugins.
+inline constexpr std::uint32_t sdk_version = 12;
 
 /// Size and alignment of a struct on the hot path.
 struct Layout {
@@ -18,7 +18,7 @@ struct Layout {
   friend bool operator==(const Layout&, const Layout&) = default;
 };
 
-/// How a plugin was built. The layout of this struct never changes; new facts go into `reserved`.
+/// How a plugin was built. The layout of this struct never changes; new entries go into `reserved`.
 struct BuildTag {
   char magic[8];
   std::uint32_t tag_size;
@@ -30,8 +30,8 @@ struct BuildTag {
   char reserved[256];
 };
 
-// Internal linkage, also of all that build_tag() calls: the dynamic linker merges inline functions of shared libraries
-// whose symbols are visible. A merged build_tag() would give every plugin the tag of grit itself.
+// Internal linkage, also for every function that build_tag() calls: the dynamic linker merges inline functions of shared
+// libraries whose symbols are visible. A merged build_tag() would give every plugin the tag of grit itself.
 namespace {
 namespace tag_text {
 
@@ -51,7 +51,7 @@ constexpr void put(char (&target)[N], long number) {
   put(target, digits + last);
 }
 
-/// The highest level of x86-64, 1 to 4, all of whose instructions the compiler may use; 0 for another architecture.
+/// The highest x86-64 level, 1 to 4, whose instructions the compiler may use; 0 for another architecture.
 constexpr long x86_64_level() {
 #if !defined(__x86_64__)
   return 0;

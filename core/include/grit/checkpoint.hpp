@@ -1,4 +1,4 @@
-// Where a simulation was, and all that it needs to go on to the same bits.
+// The complete state of a simulation, from which it continues with identical results (bit for bit).
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 namespace grit {
 
 struct Checkpoint {
-  std::string stage;
+  std::string stage;  ///< name of the stage that was running
   double time = 0;  ///< simulated [s]
-  std::uint64_t step = 0;
-  std::vector<std::byte> memory;
+  std::uint64_t step = 0;        ///< since the start of the run
+  std::vector<std::byte> state;  ///< of all bodies, contacts, walls and components
 };
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// The plain form of a description, as a scenario writes it. The loop never sees it.
+// A description as JSON, as a file contains it or a scenario writes it. The time loop never uses it.
 #pragma once
 
 #include <nlohmann/json.hpp>

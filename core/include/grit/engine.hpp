@@ -1,44 +1,47 @@
-// Engines act in a step, in a fixed order of phases.
+// Engines: components that act on bodies in every step, such as gravity, local damping or added forces.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string>
 
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 #include "grit/parameters.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
 
-/// Where in a step an engine acts. Within a phase, in the order of their names.
+/// When an engine acts. Engines of one phase act in the order of their names.
 enum class Phase {
-  settings,  ///< before a stage: what the kernel's own passes shall do
-  forces,    ///< after the contacts: adds to forces and moments of bodies
+  settings,  ///< before a stage: sets up the integration of the kernel
+  forces,    ///< in each step, after the contacts: adds forces and moments to bodies
 };
 
-/// What the kernel's own integration does; engines of phase `settings` write it.
+/// Settings of the kernel's integration; engines of phase `settings` write them.
 struct MotionSettings {
   Vec3 gravity = Vec3::Zero();    ///< m/s²
-  double local_damping = 0;       ///< λ in F (1 − λ sgn(F v))
-  bool hold_rotation = false;     ///< spins stay as they are
-  bool hold_translation = false;  ///< velocities stay as they are
-  std::optional<int> flat;        ///< axis along which nothing moves, and about which alone bodies turn
+  double local_damping = 0;       ///< λ in F (1 − λ sgn(F v)), 0 … 1
+  bool hold_rotation = false;     ///< spins stay constant
+  bool hold_translation = false;  ///< velocities stay constant
+  std::optional<int> flat;        ///< planar motion: axis (0, 1, 2) without translation; rotation is about it only
 };
 
+/// Base class of plugins of kind "engine".
 class Engine {
  public:
   virtual ~Engine() = default;
   virtual void declare(Parameters& parameters) = 0;
   virtual Phase phase() const = 0;
+  /// State that the kernel must keep for this engine.
   virtual StateRequest needs() const { return {}; }
+  /// Called in phase `settings`.
   virtual void settings(MotionSettings&) const {}
-  /// Adds to force and moment of each body (rows by index). Must give the same sums in whatever order bodies are
-  /// stored.
+  /// Called in phase `forces`. Adds to the force [N] and moment [N m] of each body; one row per body, by index. The
+  /// result must not depend on the order in which bodies are stored.
   virtual void forces(const World&, std::span<Row> /*force*/, std::span<Row> /*moment*/) const {}
-  /// Names what it keeps from one step for the next, each once, so that a run that goes on from a checkpoint is the
-  /// same as one that was never stopped.
-  virtual void remember(Memory&) {}
+  /// Passes each member that the engine keeps between steps to the archive, once. A resumed run is then identical to an
+  /// uninterrupted one.
+  virtual void serialize(Archive&) {}
 };
 
 }  // namespace grit

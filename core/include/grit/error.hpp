@@ -1,4 +1,4 @@
-// What can go wrong, by whose fault. Library code throws these; only the command line prints them and exits.
+// Errors, by cause. Library code throws them; only the command line prints them and exits.
 #pragma once
 
 #include <stdexcept>
@@ -8,21 +8,21 @@
 
 namespace grit {
 
-/// The base of all errors that a user may meet. what() says where, what was found, what is allowed and what to do.
+/// Base class of all errors of grit. what(): where, what was found, what is allowed and what to do.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// One thing wrong in a description.
+/// One problem in a description.
 struct Problem {
   std::string file;     ///< path, or "--set"
-  int line = 0;         ///< from 1; 0 when there is none
+  int line = 0;         ///< from 1; 0 if there is none
   std::string pointer;  ///< JSON pointer (RFC 6901)
   std::string message;  ///< what was found and what is allowed
 };
 
-/// A description that cannot be run: every problem in it.
+/// A description that cannot be run, with all its problems.
 class DescriptionError : public Error {
  public:
   explicit DescriptionError(std::vector<Problem> problems) : Error(text(problems)), problems_(std::move(problems)) {}
@@ -43,12 +43,12 @@ class DescriptionError : public Error {
   std::vector<Problem> problems_;
 };
 
-/// What a component finds wrong with its parameters when it is prepared, e.g. a file that is missing. The kernel
-/// reports each fault with its place in the description.
+/// Faults of a component's parameters that show when it is prepared or expanded, e.g. a missing file or wall. grit
+/// reports each with its line and pointer in the description.
 class ParameterError : public Error {
  public:
   struct Fault {
-    std::string key;  ///< of the parameter; "" for the whole object, "outlets/left" for what lies deeper
+    std::string key;  ///< of the parameter; "" for the whole object, "outlets/left" for a nested one
     std::string found, allowed;
     std::string message() const { return "found " + found + "; allowed is " + allowed; }
   };
@@ -65,31 +65,31 @@ class ParameterError : public Error {
   std::vector<Fault> faults_;
 };
 
-/// A plugin that cannot be loaded or that broke its contract.
+/// A plugin that cannot be loaded or violates its interface.
 class PluginError : public Error {
  public:
   using Error::Error;
 };
 
-/// What stops a simulation that has gone wrong.
+/// Guards that stop a simulation.
 enum class Guard {
-  none,          ///< a stage did not end or missed what it expected
+  none,          ///< no guard: a stage did not end, or missed an expected value
   overlap,       ///< a contact is too deep: /guards/overlap
   travel,        ///< a body or wall moves too far in one step: /guards/travel
   energy,        ///< energy was created: /guards/energy
-  finite,        ///< a velocity is not a number
+  finite,        ///< a velocity is infinite or NaN
   domain,        ///< a body left through a closed side
   period,        ///< a period is too short for the bodies
-  arrival,       ///< bodies that appear in a stage find no room
-  critical_step  ///< the prescribed time step is above the critical one
+  arrival,       ///< no space for the new bodies of a stage
+  critical_step  ///< the prescribed time step is above the critical time step
 };
 
-/// The simulation went wrong.
+/// A simulation that a guard stopped, or a stage that failed.
 class NumericsError : public Error {
  public:
   explicit NumericsError(const std::string& what) : Error(what), cause_(what) {}
-  /// `when` is the instant, `cause` what was found and what to do. `keys` lead from the root of the description to the
-  /// part that the failure is about.
+  /// `when`: the instant; `cause`: what was found and what to do; `keys`: path from the root of the description to the
+  /// part that caused the failure.
   NumericsError(const std::string& when, const std::string& cause, Guard guard, std::vector<std::string> keys)
       : Error(when + ": " + cause), cause_(cause), guard_(guard), keys_(std::move(keys)) {}
   /// what() without the instant.
@@ -103,7 +103,7 @@ class NumericsError : public Error {
   std::vector<std::string> keys_;
 };
 
-/// A file or disk that does not do as asked.
+/// A file that cannot be read or written.
 class FileError : public Error {
  public:
   using Error::Error;

@@ -1,4 +1,4 @@
-// The shape of a wall.
+// Shapes of walls.
 #pragma once
 
 #include <cstdint>
@@ -10,66 +10,69 @@
 
 namespace grit {
 
-/// Where a wall has moved to: x ↦ about + turn · (x − about) + shift. `about` is the wall's reference point, in the
-/// coordinates of the description: motion/about if that is given, else the middle of bounds(), where a side that is
-/// not finite counts as 0. A geometry applies the pose; it need not know the point.
+/// Translation and rotation of a wall since the start: x ↦ about + turn · (x − about) + shift. `about` is the wall's
+/// reference point in the coordinates of the description: motion/about if given, else the centre of bounds(), with 0
+/// for a side that is infinite. A geometry only applies the pose; it need not know the reference point.
 struct Pose {
-  Vec3 about = Vec3::Zero();
-  Vec3 shift = Vec3::Zero();
-  Mat3 turn = Mat3::Identity();
+  Vec3 about = Vec3::Zero();     ///< m
+  Vec3 shift = Vec3::Zero();     ///< m
+  Mat3 turn = Mat3::Identity();  ///< rotation matrix
 
   Vec3 to_world(const Vec3& local) const { return about + turn * (local - about) + shift; }
   Vec3 to_local(const Vec3& world) const { return about + turn.transpose() * (world - shift - about); }
   bool turned() const { return !turn.isIdentity(0.0); }
 };
 
-/// A sphere that may touch.
+/// A sphere that may touch a wall.
 struct Sphere {
   Vec3 centre;         ///< m
   double radius;       ///< m
-  std::uint32_t body;  ///< handed through
+  std::uint32_t body;  ///< copied to SurfaceContact::body
 };
 
-/// One point where a sphere touches a shape.
-struct Touch {
+/// One contact of a sphere with a shape.
+struct SurfaceContact {
   Vec3 normal;            ///< unit, from the sphere's centre into the shape
   double overlap;         ///< m, > 0
-  std::uint32_t body;     ///< of the sphere
-  std::uint32_t feature;  ///< stable id of what is touched: it does not change while the sphere slides along it
+  std::uint32_t body;     ///< Sphere::body
+  std::uint32_t feature;  ///< id of the face, edge or corner in contact; constant while the sphere slides along it
 };
 
-/// A box; its sides may be infinite.
+/// A box [m]; its sides may be infinite.
 struct Bounds {
   Vec3 low, high;
 };
 
-/// A shape, at the place where the description puts it; a Pose says where it has moved to. Shapes do not change after
-/// prepare(); all const functions may be called from several threads.
+/// Base class of plugins of kind "geometry": a surface at its initial position, as in the description. A Pose gives the
+/// present position. Shapes do not change after prepare(); all const functions may be called from several threads.
 class Geometry {
  public:
   virtual ~Geometry() = default;
   virtual void declare(Parameters& parameters) = 0;
-  /// Once, after the parameters were set. Throws ParameterError for values that it cannot work with.
+  /// Called once after the parameters were set. Throws ParameterError for values that are not possible.
   virtual void prepare() {}
+  /// Of the shape at its initial position.
   virtual Bounds bounds() const = 0;
-  /// Whether bodies are inside of bounds(), as in a container, so that averages end at its near side.
+  /// Whether bodies are inside bounds(), as in a container. The specimen then ends at the inner faces.
   virtual bool hollow() const { return false; }
-  /// Area that carries pressure [m²]; 0 if there is none to speak of.
+  /// Area over which pressure is defined [m²]; 0 if it is undefined.
   virtual double area() const = 0;
-  /// Mean unit normal, towards the side of the bodies; zero if there is none to speak of.
+  /// Mean unit normal, towards the bodies; zero if it is undefined.
   virtual Vec3 normal() const = 0;
-  /// Whether it is made of plane faces that are wide: without grooves, curves or facets that a body could be as large
-  /// as.
+  /// Whether the shape consists of plane faces much wider than a body: no grooves, curvature or facets of the size of a
+  /// body.
   virtual bool flat() const { return false; }
-  /// Appends the contacts of each sphere, in the order of the spheres and, for one sphere, by feature. A convex edge or
-  /// corner counts once, with the normal from the sphere's centre to the closest point. In a concave edge each face
-  /// that is nearer than a radius counts by itself, two in an edge and three in a corner, so that no force jumps as the
-  /// sphere comes in. Normal and overlap must not jump either as the sphere goes from a face over its convex edge.
-  virtual void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const = 0;
-  /// Whether a sphere is within `reach` of the shape: may say yes too often, never no when it touches, nor when it
-  /// would say yes to a smaller sphere within it.
+  /// Appends the contacts of each sphere, in the order of the spheres and, for one sphere, in ascending order of
+  /// features. A convex edge or corner gives one contact, with the normal from the sphere's centre to the closest point.
+  /// In a concave edge each face nearer than one radius gives its own contact: two in an edge, three in a corner. Forces
+  /// are then continuous as the sphere moves in. Normal and overlap must also be continuous as the sphere moves from a
+  /// face over a convex edge.
+  virtual void find_contacts(const Pose& pose, std::span<const Sphere> spheres, std::vector<SurfaceContact>& contacts) const = 0;
+  /// Whether a sphere of radius `reach` [m] may touch the shape; used by the neighbour search. It may return true for a
+  /// sphere that does not touch. It must return true for every sphere that touches, and for every sphere that contains
+  /// one for which it returns true.
   virtual bool near(const Pose& pose, const Vec3& centre, double reach) const = 0;
-  /// Triangles (three corners each) for pictures.
+  /// Triangles for pictures and files, three corners each [m], at the initial position.
   virtual std::vector<Vec3> triangles() const = 0;
 };
 

@@ -1,5 +1,5 @@
-// Parameters declared once. From one declaration come reading, checking, the schema, `grit describe`, the reference
-// pages, and the defaults written into the results.
+// Parameters of components and of the description. Each is declared once; reading, checking, the JSON schema,
+// `grit describe`, the reference pages and the values written to the results follow from the declaration.
 #pragma once
 
 #include <array>
@@ -27,27 +27,27 @@ using Description = nlohmann::ordered_json;
 
 class Parameters;
 
-/// Something with parameters of its own: an object in a description.
+/// A type with its own parameters: an object in a description.
 template <class T>
 concept Declarable = requires(T& object, Parameters& parameters) {
   object.declare(parameters);
 };
 
-/// An object whose kind a description chooses by its key "type": a plugin, or one of a few built-in variants.
+/// An object whose type is chosen by the key "type" of the description: a plugin or a built-in variant.
 class Choice {
  public:
   virtual ~Choice() = default;
-  /// What is chosen, for messages: "contact law", "size distribution".
+  /// The kind of object, for messages: "contact law", "size distribution".
   virtual std::string what() const = 0;
-  /// All names that may be chosen, sorted.
+  /// All available types, sorted.
   virtual std::vector<std::string> types() const = 0;
-  /// The chosen name; empty before a choice.
+  /// The chosen type; empty before a choice.
   virtual std::string type() const = 0;
-  /// Chooses `type`, one of types(), with all parameters at their defaults. Throws grit::Error if it cannot be had.
+  /// Chooses `type`, one of types(), with all parameters at their defaults. Throws grit::Error if it is not available.
   virtual void choose(const std::string& type) = 0;
-  /// Declares the parameters of what was chosen.
+  /// Declares the parameters of the chosen type.
   virtual void declare(Parameters& parameters) = 0;
-  /// An unchosen twin, for the schema and the reference pages.
+  /// A copy without a choice, for the schema and the reference pages.
   virtual std::unique_ptr<Choice> twin() const = 0;
 };
 
@@ -56,11 +56,11 @@ struct ObjectTarget {
   std::function<void(Parameters&)> declare;
 };
 
-/// An object that may be left out.
+/// An optional object.
 struct OptionalTarget {
   std::function<bool()> present;
-  std::function<void(Parameters&)> create;   // makes it, with defaults, and declares it
-  std::function<void(Parameters&)> declare;  // of the one that is present
+  std::function<void(Parameters&)> create;   // creates it with defaults and declares its parameters
+  std::function<void(Parameters&)> declare;  // declares the parameters of the present object
   std::function<void()> remove;
 };
 
@@ -72,7 +72,7 @@ struct ListTarget {
   std::function<void(std::size_t, Parameters&)> declare;
 };
 
-/// Objects by name; names are the user's.
+/// Objects by names that the user chooses.
 struct MapTarget {
   std::function<std::vector<std::string>()> names;
   std::function<void()> clear;
@@ -84,28 +84,28 @@ using Target = std::variant<double*, std::optional<double>*, std::int64_t*, bool
                             std::optional<Vec3>*, std::array<bool, 3>*, std::vector<double>*, std::vector<std::string>*,
                             Description*, ObjectTarget, OptionalTarget, ListTarget, MapTarget>;
 
-/// One declared parameter. The setters return the parameter itself, so that a declaration reads as one sentence.
+/// One declared parameter. The setters return the parameter itself, so that calls can be chained.
 class Parameter {
  public:
   Parameter(std::string name, Target target) : name_(std::move(name)), target_(std::move(target)) {}
 
   /// SI unit in UDUNITS spelling; "1" (the default) is dimensionless. Angles are "rad".
   Parameter& unit(std::string unit) { return unit_ = std::move(unit), *this; }
-  /// The field's symbol, e.g. "E_c".
+  /// Usual symbol, e.g. "E_c".
   Parameter& symbol(std::string symbol) { return symbol_ = std::move(symbol), *this; }
-  /// One line.
+  /// Description for users, one line.
   Parameter& doc(std::string doc) { return doc_ = std::move(doc), *this; }
   Parameter& required() { return required_ = true, *this; }
   Parameter& at_least(double bound) { return low_ = bound, low_open_ = false, *this; }
   Parameter& above(double bound) { return low_ = bound, low_open_ = true, *this; }
   Parameter& at_most(double bound) { return high_ = bound, high_open_ = false, *this; }
   Parameter& below(double bound) { return high_ = bound, high_open_ = true, *this; }
-  /// The strings that are allowed.
+  /// Allowed strings.
   Parameter& one_of(std::vector<std::string> choices) { return choices_ = std::move(choices), *this; }
-  /// The text is the path of a file to read. A relative one starts where the description that says it lies; reading
-  /// makes it absolute.
+  /// The string is the path of a file to read. A relative path starts in the folder of the description that contains it;
+  /// reading makes it absolute.
   Parameter& file() { return file_ = true, *this; }
-  /// How many entries a list must have at least.
+  /// Minimum number of entries of a list.
   Parameter& entries(std::size_t least) { return least_entries_ = least, *this; }
 
   const std::string& name() const { return name_; }
@@ -121,7 +121,7 @@ class Parameter {
   const std::vector<std::string>& choices() const { return choices_; }
   bool is_file() const { return file_; }
   std::size_t least_entries() const { return least_entries_; }
-  /// Whether `value` (SI) lies in the declared range. A value that is not finite never does.
+  /// Whether `value` (SI) is finite and in the declared range.
   bool allows(double value) const {
     return value - value == 0 && (low_open_ ? value > low_ : value >= low_) &&
            (high_open_ ? value < high_ : value <= high_);
@@ -137,27 +137,27 @@ class Parameter {
   std::size_t least_entries_ = 0;
 };
 
-/// Reports a problem that lies between parameters: the key at fault ("" for the whole object, "wall/motion" for what
-/// lies deeper), what was found, what is allowed.
+/// Reports a problem of one or several parameters: the key at fault ("" for the whole object, "wall/motion" for a nested
+/// one), the value found and the allowed values. The message reads "found …; allowed: …".
 using Complain = std::function<void(std::string_view key, std::string_view found, std::string_view allowed)>;
 
-/// What must hold between the parameters of one object.
+/// A condition on several parameters of one object.
 struct Check {
   std::function<void(const Complain&)> run;
-  std::vector<std::string> about;  // keys; none: all of the object
-  bool despite_problems = false;   // runs in any case; complaints where a problem is known already are dropped
+  std::vector<std::string> about;  // keys; empty: the whole object
+  bool despite_problems = false;   // always runs; complaints about keys with known problems are dropped
 };
 
 /// The declarations of one object, in the order in which they are read.
 class Parameters {
  public:
-  /// Declares a number, flag, text, vector or list held in `member`; its present value is the default. The member must
+  /// Declares a number, flag, string, vector or list held in `member`. Its present value is the default. The member must
   /// outlive this object.
   template <class T>
   requires(!Declarable<T> && !std::derived_from<T, Choice>) Parameter& add(std::string name, T& member) {
     return entries_.emplace_back(std::move(name), Target(&member));
   }
-  /// Declares a nested object whose key "type" makes the choice.
+  /// Declares a nested object whose type is chosen by its key "type".
   Parameter& add(std::string name, Choice& member) {
     return entries_.emplace_back(std::move(name), ObjectTarget{[&member](Parameters& p) { p.choose(member); }});
   }
@@ -166,7 +166,7 @@ class Parameters {
   requires(!std::derived_from<T, Choice>) Parameter& add(std::string name, T& member) {
     return entries_.emplace_back(std::move(name), ObjectTarget{[&member](Parameters& p) { member.declare(p); }});
   }
-  /// Declares an object that may be left out.
+  /// Declares an optional object.
   template <Declarable T>
   Parameter& add(std::string name, std::optional<T>& member) {
     return entries_.emplace_back(
@@ -175,8 +175,8 @@ class Parameters {
                        [&member](Parameters& p) { member.emplace().declare(p); },
                        [&member](Parameters& p) { member->declare(p); }, [&member] { member.reset(); }});
   }
-  /// Says that the key "type" of this very object makes a choice, and that the parameters of what is chosen stand
-  /// beside those declared here. Whoever reads or writes the object lets the choice declare them once it is made.
+  /// Declares that the key "type" of this object makes a choice. The parameters of the chosen type are keys of this
+  /// object too; readers and writers have them declared after the choice.
   void choose(Choice& choice) { choice_ = &choice; }
 
   /// Declares a list of objects.
@@ -187,7 +187,7 @@ class Parameters {
                                             [&member](Parameters& p) { member.emplace_back().declare(p); },
                                             [&member](std::size_t i, Parameters& p) { member[i].declare(p); }});
   }
-  /// Declares objects by name. `make` gives a new entry; by default it is default-constructed.
+  /// Declares named objects. `make` creates a new entry; the default is its default constructor.
   template <Declarable T>
   Parameter& add(
       std::string name, std::map<std::string, T>& member,
@@ -204,25 +204,24 @@ class Parameters {
         std::move(name), MapTarget{names, [&member] { member.clear(); }, insert,
                                    [&member](const std::string& key, Parameters& p) { member.at(key).declare(p); }});
   }
-  /// Declares something that none of the above fits.
+  /// Declares a parameter of any other target.
   Parameter& add_target(std::string name, Target target) {
     return entries_.emplace_back(std::move(name), std::move(target));
   }
-  /// Says that further keys of this object cannot be known, so that nobody calls them unknown.
+  /// Allows further keys in this object, which are not reported as unknown.
   void leave_open() { open_ = true; }
-  /// Adds a check that runs after the keys `about` were read without a problem; without keys, after the whole object
-  /// was.
+  /// Adds a check. It runs if the keys `about` were read without a problem; without keys, if the whole object was.
   void check(std::function<void(const Complain&)> check, std::vector<std::string> about = {}) {
     checks_.push_back({std::move(check), std::move(about)});
   }
-  /// Adds a check of names that refer to others. It runs whatever problems there are, so it must bear values that were
-  /// not read; what it says of those is not heard.
+  /// Adds a check of names that refer to other objects. It always runs, so it must tolerate parameters that could not be
+  /// read; its complaints about those are dropped.
   void check_names(std::function<void(const Complain&)> check) { checks_.push_back({std::move(check), {}, true}); }
 
-  /// Adds a call that a reader makes once the object was read and checked without a problem.
+  /// Adds a function that is called after the object was read and checked without a problem.
   void when_read(std::function<void()> call) { when_read_.push_back(std::move(call)); }
-  /// Says that the object also has these values, in SI, of parameters that are declared elsewhere: those of a component
-  /// that is described and not alive. A writer adds them. They must outlive this object.
+  /// Adds values, in SI, of parameters that are declared elsewhere: those of a component that is described but not
+  /// created. Writers add them to the object. They must outlive this object.
   void add_values(Description& values) { values_ = &values; }
 
   Choice* choice() const { return choice_; }
@@ -242,7 +241,7 @@ class Parameters {
   std::vector<std::function<void()>> when_read_;
 };
 
-/// A choice among built-in variants. Each T has `static constexpr const char* type_name` and declare().
+/// A choice of built-in variants. Each T has `static constexpr const char* type_name` and declare().
 template <class... T>
 class OneOf : public Choice {
  public:

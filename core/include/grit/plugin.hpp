@@ -1,4 +1,4 @@
-// What a plugin exports: one function. It returns a PluginInfo, which begins with the build tag.
+// A plugin exports one function, grit_plugin(). It returns a PluginInfo, which begins with the build tag.
 #pragma once
 
 #include "grit/build_tag.hpp"
@@ -12,12 +12,12 @@ class Geometry;
 class Probe;
 class Scenario;
 
-/// One plugin: a name in one registry. Exactly one of the makers is set, the one of its kind. Hidden, so that no shared
-/// library uses the implicit constructor of another one, which sets that one's tag.
+/// Describes a plugin. Exactly one of the make_ functions is set, that of its kind. Hidden, so that no shared library
+/// uses the implicit constructor of another one, which would set the tag of that one.
 struct [[gnu::visibility("hidden")]] PluginInfo {
-  BuildTag tag = build_tag();  ///< first, so that it can be read before anything else is trusted
+  BuildTag tag = build_tag();  ///< first: it is checked before anything else is read
   const char* kind = "";       ///< "body", "contact", "engine", "geometry", "probe" or "scenario"
-  const char* name = "";       ///< kebab-case, the file's name without its ending
+  const char* name = "";       ///< kebab-case; the file name without its extension
   const char* version = "";
   const char* doc = "";  ///< one line
   BodyKind* (*make_body)() = nullptr;
@@ -28,11 +28,11 @@ struct [[gnu::visibility("hidden")]] PluginInfo {
   Scenario* (*make_scenario)() = nullptr;
 };
 
-/// The one symbol that a plugin exports, `extern "C"`.
+/// Type and name of the exported `extern "C"` function.
 using PluginEntry = const PluginInfo* (*)();
 inline constexpr const char* plugin_entry_name = "grit_plugin";
 
 }  // namespace grit
 
-/// Declares the exported symbol; its definition is the plugin's.
+/// The exported function; the plugin defines it.
 extern "C" __attribute__((visibility("default"))) const grit::PluginInfo* grit_plugin();

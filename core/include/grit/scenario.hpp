@@ -1,4 +1,4 @@
-// A scenario turns a few parameters into a plain description: a pure function.
+// Scenarios: components that write a complete description from a few parameters.
 #pragma once
 
 #include "grit/description.hpp"
@@ -6,12 +6,13 @@
 
 namespace grit {
 
+/// Base class of plugins of kind "scenario".
 class Scenario {
  public:
   virtual ~Scenario() = default;
   virtual void declare(Parameters& parameters) = 0;
-  /// The plain description, numbers in SI. Throws grit::Error for wishes that cannot be had, with the range that can;
-  /// one that begins with "/scenario/KEY: " is told of where KEY was written.
+  /// The description, numbers in SI; depends on the parameters only. Throws ParameterError for impossible values; its
+  /// keys are those of the parameters.
   virtual Description expand() const = 0;
 };
 

@@ -1,10 +1,11 @@
-// A simulation as a library: opened from a description, run by stages or steps, observed, changed, saved and resumed.
+// grit as a library. A simulation is opened from a description and run by stages or steps; it can be observed, changed,
+// saved and resumed.
 //
 //   grit::Simulation simulation = grit::Simulation::open("box.json");
 //   simulation.every_time(1e-3, [](const grit::World& world) { … });
 //   simulation.run();
 //
-// Nothing here prints or exits. What goes wrong is thrown as one of the errors of grit/error.hpp.
+// Nothing here prints or exits. Errors are thrown; their types are in grit/error.hpp.
 #pragma once
 
 #include <cstdint>
@@ -22,88 +23,98 @@
 namespace grit {
 
 struct SimulationOptions {
-  unsigned threads = 1;           ///< results are the same bits for any number
-  std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", applied in order
-  /// Folders that are searched for plugins first; then come those of GRIT_PLUGIN_PATH and those beside the library.
+  unsigned threads = 1;           ///< results are identical for any number
+  std::vector<std::string> sets;  ///< changes of the description, "/pointer=value", in order
+  /// Folders searched for plugins, before those of GRIT_PLUGIN_PATH and those next to the library.
   std::vector<std::string> plugin_path;
 };
 
-/// How far a stage is.
+/// Progress of the present stage.
 struct Progress {
   std::string stage;
   std::size_t stage_number = 0, stages = 0;  ///< from 1
-  std::optional<double> fraction;            ///< of the stage, 0 … 1, where its end can be foreseen
-  std::optional<double> seconds_left;        ///< of the stage, computing time
+  std::optional<double> fraction;            ///< of the stage, 0 … 1; none if its end cannot be estimated
+  std::optional<double> seconds_left;        ///< of computing time until the stage ends [s]
   double time = 0;                           ///< simulated [s]
-  double particle_steps_per_second = 0;      ///< lately
+  double particle_steps_per_second = 0;      ///< recent speed [1/s]
 };
 
-/// What a run takes, found without running it.
+/// Size and time step of a run, from its initial state.
 struct Forecast {
   std::size_t bodies = 0;         ///< at the start; each sphere of a clump is one
   std::size_t contacts = 0;       ///< between bodies, at the start
   double time_step = 0;           ///< s, at the start
   double critical_time_step = 0;  ///< s, at the start
-  std::size_t bytes = 0;          ///< held by bodies and contacts at the start
+  std::size_t bytes = 0;          ///< memory of bodies and contacts at the start
 };
 
+/// A simulation at one instant. Not thread-safe: all calls must come from one thread.
 class Simulation {
  public:
-  /// Reads a description with all that it extends, and makes its bodies, walls and components. Throws DescriptionError
-  /// with every problem, each with file, line and pointer; FileError; PluginError.
+  /// Reads a description and those that it extends, and creates its bodies, walls and components. Throws
+  /// DescriptionError with all problems, each with file, line and pointer; FileError; PluginError.
   static Simulation open(const std::filesystem::path& file, const SimulationOptions& options = {});
-  /// The same for the text of a description; relative paths in it start in the working directory. `name` stands for the
-  /// file in messages.
+  /// The same for the text of a description. Relative paths in it start in the working directory; messages use `name` as
+  /// the file name.
   static Simulation from_text(const std::string& text, const SimulationOptions& options = {},
                               const std::string& name = "description");
-  /// The same for a description that a program made.
+  /// The same for a description made by a program.
   explicit Simulation(const Description& description, const SimulationOptions& options = {});
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Finds the forces of the first instant, and what the run takes. Throws DescriptionError for what shows only then:
-  /// bodies that overlap too much, a time step above the critical one, a channel that no probe has.
+  /// Computes the forces of the initial state and returns the size and time step of the run. Throws DescriptionError for
+  /// problems that only show there: bodies that overlap too much, a time step above the critical one, an unknown channel
+  /// of a probe.
   Forecast check();
 
-  /// Runs the present stage to its end, then begins the next one, if any. Returns false if it was interrupted, between
+  /// Runs the present stage to its end, then begins the next one, if any. Returns false if it was interrupted between
   /// two steps. Throws NumericsError if a guard trips or the stage does not end within its limit.
   bool run_stage();
-  /// Runs all stages that are left. Returns false if it was interrupted.
+  /// Runs all remaining stages. Returns false if it was interrupted.
   bool run();
-  /// Takes so many steps, through the ends of stages, until the last stage ends. Returns how many were taken.
+  /// Takes `steps` time steps, through the ends of stages; fewer if the last stage ends. Returns the number taken.
   std::uint64_t step(std::uint64_t steps = 1);
   /// Whether all stages have ended.
   bool done() const;
 
-  /// The world at the present instant, positions and forces belonging together.
+  /// The state at the present instant; positions and forces are consistent. Its spans are valid until the next step.
   const World& world() const;
   /// All values of the description at the start, in SI.
   Description description() const;
 
-  /// Sets a value of the description from now on, as a stage's `change` does: of a material, interface, wall, engine,
-  /// /domain/strain_rate, /time_step or /guards. Throws DescriptionError.
+  /// Sets a value (SI) of the description from now on, as `change` of a stage does: of a material, interface, wall or
+  /// engine, /domain/strain_rate, /time_step or /guards. Throws DescriptionError for another pointer or a value out of
+  /// range.
   void set(const std::string& pointer, const Description& value);
 
   using Observer = std::function<void(const World&)>;
-  /// Calls an observer at the start of each stage and every so many seconds of simulated time, or steps, after it.
+  /// Calls an observer at the start of each stage and then at this interval of simulated time [s], or of steps.
   void every_time(double seconds, Observer observer);
   void every_steps(std::uint64_t steps, Observer observer);
   /// Calls an observer at the end of each stage.
   void at_stage_end(Observer observer);
-  /// Calls `report` now and then while stages run, at most every `interval` [s] of wall-clock time.
+  /// Calls `report` while stages run, at most once per `interval` [s] of wall-clock time.
   void on_progress(std::function<void(const Progress&)> report, double interval = 0.2);
-  /// Asks between two steps whether to stop.
+  /// Calls `keep` with a checkpoint while stages run: every `interval` [s] of wall-clock time, less often where saving
+  /// would take more than 1 % of the time, and where the simulation is interrupted. 0: only there.
+  void on_checkpoint(std::function<void(const Checkpoint&)> keep, double interval);
+  /// Evaluates a condition between steps; the run is interrupted when it is true.
   void interrupt_when(std::function<bool()> condition);
 
-  /// All that is needed to go on to the same bits.
+  /// The complete state, from which a run continues with identical results.
   Checkpoint save();
-  /// Goes on where a simulation of the same description was saved. Throws Error for another description.
+  /// Continues from the saved state of a simulation of the same description. Forces are known after the next step.
+  /// Throws Error for another description, and for a simulation that has started.
   void resume(const Checkpoint& checkpoint);
 
- private:
+  /// For the library itself: how it is put together.
   struct Parts;
   explicit Simulation(std::unique_ptr<Parts> parts);
+  Parts& parts() { return *parts_; }
+
+ private:
   std::unique_ptr<Parts> parts_;
 };
 

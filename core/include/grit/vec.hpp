@@ -1,4 +1,4 @@
-// Vectors: Vec3 for the world outside the hot loop, Vec<L> for lanes inside it, Row for one body's four numbers.
+// Vectors: Vec3 outside the contact loop, Vec<L> of SIMD lanes inside it, Row for four numbers of one body.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,13 +10,13 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && alignof(Vec3) == alignof(double));
 
-/// Four numbers of one body, loaded by one instruction.
+/// Four numbers of one body, such as a vector and a scalar; loaded by one instruction.
 struct alignas(32) Row {
   double x = 0, y = 0, z = 0, w = 0;
 };
 
-/// The same four numbers as one register. Rows go to registers and back by these two alone: copied as structs they pass
-/// through memory number by number, which was seen to double the time of a step.
+/// The same four numbers in a register. Use load() and store() only: a Row copied as a struct passes through memory
+/// number by number, which was measured to double the time of a step.
 using Quad = double __attribute__((vector_size(32), may_alias));
 [[gnu::always_inline]] inline Quad load(const Row& row) { return reinterpret_cast<const Quad&>(row); }
 [[gnu::always_inline]] inline void store(const Quad& quad, Row& row) { reinterpret_cast<Quad&>(row) = quad; }
@@ -26,7 +26,7 @@ inline void operator+=(Row& sum, const Row& row) { sum += load(row); }
 
 inline Vec3 xyz(const Row& row) { return {row.x, row.y, row.z}; }
 
-/// A vector whose components are lanes: `double` in the reference twin, a SIMD type in the batch loop.
+/// A vector whose components are lanes: `double` in the scalar reference, a SIMD type in the contact loop.
 template <class L>
 struct Vec {
   L x, y, z;

@@ -1,4 +1,5 @@
-// The world as probes, engines and conditions see it: const, at one instant, positions and forces belonging together.
+// Read-only state of a simulation for probes, engines and conditions, at one instant; positions and forces are
+// consistent. SI units.
 #pragma once
 
 #include <array>
@@ -14,11 +15,11 @@
 
 namespace grit {
 
-/// State of bodies that exists only where a component asks for it.
+/// State that is kept only if a component requests it.
 enum class BodyState : unsigned {
   rotation = 1,      ///< rotation vector, cumulative since the start of the stage [rad]
   displacement = 2,  ///< displacement since the start of the stage [m], unwrapped
-  energy = 4,        ///< the ledger of energies, of all bodies together
+  energy = 4,        ///< the energy balance of all bodies
 };
 
 /// A set of BodyState.
@@ -36,35 +37,35 @@ class StateRequest {
 
 constexpr StateRequest operator|(BodyState a, BodyState b) { return StateRequest(a) | StateRequest(b); }
 
-/// The box of the world. Not finite where it is open.
+/// The box of the domain; infinite along open sides.
 struct Cell {
   Vec3 low, high;  ///< m
   std::array<bool, 3> periodic{false, false, false};
-  Vec3 strain_rate = Vec3::Zero();  ///< of the periodic axes, 1/s, positive in extension
+  Vec3 strain_rate = Vec3::Zero();  ///< along periodic axes [1/s], positive in extension
 
-  /// Where a coordinate is seen within the cell: along a periodic axis whole periods off, else itself [m]. Bodies are
-  /// past a periodic side for a while before they come in at the other one.
+  /// A coordinate [m] moved into the cell by whole periods; unchanged along an axis that is not periodic. Bodies may be
+  /// slightly outside a periodic side until the next neighbour search wraps them.
   double inside(double x, int axis) const {
     const double period = high[axis] - low[axis];
     return periodic[static_cast<std::size_t>(axis)] ? x - period * std::floor((x - low[axis]) / period) : x;
   }
 };
 
-/// A box, for averages.
+/// A box over which averages are taken.
 struct Region {
   Vec3 low, high;  ///< m
   double volume() const { return (high - low).cwiseMax(0.0).prod(); }
 };
 
-/// One touching pair, or one touch of a wall.
+/// A contact of two bodies, or of a body and a wall.
 struct Contact {
-  std::uint32_t a = 0, b = 0;  ///< index of body a; of body b, or of the wall
+  std::uint32_t a = 0, b = 0;  ///< index of body a; index of body b or of the wall
   bool with_wall = false;
-  std::uint32_t feature = 0;  ///< of the wall's geometry, what is touched; it stays while the body slides along it
-  Vec3 branch;                ///< from a's centre to b's centre, or to the touching point of the wall [m]
+  std::uint32_t feature = 0;  ///< SurfaceContact::feature; 0 for two bodies
+  Vec3 branch;                ///< from a's centre to b's centre, or to the contact point on the wall [m]
   Vec3 normal;                ///< unit, from a to b
   Vec3 force;                 ///< on b [N]; −force acts on a
-  Vec3 moment;                ///< on b about its centre; on a wall about the touching point [N m]
+  Vec3 moment;                ///< on b about its centre; on a wall about the contact point [N m]
   double normal_force = 0;    ///< N, > 0 in compression
   double overlap = 0;         ///< m
 };
@@ -75,23 +76,23 @@ struct WallView {
   Vec3 position;        ///< displacement since the start of the run [m]
   Vec3 stage_position;  ///< displacement since the start of the stage [m]
   Vec3 velocity, spin;  ///< m/s, rad/s
-  Vec3 force;           ///< that the bodies exert on the wall [N]
+  Vec3 force;           ///< by the bodies on the wall [N]
   Vec3 moment;          ///< the same about the wall's reference point [N m]
   double area = 0;      ///< m²; 0 where the geometry has none
   double pressure = 0;  ///< normal force over area, > 0 in compression [Pa]
   Vec3 normal;          ///< mean unit normal, towards the bodies; zero where the geometry has none
-  std::uint32_t touches = 0;
+  std::uint32_t contacts = 0;
   bool flat = false;  ///< made of wide plane faces
-  Pose pose;          ///< where its shape has moved and turned to
+  Pose pose;          ///< present translation and rotation
 };
 
-/// How far a point is from the surface of a wall.
+/// Distance of a point from the surface of a wall.
 struct Clearance {
-  double distance;  ///< m; below 0 where the point is behind a face that is solid behind
-  Vec3 normal;      ///< unit, into the wall: the surface is at the point + distance · normal
+  double distance;  ///< m; negative behind a one-sided face
+  Vec3 normal;      ///< unit, into the wall; the closest surface point is point + distance · normal
 };
 
-/// Of World::clump_of(): a sphere by itself.
+/// Entry of World::clump_of() for a sphere that belongs to no clump.
 inline constexpr std::uint32_t no_clump = ~0u;
 
 /// A rigid clump of spheres at one instant.
@@ -99,131 +100,135 @@ struct ClumpView {
   std::uint32_t id;
   Vec3 centre;          ///< of mass [m]
   Vec3 velocity, spin;  ///< half a step before time() [m/s, rad/s]
-  Vec3 momentum;        ///< angular, about the centre, half a step before time() [kg m²/s]
-  Vec3 force, moment;   ///< net, gravity and contacts, about the centre, before damping [N, N m]
+  Vec3 momentum;        ///< angular momentum about the centre, half a step before time() [kg m²/s]
+  Vec3 force, moment;   ///< net, of gravity and contacts, about the centre, before damping [N, N m]
   double radius;        ///< of the enclosing sphere [m]
   double mass;          ///< kg
-  Mat3 axes;            ///< columns: its principal axes
-  Vec3 inertia;         ///< about them [kg m²]
+  Mat3 axes;            ///< columns: principal axes
+  Vec3 inertia;         ///< principal moments of inertia [kg m²]
 };
 
-/// A body that has left through an open side of the domain.
+/// A body that left the domain through an open side.
 struct Departure {
   std::uint32_t id;
   std::uint8_t material;
-  double time;    ///< s, when it was found outside
+  double time;    ///< when it was found outside [s]
   double mass;    ///< kg
-  Vec3 position;  ///< where [m]
+  Vec3 position;  ///< at that time [m]
 };
 
-/// Where the energy is, and what came in and went out since a component first asked [J].
-struct EnergyLedger {
+/// Energy balance [J]: stored energies, and work and dissipation since a component first requested it.
+struct Energies {
   double kinetic = 0;                                                 ///< translation and rotation
-  double elastic_normal = 0, elastic_shear = 0, elastic_rolling = 0;  ///< in contacts; rolling with twisting
-  double gravitational = 0;                                           ///< against the first instant
+  double elastic_normal = 0, elastic_shear = 0, elastic_rolling = 0;  ///< in contacts; rolling includes twisting
+  double gravitational = 0;                                           ///< relative to the first instant
   double walls = 0;                                                   ///< work done by walls
   double cell = 0;                                                    ///< work done by the straining of a periodic cell
-  double engines = 0;                                                 ///< of added forces, and of what holds bodies
-  double settings = 0;                                                ///< put in by changes of the description
+  double engines = 0;                                                 ///< work done by engines: added forces, held bodies
+  double settings = 0;                                                ///< added by changes of the description
   double friction = 0, rolling = 0, viscosity = 0, local_damping = 0;  ///< dissipated
-  /// What there is and was dissipated, less what there was and was put in: made by errors of the time step and of the
-  /// law.
+  /// Stored and dissipated energy less the initial energy and the work done. Its sources are errors of the time
+  /// integration and of the contact law.
   double closure_error = 0;
 
   double elastic() const { return elastic_normal + elastic_shear + elastic_rolling; }
   double dissipated() const { return friction + rolling + viscosity + local_damping; }
 };
 
+/// State at one instant. Arrays of bodies have one entry per body, by index.
 class World {
  public:
   virtual ~World() = default;
 
-  virtual double time() const = 0;         ///< s since the start of the run
+  virtual double time() const = 0;         ///< since the start of the run [s]
   virtual std::uint64_t step() const = 0;  ///< since the start of the run
-  virtual double dt() const = 0;           ///< s
+  virtual double dt() const = 0;           ///< time step [s]
   virtual const std::string& stage() const = 0;
 
-  // Bodies by index; an index may belong to another body after any step, an id never changes.
+  // The index of a body may change in any step; its id never does.
   virtual std::span<const std::uint32_t> ids() const = 0;
   virtual std::span<const Row> positions() const = 0;   ///< centre [m], w: radius [m]
   virtual std::span<const Row> velocities() const = 0;  ///< half a step before time() [m/s], w: 1/mass [1/kg]
   virtual std::span<const Row> spins() const = 0;  ///< half a step before time() [rad/s], w: 1/inertia [1/(kg m²)]
   virtual std::span<const std::uint8_t> materials() const = 0;
-  virtual std::span<const Vec3> rotations() const = 0;      ///< in the stage [rad]; empty unless asked for
-  virtual std::span<const Vec3> displacements() const = 0;  ///< in the stage [m]; empty unless asked for
-  /// Index into clumps() of each body, or no_clump; empty where there is no clump. A body of a clump has the clump's
-  /// 1/mass beside its velocity and 1 over the clump's least moment of inertia beside its spin.
+  virtual std::span<const Vec3> rotations() const = 0;      ///< during the stage [rad]; empty unless requested
+  virtual std::span<const Vec3> displacements() const = 0;  ///< during the stage [m]; empty unless requested
+  /// Index into clumps() of each body, or no_clump; empty without clumps. For a body of a clump, w of velocities() is
+  /// 1/mass of the clump, and w of spins() is 1 over the clump's smallest moment of inertia.
   virtual std::span<const std::uint32_t> clump_of() const { return {}; }
   virtual std::span<const ClumpView> clumps() const { return {}; }
-  /// From its clump's centre to each body [m]; empty where there is no clump.
+  /// Vectors from the clump's centre of mass to each body [m]; empty without clumps.
   virtual std::span<const Vec3> arms() const { return {}; }
-  /// Of each body's volume what counts, as bodies of a clump overlap; empty where all of it does.
-  virtual std::span<const double> volume_shares() const { return {}; }
-  /// Bodies that have left, in the order in which they did.
+  /// Fraction of each body's volume that counts, as bodies of a clump overlap; empty if all are 1.
+  virtual std::span<const double> volume_fractions() const { return {}; }
+  /// Bodies that left the domain, in order of time.
   virtual std::span<const Departure> departures() const { return {}; }
-  /// Net force and moment on each body, gravity and contacts, before damping [N, N m]; of contacts alone on a body of a
-  /// clump.
+  /// Net force [N] and moment [N m] on each body, of gravity and contacts, before damping; for a body of a clump, of
+  /// contacts only.
   virtual std::span<const Row> forces() const = 0;
   virtual std::span<const Row> moments() const = 0;
 
-  /// All touching pairs and touches of walls, pairs first, in a fixed order.
+  /// All contacts of bodies, then all wall contacts, in a fixed order.
   virtual std::span<const Contact> contacts() const = 0;
-  /// The touches of walls among them, found without a list of the others.
+  /// The wall contacts of contacts(); cheaper if the others are not needed.
   virtual std::span<const Contact> contacts_with_walls() const;
-  /// Mean normal force of all contacts [N], 0 without any; found without a list of them.
+  /// Mean normal force of all contacts [N]; 0 without contacts; cheaper than contacts().
   virtual double mean_contact_force() const;
   virtual std::span<const WallView> walls() const = 0;
-  /// Of a point from one of walls(); none where the surface is `reach` [m] or more away. Behind a face that has edges
-  /// the distance may be too small, never too large. Periodic images of the point do not count.
-  virtual std::optional<Clearance> clearance(std::size_t, const Vec3&, double) const { return {}; }
+  /// Clearance of a point [m] from wall `index` of walls(); none if the surface is `reach` [m] or more away. Behind a
+  /// face with edges the distance may be too small, never too large. Periodic images of the point are not considered.
+  virtual std::optional<Clearance> clearance(std::size_t /*index*/, const Vec3& /*point*/, double /*reach*/) const { return {}; }
   virtual const Cell& cell() const = 0;
 
-  /// The box that the specimen fills, from its walls or the periodic cell; as the description's "specimen" says.
+  /// The box of the specimen, bounded by walls or the periodic cell as defined by "specimen" in the description. Infinite
+  /// along open sides.
   virtual Region specimen() const = 0;
-  /// The same out to the far sides of its walls' surfaces: with the grooves of walls, which lie behind the specimen.
+  /// The specimen extended to the far sides of its walls' surfaces, so that it includes their grooves.
   virtual Region envelope() const { return specimen(); }
-  /// The part of the specimen that lies `margin` or more off its walls; periodic sides have no margin.
+  /// The specimen without a margin [m] along its walls; periodic sides have no margin.
   virtual Region interior(double margin) const = 0;
-  virtual double mean_diameter() const = 0;  ///< by number, of a clump that of the enclosing sphere [m]
-  virtual double solid_density() const = 0;  ///< mass over volume of all bodies, scaled masses too [kg/m³]
-  /// For components that asked for BodyState::energy.
-  virtual EnergyLedger energies() const { return {}; }
+  virtual double mean_diameter() const = 0;  ///< by number; for clumps, of the enclosing sphere [m]
+  virtual double solid_density() const = 0;  ///< mass over volume of all bodies, with density scaling [kg/m³]
+  /// For components that requested BodyState::energy.
+  virtual Energies energies() const { return {}; }
 };
 
-/// What the whole world's motion amounts to: the figures that tell whether it rests.
-struct Unrest {
+/// Measures of static equilibrium of all bodies.
+struct Equilibrium {
   double kinetic_energy;      ///< J, translation and rotation, at time()
-  double unbalanced_force;    ///< mean net force of a body over the mean contact force; 0 without contacts
+  double unbalanced_force;    ///< mean net force on a body over the mean contact force; 0 without contacts
   double mean_contact_force;  ///< N
 };
-Unrest unrest(const World& world);
+Equilibrium equilibrium(const World& world);
 
-/// Of translation and rotation, `later` seconds after its velocities' instant [J].
+/// Kinetic energy [J] of translation and rotation, `later` seconds after the instant of its velocities.
 double kinetic_energy_of(const ClumpView& clump, double later);
 
-/// Spheres by themselves and clumps.
+/// Grains: single spheres and clumps.
 struct Grains {
   std::vector<Vec3> centre;            ///< m
   std::vector<std::uint32_t> of_body;  ///< the grain of each body
 };
 Grains grains_of(const World& world);
 
-/// Of a contact: from the centre of the grain of body a, a sphere or a clump, to that of the grain of body b, or to the
-/// touching point of a wall [m].
+/// Branch vector of a contact [m]: from the centre of the grain (sphere or clump) of body a to that of body b, or to the
+/// contact point on a wall.
 struct Branch {
-  Vec3 start, way;
+  Vec3 start;
+  Vec3 vector;
 };
 Branch branch_of(const World& world, const Contact& contact);
 
-/// Volume of voids over volume of solids in a box, by exact sphere–box volumes; overlaps of contacts count twice, those
-/// within a clump once (of a clump that the box cuts, up to how its spheres share them). Periodic images are counted.
+/// Volume of voids over volume of solids in a box, by exact sphere–box volumes. Overlaps at contacts count twice, those
+/// within a clump once. For a clump that the box cuts, the volume inside is approximate. Periodic images are included.
 /// Infinite without solids.
 double void_ratio(const World& world, const Region& region);
 
-/// Mean stress of a box, Love–Weber: each contact weighted by the part of its branch inside. Pa, compression positive.
+/// Mean stress in a box [Pa] by the Love–Weber formula, compression positive. Each contact is weighted by the fraction of
+/// its branch inside the box.
 Mat3 mean_stress(const World& world, const Region& region);
 
-/// Volume [m³] of the part of a sphere that lies inside a box, to 1e-12 of the sphere's volume.
+/// Volume [m³] of the intersection of a sphere and a box; error below 1e-12 of the sphere's volume.
 double sphere_box_volume(const Vec3& centre, double radius, const Vec3& low, const Vec3& high);
 
 }  // namespace grit

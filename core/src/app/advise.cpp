@@ -20,8 +20,8 @@
 namespace grit {
 namespace {
 
-/// "2%", "2 %" or 0.02; at most all.
-double share_of(const std::string& text) {
+/// The fraction given as "2%", "2 %" or "0.02".
+double fraction_of(const std::string& text) {
   std::size_t used = 0;
   double value = 0;
   try {
@@ -33,7 +33,7 @@ double share_of(const std::string& text) {
   std::erase(rest, ' ');
   if (rest == "%") value /= 100, rest.clear();
   if (!rest.empty() || !(value > 0 && value <= 1))
-    throw UsageError("--tolerance takes a share above 0 and up to 1, such as 2% or 0.02, not \"" + text + '"');
+    throw UsageError("--tolerance takes a fraction above 0 and up to 1, such as 2% or 0.02, not \"" + text + '"');
   return value;
 }
 
@@ -43,129 +43,129 @@ std::vector<std::string> lacks(const std::vector<std::string>& these, const std:
   return missing;
 }
 
-/// What tells a description from a study's scene.
-std::string unlike_parts(const ChartedStudy& study, const std::vector<std::string>& parts) {
+/// The components in which a description and a study's scene differ.
+std::string unlike_parts(const EvaluatedStudy& study, const std::vector<std::string>& parts) {
   std::vector<std::string> all;
-  for (const auto& part : lacks(parts, study.parts)) all.push_back("here is no \"" + part + '"');
-  for (const auto& part : lacks(study.parts, parts)) all.push_back("there is no \"" + part + '"');
+  for (const auto& part : lacks(parts, study.parts)) all.push_back("the description has no \"" + part + '"');
+  for (const auto& part : lacks(study.parts, parts)) all.push_back("the study has no \"" + part + '"');
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-/// What tells a description from the scene of the study that is most like it.
-std::string nearest_scene(const std::vector<ChartedStudy>& studies, const std::vector<std::string>& parts) {
-  const ChartedStudy* nearest = nullptr;
-  const auto apart = [&](const ChartedStudy& one) {
+/// The most similar study and its differences from a description.
+std::string nearest_scene(const std::vector<EvaluatedStudy>& studies, const std::vector<std::string>& parts) {
+  const EvaluatedStudy* nearest = nullptr;
+  const auto apart = [&](const EvaluatedStudy& one) {
     return lacks(parts, one.parts).size() + lacks(one.parts, parts).size();
   };
-  for (const ChartedStudy& one : studies)
+  for (const EvaluatedStudy& one : studies)
     if (one.advice && !one.parts.empty() && (nearest == nullptr || apart(one) < apart(*nearest))) nearest = &one;
   if (nearest == nullptr) return "";
-  return fmt::format(" (the nearest is of \"{}\": {})", nearest->title, unlike_parts(*nearest, parts));
+  return fmt::format(" (the closest study is \"{}\": {})", nearest->title, unlike_parts(*nearest, parts));
 }
 
 std::string kind_of(const std::string& scenario) {
-  return scenario.empty() ? "a scene without a scenario" : "the scenario \"" + scenario + '"';
+  return scenario.empty() ? "a scene without a scenario" : "a scene of the scenario \"" + scenario + '"';
 }
 
-/// Why a study that was named may be applied. Throws Error if its scene is another.
-std::string relation(const ChartedStudy& study, const std::string& file, const std::string& scenario,
+/// Why a study given by the user applies. Throws Error if its scene is a different one.
+std::string relation(const EvaluatedStudy& study, const std::string& file, const std::string& scenario,
                      const std::vector<std::string>& parts) {
-  if (study.parts == parts) return "whose scene has the same parts";
+  if (study.parts == parts) return "of a scene with the same components";
   if (scenario.empty() || study.scenario != scenario)
     throw Error(
-        fmt::format("{}: is of {}, and {} is {}, so that nothing may be relaxed by it{}; run a study of your "
-                    "own scene ('grit describe study'), or leave out --study for those that came with grit",
+        fmt::format("{}: is a study of {}, but {} is {}, so that it does not apply{}; run a study of your "
+                    "own scene ('grit describe study'), or omit --study to use the installed studies",
                     study.file.string(), kind_of(study.scenario), file, kind_of(scenario),
                     study.scenario != scenario ? ""
-                    : study.parts.empty() ? ": it does not say what its scene is made of, which 'grit chart' now does"
+                    : study.parts.empty() ? " (it does not list the components of its scene; run 'grit study' again)"
                                           : " (" + unlike_parts(study, parts) + ')'));
-  return fmt::format("whose scene is of the same scenario{}",
-                     study.parts.empty() ? "" : ", but not of the same parts: " + unlike_parts(study, parts));
+  return fmt::format("of a scene of the same scenario{}",
+                     study.parts.empty() ? "" : ", but with other components: " + unlike_parts(study, parts));
 }
 
-std::string no_advice(const ChartedStudy& study) {
+std::string no_advice(const EvaluatedStudy& study) {
   return fmt::format(
-      "{}: its settings are what is modelled, not how it is computed (\"advice\": false), so that nothing may be "
-      "relaxed by it; run a study of your scene that varies how it is computed, such as rate, stiffness and time step "
-      "('grit describe study' and sims/studies say how), and name its chart.json with --study",
+      "{}: varies model parameters, not numerical settings (\"advice\": false), so that it gives no advice; run a "
+      "study "
+      "of your scene that varies numerical settings, such as rate, stiffness and time step (see 'grit describe study' "
+      "and sims/studies), and give its study.json with --study",
       study.file.string());
 }
 
-/// The studies that came with grit for scenes like this. Throws UsageError if there is none.
-std::vector<ChartedStudy> studies_like(const std::string& scenario, const std::vector<std::string>& parts,
-                                       const std::vector<std::string>& figures) {
+/// The installed studies of similar scenes. Throws UsageError if there is none.
+std::vector<EvaluatedStudy> studies_like(const std::string& scenario, const std::vector<std::string>& parts,
+                                         const std::vector<std::string>& metrics) {
   const auto [all, unreadable] = installed_studies();
-  for (const std::string& why : unreadable) std::cerr << "grit: left out: " << why << std::endl;
-  std::vector<ChartedStudy> studies;
-  const ChartedStudy* other = nullptr;  // of the scenario, but not to advise by
+  for (const std::string& why : unreadable) std::cerr << "grit: omitted: " << why << std::endl;
+  std::vector<EvaluatedStudy> studies;
+  const EvaluatedStudy* other = nullptr;  // of the scenario, but without advice
   std::vector<std::string> files;
-  for (const ChartedStudy& study : all) {
+  for (const EvaluatedStudy& study : all) {
     files.push_back(study.file.string());
     if (!study.advice && !scenario.empty() && study.scenario == scenario) other = &study;
-    if (is_of(study, scenario, parts)) studies.push_back(read_charted_study(study.file, figures));
+    if (is_of(study, scenario, parts)) studies.push_back(read_evaluated_study(study.file, metrics));
   }
   if (studies.empty() && other != nullptr) throw UsageError(no_advice(*other));
   if (studies.empty())
-    throw UsageError(fmt::format("{}; name a chart.json of a scene like yours with --study; with grit came {}",
-                                 scenario.empty() ? "the description has no scenario, and no study that came with this "
-                                                    "grit has a scene of the same parts" +
+    throw UsageError(fmt::format("{}; give the study.json of a similar scene with --study; installed studies: {}",
+                                 scenario.empty() ? "the description has no scenario, and no installed study has a "
+                                                    "scene with the same components" +
                                                         nearest_scene(all, parts)
-                                                  : "no study of scenario \"" + scenario + "\" came with this grit",
+                                                  : "no installed study is of the scenario \"" + scenario + '"',
                                  fmt::join(files, ", ")));
   return studies;
 }
 
-/// "5.4 % ± 3.0 %"; "?" for the scatter of one sample, and for what a chart does not tell.
+/// "5.4 % ± 3.0 %"; "?" for unknown values, such as the standard error of one sample.
 std::string with_scatter(double error, double standard_error) {
-  const auto told = [](double share) { return std::isnan(share) ? "?" : fmt::format("{:.1f} %", 100 * share); };
-  return told(error) + " ± " + told(standard_error);
+  const auto text = [](double value) { return std::isnan(value) ? "?" : fmt::format("{:.1f} %", 100 * value); };
+  return text(error) + " ± " + text(standard_error);
 }
 
-/// "1.16 ± 0.07 times cheaper", or dearer.
+/// "1.16 ± 0.07 times cheaper", or more expensive.
 std::string cost_beside(const Evidence& one, const Evidence& now) {
-  const bool dearer = one.cost > now.cost;
-  const double ratio = dearer ? one.cost / now.cost : now.cost / one.cost;
+  const bool costs_more = one.cost > now.cost;
+  const double ratio = costs_more ? one.cost / now.cost : now.cost / one.cost;
   const double error = ratio * std::hypot(one.cost_error / one.cost, now.cost_error / now.cost);
-  const char* word = dearer ? "dearer" : "cheaper";
+  const char* word = costs_more ? "more expensive" : "cheaper";
   if (std::isnan(error))
-    return fmt::format("{:.2f} ± ? times {} (the chart has no scatter of times, which a second seed would give)", ratio,
-                       word);
+    return fmt::format("{:.2f} ± ? times {} (standard error of run times unknown; add a second seed to the study)",
+                       ratio, word);
   return fmt::format("{:.2f} ± {:.2f} times {}{}", ratio, error, word,
-                     saves(one, now) || saves(now, one) ? "" : ", which is within what times scatter");
+                     saves(one, now) || saves(now, one) ? "" : ", which is within the scatter of run times");
 }
 
-/// Of the figure that decides.
+/// The change of the decisive metric.
 std::string changes(const Evidence& one, double tolerance) {
   const Finding* finding = one.decisive(tolerance);
-  if (finding == nullptr) return "is the finest that was tried";
-  return fmt::format("changes {} by {}", finding->figure, with_scatter(finding->error, finding->standard_error));
+  if (finding == nullptr) return "is the finest level studied";
+  return fmt::format("changes {} by {}", finding->metric, with_scatter(finding->error, finding->standard_error));
 }
 
-/// `levels`: all of its setting.
+/// The confidence of a level and its reason. `levels`: all levels of its setting.
 std::string why(const std::vector<Evidence>& levels, const Evidence& one, double tolerance) {
   if (const Evidence& finer = least_sure(levels, one, tolerance); &finer != &one)
-    return fmt::format("{}: {}, which is finer, {}{}", word_of(finer.confidence(tolerance)), finer.level,
-                       changes(finer, tolerance),
-                       finer.confidence(tolerance) == Confidence::likely ? "" : ", so that errors may cancel here");
+    return fmt::format(
+        "{}: {}, which is finer, {}{}", word_of(finer.confidence(tolerance)), finer.level, changes(finer, tolerance),
+        finer.confidence(tolerance) == Confidence::likely ? "" : ", so that errors may cancel at this level");
   const Confidence own = one.confidence(tolerance);
   std::string text = word_of(own);
   if (const Finding* finding = one.decisive(tolerance); finding != nullptr && std::isnan(finding->standard_error))
-    text += ": nobody knows how samples scatter";
-  else if (own == Confidence::likely || own == Confidence::untold)
-    text += ": the samples scatter by more than the tolerance leaves";
-  if (own == Confidence::untold) text += "; a study with more seeds would tell";
+    text += ": sample variance unknown";
+  else if (own == Confidence::likely || own == Confidence::inconclusive) text += ": large scatter between samples";
+  if (own == Confidence::inconclusive) text += "; use a study with more seeds";
   return text;
 }
 
-/// What a description is, for the command line.
+/// The description and the options given on the command line.
 struct Asked {
   std::string file;
-  std::vector<std::string> sets, studies, figures;  ///< of --study none where it was not given, of --figure likewise
+  std::vector<std::string> sets, studies, metrics;  ///< values of --set, --study and --metric
   double tolerance = 0;
-  std::function<bool(const std::vector<std::string>&)> same;  ///< as advise() takes it
+  std::function<bool(const std::vector<std::string>&)> same;  ///< see advise()
 };
 
-/// The last of each pointer.
+/// The last value of each pointer.
 std::vector<std::string> each_once(const std::vector<std::string>& sets) {
   std::vector<std::string> once;
   for (const auto& set : sets) {
@@ -182,7 +182,7 @@ std::string words_of(const std::string& option, const std::vector<std::string>& 
   return text;
 }
 
-/// "depth 6 mm, safety 0.8": what is relaxed.
+/// The relaxed settings, e.g. "depth 6 mm, safety 0.8".
 std::string relaxed(const std::vector<Advice>& advices) {
   std::vector<std::string> all;
   for (const Advice& advice : advices)
@@ -190,95 +190,96 @@ std::string relaxed(const std::vector<Advice>& advices) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-/// The least tolerance in whole per cent, from the wanted one on, at which something may be relaxed, and what. Nothing
-/// if there is none.
-std::optional<std::pair<double, std::string>> least_tolerance(const ChartedStudy& study, const Asked& asked) {
+/// The lowest tolerance, in whole per cent from the given one on, at which settings can be relaxed, and these settings.
+/// Nothing if there is none.
+std::optional<std::pair<double, std::string>> least_tolerance(const EvaluatedStudy& study, const Asked& asked) {
   for (double tolerance = asked.tolerance; tolerance <= 1;
-       tolerance = 0.01 * (std::floor(100 * tolerance + 1e-9) + 1))  // 0.29 is a little less than 29 of 0.01
+       tolerance = 0.01 * (std::floor(100 * tolerance + 1e-9) + 1))  // 100 * 0.29 is a little less than 29
     if (const auto what = relaxed(advise(study, tolerance, asked.same)); !what.empty())
       return std::pair(tolerance, what);
   return std::nullopt;
 }
 
-/// Where something may be relaxed by the same study: at which tolerance, for all figures or for one alone.
-void print_where(const ChartedStudy& study, const Asked& asked) {
+/// Prints the tolerances at which the same study relaxes settings, for all metrics and for each one alone.
+void print_where(const EvaluatedStudy& study, const Asked& asked) {
   std::string lines;
-  const auto add = [&](const ChartedStudy& of, const std::vector<std::string>& figures) {
+  const auto add = [&](const EvaluatedStudy& of, const std::vector<std::string>& metrics) {
     if (const auto found = least_tolerance(of, asked))
       lines += fmt::format("  grit advise {}{}{}{} --tolerance {:.3g}%\n      {}\n", shell_word(asked.file),
                            words_of("--set", asked.sets), words_of("--study", asked.studies),
-                           words_of("--figure", figures), 100 * found->first, found->second);
+                           words_of("--metric", metrics), 100 * found->first, found->second);
   };
-  add(study, asked.figures);
-  if (study.figures.size() > 1)
-    for (const auto& figure : study.figures) try {
-        add(read_charted_study(study.file, {figure}), {figure});
-      } catch (const FileError&) {  // the study has no errors of it
+  add(study, asked.metrics);
+  if (study.metrics.size() > 1)
+    for (const auto& metric : study.metrics) try {
+        add(read_evaluated_study(study.file, {metric}), {metric});
+      } catch (const FileError&) {  // the study has no errors of this metric
       }
-  std::cout << (lines.empty() ? "nor by another figure of the study, or at another tolerance\n"
-                              : "by the same study something may be relaxed with\n" + lines);
+  std::cout << (lines.empty() ? "nor for a single metric of the study or at a higher tolerance\n"
+                              : "settings can be relaxed with\n" + lines);
 }
 
-/// Why nothing may be relaxed. Returns whether there is anything cheaper that it could be.
-bool print_why_not(const ChartedStudy& study, const std::vector<Advice>& advices, double tolerance) {
+/// Prints why no setting can be relaxed. Returns whether any coarser level is cheaper.
+bool print_why_not(const EvaluatedStudy& study, const std::vector<Advice>& advices, double tolerance) {
   std::vector<std::string> held;
-  std::map<std::string, int> against;  // by figure that decides
+  std::map<std::string, int> against;  // by metric that decides
   for (const Advice& advice : advices)
     for (const Evidence* one : advice.cheaper) {
       if (!one->known || one > advice.now || !saves(*one, *advice.now)) continue;
       const Evidence& decisive = least_sure(study.settings.at(advice.setting), *one, tolerance);
       if (decisive.confidence(tolerance) <= Confidence::likely) held.push_back(advice.setting + ' ' + one->level);
-      else ++against[decisive.decisive(tolerance)->figure];
+      else ++against[decisive.decisive(tolerance)->metric];
     }
   std::vector<std::string> counts;
-  for (const auto& [figure, count] : against) counts.push_back(fmt::format("{} ({})", figure, count));
+  for (const auto& [metric, count] : against) counts.push_back(fmt::format("{} ({})", metric, count));
   if (held.empty() && counts.empty()) {
-    std::cout << "nothing coarser that the study tried is known to be cheaper\n";
+    std::cout << "no coarser level of the study is known to be cheaper\n";
     return false;
   }
-  std::cout << "nothing that the study tried may be relaxed\n";
+  std::cout << "no setting can be relaxed\n";
   if (!counts.empty())
-    std::cout << fmt::format("  what decides against coarser levels, each by itself: {}\n", fmt::join(counts, ", "));
+    std::cout << fmt::format("  metrics that exclude coarser levels, each level on its own: {}\n",
+                             fmt::join(counts, ", "));
   if (held.empty()) return true;
   const Evidence stays = together(advices);
   const Finding* sum = stays.decisive(tolerance);
-  std::cout << fmt::format("  within the tolerance by itself, but not with what the other settings change: {}\n",
+  std::cout << fmt::format("  within the tolerance on its own, but not together with the other settings: {}\n",
                            fmt::join(held, ", "));
   const Advice* most = nullptr;
   const Finding* largest = nullptr;
   for (const Advice& advice : advices)
     if (sum != nullptr && advice.now != nullptr)
       for (const Finding& one : advice.then()->findings)
-        if (one.figure == sum->figure && (largest == nullptr || one.error > largest->error))
+        if (one.metric == sum->metric && (largest == nullptr || one.error > largest->error))
           most = &advice, largest = &one;
   if (most != nullptr)
-    std::cout << fmt::format("  the largest of these is that of {} {}, which changes {} by {}\n", most->setting,
-                             most->then()->level, largest->figure,
+    std::cout << fmt::format("  the largest change of these: {} {} changes {} by {}\n", most->setting,
+                             most->then()->level, largest->metric,
                              with_scatter(largest->error, largest->standard_error));
   return true;
 }
 
-/// What the figures that count are not told of.
-void print_untold_figures(const ChartedStudy& study, double tolerance) {
-  for (const auto& [figure, why] : study.uncharted)
-    std::cout << fmt::format("  nothing is known of {}, which counts but could not be charted: {}\n", figure, why);
+/// Prints the limits of the study: metrics without a result, and metrics far from their references.
+void print_metric_caveats(const EvaluatedStudy& study, double tolerance) {
+  for (const auto& [metric, why] : study.unevaluated)
+    std::cout << fmt::format("  {} could not be evaluated: {}\n", metric, why);
   for (const Finding& one : far_off(study, tolerance))
     std::cout << fmt::format(
-        "  {} is at every level further than the tolerance from the reference of its own, {} at "
-        "best: what is said of it is of changes beside the finest level alone\n",
-        one.figure, with_scatter(one.error, one.standard_error));
+        "  {} deviates from its own reference by more than the tolerance in every variant, {} at best; its changes are "
+        "relative to the finest level only\n",
+        one.metric, with_scatter(one.error, one.standard_error));
 }
 
-/// `related`: how to the description.
-void print(const ChartedStudy& study, const std::string& related, const Asked& asked) {
+/// `related`: how the study is related to the description.
+void print(const EvaluatedStudy& study, const std::string& related, const Asked& asked) {
   const double tolerance = asked.tolerance;
   const auto advices = advise(study, tolerance, asked.same);
-  std::cout << fmt::format("{}, within {:.3g} %, by {}\n  ({}, {} samples of each variant),\n  {}\n", asked.file,
-                           100 * tolerance, study.title, study.file.string(), study.samples, related);
+  std::cout << fmt::format("{}, within {:.3g} %, by the study \"{}\"\n  ({}, {} samples per variant),\n  {}\n",
+                           asked.file, 100 * tolerance, study.title, study.file.string(), study.samples, related);
   if (!study.of_samples.empty()) std::cout << "  " << study.of_samples << '\n';
-  print_untold_figures(study, tolerance);
+  print_metric_caveats(study, tolerance);
   std::cout << '\n';
-  std::vector<std::string> beyond, untold, unknown, given = asked.sets;
+  std::vector<std::string> beyond, inconclusive, unknown, given = asked.sets;
   for (const Advice& advice : advices) {
     if (advice.now == nullptr) {
       std::cout << fmt::format("  {}: {}\n", advice.setting, advice.found);
@@ -291,35 +292,33 @@ void print(const ChartedStudy& study, const std::string& related, const Asked& a
                              advice.now->findings.empty() ? "" : ", " + why(levels, *advice.now, tolerance));
     const Confidence within = least_sure(levels, *advice.now, tolerance).confidence(tolerance);
     if (const Evidence* finer = within_and_finer(levels, *advice.now, tolerance);
-        finer != nullptr && within == Confidence::impossible)
+        finer != nullptr && within == Confidence::exceeded)
       beyond.push_back(fmt::format("{} {}; {}, which is finer, is within it and {}", advice.setting, advice.now->level,
                                    finer->level, cost_beside(*finer, *advice.now)));
-    if (within == Confidence::untold) untold.push_back(advice.setting);
-    if (advice.cheaper.empty()) std::cout << "      nothing cheaper was tried\n";
+    if (within == Confidence::inconclusive) inconclusive.push_back(advice.setting);
+    if (advice.cheaper.empty()) std::cout << "      no cheaper level was studied\n";
     for (const Evidence* one : advice.cheaper)
       std::cout << (one->known ? fmt::format("    {} {}: {}{}, {}{}\n", one == advice.taken ? "→" : " ", one->level,
                                              one > advice.now ? "finer and " : "", cost_beside(*one, *advice.now),
                                              changes(*one, tolerance),
                                              one->findings.empty() ? "" : ", " + why(levels, *one, tolerance))
-                               : fmt::format("      {}: runs of the study failed with it\n", one->level));
+                               : fmt::format("      {}: runs of the study failed at this level\n", one->level));
     if (advice.taken != nullptr) given.insert(given.end(), advice.taken->sets.begin(), advice.taken->sets.end());
   }
   std::cout << '\n';
-  for (const auto& one : beyond) std::cout << "beyond the tolerance as it is: " << one << '\n';
-  if (!untold.empty())
-    std::cout << fmt::format("cannot be told of as it is: {}; a study with more seeds would tell\n",
-                             fmt::join(untold, ", "));
+  for (const auto& one : beyond) std::cout << "beyond the tolerance already: " << one << '\n';
+  if (!inconclusive.empty())
+    std::cout << fmt::format("inconclusive already: {}; use a study with more seeds\n", fmt::join(inconclusive, ", "));
   const Evidence all = together(advices);
   const bool any = std::ranges::any_of(advices, [](const Advice& one) { return one.taken != nullptr; });
   const bool more_wanted =
       std::ranges::none_of(advices, &Advice::is_relaxed) && print_why_not(study, advices, tolerance);
-  if (any) std::cout << fmt::format("together about {:.1f} times cheaper\n", 1 / all.cost);
+  if (any) std::cout << fmt::format("combined, about {:.1f} times cheaper\n", 1 / all.cost);
   if (const Finding* sum = all.decisive(tolerance))
     std::cout << fmt::format(
-        "what all settings change, those that stay included, adds up to {} ({}), if they do not act on each other: "
-        "{}{}\n",
-        with_scatter(sum->error, sum->standard_error), sum->figure, word_of(all.confidence(tolerance)),
-        unknown.empty() ? "" : fmt::format("; not counted: {}", fmt::join(unknown, ", ")));
+        "sum of the changes by all settings, including unchanged ones, if they do not interact: {} ({}), {}{}\n",
+        with_scatter(sum->error, sum->standard_error), sum->metric, word_of(all.confidence(tolerance)),
+        unknown.empty() ? "" : fmt::format("; not included: {}", fmt::join(unknown, ", ")));
   if (any) std::cout << "  grit run " << shell_word(asked.file) << words_of("--set", each_once(given)) << '\n';
   if (more_wanted) print_where(study, asked);
 }
@@ -329,20 +328,20 @@ void print(const ChartedStudy& study, const std::string& related, const Asked& a
 ExitStatus advise_command(const std::vector<std::string>& words) {
   namespace po = boost::program_options;
   Options options(command("advise"));
-  options.add()("tolerance", po::value<std::string>()->default_value("5%")->value_name("SHARE"),
-                "error that is good enough, e.g. 2% or 0.02")(
-      "study", po::value<std::vector<std::string>>()->composing()->value_name("CHART"),
-      "chart.json of a study; may be given again; default: those that came with grit for the same scenario, or for a "
-      "scene of the same parts")("figure", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
-                                 "figure that counts; may be given again; default: all of the study");
+  options.add()("tolerance", po::value<std::string>()->default_value("5%")->value_name("FRACTION"),
+                "allowed error, e.g. 2% or 0.02")(
+      "study", po::value<std::vector<std::string>>()->composing()->value_name("FILE"),
+      "study.json of a study; may be repeated; default: installed studies of the same scenario, or of a scene with the "
+      "same components")("metric", po::value<std::vector<std::string>>()->composing()->value_name("NAME"),
+                         "metric to keep within the tolerance; may be repeated; default: all metrics of the study");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   const std::string file = options.only_word("description");
-  const double tolerance = share_of(options.get<std::string>("tolerance"));
+  const double tolerance = fraction_of(options.get<std::string>("tolerance"));
   const auto registry = options.registry();
   const auto sets = options.list("set");
   const Description now = resolved(*load_scene(file, sets, *registry).description);
-  std::map<std::vector<std::string>, std::optional<bool>> seen;  // nothing: not to be read with them
+  std::map<std::vector<std::string>, std::optional<bool>> seen;  // nothing: cannot be read with these sets
   const auto same = [&](const std::vector<std::string>& more) {
     const auto [found, is_new] = seen.try_emplace(more);
     if (is_new) try {
@@ -354,20 +353,20 @@ ExitStatus advise_command(const std::vector<std::string>& words) {
     if (!found->second) throw Error(file + ": cannot be read with " + fmt::format("{}", fmt::join(more, ", ")));
     return *found->second;
   };
-  std::vector<ChartedStudy> studies;
-  for (const auto& chart : options.list("study")) {
-    studies.push_back(read_charted_study(chart, options.list("figure")));
+  std::vector<EvaluatedStudy> studies;
+  for (const auto& result : options.list("study")) {
+    studies.push_back(read_evaluated_study(result, options.list("metric")));
     if (!studies.back().advice) throw UsageError(no_advice(studies.back()));
   }
   const auto scenario = scenario_type(Document::load(file));
   const auto parts = parts_of(now);
-  if (studies.empty()) studies = studies_like(scenario, parts, options.list("figure"));
-  std::vector<std::string> related;  // of all before anything is said
-  for (const ChartedStudy& study : studies) related.push_back(relation(study, file, scenario, parts));
+  if (studies.empty()) studies = studies_like(scenario, parts, options.list("metric"));
+  std::vector<std::string> related;  // of all studies before anything is printed
+  for (const EvaluatedStudy& study : studies) related.push_back(relation(study, file, scenario, parts));
   for (std::size_t i = 0; i < studies.size(); ++i) {
     if (i > 0) std::cout << '\n';
     print(studies[i], related[i],
-          {file, each_once(sets), options.list("study"), options.list("figure"), tolerance, same});
+          {file, each_once(sets), options.list("study"), options.list("metric"), tolerance, same});
   }
   return ExitStatus::done;
 }

@@ -31,13 +31,13 @@
 namespace grit {
 namespace {
 
-// Measured on one core of a 2-core AMD EPYC (Zen 3): 4 to 5 M particle-steps/s in dense packings; a bound to plan with.
+// Optimistic planning value: dense packings reach 4 to 5 M particle-steps/s on one core of an AMD EPYC (Zen 3).
 constexpr double planning_speed = 6e6;
-// A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this share of the
+// A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this fraction of the
 // cloud's.
-constexpr double dense_step_share = 0.6;
+constexpr double dense_step_fraction = 0.6;
 
-/// Simulated time that a stage takes [s]: as its description tells, or from what it takes as a rule to its limit.
+/// Simulated duration of a stage [s]: known from its description, or between its typical time and its limit.
 struct StageTime {
   double least = 0, most = 0;
   bool known = false, usual = false;
@@ -56,7 +56,7 @@ StageTime stage_time(const StageDescription& stage, const SceneDescription& scen
       return {takes, takes, true};
     }
   }
-  return {stage.usual_time.value_or(0), stage.limit, false, stage.usual_time.has_value()};
+  return {stage.typical_time.value_or(0), stage.limit, false, stage.typical_time.has_value()};
 }
 
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
@@ -77,12 +77,12 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::vector<ProbeGroup> probes;
   for (const auto& [name, probe] : description.probes)
     probes.push_back(Observer(name, probe, components.probes.at(name), kernel.world()).group());
-  SingleChannels(probes).check(scene.document, description.output);  // as a run does
+  SingleChannels(probes).check(scene.document, description.output);  // as in a run
   const std::size_t bodies = kernel.world().positions().size();
 
-  std::cout << "\nstate beyond position, velocity and spin\n";
+  std::cout << "\nbody state besides position, velocity and spin\n";
   for (const std::string& line : who_asked(description, components)) std::cout << "  " << line << '\n';
-  std::cout << "\norder of a step\n  neighbour search if due, contacts of pairs, touches of walls";
+  std::cout << "\norder of a step\n  neighbour search if due, contacts of pairs, wall contacts";
   for (const auto& [name, engine] : components.engines)
     if (engine->phase() == Phase::forces) std::cout << ", " << name;
   std::cout << ", probes, wall motion, integration";
@@ -103,24 +103,25 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   for (const auto& [name, clump] : clumps_of(components))
     std::cout << "clumps " << name << ": "
               << body_count(description.bodies.at(name), *components.body_kinds.at(name)) / clump.spheres << " of "
-              << clump.spheres << " spheres each; mass to " << std::setprecision(2) << clump.errors.mass
-              << ", centre to " << clump.errors.centre << " of the enclosing radius, inertia to "
-              << clump.errors.inertia << std::setprecision(6) << '\n';
+              << clump.spheres << " spheres each; errors: mass " << std::setprecision(2) << clump.errors.mass
+              << ", centre " << clump.errors.centre << " of the enclosing radius, inertia " << clump.errors.inertia
+              << std::setprecision(6) << '\n';
   const TimeStepDescription& wish = description.time_step;
   const double safe = wish.safety * kernel.critical_time_step();
   std::cout << "time step: " << kernel.world().dt() << " s, critical " << kernel.critical_time_step()
             << " s at the start; ";
   if (!wish.value && kernel.world().dt() < safe)
-    std::cout << "an impact of two takes " << wish.steps_per_impact << " steps; ";
-  std::cout << "followed as contacts change\n";
+    std::cout << wish.steps_per_impact << " steps per impact of two bodies; ";
+  std::cout << "updated as contacts change\n";
   std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(kernel.state().bytes())) + 1 << " MB now, about "
             << std::lround(1e-6 * 700.0 * static_cast<double>(all_bodies)) + 1 << " MB when dense\n\nstages\n";
 
   const bool cloud = kernel.state().pairs.touching_count() * 2 < bodies;
-  const double dt = cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_share * safe) : kernel.world().dt();
+  const double dt =
+      cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_fraction * safe) : kernel.world().dt();
   double least = 0, most = 0;  // s times bodies
   bool unknown = false;
-  std::size_t there = bodies;
+  std::size_t present = bodies;
   std::vector<StageTime> times;
   through_stages(description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
     if (!i) return true;
@@ -136,15 +137,15 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
     const StageDescription& stage = description.stages[i];
     const StageTime& time = times[i];
-    there += coming[stage.name];
-    least += time.least * static_cast<double>(there), most += time.most * static_cast<double>(there);
+    present += coming[stage.name];
+    least += time.least * static_cast<double>(present), most += time.most * static_cast<double>(present);
     unknown = unknown || (!time.known && !time.usual);
-    const double told = time.known || time.usual ? time.least : time.most;
+    const double shown = time.known || time.usual ? time.least : time.most;
     std::cout << "  " << std::setw(16) << stage.name
               << (time.known   ? ""
                   : time.usual ? "usually "
                                : "at most ")
-              << told << " s, " << std::llround(told / dt) << " steps";
+              << shown << " s, " << std::llround(shown / dt) << " steps";
     if (!time.known)
       std::cout << " (ends by its condition" << (time.usual ? fmt::format(", {:g} s at most", time.most) : "") << ')';
     std::cout << '\n';
@@ -155,7 +156,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
             << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(least) / 3600
             << " h (" << duration_text(cost(least)) << ')';
   if (most > least)
-    std::cout << (unknown ? " and what stages take that end by a condition" : "") << ", at most " << cost(most) / 3600
+    std::cout << (unknown ? " plus stages that end by a condition" : "") << ", at most " << cost(most) / 3600
               << " h, by the limits of stages that end by a condition";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
   auto idle = unused_settings(scene, components, kernel);
@@ -172,29 +173,27 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const auto is_written = [&](const std::string& pointer) {
     return written.json().contains(Description::json_pointer(pointer));
   };
-  for (const std::string& line : unused_materials(scene, is_written)) {
-    // Some are known already, and why, or are part of what is.
-    const std::string pointer = line.substr(0, line.find(": "));
-    if (std::ranges::none_of(idle, [&](const std::string& other) {
-          const std::string known = other.substr(0, other.find(": "));
-          return known == pointer || pointer.starts_with(known + '/');
+  for (UnusedSetting& one : unused_materials(scene, is_written)) {
+    // Skips values that are listed already, or belong to something that is.
+    if (std::ranges::none_of(idle, [&](const UnusedSetting& known) {
+          return known.pointer == one.pointer || one.pointer.starts_with(known.pointer + '/');
         }))
-      idle.push_back(line);
+      idle.push_back(std::move(one));
   }
   std::ranges::move(unused_scenario_parameters(written, same), std::back_inserter(idle));
   const auto [studies, unreadable] = installed_studies();
-  for (const std::string& why : unreadable) std::cerr << "grit: left out: " << why << std::endl;
-  if (auto line = excess_depth(scene, components, kernel.world(), scenario_type(Document::load(file)), studies, same))
-    idle.push_back(*line);
+  for (const std::string& why : unreadable) std::cerr << "grit: omitted: " << why << std::endl;
+  if (auto depth = excess_depth(scene, components, kernel.world(), scenario_type(Document::load(file)), studies, same))
+    idle.push_back(std::move(*depth));
   if (!idle.empty()) std::cout << "\nwithout effect\n";
-  for (const std::string& line : idle) std::cout << "  " << line << '\n';
+  for (const auto& [pointer, why] : idle) std::cout << "  " << pointer << ": " << why << '\n';
 }
 
 }  // namespace
 
 ExitStatus check_command(const std::vector<std::string>& words) {
   Options options(command("check"));
-  options.add_threads("threads to estimate for");
+  options.add_threads("threads assumed in the estimate of the run time");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no description was given; see 'grit check --help'");

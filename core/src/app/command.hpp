@@ -1,4 +1,4 @@
-// The commands, one file each.
+// The commands, one file per command.
 #pragma once
 
 #include <functional>
@@ -11,13 +11,13 @@
 
 namespace grit {
 
-/// Words that make no sense as a command line.
+/// An invalid command line.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Gets the words after the command's name. Throws UsageError and grit::Error.
+/// Takes the words after the command's name. Throws UsageError and grit::Error.
 using CommandMain = ExitStatus (*)(const std::vector<std::string>& words);
 
 struct Command {
@@ -33,13 +33,13 @@ ExitStatus expand_command(const std::vector<std::string>& words);
 ExitStatus schema_command(const std::vector<std::string>& words);
 ExitStatus plugins_command(const std::vector<std::string>& words);
 ExitStatus describe_command(const std::vector<std::string>& words);
-ExitStatus chart_command(const std::vector<std::string>& words);
+ExitStatus study_command(const std::vector<std::string>& words);
 ExitStatus advise_command(const std::vector<std::string>& words);
 ExitStatus report_command(const std::vector<std::string>& words);
 
 std::span<const Command> commands();
 
-/// Does the work; what it throws goes to standard error and becomes the status.
+/// Runs `work`; prints its exceptions to standard error and maps them to an exit status.
 ExitStatus report(const std::function<ExitStatus()>& work);
 
 }  // namespace grit

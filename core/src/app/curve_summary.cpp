@@ -35,9 +35,9 @@ void CurveSummary::stage_ended(const World& world, const std::string& what) {
   next_.stage_ended(world, what);
 }
 
-void CurveSummary::remember(Memory& memory) {
-  for (Curve& curve : curves_) memory(curve.largest, curve.last, curve.any);
-  next_.remember(memory);
+void CurveSummary::serialize(Archive& archive) {
+  for (Curve& curve : curves_) archive(curve.largest, curve.last, curve.any);
+  next_.serialize(archive);
 }
 
 std::string CurveSummary::text() const {
@@ -45,7 +45,7 @@ std::string CurveSummary::text() const {
   text.precision(4);
   for (const Curve& curve : curves_) {
     const bool ends = !std::isnan(curve.last);
-    if (!curve.any && ends) continue;  // nobody looked
+    if (!curve.any && ends) continue;  // never sampled
     const std::string unit = curve.channel.unit == "1" ? "" : ' ' + curve.channel.unit;
     text << curve.channel.full_name() << ": ";
     if (curve.any) text << "peak " << curve.largest << unit << ", ";

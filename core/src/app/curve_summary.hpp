@@ -1,5 +1,4 @@
-// Hands everything on to the results, says on the way what each stage reached, and keeps the curves that the
-// description wants summed up at the end.
+// Forwards everything to the results, reports how each stage ended, and keeps the curves of /output/summary.
 #pragma once
 
 #include <functional>
@@ -13,21 +12,20 @@ namespace grit {
 
 class CurveSummary final : public Recorder {
  public:
-  /// `document` and `output` are the description's; `say` gets a line for each stage that ends.
+  /// `document` and `output` are the description's; `say` gets one line per stage that ends.
   CurveSummary(Recorder& next, const Document& document, const OutputDescription& output,
                std::function<void(const std::string&)> say);
 
-  /// Throws DescriptionError for channels that the output names and no probe has.
+  /// Throws DescriptionError if the output names channels that no probe has.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override { next_.frame(world, fields); }
   void stage_ended(const World& world, const std::string& what) override;
   void flush() override { next_.flush(); }
-  void remember(Memory& memory) override;
-  void checkpoint(const Checkpoint& checkpoint) override { next_.checkpoint(checkpoint); }
+  void serialize(Archive& archive) override;
   void finish(const World& world, const RunSummary& summary) override { next_.finish(world, summary); }
 
-  /// A line a channel: largest value and last value, with units.
+  /// One line per channel: value of largest magnitude and last value, with units.
   std::string text() const;
 
  private:

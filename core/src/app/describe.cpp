@@ -12,7 +12,7 @@
 namespace grit {
 namespace {
 
-/// A section of a description, by its key; empty if there is none of this name.
+/// The reference of a section of a description, by its key; empty if there is no such section.
 std::string section_text(const Parameters& all, const std::string& name) {
   for (const Parameter& section : all.entries()) {
     if (section.name() != name) continue;
@@ -23,7 +23,7 @@ std::string section_text(const Parameters& all, const std::string& name) {
   return "";
 }
 
-/// What a file for `grit chart` says.
+/// The reference of files for `grit study`.
 std::string study_text() {
   StudyDescription study;
   Parameters parameters;
@@ -35,7 +35,7 @@ void print_names(const Parameters& all, const Registry& registry) {
   std::cout << "sections of a description\n";
   for (const Parameter& section : all.entries())
     std::cout << "  " << std::left << std::setw(20) << section.name() << section.doc() << '\n';
-  std::cout << "\nfiles for 'grit chart'\n  study\n";
+  std::cout << "\nfiles for 'grit study'\n  study\n";
   std::string kind;
   for (const Installed& one : registry.installed()) {
     if (kind != one.kind) std::cout << '\n' << (kind = one.kind) << '\n';
@@ -70,9 +70,9 @@ ExitStatus describe_command(const std::vector<std::string>& words) {
   for (const Installed& one : registry->installed()) names.push_back(one.name);
   if (std::ranges::find(names, name) == names.end()) {
     const auto meant = nearest(name, names);
-    throw PluginError("there is no section and no component \"" + name + '"' +
+    throw PluginError("unknown section or component \"" + name + '"' +
                       (meant ? "; did you mean \"" + *meant + "\"? 'grit describe'" : "; 'grit describe'") +
-                      " lists them all");
+                      " lists all");
   }
   std::cout << component_text(*registry, name, false);
   return ExitStatus::done;

@@ -1,4 +1,4 @@
-// What the process says when it ends.
+// Exit statuses of the program.
 #pragma once
 
 namespace grit {
@@ -8,9 +8,9 @@ enum class ExitStatus {
   usage = 1,
   description = 2,
   plugin = 3,
-  numerics = 4,  ///< a guard tripped, a stage did not end, an expectation was not met
+  numerics = 4,  ///< a guard tripped, a stage did not end, or an expectation was not met
   files = 5,
-  defect = 70,  ///< an error that grit does not foresee: a defect of grit or of a plugin
+  defect = 70,  ///< an unexpected error: a defect of grit or of a plugin
   interrupted = 130,
 };
 

@@ -7,7 +7,7 @@
 namespace grit {
 namespace {
 
-/// Names files by their whole paths, as `whole` does: what is printed may be saved anywhere.
+/// Replaces file names by their full paths from `whole`, so that the output may be saved anywhere.
 void name_files(Description& plain, const Description& whole) {
   if (plain.is_string() && whole.is_string()) plain = whole;
   if (plain.is_array() && whole.is_array())
@@ -27,7 +27,7 @@ ExitStatus expand_command(const std::vector<std::string>& words) {
   const auto registry = options.registry();
   const Document document = load_document(file, options.list("set"), *registry);
   const Scene scene = read_scene(document, *registry);
-  const LiveScene live(scene);  // what is printed can be run
+  const LiveScene live(scene);  // throws if the description cannot be run
   Description plain = document.json();
   name_files(plain, resolved(*scene.description));
   std::cout << plain.dump(2) << '\n';

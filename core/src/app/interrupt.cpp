@@ -7,7 +7,7 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 
-// The second Ctrl-C gets what it wants at once.
+// The second Ctrl-C ends the process.
 extern "C" void on_interrupt(int signal) {
   interrupted.store(true);
   std::signal(signal, SIG_DFL);

@@ -1,11 +1,11 @@
-// Ctrl-C and termination end what runs in good order; a second signal ends it at once.
+// Ctrl-C and SIGTERM end a run in good order; a second signal ends the process at once.
 #pragma once
 
 #include <atomic>
 
 namespace grit {
 
-/// From now on these signals set what is returned.
+/// Installs the handlers; returns the flag that they set.
 const std::atomic<bool>& catch_interrupts();
 
 }  // namespace grit

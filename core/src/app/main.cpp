@@ -14,17 +14,16 @@ namespace grit {
 
 std::span<const Command> commands() {
   static constexpr std::array<Command, 9> all{{
-      {"run", "FILE…", "Runs descriptions, one after the other. Ctrl-C saves what there is and stops.", run_command},
-      {"check", "FILE…", "Says what would run: components, state, time step and its limit, memory, time.",
-       check_command},
-      {"expand", "FILE", "Prints the plain description: extended, set, its scenario expanded.", expand_command},
-      {"schema", "", "Prints the JSON Schema of everything installed, for editors.", schema_command},
-      {"plugins", "[NAME]", "Lists what is installed; one in full.", plugins_command},
-      {"describe", "[NAME]", "Prints the parameters of a section of a description, or of a component.",
+      {"run", "FILE…", "Run descriptions, one after the other. Ctrl-C saves the results and stops.", run_command},
+      {"check", "FILE…", "Validate a description; report time step, memory and run time.", check_command},
+      {"expand", "FILE", "Print a description with inheritance, --set and scenario resolved.", expand_command},
+      {"schema", "", "Print the JSON Schema of descriptions, for editors.", schema_command},
+      {"plugins", "[NAME]", "List the installed components, or one in detail.", plugins_command},
+      {"describe", "[NAME]", "Print the parameters of a section of a description, or of a component.",
        describe_command},
-      {"chart", "STUDY", "Speed against accuracy: runs a study, draws error against cost.", chart_command},
-      {"advise", "FILE", "Says what may be relaxed within a tolerance, by the evidence of a study.", advise_command},
-      {"report", "DIR…", "Makes one page of a run, or of several side by side: curves and grains.", report_command},
+      {"study", "STUDY", "Run a study of speed against accuracy; plot error against cost.", study_command},
+      {"advise", "FILE", "Suggest cheaper settings within a tolerance, from the results of a study.", advise_command},
+      {"report", "DIR…", "Write a page with curves and grains of one run, or of several side by side.", report_command},
   }};
   return all;
 }
@@ -38,19 +37,19 @@ const Command& named(const std::string& name) {
     names.emplace_back(c.name);
   }
   const auto meant = nearest(name, names);
-  throw UsageError((name.starts_with('-') ? "there is no option \"" : "there is no command \"") + name + '"' +
+  throw UsageError((name.starts_with('-') ? "unknown option \"" : "unknown command \"") + name + '"' +
                    (meant ? "; did you mean \"" + *meant + "\"? See" : "; see") + " 'grit --help'");
 }
 
 void print_usage(std::ostream& out) {
-  out << "grit, discrete elements for sand, shear zones and silos\n\nusage: grit COMMAND [options]\n\n";
+  out << "grit, discrete element method for sand, shear zones and silos\n\nusage: grit COMMAND [options]\n\n";
   for (const Command& c : commands()) {
     const std::string head = std::string("  ") + c.name + ' ' + c.synopsis;
     const auto width = static_cast<std::size_t>(std::ranges::count_if(head, [](char b) { return (b & 0xC0) != 0x80; }));
     out << head << std::string(20 - width, ' ') << c.doc << '\n';
   }
-  out << "\n'grit COMMAND --help' says more, 'grit --version' which grit this is.\n"
-         "GRIT_ISA chooses among installed instruction sets, GRIT_PLUGIN_PATH adds folders of plugins.\n"
+  out << "\n'grit COMMAND --help' prints the options of a command, 'grit --version' the version and build.\n"
+         "GRIT_ISA selects an installed instruction set; GRIT_PLUGIN_PATH adds plugin folders.\n"
          "Exit status: 0 done, 1 usage, 2 description, 3 plugin, 4 numerics, 5 files or disk,\n"
          "70 defect of the program, 130 interrupted and saved.\n";
 }
@@ -62,7 +61,7 @@ void print_version() {
             << build.instruction_set << " (-march=" << build.arch << ")\n";
 }
 
-/// Installed builds are chosen from before one starts. A build by itself must not let another choice pass unnoticed.
+/// The launcher selects among installed builds. A single build must refuse a GRIT_ISA other than its own.
 void check_instruction_set() {
   const char* const wanted = std::getenv("GRIT_ISA");
   const BuildFacts& build = build_facts();
@@ -100,13 +99,13 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
   };
   try {
     const ExitStatus status = work();
-    // A full disk behind a redirection shows here at the latest.
-    if (!std::cout.flush()) throw FileError("standard output cannot be written: is the disk full?");
+    // With redirected output a full disk may only show here.
+    if (!std::cout.flush()) throw FileError("standard output cannot be written; is the disk full?");
     return status;
   } catch (const UsageError& error) {
     return say(error.what(), ExitStatus::usage);
   } catch (const DescriptionError& error) {
-    // As compilers have it, file:line first, so that editors find the places.
+    // file:line comes first, as in compilers, so that editors can jump to it.
     std::cerr << error.what() << std::endl;
     const std::size_t count = error.problems().size();
     return say(count == 1 ? "1 problem in the description" : std::to_string(count) + " problems in the description",
@@ -122,9 +121,9 @@ ExitStatus report(const std::function<ExitStatus()>& work) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say(error.what(), ExitStatus::files);
   } catch (const std::bad_alloc&) {
-    return say("there is not enough memory for this scene; 'grit check' says how much it needs", ExitStatus::files);
+    return say("not enough memory for this scene; 'grit check' reports how much it needs", ExitStatus::files);
   } catch (const std::exception& error) {
-    return say(std::string("a defect of grit or of a plugin, please report it: ") + error.what(), ExitStatus::defect);
+    return say(std::string("defect of grit or of a plugin; please report it: ") + error.what(), ExitStatus::defect);
   }
 }
 

@@ -12,12 +12,12 @@ namespace po = boost::program_options;
 
 Options::Options(const Command& command) : command_(command) {
   visible_.add_options()("plugin-path", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
-                         "look for plugins here first; may be given again")("help,h", "say this and stop");
+                         "search for plugins here first; may be repeated")("help,h", "print this help and exit");
 }
 
 void Options::add_set() {
   visible_.add_options()("set", po::value<std::vector<std::string>>()->composing()->value_name("/POINTER=VALUE"),
-                         "change a value of the description first, e.g. --set /seed=2; may be given again");
+                         "override a value of the description, e.g. --set /seed=2; may be repeated");
 }
 
 void Options::add_threads(const char* doc) {
@@ -40,7 +40,7 @@ bool Options::read(const std::vector<std::string>& words) {
   po::positional_options_description positional;
   positional.add("words", -1);
   try {
-    // No guessing of shortened names: a script must not change its meaning when an option is added.
+    // No abbreviated names: a script must not change its meaning when an option is added.
     const auto style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
     po::store(po::command_line_parser(words).options(all).positional(positional).style(style).run(), values_);
     po::notify(values_);

@@ -1,4 +1,4 @@
-// What all commands read from their command lines in the same way.
+// Command-line options shared by all commands.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -11,17 +11,17 @@
 
 namespace grit {
 
-/// The words of a command, read by its options; positional words go to the hidden option "words".
+/// The command line of one command; positional words go to the hidden option "words".
 class Options {
  public:
-  /// `doc` and `synopsis` are what --help says first. Every command has --plugin-path and --help.
+  /// --help begins with the command's `synopsis` and `doc`. Every command has --plugin-path and --help.
   explicit Options(const Command& command);
-  /// --set, for commands that read a description; list("set") has what was given.
+  /// --set, for commands that read a description; list("set") returns the values given.
   void add_set();
-  /// --threads; threads() checks what was given.
+  /// --threads; threads() checks the value.
   void add_threads(const char* doc);
   boost::program_options::options_description_easy_init add() { return visible_.add_options(); }
-  /// Reads. Returns false if --help was asked for, and prints it. Throws UsageError.
+  /// Parses the words. Prints the help and returns false if --help is given. Throws UsageError.
   bool read(const std::vector<std::string>& words);
 
   const std::vector<std::string>& words() const { return words_; }
@@ -31,12 +31,12 @@ class Options {
     return values_[name].as<T>();
   }
   std::vector<std::string> list(const char* name) const;
-  /// Of --threads, --jobs: throws UsageError if it is not from 1 to 1024.
+  /// Value of --threads or --jobs. Throws UsageError if it is not from 1 to 1024.
   unsigned number(const char* name) const;
   unsigned threads() const { return number("threads"); }
-  /// The one positional word that a command takes. Throws UsageError.
+  /// The single positional word of the command. Throws UsageError.
   std::string only_word(const char* what) const;
-  /// Built-in components, and the plugins of --plugin-path, GRIT_PLUGIN_PATH, and of this installation.
+  /// Built-in components and the plugins of --plugin-path, GRIT_PLUGIN_PATH and this installation.
   std::unique_ptr<Registry> registry() const;
 
  private:

@@ -1,6 +1,6 @@
 #include "app/page_server.hpp"
 
-// Debian 12's Boost looks for the coroutines of clang where they were before they became standard.
+// Debian 12's Boost expects clang's coroutines in their pre-standard header.
 #define BOOST_ASIO_HAS_CO_AWAIT 1
 
 #include <unistd.h>
@@ -31,14 +31,14 @@ using Steady = std::chrono::steady_clock;
 using Response = http::response<http::string_body>;
 using namespace std::chrono_literals;
 
-constexpr std::size_t most_sessions = 64, longest_header = 16 << 10;
-// However long a folder takes to be read then: the end of a run does not wait for more.
-constexpr unsigned most_seconds_for_the_end = 20;
-constexpr auto answer_within = 25s, asks_within = 10s, reader_gone_after = 60s, last_words_within = 8s;
+constexpr std::size_t max_sessions = 64, max_header_bytes = 16 << 10;
+// The end of a run waits no longer than this for the server, however long reading the folder takes.
+constexpr unsigned shutdown_limit_s = 20;
+constexpr auto answer_within = 25s, first_request_within = 10s, reader_gone_after = 60s, last_answer_within = 8s;
 
 auto into(error_code& error) { return asio::redirect_error(asio::use_awaitable, error); }
 
-/// "127.0.0.1:8000" without its port.
+/// A host such as "127.0.0.1:8000" without its port.
 std::string_view host_name(std::string_view host) {
   const auto colon = host.rfind(':');
   return colon == std::string_view::npos || host.ends_with(']') ? host : host.substr(0, colon);
@@ -49,7 +49,7 @@ bool is_this_machine(std::string_view host) {
   return std::ranges::find(names, host_name(host)) != names.end();
 }
 
-/// The value of "name=value" in "path?a=1&b=2"; empty where it is missing.
+/// The value of "name=value" in "path?a=1&b=2"; empty if missing.
 std::string_view parameter(std::string_view target, std::string_view name) {
   for (auto at = target.find('?'); at != std::string_view::npos; at = target.find('&', at + 1)) {
     const auto rest = target.substr(at + 1);
@@ -67,7 +67,7 @@ class PageServer {
         page_(page) {}
 
   void operator()() {
-    for (auto work : {&PageServer::accept, &PageServer::listen_to_run, &PageServer::look_again})
+    for (auto work : {&PageServer::accept, &PageServer::listen_to_run, &PageServer::refresh_regularly})
       asio::co_spawn(io_, (this->*work)(), asio::detached);
     io_.run();
   }
@@ -77,7 +77,7 @@ class PageServer {
     for (;;) {
       error_code error;
       tcp::socket socket = co_await acceptor_.async_accept(into(error));
-      if (!error && sessions_ < most_sessions) asio::co_spawn(io_, session(std::move(socket)), asio::detached);
+      if (!error && sessions_ < max_sessions) asio::co_spawn(io_, session(std::move(socket)), asio::detached);
     }
   }
 
@@ -91,24 +91,24 @@ class PageServer {
       lines.consume(length);
       news_.cancel();
     }
-    ::alarm(most_seconds_for_the_end);
+    ::alarm(shutdown_limit_s);
     progress_.clear(), ended_ = true;
-    if (is_looked_at()) page_.refresh();
+    if (has_readers()) page_.refresh();
     news_.cancel();
-    if (!is_looked_at()) io_.stop();
-    asio::steady_timer patience(io_, last_words_within);
-    co_await patience.async_wait(asio::use_awaitable);
+    if (!has_readers()) io_.stop();
+    asio::steady_timer timer(io_, last_answer_within);
+    co_await timer.async_wait(asio::use_awaitable);
     io_.stop();
   }
 
-  /// Reads the folder every second or, where that is more than a tenth of a core, less often.
-  asio::awaitable<void> look_again() {
+  /// Reads the folder every second, or less often if that takes more than a tenth of a core.
+  asio::awaitable<void> refresh_regularly() {
     asio::steady_timer timer(io_);
     for (;;) {
-      const std::clock_t began = std::clock();  // of the processor: to wait for one is no work
+      const std::clock_t began = std::clock();  // CPU time: waiting does not count
       const auto now = Steady::now();
       std::erase_if(readers_, [now](const auto& reader) { return now - reader.second > reader_gone_after; });
-      std::erase_if(opened_, [now](Steady::time_point then) { return now - then > asks_within; });
+      std::erase_if(opened_, [now](Steady::time_point then) { return now - then > first_request_within; });
       if (!readers_.empty() && !ended_) {
         page_.refresh();
         news_.cancel();
@@ -125,7 +125,7 @@ class PageServer {
     beast::flat_buffer buffer;
     for (;;) {
       http::request_parser<http::empty_body> parser;
-      parser.header_limit(longest_header);
+      parser.header_limit(max_header_bytes);
       stream.expires_after(reader_gone_after);
       error_code error;
       co_await http::async_read_header(stream, buffer, parser, into(error));
@@ -134,21 +134,21 @@ class PageServer {
       stream.expires_never();
       const std::string reader(parameter(text(request.target()), "page"));
       Response response = co_await answer(request);
-      const bool last_words = ended_;
+      const bool last_answer = ended_;
       response.keep_alive(request.keep_alive() && parser.is_done() && !ended_);
       response.prepare_payload();
       stream.expires_after(reader_gone_after);
       co_await http::async_write(stream, response, into(error));
-      if (last_words) readers_.erase(reader);
+      if (last_answer) readers_.erase(reader);
       if (error || !response.keep_alive()) break;
     }
     error_code ignored;
     stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
     --sessions_;
-    if (ended_ && !is_looked_at()) io_.stop();
+    if (ended_ && !has_readers()) io_.stop();
   }
 
-  bool is_looked_at() const { return !readers_.empty() || !opened_.empty(); }
+  bool has_readers() const { return !readers_.empty() || !opened_.empty(); }
 
   static std::string_view text(beast::string_view view) { return {view.data(), view.size()}; }
 
@@ -165,32 +165,32 @@ class PageServer {
     };
     constexpr const char *plain = "text/plain; charset=utf-8", *html = "text/html; charset=utf-8";
     if (!is_this_machine(text(request[http::field::host])))
-      co_return say(http::status::forbidden, plain, "this page is for 127.0.0.1 and localhost\n");
+      co_return say(http::status::forbidden, plain, "this page is served to 127.0.0.1 and localhost only\n");
     if (request.method() != http::verb::get) {
-      Response response = say(http::status::method_not_allowed, plain, "only GET is answered\n");
+      Response response = say(http::status::method_not_allowed, plain, "only GET is allowed\n");
       response.set(http::field::allow, "GET");
       co_return response;
     }
     if (target == "/") {
       page_.refresh();
-      if (opened_.size() < most_sessions) opened_.push_back(Steady::now());
+      if (opened_.size() < max_sessions) opened_.push_back(Steady::now());
       co_return say(http::status::ok, html, page_.html());
     }
-    if (!target.starts_with("/new?")) co_return say(http::status::not_found, plain, "there is nothing here but /\n");
+    if (!target.starts_with("/new?")) co_return say(http::status::not_found, plain, "not found; the page is /\n");
     const auto since_text = parameter(target, "since");
     std::size_t since = 0;
-    const auto [end, slip] = std::from_chars(since_text.data(), since_text.data() + since_text.size(), since);
-    if (slip != std::errc() || end != since_text.data() + since_text.size())
+    const auto [end, error] = std::from_chars(since_text.data(), since_text.data() + since_text.size(), since);
+    if (error != std::errc() || end != since_text.data() + since_text.size())
       co_return say(http::status::bad_request, plain, "since takes a number\n");
     const Description news = co_await news_for(since, std::string(parameter(target, "page")));
     co_return say(http::status::ok, "application/json",
                   news.dump(-1, ' ', false, Description::error_handler_t::replace));
   }
 
-  /// Waits for something that the reader does not know.
+  /// Waits for news that the reader does not have yet.
   asio::awaitable<Description> news_for(std::size_t since, const std::string reader) {
     if (!opened_.empty() && !readers_.contains(reader)) opened_.erase(opened_.begin());
-    if (readers_.size() < most_sessions) readers_[reader] = Steady::now();
+    if (readers_.size() < max_sessions) readers_[reader] = Steady::now();
     const std::string progress = progress_;
     const auto until = Steady::now() + answer_within;
     while (page_.since() == since && progress_ == progress && !ended_ && Steady::now() < until) {
@@ -207,9 +207,9 @@ class PageServer {
   tcp::acceptor acceptor_;
   asio::local::stream_protocol::socket control_;
   LivePage& page_;
-  asio::steady_timer news_{io_, Steady::time_point::max()};  ///< cancelled to wake those who wait
-  std::map<std::string, Steady::time_point> readers_;        ///< pages that are open, and when they asked last
-  std::vector<Steady::time_point> opened_;                   ///< when pages were sent that have not asked yet
+  asio::steady_timer news_{io_, Steady::time_point::max()};  ///< cancelled to wake waiting requests
+  std::map<std::string, Steady::time_point> readers_;        ///< open pages and the times of their last requests
+  std::vector<Steady::time_point> opened_;                   ///< send times of pages that have not requested news yet
   std::string progress_;
   bool ended_ = false;
   std::size_t sessions_ = 0;
@@ -224,10 +224,10 @@ Listener::Listener(std::uint16_t port) {
     port_ = acceptor.local_endpoint().port();
     socket_ = ::dup(acceptor.native_handle());
   } catch (const boost::system::system_error& error) {
-    const std::string asked = "--port " + std::to_string(port);
+    const std::string option = "--port " + std::to_string(port);
     if (error.code() == asio::error::address_in_use)
-      throw UsageError(asked + ": 127.0.0.1 has this port in use; give another, or none for one that is free");
-    throw UsageError(asked + ": cannot listen there: " + error.code().message());
+      throw UsageError(option + ": this port of 127.0.0.1 is in use; give another, or omit --port to get a free one");
+    throw UsageError(option + ": cannot listen on this port: " + error.code().message());
   }
 }
 

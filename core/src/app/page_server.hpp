@@ -1,4 +1,4 @@
-// A page over HTTP, for browsers on this machine.
+// Serves a page over HTTP to browsers on this machine.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace grit {
 
-/// A socket that listens on 127.0.0.1 alone.
+/// A socket that listens on 127.0.0.1 only.
 class Listener {
  public:
-  /// 0: a port that is free. Throws UsageError where it is taken or not allowed.
+  /// Port 0 selects a free port. Throws UsageError if the port is in use or not allowed.
   explicit Listener(std::uint16_t port);
   ~Listener();
   Listener(const Listener&) = delete;
@@ -23,10 +23,10 @@ class Listener {
   std::uint16_t port_;
 };
 
-/// Serves the page at `/` until `control` is closed at its other end, from where lines come that say how far the run
-/// is. Then readers get the last state, for which it waits a few seconds. Reads the folder only while somebody looks,
-/// at most a tenth of the time. Answers GET alone, and only where the request names this machine as its host: pages of
-/// others that had a name of theirs point here learn nothing. Takes both sockets.
+/// Serves the page at `/` until `control` is closed at its other end, which sends lines of progress. Readers then get
+/// the last state, for which the server waits a few seconds. Reads the folder only while the page is open in a browser,
+/// for at most a tenth of the time. Answers only GET requests whose Host is this machine, which prevents DNS rebinding.
+/// Takes ownership of both sockets.
 void serve_page(int listening_socket, int control, LivePage& page);
 
 }  // namespace grit

@@ -26,7 +26,7 @@ ExitStatus plugins_command(const std::vector<std::string>& words) {
     try {
       const PluginInfo& info = registry->info(one.kind, one.name);
       std::cout << info.version << info.doc << file << std::endl;
-    } catch (const PluginError& error) {  // the others are listed all the same
+    } catch (const PluginError& error) {  // the others are still listed
       std::cout << "-"
                 << "cannot be loaded" << file << std::endl;
       std::cerr << "grit: " << error.what() << std::endl;

@@ -30,7 +30,7 @@ std::string progress_text(const Progress& now) {
             std::string(static_cast<std::size_t>(bar_width - full), '-') + format("] %3.0f %%", 100 * *now.fraction);
     if (now.seconds_left) text += ", " + duration_text(*now.seconds_left) + " left";
   } else {
-    text += format("t = %.4g s, until its condition holds", now.time);
+    text += format("t = %.4g s, ends by its condition", now.time);
   }
   return text + format(", %.2f M particle-steps/s", 1e-6 * now.particle_steps_per_second);
 }

@@ -1,23 +1,23 @@
-// How far a run is, on one line of a terminal, or a line now and then in a log.
+// Progress of a run: one line that is rewritten on a terminal, or a line every ten seconds in a log.
 #pragma once
 
 #include <chrono>
 #include <string>
 
-#include "simulation/driver.hpp"
+#include "grit/simulation.hpp"
 
 namespace grit {
 
-/// What is shown on standard error.
+/// The progress line on standard error.
 class ProgressLine {
  public:
   ProgressLine();
   ~ProgressLine() { end(); }
   ProgressLine(const ProgressLine&) = delete;
-  /// Whether it is time for a line; at a terminal it always is.
+  /// Whether a new line is due; always on a terminal.
   bool is_due() const;
   void show(const std::string& text);
-  /// Ends the line, so that others may print.
+  /// Ends the line, so that other output may follow.
   void end();
 
  private:
@@ -35,7 +35,7 @@ class ProgressBar {
   std::string stage_;
 };
 
-/// One line without its end, e.g. "2/4 shear  [#####-----]  48 %, 12 s left, 8.1 M particle-steps/s".
+/// One line without a line feed, e.g. "2/4 shear  [#####-----]  48 %, 12 s left, 8.1 M particle-steps/s".
 std::string progress_text(const Progress& progress);
 
 }  // namespace grit

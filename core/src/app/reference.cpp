@@ -25,7 +25,7 @@ std::string parameters_text(const Registry& registry, const std::string& name) {
     Parameters material, pair;
     component->declare_material("a", material);
     component->declare_interface("a", "a", pair);
-    text += "\nof each material:\n" + table(material) + "\nof each interface of two materials:\n" + table(pair);
+    text += "\nper material:\n" + table(material) + "\nper interface of two materials:\n" + table(pair);
   }
   return text;
 }
@@ -57,7 +57,7 @@ std::string component_text(const Registry& registry, const std::string& name, bo
   }
   if (text.empty()) {
     const auto meant = nearest(name, names);
-    throw PluginError("nothing is installed under the name \"" + name + '"' +
+    throw PluginError("unknown component \"" + name + '"' +
                       (meant ? "; did you mean \"" + *meant + "\"? 'grit plugins'" : "; 'grit plugins'") +
                       " lists all");
   }

@@ -7,8 +7,8 @@
 
 namespace grit {
 
-/// What is installed under this name, of whatever kind: its parameters; `in_full` with where it comes from and how it
-/// was built. Throws PluginError, with the nearest name, if there is nothing.
+/// Parameters of every component of this name, of any kind; `in_full` adds the file and the build. Throws PluginError
+/// with the nearest name if there is none.
 std::string component_text(const Registry& registry, const std::string& name, bool in_full);
 
 }  // namespace grit

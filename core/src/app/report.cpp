@@ -16,7 +16,7 @@
 namespace grit {
 namespace {
 
-/// Throws FileError with what the converter says.
+/// Throws FileError; the converter's output is in a log file.
 void convert(const std::filesystem::path& svg, const std::filesystem::path& png) {
   const auto log = png.string() + ".log";
   const BatchJob job{{"rsvg-convert", "--zoom", "2", "--output", png.string(), svg.string()}, log};
@@ -25,9 +25,9 @@ void convert(const std::filesystem::path& svg, const std::filesystem::path& png)
     run_batch(std::span(&job, 1), 1, catch_interrupts(),
               {.ended = [&](std::size_t, int ended) { return (status = ended) == 0; }, .waiting = [](std::size_t) {}});
   } catch (const FileError& error) {
-    throw FileError(std::string(error.what()) + "; it comes with Debian's librsvg2-bin");
+    throw FileError(std::string(error.what()) + "; install Debian's librsvg2-bin");
   }
-  if (status != 0) throw FileError(png.string() + " was not made; " + log + " says why");
+  if (status != 0) throw FileError(png.string() + ": cannot be written; see " + log);
   std::filesystem::remove(log);
 }
 
@@ -40,7 +40,7 @@ void write_pictures(const std::filesystem::path& folder, const std::vector<Named
   }
 }
 
-/// All of a run that can be drawn; what cannot becomes one of its problems.
+/// All pictures of a run; what cannot be drawn becomes one of its problems.
 std::vector<NamedPicture> pictures_of(RunResults& run) {
   std::vector<NamedPicture> pictures;
   const auto draw = [&](auto work) {
@@ -64,7 +64,7 @@ std::vector<NamedPicture> pictures_of(RunResults& run) {
   return pictures;
 }
 
-/// A folder that is bad is told with why, and leaves the others their pictures; the status is that of the first.
+/// Reports unreadable folders and draws the others; the status is that of the first failure.
 ExitStatus make_pictures(const std::vector<std::filesystem::path>& folders) {
   ExitStatus status = ExitStatus::done;
   const auto attempt = [&](auto work) {
@@ -73,15 +73,15 @@ ExitStatus make_pictures(const std::vector<std::filesystem::path>& folders) {
   };
   std::vector<RunResults> runs;
   for (const auto& folder : folders) attempt([&] { runs.push_back(read_results(folder)); });
-  tell_apart(runs);
+  make_names_unique(runs);
   for (RunResults& run : runs) {
     attempt([&] {
       const auto pictures = pictures_of(run);
       if (pictures.empty() && !run.problems.empty())
-        throw FileError(run.folder.string() + ": nothing that can be read of it is drawn");
+        throw FileError(run.folder.string() + ": holds nothing that can be drawn");
       write_pictures(run.folder, pictures);
     });
-    for (const std::string& problem : run.problems) std::cerr << "grit: left out: " << problem << '\n';
+    for (const std::string& problem : run.problems) std::cerr << "grit: omitted: " << problem << '\n';
   }
   if (runs.size() > 1)
     attempt([&] {
@@ -91,13 +91,13 @@ ExitStatus make_pictures(const std::vector<std::filesystem::path>& folders) {
   return status;
 }
 
-/// A folder that is bad is told as with pictures. The page is in the first that is not, if nowhere else.
+/// Reports unreadable folders. Without `out` the page is written to the first readable folder.
 ExitStatus make_page(const std::vector<std::filesystem::path>& folders, std::optional<std::filesystem::path> out) {
   const ReportPage page = report_page(folders);
   if (!out) out = page.first / "report.html";
   for (const std::string& why : page.unread) std::cerr << "grit: " << why << '\n';
   write_atomically(*out, page.html);
-  for (const std::string& problem : page.problems) std::cerr << "grit: left out: " << problem << '\n';
+  for (const std::string& problem : page.problems) std::cerr << "grit: omitted: " << problem << '\n';
   std::cout << "report: " << out->string() << '\n';
   return page.unread.empty() ? ExitStatus::done : ExitStatus::files;
 }
@@ -108,13 +108,11 @@ ExitStatus report_command(const std::vector<std::string>& words) {
   namespace po = boost::program_options;
   Options options(command("report"));
   options.add()("out", po::value<std::string>()->value_name("FILE"),
-                "the page; default: report.html in the first folder that holds a run")(
+                "file of the page; default: report.html in the first folder that holds a run")(
       "png",
-      "instead of a page, pictures in each folder, as curves.png, profiles-PROBE.png, directions-PROBE.png, "
-      "grains.png, "
-      "layers.png, force-chains.png, linear-chains.png and map-PROBE-FIELD.png, and the same as SVG; of several "
-      "folders curves-overlaid.png in the "
-      "first that holds a run");
+      "write pictures into each folder instead of a page: curves.png, profiles-PROBE.png, directions-PROBE.png, "
+      "grains.png, layers.png, force-chains.png, linear-chains.png and map-PROBE-FIELD.png, each also as SVG; "
+      "for several folders also curves-overlaid.png in the first that holds a run");
   if (!options.read(words)) return ExitStatus::done;
   if (options.words().empty()) throw UsageError("no folder of results was given; see 'grit report --help'");
   if (options.has("png") && options.has("out")) throw UsageError("--png writes into the folders of results, not --out");

@@ -1,94 +1,29 @@
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "app/curve_summary.hpp"
 #include "app/interrupt.hpp"
-#include "app/options.hpp"
 #include "app/progress_bar.hpp"
+#include "app/run_jobs.hpp"
 #include "app/run_setup.hpp"
 #include "app/wall_shapes.hpp"
 #include "app/watch.hpp"
-#include "bodies/make_bodies.hpp"
 #include "format/duration.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "input/scene.hpp"
 #include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
-#include "output/folder_lock.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
-#include "output/results_folder.hpp"
 #include "output/shell_word.hpp"
 #include "report/report_page.hpp"
-#include "simulation/driver.hpp"
-#include "simulation/first_instant.hpp"
-#include "study/figures.hpp"
+#include "simulation/parts.hpp"
+#include "simulation/recorded_run.hpp"
 
 namespace grit {
 namespace {
-
-/// A description that was read, and where its results go.
-struct Job {
-  std::string file;
-  std::filesystem::path folder;
-  Scene scene;
-  std::unique_ptr<LiveScene> live;
-  Existing existing = Existing::refuse;
-};
-
-/// A description's file, or with --resume the folder of a run, which has its description.
-Job job_of(const std::string& word, const Options& options) {
-  Job job;
-  if (options.has("resume") ? std::filesystem::is_directory(word)
-                            : std::filesystem::exists(std::filesystem::path(word) / "run.json")) {
-    if (!options.has("resume"))
-      throw UsageError(word + " is a folder; give a description, or go on with its run: --resume");
-    if (options.has("out")) throw UsageError(word + " is a folder, where its run goes on; leave out --out");
-    job.folder = std::filesystem::path(word).lexically_normal();
-    if (job.folder.filename().empty()) job.folder = job.folder.parent_path();
-    job.file = (job.folder / "description.json").string();
-    return job;
-  }
-  job.file = word;
-  job.folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
-  if (!options.has("out") || options.words().size() > 1) job.folder /= std::filesystem::path(word).stem();
-  return job;
-}
-
-std::vector<Job> jobs_of(const Options& options) {
-  const auto& files = options.words();
-  std::vector<Job> jobs;
-  for (const std::string& file : files) {
-    Job job = job_of(file, options);
-    for (const Job& other : jobs)
-      if (job.folder == other.folder)
-        throw UsageError(other.file + " and " + file + " would both write to " + job.folder.string() +
-                         "; run them one by one, each with its own --out");
-    if (!FolderLock(job.folder).held()) refuse_busy(job.folder);  // now, not once grains are made
-    if (options.has("overwrite")) job.existing = Existing::overwrite;
-    else if (options.has("resume")) job.existing = Existing::resume;
-    else if (std::filesystem::exists(job.folder / "run.json"))
-      throw FileError(job.folder.string() +
-                      " holds the results of a run; choose another folder (--out DIR), go on with it (--resume) or "
-                      "replace them (--overwrite)");
-    jobs.push_back(std::move(job));
-  }
-  return jobs;
-}
-
-/// All of them before the first is run, so that a slip in the last shows at once.
-void read_all(std::vector<Job>& jobs, const Options& options, const Registry& registry) {
-  std::vector<Problem> problems;
-  for (Job& job : jobs) try {
-      job.scene = load_scene(job.file, options.list("set"), registry);
-      job.live = std::make_unique<LiveScene>(job.scene);
-    } catch (const DescriptionError& error) {
-      for (const Problem& problem : error.problems()) problems.push_back(problem);
-    }
-  if (!problems.empty()) throw DescriptionError(std::move(problems));
-}
 
 /// The page beside the results. The run is whole without it: what keeps it from being made is only said.
 void make_report(const std::filesystem::path& folder) {
@@ -149,82 +84,96 @@ std::string way_on(Guard guard, const std::filesystem::path& folder) {
          (guard == Guard::travel ? "travel" : "energy") + " --resume goes on from there";
 }
 
-ExitStatus run_one(const Job& job, const Options& options, const Registry& registry,
-                   const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
-  const auto& [file, folder, scene, live_scene, existing] = job;
-  const unsigned threads = options.threads();
-  const bool quiet = options.has("quiet");
-  const SceneDescription& description = *scene.description;
-  LiveScene& live = *live_scene;
+RunFacts facts_of(const OpenedScene& opened, unsigned threads) {
+  const SceneDescription& description = *opened.scene.description;
+  return {.description = resolved(description),
+          .plugins = plugins_used(description, *opened.registry),
+          .seed = description.seed,
+          .threads = threads,
+          .clumps = clumps_of(opened.live.components())};
+}
 
-  ResultsOptions results{.folder = folder,
-                         .existing = existing,
+ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodies) {
+  const OpenedScene& opened = *job.opened;
+  const SceneDescription& description = *opened.scene.description;
+  ResultsOptions results{.folder = job.folder,
+                         .existing = job.existing,
                          .title = description.title,
-                         .facts = {.description = resolved(description),
-                                   .plugins = plugins_used(description, registry),
-                                   .seed = description.seed,
-                                   .threads = threads,
-                                   .clumps = clumps_of(live.components())},
-                         .walls = {},
+                         .facts = std::move(facts),
+                         .walls = wall_shapes(opened.scene, opened.live.geometries(), bodies),
                          .picture = {}};
   if (const auto& picture = description.output.picture)
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};
-  for (const auto& [name, reference] : description.output.references)
-    if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
-  const auto say = [&](const std::string& line) {
-    if (!quiet) std::cerr << line << std::endl;
-  };
-  say(description.title.empty() ? file : file + ": " + description.title);
-  std::optional<Checkpoint> checkpoint;
-  if (existing == Existing::resume) {
-    if (is_done(folder, results.facts)) {
-      std::cout << folder.string() << ": done already\n";
-      return ExitStatus::done;
-    }
-    checkpoint = resumed(folder, results.facts);
-    if (!checkpoint) results.existing = Existing::overwrite;
-  }
-  Bodies bodies = make_bodies(description, live.components(), run_state(description, live.components()));
-  results.walls = wall_shapes(scene, live.geometries(), bodies);
-  ResultsFolder recorder(std::move(results));
-  std::optional<Watch> watch;
-  if (listener) watch.emplace(*listener, folder);
+  return results;
+}
 
-  Kernel kernel(at_first_instant(scene.document,
-                                 [&] { return Kernel(live.now(), live.components(), std::move(bodies), threads); }));
-  say(std::to_string(kernel.world().positions().size()) + " bodies, " + std::to_string(threads) +
-      (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
-  if (checkpoint)
-    say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
-
-  ProgressBar bar;
-  CurveSummary summary_curves(recorder, scene.document, description.output, [&](const std::string& line) {
-    bar.end();
-    say(line);
-  });
-  RunControl control;
-  control.interrupted = &interrupted;
-  control.checkpoint_every = description.output.checkpoint_every;
-  control.resume = checkpoint ? &*checkpoint : nullptr;
-  if (!quiet || watch)
-    control.progress = [&](const Progress& now) {
-      if (!quiet) bar.show(now);
-      if (watch) watch->say(progress_text(now));
-    };
-  const RunSummary summary = run(scene, live, kernel, summary_curves, control);
-  bar.end();
-
-  std::cout << summary_curves.text();
+void print_speed(const RunSummary& summary) {
   double all = 1e-9;
   for (const PhaseTime& phase : summary.phases) all += phase.seconds;
-  const auto share = [&](double seconds) {
-    return std::to_string(static_cast<int>(std::lround(100 * seconds / all))) + " %";
-  };
   std::cout << summary.steps << " steps of " << summary.bodies << " bodies in " << duration_text(summary.wall_seconds)
             << ", " << std::round(1e-4 * summary.particle_steps_per_second) / 100 << " M particle-steps/s (";
   for (std::size_t i = 0; i < summary.phases.size(); ++i)
-    std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' ' << share(summary.phases[i].seconds);
-  std::cout << ")\nresults: " << folder.string() << '\n';
+    std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' '
+              << std::lround(100 * summary.phases[i].seconds / all) << " %";
+  std::cout << ")\n";
+}
+
+ExitStatus run_one(RunJob job, const Options& options, const std::optional<Listener>& listener,
+                   const std::atomic<bool>& interrupted) {
+  const std::filesystem::path& folder = job.folder;
+  const Scene& scene = job.opened->scene;
+  const SceneDescription& description = *scene.description;
+  const unsigned threads = options.threads();
+  const bool quiet = options.has("quiet");
+  const auto say = [&](const std::string& line) {
+    if (!quiet) std::cerr << line << std::endl;
+  };
+
+  for (const auto& [name, reference] : description.output.references)
+    if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
+  say(description.title.empty() ? job.file : job.file + ": " + description.title);
+  RunFacts facts = facts_of(*job.opened, threads);
+  std::optional<Checkpoint> checkpoint;
+  if (job.existing == Existing::resume) {
+    if (is_done(folder, facts)) {
+      std::cout << folder.string() << ": done already\n";
+      return ExitStatus::done;
+    }
+    checkpoint = resumed(folder, facts);
+    if (!checkpoint) job.existing = Existing::overwrite;
+  }
+
+  Bodies bodies = job.opened->make_bodies(picture_state(description));
+  ResultsFolder results(results_of(job, std::move(facts), bodies));
+  std::optional<Watch> watch;  // before the simulation, which makes threads
+  if (listener) watch.emplace(*listener, folder);
+  ProgressBar bar;
+  CurveSummary curves(results, scene.document, description.output, [&](const std::string& line) {
+    bar.end();
+    say(line);
+  });
+
+  Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(bodies), threads, &curves));
+  say(std::to_string(simulation.world().positions().size()) + " bodies, " + std::to_string(threads) +
+      (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
+  simulation.interrupt_when([&] { return interrupted.load(); });
+  simulation.on_checkpoint([&](const Checkpoint& now) { results.checkpoint(now); },
+                           description.output.checkpoint_every);
+  if (!quiet || watch)
+    simulation.on_progress([&](const Progress& now) {
+      if (!quiet) bar.show(now);
+      if (watch) watch->say(progress_text(now));
+    });
+  if (checkpoint) {
+    say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
+    simulation.resume(*checkpoint);
+  }
+  const RunSummary summary = run_recorded(simulation);
+  bar.end();
+
+  std::cout << curves.text();
+  print_speed(summary);
+  std::cout << "results: " << folder.string() << '\n';
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
   // Said before the page is made, which takes time with many grains: who cannot wait presses Ctrl-C again.
   if (summary.status == "interrupted")
@@ -257,17 +206,15 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   if (options.has("resume") && options.has("overwrite"))
     throw UsageError("--resume goes on with results, --overwrite replaces them: give one of them");
   auto jobs = jobs_of(options);
-  const auto registry = options.registry();
-  read_all(jobs, options, *registry);
+  open_all(jobs, options);
   const auto listener = listener_of(options);
   if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ while the run goes" << std::endl;
   const auto& interrupted = catch_interrupts();
   ExitStatus status = ExitStatus::done;
-  for (const Job& job : jobs) {
+  for (const RunJob& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return at_its_place(job.scene.document,
-                            [&] { return run_one(job, options, *registry, listener, interrupted); });
+        return at_its_place(job.opened->scene.document, [&] { return run_one(job, options, listener, interrupted); });
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }

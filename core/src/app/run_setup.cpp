@@ -6,7 +6,6 @@
 #include "bodies/make_bodies.hpp"
 
 namespace grit {
-namespace {
 
 StateRequest picture_state(const SceneDescription& scene) {
   if (!scene.output.picture) return {};
@@ -14,8 +13,6 @@ StateRequest picture_state(const SceneDescription& scene) {
   if (scene.output.picture->color == "displacement") return BodyState::displacement;
   return {};
 }
-
-}  // namespace
 
 std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry) {
   std::set<std::pair<std::string, std::string>> names{{"contact", scene.contacts.type()}};

@@ -1,4 +1,4 @@
-// What `run` and `check` both need to know before a run.
+// What several commands need to know before a run.
 #pragma once
 
 #include <map>
@@ -18,7 +18,10 @@ std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Regist
 /// Of each group of clumps.
 std::map<std::string, ClumpFacts> clumps_of(const Components& components);
 
-/// State of bodies that the scene's components and its picture ask for.
+/// State of bodies that the scene's picture asks for.
+StateRequest picture_state(const SceneDescription& scene);
+
+/// The same, with what the scene's components ask for.
 StateRequest run_state(const SceneDescription& scene, const Components& components);
 
 /// The same, with who asked: "rotation: picture".

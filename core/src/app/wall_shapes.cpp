@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The axis across which an endless plane lies; -1 of other shapes.
+/// The axis normal to an unbounded plane; -1 for other shapes.
 int endless_across(const Geometry& geometry) {
   const Bounds bounds = geometry.bounds();
   int across = -1, endless = 0;
@@ -25,7 +25,7 @@ int endless_across(const Geometry& geometry) {
   return endless == 2 && geometry.triangles().empty() ? across : -1;
 }
 
-/// How far endless planes are drawn.
+/// The box to which unbounded planes are clipped for drawing.
 Bounds drawn_box(const SceneDescription& scene, const LiveGeometries& geometries, const Bodies& bodies) {
   Bounds box{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (const auto& [name, shape] : geometries.all()) {
@@ -33,28 +33,28 @@ Bounds drawn_box(const SceneDescription& scene, const LiveGeometries& geometries
     for (const Vec3& corner : geometry.triangles())
       box.low = box.low.cwiseMin(corner), box.high = box.high.cwiseMax(corner);
     if (const int across = endless_across(geometry); across >= 0) {
-      const double place = geometry.bounds().low[across];
-      box.low[across] = std::min(box.low[across], place), box.high[across] = std::max(box.high[across], place);
+      const double position = geometry.bounds().low[across];
+      box.low[across] = std::min(box.low[across], position), box.high[across] = std::max(box.high[across], position);
     }
   }
-  const auto reaches_nowhere = [&](int axis) { return !(box.low[axis] < box.high[axis]); };
+  const auto has_no_extent = [&](int axis) { return !(box.low[axis] < box.high[axis]); };
   for (int axis = 0; axis < 3; ++axis)
     if (const auto& low = scene.domain.low, &high = scene.domain.high;
-        reaches_nowhere(axis) && low && high && std::isfinite((*high - *low)[axis]))
+        has_no_extent(axis) && low && high && std::isfinite((*high - *low)[axis]))
       box.low[axis] = (*low)[axis], box.high[axis] = (*high)[axis];
-  if (!reaches_nowhere(0) && !reaches_nowhere(1) && !reaches_nowhere(2)) return box;
+  if (!has_no_extent(0) && !has_no_extent(1) && !has_no_extent(2)) return box;
   Bounds grains{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     const Vec3 centre = xyz(bodies.position[i]), radius = Vec3::Constant(bodies.position[i].w);
     grains.low = grains.low.cwiseMin(centre - radius), grains.high = grains.high.cwiseMax(centre + radius);
   }
-  const double room = (grains.high - grains.low).maxCoeff();
+  const double margin = (grains.high - grains.low).maxCoeff();
   for (int axis = 0; axis < 3; ++axis)
-    if (reaches_nowhere(axis)) box.low[axis] = grains.low[axis] - room, box.high[axis] = grains.high[axis] + room;
+    if (has_no_extent(axis)) box.low[axis] = grains.low[axis] - margin, box.high[axis] = grains.high[axis] + margin;
   return box;
 }
 
-/// Two triangles, counter-clockwise as the bodies see them.
+/// Two triangles, counter-clockwise as seen from the bodies.
 std::vector<Vec3> rectangle(const Geometry& plane, int across, const Bounds& box) {
   const int u = (across + 1) % 3, v = (across + 2) % 3;
   const auto corner = [&](bool far_u, bool far_v) {

@@ -1,4 +1,4 @@
-// What walls look like in frames and pictures.
+// Shapes of walls for frames and pictures.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace grit {
 
-/// The triangles of a scene's walls as they begin, with these geometries, and as stages change them. A plane across an
-/// axis that has no extent is drawn as far as the other walls reach: along an axis along which they reach nowhere, as
-/// far as the domain, and where that is open as far as the `bodies` that are there at the start and as much again on
-/// both sides.
+/// The triangles of a scene's walls at the start, with these geometries, and as stages change them. An unbounded plane
+/// normal to an axis is drawn over the extent of the other walls. Along an axis where these have no extent it is drawn
+/// over the domain. If the domain is open there, it is drawn over the extent of the initial `bodies`, with a margin of
+/// their largest extent on both sides.
 std::vector<WallShape> wall_shapes(const Scene& scene, LiveGeometries geometries, const Bodies& bodies);
 
 }  // namespace grit

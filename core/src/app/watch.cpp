@@ -17,7 +17,7 @@ namespace grit {
 namespace {
 
 [[noreturn]] void serve(int listening_socket, int control, const std::filesystem::path& folder) {
-  // Ctrl-C goes to all processes of a terminal: this one ends when the run has ended.
+  // Ctrl-C reaches all processes of a terminal, but this one must end after the run.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
   try {
@@ -61,7 +61,7 @@ Watch::~Watch() {
 
 void Watch::say(const std::string& line) const {
   const std::string text = line + '\n';
-  // Neither waits for a server that is busy nor dies of one that is gone.
+  // Neither waits for a busy server nor fails if it is gone.
   static_cast<void>(::send(control_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }
 

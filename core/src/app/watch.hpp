@@ -1,4 +1,4 @@
-// The page of a run, served by a process of its own.
+// The page of a run, served by a separate process.
 #pragma once
 
 #include <sys/types.h>
@@ -10,18 +10,18 @@
 
 namespace grit {
 
-/// Shows a folder while the object lives. The process that serves reads files and nothing else of the run, yields to it
-/// (nice), and can neither stop nor change it: whether somebody looks makes no difference to results.
+/// Serves the page of a folder while the object lives. The server process only reads files and runs at lower priority
+/// (nice). It can neither stop nor change the run, so that results do not depend on readers.
 class Watch {
  public:
-  /// Before there are threads. Throws FileError where no process can be made.
+  /// To be called before any thread is started. Throws FileError if no process can be created.
   Watch(const Listener& listener, const std::filesystem::path& folder);
-  /// Readers get the last state first, which takes up to some seconds where there are any.
+  /// Readers get the last state first, which may take some seconds.
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
-  /// One line that says how far the run is; lost where nobody takes it.
+  /// Sends one line of progress; it is dropped if the server is busy or gone.
   void say(const std::string& line) const;
 
  private:

@@ -1,4 +1,4 @@
-// Averages over a box, and how far the world is from rest.
+// Averages over a box, and measures of static equilibrium.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +11,7 @@ namespace grit {
 
 namespace {
 
-/// Calls visit(shift) for each periodic image of low … high that may reach into the region.
+/// Calls visit(shift) for each periodic image of low … high that may intersect the region.
 template <class Visit>
 void for_images(const Cell& cell, const Region& region, const Vec3& low, const Vec3& high, const Visit& visit) {
   int first[3], last[3];
@@ -30,8 +30,8 @@ void for_images(const Cell& cell, const Region& region, const Vec3& low, const V
       for (int k = first[2]; k <= last[2]; ++k) visit(Vec3(i * period[0], j * period[1], k * period[2]));
 }
 
-/// The part of a branch that lies in the region. What runs along a face belongs to the box above it, so that boxes side
-/// by side count it once.
+/// Fraction of a branch inside the region. A branch along a face belongs to the box above it, so that adjacent boxes
+/// count it once.
 double share_inside(const Vec3& start, const Vec3& branch, const Region& region) {
   double from = 0, to = 1;
   for (int k = 0; k < 3; ++k) {
@@ -89,7 +89,7 @@ double kinetic_energy(const World& world, double half_step, const Accelerating& 
   return sum;
 }
 
-Unrest unrest(const World& world) {
+Equilibrium equilibrium(const World& world) {
   const auto velocities = world.velocities(), forces = world.forces();
   double net = 0;
   std::size_t movable = 0;
@@ -99,7 +99,7 @@ Unrest unrest(const World& world) {
     if (velocities[i].w > 0 && (clump_of.empty() || clump_of[i] == no_clump)) net += xyz(forces[i]).norm(), ++movable;
   const double normal = world.mean_contact_force();
   if (movable > 0) net /= static_cast<double>(movable);
-  // Velocities are half a step old, but for the first.
+  // Velocities are half a step old, except at the first step.
   return {.kinetic_energy = kinetic_energy(world, world.step() > 0 ? 0.5 * world.dt() : 0),
           .unbalanced_force = normal > 0 ? net / normal : 0,
           .mean_contact_force = normal};
@@ -123,8 +123,8 @@ Branch branch_of(const World& world, const Contact& contact) {
   Branch branch{xyz(world.positions()[contact.a]), contact.branch};
   const auto arms = world.arms();
   if (arms.empty()) return branch;
-  branch.start -= arms[contact.a], branch.way += arms[contact.a];
-  if (!contact.with_wall) branch.way -= arms[contact.b];
+  branch.start -= arms[contact.a], branch.vector += arms[contact.a];
+  if (!contact.with_wall) branch.vector -= arms[contact.b];
   return branch;
 }
 
@@ -133,7 +133,7 @@ double void_ratio(const World& world, const Region& region) {
   if (!(volume > 0) || !std::isfinite(volume)) return std::numeric_limits<double>::infinity();
   double solid = 0;
   const auto positions = world.positions();
-  const auto shares = world.volume_shares();
+  const auto shares = world.volume_fractions();
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3 centre = xyz(positions[i]), reach = Vec3::Constant(positions[i].w);
     const double share = shares.empty() ? 1 : shares[i];
@@ -150,11 +150,11 @@ Mat3 mean_stress(const World& world, const Region& region) {
   if (!(volume > 0) || !std::isfinite(volume)) return sum;
   for (const auto& contact : world.contacts()) {
     const Branch branch = branch_of(world, contact);
-    const Vec3 &start = branch.start, end = start + branch.way;
+    const Vec3 &start = branch.start, end = start + branch.vector;
     double share = 0;
     for_images(world.cell(), region, start.cwiseMin(end), start.cwiseMax(end),
-               [&](const Vec3& shift) { share += share_inside(start + shift, branch.way, region); });
-    if (share > 0) sum += share * contact.force * branch.way.transpose();
+               [&](const Vec3& shift) { share += share_inside(start + shift, branch.vector, region); });
+    if (share > 0) sum += share * contact.force * branch.vector.transpose();
   }
   return sum / volume;
 }

@@ -46,7 +46,7 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
   clump.inertia = inertia;
   clump.momentum = clump.axes * clump.inertia.cwiseProduct(clump.axes.transpose() * w);
   clump.inverse_mass = 1 / mass, clump.radius = radius, clump.volume = shape.volume * radius * radius * radius;
-  clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+  clumps.of_body.resize(count()), clumps.volume_fraction.resize(count(), 1.0);
   for (std::size_t k = 0; k < shape.spheres.size(); ++k) {
     const Vec3 place = radius * xyz(shape.spheres[k]), arm = clump.axes * place;
     const double sphere_radius = radius * shape.spheres[k].w;
@@ -54,7 +54,7 @@ void Bodies::add_clump(const ClumpShape& shape, const Vec3& centre, double radiu
     clumps.spheres.push_back(static_cast<std::uint32_t>(count()));
     add(centre + arm, sphere_radius, mass, clump.inertia.minCoeff(), body_material, v + w.cross(arm), w);
     clumps.of_body.push_back({.clump = index, .periods = {}, .place = place});
-    clumps.volume_share.push_back(shape.shares[k]);
+    clumps.volume_fraction.push_back(shape.volume_fractions[k]);
   }
   clump.last = static_cast<std::uint32_t>(clumps.spheres.size());
   clumps.clump.push_back(clump);
@@ -69,7 +69,7 @@ void Bodies::finish(StateRequest asked_for) {
   spin.push_back({});
   material.push_back(0);
   state = asked_for;
-  if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+  if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_fraction.resize(count(), 1.0);
   if (state.has(BodyState::rotation)) rotation.resize(count());
   if (state.has(BodyState::displacement)) origin.resize(count());
   start_paths();
@@ -90,16 +90,16 @@ void Bodies::append(const Bodies& others) {
              clumps_before = static_cast<std::uint32_t>(clumps.clump.size()),
              spheres_before = static_cast<std::uint32_t>(clumps.spheres.size());
   const auto go_on = [](auto& array, const auto& more) { array.insert(array.end(), more.begin(), more.end()); };
-  // In place of the padding come the others, with theirs.
+  // The other bodies replace the padding and bring their own.
   position.pop_back(), velocity.pop_back(), spin.pop_back(), material.pop_back();
   go_on(position, others.position), go_on(velocity, others.velocity), go_on(spin, others.spin);
   go_on(material, others.material), go_on(rotation, others.rotation), go_on(origin, others.origin);
   for (const std::uint32_t other : others.id) id.push_back(ids_given + other);
   for (const Group& group : others.groups) groups.push_back({group.name, ids_given + group.first_id});
   if (!clumps.none() || !others.clumps.none()) {
-    clumps.of_body.resize(before), clumps.volume_share.resize(before, 1.0);
-    go_on(clumps.of_body, others.clumps.of_body), go_on(clumps.volume_share, others.clumps.volume_share);
-    clumps.of_body.resize(count()), clumps.volume_share.resize(count(), 1.0);
+    clumps.of_body.resize(before), clumps.volume_fraction.resize(before, 1.0);
+    go_on(clumps.of_body, others.clumps.of_body), go_on(clumps.volume_fraction, others.clumps.volume_fraction);
+    clumps.of_body.resize(count()), clumps.volume_fraction.resize(count(), 1.0);
     for (std::size_t i = before; i < count(); ++i)
       if (std::uint32_t& clump = clumps.of_body[i].clump; clump != no_clump) clump += clumps_before;
     for (const std::uint32_t sphere : others.clumps.spheres) clumps.spheres.push_back(before + sphere);
@@ -117,13 +117,13 @@ void Bodies::reorder(std::span<const std::uint32_t> order) {
   permute(id, order, before), permute(material, order, before);
   permute(rotation, order, before), permute(origin, order, before);
   if (clumps.none()) return;
-  permute(clumps.of_body, order, before), permute(clumps.volume_share, order, before);
+  permute(clumps.of_body, order, before), permute(clumps.volume_fraction, order, before);
   constexpr std::uint32_t gone = ~0u;
   std::vector<std::uint32_t> now(before, gone);
   for (std::size_t i = 0; i < order.size(); ++i) now[order[i]] = static_cast<std::uint32_t>(i);
   std::vector<Clump> kept;
   std::vector<std::uint32_t> spheres;
-  // Clumps lie as their first spheres do, so that those of neighbouring bodies are near in memory too.
+  // Clumps have the order of their first spheres, so that those of neighbouring bodies are close in memory.
   const auto place = [&](const Clump& clump) { return now[clumps.spheres[clump.first]]; };
   std::ranges::sort(clumps.clump, {}, place);
   for (Clump clump : clumps.clump) {

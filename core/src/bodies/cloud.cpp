@@ -17,7 +17,7 @@ namespace {
 
 constexpr int most_tries = 100'000;  // for one grain
 
-/// Where there is room: grains on cell grids, one grid for each factor of two in size.
+/// Finds free space: grains on cell grids, one grid per factor of two in size.
 class Room {
  public:
   Room(const Region& box, const std::array<bool, 3>& periodic, std::span<const double> radii)
@@ -49,7 +49,7 @@ class Room {
   }
 
   bool has_room(const Row& grain) const {
-    // Most places are taken, most often by a grain centred in the very cell that is tried.
+    // Most positions are occupied, usually by a grain in the same cell.
     for (const auto& level : levels_)
       if (level.expected > 0 && !free_own_cell(level, grain)) return false;
     for (const auto& level : levels_)
@@ -62,7 +62,7 @@ class Room {
     double largest = 0;  // radius
     std::size_t expected = 0;
     std::array<int, 3> cells{};
-    Vec3 per_length = Vec3::Zero();   // cells a metre
+    Vec3 per_length = Vec3::Zero();   // cells per metre
     std::vector<std::int32_t> first;  // grain of each cell; the others follow by next_
 
     int cell(int axis, double offset) const { return static_cast<int>(std::floor(offset * per_length[axis])); }
@@ -73,7 +73,7 @@ class Room {
 
   void lay_out(Level& level) const {
     if (level.expected == 0) return;
-    // As wide as its grains, but not many more cells than grains.
+    // As wide as the grains, but not many more cells than grains.
     const double side = std::max(2 * level.largest, std::cbrt(size_.prod() / static_cast<double>(level.expected)));
     for (int k = 0; k < 3; ++k) {
       level.cells[k] = std::max(1, static_cast<int>(size_[k] / side));
@@ -82,7 +82,7 @@ class Room {
     level.first.assign(level.index(0, 0, level.cells[2]), -1);
   }
 
-  /// Whether no grain of a list comes near; `at` is shifted to the image of the list's cell.
+  /// Whether all grains of a list keep clear; `at` is shifted to the image of the list's cell.
   bool free_list(std::int32_t grain, const Vec3& at, double radius) const {
     for (; grain >= 0; grain = next_[grain]) {
       const Row& other = grains_[grain];
@@ -108,7 +108,7 @@ class Room {
       if (periodic_[k]) continue;
       from[k] = std::clamp(from[k], 0, level.cells[k] - 1), to[k] = std::clamp(to[k], 0, level.cells[k] - 1);
     }
-    // A cell beyond a periodic side is one within, seen from a place shifted by whole periods.
+    // A cell beyond a periodic side is one inside, seen from a position shifted by whole periods.
     Vec3 seen;
     const auto wrap = [&](int axis, int cell) {
       const int cells = level.cells[axis];
@@ -143,22 +143,23 @@ std::string text(const Region& box) {
   return out.str();
 }
 
-/// The axes along which the box wraps round.
+/// The periodic axes that the box spans.
 std::array<bool, 3> wrapped_axes(const Region& box, const Cell& cell) {
   std::array<bool, 3> wrapped;
   for (int k = 0; k < 3; ++k) {
     if (!(box.low[k] < box.high[k]) || !std::isfinite(box.high[k] - box.low[k]))
-      throw Error("cloud: the box " + text(box) + " is empty or endless; its low corner must lie below its high one");
+      throw Error("cloud: the box " + text(box) +
+                  " is empty or infinite; its low corner must be below its high corner");
     if (cell.periodic[k] && (box.low[k] < cell.low[k] || box.high[k] > cell.high[k]))
       throw Error("cloud: the box " + text(box) + " leaves the periodic cell " + text({cell.low, cell.high}) +
-                  "; keep it within");
+                  "; keep it inside");
     wrapped[k] = cell.periodic[k] && box.low[k] == cell.low[k] && box.high[k] == cell.high[k];
   }
   return wrapped;
 }
 
-/// Those of `others`, and of their images, that may be in the way of a grain in the box, whose radius is at most this.
-/// Along wrapped axes there are no images: room is sought there across the sides anyway.
+/// The grains of `others`, and their images, that may overlap a grain in the box with at most this radius. Along
+/// wrapped axes no images are needed: free space is searched across these sides anyway.
 std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<bool, 3>& wrapped,
                           std::span<const Row> others, double radius) {
   Vec3 period = Vec3::Zero();
@@ -193,7 +194,7 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   if (diameters.front() > size.minCoeff()) {
     std::ostringstream out;
     out << "cloud: a grain of diameter " << diameters.front() << " m does not fit into the box " << text(box)
-        << "; give a bigger box or smaller grains";
+        << "; use a larger box or smaller grains";
     throw Error(out.str());
   }
 
@@ -221,11 +222,12 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
         double solid = 0;
         for (const auto& one : placed) solid += 4.0 / 3.0 * std::numbers::pi * one.w * one.w * one.w;
         std::ostringstream out;
-        out << "cloud: only " << placed.size() << " of " << diameters.size() << " grains found a place in the box "
-            << text(box) << ": solid fraction " << solid / size.prod() << ", and no room for a grain of diameter "
-            << diameter << " m in " << most_tries
-            << " tries; equal grains placed at random end near 0.38: give a bigger box, fewer grains or smaller ones"
-            << (in_the_way.empty() ? "" : "; what is there by then takes room as well");
+        out << "cloud: only " << placed.size() << " of " << diameters.size() << " grains fit into the box " << text(box)
+            << ": solid fraction " << solid / size.prod() << ", no space found for a grain of diameter " << diameter
+            << " m in " << most_tries
+            << " tries; random insertion of equal grains reaches about 0.38: use a larger box, or fewer or smaller "
+               "grains"
+            << (in_the_way.empty() ? "" : "; bodies of other groups take space, too");
         throw Error(out.str());
       }
       grain.x = coordinate(0, grain.w), grain.y = coordinate(1, grain.w), grain.z = coordinate(2, grain.w);
@@ -237,9 +239,10 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   return placed;
 }
 
-std::vector<Row> make_cloud(const CloudGrains& cloud, const Cell& cell, Random& random, std::span<const Row> others) {
+std::vector<Row> make_cloud(const CloudSource& cloud, const Cell& cell, Random& random, std::span<const Row> others) {
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(cloud.count, 0));
-  const std::optional<int> flat = cloud.flat == "none" ? std::nullopt : std::optional(cloud.flat[0] - 'x');
+  const std::optional<int> flat =
+      cloud.plane_normal == "none" ? std::nullopt : std::optional(cloud.plane_normal[0] - 'x');
   return place_at_random({cloud.low, cloud.high}, cell, draw_diameters(cloud.sizes, count, random), random, others,
                          flat);
 }

@@ -11,7 +11,7 @@
 namespace grit {
 namespace {
 
-constexpr const char* lines_of_file = "a file with a line a sphere: x y z radius";
+constexpr const char* lines_of_file = "a file with one line per sphere: x y z radius";
 
 struct Balls {
   std::vector<Ball> operator()(std::monostate) const { return {}; }
@@ -27,9 +27,9 @@ struct Balls {
     for (std::int64_t k = 0; k < rod.count; ++k) balls.push_back({2 * rod.spacing * static_cast<double>(k), 0, 0, 1});
     return balls;
   }
-  /// Found by search for the shape of the clumps of A. Grabowski (Gdańsk 2024): four spheres, each 0.5 to 0.6 of the
-  /// clump's diameter, smallest enclosing sphere over clump 2.07, convex hull over clump 1.16, longest over shortest
-  /// diameter 1.50. This one has 2.09, 1.14 and 1.49.
+  /// Fitted by search to the clumps of A. Grabowski (Gdańsk 2024): four spheres of 0.5 to 0.6 of the clump's diameter;
+  /// volume of the smallest enclosing sphere over that of the clump 2.07, of the convex hull over that of the
+  /// clump 1.16, longest over shortest diameter 1.50. This shape has 2.09, 1.14 and 1.49.
   std::vector<Ball> operator()(const AsymmetricSpheres&) const {
     return {{-0.1996, -0.4369, -0.0408, 0.5179},
             {0.0197, 0.3875, 0.2250, 0.5514},
@@ -48,22 +48,20 @@ void ListedSpheres::declare(Parameters& p) {
   p.add("spheres", spheres)
       .required()
       .entries(1)
-      .doc("the spheres, one by one; only how they lie to each other counts");
+      .doc("list of spheres; only their relative positions and sizes matter");
 }
 void SpheresOfFile::declare(Parameters& p) {
   p.add("path", path)
       .file()
       .required()
-      .doc("text file, a line a sphere: x y z radius, in any unit; # starts a comment");
+      .doc("text file with one line per sphere: x y z radius, in any unit; # starts a comment");
 }
 void RodSpheres::declare(Parameters& p) {
-  p.add("count", count).at_least(2).at_most(64).doc("equal spheres in a row");
-  p.add("spacing", spacing).above(0).below(1).doc("from centre to centre over their diameter");
+  p.add("count", count).at_least(2).at_most(64).doc("number of equal spheres in a row");
+  p.add("spacing", spacing).above(0).below(1).doc("distance of neighbouring centres over the diameter of the spheres");
 }
 
-void ClumpBody::declare(Parameters& p) {
-  p.add("shape", spheres_).required().doc("spheres that it is made of, in proportion");
-}
+void ClumpBody::declare(Parameters& p) { p.add("shape", spheres_).required().doc("spheres of the clump, to scale"); }
 
 void ClumpBody::prepare() {
   const auto* file = std::get_if<SpheresOfFile>(&spheres_.value());
@@ -95,7 +93,7 @@ const PluginInfo& clump_body() {
   static const PluginInfo info = [] {
     PluginInfo clump;
     clump.kind = "body", clump.name = "clump", clump.version = "1.0.0";
-    clump.doc = "overlapping spheres fixed to each other; radii of its grains are those of the enclosing sphere";
+    clump.doc = "rigid clump of overlapping spheres; its radius is that of the enclosing sphere";
     clump.make_body = []() -> BodyKind* { return new ClumpBody; };
     return clump;
   }();

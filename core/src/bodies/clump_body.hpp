@@ -38,22 +38,22 @@ struct AsymmetricSpheres {
   void declare(Parameters&) {}
 };
 
-/// Overlapping spheres that are fixed to each other. Sizes of the description say how they lie, those of its grains how
-/// large each clump is.
+/// Overlapping spheres that are fixed to each other. The shape gives their relative positions and sizes; the grains
+/// give the size of each clump.
 class ClumpBody : public BodyKind {
  public:
   void declare(Parameters& p) override;
-  /// Throws ParameterError for spheres that cannot be read or make no clump.
+  /// Throws ParameterError for spheres that cannot be read or are not a clump.
   void prepare() override;
   const ClumpShape* clump() const override;
   double volume(double radius) const override { return clump()->volume * radius * radius * radius; }
-  /// The least principal moment.
+  /// The smallest principal moment of inertia.
   double inertia(double radius, double mass) const override { return clump()->inertia[0] * mass * radius * radius; }
 
  private:
   OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
   std::vector<Ball> balls_;
-  mutable std::optional<ClumpShape> shape_;  // integrated when asked for
+  mutable std::optional<ClumpShape> shape_;  // integrated on demand
 };
 
 /// For Registry::add().

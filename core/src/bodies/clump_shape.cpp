@@ -17,7 +17,7 @@ namespace grit {
 namespace {
 
 constexpr double largest_error = 1e-3;
-// A sphere that sticks out of another by less than this part of its radius adds nothing but round-off.
+// A sphere that protrudes from another by less than this fraction of its radius only adds round-off.
 constexpr double least_out = 1e-9;
 
 double reach(const Vec3& from, std::span<const Ball> balls) {
@@ -29,11 +29,12 @@ bool encloses(const Ball& large, std::span<const Ball> balls) {
   return reach(xyz(large), balls) <= large.w * (1 + 1e-12);
 }
 
-/// Has `best` be the smallest ball that all of `on` touch from inside, grown to enclose all balls, if it is smaller.
+/// Sets `best` to the smallest ball that all of `on` touch from inside, enlarged to enclose all balls, if it is
+/// smaller.
 void try_on(std::span<const Ball* const> on, std::span<const Ball> balls, Ball& best) {
   const Ball& base = *on[0];
   const auto others = static_cast<Eigen::Index>(on.size()) - 1;
-  // The centre is base + span · weights, both linear in the radius R that is sought: u + R w.
+  // The centre is base + span · weights, both linear in the unknown radius R: u + R w.
   Eigen::Matrix3Xd span(3, others);
   Eigen::VectorXd fixed(others), growing(others);
   for (Eigen::Index k = 0; k < others; ++k) {
@@ -53,13 +54,13 @@ void try_on(std::span<const Ball* const> on, std::span<const Ball> balls, Ball& 
     if (!(radius > 0 && radius < best.w)) continue;
     const Vec3 centre = xyz(base) + u + radius * w;
     Ball found{centre.x(), centre.y(), centre.z(), radius};
-    // Where one ball hardly sticks out of another, the root has lost digits.
+    // If one ball hardly protrudes from another, the root has few correct digits.
     if (!encloses(found, balls)) found.w = reach(centre, balls);
     if (found.w < best.w) best = found;
   }
 }
 
-/// A ball that does not hang together with the first, if there is one.
+/// A ball that is not connected with the first, if there is one.
 std::optional<std::size_t> out_of_reach(std::span<const Ball> balls) {
   std::vector<std::size_t> reached{0};
   std::vector<bool> seen(balls.size(), false);
@@ -91,7 +92,7 @@ struct Moments {
     second(1, 1) += y * y * length, second(1, 2) += y * line;
     second(2, 2) += (high * high * high - low * low * low) / 3;
   }
-  /// `area` times these pieces about `centre`, as seen from the origin.
+  /// `area` times these pieces about `centre`, relative to the origin.
   Moments moved(const Vec3& centre, double area) const {
     const Mat3 about = second.selfadjointView<Eigen::Upper>(), mixed = centre * first.transpose();
     return {area * volume, area * (first + volume * centre),
@@ -110,22 +111,23 @@ struct Moments {
 
 /// By each ball.
 struct Integrals {
-  std::vector<Moments> fine, coarse;  ///< what it adds to the union; the same by every third line either way
-  std::vector<double> shared;         ///< of one over the number of balls
+  std::vector<Moments> fine, coarse;  ///< contribution to the union; the same with every third line in both directions
+  std::vector<double> shared;         ///< integral of 1 / (number of balls that contain a point)
 };
 
-/// Ball by ball, each by lines of its own and about its own centre, so that errors are small beside what each adds:
-/// lines through all of a long rod would have its moment about its axis wrong by a third.
+/// Ball by ball, each with its own lines and about its own centre, so that errors are small relative to its
+/// contribution: with common lines for a long rod the moment of inertia about its axis would be wrong by a third.
 Integrals integrate(std::span<const Ball> balls, int rays) {
   Integrals result;
   struct End {
     double z;
-    int balls, earlier;  ///< by how many more it is covered from here on; and by how many that come before this ball
+    int balls, earlier;  ///< change in the number of balls that cover the line from here on; the same for balls before
+                         ///< this one
   };
   std::vector<End> ends;
   for (std::size_t k = 0; k < balls.size(); ++k) {
     const Ball& own = balls[k];
-    std::vector<std::pair<Ball, bool>> others;  // as seen from its centre; whether it comes before
+    std::vector<std::pair<Ball, bool>> others;  // relative to its centre; whether it comes before
     for (std::size_t j = 0; j < balls.size(); ++j) {
       const Vec3 place = xyz(balls[j]) - xyz(own);
       if (j != k && place.norm() < balls[j].w + own.w)
@@ -169,7 +171,7 @@ Integrals integrate(std::span<const Ball> balls, int rays) {
   return result;
 }
 
-/// The sum of what each ball alone changes if it is told by its coarse lines: no two may make up for each other.
+/// Sum of the absolute changes with the coarse lines of each ball, so that errors do not cancel.
 ShapeErrors errors_of(const Moments& all, const Integrals& integrals) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(all.inertia());
   const Mat3 axes = solver.eigenvectors();
@@ -203,24 +205,24 @@ Ball smallest_enclosing(std::span<const Ball> balls) {
   };
   choose(choose, 0);
   if (!std::isfinite(best.w))
-    throw Error("no sphere was found that encloses a clump; give its spheres in another unit");
+    throw Error("no sphere was found that encloses the clump; give its spheres in another unit");
   return best;
 }
 
 std::optional<ClumpDefect> clump_defect(std::span<const Ball> spheres) {
   if (spheres.empty() || spheres.size() > 64)
-    return ClumpDefect{{}, std::to_string(spheres.size()) + " spheres", "1 to 64 of them"};
+    return ClumpDefect{{}, std::to_string(spheres.size()) + " spheres", "1 to 64"};
   const auto sphere = [](std::size_t k) { return "sphere " + std::to_string(k + 1); };
   for (std::size_t k = 0; k < spheres.size(); ++k)
     for (std::size_t j = 0; j < spheres.size(); ++j) {
       const Ball &inner = spheres[k], &outer = spheres[j];
       if (j == k || (xyz(inner) - xyz(outer)).norm() + inner.w > outer.w * (1 + least_out)) continue;
-      return ClumpDefect{k, sphere(k) + ", which lies within " + sphere(j),
-                         "one that sticks out of every other; leave it out"};
+      return ClumpDefect{k, sphere(k) + ", which is inside " + sphere(j),
+                         "a sphere that is not inside another; remove it"};
     }
   if (const auto lost = out_of_reach(spheres))
-    return ClumpDefect{*lost, sphere(*lost) + ", which does not hang together with sphere 1",
-                       "one that overlaps others, so that all are one body"};
+    return ClumpDefect{*lost, sphere(*lost) + ", which is not connected with sphere 1",
+                       "spheres that overlap, so that all are connected"};
   return std::nullopt;
 }
 
@@ -238,8 +240,8 @@ ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays) {
   for (const Moments& one : integrals.fine) all = all.plus(one);
   const ShapeErrors errors = errors_of(all, integrals);
   if (const double most = std::max({errors.mass, errors.centre, errors.inertia}); !(most <= largest_error))
-    throw Error("mass, centre or inertia of a clump may be off by " + std::to_string(100 * most) +
-                " %; allowed is 0.1 %; let its spheres overlap less");
+    throw Error("the error of mass, centre or inertia of a clump may be " + std::to_string(100 * most) +
+                " %; allowed is 0.1 %; reduce the overlaps of its spheres");
   const Vec3 centre = all.centre();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(all.inertia());
   Mat3 axes = solver.eigenvectors();
@@ -249,13 +251,14 @@ ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays) {
   shape.errors = errors;
   shape.volume = all.volume, shape.inertia = solver.eigenvalues(), shape.axes = axes;
   shape.middle = axes.transpose() * -centre;
-  // Shares have an error of their own; together they are the union.
+  // The fractions have their own errors; they are scaled so that their sum is the volume of the union.
   const double parts = std::accumulate(integrals.shared.begin(), integrals.shared.end(), 0.0);
   for (std::size_t k = 0; k < balls.size(); ++k) {
     const Vec3 place = axes.transpose() * (xyz(balls[k]) - centre);
     const double r = balls[k].w;
     shape.spheres.push_back({place.x(), place.y(), place.z(), r});
-    shape.shares.push_back(integrals.shared[k] * all.volume / parts / (4.0 / 3.0 * std::numbers::pi * r * r * r));
+    shape.volume_fractions.push_back(integrals.shared[k] * all.volume / parts /
+                                     (4.0 / 3.0 * std::numbers::pi * r * r * r));
   }
   return shape;
 }

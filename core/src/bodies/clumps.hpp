@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "grit/archive.hpp"
 #include "grit/body_kind.hpp"
-#include "grit/memory.hpp"
 #include "grit/vec.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
 
-/// Centre, velocity and momentum are the clump's state; what its spheres have follows from them.
+/// Centre, orientation, velocity and momentum are the state of the clump; those of its spheres follow from them.
 struct Clump {
   std::uint32_t id = 0;
   std::uint32_t first = 0, last = 0;  ///< into Clumps::spheres
@@ -22,12 +22,12 @@ struct Clump {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Mat3 axes = Mat3::Identity();   ///< the same as a matrix
   Vec3 spin = Vec3::Zero();       ///< rad/s, mean of the last step
-  Vec3 half_turn = Vec3::Zero();  ///< of the last step: its axis, as long as the tangent of half its angle
+  Vec3 half_turn = Vec3::Zero();  ///< rotation of the last step: axis times the tangent of half the angle
   double chord_rate = 0;          ///< 2 / (time step · (1 + half_turn²)) [1/s]
   Vec3 inertia = Vec3::Ones();    ///< principal [kg m²]
   double inverse_mass = 1;        ///< 1/kg
   double radius = 0;              ///< of the enclosing sphere [m]
-  double furthest = 0;            ///< sphere's surface from the centre [m]
+  double furthest = 0;            ///< largest distance of a sphere's surface from the centre [m]
   double volume = 0;              ///< m³
 
   Vec3 spin_of(const Vec3& of_momentum) const { return axes * (axes.transpose() * of_momentum).cwiseQuotient(inertia); }
@@ -36,11 +36,11 @@ struct Clump {
 template <>
 inline constexpr bool plain_numbers<Clump> = true;
 
-/// What a body has to do with its clump.
+/// Relation of a body to its clump.
 struct ClumpSphere {
   std::uint32_t clump = no_clump;
-  std::array<std::int8_t, 3> periods{};  ///< by how many it has been put back into the cell, against its clump
-  Vec3 place = Vec3::Zero();             ///< along the clump's axes from its centre [m]
+  std::array<std::int8_t, 3> periods{};  ///< shift by periods relative to its clump
+  Vec3 place = Vec3::Zero();             ///< position along the clump's axes from its centre [m]
 };
 
 template <>
@@ -48,11 +48,11 @@ inline constexpr bool plain_numbers<ClumpSphere> = true;
 
 struct Clumps {
   std::vector<Clump> clump;
-  std::vector<std::uint32_t> spheres;  ///< bodies of all clumps by index, one clump after the other
-  std::vector<ClumpSphere> of_body;    ///< by index; empty without clumps
-  std::vector<double> volume_share;    ///< by index; empty without clumps
+  std::vector<std::uint32_t> spheres;   ///< bodies of all clumps by index, one clump after the other
+  std::vector<ClumpSphere> of_body;     ///< by index; empty without clumps
+  std::vector<double> volume_fraction;  ///< by index; empty without clumps
 
-  void remember(Memory& memory) { memory(clump, spheres, of_body, volume_share); }
+  void serialize(Archive& archive) { archive(clump, spheres, of_body, volume_fraction); }
   bool none() const { return clump.empty(); }
   std::uint32_t clump_of(std::size_t body) const { return of_body.empty() ? no_clump : of_body[body].clump; }
 };

@@ -1,4 +1,4 @@
-// Arrays that the hot loop walks through in an order that is not theirs.
+// Arrays with huge pages, for random access in the contact loop.
 #pragma once
 
 #include <sys/mman.h>
@@ -10,8 +10,8 @@
 
 namespace grit {
 
-/// Asks for pages of 2 MiB, of which the processor's address cache holds the whole of a scene; with those of 4 KiB a
-/// step of 50 000 grains took about a tenth longer.
+/// Requests pages of 2 MiB, so that the TLB covers the whole scene; with pages of 4 KiB a step of 50 000 grains took
+/// about a tenth longer.
 template <class T>
 struct LargePages {
   using value_type = T;
@@ -24,7 +24,7 @@ struct LargePages {
   T* allocate(std::size_t count) {
     const std::size_t bytes = whole(count * sizeof(T));
     void* const memory = ::operator new(bytes, alignment(bytes));
-    if (bytes >= page) ::madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: refusal does no harm
+    if (bytes >= page) ::madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: failure is harmless
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(whole(count * sizeof(T)))); }
@@ -34,7 +34,7 @@ struct LargePages {
   }
 
  private:
-  /// Whole pages, unless that would be mostly waste.
+  /// Rounds up to whole pages, unless most of that would be unused.
   static std::size_t whole(std::size_t bytes) { return bytes < page / 8 ? bytes : (bytes + page - 1) / page * page; }
   static std::align_val_t alignment(std::size_t bytes) {
     return std::align_val_t{bytes >= page ? page : std::max<std::size_t>(64, alignof(T))};

@@ -16,7 +16,8 @@
 namespace grit {
 namespace {
 
-/// All equally likely (K. Shoemake, Graphics Gems III (1992) 124, doi:10.1016/B978-0-08-050755-2.50036-1).
+/// Random orientation, uniformly distributed (K. Shoemake, Graphics Gems III (1992) 124,
+/// doi:10.1016/B978-0-08-050755-2.50036-1).
 Eigen::Quaterniond any_orientation(Random& random) {
   const double u = random.uniform(), a = 2 * std::numbers::pi * random.uniform(),
                b = 2 * std::numbers::pi * random.uniform();
@@ -30,7 +31,7 @@ std::set<std::string> of_bodies(const SceneDescription& scene) {
   return names;
 }
 
-/// Adds a group. Clouds keep clear of `there` and of what `bodies` has.
+/// Adds a group. Clouds do not overlap the spheres of `there` and `bodies`.
 void add_group(const SceneDescription& scene, const BodiesDescription& group, const BodyKind& kind, const Cell& cell,
                std::span<const Row> there, Random& random, Bodies& bodies) {
   const auto names = material_names(scene);
@@ -40,7 +41,7 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
   const ClumpShape* const clump = kind.clump();
   const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
                        const Vec3& spin) {
-    const double inert = std::max(radius, 0.5 * group.heavier_below);
+    const double inert = std::max(radius, 0.5 * group.scaled_below());
     const double mass = density * kind.volume(inert);
     if (clump == nullptr) {
       bodies.add(centre, radius, mass, kind.inertia(inert, mass), material, velocity, spin);
@@ -51,8 +52,8 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
     bodies.add_clump(*clump, centre - middle, radius, mass, mass * inert * inert * clump->inertia, orientation,
                      material, velocity, spin);
   };
-  if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) {
-    for (const PlacedGrain& g : placed->grains) {
+  if (const auto* placed = std::get_if<ListSource>(&group.source.value())) {
+    for (const ListedBody& g : placed->bodies) {
       const double angle = g.orientation.norm();
       const Vec3 axis = angle > 0 ? Vec3(g.orientation / angle) : Vec3::UnitX();
       add(g.position, g.radius, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), group.velocity + g.velocity,
@@ -60,8 +61,8 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
     }
     return;
   }
-  const auto* cloud = std::get_if<CloudGrains>(&group.grains.value());
-  const auto* file = std::get_if<FileGrains>(&group.grains.value());
+  const auto* cloud = std::get_if<CloudSource>(&group.source.value());
+  const auto* file = std::get_if<FileSource>(&group.source.value());
   std::vector<Row> others(there.begin(), there.end());
   others.insert(others.end(), bodies.position.begin(), bodies.position.end());
   const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, others) : read_packing(file->path);
@@ -76,20 +77,21 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
 void check_inside(const Cell& cell, const Bodies& bodies) {
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     const Row& x = bodies.position[i];
-    // Spheres after the last clump are entered there by finish() alone.
+    // Only finish() adds entries for spheres after the last clump.
     const std::uint32_t c = i < bodies.clumps.of_body.size() ? bodies.clumps.of_body[i].clump : no_clump;
     const double reach = c == no_clump ? x.w : 2 * bodies.clumps.clump[c].radius;
     for (int k = 0; k < 3; ++k) {
-      const double over = cell.periodic[k] ? reach : 0;  // just past a periodic side a body is inside at the other
+      const double over =
+          cell.periodic[k] ? reach : 0;  // just outside a periodic side, a body is inside at the opposite side
       if (xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over) continue;
       throw PlacedError({"bodies", bodies.group_of(bodies.id[i])},
                         "a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
-                            ") m lies outside the domain; enlarge /domain or move the body");
+                            ") m is outside the domain; enlarge /domain or move the body");
     }
   }
 }
 
-/// Does the work for a group; its errors become those of the group, but for errors of files, which have a place.
+/// Runs `work` for a group. Errors get the name of the group, except errors in files, which have a line.
 template <class Work>
 void for_group(const std::string& name, const Work& work) {
   try {
@@ -100,7 +102,7 @@ void for_group(const std::string& name, const Work& work) {
   }
 }
 
-/// A stream of its own for each stage, so that what comes in one does not depend on what comes in others.
+/// A separate random stream for each stage, so that the bodies of a stage do not depend on other stages.
 Random random_of(const SceneDescription& scene, const std::string& stage) {
   Random seeds(static_cast<std::uint64_t>(scene.seed));
   for (const StageDescription& one : scene.stages) {
@@ -148,7 +150,7 @@ Bodies make_bodies(const SceneDescription& scene, const Components& components, 
       bodies.groups.push_back({name, bodies.ids_given});
       for_group(name, [&] { add_group(scene, group, kind, cell, {}, random, bodies); });
     } else {
-      body_count(group, kind);  // a fault in a file shows now, not when its stage begins
+      body_count(group, kind);  // reports errors in files now, not at the start of their stage
     }
   }
   check_inside(cell, bodies);
@@ -175,10 +177,10 @@ Newcomers make_newcomers(const SceneDescription& scene, const Components& compon
 
 std::size_t body_count(const BodiesDescription& group, const BodyKind& kind) {
   const auto spheres = kind.clump() != nullptr ? kind.clump()->spheres.size() : 1;
-  if (const auto* placed = std::get_if<PlacedGrains>(&group.grains.value())) return spheres * placed->grains.size();
-  if (const auto* cloud = std::get_if<CloudGrains>(&group.grains.value()))
+  if (const auto* placed = std::get_if<ListSource>(&group.source.value())) return spheres * placed->bodies.size();
+  if (const auto* cloud = std::get_if<CloudSource>(&group.source.value()))
     return spheres * static_cast<std::size_t>(cloud->count);
-  return spheres * read_packing(std::get<FileGrains>(group.grains.value()).path).size();
+  return spheres * read_packing(std::get<FileSource>(group.source.value()).path).size();
 }
 
 }  // namespace grit

@@ -11,7 +11,7 @@ namespace grit {
 
 namespace {
 
-using Polynomial = std::array<double, 8>;  // from the constant up
+using Polynomial = std::array<double, 8>;  // coefficients in ascending order
 
 double ratio(const Polynomial& above, const Polynomial& below, double x) {
   double a = 0, b = 0;
@@ -57,9 +57,9 @@ double density(double z) { return same_bits::exp(-0.5 * z * z) * std::numbers::i
 
 }  // namespace
 
-double normal_share(double z) {
+double normal_fraction(double z) {
   constexpr double far = 2;
-  if (z > far) return 1 - normal_share(-z);
+  if (z > far) return 1 - normal_fraction(-z);
   if (z < -37) return 0;
   if (z < -far) {  // Laplace's continued fraction
     double fraction = -z;

@@ -15,7 +15,7 @@ namespace grit {
 
 namespace {
 
-constexpr std::size_t most_problems = 10;  // one mistake in a large file shall not fill the screen
+constexpr std::size_t most_problems = 10;  // limits the output for a large file with many errors
 constexpr std::string_view blanks = " \t\r\v\f";
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int reason) {
@@ -41,7 +41,7 @@ std::string whole_file(const std::filesystem::path& path) {
   return text;
 }
 
-/// Cuts the next word off `line`; empty at its end.
+/// Removes the next word from `line` and returns it; empty at its end.
 std::string_view next_word(std::string_view& line) {
   line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
   const std::string_view word = line.substr(0, line.find_first_of(blanks));
@@ -49,7 +49,7 @@ std::string_view next_word(std::string_view& line) {
   return word;
 }
 
-/// Reads a line that is neither blank nor comment; what is wrong with it, or nothing.
+/// Reads a line that is neither blank nor a comment; returns its problem, or an empty string.
 std::string read_grain(std::string_view line, Row& grain) {
   constexpr const char* names[] = {"x", "y", "z", "radius"};
   double* const numbers[] = {&grain.x, &grain.y, &grain.z, &grain.w};
@@ -62,7 +62,7 @@ std::string read_grain(std::string_view line, Row& grain) {
     return std::string(names[found]) + " is \"" + std::string(word.substr(0, 40)) + "\", not a " +
            (number ? "finite number in double's range" : "number");
   }
-  if (found != 4) return "found " + std::to_string(found) + " numbers; a grain is four: x y z radius";
+  if (found != 4) return "found " + std::to_string(found) + " numbers; expected four: x y z radius";
   if (!(grain.w > 0)) return "radius is " + std::to_string(grain.w) + " m; it must be above 0";
   return "";
 }
@@ -92,9 +92,9 @@ std::vector<Row> read_packing(const std::filesystem::path& path) {
     if (problems.size() < most_problems) problems.push_back({path.string(), number, "", std::move(wrong)});
     else ++left_out;
   }
-  if (left_out > 0) problems.push_back({path.string(), 0, "", std::to_string(left_out) + " more lines are wrong"});
+  if (left_out > 0) problems.push_back({path.string(), 0, "", std::to_string(left_out) + " more lines have errors"});
   if (grains.empty())
-    problems.push_back({path.string(), 0, "", "holds no grain; a line for each is needed: x y z radius, in m"});
+    problems.push_back({path.string(), 0, "", "contains no grains; write one line per grain: x y z radius, in m"});
   if (!problems.empty()) throw DescriptionError(std::move(problems));
   return grains;
 }

@@ -1,4 +1,4 @@
-// Grains as plain text: "x y z radius" a line, SI, "#" starts a comment. Every peer reads and writes it.
+// Grains as plain text: one line "x y z radius" per grain, in m; "#" starts a comment. Other DEM codes read it, too.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,13 @@
 
 namespace grit {
 
-/// Centres [m], w: radius [m], in the order of the lines. Throws FileError where the file cannot be read, and
-/// DescriptionError, with each line at fault, where it does not hold grains: not four numbers a line, a number that is
-/// not finite, a radius that is not positive, no grain at all.
+/// Centres [m], w: radius [m], in the order of the lines. Throws FileError if the file cannot be read. Throws
+/// DescriptionError, with each line at fault, for lines without exactly four numbers, numbers that are not finite,
+/// radii that are not positive, and for a file without grains.
 std::vector<Row> read_packing(const std::filesystem::path& path);
 
-/// Writes 17 significant digits, so that reading gives the same bits. The file appears whole or not at all. Each line
-/// of `comment` becomes a comment before the grains. Throws FileError.
+/// Writes 17 significant digits, so that reading gives identical numbers. The file is replaced as a whole or not at
+/// all. Each line of `comment` becomes a comment before the grains. Throws FileError.
 void write_packing(const std::filesystem::path& path, std::size_t grains, const std::function<Row(std::size_t)>& grain,
                    const std::string& comment = "");
 inline void write_packing(const std::filesystem::path& path, std::span<const Row> grains,

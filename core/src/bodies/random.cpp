@@ -36,7 +36,7 @@ std::uint64_t Random::below(std::uint64_t n) {
 }
 
 double Random::normal() {
-  // The half keeps the share off 0 and 1; 52 bits and a half are exact.
+  // The half excludes 0 and 1; 52 bits and a half are exact.
   return normal_quantile((static_cast<double>(bits() >> 12) + 0.5) * 0x1p-52);
 }
 

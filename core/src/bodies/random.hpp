@@ -1,4 +1,4 @@
-// Random numbers that are the same bits on every machine, for a given seed.
+// Random numbers, identical on every machine for a given seed.
 #pragma once
 
 #include <array>
@@ -13,21 +13,21 @@ namespace grit {
 class Random {
  public:
   /// State filled by splitmix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014, doi:10.1145/2660193.2660195), as its authors
-  /// advise; every seed is a good one.
+  /// recommend; all seeds are equally good.
   explicit Random(std::uint64_t seed);
   /// Not all zero.
   explicit Random(const std::array<std::uint64_t, 4>& state) : state_(state) {}
 
   std::uint64_t bits();
-  /// In [0, 1), a multiple of 2^-53.
+  /// Uniform in [0, 1), a multiple of 2^-53.
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
-  /// In 0 … n − 1, all equally likely; n > 0. D. Lemire, ACM Trans. Model. Comput. Simul. 29 (2019) 3,
+  /// Uniform in 0 … n − 1; n > 0. D. Lemire, ACM Trans. Model. Comput. Simul. 29 (2019) 3,
   /// doi:10.1145/3230636.
   std::uint64_t below(std::uint64_t n);
   /// Standard normal, by inversion; within ±8.3.
   double normal();
 
-  /// Puts items into random order; all orders are equally likely.
+  /// Shuffles items; all orders are equally likely.
   template <std::ranges::random_access_range Items>
   void shuffle(Items& items) {
     using std::swap;

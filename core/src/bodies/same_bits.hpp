@@ -1,5 +1,6 @@
-// exp and log that give the same bits on every machine: the last bit of those in the C library depends on its version
-// and on the processor. Made of + − × ÷ and the exponent of a double alone; compiled without contraction to FMA.
+// exp and log with identical results on every machine; the last bit of those in the C library depends on its version
+// and on the processor. They use only + − × ÷ and the exponent of a double, and are compiled without contraction to
+// FMA.
 #pragma once
 
 namespace grit::same_bits {

@@ -12,7 +12,7 @@ namespace grit {
 
 namespace {
 
-/// `quantile` gives the diameter below which a share of the number lies.
+/// `quantile` gives the diameter below which a fraction of the number lies.
 template <class Quantile>
 std::vector<double> stratified(std::size_t count, Random& random, const Quantile& quantile) {
   std::vector<double> diameters(count);
@@ -22,8 +22,8 @@ std::vector<double> stratified(std::size_t count, Random& random, const Quantile
   return diameters;
 }
 
-/// Where mass is spread evenly over the diameters a … b, numbers go with 1/d³ and their share below d is
-/// (1/a² − 1/d²) / (1/a² − 1/b²); solved for d.
+/// For mass distributed uniformly over the diameters a … b, numbers are proportional to 1/d³ and their fraction below d
+/// is (1/a² − 1/d²) / (1/a² − 1/b²); solved for d.
 double even_mass_quantile(double a, double b, double share) {
   const double ratio = a / b;
   return std::clamp(a / std::sqrt(1 - share * (1 - ratio * ratio)), a, b);
@@ -39,7 +39,7 @@ void check(const SieveSizes& sieve) {
         "sieve sizes: `diameters` must be positive and increase, `passing` must not decrease from 0 to 1, and both "
         "need "
         "the same number of entries, 2 or more; found " +
-        std::to_string(d.size()) + " diameters and " + std::to_string(passing.size()) + " shares");
+        std::to_string(d.size()) + " diameters and " + std::to_string(passing.size()) + " fractions");
 }
 
 }  // namespace
@@ -55,14 +55,14 @@ std::vector<double> draw_diameters(const LinearSizes& sizes, std::size_t count, 
 }
 
 std::vector<double> draw_diameters(const LogNormalSizes& sizes, std::size_t count, Random& random) {
-  const auto score = [&](double d) { return same_bits::log(d / sizes.median) / sizes.deviation; };
+  const auto score = [&](double d) { return same_bits::log(d / sizes.median) / sizes.log_standard_deviation; };
   const double low = score(sizes.smallest), high = score(sizes.largest);
-  // Shares are taken from the nearer tail, where they keep their digits.
+  // Fractions are computed from the nearer tail, where they are more accurate.
   const double sign = low + high > 0 ? -1 : 1;
-  const double first = normal_share(sign * low), last = normal_share(sign * high);
+  const double first = normal_fraction(sign * low), last = normal_fraction(sign * high);
   return stratified(count, random, [&](double share) {
     const double z = sign * normal_quantile(first + share * (last - first));
-    return std::clamp(sizes.median * same_bits::exp(sizes.deviation * z), sizes.smallest, sizes.largest);
+    return std::clamp(sizes.median * same_bits::exp(sizes.log_standard_deviation * z), sizes.smallest, sizes.largest);
   });
 }
 
@@ -82,7 +82,7 @@ std::vector<double> draw_diameters(const SieveSizes& sizes, std::size_t count, R
 }
 
 std::vector<double> draw_diameters(const ListSizes& sizes, std::size_t count, Random&) {
-  if (sizes.diameters.empty()) throw Error("list of sizes: no diameters; give one or more");
+  if (sizes.diameters.empty()) throw Error("list of sizes: found no diameters; give one or more");
   std::vector<double> diameters(count);
   for (std::size_t i = 0; i < count; ++i) diameters[i] = sizes.diameters[i % sizes.diameters.size()];
   return diameters;

@@ -94,7 +94,7 @@ double sphere_box_volume(const Vec3& centre, double radius, const Vec3& low, con
   if (outside >= radius * radius) return 0;
   const double box = (high - low).prod();
   if (farthest <= radius * radius) return box;
-  // Most spheres that are cut are cut once.
+  // Most intersected spheres are cut by one plane only.
   if (planes == 1) return std::min(box, (plane < 0 ? ball - cap(-plane / radius) : cap(plane / radius)) * cube);
 
   const Vec3 from = (low - centre) / radius, to = (high - centre) / radius;

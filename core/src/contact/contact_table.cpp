@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::uint32_t nowhere = ~0u;
 
-/// A touching pair before the rebuild, filed by its lower body as it is now.
+/// A pair that was in contact before the rebuild, sorted by its present lower body index.
 struct Former {
-  std::uint32_t other = 0;                       ///< the higher body
-  std::uint32_t from : 31 = 0, swapped : 1 = 0;  ///< its place then; whether a and b have changed roles since
-  std::uint32_t to = nowhere;                    ///< its place now
+  std::uint32_t other = 0;                       ///< higher body index
+  std::uint32_t from : 31 = 0, swapped : 1 = 0;  ///< its index before; whether a and b have been exchanged
+  std::uint32_t to = nowhere;                    ///< its index now
 };
 
-/// Rows that are asked for beforehand: some 100 ns, as long as memory takes.
+/// Number of rows to prefetch: about 100 ns, the latency of memory.
 constexpr std::uint32_t gather_ahead = 48;
 
-/// Room for `count` without copying what is there.
+/// Reserves memory for `count` entries without copying the present ones.
 template <class Array>
 void make_room(Array& array, std::size_t count) {
   if (array.capacity() < count) {
@@ -43,7 +43,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
                            std::span<const StateField> fields, std::span<const std::uint32_t> order, Team& team) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
-  // What is made anew in the end makes room for what lives until then.
+  // Free arrays that are rebuilt last, to reduce peak memory.
   give_back(row_), give_back(inbox_);
   std::vector<std::uint32_t> now(std::max(bodies_, count), order.empty() ? 0 : nowhere);
   if (order.empty()) std::iota(now.begin(), now.end(), 0u);
@@ -63,13 +63,13 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   each_former([&](std::uint32_t lower, const Former&) { ++former_start[lower + 1]; });
   std::partial_sum(former_start.begin(), former_start.end(), former_start.begin());
   std::vector<Former> formers(former_start.back());
-  // While they are filed, each lower body's start goes to where the next one's is.
+  // While pairs are sorted in, the start of each lower body moves to that of the next.
   each_former([&](std::uint32_t lower, const Former& former) { formers[former_start[lower]++] = former; });
   std::move_backward(former_start.begin(), former_start.end() - 1, former_start.end());
   former_start.front() = 0;
   give_back(now);
 
-  // Candidates, chunk by chunk: those within the chunk first, of either sort the nearest first.
+  // Candidates, chunk by chunk: first those within the chunk, then those across; of each kind the nearest first.
   const std::size_t chunk_count = chunks_of(count);
   found_.resize(chunk_count), within_.resize(chunk_count);
   team.each(chunk_count, [&](std::size_t chunk) {
@@ -99,7 +99,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     chunks_[chunk].across = take(found_[chunk].size() - within_[chunk]);
 
   const std::size_t slots = std::size_t{blocks} * block_size;
-  // Padding pairs a body with the one that is far away.
+  // Padding pairs a body with the dummy body far away.
   const auto pad = static_cast<std::uint32_t>(count);
   make_room(a_, slots), make_room(b_, slots), make_room(near_, slots), make_room(image_, periodic ? slots : 0);
   touching_.assign(blocks, 0), asleep_until_.resize(blocks);
@@ -137,10 +137,10 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
     pad_to(slot, none_across ? chunks_[chunk].within.last : chunks_[chunk].across.last);
   });
 
-  // Memories change places where they are, field after field, so that no more than one lies beside them meanwhile. All
-  // that come to a chunk's blocks are those of its bodies.
+  // Contact histories are permuted in place, field by field, so that only one field needs a copy. All histories of a
+  // chunk's blocks belong to its bodies.
   const std::size_t lines = std::size_t{blocks} * field_count;
-  // Room that is not used takes no memory, and as long as there is enough of it nothing is copied.
+  // Reserved but unused pages take no memory; while the reserve suffices, nothing is copied.
   if (state_.capacity() < lines) state_.reserve(lines + lines / 2);
   state_.resize(std::max(state_.size(), lines));
   const auto number = [&](std::size_t slot, std::size_t f) -> double& {
@@ -202,7 +202,7 @@ void ContactTable::gather(std::size_t chunk, BodySum* sum) const {
     add(inbox_[e]);
   }
   for (std::uint32_t e = own.inbox_far; e < own.inbox_last; ++e)
-    if (touches(first_cross_ + inbox_[e].row)) add(inbox_[e]);
+    if (contacts(first_cross_ + inbox_[e].row)) add(inbox_[e]);
 }
 
 void ContactTable::find_reached() {
@@ -239,7 +239,7 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .last_block = blocks.last,
           .last_near = blocks.near,
           .last_body = last_body,
-          .nobody = static_cast<std::uint32_t>(at.bodies.count()),
+          .dummy_body = static_cast<std::uint32_t>(at.bodies.count()),
           .next = nullptr,
           .next_first = 0,
           .next_count = 0,
@@ -271,7 +271,7 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
     at.law.evaluate_pairs(pairs);
     largest = std::max(largest, pairs.largest_overlap);
   };
-  // Meanwhile the bodies of other chunks are fetched, then those of the chunk that is likely to come next.
+  // Meanwhile, bodies of other chunks are prefetched, then those of the chunk that is likely next.
   PairBatch own = batch(within, at, end - 1);
   own.next = b_.data() + std::size_t{across.first} * block_size;
   own.next_count = static_cast<std::uint32_t>((across.near - across.first) * block_size);
@@ -291,7 +291,7 @@ void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_bloc
     return std::vector(array.begin() + static_cast<std::ptrdiff_t>(from),
                        array.begin() + static_cast<std::ptrdiff_t>(to));
   };
-  // A batch of its own: blocks from 0 on, and memory that nobody keeps.
+  // A separate batch: blocks from 0 on, and a history that is discarded.
   auto state = part(state_, first_block * fields, last_block * fields);
   auto touching = part(touching_, first_block, last_block);
   rows.assign((last_block - first_block) * block_size, {});
@@ -308,19 +308,19 @@ void ContactTable::evaluate_again(std::size_t first_block, std::size_t last_bloc
 
 std::vector<double> ContactTable::state(std::size_t c) const {
   std::vector<double> numbers(fields_.size());
-  for (std::size_t f = 0; f < numbers.size(); ++f) numbers[f] = remembered(c, f);
+  for (std::size_t f = 0; f < numbers.size(); ++f) numbers[f] = history_of(c, f);
   return numbers;
 }
 
-std::size_t ContactTable::memory() const {
+std::size_t ContactTable::bytes() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
   return bytes(a_, b_, image_, touching_, asleep_until_, row_, inbox_, near_) + state_.size() * sizeof(StateLine);
 }
 
-void ContactTable::remember(Memory& memory) {
-  memory(bodies_, chunks_, a_, b_, image_, touching_, asleep_until_, state_, first_cross_, near_);
-  if (!memory.restoring()) return;
-  // Rows of pairs that touch are written before they are read.
+void ContactTable::serialize(Archive& archive) {
+  archive(bodies_, chunks_, a_, b_, image_, touching_, asleep_until_, state_, first_cross_, near_);
+  if (!archive.restoring()) return;
+  // Rows of pairs in contact are written before they are read.
   row_.assign(a_.size() - first_cross_, {});
   make_inbox(bodies_);
   find_reached();

@@ -1,4 +1,4 @@
-// All candidate pairs, what touching ones remember, and what they do this step.
+// All candidate pairs, with contact histories and the forces of this step.
 #pragma once
 
 #include <algorithm>
@@ -24,19 +24,19 @@ struct alignas(64) StateLine {
 template <>
 inline constexpr bool plain_numbers<StateLine> = true;
 
-/// Pairs are filed by the chunk of their lower body, the nearest first, so that blocks are full of touching lanes and
-/// the others can be left asleep until they may have come near. Pairs within a chunk add to the sums of both bodies;
-/// only pairs across chunks leave a row for b. Memory of contacts moves along when the table is rebuilt.
+/// Pairs are sorted by the chunk of their lower body, the nearest first. Blocks are then full of contacts, and the others
+/// are skipped until their bodies may have come close. Pairs within a chunk add to the sums of both bodies; only pairs
+/// across chunks write a row for b. Contact histories are kept when the table is rebuilt.
 class ContactTable {
  public:
-  /// `order[i]` is the old index of the body that now has index i; empty where indices have not changed. Bodies that
-  /// are not in it are gone.
+  /// `order[i]` is the old index of the body that now has index i; empty if indices have not changed. Bodies that are not
+  /// in it have left.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
                std::span<const std::uint32_t> order, Team& team);
-  /// Makes room for another set of fields; those that both have are kept.
+  /// Changes the fields of the contact history; those in both sets are kept.
   void set_fields(std::span<const StateField> fields);
 
-  /// What the law needs to know of an instant.
+  /// Input of the law at one instant.
   struct Instant {
     const ContactLaw& law;
     const Bodies& bodies;
@@ -44,19 +44,19 @@ class ContactTable {
     const ImageShift* shifts;
     double dt;  ///< s
     const Skins& skins;
-    bool again = false;  ///< this instant has been evaluated before
+    bool again = false;  ///< whether this instant has been evaluated before
   };
-  /// Evaluates one chunk: fills its rows, adds to the sums of its bodies, by index, and touches no others. Returns the
+  /// Evaluates one chunk: writes its rows and adds to the sums of its bodies, by index, and of no others. Returns the
   /// largest overlap over a radius.
   double evaluate(std::size_t chunk, const Instant& at, BodySum* sum, Losses* losses);
-  /// What an evaluated instant's contacts do, one after the other: use(candidate, row).
+  /// Calls use(candidate, row) for all contacts of an evaluated instant, in order.
   template <class Use>
   void each_touching(const Instant& at, Use use) const {
     each_touching(
         {0, 0, static_cast<std::uint32_t>(touching_.size())}, at,
         [this](std::size_t block) { return touching_[block] != 0; }, use);
   }
-  /// The same of those of one chunk that reach across a periodic boundary.
+  /// The same for the contacts of one chunk across a periodic boundary.
   template <class Use>
   void each_crossing(std::size_t chunk, const Instant& at, Use use) const {
     if (image_.empty()) return;
@@ -70,18 +70,18 @@ class ContactTable {
         if (image_[c] != 0) use(c, row);
       });
   }
-  /// Those of one chunk with what they remember: use(candidate, memory).
+  /// Calls use(candidate, history) for the contacts of one chunk.
   template <class Use>
-  void each_memory(std::size_t chunk, Use use) const {
-    std::vector<double> memory(fields_.size());
+  void each_history(std::size_t chunk, Use use) const {
+    std::vector<double> history(fields_.size());
     for (const Blocks blocks : {chunks_[chunk].within, chunks_[chunk].across})
       each_touching(blocks.first, blocks.last, [&](std::size_t c) {
-        for (std::size_t f = 0; f < memory.size(); ++f) memory[f] = remembered(c, f);
-        use(c, std::span<const double>(memory));
+        for (std::size_t f = 0; f < history.size(); ++f) history[f] = history_of(c, f);
+        use(c, std::span<const double>(history));
       });
   }
-  /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces are
-  /// nearer than `near` [m], or touch.
+  /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces touch or
+  /// are nearer than `near` [m].
   template <class Use>
   void each_near(std::size_t chunk, const Bodies& bodies, const ImageShift* shifts, const Skins& skins, double near,
                  Use use) const {
@@ -113,72 +113,72 @@ class ContactTable {
     return xyz(bodies.position[b_[c]]) - xyz(bodies.position[a_[c]]) + xyz(shifts[image(c)].position);
   }
 
-  /// Adds what contacts across chunks do to the bodies of this one as their b. Always in the same order.
+  /// Adds the forces of contacts across chunks on b to the bodies of this chunk, always in the same order.
   void gather(std::size_t chunk, BodySum* sum) const;
-  /// Of each chunk the others that have a b of its candidates.
+  /// By chunk: the other chunks that contain a b of its candidates.
   const std::vector<std::vector<std::uint32_t>>& reached() const { return reached_; }
 
   std::size_t candidates() const { return a_.size(); }
-  bool touches(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
+  bool contacts(std::size_t c) const { return (touching_[c / block_size] >> (c % block_size) & 1) != 0; }
   std::uint32_t a(std::size_t c) const { return a_[c]; }
   std::uint32_t b(std::size_t c) const { return b_[c]; }
   std::uint8_t image(std::size_t c) const { return image_.empty() ? 0 : image_[c]; }
-  /// Memory of candidate c.
+  /// Contact history of candidate c.
   std::vector<double> state(std::size_t c) const;
   std::size_t touching_count() const;
-  /// Bytes held.
-  std::size_t memory() const;
-  /// Lists as they are, in their order, which is that of all sums. Restored into a table whose fields are set.
-  void remember(Memory& memory);
+  /// Memory [bytes].
+  std::size_t bytes() const;
+  /// Lists in their order, which is that of all sums. Restored into a table whose fields are set.
+  void serialize(Archive& archive);
 
  private:
   static constexpr std::size_t blocks_at_once = 64;
   struct Blocks {
-    std::uint32_t first = 0, near = 0, last = 0;  ///< from `near` on none touched when the table was built
-    void remember(Memory& memory) { memory(first, near, last); }
+    std::uint32_t first = 0, near = 0, last = 0;  ///< from `near` on none was in contact when the table was built
+    void serialize(Archive& archive) { archive(first, near, last); }
   };
   struct Chunk {
     Blocks within, across;
     std::uint32_t inbox_first = 0, inbox_far = 0, inbox_last = 0;
-    void remember(Memory& memory) { memory(within, across); }
+    void serialize(Archive& archive) { archive(within, across); }
   };
-  /// Where a row of another chunk goes.
+  /// Destination of a row of another chunk.
   struct Letter {
     std::uint32_t row, body;
   };
-  /// A candidate among those of its chunk: as few bytes as it takes, for all of them wait at once for their places.
+  /// A candidate within its chunk; small, because all candidates exist at once during a rebuild.
   struct Found {
     std::uint32_t b;
     float gap;
-    std::uint8_t a;  ///< by its place in the chunk
+    std::uint8_t a;  ///< index in the chunk
     std::uint8_t image;
     bool touching() const { return gap == 0; }
   };
   static_assert(chunk_bodies <= 256);
-  /// By how much two bodies of a chunk, or one of it and one of another, can have come closer since the search at most,
-  /// summed up step by step [m].
+  /// Upper bound of the approach of two bodies of a chunk, or of one of it and one of another, since the neighbour search,
+  /// summed over steps [m].
   static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.walked(chunk); }
   double closing_across(std::size_t chunk, const Skins& skins) const {
     double furthest = 0;
     for (const std::uint32_t other : reached_[chunk]) furthest = std::max(furthest, skins.walked(other));
     return skins.walked(chunk) + furthest;
   }
-  double remembered(std::size_t c, std::size_t field) const {
+  double history_of(std::size_t c, std::size_t field) const {
     return state_[c / block_size * fields_.size() + field].lane[c % block_size];
   }
-  /// Calls use(candidate) for those of some blocks that touch.
+  /// Calls use(candidate) for the contacts of some blocks.
   template <class Use>
   void each_touching(std::size_t first_block, std::size_t last_block, Use use) const {
     for (std::size_t block = first_block; block < last_block; ++block)
       for (std::uint32_t mask = touching_[block]; mask != 0; mask &= mask - 1)
         use(block * block_size + static_cast<std::size_t>(std::countr_zero(mask)));
   }
-  /// Calls use(candidate, row) for those that touch in the blocks that are wanted.
+  /// Calls use(candidate, row) for the contacts of the selected blocks.
   template <class Wanted, class Use>
   void each_touching(Blocks blocks, const Instant& at, Wanted wanted, Use use) const {
     std::vector<ContactRow> rows;
     for (std::size_t block = blocks.first, last; block < blocks.last; block = last) {
-      // Many blocks are not, most of them side by side.
+      // Many blocks have none, mostly contiguous ones.
       for (last = block; last < blocks.last && last < block + blocks_at_once && wanted(last);) ++last;
       if (last > block) {
         evaluate_again(block, last, at, rows);
@@ -196,20 +196,20 @@ class ContactTable {
 
   std::size_t bodies_ = 0;
   std::vector<Chunk> chunks_;
-  // Candidates: those within all chunks come before those across.
+  // Candidates: first those within chunks, then those across.
   LargeArray<std::uint32_t> a_, b_;
   LargeArray<std::uint8_t> image_;  // empty without periodic boundaries
   std::vector<std::uint8_t> touching_;
-  std::vector<float> asleep_until_;  // of blocks where none touches: what has to have closed before one can [m]
+  std::vector<float> asleep_until_;  // of blocks without contacts: approach before there can be one [m]
   std::vector<StateField> fields_;
   LargeArray<StateLine> state_;  // [block][field]
-  std::size_t first_cross_ = 0;  // the first candidate across chunks, which has the first row
+  std::size_t first_cross_ = 0;  // first candidate across chunks; it has the first row
   LargeArray<ContactRow> row_;
-  LargeArray<Letter> inbox_;       // by the chunk of b, those that touched when the table was built first; then by b
-  LargeArray<std::uint8_t> near_;  // of each candidate: touched when the table was built
+  LargeArray<Letter> inbox_;       // by chunk of b, first those in contact when the table was built; then by b
+  LargeArray<std::uint8_t> near_;  // by candidate: in contact when the table was built
   std::vector<std::vector<std::uint32_t>> reached_;  // by chunk
   std::vector<std::vector<Found>> found_;            // by chunk
-  std::vector<std::size_t> within_;                  // by chunk: how many of them are within it
+  std::vector<std::size_t> within_;                  // by chunk: number of candidates within it
 };
 
 }  // namespace grit

@@ -10,7 +10,7 @@
 namespace grit {
 namespace {
 
-/// How a body gives way to a push at a contact: inverse masses along and across the normal there, at most [1/kg].
+/// Compliance of a body to a force at a contact: upper bounds of the inverse masses along and across the normal [1/kg].
 struct Mobility {
   double along, across;
 };
@@ -24,7 +24,7 @@ Mobility mobility(const Bodies& bodies, std::size_t i, const Vec3& normal) {
           inverse_mass + furthest * furthest * inverse_inertia};
 }
 
-/// What the springs of one contact ask of one of its bodies, 1/s².
+/// Demand of the springs of one contact on one of its bodies [1/s²]; see CriticalStep.
 double demand(const Stiffness& k, const Bodies& bodies, std::size_t i, const Vec3& normal) {
   const double radius = bodies.position[i].w, inverse_mass = bodies.velocity[i].w, inverse_inertia = bodies.spin[i].w;
   if (bodies.clumps.clump_of(i) == no_clump) {
@@ -37,7 +37,7 @@ double demand(const Stiffness& k, const Bodies& bodies, std::size_t i, const Vec
   return std::min(apart, together) + std::max(k.rolling, k.twisting) * inverse_inertia;
 }
 
-/// What the dashpots of one contact ask of its bodies where a clump is one of them, 1/s.
+/// Demand of the dashpots of one contact on its bodies if one of them is a clump [1/s].
 double dashpots(const Stiffness& k, const Mobility& a, const Mobility& b, double inverse_mass) {
   const double along = 2 * k.damping_ratio * std::sqrt(k.normal / inverse_mass);
   const double across = 2 * k.shear_damping_ratio * std::sqrt(k.shear / (3.5 * inverse_mass));
@@ -55,20 +55,20 @@ Rates rates(const Stiffness& k, double inverse_mass) {
           2 * k.shear_damping_ratio * std::sqrt(k.shear * inverse_mass / slide)};
 }
 
-/// What two blocks, of a body's velocity and of its spin times √(I/m), have as their largest eigenvalue at most where
-/// `both` [squared] is what joins them.
+/// Upper bound of the largest eigenvalue of a matrix of two diagonal blocks, for a body's velocity and for its spin times
+/// √(I/m), and an off-diagonal block whose squared norm is `both`.
 double joined(double velocity, double spin, double both) {
   return 0.5 * (velocity + spin) + std::sqrt(0.25 * (velocity - spin) * (velocity - spin) + both);
 }
-/// The same of one contact alone.
+/// The same for a single contact.
 double largest(const Rates& rates) {
   return joined(std::max(rates.along, rates.across), (slide - 1) * rates.across,
                 (slide - 1) * rates.across * rates.across);
 }
 
-/// What dashpots ask of a body, 1/s: along·n n + across·(1 − n n) of its velocity, (slide − 1) across·(1 − n n) of its
-/// spin times √(I/m), √(slide − 1) across·n of both together, summed over its contacts. Of two bodies, each bears what
-/// both together are worth.
+/// Demand of dashpots on a body [1/s], summed over its contacts: along·n n + across·(1 − n n) for its velocity,
+/// (slide − 1) across·(1 − n n) for its spin times √(I/m), and √(slide − 1) across·n that couples both. Each of the two
+/// bodies of a contact takes the sum of both.
 class Dashpots {
  public:
   /// A symmetric matrix: its diagonal, then xy, xz, yz.
@@ -84,15 +84,15 @@ class Dashpots {
     across_ += rates.across;
     both_ += rates.across * normal;
   }
-  /// No less than largest(), and far cheaper: a root of x³ − 3 p² x = 2 q, which the eigenvalues are about their mean,
-  /// is at most 2 p.
+  /// Upper bound of largest(), and far cheaper: the eigenvalues less their mean are the roots of x³ − 3 p² x = 2 q, which
+  /// are at most 2 p.
   double at_most() const {
     const auto bound = [](const Six& m) {
       const double mean = m.head<3>().mean();
       const double spread = (m.head<3>().array() - mean).square().sum() + 2 * m.tail<3>().squaredNorm();
       return mean + 2 * std::sqrt(spread / 6);
     };
-    return (1 + 1e-12) * joined(bound(velocity()), bound(spin()), both());  // rounded
+    return (1 + 1e-12) * joined(bound(velocity()), bound(spin()), both());  // above rounding error
   }
   /// An upper bound of the largest eigenvalue of the whole.
   double largest() const { return joined(eigenvalue(velocity()), eigenvalue(spin()), both()); }
@@ -165,7 +165,7 @@ Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant&
   return all;
 }
 
-/// What contacts ask of the bodies of a chunk.
+/// Demands of contacts on the bodies of a chunk.
 void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   const Bodies& bodies = at.bodies;
   Chunk& own = chunk_[chunk];
@@ -203,15 +203,15 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     ask(a, normal), ask(b, -normal);
     own.near.push_back(static_cast<std::uint32_t>(c));
   });
-  at.walls.each_near(chunk, bodies, at.surfaces, at.near, [&](const Touch& touch, const WallSurface& wall) {
-    const std::uint32_t a = touch.body;
-    PairSize size = size_of(a, a, std::max(touch.overlap - at.near, 0.0));
+  at.walls.each_near(chunk, bodies, at.surfaces, at.near, [&](const SurfaceContact& contact, const WallSurface& wall) {
+    const std::uint32_t a = contact.body;
+    PairSize size = size_of(a, a, std::max(contact.overlap - at.near, 0.0));
     size.inverse_mass_b = 0, size.wall = true;
     const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
-    springs[a - first] += demand(k, bodies, a, touch.normal);
+    springs[a - first] += demand(k, bodies, a, contact.normal);
     if (bodies.clumps.clump_of(a) != no_clump)
-      clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, touch.normal), {}, bodies.velocity[a].w);
-    else damped[a - first].add(rates(k, bodies.velocity[a].w), touch.normal, Dashpots::square(touch.normal));
+      clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, contact.normal), {}, bodies.velocity[a].w);
+    else damped[a - first].add(rates(k, bodies.velocity[a].w), contact.normal, Dashpots::square(contact.normal));
   });
   own.demand = {};
   for (std::size_t i = first; i < last; ++i) {
@@ -224,10 +224,10 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     const double alone = demand(k, bodies, i, across);
     demand_[i] = std::max(springs[i - first], alone);
     own.demand.spring = std::max({own.demand.spring, 2 * alone, demand_[i]});
-    // Springs that stiffen from nothing part softly: what counts is the stiffness at first touch.
-    const double first_touch =
+    // Springs whose stiffness starts at 0 separate softly: the stiffness at first contact counts.
+    const double first_contact =
         at.overlap > 0 ? at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]).normal : k.normal;
-    own.demand.impact = std::max(own.demand.impact, 2 * first_touch * mobility(bodies, i, across).along);
+    own.demand.impact = std::max(own.demand.impact, 2 * first_contact * mobility(bodies, i, across).along);
     if (clumps)
       clumps_.springs[i] = springs[i - first], clumps_.least[i] = alone,
       clumps_.dashpots[i] = clump_dashpots[i - first];
@@ -238,7 +238,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     }
     own.demand.dashpot = std::max(own.demand.dashpot, largest(rates(k, 2 * bodies.velocity[i].w)));
   }
-  // Begins with the body that may ask for most: beside it few others need a closer look.
+  // Starts with the body of the largest bound: then few others need an exact evaluation.
   std::array<double, chunk_bodies> most{};
   for (std::size_t i = first; i < last; ++i) most[i - first] = clump_dashpots[i - first] + damped[i - first].at_most();
   const auto look = [&](std::size_t i) {
@@ -258,7 +258,7 @@ void CriticalStep::gather(std::size_t c, const Clumps& clumps) {
   clumps_.dashpot[c] = dashpots;
 }
 
-/// What they ask of the two of a pair, and of clumps as a whole.
+/// Demands on the two bodies of a pair, and on clumps as a whole.
 void CriticalStep::compare(std::size_t chunk, const Instant& at) {
   Chunk& own = chunk_[chunk];
   own.together = {};

@@ -8,7 +8,7 @@
 namespace grit {
 namespace {
 
-std::uint64_t spread(std::uint64_t x) {  // bits of x to every third place
+std::uint64_t spread(std::uint64_t x) {  // moves the bits of x to every third position
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffff;
   x = (x | x << 16) & 0x1f0000ff0000ff;
@@ -17,7 +17,7 @@ std::uint64_t spread(std::uint64_t x) {  // bits of x to every third place
   return (x | x << 2) & 0x1249249249249249;
 }
 
-/// Above zero, but not above `gap` if that is.
+/// Positive, and at most `gap` if that is positive.
 float rounded_down(double gap) {
   const auto near = static_cast<float>(gap);
   return std::max(near > gap ? std::nextafter(near, 0.0f) : near, std::numeric_limits<float>::min());
@@ -27,7 +27,7 @@ struct Box {
   Vec3 low, high;
 };
 
-/// The periodic cell along its periodic axes, what the bodies fill along the others.
+/// The periodic cell along periodic axes, the extent of the bodies along the others.
 Box extent(const Bodies& bodies, const Cell& cell) {
   Box box{Vec3::Constant(std::numeric_limits<double>::max()), Vec3::Constant(std::numeric_limits<double>::lowest())};
   for (std::size_t i = 0; i < bodies.count(); ++i) {
@@ -39,7 +39,7 @@ Box extent(const Bodies& bodies, const Cell& cell) {
   return box;
 }
 
-/// Cells of at least `width`, but not many more than there are bodies, however far a stray body has gone.
+/// Cells of at least `width`, but not many more than bodies, even if a body is far away.
 std::array<int, 3> cells(const Vec3& length, double width, std::size_t bodies) {
   const double most = 4.0 * static_cast<double>(bodies) + 64;
   std::array<int, 3> size{};
@@ -75,7 +75,7 @@ std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell)
     }
     key[i] = morton;
   }
-  // Ids break ties, so that the order depends on where the bodies are and not on how they came there.
+  // Ids break ties, so that the order depends on positions only and not on the history.
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return key[a] != key[b] ? key[a] < key[b] : bodies.id[a] < bodies.id[b];
   });
@@ -103,7 +103,7 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
     per_period_[k] = cell.periodic[k] ? 1 / period_[k] : 0;
   }
 
-  // A class a factor of 2.5 in radius: with 1:3 gradings one class, beyond that as many as it takes.
+  // Each size class spans a factor of 2.5 in radius: one class suffices up to this ratio.
   const int classes =
       largest <= 3.01 * smallest ? 1 : 1 + static_cast<int>(std::log(largest / smallest) / std::log(2.5));
   const auto class_of = [&](double radius) {
@@ -168,7 +168,7 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
         for (int cx = first[0]; cx <= last[0]; ++cx) {
           const std::size_t cell = line + wrapped(0, cx);
           const std::uint32_t begin = grid.start[cell], end = grid.start[cell + 1];
-          // Bodies of a cell are in rising order: most cells before this body's own are passed over here.
+          // Bodies of a cell are in ascending order: most cells before that of this body are skipped here.
           if (begin == end || grid.body[end - 1] <= body) continue;
           for (std::uint32_t n = begin; n < end; ++n) {
             const std::uint32_t other = grid.body[n];
@@ -185,9 +185,9 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
               }
             }
             const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            const double touch = own.w + b.w, near = touch + (skin + skins_.of_body(other));
+            const double contact = own.w + b.w, near = contact + (skin + skins_.of_body(other));
             if (square < near * near) {
-              const float gap = square < touch * touch ? 0 : rounded_down(std::sqrt(square) - touch);
+              const float gap = square < contact * contact ? 0 : rounded_down(std::sqrt(square) - contact);
               candidates.push_back({body, other, gap, image});
             }
           }

@@ -1,4 +1,4 @@
-// Neighbour search on cell grids, one a size class.
+// Neighbour search on cell grids, one per size class.
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace grit {
 
-/// A pair whose surfaces are nearer than both skins are wide; a < b by index.
+/// A pair whose surfaces are nearer than the sum of both skins; a < b by index.
 struct Candidate {
   std::uint32_t a, b;
-  float gap;           ///< between their surfaces [m]; 0 where they touch, else not more than it is
-  std::uint8_t image;  ///< which periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
+  float gap;           ///< lower bound of the distance of the surfaces [m]; 0 in contact
+  std::uint8_t image;  ///< periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
   bool touching() const { return gap == 0; }
 };
 
-/// The shift that an image stands for, in periods.
+/// The shift of an image, in periods.
 inline std::array<int, 3> image_shift(std::uint8_t image) {
   const auto one = [](int digit) { return digit == 2 ? -1 : digit; };
   return {one(image % 3), one(image / 3 % 3), one(image / 9)};
@@ -30,15 +30,15 @@ inline std::array<int, 3> image_shift(std::uint8_t image) {
 /// The order of bodies along a space-filling (Morton) curve through cells of about the largest diameter.
 std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell);
 
-/// Finds all pairs nearer than their skins. Bodies must lie inside the periods of `cell`, if any. Bodies are filed by
-/// size: a class spans a factor of 2.5 in radius, so that small grains do not search the cells of large ones.
+/// Finds all pairs nearer than their skins. Bodies must be inside the periods of `cell`, if any. Bodies are sorted into
+/// size classes that span a factor of 2.5 in radius, so that small grains need not search the cells of large ones.
 class NeighbourSearch {
  public:
-  /// Periods must be as long as shortest_period() of the largest body and skin.
+  /// Periods must be at least shortest_period() of the largest body and skin.
   void build(const Bodies& bodies, const Cell& cell, const Skins& skins);
-  /// Twice the reach of two bodies [m]: in a shorter period one would meet another twice.
+  /// Twice the reach of two bodies [m]: in a shorter period one body would meet another twice.
   static double shortest_period(double radius, double skin) { return 4 * (radius + skin); }
-  /// Appends the candidates whose a is `body`, by b.
+  /// Appends the candidates with a = `body`, in ascending order of b.
   void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
 
  private:

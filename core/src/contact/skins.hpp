@@ -1,4 +1,4 @@
-// How far bodies and walls may go before neighbours are sought again, and how far they may have gone.
+// Skins: distances that bodies and walls may move before the next neighbour search, and bounds of their displacements.
 #pragma once
 
 #include <algorithm>
@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "contact/chunks.hpp"
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 
 namespace grit {
 
-/// Bodies of a chunk have a skin of their own, walls share one. Two surfaces are candidates if their gap is less than
-/// both skins together, so that nothing is missed while nobody has gone further than its skin is wide. Fast bodies have
-/// wide skins and slow ones thin ones, so that they use them up together.
+/// Each chunk has its own skin; walls share one. Two surfaces are candidates if their gap is less than the sum of both
+/// skins, so that no contact is missed while no displacement exceeds its skin. Fast bodies have wide skins and slow ones
+/// thin ones, so that all are used up at about the same time.
 class Skins {
  public:
-  /// Before a search: skins for what may be expected, `body` of each chunk and `wall` [m], and nobody has moved.
-  void lay_on(std::span<const double> body, double wall) {
+  /// Before a search: sets the skins for the expected motion, `body` by chunk and `wall` [m], and zero displacements.
+  void reset(std::span<const double> body, double wall) {
     chunk_.assign(body.size(), {});
     for (std::size_t c = 0; c < body.size(); ++c) chunk_[c].skin = body[c];
     largest_ = body.empty() ? 0 : *std::max_element(body.begin(), body.end());
@@ -29,27 +29,27 @@ class Skins {
   double of_walls() const { return wall_.skin; }
   double largest() const { return largest_; }
 
-  /// A step's way [m] at most: by themselves, and half of what the mean flow of a cell moves the two of a pair.
+  /// Upper bounds of displacements in a step [m]: own motion, and half the relative motion of a pair by the mean flow.
   void go(std::size_t chunk, double way, double strained) {
     chunk_[chunk].gone += way, chunk_[chunk].walked += way + strained;
   }
-  void walls_go(double way) { wall_.gone += way, wall_.walked += way; }
-  /// Bodies of a chunk were found to be no further than this from where they were.
+  void advance_walls(double way) { wall_.gone += way, wall_.walked += way; }
+  /// Sets the measured maximum displacement of a chunk's bodies since the search [m].
   void found(std::size_t chunk, double way) { chunk_[chunk].gone = std::min(chunk_[chunk].gone, way); }
 
-  /// How far bodies of a chunk are from where they were at the search, at most [m].
+  /// Upper bound of the displacement of a chunk's bodies since the search [m].
   double gone(std::size_t chunk) const { return chunk_[chunk].gone; }
   double walls_gone() const { return wall_.gone; }
-  /// The same, step by step along their way, so that it never shrinks.
+  /// The same along their path, summed over steps, so that it never decreases.
   double walked(std::size_t chunk) const { return chunk_[chunk].walked; }
   double walls_walked() const { return wall_.walked; }
 
-  void remember(Memory& memory) { memory(chunk_, wall_, largest_); }
+  void serialize(Archive& archive) { archive(chunk_, wall_, largest_); }
 
  private:
   struct Way {
     double skin = 0, gone = 0, walked = 0;
-    void remember(Memory& memory) { memory(skin, gone, walked); }
+    void serialize(Archive& archive) { archive(skin, gone, walked); }
   };
   std::vector<Way> chunk_;
   Way wall_;

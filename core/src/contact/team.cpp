@@ -17,7 +17,7 @@ std::uint32_t generation_of(std::uint64_t ticket) { return static_cast<std::uint
 std::uint64_t end_of(std::uint64_t ticket) { return ticket >> index_bits & index_mask; }
 std::uint64_t next_of(std::uint64_t ticket) { return ticket & index_mask; }
 
-// A pass takes some 100 µs; waking a sleeper some 5 µs. A spin of about 10 µs bridges the gap between two passes.
+// A pass takes some 100 µs; waking a sleeping thread some 5 µs. Spinning for about 10 µs bridges the gap between passes.
 constexpr int spins = 400;
 void pause() {
 #if defined(__x86_64__)
@@ -25,7 +25,7 @@ void pause() {
 #endif
 }
 
-/// Spins for a while, then sleeps, as long as `value` is what it was.
+/// Spins for a while, then sleeps, until `value` changes.
 template <class T>
 void wait_while(const std::atomic<T>& value, T was) {
   for (int i = 0; i < spins; ++i) {

@@ -1,4 +1,4 @@
-// Threads that share the chunks of one pass. Who takes which chunk is chance; results never depend on it.
+// Threads that share the chunks of one pass. Results do not depend on which thread takes which chunk.
 #pragma once
 
 #include <atomic>
@@ -11,12 +11,12 @@
 
 namespace grit {
 
-/// A few threads that sleep when there is nothing to do and never wait for a thread that has no chunk in hand, so that
-/// a busy neighbour on one core costs no more than its share. Each begins with a stretch of its own, the same in every
-/// pass, so that neighbouring chunks meet in one core's cache; who is done helps the others.
+/// A few threads that sleep without work and never wait for a thread that has no chunk, so that another process on one
+/// core does not delay the others. Each starts with its own range of chunks, the same in every pass, so that neighbouring
+/// chunks share the cache of a core; a thread that is done takes chunks of others.
 class Team {
  public:
-  /// `threads` in all, the caller included; at least 1.
+  /// Total number of threads, including the caller; at least 1.
   explicit Team(unsigned threads);
   ~Team();
   Team(const Team&) = delete;
@@ -25,7 +25,7 @@ class Team {
   unsigned threads() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
   /// Calls work(chunk) for chunk = 0 … chunks − 1 (fewer than 2²⁰), from any thread, and returns when all are done. One
-  /// thread alone takes them in their order. If `work` throws, one of its exceptions is thrown on then. Not reentrant.
+  /// single thread takes them in order. If `work` throws, one of its exceptions is rethrown at the end. Not reentrant.
   template <class Work>
   void each(std::size_t chunks, Work&& work) {
     if (workers_.empty() || chunks < 2) {
@@ -39,7 +39,7 @@ class Team {
 
  private:
   using Call = void (*)(void*, std::size_t);
-  // One word says everything, so that a thread that comes late cannot take a chunk of a job that is over:
+  // Everything is in one word, so that a late thread cannot take a chunk of a finished job:
   // generation (24 bits), end of the stretch (20), next chunk (20).
   struct alignas(64) Stretch {
     std::atomic<std::uint64_t> ticket{0};
@@ -47,7 +47,7 @@ class Team {
 
   void run(std::size_t chunks, Call call, void* context);
   void work_loop(unsigned thread);
-  /// Takes chunks of the present job until none is left, of the thread's own stretch first.
+  /// Takes chunks of the present job until none is left, first those of the thread's own range.
   void take_chunks(std::uint32_t generation, unsigned thread);
 
   std::unique_ptr<Stretch[]> stretch_;  // by thread

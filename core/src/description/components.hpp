@@ -1,4 +1,4 @@
-// The live plugins of a scene, by the names that the description gives them.
+// The live plugins of a scene, by their names in the description.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@
 
 namespace grit {
 
-/// `simulation` makes them and keeps them in step with the description. Geometries are prepared and do not change: a
-/// wall of another shape has another one. All others keep their instance.
+/// `simulation` makes them and keeps them consistent with the description. Geometries are prepared and immutable: a
+/// wall that changes its shape gets a new one. All others keep their instance.
 struct Components {
   std::shared_ptr<ContactLaw> law;
   std::map<std::string, std::shared_ptr<const BodyKind>> body_kinds;

@@ -31,10 +31,10 @@ CurrentScene::Step CurrentScene::advance_ramps(std::size_t increments) {
 }
 
 void CurrentScene::bind(const RampPlan& ramp) {
-  const auto place = NumberPointer::of(ramp.pointer);
+  const auto number = NumberPointer::of(ramp.pointer);
   Parameters parameters;
-  if (place && now_.declare_unit(place->section, place->name, nullptr, parameters))
-    number_ = find_number(parameters, place->keys);
+  if (number && now_.declare_unit(number->section, number->name, nullptr, parameters))
+    number_ = find_number(parameters, number->keys);
   if (!number_) throw Error("there is no number at " + ramp.pointer);
 }
 
@@ -54,19 +54,19 @@ void CurrentScene::set(const RampPlan& ramp, double value, Step& step) {
 }
 
 bool through_stages(const SceneDescription& described, const std::vector<StagePlan>& stages,
-                    const std::function<bool(const SceneDescription&, std::optional<std::size_t>)>& look) {
+                    const std::function<bool(const SceneDescription&, std::optional<std::size_t>)>& visit) {
   CurrentScene scene(described, stages);
-  if (!look(scene.now(), std::nullopt)) return false;
+  if (!visit(scene.now(), std::nullopt)) return false;
   for (std::size_t i = 0; i < stages.size(); ++i) {
     scene.begin_stage();
-    if (!look(scene.now(), i)) return false;
+    if (!visit(scene.now(), i)) return false;
     std::size_t before = 0;
     for (const RampPlan& ramp : stages[i].ramps) {
       const auto increments = static_cast<std::size_t>(ramp.increments);
       for (const std::size_t at : {std::size_t{1}, increments}) {
         if (before + at <= scene.increments_done()) continue;
         scene.advance_ramps(before + at);
-        if (!look(scene.now(), i)) return false;
+        if (!visit(scene.now(), i)) return false;
       }
       before += increments;
     }

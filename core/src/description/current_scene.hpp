@@ -1,4 +1,4 @@
-// A description as it is at some point of its stages: one copy, brought forward in place.
+// The description at some instant of its stages: one copy, advanced in place.
 #pragma once
 
 #include <cstddef>
@@ -21,42 +21,42 @@ class CurrentScene {
 
   const SceneDescription& now() const { return now_; }
   std::size_t stages() const { return stages_->size(); }
-  /// Which begins next; 0 before the first.
+  /// Index of the stage that begins next; 0 before the first.
   std::size_t next_stage() const { return next_; }
   const StagePlan& plan(std::size_t stage) const { return (*stages_)[stage]; }
 
-  /// Begins the next stage, from where the ramps of the one before end.
+  /// Begins the next stage, with the ramps of the stage before completed.
   void begin_stage();
 
-  /// What a step of ramps did: a number was set, in a part that had to be replaced first or not.
+  /// Result of an advance of ramps: a number was set; the part that contains it may have been replaced first.
   struct Step {
-    const RampPlan* ramp = nullptr;  ///< null where nothing changed
+    const RampPlan* ramp = nullptr;  ///< null if nothing changed
     bool replaced = false;
     double value = 0;
   };
-  /// Brings the ramps of the present stage to where so many of all their increments are done; never fewer than before.
+  /// Advances the ramps of the present stage until `increments` of all their increments are done; never back.
   Step advance_ramps(std::size_t increments);
   std::size_t increments_done() const { return done_; }
-  /// Changes parts from outside the stages' plans. They stay until a stage or a ramp changes them.
+  /// Changes parts independently of the stages. The changes persist until a stage or a ramp overwrites them.
   void apply(const SettingsChange& change);
 
  private:
   /// Finds the number of a ramp among the present values.
   void bind(const RampPlan& ramp);
-  /// Of the ramp that goes on.
+  /// Sets the number of the active ramp.
   void set(const RampPlan& ramp, double value, Step& step);
 
   SceneDescription now_;
   const std::vector<StagePlan>* stages_;
   std::size_t next_ = 0, done_ = 0;
-  std::size_t ramp_ = 0;               // the one that goes on
-  std::optional<NumberPlace> number_;  // its number, once it has begun
+  std::size_t ramp_ = 0;               // the active one
+  std::optional<NumberPlace> number_;  // its number, after it has begun
 };
 
-/// Calls `look` with the description as stages begin and as their ramps begin and end, until it returns false. Returns
-/// whether it never did. `look` gets the number of the stage that goes on; the first call is of the description before
-/// any stage, and has none.
+/// Calls `visit` with the description at the start of each stage and at the start and end of each ramp, until it
+/// returns false. Returns whether it never did. `visit` gets the index of the present stage; the first call gets the
+/// description before any stage, without an index.
 bool through_stages(const SceneDescription& described, const std::vector<StagePlan>& stages,
-                    const std::function<bool(const SceneDescription& now, std::optional<std::size_t> stage)>& look);
+                    const std::function<bool(const SceneDescription& now, std::optional<std::size_t> stage)>& visit);
 
 }  // namespace grit

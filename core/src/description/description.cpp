@@ -36,19 +36,19 @@ void declare_sizes(Parameters& p, double& smallest, double& largest) {
   p.add("largest", largest).unit("m").symbol("d_max").above(0).doc("largest diameter");
   p.check(
       [&](const Complain& complain) {
-        if (largest < smallest) complain("largest", "a diameter below smallest", "smallest or more");
+        if (largest < smallest) complain("largest", "a diameter below smallest", "at least smallest");
       },
       {"smallest", "largest"});
 }
 
-/// Reports a low that is not below its high, axis by axis.
+/// Reports each axis along which low is not below high.
 void check_box(const Vec3& low, const Vec3& high, const Complain& complain) {
   for (int k = 0; k < 3; ++k)
     if (!(low[k] < high[k]))
-      complain("high/" + std::to_string(k), "a side that is not above low along " + one_axis[k], "low < high");
+      complain("high/" + std::to_string(k), "high not above low along " + one_axis[k], "low < high");
 }
 
-/// Reports names that are none of `names`.
+/// Reports names that are not among `names`.
 class References {
  public:
   References(std::string what, std::vector<std::string> names, const Complain& complain)
@@ -57,7 +57,7 @@ class References {
   bool has(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
   void check(const std::string& key, const std::string& name) const {
     if (!has(name))
-      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not described", any_of(names_, "none"));
+      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not defined", any_of(names_, "none"));
   }
 
  private:
@@ -78,7 +78,7 @@ void check_walls_of(const Condition& condition, const std::string& key, const Re
   if (const auto* any = std::get_if<AnyCondition>(&is)) each(any->of);
 }
 
-/// A wall that follows itself by way of others.
+/// Reports walls that follow themselves through other walls.
 void check_circles(const std::map<std::string, WallDescription>& walls, const Complain& complain) {
   for (const auto& [name, wall] : walls) {
     std::set<std::string> passed;
@@ -89,12 +89,12 @@ void check_circles(const std::map<std::string, WallDescription>& walls, const Co
       at = &next->second;
     }
     if (passed.contains(name))
-      complain("walls/" + name + "/motion/follow/wall", "a circle of walls that follow each other",
-               "a wall that leads");
+      complain("walls/" + name + "/motion/follow/wall", "a cycle of walls that follow each other",
+               "a wall outside the cycle");
   }
 }
 
-// ---- what sections say of each other
+// ---- checks between sections
 
 /// A body keeps the index of its material in one byte.
 void check_number_of_materials(const SceneDescription& scene, const Complain& complain) {
@@ -106,7 +106,7 @@ void check_number_of_materials(const SceneDescription& scene, const Complain& co
 void check_interfaces(const SceneDescription& scene, const Complain& complain) {
   for (const auto& [name, _] : scene.materials)
     if (name.find('+') != std::string::npos)
-      complain("materials/" + name, "a name with a +", "names without it: + joins the materials of an interface");
+      complain("materials/" + name, "a name with a +", "a name without +, which joins the materials of an interface");
   const References known("material", keys(scene.materials), complain);
   std::set<std::pair<std::string, std::string>> pairs;
   for (const InterfaceDescription& one : scene.interfaces) {
@@ -118,7 +118,7 @@ void check_interfaces(const SceneDescription& scene, const Complain& complain) {
     known.check(key, one.a);
     if (one.a != one.b) known.check(key, one.b);
     if (!pairs.insert(std::minmax(one.a, one.b)).second)
-      complain(key, "an interface that is described twice", "either order, once");
+      complain(key, "an interface that is defined twice", "one definition, in either order");
   }
 }
 
@@ -133,15 +133,15 @@ void check_materials_of_walls(const SceneDescription& scene, const Complain& com
 }
 
 void check_weight(const SceneDescription& scene, const Complain& complain) {
-  const auto is_heavier = [](const auto& group) { return group.second.heavier_below > 0; };
-  if (std::ranges::none_of(scene.bodies, is_heavier)) return;
+  const auto is_scaled = [](const auto& group) { return group.second.scaled_below() > 0; };
+  if (std::ranges::none_of(scene.bodies, is_scaled)) return;
   MotionSettings settings;
   for (const auto& [name, engine] : scene.engines) engine.engine.make()->settings(settings);
   if (settings.gravity.isZero(0.0)) return;
   for (const auto& [name, group] : scene.bodies)
-    if (group.heavier_below > 0)
-      complain("bodies/" + name + "/heavier_below", "heavier grains where gravity acts",
-               "0: their weight would grow with their mass");
+    if (group.scaled_below() > 0)
+      complain("bodies/" + name + "/density_scaling", "density scaling together with gravity",
+               "only one of them, as weight would grow with the scaled mass; remove one");
 }
 
 void check_followers(const SceneDescription& scene, const Complain& complain) {
@@ -170,29 +170,30 @@ void DisplacementCadence::declare(Parameters& p) {
       .symbol("u")
       .above(0)
       .required()
-      .doc("displacement from one to the next, there or back");
+      .doc("displacement between two samples or frames, in either direction");
 }
 void Cadence::declare(Parameters& p) {
-  p.add("every_time", every_time).unit("s").above(0).doc("simulated time from one to the next");
-  p.add("every_steps", every_steps).at_least(0).doc("steps from one to the next; 0: not by steps");
-  p.add("every_displacement", every_displacement).doc("displacement of a wall from one to the next");
-  p.add("every_left", every_left)
+  p.add("every_time", every_time).unit("s").above(0).doc("simulated time between two samples or frames");
+  p.add("every_steps", every_steps).at_least(0).doc("steps between two samples or frames; 0: not used");
+  p.add("every_displacement", every_displacement).doc("displacement of a wall between two samples or frames");
+  p.add("every_discharged", every_discharged)
       .above(0)
       .at_most(1)
-      .doc("share of all mass that has come that leaves the domain from one to the next");
+      .doc("mass discharged between two samples or frames, over the mass of all bodies so far");
   p.check(
       [this](const Complain& complain) {
         std::string key, given;
-        const auto count = [&](bool there, const char* name, const char* what) {
-          if (there) key = name, given += (given.empty() ? "a cadence " : " and ") + std::string(what);
+        int count = 0;
+        const auto add = [&](bool there, const char* name, const char* what) {
+          if (there) key = name, given += (++count == 1 ? "a cadence " : " and ") + std::string(what);
         };
-        count(every_time.has_value(), "every_time", "in time");
-        count(every_steps > 0, "every_steps", "in steps");
-        count(every_displacement.has_value(), "every_displacement", "in displacement");
-        count(every_left.has_value(), "every_left", "in mass that leaves");
-        if (given.find(" and ") != std::string::npos) complain(key, given, "one of them");
+        add(every_time.has_value(), "every_time", "in time");
+        add(every_steps > 0, "every_steps", "in steps");
+        add(every_displacement.has_value(), "every_displacement", "in displacement");
+        add(every_discharged.has_value(), "every_discharged", "in discharged mass");
+        if (count > 1) complain(key, given, "one of them");
       },
-      {"every_time", "every_steps", "every_displacement", "every_left"});
+      {"every_time", "every_steps", "every_displacement", "every_discharged"});
 }
 
 // ---- grains
@@ -201,17 +202,20 @@ void UniformSizes::declare(Parameters& p) { declare_sizes(p, smallest, largest);
 void LinearSizes::declare(Parameters& p) { declare_sizes(p, smallest, largest); }
 void LogNormalSizes::declare(Parameters& p) {
   p.add("median", median).unit("m").symbol("d_50").above(0).doc("median diameter");
-  p.add("deviation", deviation).above(0).at_most(3).doc("standard deviation of the diameter's natural logarithm");
+  p.add("log_standard_deviation", log_standard_deviation)
+      .above(0)
+      .at_most(3)
+      .doc("standard deviation of the natural logarithm of the diameter");
   declare_sizes(p, smallest, largest);
 }
 void SieveSizes::declare(Parameters& p) {
-  p.add("diameters", diameters).unit("m").above(0).required().entries(2).doc("openings of the sieves, rising");
+  p.add("diameters", diameters).unit("m").above(0).required().entries(2).doc("sieve openings, increasing");
   p.add("passing", passing)
       .at_least(0)
       .at_most(1)
       .required()
       .entries(2)
-      .doc("share of the mass that passes each, rising to 1");
+      .doc("mass fraction that passes each sieve, increasing to 1");
   p.check(
       [this](const Complain& complain) {
         const auto rises = [](const std::vector<double>& v) {
@@ -219,108 +223,122 @@ void SieveSizes::declare(Parameters& p) {
         };
         if (passing.size() != diameters.size())
           complain("passing", std::to_string(passing.size()) + " entries",
-                   std::to_string(diameters.size()) + ", one for each diameter");
-        if (!rises(diameters)) complain("diameters", "a list that does not rise", "a rising list");
-        if (!rises(passing)) complain("passing", "a list that does not rise", "a rising list");
-        if (passing.back() != 1) complain("passing", "a last entry below 1", "1, all of the mass");
+                   std::to_string(diameters.size()) + ", one per diameter");
+        if (!rises(diameters)) complain("diameters", "a list that does not increase", "an increasing list");
+        if (!rises(passing)) complain("passing", "a list that does not increase", "an increasing list");
+        if (passing.back() != 1) complain("passing", "a last entry below 1", "1, all the mass");
       },
       {"diameters", "passing"});
 }
 void ListSizes::declare(Parameters& p) {
-  p.add("diameters", diameters).unit("m").above(0).required().entries(1).doc("diameters, taken in turn");
+  p.add("diameters", diameters)
+      .unit("m")
+      .above(0)
+      .required()
+      .entries(1)
+      .doc("diameters, assigned in order and repeated");
 }
 
-void CloudGrains::declare(Parameters& p) {
-  p.add("low", low).unit("m").required().doc("lower corner of the box that is filled");
-  p.add("high", high).unit("m").required().doc("upper corner of the box that is filled");
-  p.add("count", count).at_least(1).at_most(4e9).required().doc("number of grains");
-  p.add("sizes", sizes).required().doc("their diameters");
-  p.add("flat", flat)
+void CloudSource::declare(Parameters& p) {
+  p.add("low", low).unit("m").required().doc("lower corner of the box to fill");
+  p.add("high", high).unit("m").required().doc("upper corner of the box to fill");
+  p.add("count", count).at_least(1).at_most(4e9).required().doc("number of bodies");
+  p.add("sizes", sizes).required().doc("distribution of diameters");
+  p.add("plane_normal", plane_normal)
       .one_of({"none", "x", "y", "z"})
-      .doc("normal of the plane in the middle of the box on which all centres lie, for the engine planar");
+      .doc("normal of the plane through the centre of the box in which all centres lie, for the engine planar");
   p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
 }
-void FileGrains::declare(Parameters& p) {
-  p.add("path", path).file().required().doc("text file, a line a grain: x y z radius, in m; # starts a comment");
+void FileSource::declare(Parameters& p) {
+  p.add("path", path).file().required().doc("text file with one body per line: x y z radius, in m; # starts a comment");
   p.check(
       [this](const Complain& complain) {
         if (path.empty()) complain("path", "an empty text", "the path of a file");
       },
       {"path"});
 }
-void PlacedGrain::declare(Parameters& p) {
+void ListedBody::declare(Parameters& p) {
   p.add("position", position).unit("m").required().doc("centre");
   p.add("radius", radius).unit("m").symbol("R").above(0).required().doc("radius");
-  p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity at the start");
-  p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity at the start, right-handed");
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("initial velocity");
+  p.add("spin", spin).unit("rad/s").symbol("omega").doc("initial angular velocity, right-handed");
   p.add("orientation", orientation)
       .unit("rad")
-      .doc("of a clump: axis times angle by which it is turned from how its shape is given");
+      .doc("initial orientation of a clump: rotation vector from the orientation in which its shape is given");
 }
-void PlacedGrains::declare(Parameters& p) {
-  p.add("grains", grains).required().entries(1).doc("the grains, one by one");
+void ListSource::declare(Parameters& p) { p.add("bodies", bodies).required().entries(1).doc("the bodies, one by one"); }
+
+void DensityScalingDescription::declare(Parameters& p) {
+  p.add("below", below)
+      .unit("m")
+      .at_least(0)
+      .required()
+      .doc("bodies with a smaller diameter get the mass and moment of inertia of a body of this diameter");
 }
 
 BodiesDescription::BodiesDescription(const Registry& registry) : kind(registry) {}
 void BodiesDescription::declare(Parameters& p) {
   p.choose(kind);
-  p.add("material", material).required().doc("name of their material");
-  p.add("stage", stage).doc("name of the stage at whose begin they appear; left out: at the start of the run");
-  p.add("velocity", velocity).unit("m/s").symbol("v").doc("with which they appear, on top of what a list says of each");
+  p.add("material", material).required().doc("name of the material");
+  p.add("stage", stage).doc("name of the stage at the start of which they appear; default: at the start of the run");
+  p.add("velocity", velocity).unit("m/s").symbol("v").doc("initial velocity, added to the velocities in a list");
   p.add("overlap", overlap)
       .at_least(0)
-      .doc("largest overlap with walls and bodies that are there when they appear in a stage, over the smaller radius");
-  p.add("heavier_below", heavier_below)
-      .unit("m")
-      .at_least(0)
-      .doc(
-          "grains of a smaller diameter than this get the mass and inertia of one of it, so that they allow a longer "
-          "time step (differential density scaling); not where gravity acts");
-  p.add("grains", grains).required().doc("where they are and how large");
+      .doc("maximum overlap with existing walls and bodies when they appear in a stage, over the smaller radius");
+  p.add("density_scaling", density_scaling)
+      .doc("differential density scaling, for a longer time step; not allowed with gravity");
+  p.add("source", source).required().doc("positions and radii");
 }
 
 // ---- walls
 
 void ServoDescription::declare(Parameters& p) {
-  p.add("axis", axis).one_of(one_axis).doc("axis along which the wall is driven");
-  p.add("pressure", pressure).unit("Pa").symbol("p").at_least(0).doc("pressure to keep, compression positive");
+  p.add("axis", axis).one_of(one_axis).doc("axis of the controlled motion");
+  p.add("pressure", pressure).unit("Pa").symbol("p").at_least(0).doc("target pressure, compression positive");
   p.add("force", force)
       .unit("N")
       .symbol("F")
-      .doc("force to keep, with which the wall pushes bodies along the axis, by its sign; for any geometry");
-  p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("speed that it never exceeds");
+      .doc("target force of the wall on the bodies along the axis, signed; for any geometry");
+  p.add("max_velocity", max_velocity).unit("m/s").above(0).required().doc("maximum speed of the wall");
   p.add("gain", gain)
       .above(0)
       .at_most(1)
-      .doc("share of the force's error that one step takes away where contacts are springs; less where they damp");
+      .doc("fraction of the force error corrected per step if contacts are elastic; less if they are damped");
   p.add("area", area)
       .one_of({"geometry", "specimen"})
-      .doc("what the pressure acts on: the geometry's area, or the specimen's cross-section as it is then");
+      .doc("area on which the pressure acts: that of the geometry, or the current cross-section of the specimen");
   p.check(
       [this](const Complain& complain) {
-        if (!pressure && !force) complain("pressure", "neither a pressure nor a force", "one of them, to be kept");
+        if (!pressure && !force) complain("pressure", "neither a pressure nor a force", "one of them");
         if (pressure && force) complain("force", "a pressure and a force", "one of them");
-        if (force && area != "geometry") complain("area", "the area of a force", "it beside a pressure alone");
+        if (force && area != "geometry")
+          complain("area", "an area together with a force", "an area together with a pressure");
       },
       {"pressure", "force", "area"});
 }
 void FollowDescription::declare(Parameters& p) {
-  p.add("wall", wall).required().doc("name of the wall whose motion it shares");
-  p.add("axes", axes).one_of(some_axes).doc("axes along which it does");
+  p.add("wall", wall).required().doc("name of the wall to follow");
+  p.add("axes", axes).one_of(some_axes).doc("axes along which it follows");
 }
 void FreeDescription::declare(Parameters& p) {
-  p.add("axes", axes).one_of(some_axes).doc("axes along which the wall moves as forces push it");
-  p.add("mass", mass).unit("kg").symbol("m").above(0).required().doc("its mass");
-  p.add("load", load).unit("N").symbol("F").doc("force on the wall from outside");
+  p.add("axes", axes).one_of(some_axes).doc("axes along which the wall moves freely under the forces on it");
+  p.add("mass", mass).unit("kg").symbol("m").above(0).required().doc("mass of the wall");
+  p.add("load", load).unit("N").symbol("F").doc("external force on the wall");
 }
 void OscillationDescription::declare(Parameters& p) {
-  p.add("amplitude", amplitude).unit("m").symbol("A").doc("of the displacement, half of the way from end to end");
-  p.add("angle", angle).unit("rad").symbol("alpha").doc("the same of the turn about its point, right-handed");
-  p.add("frequency", frequency).unit("Hz").symbol("f").above(0).required().doc("periods in a second");
+  p.add("amplitude", amplitude)
+      .unit("m")
+      .symbol("A")
+      .doc("amplitude of the displacement, half of the peak-to-peak distance");
+  p.add("angle", angle)
+      .unit("rad")
+      .symbol("alpha")
+      .doc("amplitude of the rotation about the point `about`, right-handed");
+  p.add("frequency", frequency).unit("Hz").symbol("f").above(0).required().doc("frequency");
   p.add("phase", phase)
       .unit("rad")
       .symbol("phi")
-      .doc("where in its period it begins; 0: in the middle of its way, 90 deg: at its far end");
+      .doc("phase at the start; 0: at the mean position, 90 deg: at the positive extreme");
   p.check(
       [this](const Complain& complain) {
         if (amplitude.isZero(0.0) && angle.isZero(0.0))
@@ -331,15 +349,15 @@ void OscillationDescription::declare(Parameters& p) {
 void MotionDescription::declare(Parameters& p) {
   p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity");
   p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity, right-handed");
-  p.add("about", about).unit("m").doc("point that it turns about; left out: the geometry's reference point");
+  p.add("about", about).unit("m").doc("centre of rotation; default: the reference point of the geometry");
   p.add("ramp_time", ramp_time)
       .unit("s")
       .at_least(0)
-      .doc("time in which velocity, spin and oscillation grow linearly from zero");
-  p.add("oscillation", oscillation).doc("to and fro as a sine, on top of velocity and spin");
-  p.add("servo", servo).doc("keeps a pressure");
-  p.add("follow", follow).doc("shares the motion of another wall");
-  p.add("free", free).doc("moves as forces push it");
+      .doc("time over which velocity, spin and oscillation increase linearly from zero");
+  p.add("oscillation", oscillation).doc("sinusoidal motion, added to velocity and spin");
+  p.add("servo", servo).doc("motion that keeps a pressure or force");
+  p.add("follow", follow).doc("motion of another wall");
+  p.add("free", free).doc("free motion under the forces on the wall");
   p.check(
       [this](const Complain& complain) {
         for (int k = 0; k < 3; ++k) {
@@ -356,7 +374,7 @@ void MotionDescription::declare(Parameters& p) {
           if (claims.size() < 2) continue;
           std::string all;
           for (const auto& one : claims) all += (all.empty() ? "" : " and ") + one;
-          complain(claims.back(), "the axis " + one_axis[k] + " claimed by " + all, "one of them for each axis");
+          complain(claims.back(), "the axis " + one_axis[k] + " controlled by " + all, "one of them per axis");
         }
       },
       {"velocity", "oscillation", "servo", "follow", "free"});
@@ -364,14 +382,14 @@ void MotionDescription::declare(Parameters& p) {
 WallDescription::WallDescription(const Registry& registry) : geometry(registry) {}
 void WallDescription::declare(Parameters& p) {
   p.choose(geometry);
-  p.add("material", material).required().doc("name of the material of its surface");
-  p.add("motion", motion).doc("how it moves, axis by axis; left out: not at all");
+  p.add("material", material).required().doc("name of the surface material");
+  p.add("motion", motion).doc("motion, axis by axis; default: fixed");
 }
 
 // ---- the rest
 
 void MaterialDescription::declare(const std::string& name, ContactLaw* law, Parameters& p) {
-  p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("of the solid");
+  p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("density of the solid");
   if (law == nullptr) return p.leave_open(), p.add_values(values);
   law->declare_material(name, p);
   p.when_read([this, name, law] {
@@ -393,22 +411,25 @@ void InterfaceDescription::declare(ContactLaw* law, Parameters& p) {
   });
 }
 void DomainDescription::declare(Parameters& p) {
-  p.add("low", low).unit("m").doc("lower corner; left out: open");
-  p.add("high", high).unit("m").doc("upper corner; left out: open");
-  p.add("periodic", periodic).doc("axes along which the domain repeats");
-  p.add("strain_rate", strain_rate).unit("1/s").symbol("eps_dot").doc("of the periodic axes, positive in extension");
+  p.add("low", low).unit("m").doc("lower corner; default: unbounded");
+  p.add("high", high).unit("m").doc("upper corner; default: unbounded");
+  p.add("periodic", periodic).doc("axes along which the domain is periodic");
+  p.add("strain_rate", strain_rate)
+      .unit("1/s")
+      .symbol("eps_dot")
+      .doc("strain rate along periodic axes, positive in extension");
   p.add("open_sides", open_sides)
-      .doc("sides through which bodies may leave, and are gone: -x, +x, -y, +y, -z, +z; elsewhere that is an error");
+      .doc("sides through which bodies may leave; they are removed: -x, +x, -y, +y, -z, +z; elsewhere it is an error");
   p.check(
       [this](const Complain& complain) {
         if (low && high) check_box(*low, *high, complain);
         for (std::size_t k = 0; k < 3; ++k) {
           const std::string axis = '/' + std::to_string(k);
           if (periodic[k] && !(low && high))
-            complain("periodic" + axis, "a periodic axis without an end", "low and high with periodic axes");
+            complain("periodic" + axis, "a periodic axis without bounds", "a periodic axis with low and high");
           if (!periodic[k] && strain_rate[static_cast<int>(k)] != 0)
             complain("strain_rate" + axis, "a strain rate along an axis that is not periodic",
-                     "0 here, or a periodic axis");
+                     "0; or set domain/periodic for this axis");
         }
       },
       {"low", "high", "periodic", "strain_rate"});
@@ -422,14 +443,15 @@ void DomainDescription::declare(Parameters& p) {
           else if (periodic[static_cast<std::size_t>(side[1] - 'x')])
             complain(at, "a side of a periodic axis", "a side of an axis that is not periodic");
           else if (!(side[0] == '-' ? low : high))
-            complain(at, "a side that lies nowhere", side[0] == '-' ? "low with it" : "high with it");
+            complain(at, "an open side without a bound",
+                     side[0] == '-' ? "an open side with domain/low" : "an open side with domain/high");
         }
       },
       {"low", "high", "periodic", "open_sides"});
 }
 void SpecimenDescription::declare(Parameters& p) {
-  p.add("low", low).doc("walls on its lower x, y and z side; \"\" where the domain bounds it");
-  p.add("high", high).doc("walls on its upper x, y and z side; \"\" where the domain bounds it");
+  p.add("low", low).doc("names of the walls at its lower x, y and z sides; \"\": bound of the domain");
+  p.add("high", high).doc("names of the walls at its upper x, y and z sides; \"\": bound of the domain");
   p.check([this](const Complain& complain) {
     for (const auto& [key, walls] : {std::pair("low", &low), std::pair("high", &high)})
       if (!walls->empty() && walls->size() != 3)
@@ -437,39 +459,37 @@ void SpecimenDescription::declare(Parameters& p) {
   });
 }
 void TimeStepDescription::declare(Parameters& p) {
-  p.add("safety", safety).above(0).at_most(10).doc("time step over the critical one");
+  p.add("safety", safety).above(0).at_most(10).doc("time step over the critical time step");
   p.add("steps_per_impact", steps_per_impact)
       .at_least(0)
       .at_most(1e6)
-      .doc("that an impact of two grains by themselves takes at least; 0: as few as safety allows");
+      .doc("minimum number of steps in an isolated impact of two bodies; 0: no minimum");
   p.add("value", value)
       .unit("s")
       .symbol("dt")
       .above(0)
-      .doc(
-          "time step; left out: safety times the critical one, or what steps_per_impact asks for where that is "
-          "shorter");
-  p.add("allow_unstable", allow_unstable).doc("runs above the critical time step too");
+      .doc("time step; default: safety times the critical time step, or less if steps_per_impact requires it");
+  p.add("allow_unstable", allow_unstable).doc("allow a time step above the critical one");
   p.check([this](const Complain& complain) {
     if (safety > 1 && !allow_unstable)
       complain("safety", "a time step above the critical one", "at most 1, unless allow_unstable is true");
   });
 }
 void GuardsDescription::declare(Parameters& p) {
-  p.add("overlap", overlap).above(0).doc("largest overlap, over the smaller radius");
-  p.add("travel", travel).above(0).doc("largest way in one step, over the radius");
+  p.add("overlap", overlap).above(0).doc("maximum overlap, over the smaller radius");
+  p.add("travel", travel).above(0).doc("maximum displacement per step, over the radius");
   p.add("energy", energy)
       .above(0)
       .doc(
-          "largest share of the energy that may appear from nowhere; dissipation hides gains unless an energy probe "
-          "looks; not looked at where a cell deforms, bodies are held or engines push them");
+          "maximum spurious energy gain, as a fraction of the energy; without an energy probe, dissipation may hide a "
+          "gain; not checked if the domain deforms, bodies are held or engines apply forces");
 }
 void EngineDescription::declare(Parameters& p) { p.choose(engine); }
 void ProbeDescription::declare(Parameters& p) {
   p.choose(probe);
   cadence.declare(p);
-  p.add("stages", stages).doc("names of the stages in which it looks; empty: all");
-  p.add("frames", frames).doc("whether its fields go into frames");
+  p.add("stages", stages).doc("names of the stages sampled; empty: all");
+  p.add("frames", frames).doc("whether its fields are written to frames");
 }
 
 // ---- stages
@@ -501,15 +521,15 @@ void KineticEnergyCondition::declare(Parameters& p) {
   p.add("below", below).above(0).doc("kinetic energy of all bodies over the elastic energy of all contacts");
 }
 void VoidRatioCondition::declare(Parameters& p) {
-  p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen that is fallen below");
-  p.add("above", above).symbol("e").above(0).doc("void ratio of the specimen that is exceeded");
+  p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen to fall below");
+  p.add("above", above).symbol("e").above(0).doc("void ratio of the specimen to exceed");
   p.check([this](const Complain& complain) {
     if (!below && !above) complain("", "neither below nor above", "at least one of them");
   });
 }
 void MeanStressCondition::declare(Parameters& p) {
-  p.add("below", below).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen that is fallen below");
-  p.add("above", above).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen that is exceeded");
+  p.add("below", below).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen to fall below");
+  p.add("above", above).unit("Pa").symbol("p").above(0).doc("mean stress of the specimen to exceed");
   p.check([this](const Complain& complain) {
     if (!below && !above) complain("", "neither below nor above", "at least one of them");
   });
@@ -517,10 +537,10 @@ void MeanStressCondition::declare(Parameters& p) {
 void PressureCondition::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall");
   p.add("value", value).unit("Pa").symbol("p").at_least(0).required().doc("pressure on the wall, compression positive");
-  p.add("within", within).above(0).at_most(1).doc("relative difference that counts as reached");
+  p.add("within", within).above(0).at_most(1).doc("relative tolerance");
 }
-void LeftCondition::declare(Parameters& p) {
-  p.add("share", share).above(0).at_most(1).doc("share of all mass that has come that has left the domain");
+void DischargedCondition::declare(Parameters& p) {
+  p.add("fraction", fraction).above(0).at_most(1).doc("discharged mass over the mass of all bodies so far");
 }
 Conditions::Conditions() = default;
 Conditions::Conditions(const Conditions&) = default;
@@ -528,15 +548,15 @@ Conditions::Conditions(Conditions&&) noexcept = default;
 Conditions& Conditions::operator=(const Conditions&) = default;
 Conditions& Conditions::operator=(Conditions&&) noexcept = default;
 Conditions::~Conditions() = default;
-void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at once"); }
-void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which one must hold"); }
+void AllCondition::declare(Parameters& p) { declare_parts(p, of, "conditions that must all hold at the same time"); }
+void AnyCondition::declare(Parameters& p) { declare_parts(p, of, "conditions of which at least one must hold"); }
 
 void RampDescription::declare(Parameters& p) {
   p.add("pointer", pointer).required().doc("JSON pointer of the number, e.g. /walls/top/motion/servo/pressure");
-  p.add("from", from).required().doc("its value at the start, as the description would give it");
-  p.add("to", to).required().doc("its value at the end, which stays");
+  p.add("from", from).required().doc("value at the start, as in the description");
+  p.add("to", to).required().doc("value at the end, kept in later stages");
   p.add("duration", duration).unit("s").above(0).required().doc("simulated time from start to end");
-  p.add("increments", increments).at_least(1).at_most(100000).doc("equal steps in which it goes");
+  p.add("increments", increments).at_least(1).at_most(100000).doc("number of equal increments");
   p.check(
       [this](const Complain& complain) {
         const auto second = pointer.find('/', 1);
@@ -544,10 +564,10 @@ void RampDescription::declare(Parameters& p) {
         if (pointer.empty() || pointer.front() != '/' || second == std::string::npos || !is_changeable(section))
           complain("pointer", in_quotes(pointer), "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
         else if (section == "domain" && !pointer.starts_with("/domain/strain_rate"))
-          complain("pointer", in_quotes(pointer), "of the domain only /domain/strain_rate");
+          complain("pointer", in_quotes(pointer), "/domain/strain_rate only, in the domain");
         for (const auto& [key, value] : {std::pair("from", &from), std::pair("to", &to)})
           if (!value->is_number() && !value->is_string())
-            complain(key, "neither number nor text", "a number or a quantity");
+            complain(key, "neither a number nor a text", "a number or a quantity");
       },
       {"pointer", "from", "to"});
 }
@@ -556,29 +576,29 @@ void GrowthDescription::declare(Parameters& p) {
       .unit("1/s")
       .above(0)
       .required()
-      .doc("of all radii R: dR/dt = rate R; masses and moments of inertia follow, density stays");
+      .doc("growth rate of all radii R: dR/dt = rate R; masses and moments of inertia follow at constant density");
 }
 void ExpectDescription::declare(Parameters& p) {
   p.add("void_ratio", void_ratio).symbol("e").above(0).doc("void ratio of the specimen at the end of the stage");
-  p.add("within", within).above(0).doc("difference that is accepted");
+  p.add("within", within).above(0).doc("accepted difference");
 }
 void StageDescription::declare(Parameters& p) {
-  p.add("name", name).required().doc("its name, which no other stage has");
-  p.add("until", until).required().doc("what ends it");
-  p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage has failed");
-  p.add("usual_time", usual_time)
+  p.add("name", name).required().doc("unique name");
+  p.add("until", until).required().doc("condition that ends the stage");
+  p.add("limit", limit).unit("s").above(0).required().doc("simulated time after which the stage fails");
+  p.add("typical_time", typical_time)
       .unit("s")
       .above(0)
-      .doc("simulated time that it takes as a rule where a condition ends it: grit check estimates by it");
+      .doc("typical simulated duration of a stage that a condition ends; grit check uses it for estimates");
   p.add("change", change)
-      .doc("merge patch (RFC 7396) of the description from this stage on; of its sections " +
-           any_of(SceneDescription::changeable(), "").substr(7) + "; of domain only strain_rate");
+      .doc("merge patch (RFC 7396) of the description from this stage on; allowed sections: " +
+           any_of(SceneDescription::changeable(), "").substr(7) + "; in domain only strain_rate");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
-  p.add("growth", growth).doc("all bodies grow during the stage; left out: they do not");
-  p.add("expect", expect).doc("what the stage must have reached");
+  p.add("growth", growth).doc("growth of all bodies during the stage; default: none");
+  p.add("expect", expect).doc("state required at the end of the stage");
   p.check(
       [this](const Complain& complain) {
-        if (!change.is_object()) return complain("change", "no object", "a merge patch, which is an object");
+        if (!change.is_object()) return complain("change", "no object", "an object (a merge patch)");
         for (const auto& [section, patch] : change.items()) {
           if (!is_changeable(section))
             complain("change/" + section, "a change of " + in_quotes(section),
@@ -586,16 +606,16 @@ void StageDescription::declare(Parameters& p) {
           if (section != "domain" || !patch.is_object()) continue;
           for (const auto& [key, _] : patch.items())
             if (key != "strain_rate")
-              complain("change/domain/" + key, "a change of " + in_quotes(key), "strain_rate alone");
+              complain("change/domain/" + key, "a change of " + in_quotes(key), "strain_rate only");
         }
       },
       {"change"});
   p.check(
       [this](const Complain& complain) {
-        if (usual_time && *usual_time > limit)
-          complain("usual_time", "a time beyond the stage's limit", "one that the stage may take");
+        if (typical_time && *typical_time > limit)
+          complain("typical_time", "a time above the limit of the stage", "at most the limit");
       },
-      {"usual_time", "limit"});
+      {"typical_time", "limit"});
   p.check(
       [this](const Complain& complain) {
         if (name.empty()) complain("name", "an empty text", "a name");
@@ -609,47 +629,48 @@ void PictureDescription::declare(Parameters& p) {
   p.add("x", x).required().doc(
       "series of the horizontal axis: probe/channel or probe/time, e.g. test/shear_displacement");
   p.add("y", y).required().entries(1).doc("series of the vertical axis");
-  p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the grains are drawn");
+  p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the bodies are drawn");
   p.add("color", color)
       .one_of({"rotation", "displacement", "speed"})
-      .doc("what colours the grains: rotation about the line of sight, displacement along the first axis, speed");
+      .doc("colour of the bodies: rotation about the line of sight, displacement along the first axis, speed");
 }
 void check_channel(const std::string& name, const char* key, const Complain& complain) {
   const auto slash = name.find('/');
   if (!name.empty() && (slash == 0 || slash == std::string::npos || slash + 1 == name.size()))
-    complain(key, '"' + name + '"', "a probe's name, a slash and its channel, e.g. \"test/stress_ratio\"");
+    complain(key, '"' + name + '"', "probe/channel, e.g. \"test/stress_ratio\"");
 }
 
 void ReferenceCurve::declare(Parameters& p) {
-  p.add("file", file).file().required().doc("CSV with a line of names");
-  p.add("x", x).required().doc("column of the abscissa, in the channel's own unit");
-  p.add("y", y).required().doc("column of the curve, in the channel's own unit");
+  p.add("file", file).file().required().doc("CSV file with a header line");
+  p.add("x", x).required().doc("column of the abscissa, in the unit of the channel");
+  p.add("y", y).required().doc("column of the ordinate, in the unit of the channel");
 }
 void ReferenceDescription::declare(Parameters& p) {
-  p.add("of", of).required().doc("series that it is about: probe/channel, e.g. test/stress_ratio");
-  p.add("against", against).doc("series of the curve's abscissa, of the same probe; left out: time");
-  p.add("value", value).doc("one value, in the series' own unit");
-  p.add("curve", curve).doc("a curve");
+  p.add("of", of).required().doc("series to compare: probe/channel, e.g. test/stress_ratio");
+  p.add("against", against).doc("series of the abscissa of a curve, of the same probe; default: time");
+  p.add("value", value).doc("reference value, in the unit of the series");
+  p.add("curve", curve).doc("reference curve");
   p.check([this](const Complain& complain) {
     check_channel(of, "of", complain), check_channel(against, "against", complain);
     if (!against.empty() && against.substr(0, against.find('/')) != of.substr(0, of.find('/')))
       complain("against", '"' + against + '"', "a series of the same probe as " + of);
     if (value.has_value() == curve.has_value())
-      complain("curve", value ? "a value and a curve" : "neither a value nor a curve", "one of both");
+      complain("curve", value ? "a value and a curve" : "neither a value nor a curve", "one of them");
   });
 }
 void OutputDescription::declare(Parameters& p) {
-  p.add("frames", frames).doc("when frames are written, besides the end of the run; neither given: never");
+  p.add("frames", frames)
+      .doc("when frames are written; one is always written at the end of the run; default: only that one");
   p.add("checkpoint_every", checkpoint_every)
       .unit("s")
       .at_least(0)
       .doc(
-          "time by the clock on the wall between checkpoints, from which --resume goes on; they never take more than "
-          "1 % of the time; 0: only when the run is interrupted");
-  p.add("picture", picture).doc("curves and view of the grains, drawn at the end");
+          "wall-clock interval between checkpoints, from which --resume continues; they take at most 1 % of the run "
+          "time; 0: only if the run is interrupted");
+  p.add("picture", picture).doc("curves and view of the bodies, drawn at the end");
   p.add("references", references)
-      .doc("what the report draws curves against, by name: measured, published, by a formula");
-  p.add("summary", summary).doc("series whose largest and last values are printed at the end: probe/channel");
+      .doc("references for curves of the report, by name: measured, published or calculated");
+  p.add("summary", summary).doc("series of which the largest and last values are printed at the end: probe/channel");
 }
 
 // ---- the scene
@@ -669,7 +690,7 @@ std::shared_ptr<ContactLaw> SceneDescription::law_to_read() const {
 void SceneDescription::declare_section(const std::string& section, Parameters& p) {
   if (section == "materials") {
     MapTarget target;
-    // One law for all of them, made when the first is read.
+    // One law for all materials, made when the first is read.
     const auto law = std::make_shared<std::shared_ptr<ContactLaw>>();
     target.names = [this] { return keys(materials); };
     target.clear = [this, law] { materials.clear(), *law = nullptr; };
@@ -683,7 +704,7 @@ void SceneDescription::declare_section(const std::string& section, Parameters& p
     p.add_target("materials", std::move(target))
         .required()
         .entries(1)
-        .doc("materials by name: density and what the contact law asks for");
+        .doc("materials by name: density and the parameters of the contact law");
   }
   if (section == "interfaces") {
     MapTarget target;
@@ -697,17 +718,17 @@ void SceneDescription::declare_section(const std::string& section, Parameters& p
       if (!*law) *law = law_to_read();
       interfaces.emplace_back(name).declare(law->get(), inner);
     };
-    p.add_target("interfaces", std::move(target)).doc("what differs where two materials meet, by \"one+other\"");
+    p.add_target("interfaces", std::move(target)).doc("parameters of contacts between two materials, by \"one+other\"");
   }
-  if (section == "domain") p.add("domain", domain).doc("box of the world");
+  if (section == "domain") p.add("domain", domain).doc("bounds of the simulated region");
   if (section == "walls")
     p.add("walls", walls, [this](const std::string&) { return WallDescription(*registry_); }).doc("walls by name");
   if (section == "engines")
     p.add("engines", engines, [this](const std::string&) {
        return EngineDescription(*registry_);
-     }).doc("what acts on the bodies besides contacts, by name");
+     }).doc("actions on the bodies other than contacts, by name");
   if (section == "time_step") p.add("time_step", time_step).doc("time step");
-  if (section == "guards") p.add("guards", guards).doc("limits beyond which a run stops");
+  if (section == "guards") p.add("guards", guards).doc("limits at which a run stops");
 }
 
 bool SceneDescription::has_names(const std::string& section) {
@@ -759,8 +780,8 @@ void SceneDescription::check_together(const Complain& complain) const {
 }
 
 void SceneDescription::declare(Parameters& p) {
-  p.add("title", title).doc("one line that names the run");
-  p.add("seed", seed).at_least(0).doc("seed of everything random");
+  p.add("title", title).doc("title of the run, one line");
+  p.add("seed", seed).at_least(0).doc("seed of the random numbers");
   p.add("contacts", contacts).required().doc("contact law");
   declare_section("materials", p);
   declare_section("interfaces", p);
@@ -771,13 +792,13 @@ void SceneDescription::declare(Parameters& p) {
       .doc("groups of bodies by name");
   declare_section("walls", p);
   declare_section("engines", p);
-  p.add("specimen", specimen).doc("part of the world that averages are taken over");
+  p.add("specimen", specimen).doc("region over which averages are taken");
   declare_section("time_step", p);
   declare_section("guards", p);
-  p.add("stages", stages).required().entries(1).doc("what happens, in order");
+  p.add("stages", stages).required().entries(1).doc("stages of the run, in order");
   p.add("probes", probes, [this](const std::string&) {
      return ProbeDescription(*registry_);
-   }).doc("what is measured, by name");
+   }).doc("measurements, by name");
   p.add("output", output).doc("frames, checkpoints, picture, references, summary");
 
   p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
@@ -788,9 +809,9 @@ void SceneDescription::declare(Parameters& p) {
       [this](const Complain& complain) {
         const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
         for (const auto& [name, group] : bodies)
-          if (group.heavier_below > 0 && std::ranges::any_of(stages, grows))
-            complain("bodies/" + name + "/heavier_below", "heavier grains where bodies grow in a stage",
-                     "0: they would be made heavier for a size that they do not keep");
+          if (group.scaled_below() > 0 && std::ranges::any_of(stages, grows))
+            complain("bodies/" + name + "/density_scaling", "density scaling together with growth of bodies in a stage",
+                     "only one of them, as the scaled masses would not fit the new sizes; remove one");
       },
       {"bodies", "stages"});
   p.check_names([this](const Complain& complain) { check_materials_of_walls(*this, complain); });
@@ -815,8 +836,8 @@ void SceneDescription::declare(Parameters& p) {
     std::set<std::string> names;
     for (std::size_t i = 0; i < stages.size(); ++i)
       if (!names.insert(stages[i].name).second)
-        complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", as a stage before it",
-                 "a name of its own");
+        complain("stages/" + std::to_string(i) + "/name", in_quotes(stages[i].name) + ", the name of an earlier stage",
+                 "a unique name");
   });
   p.check_names([this](const Complain& complain) {
     std::vector<std::string> names;

@@ -1,5 +1,5 @@
-// The plain description, typed: values alone, nothing alive. Each parameter is declared here and nowhere else: reading,
-// checks, schema and reference pages come from these declarations.
+// The plain description as typed values, without live components. Each parameter is declared here and nowhere else:
+// reading, checks, schema and reference pages are derived from these declarations.
 #pragma once
 
 #include <array>
@@ -16,19 +16,19 @@
 
 namespace grit {
 
-/// Each time a wall has gone so far, there or back, from where it was the last time.
+/// Due each time a wall has moved by `value`, in either direction, since the last time.
 struct DisplacementCadence {
   std::string wall, axis = "x";
   double value = 0;  ///< m, above 0
   void declare(Parameters& p);
 };
-/// When something is to happen again and again. None given: never.
+/// Interval of a repeated event. None given: never.
 struct Cadence {
   std::optional<double> every_time;
   std::int64_t every_steps = 0;
   std::optional<DisplacementCadence> every_displacement;
-  std::optional<double> every_left;  ///< share of all mass that has come
-  bool never() const { return !every_time && every_steps == 0 && !every_displacement && !every_left; }
+  std::optional<double> every_discharged;  ///< fraction of the mass of all bodies so far
+  bool never() const { return !every_time && every_steps == 0 && !every_displacement && !every_discharged; }
   void declare(Parameters& p);
 };
 
@@ -46,7 +46,7 @@ struct LinearSizes {
 };
 struct LogNormalSizes {
   static constexpr const char* type_name = "log-normal";
-  double median = 0.5e-3, deviation = 0.25, smallest = 0.25e-3, largest = 1e-3;
+  double median = 0.5e-3, log_standard_deviation = 0.25, smallest = 0.25e-3, largest = 1e-3;
   void declare(Parameters& p);
 };
 struct SieveSizes {
@@ -61,40 +61,47 @@ struct ListSizes {
 };
 using Sizes = OneOf<UniformSizes, LinearSizes, LogNormalSizes, SieveSizes, ListSizes>;
 
-/// Grains at random places that do not overlap.
-struct CloudGrains {
+/// Bodies at random positions without overlap.
+struct CloudSource {
   static constexpr const char* type_name = "cloud";
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::int64_t count = 0;
   Sizes sizes{"size distribution"};
-  std::string flat = "none";
+  std::string plane_normal = "none";
   void declare(Parameters& p);
 };
-/// A text file, "x y z radius" a line.
-struct FileGrains {
+/// A text file with "x y z radius" in each line.
+struct FileSource {
   static constexpr const char* type_name = "file";
   std::string path;
   void declare(Parameters& p);
 };
-struct PlacedGrain {
+struct ListedBody {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero(), orientation = Vec3::Zero();
   double radius = 0;
   void declare(Parameters& p);
 };
-struct PlacedGrains {
+struct ListSource {
   static constexpr const char* type_name = "list";
-  std::deque<PlacedGrain> grains;
+  std::deque<ListedBody> bodies;
+  void declare(Parameters& p);
+};
+/// Small bodies get the mass and moment of inertia of larger ones.
+struct DensityScalingDescription {
+  double below = 0;  ///< m
   void declare(Parameters& p);
 };
 struct BodiesDescription {
   Component<BodyKind> kind;
   std::string material;
-  std::string stage;  ///< at whose begin they appear; empty: the start of the run
+  std::string stage;  ///< at the start of which they appear; empty: the start of the run
   Vec3 velocity = Vec3::Zero();
   static constexpr double usual_overlap = 0.01;
   double overlap = usual_overlap;  ///< of the smaller radius
-  double heavier_below = 0;        ///< m
-  OneOf<CloudGrains, FileGrains, PlacedGrains> grains{"source of grains"};
+  std::optional<DensityScalingDescription> density_scaling;
+  OneOf<CloudSource, FileSource, ListSource> source{"source of bodies"};
+  /// m, diameter below which bodies have more mass; 0: none
+  double scaled_below() const { return density_scaling ? density_scaling->below : 0; }
   explicit BodiesDescription(const Registry& registry);
   void declare(Parameters& p);
 };
@@ -104,9 +111,9 @@ struct BodiesDescription {
 struct ServoDescription {
   std::string axis = "z";
   std::optional<double> pressure{};  ///< Pa, compression positive
-  std::optional<double> force{};     ///< N, what the wall exerts on the bodies, along the axis
+  std::optional<double> force{};     ///< N, of the wall on the bodies, along the axis
   double max_velocity = 0;           ///< m/s
-  double gain = 1;                   ///< share of the force's error that one step takes away where contacts are springs
+  double gain = 1;                   ///< fraction of the force error corrected per step if contacts are elastic
   std::string area = "geometry";
   void declare(Parameters& p);
 };
@@ -120,10 +127,10 @@ struct FreeDescription {
   Vec3 load = Vec3::Zero();
   void declare(Parameters& p);
 };
-/// On top of velocity and spin. After t the wall has gone amplitude × (sin(2π f t + phase) − sin(phase)), and turned as
-/// far by angle.
+/// Added to velocity and spin. The displacement after t is amplitude × (sin(2π f t + phase) − sin(phase)), the rotation
+/// the same with angle.
 struct OscillationDescription {
-  Vec3 amplitude = Vec3::Zero(), angle = Vec3::Zero();  ///< of the displacement [m], of the rotation vector [rad]
+  Vec3 amplitude = Vec3::Zero(), angle = Vec3::Zero();  ///< of displacement [m], of rotation vector [rad]
   double frequency = 0;                                 ///< Hz
   double phase = 0;                                     ///< rad
   void declare(Parameters& p);
@@ -153,18 +160,18 @@ struct WallDescription {
 struct MaterialDescription {
   double density = 2600;
   Description values = Description::object();  ///< of the parameters of the contact law, SI
-  /// With a law, to read its parameters; without one, the values that there are.
+  /// With a law: declares its parameters, for reading. Without: declares the present values.
   void declare(const std::string& name, ContactLaw* law, Parameters& p);
   bool operator==(const MaterialDescription&) const = default;
 };
-/// Where two materials meet, in either order.
+/// Contact of two materials, in either order.
 struct InterfaceDescription {
-  std::string a, b;                            ///< b is empty where the name had no "+"
+  std::string a, b;                            ///< b is empty if the name had no "+"
   Description values = Description::object();  ///< of the parameters of the contact law, SI
-  /// With the name that the description gives it, "a+b".
+  /// `name` as in the description, "a+b".
   explicit InterfaceDescription(const std::string& name);
   std::string name() const { return b.empty() ? a : a + '+' + b; }
-  /// As that of a material.
+  /// As MaterialDescription::declare().
   void declare(ContactLaw* law, Parameters& p);
   bool operator==(const InterfaceDescription&) const = default;
 };
@@ -176,20 +183,20 @@ struct DomainDescription {
   void declare(Parameters& p);
 };
 struct SpecimenDescription {
-  std::vector<std::string> low, high;  ///< walls of the x, y and z sides; "" where the domain bounds it
+  std::vector<std::string> low, high;  ///< walls at the x, y and z sides; "": bound of the domain
   void declare(Parameters& p);
 };
 struct TimeStepDescription {
   double safety = 0.8;
-  double steps_per_impact = 7;  ///< (π/7)²/4: such an impact gains 5 % at most, what the energy guard allows
+  double steps_per_impact = 7;  ///< (π/7)²/4: such an impact gains at most 5 % energy, the limit of the energy guard
   std::optional<double> value;
   bool allow_unstable = false;
   void declare(Parameters& p);
 };
 struct GuardsDescription {
   double overlap = 0.2;  ///< of the smaller radius
-  double travel = 0.05;  ///< of a radius, in one step
-  double energy = 0.05;  ///< share of the energy that may appear from nowhere
+  double travel = 0.05;  ///< of the radius, per step
+  double energy = 0.05;  ///< spurious gain, fraction of the energy
   void declare(Parameters& p);
 };
 struct EngineDescription {
@@ -201,7 +208,7 @@ struct ProbeDescription {
   Component<Probe> probe;
   Cadence cadence;
   std::vector<std::string> stages;  ///< empty: all
-  bool frames = true;               ///< whether its fields go into frames
+  bool frames = true;               ///< whether its fields are written to frames
   explicit ProbeDescription(const Registry& registry) : probe(registry) {}
   void declare(Parameters& p);
 };
@@ -251,12 +258,12 @@ struct PressureCondition {
   double value = 0, within = 0.01;
   void declare(Parameters& p);
 };
-struct LeftCondition {
-  static constexpr const char* type_name = "left";
-  double share = 1;
+struct DischargedCondition {
+  static constexpr const char* type_name = "discharged";
+  double fraction = 1;
   void declare(Parameters& p);
 };
-/// Several conditions; here so that they can be copied where Condition is complete.
+/// Several conditions. Its members are defined where Condition is complete.
 struct Conditions {
   std::vector<Condition> of;
   Conditions();
@@ -276,7 +283,7 @@ struct AnyCondition : Conditions {
 };
 struct Condition {
   OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, KineticEnergyCondition,
-        VoidRatioCondition, MeanStressCondition, PressureCondition, LeftCondition, AllCondition, AnyCondition>
+        VoidRatioCondition, MeanStressCondition, PressureCondition, DischargedCondition, AllCondition, AnyCondition>
       is{"condition"};
   void declare(Parameters& p) { p.choose(is); }
 };
@@ -284,12 +291,12 @@ struct Condition {
 /// A number of the description that changes during a stage, in equal increments.
 struct RampDescription {
   std::string pointer;
-  Description from, to;  ///< as the description would give them
+  Description from, to;  ///< as in the description
   double duration = 0;
   std::int64_t increments = 50;
   void declare(Parameters& p);
 };
-/// Bodies that become larger where they are.
+/// Bodies that grow in place.
 struct GrowthDescription {
   double rate = 0;  ///< 1/s, above 0
   void declare(Parameters& p);
@@ -302,8 +309,8 @@ struct ExpectDescription {
 struct StageDescription {
   std::string name;
   Condition until;
-  double limit = 0;                       ///< s of simulated time after which the stage has failed
-  std::optional<double> usual_time = {};  ///< s that it takes as a rule, for estimates
+  double limit = 0;                         ///< simulated time after which the stage fails, s
+  std::optional<double> typical_time = {};  ///< simulated, for estimates, s
   Description change = Description::object();
   std::deque<RampDescription> ramps;
   std::optional<GrowthDescription> growth;
@@ -320,16 +327,16 @@ struct PictureDescription {
   std::string color = "rotation";
   void declare(Parameters& p);
 };
-/// Complains of a name that is not "probe/channel"; "" passes.
+/// Reports a name that is not "probe/channel"; "" is allowed.
 void check_channel(const std::string& name, const char* key, const Complain& complain);
 
-/// A curve from elsewhere: two columns of a CSV file, SI.
+/// A reference curve: two columns of a CSV file, SI.
 struct ReferenceCurve {
   std::string file, x, y;
   void declare(Parameters& p);
 };
 
-/// What a curve of the run is to be seen against: a value or a curve.
+/// A reference for a curve of the run: a value or a curve.
 struct ReferenceDescription {
   std::string of, against;
   std::optional<double> value;
@@ -345,7 +352,7 @@ struct OutputDescription {
   void declare(Parameters& p);
 };
 
-/// A whole scene. Every name in it (of a wall, a material, a stage) was checked to exist once it has been read.
+/// A complete scene. Reading checks that every name in it (of a wall, a material, a stage) exists.
 struct SceneDescription {
   explicit SceneDescription(const Registry& registry);
 
@@ -353,7 +360,7 @@ struct SceneDescription {
   std::int64_t seed = 1;
   Component<ContactLaw> contacts;
   std::map<std::string, MaterialDescription> materials;
-  std::vector<InterfaceDescription> interfaces;  ///< in the order in which they were described
+  std::vector<InterfaceDescription> interfaces;  ///< in written order
   DomainDescription domain;
   std::map<std::string, BodiesDescription> bodies;
   std::map<std::string, WallDescription> walls;
@@ -367,20 +374,20 @@ struct SceneDescription {
 
   void declare(Parameters& p);
 
-  /// The sections that a stage may change and ramp; of the domain only its strain rate.
+  /// The sections that a stage may change or ramp; in the domain only the strain rate.
   static const std::vector<std::string>& changeable();
-  /// Declares one of these alone.
+  /// Declares one of these sections.
   void declare_section(const std::string& section, Parameters& p);
-  /// Declares one entry of a section that has entries by name, or a section that has none, with a law to read
-  /// parameters of materials. An entry that is not there is added. False if a description has no such section.
+  /// Declares one entry of a section with named entries, or a section without them; `law` reads the parameters of
+  /// materials. An entry that does not exist is added. False if there is no such section.
   bool declare_unit(const std::string& section, const std::string& name, ContactLaw* law, Parameters& p);
-  /// Whether it is there.
+  /// Whether this entry or section exists.
   bool has_unit(const std::string& section, const std::string& name) const;
-  /// The names of a section's entries; one empty name for a section that has none.
+  /// The names of a section's entries; one empty name for a section without named entries.
   std::vector<std::string> units_of(const std::string& section) const;
   /// Whether a changeable section has entries by name.
   static bool has_names(const std::string& section);
-  /// Reports what does not fit together between sections that a stage may change.
+  /// Reports inconsistencies between sections that a stage may change.
   void check_together(const Complain& complain) const;
   /// The interface of this name; null if there is none.
   InterfaceDescription* find_interface(const std::string& name);

@@ -1,7 +1,8 @@
-// What shows to be wrong in a description once it is a scene.
+// Faults of a description that are found after it was read into a scene.
 #pragma once
 
 #include <cstddef>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,19 +11,38 @@
 
 namespace grit {
 
-/// Knows where in the description it stands, not in which file: `input` finds that.
+/// Holds the position in the description, not the file and line: `input` finds these.
 class PlacedError : public Error {
  public:
-  /// `keys` lead there from the root.
-  PlacedError(std::vector<std::string> keys, const std::string& what) : Error(what), keys_(std::move(keys)) {}
-  const std::vector<std::string>& keys() const { return keys_; }
-  /// How many stages had begun, each of which may have changed what is wrong.
+  struct Fault {
+    std::vector<std::string> keys;  ///< path from the root
+    std::string message;
+  };
+  PlacedError(std::vector<std::string> keys, const std::string& what) : PlacedError({{std::move(keys), what}}) {}
+  /// Needs at least one fault.
+  explicit PlacedError(std::vector<Fault> faults) : Error(faults.front().message), faults_(std::move(faults)) {}
+  const std::vector<Fault>& faults() const { return faults_; }
+  /// Path of the first fault, the one that what() describes.
+  const std::vector<std::string>& keys() const { return faults_.front().keys; }
+  /// Number of stages that had begun; each may have changed the faulty value.
   std::size_t stages() const { return stages_; }
   void begun(std::size_t stages) { stages_ = stages; }
 
  private:
-  std::vector<std::string> keys_;
+  std::vector<Fault> faults_;
   std::size_t stages_ = 0;
 };
+
+/// The faults of the component described at `keys`.
+inline std::vector<PlacedError::Fault> placed(const ParameterError& error, const std::vector<std::string>& keys) {
+  std::vector<PlacedError::Fault> all;
+  for (const ParameterError::Fault& fault : error.faults()) {
+    std::vector<std::string> path = keys;
+    std::istringstream deeper(fault.key);
+    for (std::string key; std::getline(deeper, key, '/');) path.push_back(key);
+    all.push_back({std::move(path), fault.message()});
+  }
+  return all;
+}
 
 }  // namespace grit

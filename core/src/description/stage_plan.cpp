@@ -37,14 +37,14 @@ std::optional<NumberPointer> NumberPointer::of(const std::string& pointer) {
     tokens.push_back(unescaped(pointer.substr(begin, end - begin)));
     begin = end + 1;
   }
-  NumberPointer place;
+  NumberPointer number;
   if (tokens.empty()) return std::nullopt;
-  place.section = tokens.front();
-  const std::size_t above = SceneDescription::has_names(place.section) ? 2 : 1;
+  number.section = tokens.front();
+  const std::size_t above = SceneDescription::has_names(number.section) ? 2 : 1;
   if (tokens.size() <= above) return std::nullopt;
-  if (above == 2) place.name = tokens[1];
-  place.keys.assign(tokens.begin() + static_cast<std::ptrdiff_t>(above), tokens.end());
-  return place;
+  if (above == 2) number.name = tokens[1];
+  number.keys.assign(tokens.begin() + static_cast<std::ptrdiff_t>(above), tokens.end());
+  return number;
 }
 
 void SettingsChange::apply_to(SceneDescription& scene) const {

@@ -1,4 +1,4 @@
-// What stages change of a description, as values: complete and checked before a run begins.
+// Changes of a description by its stages, as values: complete and checked before a run begins.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace grit {
 
-/// Where a number that a stage changes stands: a section, the name of its entry (empty in a section without names), and
+/// Position of a number that a stage changes: a section, the name of its entry (empty in a section without names), and
 /// the keys below.
 struct NumberPointer {
   std::string section, name;
   std::vector<std::string> keys;
-  /// Of a JSON pointer below one of SceneDescription::changeable(); nothing if it does not reach so deep.
+  /// From a JSON pointer below one of SceneDescription::changeable(); nothing if it points to a section or an entry.
   static std::optional<NumberPointer> of(const std::string& pointer);
 };
 
 /// New values of parts of a description, each complete. An entry without a value is removed.
 struct SettingsChange {
   std::map<std::string, std::optional<MaterialDescription>> materials;
-  std::vector<std::pair<std::string, std::optional<InterfaceDescription>>> interfaces;  ///< in the order of writing
+  std::vector<std::pair<std::string, std::optional<InterfaceDescription>>> interfaces;  ///< in written order
   std::map<std::string, std::optional<WallDescription>> walls;
   std::map<std::string, std::optional<EngineDescription>> engines;
   std::optional<DomainDescription> domain;
@@ -32,7 +32,7 @@ struct SettingsChange {
   std::optional<GuardsDescription> guards;
 
   void apply_to(SceneDescription& scene) const;
-  /// Adds the present values of a part of a scene; of an entry that is not there, its removal.
+  /// Adds the present values of a part of a scene; for an entry that does not exist, its removal.
   void add(const SceneDescription& scene, const std::string& section, const std::string& name);
 };
 
@@ -44,14 +44,14 @@ struct RampPlan {
   double duration = 0;  ///< s
   std::int64_t increments = 1;
 
-  /// After so many increments, from 1. Exact at the end, where (to − from) + from may not be.
+  /// After `increment` increments, from 1. Exact at the end, where (to − from) + from may not be.
   double value(std::int64_t increment) const {
-    const double share = static_cast<double>(increment) / static_cast<double>(increments);
-    return increment == increments ? to : from + (to - from) * share;
+    const double fraction = static_cast<double>(increment) / static_cast<double>(increments);
+    return increment == increments ? to : from + (to - from) * fraction;
   }
 };
 
-/// A stage's changes, and where its ramps end, stay for the stages after it.
+/// A stage's changes, and the final values of its ramps, persist in later stages.
 struct StagePlan {
   SettingsChange change;
   std::vector<RampPlan> ramps;  ///< one after the other

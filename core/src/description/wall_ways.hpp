@@ -1,4 +1,4 @@
-// Where a wall's motion may take it.
+// Directions in which a wall may move.
 #pragma once
 
 #include <map>
@@ -13,13 +13,13 @@ inline bool stands_still(const MotionDescription& motion) {
          !motion.follow && !motion.free;
 }
 
-/// Whether a wall's reference point may go along an axis, and against it.
+/// Whether a wall's reference point may move in the positive and negative direction of an axis.
 struct Ways {
   bool along = false, against = false;
   bool none() const { return !along && !against; }
 };
 
-/// Of walls that follow no circle.
+/// Requires that walls do not follow each other in a cycle.
 inline Ways ways(const std::map<std::string, WallDescription>& walls, const std::string& name, char axis) {
   const MotionDescription& motion = walls.at(name).motion;
   const auto has = [axis](const std::string& axes) { return axes.find(axis) != std::string::npos; };

@@ -19,7 +19,7 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::ve
   Wrapped result{std::vector<bool>(bodies.count(), false)};
   const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
   const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
-  // A body that re-enters goes with the mean flow there.
+  // A body that re-enters takes the mean flow there.
   const auto jump = [](double& speed, double by, double inverse_mass) {
     const double before = speed;
     speed -= by;

@@ -1,4 +1,4 @@
-// What happens to bodies at the sides of the domain: they re-enter at a periodic side, or leave through an open one.
+// Bodies at the sides of the domain: they re-enter at a periodic side, or leave through an open side.
 #pragma once
 
 #include <functional>
@@ -13,21 +13,21 @@ namespace grit {
 
 struct Wrapped {
   std::vector<bool> leaves;  ///< by body: whether it has left through an open side
-  double energy_gained = 0;  ///< kinetic, as bodies take the velocity of the mean flow where they re-enter [J]
+  double energy_gained = 0;  ///< kinetic, from the mean flow where bodies re-enter [J]
 };
 
-/// Puts bodies that have left the periodic cell back into it. `growth` is the rate of its periods [m/s], `open_sides`
-/// has names as "-x". Calls `escaped(body, axis, high)`, which must throw, for a body outside a closed side.
+/// Moves bodies that have left the periodic cell back into it. `growth` is the rate of its periods [m/s]; `open_sides` has
+/// entries such as "-x". Calls `escaped(body, axis, high)`, which must throw, for a body outside a closed side.
 Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::vector<std::string>& open_sides,
              const std::function<void(std::size_t body, int axis, bool high)>& escaped);
 
-/// A body that leaves, and the energy that it takes along [J].
+/// A body that leaves, and its energy [J].
 struct Leaving {
   Departure departure;
   double kinetic;    ///< of translation and rotation
-  double potential;  ///< against the origin
+  double potential;  ///< relative to the origin
 };
-/// In the order of their ids; a clump leaves as one, with the id of its first sphere.
+/// In order of ids; a clump leaves as a whole, with the id of its first sphere.
 std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time, const Vec3& gravity);
 
 }  // namespace grit

@@ -60,6 +60,6 @@ void DeformingCell::update_images(double previous_dt) {
   }
 }
 
-void DeformingCell::remember(Memory& memory) { memory(cell_, lengths_before_, images_); }
+void DeformingCell::serialize(Archive& archive) { archive(cell_, lengths_before_, images_); }
 
 }  // namespace grit

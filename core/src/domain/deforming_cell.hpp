@@ -1,10 +1,10 @@
-// The periodic cell, its straining, and the images of bodies across its boundaries.
+// The periodic cell, its deformation, and the images of bodies across its boundaries.
 #pragma once
 
 #include <vector>
 
 #include "grit/contact/batch.hpp"
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -14,7 +14,7 @@ inline constexpr bool plain_numbers<Cell> = true;
 template <>
 inline constexpr bool plain_numbers<ImageShift> = true;
 
-/// A box that may be periodic along some axes and strain along these at a constant rate about its centre.
+/// A box that may be periodic along some axes and deform along these at a constant strain rate about its centre.
 class DeformingCell {
  public:
   explicit DeformingCell(const Cell& cell);
@@ -27,27 +27,27 @@ class DeformingCell {
   Vec3 lengths() const { return cell_.high - cell_.low; }
   /// Side lengths along periodic axes; 0 along the others [m].
   Vec3 periods() const;
-  /// Where the mean flow is zero [m]. Not a number along open axes.
+  /// Point of zero mean flow [m]; NaN along open axes.
   Vec3 centre() const { return 0.5 * (cell_.low + cell_.high); }
-  /// The same while the cell deforms, else the origin [m].
+  /// The same while the cell deforms, otherwise the origin [m].
   Vec3 flow_centre() const { return deforms() ? centre() : Vec3::Zero(); }
   /// Velocity of the mean flow at `place` [m/s]; zero unless the cell deforms.
   Vec3 mean_flow(const Vec3& place) const;
 
-  /// Rate of change of the periods, half a step ago as the velocities of bodies; 0 along axes that are not periodic
-  /// [m/s]. `previous_dt` is the last step [s], 0 before the first.
+  /// Rate of change of the periods [m/s], half a step ago like the velocities of bodies; 0 along axes that are not
+  /// periodic. `previous_dt` is the last step [s], 0 before the first.
   Vec3 period_growth(double previous_dt) const;
-  /// Sets the strain rate [1/s]. Images change their velocities as the bodies do.
+  /// Sets the strain rate [1/s]. The velocities of images change with those of bodies.
   void set_strain_rate(const Vec3& rate, double previous_dt);
-  /// Strains the cell by one step [s].
+  /// Deforms the cell by one step [s].
   void advance(double dt);
 
-  /// Brings the image shifts up to date; once a step, before contacts.
+  /// Updates the image shifts; once per step, before contacts.
   void update_images(double previous_dt);
   /// The 27 shifts of position and velocity, by image index.
   const ImageShift* images() const { return images_.data(); }
 
-  void remember(Memory& memory);
+  void serialize(Archive& archive);
 
  private:
   Cell cell_;

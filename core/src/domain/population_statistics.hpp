@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "bodies/bodies.hpp"
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 
 namespace grit {
 
@@ -14,7 +14,7 @@ struct PopulationStatistics {
   double mass = 0, diameters = 0, solids = 0;      ///< sums over particles: kg, m, m³
   double mean_diameter = 0, solid_density = 0;     ///< m, kg/m³
   double largest_radius = 0, smallest_radius = 0;  ///< of spheres [m]
-  double heaviest = 0;  ///< largest mass over radius cubed of a sphere, or of its clump [kg/m³]
+  double heaviest = 0;  ///< largest mass over radius cubed of a sphere, or of the clump of a sphere [kg/m³]
   bool one_material = true;
 
   /// Counts the bodies from `first` on, and the clumps from `first_clump` on.
@@ -22,8 +22,8 @@ struct PopulationStatistics {
   /// All lengths have grown by `factor`; `mass_inside` [kg] has grown by its cube.
   void grow(double factor, double mass_inside);
 
-  void remember(Memory& memory) {
-    memory(particles, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius, heaviest,
+  void serialize(Archive& archive) {
+    archive(particles, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius, heaviest,
            one_material);
   }
 };

@@ -9,7 +9,7 @@
 namespace grit {
 namespace {
 
-/// A line without the carriage return of other systems, and without a byte order mark.
+/// Reads a line, without a carriage return or a byte order mark.
 bool get_line(std::istream& stream, std::string& line) {
   const bool first = stream.tellg() == std::streampos(0);
   if (!std::getline(stream, line)) return false;
@@ -36,18 +36,18 @@ std::vector<std::vector<double>> read_columns(const std::string& file, const std
   std::string line;
   get_line(stream, line);
   const auto head = cells(line);
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> indices;
   for (const std::string& name : names) {
     const auto found = std::ranges::find(head, name);
     if (found == head.end()) throw FileError(file + ":1: there is no column \"" + name + "\" in \"" + line + '"');
-    places.push_back(static_cast<std::size_t>(found - head.begin()));
+    indices.push_back(static_cast<std::size_t>(found - head.begin()));
   }
   std::vector<std::vector<double>> columns(names.size());
   for (int number = 2; get_line(stream, line); ++number) {
     const auto row = cells(line);
     if (row.empty() || row.front().starts_with('#')) continue;
     for (std::size_t k = 0; k < names.size(); ++k) try {
-        columns[k].push_back(std::stod(row.at(places[k])));
+        columns[k].push_back(std::stod(row.at(indices[k])));
       } catch (const std::exception&) {
         throw FileError(file + ':' + std::to_string(number) + ": no number in column \"" + names[k] + "\": \"" + line +
                         '"');

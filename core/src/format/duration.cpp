@@ -9,7 +9,7 @@
 namespace grit {
 
 std::string written_time(double seconds) {
-  constexpr double four_digits = 9999.5;  // of more, {:.4g} would be a power of ten
+  constexpr double four_digits = 9999.5;  // from here on, {:.4g} would give an exponent
   if (std::abs(seconds) >= four_digits) return fmt::format("{:.0f} s", seconds);
   for (const auto& [size, unit] : {std::pair(1.0, "s"), std::pair(1e-3, "ms"), std::pair(1e-6, "µs")})
     if (std::abs(seconds) >= size) return fmt::format("{:.4g} {}", seconds / size, unit);

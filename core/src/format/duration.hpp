@@ -8,10 +8,10 @@ namespace grit {
 /// Simulated time: "1.2 s", "69.23 ms", "3.4 µs", with four digits.
 std::string written_time(double seconds);
 
-/// Computing time that is left: "42 s", "3 min 05 s", "2 h 10 min".
+/// Remaining computing time: "42 s", "3 min 05 s", "2 h 10 min".
 std::string duration_text(double seconds);
 
-/// Computing time that was taken: "0.52 s", "12 min", "3.5 h".
+/// Used computing time: "0.52 s", "12 min", "3.5 h".
 std::string cost_text(double seconds);
 
 }  // namespace grit

@@ -14,16 +14,16 @@ inline std::string number(double value) { return fmt::format("{:.4g}", value); }
 /// Three significant digits, with U+2212 for minus.
 std::string short_number(double value);
 
-/// A number for a tick of a scale with this step, with U+2212 for minus.
+/// Label of a tick of an axis with this step, with U+2212 for minus.
 std::string tick_label(double value, double step);
 
-/// 1234567 as "1 234 567", with thin spaces that do not break.
+/// 1234567 as "1 234 567", with narrow no-break spaces.
 std::string grouped(std::uint64_t number);
 
 /// "2.1 %" of a fraction of 0.021; "?" if it is not finite.
 std::string percent(double fraction);
 
-/// A ratio with three digits.
+/// A ratio with up to three digits.
 std::string ratio_text(double ratio);
 
 }  // namespace grit

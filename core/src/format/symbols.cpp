@@ -18,7 +18,7 @@ namespace {
 struct Symbol {
   std::string_view name, letter;
 };
-/// What the field writes in Greek.
+/// Names that are written as Greek letters.
 constexpr std::array<Symbol, 18> symbols{{{"alpha", "α"},
                                           {"beta", "β"},
                                           {"gamma", "γ"},
@@ -42,21 +42,21 @@ constexpr std::array<const char*, 10> superscripts{"⁰", "¹", "²", "³", "⁴
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Digits above or below the line.
+/// Digits as superscripts or subscripts.
 std::string in_small(const std::string& digits, const std::array<const char*, 10>& small) {
   std::string all;
   for (const char digit : digits) all += small[static_cast<std::size_t>(digit - '0')];
   return all;
 }
 
-/// A unit to a power, of a product of such.
+/// A unit to a power, a factor of a product.
 struct Factor {
   std::string unit;
   int power = 1;
   bool operator==(const Factor&) const = default;
 };
 
-/// The factors of "kg m-2 s-1", "m/s", "m^2.s"; none of what is written in another way.
+/// The factors of a unit such as "kg m-2 s-1", "m/s", "m^2.s"; none for other notations.
 std::optional<std::vector<Factor>> factors_of(const std::string& unit) {
   std::vector<Factor> factors;
   int sign = 1;
@@ -149,7 +149,7 @@ std::string axis_title(const std::string& label, const std::string& unit) {
 }
 
 std::string spelled(const std::string& name) {
-  constexpr std::size_t index_letters = 3;  // what is longer behind a symbol is a word of its own
+  constexpr std::size_t index_letters = 3;  // a longer word after a symbol is no index
   std::string all;
   bool after_symbol = false;
   for (const auto part : name | std::views::split('_')) {

@@ -1,15 +1,15 @@
-// Symbols and units as people write them.
+// Symbols and units for display.
 #pragma once
 
 #include <string>
 
 namespace grit {
 
-/// A UDUNITS unit as people write it: "kN m-3" is "kN/m³", "degree" is "°". What is no product of powers stays.
+/// A UDUNITS unit for display: "kN m-3" becomes "kN/m³", "degree" becomes "°". Other than products of powers are kept.
 std::string written_unit(const std::string& unit);
 
-/// A UDUNITS unit in which `largest` is easy to read, as people write it, and the factor to multiply by: 0.004 m
-/// becomes 4 mm, 26 000 N m-3 become 26 kN/m³, rad become °. Units without prefixes, "1" among them, stay.
+/// A unit for display with a prefix that makes `largest` readable, and the factor to multiply by: 0.004 m becomes 4 mm,
+/// 26 000 N m-3 becomes 26 kN/m³, rad becomes °. Units that take no prefix, such as "1", are kept.
 struct ReadableUnit {
   double factor = 1;
   std::string unit;
@@ -19,13 +19,13 @@ ReadableUnit readable(const std::string& unit, double largest);
 /// "label [unit]", or the label alone for a unit of "1" or "".
 std::string axis_title(const std::string& label, const std::string& unit);
 
-/// A channel's name as people write it: `shear_stress` is "shear stress", `sigma_1` is "σ₁", `mu_eff` is "μ_eff".
+/// A channel's name for display: `shear_stress` becomes "shear stress", `sigma_1` "σ₁", `mu_eff` "μ_eff".
 std::string spelled(const std::string& name);
 
-/// A sentence with symbols that have an index written so: "asin(sigma_1 - …)" is "asin(σ₁ - …)".
+/// Replaces symbols with an index in a sentence: "asin(sigma_1 - …)" becomes "asin(σ₁ - …)".
 std::string with_symbols(const std::string& text);
 
-/// Label of a probe's channel on an axis: "slip: share", but of a test, and of time, the name alone.
+/// Axis label of a probe's channel: "slip: fraction"; only the channel's name for probe "test" and for time.
 std::string channel_label(const std::string& probe, const std::string& channel);
 
 }  // namespace grit

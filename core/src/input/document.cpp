@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Hands characters on and counts the lines they end.
+/// Passes characters on and counts line ends.
 class CountingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -73,10 +73,10 @@ std::optional<std::size_t> index_in(const Description& list, const std::string& 
 }
 
 std::string no_entry(const std::string& token, const std::string& list, std::size_t size) {
-  return "there is no entry \"" + token + "\" in " + list + ", which has " + std::to_string(size) + ", counted from 0";
+  return "there is no entry \"" + token + "\" in " + list + ", which has " + std::to_string(size) + " entries, counted from 0";
 }
 
-/// Whether a patch tells of entries of a list by their numbers.
+/// Whether all keys of a patch are indices of entries of the list.
 bool is_of_entries(const Description& patch, const Description& list) {
   return patch.is_object() && !patch.empty() && list.is_array() &&
          std::ranges::all_of(patch.items(), [&](const auto& one) {
@@ -84,7 +84,7 @@ bool is_of_entries(const Description& patch, const Description& list) {
          });
 }
 
-/// The first key of a patch that can only be meant as the number of an entry, which the list has not.
+/// The first key of a patch that is an index beyond the list.
 std::optional<std::string> missing_entry(const Description& patch, const Description& list) {
   if (!patch.is_object() || !list.is_array()) return std::nullopt;
   for (const auto& [key, value] : patch.items())
@@ -128,7 +128,7 @@ std::string describe_value(const Description& value) {
 struct Document::Parser : nlohmann::json_sax<Description> {
   Parser(Document& document, std::shared_ptr<const Source> source) : document_(document), source_(std::move(source)) {}
 
-  /// Whether the text is JSON; problems holds what is wrong in it.
+  /// Whether the text is JSON; problems are collected in `problems`.
   bool parse(const std::string& text) {
     const char *begin = text.data(), *end = begin + text.size();
     return Description::sax_parse(CountingIterator(begin, &count_), CountingIterator(end, &count_), this);
@@ -152,7 +152,7 @@ struct Document::Parser : nlohmann::json_sax<Description> {
     if (open_.back().value->contains(key)) {
       const std::string at = open_.back().pointer + '/' + pointer_token(key);
       problems.push_back({source_->name, line(), at,
-                          "the key \"" + key + "\" stands twice, first in line " +
+                          "the key \"" + key + "\" appears twice, first in line " +
                               std::to_string(document_.origin(at).line) + "; keep one of them"});
     }
     return true;
@@ -175,24 +175,24 @@ struct Document::Parser : nlohmann::json_sax<Description> {
   };
 
   int line() const { return count_.line; }
-  /// The parser knows a number's end only from the character behind it.
+  /// The parser reads one character past the end of a number.
   int line_of_number() const { return count_.line - (count_.last == '\n'); }
 
-  /// Puts a value where it belongs; null where it is a comment.
+  /// Stores a value and returns it; null for a comment.
   Description* put(Description v, int line, std::string& pointer) {
     if (comment_ || skipped_ > 0) return nullptr;
-    Description* place = &document_.json_;
+    Description* target = &document_.json_;
     if (!open_.empty()) {
       Open& parent = open_.back();
       const bool list = parent.value->is_array();
       pointer = parent.pointer + '/' + (list ? std::to_string(parent.value->size()) : pointer_token(key_));
       if (list) parent.value->push_back(nullptr);
-      place = list ? &parent.value->back() : &(*parent.value)[key_];
+      target = list ? &parent.value->back() : &(*parent.value)[key_];
     }
-    *place = std::move(v);
+    *target = std::move(v);
     document_.forget(pointer);
     document_.origins_[pointer] = {source_, line, pointer};
-    return place;
+    return target;
   }
   bool value(Description v, int line) {
     std::string pointer;
@@ -202,7 +202,7 @@ struct Document::Parser : nlohmann::json_sax<Description> {
   }
   bool start(Description v) {
     std::string pointer;
-    if (Description* place = put(std::move(v), line(), pointer)) open_.push_back({place, pointer});
+    if (Description* target = put(std::move(v), line(), pointer)) open_.push_back({target, pointer});
     else ++skipped_;
     comment_ = false;
     return true;
@@ -267,7 +267,7 @@ Document Document::read(const std::string& text, const Source& source, std::vect
     refuse("found " + describe_value(*extends) + "; allowed is the path of a description, from the folder of this one");
   const fs::path base_path = (source.directory / extends->get<std::string>()).lexically_normal();
   if (std::ranges::find(open, fs::weakly_canonical(base_path)) != open.end())
-    refuse(base_path.string() + " extends itself, directly or by way of others; break the circle");
+    refuse(base_path.string() + " extends itself, directly or through other files; break the cycle");
   std::error_code none;
   if (!fs::is_regular_file(base_path, none)) refuse("there is no file " + base_path.string() + " to extend");
   Document base = load(base_path, open);
@@ -288,8 +288,8 @@ Origin Document::origin(const std::string& pointer) const {
 }
 
 Problem Document::problem(const std::string& pointer, std::string message) const {
-  const Origin place = origin(pointer);
-  return {place.source->name, place.line, place.pointer, std::move(message)};
+  const Origin written = origin(pointer);
+  return {written.source->name, written.line, written.pointer, std::move(message)};
 }
 
 void Document::set(const std::string& assignment) {
@@ -362,7 +362,7 @@ void Document::merge(Description& target, const std::string& at, const Descripti
   }
   if (const auto key = missing_entry(patch, target))
     throw DescriptionError({other.problem(from + '/' + *key, no_entry(*key, at, target.size()))});
-  // An object that is merged into stays where it was written, for what it holds without an entry of its own.
+  // An object that is merged into keeps its origin, for values without an origin of their own.
   if (!patch.is_object() || !target.is_object()) {
     forget(at);
     origins_[at] = other.origin(from);
@@ -382,14 +382,14 @@ void Document::merge(Description& target, const std::string& at, const Descripti
       forget(at + token);
       removed_.insert(at + token);
     } else {
-      if (target.contains(key) && target[key].is_null()) removed_.insert(at + token);  // it was to remove something
+      if (target.contains(key) && target[key].is_null()) removed_.insert(at + token);  // it was meant to remove a key
       merge(target[key], at + token, value, other, from + token);
     }
   }
 }
 
 void Document::extend(Document base) {
-  // What was removed may have been written anew later: that comes after.
+  // A removed key may have been written again later; merging then restores it.
   for (const std::string& pointer : removed_) base.erase(pointer);
   base.merge(*this);
   *this = std::move(base);

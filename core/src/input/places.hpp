@@ -1,4 +1,4 @@
-// Where in its files a description says something.
+// Position in the input files of a part of the description.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,23 @@
 
 namespace grit {
 
-/// Where what stands at one of the pointers was written last: by the changes of one of the first `stages` stages, by a
-/// ramp of one, or at the beginning, and then at the first pointer.
+/// Pointer to the last assignment of the values at `pointers`: in the changes or ramps of one of the first `stages`
+/// stages, otherwise the first of `pointers`.
 std::string written_last(const Document& document, const std::vector<std::string>& pointers, std::size_t stages);
 
-/// Does the work, and tells of a PlacedError in which file and line it is: throws DescriptionError.
+/// Runs `work`. A PlacedError becomes a DescriptionError with file and line of each fault.
 template <class Work>
 auto at_its_place(const Document& document, const Work& work) {
   try {
     return work();
   } catch (const PlacedError& error) {
-    std::string pointer;
-    for (const std::string& key : error.keys()) pointer += '/' + pointer_token(key);
-    throw DescriptionError({document.problem(written_last(document, {pointer}, error.stages()), error.what())});
+    std::vector<Problem> problems;
+    for (const PlacedError::Fault& fault : error.faults()) {
+      std::string pointer;
+      for (const std::string& key : fault.keys) pointer += '/' + pointer_token(key);
+      problems.push_back(document.problem(written_last(document, {pointer}, error.stages()), fault.message));
+    }
+    throw DescriptionError(std::move(problems));
   }
 }
 

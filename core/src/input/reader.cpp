@@ -55,14 +55,14 @@ class Reader {
     for (const auto& call : parameters.calls_when_read()) call();
     return true;
   }
-  /// An entry with a name that the description gives it.
+  /// A named entry.
   bool named(const Description& entry, const std::string& name, const std::string& at, Parameters& parameters) {
     return has_good_name(name, at) && object(entry, at, parameters);
   }
 
  private:
   bool complain(const std::string& at, std::string message) { return complain(at, at, std::move(message)); }
-  /// `fault` is what cannot be trusted: a key that is missing at `at`.
+  /// `fault` is the invalid pointer, e.g. that of a key missing in the object `at`.
   bool complain(const std::string& at, const std::string& fault, std::string message) {
     problems_.push_back(document_.problem(at, std::move(message)));
     faults_.push_back(fault);
@@ -79,7 +79,7 @@ class Reader {
     return complain(at, "found " + describe_value(found) + "; allowed is " + allowed);
   }
 
-  /// Makes the choice of an object and lets it declare. False if it could not be made.
+  /// Makes the choice of an object and declares its parameters. False if the choice is invalid.
   bool choose(const Description& value, const std::string& at, Parameters& parameters) {
     Choice* const choice = parameters.choice();
     if (choice == nullptr) return true;
@@ -170,7 +170,7 @@ class Reader {
     return true;
   }
   bool read(const Description& value, const std::string& at, const Parameter& parameter, std::int64_t* target) {
-    constexpr double most = 9e15;  // beyond that a double skips integers
+    constexpr double most = 9e15;  // above it, double skips integers
     const double found = value.is_number() ? value.get<double>() : std::nan("");
     if (!(found == std::floor(found) && std::abs(found) < most)) return wrong(at, value, "an integer");
     if (!parameter.allows(found)) return out_of_range(at, value.dump(), parameter, "");
@@ -309,7 +309,7 @@ class Reader {
 
   const Document& document_;
   std::vector<Problem>& problems_;
-  std::vector<std::string> faults_;  // pointers of what has a problem
+  std::vector<std::string> faults_;  // pointers with a problem
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// From JSON into what was declared.
+// Reads JSON into declared parameters.
 #pragma once
 
 #include <string>
@@ -10,20 +10,19 @@
 
 namespace grit {
 
-/// Names that a description may give to its things (ECMAScript, anchored).
+/// Pattern of names in a description (ECMAScript, anchored).
 inline constexpr const char* name_pattern = "^[A-Za-z0-9_][A-Za-z0-9_.+-]*$";
 
 /// Reads the object at `pointer` of a document into a declaration: first the choice made by its key "type", then the
-/// entries in declared order, then the checks. Adds every problem to `problems` and returns whether there was none;
-/// what a value with a problem was to set keeps its default. Throws PluginError if a plugin that was chosen cannot be
-/// had.
+/// entries in declared order, then the checks. Adds every problem to `problems` and returns whether there was none; a
+/// parameter with a problem keeps its default. Throws PluginError if a chosen plugin is not available.
 bool read(const Document& document, const std::string& pointer, Parameters& parameters, std::vector<Problem>& problems);
 
-/// The same of one entry of an object with entries by name, whose name is checked too.
+/// The same for one named entry of a section, whose name is checked too.
 bool read_entry(const Document& document, const std::string& section, const std::string& name, Parameters& parameters,
                 std::vector<Problem>& problems);
 
-/// The same, throwing all problems together as DescriptionError.
+/// The same, but throws all problems together as DescriptionError.
 void read(const Document& document, Parameters& parameters);
 
 }  // namespace grit

@@ -22,7 +22,7 @@ std::size_t width(const std::string& text) {
 
 class Table {
  public:
-  Table() { lines_.push_back({"name", "symbol", "unit or type", "default", "allowed", "what it is"}); }
+  Table() { lines_.push_back({"name", "symbol", "unit or type", "default", "allowed", "meaning"}); }
 
   void object(Parameters& parameters, int depth) {
     for (const auto& parameter : parameters.entries()) entry(parameter, depth);
@@ -68,7 +68,7 @@ class Table {
     std::visit([&](const auto& target) { line(p, target, depth); }, p.target());
   }
 
-  /// The line itself. A required parameter has no default to tell of.
+  /// The line itself. A required parameter has no default.
   void add(const Parameter& p, int depth, std::string kind, std::string standard, std::string allowed) {
     lines_.push_back({indented(p.name(), depth), p.symbol(), std::move(kind),
                       p.is_required() ? "required" : std::move(standard), std::move(allowed), p.doc()});
@@ -77,7 +77,7 @@ class Table {
   static std::string range_of(const Parameter& p) {
     if (!std::isfinite(p.low()) && !std::isfinite(p.high())) return "any";
     if (p.unit() == "1") return range_text(p, "");
-    // In the spelling that suits the bounds.
+    // In the unit that suits the bounds.
     const double bound = std::isfinite(p.high()) ? p.high() : p.low();
     const std::string friendly = friendly_text(bound, p.unit());
     for (const auto& spelling : unit_spellings(p.unit()))
@@ -146,12 +146,12 @@ class Table {
   void line(const Parameter& p, const MapTarget& target, int depth) {
     add(p, depth, "objects by name", "empty", entries_of(p));
     Parameters inner;
-    target.insert("a+b", inner);  // a name that serves interfaces too
+    target.insert("a+b", inner);  // a name that is valid for interfaces too
     object(inner, depth + 1);
   }
 
   std::vector<Line> lines_;
-  std::set<std::string> seen_;  // choices that are being told of, so that one within itself ends
+  std::set<std::string> seen_;  // choices being listed, to stop at recursive ones
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Declarations for people: what `grit describe` prints and the reference pages hold.
+// Declarations as text: the output of `grit describe` and the reference pages.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace grit {
 
-/// A table, a line a parameter: name, symbol, type or unit, default in a friendly unit, what is allowed, doc. What lies
-/// in an object is indented below it; of a choice, every type. Declarations are used up: lists get an entry, choices
-/// are made.
+/// A table with one parameter per line: name, symbol, type or unit, default in a readable unit, allowed values, doc.
+/// The parameters of an object are indented below it; of a choice, every type is listed. Modifies the declarations:
+/// lists get an entry, choices are made.
 std::string reference_text(Parameters& parameters);
 
 }  // namespace grit

@@ -14,7 +14,7 @@
 namespace grit {
 namespace {
 
-/// Adds problems that are not known already: a fault in a part that several stages change is found with each.
+/// Adds new problems only: a fault in a part that several stages change is found for each of them.
 void add_new(std::vector<Problem>& problems, const std::vector<Problem>& found) {
   const auto same = [](const Problem& a, const Problem& b) {
     return std::tie(a.file, a.line, a.pointer, a.message) == std::tie(b.file, b.line, b.pointer, b.message);
@@ -24,14 +24,13 @@ void add_new(std::vector<Problem>& problems, const std::vector<Problem>& found) 
       problems.push_back(problem);
 }
 
-/// A part that a stage can change: an entry of a section, or a section that has no entries by name.
+/// A part that a stage can change: an entry of a section, or a section without named entries.
 struct Unit {
   std::string section, name;
   std::string pointer() const { return '/' + section + (name.empty() ? "" : '/' + pointer_token(name)); }
 };
 
-/// Lets lists that are nowhere in the document, but in what it resolves to, stand in it, so that a pointer to one of
-/// their entries finds them.
+/// Writes default lists above `pointer` into the document, so that a pointer to one of their entries finds them.
 void write_out_lists(Document& document, const Description& resolved, const std::string& pointer) {
   for (auto slash = pointer.find('/', 1); slash != std::string::npos; slash = pointer.find('/', slash + 1)) {
     const std::string parent = pointer.substr(0, slash);
@@ -41,11 +40,11 @@ void write_out_lists(Document& document, const Description& resolved, const std:
   }
 }
 
-/// What the stages change, one after the other. Only parts that a change or a ramp touches are read anew, so that the
-/// cost of a stage does not depend on how many there are.
+/// The changes of the stages, in order. Only parts that a change or a ramp modifies are read again, so that the cost of
+/// a stage does not depend on the number of stages.
 class Planner {
  public:
-  /// `described` was read from the document, and `is_clean` says whether without a problem.
+  /// `described` was read from the document, without problems if `is_clean`.
   Planner(const Document& document, const SceneDescription& described, bool is_clean, std::vector<Problem>& problems)
       : written_(document),
         merged_(document),
@@ -75,9 +74,9 @@ class Planner {
   }
 
  private:
-  /// Probes and the history of contacts with walls go by the walls that a run begins with.
+  /// The set of walls is fixed: probes and the history of wall contacts refer to the walls at the start of the run.
   void same_walls(const std::string& changed) {
-    if (merged_.json().contains("walls") && !merged_.json().at("walls").is_object()) return;  // reported as it is read
+    if (merged_.json().contains("walls") && !merged_.json().at("walls").is_object()) return;  // reported when it is read
     const Description none = Description::object();
     const auto walls = [&](const Document& document) -> const Description& {
       const auto found = document.json().find("walls");
@@ -91,18 +90,19 @@ class Planner {
         problems_.push_back(written_.problem(is_written ? at : changed, message));
       }
     };
-    refuse_of(merged_, written_,
-              "found a wall that the run does not begin with; allowed are those of /walls: let it begin out of the "
-              "bodies' way, and let the stage say where it stands then");
+    refuse_of(
+        merged_, written_,
+        "found a wall that does not exist at the start of the run; allowed are the walls of /walls. Define it there, "
+        "away from the bodies, and let the stage change its position");
     refuse_of(written_, merged_,
-              "found null, which would take a wall away; allowed is what it is from then on: let the stage say where "
-              "it stands, out of the bodies' way");
+              "found null, which would remove a wall; allowed are new values. Change its position to one away from the "
+              "bodies");
   }
 
   void read_changed(const Description& patch, SettingsChange& change) {
     for (const auto& [section, part] : patch.items()) {
       const auto& all = SceneDescription::changeable();
-      if (std::ranges::find(all, section) == all.end()) continue;  // refused as the stage was read
+      if (std::ranges::find(all, section) == all.end()) continue;  // refused when the stage was read
       const bool removes =
           !part.is_object() || std::any_of(part.begin(), part.end(), [](const auto& one) { return one.is_null(); });
       if (!SceneDescription::has_names(section)) read_unit({section, ""}, change);
@@ -118,7 +118,7 @@ class Planner {
     else faulty_.insert(unit.pointer());
   }
 
-  /// Reads a unit of a document into a description that has nothing of it. False if it has problems.
+  /// Reads a unit of a document into a description that does not contain it. False if it has problems.
   bool read_unit(const Document& document, const Unit& unit, SceneDescription& fresh) {
     if (law_) law_->clear_materials();  // defaults, not what was read before
     Parameters parameters;
@@ -130,7 +130,7 @@ class Planner {
     return found.empty();
   }
 
-  /// Reads a section that entries were removed from.
+  /// Reads a section from which entries were removed.
   void read_section(const std::string& section, SettingsChange& change) {
     SceneDescription fresh(described_.registry());
     fresh.contacts = described_.contacts;
@@ -147,7 +147,7 @@ class Planner {
         if (scene == &fresh || !fresh.has_unit(section, name)) change.add(fresh, section, name);
   }
 
-  /// Takes over new values, and sees that they fit the others, where all of them are known.
+  /// Applies new values, and checks that they are consistent with the others if all are known.
   void use(const SettingsChange& change) {
     if (!is_clean_) return;
     change.apply_to(now_);
@@ -167,7 +167,7 @@ class Planner {
     SettingsChange change;  ///< the unit, with the number at this value
   };
 
-  /// Nothing if there was a problem.
+  /// Empty if there was a problem.
   std::optional<RampPlan> plan_of(const RampDescription& ramp, const std::string& at) {
     const auto place = NumberPointer::of(ramp.pointer);
     if (!place) return refuse_pointer(ramp, at), std::nullopt;
@@ -197,7 +197,7 @@ class Planner {
     return plan;
   }
 
-  /// A number as the description gives it, read where the ramp's pointer points.
+  /// A number as in the description, read at the ramp's pointer.
   std::optional<RampEnd> end_of(const RampDescription& ramp, const NumberPointer& place, const Unit& unit,
                                 const Description& resolved, const std::string& at, const std::string& key,
                                 const Description& value) {
@@ -238,25 +238,17 @@ class Planner {
   }
 
   const Document& written_;
-  Document merged_;                    // with the changes of the stages so far, without the stages
+  Document merged_;                    // with the changes of the stages so far, without the key stages
   const SceneDescription& described_;  // before any stage
   SceneDescription now_;               // with the changes of the stages so far
-  std::shared_ptr<ContactLaw> law_;    // to read parameters of materials; null where it is unknown
-  const bool is_clean_;                // whether described_ is; if not, only what is written is read
+  std::shared_ptr<ContactLaw> law_;    // to read parameters of materials; null if unknown
+  const bool is_clean_;                // whether described_ is; if not, only written values are read
   std::set<std::string> faulty_;       // units and sections with problems
   std::vector<Problem>& problems_;
-  std::set<std::string> refused_;  // names of walls, each of which is reported once
+  std::set<std::string> refused_;  // names of walls that were reported
 };
 
-/// What a scenario says cannot be had: of the parameter that it names first, with a colon, or of all of it.
-Problem of_scenario(const Document& document, const std::string& name, const std::string& text) {
-  const std::size_t colon = text.find(": ");
-  if (text.starts_with("/scenario/") && colon != std::string::npos)
-    return document.problem(text.substr(0, colon), text.substr(colon + 2));
-  return document.problem("/scenario", name + ": " + text);
-}
-
-/// The plain description behind a scenario, the document's other keys merged onto it.
+/// The plain description of a scenario, with the other keys of the document merged onto it.
 Document expanded(const Document& document, const Registry& registry) {
   Component<Scenario> scenario(registry);
   Parameters parameters;
@@ -270,8 +262,12 @@ Document expanded(const Document& document, const Registry& registry) {
                      "expansion of " + name + " in " + document.origin("/scenario").source->name);
   } catch (const PluginError&) {
     throw;
+  } catch (const ParameterError& error) {
+    for (const ParameterError::Fault& fault : error.faults())
+      problems.push_back(document.problem(fault.key.empty() ? "/scenario" : "/scenario/" + fault.key, fault.message()));
+    throw DescriptionError(std::move(problems));
   } catch (const Error& error) {
-    throw DescriptionError({of_scenario(document, name, error.what())});
+    throw DescriptionError({document.problem("/scenario", name + ": " + error.what())});
   } catch (const std::exception& error) {
     throw PluginError(name + " failed to expand: " + error.what());
   }
@@ -294,9 +290,9 @@ Document load_document(const std::filesystem::path& path, const std::vector<std:
                        const Registry& registry) {
   Document document = Document::load(path);
   if (document.json().contains("scene") && document.json().contains("settings"))
-    throw DescriptionError({document.problem(
-        "/scene", "found a study, of which this is the scene; allowed is a description. 'grit chart " + path.string() +
-                      "' runs a study, with --dry it says what would be run")});
+    throw DescriptionError(
+        {document.problem("/scene", "found a study; allowed is a description. 'grit study " + path.string() +
+                                        "' runs a study; with --dry-run it lists the runs")});
   return expanded_document(std::move(document), sets, registry);
 }
 
@@ -327,7 +323,7 @@ Scene read_scene(Document document, const Registry& registry) {
 }
 
 SettingsChange change_of(const SceneDescription& now, const std::string& pointer, const Description& value) {
-  // Read as the change of a stage of the present values, without what a change cannot touch.
+  // Read as the change of a stage of the present values, without the sections that a stage cannot change.
   Description all = resolved(now);
   for (const char* section : {"probes", "output", "title"}) all.erase(section);
   for (auto& [name, group] : all.at("bodies").items()) group.erase("stage");
@@ -352,7 +348,7 @@ SettingsChange change_of(const SceneDescription& now, const std::string& pointer
 }
 
 Description resolved(const SceneDescription& scene) {
-  // Declaring binds to members without changing them, and writing only reads.
+  // Declaring binds to members without changing them; writing only reads.
   Parameters parameters;
   const_cast<SceneDescription&>(scene).declare(parameters);
   return write(parameters);

@@ -19,8 +19,8 @@ Description any_of(Description one, Description other) {
 }
 Description reference(const std::string& definition) { return {{"$ref", "#/definitions/" + definition}}; }
 
-/// Schemas of declarations. A *patch* is a part that is merged onto something: nothing in it is required, and null
-/// removes. Declarations are used up: making their schema fills lists and makes choices.
+/// Schemas of declarations. A *patch* is merged onto a description: nothing in it is required, and null removes.
+/// Modifies the declarations: lists get an entry, choices are made.
 class Generator {
  public:
   enum class Form { whole, patch };
@@ -47,7 +47,7 @@ class Generator {
     return all;
   }
 
-  /// Closes an object around its properties.
+  /// An object with these properties and, unless it is open, no others.
   static Description plain(Description properties, const Parameters& parameters, Form form) {
     properties["//"] = Description::object();
     Description schema = type("object");
@@ -98,7 +98,7 @@ class Generator {
   }
 
   Description property(const Parameter& parameter, Form form) {
-    // The default, before the target is used up.
+    // The default, before the target is modified.
     const auto present = parameter.is_required() ? std::nullopt : write(parameter);
     const bool simple = present && !present->is_object() && !(present->is_array() && present->empty());
     Description schema =
@@ -162,7 +162,7 @@ class Generator {
     target.create(inner);
     return object(inner, form);
   }
-  /// A patch replaces a list whole.
+  /// A patch replaces the whole list.
   Description of(const Parameter& parameter, const ListTarget& target, Form) {
     Parameters inner;
     target.append(inner);
@@ -170,7 +170,7 @@ class Generator {
   }
   Description of(const Parameter& parameter, const MapTarget& target, Form form) {
     Parameters inner;
-    target.insert("a+b", inner);  // a name that serves interfaces too
+    target.insert("a+b", inner);  // a name that is valid for interfaces too
     Description entry = object(inner, form);
     if (form == Form::patch) entry = any_of(std::move(entry), type("null"));
     Description schema = type("object");
@@ -186,7 +186,7 @@ class Generator {
 
 using Form = Generator::Form;
 
-/// The scene's own properties where its contact law is `law`; "" where that is not known.
+/// The properties of a scene with the contact law `law`; "" if unknown.
 Description scene_properties(Generator& generator, const Registry& registry, const std::string& law, Form form) {
   const auto declared = [&](Form wanted) {
     SceneDescription scene(registry);
@@ -197,7 +197,7 @@ Description scene_properties(Generator& generator, const Registry& registry, con
   };
   Description all = declared(form);
 
-  // What a stage may change is a part of the scene.
+  // A stage may change a part of the scene.
   const Description parts = declared(Form::patch);
   Description change = type("object");
   change["additionalProperties"] = false;
@@ -217,7 +217,7 @@ Description scene_properties(Generator& generator, const Registry& registry, con
   return all;
 }
 
-/// A scene: what depends on its contact law stands in cases.
+/// A scene; properties that depend on the contact law are in conditional cases.
 Description scene(Generator& generator, const Registry& registry, Form form) {
   SceneDescription example(registry);
   Parameters declared;

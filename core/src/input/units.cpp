@@ -63,7 +63,7 @@ struct Scale {
   std::optional<int> exponent;  // if the factor is a power of ten
 };
 
-/// The UDUNITS-2 library, whose parser is not safe to use from several threads.
+/// The UDUNITS-2 library. Its parser is not thread-safe.
 class Udunits {
  public:
   static Udunits& only() {
@@ -71,7 +71,7 @@ class Udunits {
     return instance;
   }
 
-  /// Throws PluginError for units that do not convert: it can only be a declaration that is wrong.
+  /// Throws PluginError for units that do not convert, as only a wrong declaration can cause it.
   Scale scale(const std::string& spelling, const std::string& unit) {
     const std::lock_guard lock(mutex_);
     auto [found, is_new] = scales_.try_emplace({spelling, unit});
@@ -96,8 +96,8 @@ class Udunits {
     system_.reset(ut_read_xml(nullptr));
     if (!system_)
       throw FileError(
-          "the unit database of UDUNITS-2 cannot be read; install udunits2 or let UDUNITS2_XML_PATH name it");
-    // The symbol that everybody uses and the database does not have.
+          "the unit database of UDUNITS-2 cannot be read; install udunits2 or set UDUNITS2_XML_PATH to its path");
+    // The usual symbol, which the database lacks.
     ut_map_symbol_to_unit("deg", UT_ASCII, parse("degree").get());
   }
 
@@ -189,7 +189,7 @@ std::optional<Quantity> parse_quantity(const std::string& text, const std::strin
     const std::lock_guard lock(mutex);
     auto pattern = patterns.find(unit);
     if (pattern == patterns.end()) pattern = patterns.emplace(unit, std::regex(quantity_pattern(unit))).first;
-    // Long texts are no quantities, and std::regex recurses along them.
+    // Long texts are not quantities, and std::regex recurses along them.
     if (text.size() > 100 || !std::regex_match(text, parts, pattern->second)) return std::nullopt;
   }
   const std::string number = parts[1], spelling = parts[2];

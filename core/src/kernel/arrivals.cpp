@@ -20,7 +20,7 @@ template <class IsNew, class Use>
 void each_overlap(const State& state, const World& world, IsNew is_new, Use use) {
   const Bodies& bodies = state.bodies;
   Skins none;
-  none.lay_on(std::vector<double>(chunks_of(bodies.count()), 0.0), 0);
+  none.reset(std::vector<double>(chunks_of(bodies.count()), 0.0), 0);
   NeighbourSearch search;
   search.build(bodies, state.cell.cell(), none);
   std::vector<Candidate> found;
@@ -76,15 +76,15 @@ void check_arrivals(const State& state, const World& world, const std::vector<Ne
   if (count == 0) return;
   const Newcomers::Group& group = group_of(deepest.body);
   fail_at_body(state, Guard::arrival, {"bodies", group.name}, deepest.body,
-               "of the group \"" + group.name + "\" appears inside " +
+               "of group \"" + group.name + "\" appears inside " +
                    (deepest.with_wall ? "wall \"" + state.walls.name(deepest.other) + "\""
                                       : "body " + std::to_string(bodies.id[deepest.other])) +
                    ": they overlap by " + number(deepest.share) + " of " + (deepest.with_wall ? "its" : "the smaller") +
                    " radius, more than /bodies/" + group.name + "/overlap " + number(group.overlap) +
                    (count > 1 ? ", the deepest of " + std::to_string(count) + " such pairs" : ""),
                deepest.with_wall
-                   ? "place it in front of the wall; the box of a cloud must be clear of walls"
-                   : "place it where nothing is, let it come in another stage, or take a cloud, which keeps clear");
+                   ? "place it in front of the wall; the box of a cloud must not contain walls"
+                   : "place it in free space, insert it in another stage, or use a cloud, which avoids other bodies");
 }
 
 }  // namespace grit

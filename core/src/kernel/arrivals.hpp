@@ -9,11 +9,11 @@
 
 namespace grit {
 
-/// Gives bodies that appear the velocity of the mean flow, and velocities of half a step before, as all others have.
+/// Adds the mean flow to the velocities of new bodies, and shifts them to half a step ago, as for all others.
 void match_velocities(Bodies& arriving, const State& state);
 
-/// Throws NumericsError, with the deepest, if a body of the groups overlaps one that was there before, or a wall, by
-/// more than its group allows.
+/// Throws NumericsError for the deepest overlap of a new body with an old one or a wall that exceeds the limit of its
+/// group.
 void check_arrivals(const State& state, const World& world, const std::vector<Newcomers::Group>& groups);
 
 }  // namespace grit

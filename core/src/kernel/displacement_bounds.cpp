@@ -52,15 +52,15 @@ void DisplacementBounds::advance_walls(State& state, double furthest) {
           wall.spin.norm() * (arms_[w] + furthest + state.lists.strain_travel() + state.lists.skins().walls_gone());
     }
     const double speed = wall.velocity.norm() + turning;
-    // A flat wall may slide along itself at any speed.
+    // A flat wall may move in its own plane at any speed.
     const Vec3 normal = wall.pose.turn * state.walls.geometry(w).normal();
     const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
     if (!(dt * closing <= travel * smallest) && state.bodies.count() > 0)
       fail(state, Guard::travel, {"walls", state.walls.name(w), "motion"},
            "wall \"" + state.walls.name(w) + "\" moves " + number(dt * closing / smallest) +
                " of the smallest radius in one step, more than /guards/travel " + number(travel),
-           "a wall that fast passes through bodies; make it slower, or if it is free heavier, or the time step "
-           "smaller");
+           "a wall this fast passes through bodies; reduce its velocity, increase the mass of a free wall, or "
+           "reduce the time step");
     wall_speed = std::max(wall_speed, speed), wall_closing = std::max(wall_closing, closing);
   }
   wall_speed_ = wall_speed, wall_closing_ = wall_closing;
@@ -73,7 +73,7 @@ void DisplacementBounds::check_bodies(const State& state) const {
     const Vec3 v = xyz(state.bodies.velocity[i]), w = xyz(state.bodies.spin[i]);
     if (!v.allFinite() || !w.allFinite())
       fail_at_body(state, Guard::finite, group_keys(state, i), i, "has a velocity that is not a number",
-                   "two bodies may have begun at one place, or the time step is too large");
+                   "two bodies may have started at the same point, or the time step is too large");
     const double travel = dt * (v - state.cell.mean_flow(xyz(state.bodies.position[i]))).norm();
     const double radius = state.bodies.position[i].w;
     if (travel > most * radius)

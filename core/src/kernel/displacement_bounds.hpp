@@ -1,4 +1,4 @@
-// How far bodies and walls move in one step, at most.
+// Upper bounds of the displacements of bodies and walls in one step.
 #pragma once
 
 #include <vector>
@@ -8,27 +8,27 @@
 
 namespace grit {
 
-/// Bounds that skins, the travel guard and the time step rely on.
+/// Bounds for the skins, the travel guard and the time step.
 class DisplacementBounds {
  public:
   double wall_speed() const { return wall_speed_; }
-  /// The same, but of flat walls along their normals alone.
+  /// The same, but for flat walls only along their normals.
   double wall_closing_speed() const { return wall_closing_; }
-  /// Distance by which two surfaces came closer in the last step [m].
+  /// Maximum approach of two surfaces in the last step [m].
   double last_approach() const { return last_approach_; }
-  /// Speed of that [m/s].
+  /// The same as a speed [m/s].
   double closing_speed(double previous_dt) const { return previous_dt > 0 ? last_approach_ / previous_dt : 0; }
 
   /// After a rebuild: distances of bodies from the axes of walls that spin.
   void rebuild(const State& state);
-  /// Walls whose number or kind may have changed.
+  /// The number or kind of walls may have changed.
   void resize_walls(std::size_t walls) { arms_.resize(walls, unknown); }
-  /// Bodies grew by `distance` at their surfaces in this step [m].
+  /// Radii grew by up to `distance` [m] in this step.
   void grown(double distance) { grown_ = distance; }
-  /// After bodies and walls have moved by one step. Throws NumericsError where a wall or body moves too far.
+  /// After bodies and walls have moved by one step. Throws NumericsError if a wall or body moved too far.
   void advance(State& state, const Passes& passes);
 
-  void remember(Memory& memory) { memory(arms_, wall_speed_, wall_closing_, last_approach_, grown_); }
+  void serialize(Archive& archive) { archive(arms_, wall_speed_, wall_closing_, last_approach_, grown_); }
 
  private:
   static constexpr double unknown = -1;

@@ -14,7 +14,7 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
   const auto add = [&](const PairSize& size, std::size_t material_a, std::size_t material_b,
                        std::span<const double> history) {
     const ElasticEnergy one = state_.settings.law->energy(size, material_a, material_b, history);
-    all.normal += one.normal, all.shear += size.work_share() * one.shear, all.rolling += one.rolling;
+    all.normal += one.normal, all.shear += size.work_fraction() * one.shear, all.rolling += one.rolling;
   };
   // Displacement of a clump's spheres as the clump grows.
   const auto outward = [&](std::uint32_t body) -> Vec3 {
@@ -22,11 +22,11 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
     if (factor == 1 || c == no_clump) return Vec3::Zero();
     return (factor - 1) * (bodies.clumps.clump[c].axes * bodies.clumps.of_body[body].place);
   };
-  state_.pairs.each_memory(chunk, [&](std::size_t c, std::span<const double> history) {
+  state_.pairs.each_history(chunk, [&](std::size_t c, std::span<const double> history) {
     const std::uint32_t a = state_.pairs.a(c), b = state_.pairs.b(c);
     const double radius_a = factor * bodies.position[a].w, radius_b = factor * bodies.position[b].w;
     const Vec3 branch = state_.pairs.branch(c, bodies, state_.cell.images()) + outward(b) - outward(a);
-    const double overlap = std::max(0.0, radius_a + radius_b - branch.norm());  // springs do not pull
+    const double overlap = std::max(0.0, radius_a + radius_b - branch.norm());  // springs carry no tension
     add({.radius_a = radius_a,
          .radius_b = radius_b,
          .inverse_mass_a = bodies.velocity[a].w,
@@ -35,16 +35,16 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
         bodies.material[a], bodies.material[b], history);
   });
   state_.wall_contacts.each(chunk, [&](const WallContacts::Touching& t) {
-    const std::uint32_t a = t.touch->body;
+    const std::uint32_t a = t.contact->body;
     const double own = bodies.position[a].w, r = factor * own;
-    const double overlap = std::max(0.0, t.touch->overlap + (factor - 1) * own + t.touch->normal.dot(outward(a)));
+    const double overlap = std::max(0.0, t.contact->overlap + (factor - 1) * own + t.contact->normal.dot(outward(a)));
     add({.radius_a = r,
          .radius_b = r,
          .inverse_mass_a = bodies.velocity[a].w,
          .inverse_mass_b = 0,
          .overlap = overlap,
          .wall = true},
-        bodies.material[a], t.touch->material, t.state);
+        bodies.material[a], t.contact->material, t.state);
   });
   return all;
 }
@@ -61,7 +61,7 @@ double EnergyBalance::elastic_by_growth() const {
 double EnergyBalance::kinetic() const {
   const MotionStep next = state_.next_motion(is_kept());
   const Accelerating how{next.free_translation(), next.free_rotation(), next.strain_rate};
-  static_cast<void>(world_.forces()), static_cast<void>(world_.clumps());  // computed once, before threads ask
+  static_cast<void>(world_.forces()), static_cast<void>(world_.clumps());  // computed once, before threads read them
   return passes_.sum([&](std::size_t chunk) {
     return kinetic_energy(world_, 0.5 * state_.time.previous_dt, how, chunk * chunk_bodies, (chunk + 1) * chunk_bodies);
   });
@@ -98,7 +98,7 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
       power += xyz(state_.added_force[i]).dot(xyz(bodies.velocity[i])) +
                xyz(state_.added_moment[i]).dot(xyz(bodies.spin[i]));
   if (!state_.settings.holds_bodies()) return power;
-  // What holds bodies takes up the work of all that acts on them.
+  // Held bodies: the engine's work is the negative of that of all other forces.
   const double translation = motion.hold_translation ? 1 : 0, rotation = motion.hold_rotation ? 1 : 0;
   for (std::size_t i = range.first; i < range.last; ++i) {
     if (bodies.clumps.clump_of(i) != no_clump) continue;
@@ -143,7 +143,7 @@ void EnergyBalance::find_crossing() {
       crossing += over(image_shift(state_.pairs.image(c)), row.force);
     });
     if (bodies.clumps.none()) return;
-    // Spheres that re-entered the cell act on clumps at the other side.
+    // Spheres that re-entered the cell act on clumps on the other side.
     const ChunkRange range(chunk, bodies.count());
     for (std::size_t i = range.first; i < range.last; ++i)
       crossing -= over(bodies.clumps.of_body[i].periods, state_.sum[i].force);
@@ -161,7 +161,7 @@ void EnergyBalance::add_losses() {
 }
 
 void EnergyBalance::before_growth(double grown) {
-  // Half of what growth puts into springs in a step by those at its start, half by those at its end.
+  // Work of growth on springs in a step: half by the forces at its start, half by those at its end.
   const double half_by_now = 0.5 * (flows_.grown + grown);
   if (flows_.begun) flows_.settings += half_by_now * elastic_by_growth();
   flows_.grown = grown;
@@ -200,7 +200,7 @@ void EnergyBalance::add_step(double work_of_walls) {
 
 double EnergyBalance::settings_less_stored() {
   if (!flows_.begun) return flows_.settings;
-  const EnergyLedger now = terms();
+  const Energies now = terms();
   return flows_.settings -
          (now.kinetic + now.elastic() - now.walls - now.cell - now.engines - (now.settings - flows_.settings));
 }
@@ -208,19 +208,19 @@ double EnergyBalance::settings_less_stored() {
 void EnergyBalance::set_settings_less_stored(double value) {
   double stored = 0;
   if (flows_.begun) {
-    const EnergyLedger now = terms();
+    const Energies now = terms();
     stored = now.kinetic + now.elastic() - now.walls - now.cell - now.engines - (now.settings - flows_.settings);
   }
   flows_.settings = value + stored;
 }
 
-EnergyLedger EnergyBalance::terms() {
-  EnergyLedger now;
+Energies EnergyBalance::terms() {
+  Energies now;
   if (!state_.bodies.energies()) return now;
   const ElasticEnergy elastic = this->elastic();
   now.kinetic = kinetic();
   now.elastic_normal = elastic.normal, now.elastic_shear = elastic.shear, now.elastic_rolling = elastic.rolling;
-  // The half of the last step's work that the forces at its end do.
+  // The second half of the last step's work, by the forces at its end.
   const double half_step = 0.5 * state_.time.previous_dt;
   double cell = 0;
   if (state_.cell.deforms()) cell = power_of_cell(state_.cell.period_growth(state_.time.previous_dt)) + power_of_flow();
@@ -245,8 +245,8 @@ EnergyLedger EnergyBalance::terms() {
   return now;
 }
 
-void EnergyBalance::remember(Memory& memory) {
-  memory(flows_.begun, flows_.at_start, flows_.lost.friction, flows_.lost.rolling, flows_.lost.viscosity, flows_.damped,
+void EnergyBalance::serialize(Archive& archive) {
+  archive(flows_.begun, flows_.at_start, flows_.lost.friction, flows_.lost.rolling, flows_.lost.viscosity, flows_.damped,
          flows_.fallen, flows_.walls, flows_.cell, flows_.engines, flows_.settings, flows_.grown);
 }
 

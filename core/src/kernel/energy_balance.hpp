@@ -1,4 +1,4 @@
-// Where the energy is, and where it came from and went.
+// Energy balance: stored energies, work and dissipation.
 #pragma once
 
 #include "grit/world.hpp"
@@ -7,29 +7,29 @@
 
 namespace grit {
 
-/// Energies of a state, and the balance of what came in and went out since a component first asked. Until then the
+/// Energies of a state, and the balance of work and dissipation since a component first requested it. Until then the
 /// balance costs nothing. All energies in J, all powers in W.
 class EnergyBalance {
  public:
   EnergyBalance(const State& state, const World& world, Passes& passes)
       : state_(state), world_(world), passes_(passes) {}
 
-  /// Of contacts, with bodies `factor` times as large.
+  /// Elastic energy of contacts with bodies `factor` times as large.
   ElasticEnergy elastic(double factor = 1) const;
-  /// At the present instant, by the forces that act there.
+  /// Kinetic energy at the present instant, from the velocities of half a step ago and the present forces.
   double kinetic() const;
   double gravitational() const;
-  /// Power of the walls by the forces on them, as they moved last.
+  /// Power of the walls, from the forces on them and their last velocities.
   double power_of_walls() const;
-  /// All terms. The first call begins the balance.
-  EnergyLedger terms();
+  /// All terms. The first call starts the balance.
+  Energies terms();
 
   bool begun() const { return flows_.begun; }
-  /// Whether the terms of steps are summed up.
+  /// Whether the balance has started.
   bool is_kept() const { return state_.bodies.energies() && flows_.begun; }
   double dissipated_by_dashpots() const { return flows_.lost.viscosity; }
 
-  /// Runs `change`, which changes settings, and books the change of elastic or kinetic energy as put in by settings.
+  /// Runs `change`, which changes settings, and books the change of elastic or kinetic energy as work of settings.
   template <class Change>
   void book_elastic(Change change) {
     const double before = flows_.begun ? elastic().total() : 0;
@@ -42,24 +42,24 @@ class EnergyBalance {
   void add_cell(double energy) {
     if (flows_.begun) flows_.cell += energy;
   }
-  /// Energy put in by settings less all that is stored, so that bodies can enter: what they store is booked as put in.
+  /// Work of settings less all stored energy: used to book the energy of bodies that enter.
   double settings_less_stored();
   void set_settings_less_stored(double value);
 
-  /// After an evaluation, while contacts across periodic boundaries are at hand.
+  /// After an evaluation, while contacts across periodic boundaries are available.
   void find_crossing();
   void add_losses();
-  /// Before bodies grow by the logarithm `grown` of a factor in this step.
+  /// Before bodies grow by the factor exp(grown) in this step.
   void before_growth(double grown);
   bool has_growth() const { return flows_.grown > 0; }
-  /// Work of engines and of the cell in a step, half by the forces at its start, half by those at its end: call before
-  /// and after bodies move.
+  /// Work of engines and of the cell in a step: half by the forces at its start, half by those at its end. Call before and
+  /// after bodies move.
   void before_motion(const MotionStep& step);
   void after_motion(const MotionStep& step);
-  /// After walls were driven: `work` of the walls in the step, and what chunks report of the motion.
+  /// After walls were driven: `work` of the walls in the step, and the energies of the motion by chunks.
   void add_step(double work_of_walls);
 
-  void remember(Memory& memory);
+  void serialize(Archive& archive);
 
  private:
   struct Flows {
@@ -67,8 +67,8 @@ class EnergyBalance {
     double at_start = 0;
     Losses lost;
     double damped = 0, fallen = 0;
-    double walls = 0, cell = 0, engines = 0;  // but for half of the last step
-    double settings = 0;                      // but for half of the growth in the last step
+    double walls = 0, cell = 0, engines = 0;  // without half of the last step
+    double settings = 0;                      // without half of the growth in the last step
     double grown = 0;                         // logarithm of that
   };
   ElasticEnergy elastic(std::size_t chunk, double factor) const;

@@ -11,10 +11,10 @@
 namespace grit {
 namespace {
 
-// Energies are checked so often, and at 64, 128 and 256 steps after a change, so that the largest is known.
+// Interval of checks; also at 64, 128 and 256 steps after a change, so that the largest energy is known.
 constexpr std::uint64_t check_every = 500, first_check = 64;
 
-/// Whether all that changes the stored energy is summed up at each step, though no balance is kept.
+/// Whether all work that changes the stored energy is summed up in each step, without a balance.
 bool all_work_is_known(const State& state) {
   const Settings& settings = state.settings;
   bool known = settings.growth_rate == 0 && !state.cell.deforms() && !settings.engines_do_work();
@@ -34,10 +34,10 @@ bool EnergyGuard::due(std::uint64_t step) const {
 void EnergyGuard::check(const State& state, EnergyBalance& balance) {
   const bool begins = std::exchange(begins_, false), by_balance = balance.begun();
   if (!by_balance && !all_work_is_known(state)) {
-    if (begins) stored_at_start_ = std::numeric_limits<double>::quiet_NaN();  // nothing exceeds that
+    if (begins) stored_at_start_ = std::numeric_limits<double>::quiet_NaN();  // NaN: no energy exceeds it
     return;
   }
-  const EnergyLedger terms = by_balance ? balance.terms() : EnergyLedger{};
+  const Energies terms = by_balance ? balance.terms() : Energies{};
   const double energy = by_balance ? terms.kinetic + terms.elastic() : balance.kinetic() + balance.elastic().total();
   const double stored = by_balance ? 0 : energy + balance.gravitational();
   const double last_half = by_balance ? 0 : 0.5 * state.time.previous_dt * balance.power_of_walls();
@@ -49,13 +49,13 @@ void EnergyGuard::check(const State& state, EnergyBalance& balance) {
   largest_ = std::max(largest_, energy);
   const double gained =
       by_balance ? terms.closure_error - closure_at_start_ : stored - stored_at_start_ - (work_ + last_half);
-  // A balance may be wrong by a fraction of the energy that went through.
+  // The allowed error of a balance is a fraction of the energy turned over.
   const double scale = largest_ + (terms.dissipated() - dissipated_at_start_);
   const double allowed = state.settings.guards.energy;
   if (gained > allowed * scale)
     fail(state, Guard::energy, {"guards", "energy"},
-         "energy came from nowhere: " + number(gained) + " J more than was put in, " + number(gained / scale) +
-             " of the largest energy so far" + (by_balance ? " and of what was dissipated" : "") +
+         "energy was created: " + number(gained) + " J more than the work done, " + number(gained / scale) +
+             " of the largest energy so far" + (by_balance ? " plus dissipation" : "") +
              "; /guards/energy allows " + number(allowed),
          "the time step may be too large for the stiffest contact; try a smaller /time_step/safety" +
              std::string(state.walls.any_servo() && balance.dissipated_by_dashpots() > 0

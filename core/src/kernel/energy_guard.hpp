@@ -7,29 +7,29 @@
 
 namespace grit {
 
-/// Only gains trip the guard. It goes by the energy balance where one is kept, else by the stored energy, so that
-/// dissipation hides gains. Without a balance it does not check where work is done that is not summed up at each step.
+/// Only gains trip the guard. It uses the energy balance if there is one, otherwise the stored energy, where dissipation
+/// hides gains. Without a balance it does not check if work is done that is not summed up in each step.
 class EnergyGuard {
  public:
-  /// Starts again with the next forces, as settings have changed.
+  /// Restarts with the next forces, after a change of settings.
   void restart() { *this = {}; }
-  /// Whether this step is one of those that are checked.
+  /// Whether this step is checked.
   bool due(std::uint64_t step) const;
   /// Throws NumericsError if more energy appeared than /guards/energy allows.
   void check(const State& state, EnergyBalance& balance);
   void add_work_of_walls(double work) { work_ += work; }
-  /// A body with this kinetic and potential energy has left [J].
+  /// A body with this kinetic and potential energy [J] has left.
   void discharged(double energy) { stored_at_start_ -= energy; }
 
-  void remember(Memory& memory) {
-    memory(begins_, first_, stored_at_start_, work_, largest_, closure_at_start_, dissipated_at_start_);
+  void serialize(Archive& archive) {
+    archive(begins_, first_, stored_at_start_, work_, largest_, closure_at_start_, dissipated_at_start_);
   }
 
  private:
   bool begins_ = true;
   std::uint64_t first_ = 0;                                // step at which it started
   double stored_at_start_ = 0;                             // kinetic, elastic and gravitational [J]
-  double work_ = 0;                                        // by walls since then, but for half of the last step [J]
+  double work_ = 0;                                        // by walls since then, without half of the last step [J]
   double largest_ = 0;                                     // kinetic and elastic energy since then [J]
   double closure_at_start_ = 0, dissipated_at_start_ = 0;  // of the balance [J]
 };

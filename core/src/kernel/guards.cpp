@@ -9,7 +9,7 @@ namespace grit {
 
 void check_overlap(const State& state, const World& world) {
   if (state.overlap <= state.settings.guards.overlap) return;
-  // Bodies may have moved since, so the deepest contact is named, not the first that is too deep.
+  // Reports the deepest contact.
   const Bodies& bodies = state.bodies;
   const auto share = [&](const Contact& c) {
     const double radius = bodies.position[c.a].w;
@@ -25,7 +25,7 @@ void check_overlap(const State& state, const World& world) {
                                       : "body " + std::to_string(bodies.id[contact.b])) +
                    " by " + number(state.overlap) + " of its radius, more than /guards/overlap " +
                    number(state.settings.guards.overlap),
-               "the contact modulus may be too low for this load, or bodies began inside each other");
+               "the contact modulus may be too low for this load, or bodies overlapped at the start");
 }
 
 void check_periods(const State& state) {
@@ -33,10 +33,9 @@ void check_periods(const State& state) {
   for (int k = 0; k < 3; ++k)
     if (const double period = state.cell.lengths()[k]; state.cell.cell().periodic[k] && period < shortest)
       fail(state, Guard::period, {"domain"},
-           "/domain is " + number(period) + " m long along " + "xyz"[k] +
-               ", where it repeats; a body would meet another one twice in less than " + number(shortest) +
-               " m, twice the reach of the largest",
-           "make the domain longer along this axis, bound it by walls, or compress it less");
+           "/domain has a period of " + number(period) + " m along " + "xyz"[k] + ", below the minimum of " +
+           number(shortest) + " m, twice the reach of the largest body",
+           "make the domain longer along this axis, use walls instead, or compress it less");
 }
 
 void check_growth(const State& state, double distance) {
@@ -45,7 +44,7 @@ void check_growth(const State& state, double distance) {
   fail(state, Guard::travel, {"stages"},
        "the largest body grows by " + number(distance / smallest) +
            " of the smallest radius in one step, more than /guards/travel " + number(most),
-       "let bodies grow more slowly, by a smaller rate of the stage's growth");
+       "reduce the growth rate of the stage");
 }
 
 }  // namespace grit

@@ -12,7 +12,7 @@
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
-#include "plugins/component_memory.hpp"
+#include "plugins/component_archive.hpp"
 
 namespace grit {
 
@@ -86,7 +86,7 @@ void Kernel::take_walls(const SceneDescription& scene, const Components& compone
     const WallDescription& wall = scene.walls.at(state_.walls.name(w));
     const auto& geometry = components.geometries.at(state_.walls.name(w));
     WallSurface& surface = state_.surfaces[w];
-    // Candidates stay what they are, unless a wall has become another.
+    // Candidates remain valid unless a wall was replaced.
     if (surface.geometry == nullptr || !same(surface.geometry->bounds(), geometry->bounds()))
       state_.lists.request_rebuild();
     surface.geometry = geometry;
@@ -99,7 +99,7 @@ void Kernel::take_walls(const SceneDescription& scene, const Components& compone
 
 void Kernel::flatten(int axis) {
   if (state_.settings.may_clump)
-    throw Error("clumps turn about all axes, so that they cannot move in a plane; leave out the engine \"planar\"");
+    throw Error("clumps rotate about all axes, so planar motion is not possible; remove the engine \"planar\"");
   Bodies& bodies = state_.bodies;
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     Vec3 v = xyz(bodies.velocity[i]), w = xyz(bodies.spin[i]);
@@ -148,7 +148,7 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
   if (arriving.bodies.count() == 0) return;
   match_velocities(arriving.bodies, state_);
 
-  const double settings_less_stored = balance_.settings_less_stored();  // bodies may also leave in a search
+  const double settings_less_stored = balance_.settings_less_stored();  // bodies may also leave in a neighbour search
   const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
   const Bodies bodies_before = state_.bodies;
   const PopulationStatistics statistics_before = state_.statistics;
@@ -162,10 +162,10 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
   try {
     stepper_.find_forces();
   } catch (const NumericsError&) {
-    if (!stepper_.expects_arrivals()) {  // they are there, and a guard tripped
+    if (!stepper_.expects_arrivals()) {  // bodies were inserted, and a guard tripped
       stepper_.show_forces();
       balance_.set_settings_less_stored(settings_less_stored);
-    } else {  // they were turned away, and what was there before stays whole
+    } else {  // bodies were rejected; the previous state is kept
       state_.bodies = bodies_before, state_.statistics = statistics_before;
       state_.sum.resize(state_.bodies.count() + 1), passes_.resize(state_.bodies.count());
       stepper_.bodies_changed();
@@ -201,16 +201,16 @@ Model Kernel::model() const {
   return model;
 }
 
-void Kernel::save(Memory& memory) {
-  memory(state_.walls);
-  remember(memory);
+void Kernel::save(Archive& archive) {
+  archive(state_.walls);
+  serialize(archive);
 }
 
-void Kernel::restore(const SceneDescription& scene, const Components& components, Memory& memory) {
-  memory(state_.walls);
-  state_.walls.change(scene, components);  // as they stand and move now
+void Kernel::restore(const SceneDescription& scene, const Components& components, Archive& archive) {
+  archive(state_.walls);
+  state_.walls.change(scene, components);  // with their present poses and velocities
   take_settings(scene, components);
-  remember(memory);
+  serialize(archive);
   state_.settings.growth_rate = growth_rate(scene, state_.stage);
   state_.sum.assign(state_.bodies.count() + 1, {});
   stepper_.restored();
@@ -218,14 +218,14 @@ void Kernel::restore(const SceneDescription& scene, const Components& components
   view_.invalidate();
 }
 
-/// But for walls, which come first, and for what each step computes anew: sums, loads, surfaces.
-void Kernel::remember(Memory& memory) {
-  memory(state_.stage, state_.time, state_.cell, state_.bodies, state_.statistics, state_.lists);
-  memory(state_.pairs, state_.wall_contacts, state_.departures, state_.discharged_mass, state_.overlap);
-  memory(balance_, guard_, stepper_);
-  passes_.remember(memory, state_.bodies.count());
+/// Without walls, which come first, and without values that each step recomputes: sums, loads, surfaces.
+void Kernel::serialize(Archive& archive) {
+  archive(state_.stage, state_.time, state_.cell, state_.bodies, state_.statistics, state_.lists);
+  archive(state_.pairs, state_.wall_contacts, state_.departures, state_.discharged_mass, state_.overlap);
+  archive(balance_, guard_, stepper_);
+  passes_.serialize(archive, state_.bodies.count());
   for (const auto& [name, engine] : state_.settings.engines)
-    remember_by_itself("engine \"" + name + '"', *engine, memory);
+    serialize_component("engine \"" + name + '"', *engine, archive);
 }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// What a kernel reports of itself: what it computes, and the time it takes.
+// Information on a kernel: what it stores and computes, and the computing time of its phases.
 #pragma once
 
 #include <cstddef>
@@ -13,16 +13,16 @@ struct PhaseTime {
   double seconds = 0;
 };
 
-/// What is stored and computed. Everything else is left out, because no component asked for it.
+/// Stored and computed quantities. All others are omitted, because no component requested them.
 struct Model {
-  std::size_t lanes = 1;                   ///< pairs that the contact law's loop takes at once
+  std::size_t lanes = 1;                   ///< pairs that the loop of the contact law evaluates at once
   std::string precision;                   ///< of its arithmetic
-  std::vector<std::string> law_parts;      ///< of the contact law, compiled into that loop
-  std::vector<std::string> contact_state;  ///< what each contact remembers
-  std::vector<std::string> body_state;     ///< of bodies, beyond position, velocity and spin
-  std::vector<std::string> materials;      ///< in the order of their numbers
+  std::vector<std::string> law_parts;      ///< active features of the contact law
+  std::vector<std::string> contact_state;  ///< fields of the contact history
+  std::vector<std::string> body_state;     ///< of bodies, in addition to position, velocity and spin
+  std::vector<std::string> materials;      ///< by index
   bool one_material = true, periodic = false, walls = false, gravity = false, local_damping = false;
-  std::size_t bytes = 0;  ///< held by bodies and contacts
+  std::size_t bytes = 0;  ///< memory of bodies and contacts
 };
 
 }  // namespace grit

@@ -8,7 +8,7 @@ namespace grit {
 
 namespace {
 
-// Skins over the mean diameter, and for how many steps they should last where they are wider than the least. On the
+// Skins over the mean diameter, and the number of steps for which skins above the minimum should last. On the
 // dense periodic box of bench/ 0.01 … 0.05 were tried: wider skins need fewer rebuilds and more pair tests; 0.03 was
 // best or within 3 % of it at 10 000 and 50 000 particles.
 constexpr double least_skin = 0.03, most_skin = 0.4, steps_of_skin = 100;
@@ -62,7 +62,7 @@ void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, 
     }
     skins[chunk] = skin(std::sqrt(fastest));
   });
-  skins_.lay_on(skins, skin(wall_speed));
+  skins_.reset(skins, skin(wall_speed));
   strain_travel_ = 0;
 }
 
@@ -88,13 +88,13 @@ double NeighbourLists::advance(double dt, double strained, const Passes& passes)
 double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationStatistics& statistics) {
   double furthest = 0;
   for (const Clump& clump : bodies.clumps.clump) furthest = std::max(furthest, clump.furthest);
-  // A clump must not meet itself.
+  // A clump must not meet its own images.
   return NeighbourSearch::shortest_period(statistics.largest_radius, least_skin * statistics.mean_diameter) +
          2 * furthest;
 }
 
-void NeighbourLists::remember(Memory& memory) {
-  memory(skins_, reference_, reference_cell_, strain_travel_, rebuilds_, requested_);
+void NeighbourLists::serialize(Archive& archive) {
+  archive(skins_, reference_, reference_cell_, strain_travel_, rebuilds_, requested_);
 }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// When neighbours are searched again, and with how wide skins.
+// Neighbour lists: when they are rebuilt, and the widths of skins.
 #pragma once
 
 #include <cstdint>
@@ -18,27 +18,27 @@ class NeighbourLists {
   const Skins& skins() const { return skins_; }
   const NeighbourSearch& search() const { return search_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
-  /// Distance by which strain of the cell and growth brought two surfaces closer since the last rebuild, at most [m].
+  /// Upper bound of the approach of two surfaces by strain of the cell and by growth since the last rebuild [m].
   double strain_travel() const { return strain_travel_; }
 
   void request_rebuild() { requested_ = true; }
-  /// Whether a body or wall may have used up its skin. Distances from the last rebuild are measured where the sum of
-  /// largest speeds does not suffice.
+  /// Whether a body or wall may have used up its skin. If the sum of maximum speeds does not exclude it, displacements since
+  /// the last rebuild are measured.
   bool due(const Bodies& bodies, const DeformingCell& cell);
-  /// Whether this rebuild should also put bodies in spatial order.
+  /// Whether this rebuild should also sort bodies in space.
   bool sorts() const { return rebuilds_ % sort_every == 0; }
-  /// Searches neighbours. Skins follow from speeds alone, so that a run is the same on every machine.
+  /// Searches neighbours. Skins follow from speeds only, so that a run is identical on every machine.
   void rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                double wall_speed, Passes& passes);
-  /// After a step of `dt` [s] in which two surfaces came closer by `strained` [m] at most because of strain and growth.
-  /// Returns how far a body is from where it was at the last rebuild, at most [m].
+  /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m]. Returns an
+  /// upper bound of the displacement of bodies since the last rebuild [m].
   double advance(double dt, double strained, const Passes& passes);
-  void advance_walls(double distance) { skins_.walls_go(distance); }
+  void advance_walls(double distance) { skins_.advance_walls(distance); }
 
-  /// The shortest period that is allowed [m].
+  /// The shortest allowed period [m].
   static double shortest_period(const Bodies& bodies, const PopulationStatistics& statistics);
 
-  void remember(Memory& memory);
+  void serialize(Archive& archive);
 
  private:
   static constexpr std::uint64_t sort_every = 8;

@@ -16,11 +16,11 @@ std::vector<PhaseTime> Passes::phases() const {
   return phases;
 }
 
-void Passes::remember(Memory& memory, std::size_t bodies) {
-  memory(seconds_);
-  for (PhaseTime& phase : phases_) memory(phase.seconds);
+void Passes::serialize(Archive& archive, std::size_t bodies) {
+  archive(seconds_);
+  for (PhaseTime& phase : phases_) archive(phase.seconds);
   resize(bodies);
-  for (ChunkResult& chunk : chunks_) memory(chunk.seconds);
+  for (ChunkResult& chunk : chunks_) archive(chunk.seconds);
 }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Passes over chunks of bodies: the threads that share them, what each chunk gave, and the time it took.
+// Passes over chunks of bodies: threads, results of chunks, and computing time.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace grit {
 enum class StepPhase : std::size_t { search, contacts, walls, motion };
 inline constexpr std::size_t step_phases = 4;
 
-/// What the last pass found of one chunk, and the time it took where that was measured.
+/// Results of the last pass for one chunk, and its computing time if measured.
 struct alignas(64) ChunkResult {
   double overlap = 0;  ///< largest, over a radius
   Losses losses;
@@ -56,15 +56,15 @@ class Passes {
     team_.each(found.size(), [&](std::size_t chunk) { found[chunk] = part(chunk); });
     return std::accumulate(found.begin(), found.end(), decltype(part(std::size_t{0})){});
   }
-  /// Seconds of a phase outside passes, to be added to.
+  /// Time of a phase outside passes, to add to [s].
   double& time_of(StepPhase phase) { return phases_[static_cast<std::size_t>(phase)].seconds; }
-  /// All phases; the time of passes is shared out by the chunks that were timed.
+  /// Times of all phases; that of passes is divided in proportion to the timed chunks.
   std::vector<PhaseTime> phases() const;
 
-  void remember(Memory& memory, std::size_t bodies);
+  void serialize(Archive& archive, std::size_t bodies);
 
  private:
-  // Reading the clock takes some 30 ns, a chunk some 20 µs.
+  // Reading the clock takes about 30 ns, a chunk about 20 µs.
   static constexpr std::uint64_t timed_every = 8;
 
   Team team_;

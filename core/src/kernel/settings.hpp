@@ -1,4 +1,4 @@
-// What the kernel goes by until it is given something else: the present values of a description.
+// Present settings of the kernel, from the description.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace grit {
 
 struct Settings {
   std::shared_ptr<ContactLaw> law;
-  std::vector<StateField> fields;                          ///< contact history that the law keeps
+  std::vector<StateField> fields;                          ///< fields of the contact history
   std::map<std::string, std::shared_ptr<Engine>> engines;  ///< by name
   std::vector<Engine*> force_engines;                      ///< those of phase `forces`, by name
   MotionSettings motion;
@@ -26,7 +26,7 @@ struct Settings {
   TimeStepDescription time_step;
   GuardsDescription guards;
   double growth_rate = 0;  ///< of radii in this stage [1/s]
-  bool may_clump = false;  ///< some group of bodies, present or to come, has clumps
+  bool may_clump = false;  ///< whether a group of bodies, present or future, has clumps
 
   bool holds_bodies() const { return motion.hold_rotation || motion.hold_translation; }
   /// Whether engines change the energy of bodies: by forces, or by holding them.
@@ -36,7 +36,7 @@ struct Settings {
 /// The settings of a scene in a stage; mixes the law's materials. `materials` are all names by index.
 Settings settings_of(const SceneDescription& scene, const Components& components, const std::string& stage,
                      const std::vector<std::string>& materials);
-/// Rate at which radii grow in a stage [1/s]; 0 where none is given.
+/// Growth rate of radii in a stage [1/s]; 0 if none is given.
 double growth_rate(const SceneDescription& scene, const std::string& stage);
 
 }  // namespace grit

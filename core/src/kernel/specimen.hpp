@@ -1,4 +1,4 @@
-// The box that the specimen fills, from its walls and the cell.
+// The box of the specimen, from its walls and the cell.
 #pragma once
 
 #include "grit/world.hpp"
@@ -6,12 +6,12 @@
 
 namespace grit {
 
-/// Which side of the surfaces of walls that bodies are not inside of the specimen ends at.
+/// Where the specimen ends at walls with bodies outside: at the near or the far side of their surface.
 enum class SurfaceSide { near, far };
 
-/// The specimen's box, smaller by `margin` [m] at its walls. Throws Error for a wall that does not exist.
+/// The box of the specimen, reduced by `margin` [m] at its walls. Throws Error for a wall that does not exist.
 Region specimen_region(const State& state, double margin, SurfaceSide side = SurfaceSide::near);
-/// Gives walls whose servo presses on the specimen its present lengths.
+/// Passes the present lengths of the specimen to the walls, for servos whose pressure refers to it.
 void update_cross_section(State& state);
 
 }  // namespace grit

@@ -20,7 +20,7 @@ std::size_t State::bytes() const {
   const std::size_t per_body = 4 * sizeof(Row) + sizeof(BodySum) + 5 + (bodies.rotation.empty() ? 0 : sizeof(Vec3)) +
                                (bodies.origin.empty() ? 0 : sizeof(Vec3));
   const Clumps& clumps = bodies.clumps;
-  return bodies.count() * per_body + pairs.memory() + clumps.clump.size() * sizeof(Clump) +
+  return bodies.count() * per_body + pairs.bytes() + clumps.clump.size() * sizeof(Clump) +
          clumps.of_body.size() * (sizeof(ClumpSphere) + sizeof(std::uint32_t) + sizeof(double));
 }
 

@@ -1,4 +1,4 @@
-// All that is simulated, at one instant. The parts of the kernel work on it; what a part alone needs it keeps itself.
+// Complete state of a simulation at one instant. The parts of the kernel share it; data of one part are in that part.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct State {
   explicit State(const Cell& box) : cell(box) {}
 
   StepTime time;
-  std::string stage;  ///< empty before the first
+  std::string stage;  ///< name; empty before the first
   Settings settings;
   std::vector<std::string> materials;  ///< names by index
   DeformingCell cell;
@@ -33,20 +33,20 @@ struct State {
   ContactTable pairs;
   WallContacts wall_contacts;
   Walls walls;
-  std::vector<WallSurface> surfaces;           ///< of the walls, as the contact pass needs them
+  std::vector<WallSurface> surfaces;           ///< of the walls, for the contact pass
   LargeArray<BodySum> sum;                     ///< contact forces and moments by body
   std::vector<Row> added_force, added_moment;  ///< by engines; empty without any
   double overlap = 0;                          ///< largest over a radius, at the last evaluation
 
-  /// What the contact pass needs; `again` if this instant has been evaluated before.
+  /// Input of the contact pass; `again` if this instant has been evaluated before.
   ContactTable::Instant instant(bool again) const {
     return {*settings.law, bodies, statistics.one_material, cell.images(), time.previous_dt, lists.skins(), again};
   }
-  /// The coming step of the leap-frog. `energies`: work is summed up.
+  /// The next step of the leap-frog scheme. `energies`: whether work is summed up.
   MotionStep next_motion(bool energies) const;
-  /// Mass discharged over all mass that entered.
+  /// Discharged mass over all mass that entered.
   double discharged_fraction() const { return statistics.mass > 0 ? discharged_mass / statistics.mass : 0; }
-  /// Bytes held by bodies and contacts.
+  /// Memory of bodies and contacts [bytes].
   std::size_t bytes() const;
 };
 

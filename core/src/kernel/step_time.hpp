@@ -1,19 +1,19 @@
-// Where a simulation is in time.
+// Time, step number and time step of a simulation.
 #pragma once
 
 #include <cstdint>
 
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 
 namespace grit {
 
 struct StepTime {
-  double time = 0;  ///< s since the start of the run
+  double time = 0;  ///< since the start of the run [s]
   std::uint64_t step = 0;
   double dt = 0;           ///< of the next step [s]
   double previous_dt = 0;  ///< of the last step [s]; 0 before the first
 
-  void remember(Memory& memory) { memory(time, step, dt, previous_dt); }
+  void serialize(Archive& archive) { archive(time, step, dt, previous_dt); }
 };
 
 }  // namespace grit

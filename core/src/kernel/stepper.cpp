@@ -80,7 +80,7 @@ bool Stepper::prepare() {
     if (state_.lists.due(state_.bodies, state_.cell)) rebuild();
     else time_step_.follow(state_, bounds_, passes_.team());
   }
-  // Contact history advances once a step, however often forces are asked for: a stage asks again.
+  // Contact history advances once per step, even if forces are evaluated again at the start of a stage.
   const bool again = forces_step_ == state_.time.step;
   forces_step_ = state_.time.step;
   return again;
@@ -122,7 +122,7 @@ void Stepper::add_forces_of_engines() {
   for (const Engine* engine : state_.settings.force_engines) engine->forces(view_, force, moment);
   for (std::size_t i = 0; i < count; ++i) state_.sum[i].force += force[i], state_.sum[i].moment += moment[i];
   state_.added_force.swap(force), state_.added_moment.swap(moment);
-  view_.invalidate_forces();  // engines may have asked for forces, without their own
+  view_.invalidate_forces();  // engines may have read forces without their own
 }
 
 void Stepper::take_loads() {
@@ -204,8 +204,8 @@ void Stepper::advance() {
   and_show_forces([this] { end_step(); });
 }
 
-/// Whether bodies need not wait for the forces on others: neither the time step nor engines depend on all forces, and
-/// the energy balance does not ask for the power of forces before and after the motion.
+/// Whether bodies may move before the forces on others are known: neither time step nor engines depend on all forces, and
+/// the energy balance does not need the power of forces before and after the motion.
 bool Stepper::can_move_at_once() const {
   const Settings& settings = state_.settings;
   const bool free_walls = std::ranges::any_of(state_.surfaces, &WallSurface::free);
@@ -229,8 +229,8 @@ void Stepper::step_on() {
     move(chunk, sum, step);
   };
   passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
-    // Sums of a chunk that moves at once never leave the cache. Indexed by body, like those of all: what the pointer
-    // would be for body 0 lies before the array and is never read, which no machine that grit runs on minds.
+    // Sums of a chunk that moves at once stay in the cache. The pointer is offset so that it is indexed by body: its start
+    // lies before the array, but only valid elements are accessed.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
     const ChunkRange range(chunk, state_.bodies.count());
     const std::uintptr_t of_body_0 = reinterpret_cast<std::uintptr_t>(here.data()) - range.first * sizeof(BodySum);
@@ -269,8 +269,7 @@ void Stepper::show_forces() {
 
 void Stepper::end_step() {
   const double dt = state_.time.dt;
-  // Half of the walls' work in a step by the forces at its start, half by those at its end: a servo moves because of
-  // the former.
+  // Work of walls in a step: half by the forces at its start, half by those at its end; a servo reacts to the former.
   const double work_at_start = 0.5 * state_.time.previous_dt * balance_.power_of_walls();
   state_.walls.drive(dt, [this](std::size_t wall, const Pose& there, const Vec3& velocity, double distance) {
     const Skins& skins = state_.lists.skins();
@@ -291,6 +290,6 @@ void Stepper::end_step() {
   bounds_.advance(state_, passes_);
 }
 
-void Stepper::remember(Memory& memory) { memory(time_step_, bounds_, forces_step_, body_steps_); }
+void Stepper::serialize(Archive& archive) { archive(time_step_, bounds_, forces_step_, body_steps_); }
 
 }  // namespace grit

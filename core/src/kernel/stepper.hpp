@@ -21,29 +21,29 @@ class Stepper {
   void find_forces();
   /// One step; find_forces() must have been called at this instant. Throws NumericsError if a guard trips.
   void advance();
-  /// find_forces() and advance(), to the same bits, in one pass over the bodies where nothing needs the forces of all
-  /// bodies in between. Forces are then unknown until find_forces() is called again. Throws NumericsError if a guard
-  /// trips, with forces of where it stopped.
+  /// find_forces() and advance() with identical results, in one pass over the bodies if nothing needs the forces of all
+  /// bodies in between. Forces are then undefined until find_forces() is called again. Throws NumericsError if a guard
+  /// trips, with the forces of that instant.
   void step_on();
-  /// Forces of where the bodies are, after a guard tripped.
+  /// Forces at the present positions, after a guard tripped.
   void show_forces();
 
-  /// Settings or bodies have changed: the time step and what follows from material pairs are found again.
+  /// After a change of settings or bodies: recomputes the time step and values of material pairs.
   void settings_changed();
   void bodies_changed() { time_step_.update_stiffening(state_); }
-  /// Bodies of these groups have been appended; the next search checks and sorts them.
+  /// Bodies of these groups have been appended; the next neighbour search checks and sorts them.
   void expect(std::vector<Newcomers::Group> arrivals) { arrivals_ = std::move(arrivals); }
   bool expects_arrivals() const { return !arrivals_.empty(); }
   const TimeStepControl& time_step() const { return time_step_; }
-  /// Steps of bodies, summed over all bodies.
+  /// Particle-steps so far.
   double body_steps() const { return body_steps_; }
 
-  void remember(Memory& memory);
-  /// After remember() has restored the state.
+  void serialize(Archive& archive);
+  /// After the state has been restored.
   void restored() { readiness_.build(state_.pairs.reached()); }
 
  private:
-  /// All that comes before contacts. Returns whether this instant has been evaluated before.
+  /// Operations before contacts. Returns whether this instant has been evaluated before.
   bool prepare();
   void rebuild();
   void update_surfaces();
@@ -52,12 +52,12 @@ class Stepper {
   void move(std::size_t chunk, const BodySum* sum, const MotionStep& step);
   void sum_forces(bool again);
   void add_forces_of_engines();
-  /// What chunks found, for walls and guards.
+  /// Collects the results of chunks for walls and guards.
   void take_loads();
   bool can_move_at_once() const;
   void grow();
   void move_clumps_of_chunks(const MotionStep& step);
-  /// All that comes after the motion of bodies.
+  /// Operations after the motion of bodies.
   void end_step();
   template <class Work>
   void and_show_forces(Work work);
@@ -73,7 +73,7 @@ class Stepper {
   std::vector<Newcomers::Group> arrivals_;  // since the last rebuild, with their first ids
   std::vector<std::size_t> late_;           // chunks that could not move at once
   std::vector<WallLoad> loads_;
-  std::uint64_t forces_step_ = ~0ull;  // at which contacts were last brought up to date
+  std::uint64_t forces_step_ = ~0ull;  // step at which contacts were last updated
   double body_steps_ = 0;
 };
 

@@ -8,16 +8,16 @@ namespace grit {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// The time step is set again whenever the largest overlap has grown so much, or something moves so fast that an impact
-// would go as much deeper.
+// The time step is set again when the largest overlap has grown by this factor, or when an impact at the present speeds
+// would reach as much.
 constexpr double overlap_growth = 1.2, shallowest = 1e-6;
-// A packing of particles with many contacts each may be pressed to this share of the overlap that an impact would
-// reach, at the step that is set for a pair: 20 k_s/m of a cubic packing with friction, against 7 k_s/m of a pair. At
-// 0.8 of the pair's step it begins to oscillate at (7 / 20 / 0.8²)² = 0.3 of that overlap, so from a share of 0.3 / 1.2
-// = 0.25 on. Where dashpots shorten the step it is later: the packing of tests/stability holds at 0.4 and fails at 0.5.
-// Not covered, whatever the share: a packing that is pressed less deep than some contact was before. A face-centred one
-// has 40 k_s/m and then oscillates at 0.8 of the step.
-constexpr double packing_share = 0.15;
+// Fraction of the overlap that an impact would reach to which a packing with many contacts per body may be compressed at
+// the step set for a pair: 20 k_s/m for a cubic packing with friction, 7 k_s/m for a pair. At 0.8 of the step of the pair
+// it starts to oscillate at (7 / 20 / 0.8²)² = 0.3 of that overlap, that is from a fraction of 0.3 / 1.2 = 0.25 on. Where
+// dashpots shorten the step the limit is higher: the packing of tests/stability is stable at 0.4 and unstable at 0.5.
+// Not covered by any fraction: a packing with smaller overlaps than some contact had before. A face-centred packing has
+// 40 k_s/m and then oscillates at 0.8 of the step.
+constexpr double packing_fraction = 0.15;
 
 /// Normal stiffness of two bodies of the smallest radius, or of one and a wall, at this overlap over a radius [N/m].
 double stiffness_of_smallest(const State& state, std::size_t a, std::size_t b, bool wall, double overlap) {
@@ -41,8 +41,8 @@ void each_pair_of_materials(const State& state, Use use) {
       for (const bool wall : {false, true}) use(a, b, wall);
 }
 
-/// The smallest speed whose impact reaches this overlap: ½ m* v² = 4/15 k δ², which is Hertz's [m/s]. The ratio of
-/// overlap and radius is then that of all sizes.
+/// The smallest speed whose impact reaches this overlap [m/s]: ½ m* v² = 4/15 k δ² (Hertz). The ratio of overlap and
+/// radius is then the same for all sizes.
 double speed_of_impact(const State& state, double overlap) {
   const double r = state.statistics.smallest_radius, mass = state.statistics.heaviest * r * r * r;
   double least = infinity;
@@ -69,7 +69,7 @@ void Stiffening::update(const State& state) {
 }
 
 bool Stiffening::exceeds(double overlap, const State& state, const DisplacementBounds& bounds) const {
-  const double pressed = std::max(pressed_, packing_share * expected_);
+  const double pressed = std::max(pressed_, packing_fraction * expected_);
   return is_there() &&
          (overlap > overlap_growth * pressed || bounds.closing_speed(state.time.previous_dt) > expected_speed_);
 }
@@ -80,7 +80,7 @@ bool Stiffening::may_exceed(const State& state, const DisplacementBounds& bounds
 
 void Stiffening::expect(const State& state, const DisplacementBounds& bounds) {
   if (!is_there()) return;
-  // Bodies that begin or appear with a velocity have not made a step with it yet.
+  // New bodies with a velocity have not moved yet.
   const Vec3 rate = state.cell.cell().strain_rate, middle = state.cell.flow_centre();
   double fastest = 0;
   for (std::size_t i = 0; i < state.bodies.count(); ++i)

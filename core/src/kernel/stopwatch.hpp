@@ -1,4 +1,4 @@
-// Where the time of a run goes.
+// Computing time of the phases of a run.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Adds the seconds that it lives to a phase.
+/// Adds its lifetime [s] to a phase.
 class Stopwatch {
  public:
   explicit Stopwatch(double& seconds) : seconds_(seconds) {}
@@ -23,7 +23,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Splits time into laps of several phases, or does nothing.
+/// Divides time into laps of several phases; may be inactive.
 class Laps {
  public:
   explicit Laps(bool on) : on_(on) {

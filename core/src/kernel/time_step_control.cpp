@@ -9,11 +9,11 @@
 namespace grit {
 namespace {
 
-// The time step is set again for bodies that have moved this far, and pairs nearer than the other distance count as
-// contacts, both over the mean diameter. Two bodies may approach by more than that unseen; docs/definitions.md says how
-// much the step lags, and what it would cost to avoid that.
+// Displacement after which contacts are evaluated again for the time step, and distance below which pairs count as
+// contacts, both over the mean diameter. Two bodies may approach by more than that between evaluations;
+// docs/definitions.md explains how much the time step lags and the cost of avoiding it.
 constexpr double renew_distance = 0.03, contact_distance = 0.015;
-// The time step is raised only when it could be so much larger, so that it does not follow every small change.
+// The time step is raised only by this factor or more, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
 
 }  // namespace
@@ -61,7 +61,7 @@ void TimeStepControl::choose(const Demand& contacts, State& state) {
       fail(state, Guard::critical_step, {"time_step", "value"},
            "the time step " + number(*wish.value) + " s is above the critical one, " + number(critical_time_step_) +
                " s",
-           "leave out /time_step/value, or say \"allow_unstable\": true");
+           "remove /time_step/value, or set /time_step/allow_unstable to true");
     state.walls.check_oscillations(dt);
     return;
   }
@@ -69,9 +69,9 @@ void TimeStepControl::choose(const Demand& contacts, State& state) {
   if (!std::isfinite(safe) && dt > 0) return;  // all bodies have left
   if (!std::isfinite(safe))
     throw Error(state.bodies.count() == 0
-                    ? "there is no body, so that there is no time step; give /time_step/value"
-                    : "contacts have no stiffness to speak of, so that no time step is too long; make "
-                      "them stiffer, or give /time_step/value");
+                    ? "without bodies the time step is undefined; set /time_step/value"
+                    : "contacts have practically no stiffness, so the critical time step is infinite; make "
+                      "them stiffer, or set /time_step/value");
   if (dt == 0 || safe < dt || safe > raise_when * dt) dt = safe;
   state.walls.check_oscillations(dt);
 }

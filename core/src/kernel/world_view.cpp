@@ -112,8 +112,8 @@ std::span<const Contact> WorldView::contacts() const {
                          .normal_force = row.force.w,
                          .overlap = row.moment.w});
   });
-  const auto with_walls = contacts_with_walls();
-  contacts_.insert(contacts_.end(), with_walls.begin(), with_walls.end());
+  const auto include_walls = contacts_with_walls();
+  contacts_.insert(contacts_.end(), include_walls.begin(), include_walls.end());
   contact_step_ = step();
   return contacts_;
 }
@@ -122,17 +122,17 @@ std::span<const Contact> WorldView::contacts_with_walls() const {
   if (wall_contact_step_ == step()) return wall_contacts_;
   wall_contacts_.clear();
   state_.wall_contacts.each([&](const WallContacts::Touching& t) {
-    const double arm = state_.bodies.position[t.touch->body].w - t.touch->overlap;
-    wall_contacts_.push_back({.a = t.touch->body,
-                              .b = t.touch->wall,
+    const double arm = state_.bodies.position[t.contact->body].w - t.contact->overlap;
+    wall_contacts_.push_back({.a = t.contact->body,
+                              .b = t.contact->wall,
                               .with_wall = true,
-                              .feature = t.touch->feature,
-                              .branch = arm * t.touch->normal,
-                              .normal = t.touch->normal,
+                              .feature = t.contact->feature,
+                              .branch = arm * t.contact->normal,
+                              .normal = t.contact->normal,
                               .force = xyz(t.row->force),
                               .moment = xyz(t.row->moment),
                               .normal_force = t.row->force.w,
-                              .overlap = t.touch->overlap});
+                              .overlap = t.contact->overlap});
   });
   wall_contact_step_ = step();
   return wall_contacts_;
@@ -154,12 +154,12 @@ std::span<const WallView> WorldView::walls() const {
 
 std::optional<Clearance> WorldView::clearance(std::size_t wall, const Vec3& point, double reach) const {
   const Sphere sphere{point, reach, 0};
-  thread_local std::vector<Touch> touches;  // called so often that allocating it each time took longer
-  touches.clear();
-  state_.walls.geometry(wall).touch(state_.walls.pose(wall), {&sphere, 1}, touches);
-  // The sphere overlaps by its radius less the distance of its centre, by more where that is behind.
-  const auto deepest = std::ranges::max_element(touches, {}, &Touch::overlap);
-  if (deepest == touches.end()) return {};
+  thread_local std::vector<SurfaceContact> contacts;  // avoids an allocation per call
+  contacts.clear();
+  state_.walls.geometry(wall).find_contacts(state_.walls.pose(wall), {&sphere, 1}, contacts);
+  // overlap = radius − distance of the centre; the distance is negative behind a face
+  const auto deepest = std::ranges::max_element(contacts, {}, &SurfaceContact::overlap);
+  if (deepest == contacts.end()) return {};
   return Clearance{.distance = reach - deepest->overlap, .normal = deepest->normal};
 }
 
@@ -167,6 +167,6 @@ Region WorldView::specimen() const { return specimen_region(state_, 0); }
 Region WorldView::envelope() const { return specimen_region(state_, 0, SurfaceSide::far); }
 Region WorldView::interior(double margin) const { return specimen_region(state_, margin); }
 
-EnergyLedger WorldView::energies() const { return balance_->terms(); }
+Energies WorldView::energies() const { return balance_->terms(); }
 
 }  // namespace grit

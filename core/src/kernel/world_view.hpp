@@ -1,4 +1,4 @@
-// The world as probes, engines and conditions see it.
+// The World that probes, engines and conditions read.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@ namespace grit {
 
 class EnergyBalance;
 
-/// A const view of a state. What probes ask for is computed once an instant at most.
+/// A const view of a state. Derived quantities are computed on demand, at most once per instant.
 class WorldView final : public World {
  public:
   WorldView(const State& state, Passes& passes) : state_(state), passes_(passes) {}
   void set_balance(EnergyBalance& balance) { balance_ = &balance; }
 
-  /// The state has changed: everything is computed again when asked for.
+  /// After a change of state: everything is recomputed on demand.
   void invalidate();
-  /// Only forces and what depends on them.
+  /// The same for forces and quantities that depend on them.
   void invalidate_forces() { net_step_ = clump_step_ = never; }
 
   double time() const override { return state_.time.time; }
@@ -37,7 +37,7 @@ class WorldView final : public World {
   std::span<const std::uint32_t> clump_of() const override;
   std::span<const ClumpView> clumps() const override;
   std::span<const Vec3> arms() const override;
-  std::span<const double> volume_shares() const override { return state_.bodies.clumps.volume_share; }
+  std::span<const double> volume_fractions() const override { return state_.bodies.clumps.volume_fraction; }
   std::span<const Departure> departures() const override { return state_.departures; }
   std::span<const Row> forces() const override;
   std::span<const Row> moments() const override;
@@ -52,7 +52,7 @@ class WorldView final : public World {
   Region interior(double margin) const override;
   double mean_diameter() const override { return state_.statistics.mean_diameter; }
   double solid_density() const override { return state_.statistics.solid_density; }
-  EnergyLedger energies() const override;
+  Energies energies() const override;
 
  private:
   static constexpr std::uint64_t never = ~0ull;
@@ -69,7 +69,7 @@ class WorldView final : public World {
   mutable std::vector<Vec3> arms_, displacements_;
   mutable std::vector<Contact> contacts_, wall_contacts_;
   mutable std::vector<WallView> walls_;
-  // Steps for which each was computed.
+  // Step at which each was computed.
   mutable std::uint64_t net_step_ = never, contact_step_ = never, wall_contact_step_ = never, wall_step_ = never,
                         clump_step_ = never, displacement_step_ = never;
 };

@@ -1,5 +1,5 @@
-// The command that is installed. It is compiled for any processor, and becomes the program of the best instruction set
-// that is installed and that this processor has, or of the one that GRIT_ISA names.
+// The installed command. It is compiled for any processor and executes the program of the best installed instruction
+// set that the processor supports, or of the one named by GRIT_ISA.
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 enum ExitStatus { wrong_instruction_set = 2, not_executable = 5 };
 
-/// Whether the processor has it, and the system keeps its registers. A build for one processor has no name to ask for.
-/// Of each level those instructions are asked for that came last: there are compilers that do not know a level's name.
+/// Whether processor and system support a level. Other names are builds for a specific processor and cannot be tested.
+/// Each level is tested by its newest instructions, as some compilers do not know the names of the levels.
 bool runs_here(const std::string& level) {
 #if defined(__x86_64__)
   const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
@@ -35,7 +35,7 @@ bool runs_here(const std::string& level) {
   return true;
 }
 
-/// Every folder with a program in it, best first: builds for one processor, made on purpose, then the levels downwards.
+/// Every folder with a program, best first: builds for a specific processor, then the levels in descending order.
 std::vector<std::string> installed(const fs::path& folder) {
   std::vector<std::string> all;
   std::error_code error, none;
@@ -69,19 +69,20 @@ int main(int, char** arguments) {
 
   const char* const variable = std::getenv("GRIT_ISA");
   const std::string wanted = variable == nullptr ? "" : variable;
-  const std::string remedy = "\n  there are: " + listed(levels) + "; this processor has: " + listed(possible) +
-                             "\n  set GRIT_ISA to one that it has, unset it for the best of them, or install another " +
-                             "with scripts/package.sh";
+  const std::string remedy = "\n  installed: " + listed(levels) + "; supported by this processor: " + listed(possible) +
+                             "\n  set GRIT_ISA to a supported one, unset it to use the best, or install another with " +
+                             "scripts/package.sh";
   if (!wanted.empty() && std::ranges::find(levels, wanted) == levels.end())
     return refuse("GRIT_ISA=" + wanted + ": this instruction set is not installed in " + folder.string() + remedy,
                   wrong_instruction_set);
   if (!wanted.empty() && !runs_here(wanted))
-    return refuse("GRIT_ISA=" + wanted + ": this processor lacks this instruction set" + remedy, wrong_instruction_set);
+    return refuse("GRIT_ISA=" + wanted + ": this processor does not support this instruction set" + remedy,
+                  wrong_instruction_set);
   if (possible.empty())
-    return refuse("this processor has none of the instruction sets installed in " + folder.string() + remedy,
+    return refuse("this processor supports none of the instruction sets installed in " + folder.string() + remedy,
                   wrong_instruction_set);
 
   const auto program = folder / (wanted.empty() ? possible.front() : wanted) / "grit";
   ::execv(program.c_str(), arguments);
-  return refuse(program.string() + ": cannot be run: " + std::strerror(errno), not_executable);
+  return refuse(program.string() + ": cannot be executed: " + std::strerror(errno), not_executable);
 }

@@ -1,4 +1,4 @@
-// What holds from the start of a run to its end.
+// Whether a condition holds throughout a run.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace grit {
 
-/// Whether a scene is so all the time: as described, as each stage begins, and as each ramp begins and ends.
+/// Whether `is` holds for a scene throughout: as described, at the start of each stage, and at both ends of each ramp.
 template <class Is>
 bool always(const Scene& described, Is is) {
   return through_stages(*described.description, described.stages,
@@ -35,11 +35,11 @@ bool always_by_engines(const Scene& described, Is is) {
   });
 }
 
-/// The contact law of a scene, with the materials mixed that are in use.
+/// The contact law of a scene, with the materials in use mixed.
 class MixedLaw {
  public:
   explicit MixedLaw(const SceneDescription& described) : law_(described) {}
-  /// Returns whether what was mixed may have changed.
+  /// Returns whether the mixed values may have changed.
   bool follow(const SceneDescription& now) {
     const bool changed = law_.follow(now);
     auto in_use = materials_in_use(now, material_names(now));
@@ -65,17 +65,17 @@ bool always_by_law(const Scene& described, Is is) {
   });
 }
 
-/// Longest time that a stage can take [s].
+/// Maximum duration of a stage [s].
 inline double longest(const StageDescription& stage) {
   const auto* time = std::get_if<TimeCondition>(&stage.until.is.value());
   return time != nullptr ? std::min(time->value, stage.limit) : stage.limit;
 }
 
-/// How bodies move by all engines, but for the one of this name.
-inline MotionSettings settings_of(const EngineMap& engines, const std::string& left_out = "") {
+/// Motion settings from all engines except the one of this name.
+inline MotionSettings settings_of(const EngineMap& engines, const std::string& excluded = "") {
   MotionSettings settings;
   for (const auto& [name, engine] : engines)
-    if (name != left_out) engine->settings(settings);
+    if (name != excluded) engine->settings(settings);
   return settings;
 }
 

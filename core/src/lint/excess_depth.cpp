@@ -14,21 +14,21 @@
 namespace grit {
 namespace {
 
-constexpr double tolerance = 0.05;  // of a study's figures
-constexpr double far_beyond = 2;    // times as deep, or as costly, as would do
-// Of a dense packing, with five contacts each; means of them scatter between samples by about 1/√contacts.
+constexpr double tolerance = 0.05;  // of a study's metrics
+constexpr double far_beyond = 2;    // excess of depth, or of cost, that is reported
+// For a dense packing with five contacts per body; means over contacts scatter between samples by about 1/√contacts.
 constexpr double contacts_a_body = 2.5, fine_scatter = 0.005;
 constexpr double fewest_diameters = 5, fewest_between_panes = 10;
 
-bool shows(const Evidence& level) {
+bool is_resolved(const Evidence& level) {
   return std::ranges::any_of(level.findings, [](const Finding& one) { return !(one.error <= 2 * one.standard_error); });
 }
 
 /// Sets `tried` if a study knows this depth.
-std::optional<std::string> by_studies(std::vector<ChartedStudy> studies, const std::string& scenario,
-                                      const std::vector<std::string>& parts,
-                                      const std::function<bool(const std::vector<std::string>&)>& same, bool& tried) {
-  for (ChartedStudy& study : studies) {
+std::optional<UnusedSetting> by_studies(std::vector<EvaluatedStudy> studies, const std::string& scenario,
+                                        const std::vector<std::string>& parts,
+                                        const std::function<bool(const std::vector<std::string>&)>& same, bool& tried) {
+  for (EvaluatedStudy& study : studies) {
     if (!is_of(study, scenario, parts)) continue;
     std::erase_if(study.settings, [](const auto& setting) { return setting.first != "depth"; });
     for (const Advice& advice : advise(study, tolerance, same)) {
@@ -36,32 +36,34 @@ std::optional<std::string> by_studies(std::vector<ChartedStudy> studies, const s
       tried = true;
       const auto& levels = study.settings.at(advice.setting);
       for (const Evidence* one : advice.cheaper) {
-        if (!one->known || one->findings.empty() || advice.now->sets.empty() || shows(*one) ||
+        if (!one->known || one->findings.empty() || advice.now->sets.empty() || is_resolved(*one) ||
             least_sure(levels, *one, tolerance).confidence(tolerance) > Confidence::likely)
           continue;
         const double saved = advice.now->cost / one->cost;
         if (saved < far_beyond) continue;
         const Finding& finding = *one->decisive(tolerance);
         const std::string& set = advice.now->sets.front();
-        return fmt::format(
-            "{}: {} deep; by \"{}\" {} changes {} by {:.1f} ± {:.1f} %, which is within what samples scatter, and is "
-            "{:.1f} times cheaper",
-            set.substr(0, set.find('=')), advice.now->level, study.title, one->level, finding.figure,
-            100 * finding.error, 100 * finding.standard_error, saved);
+        return UnusedSetting{
+            set.substr(0, set.find('=')),
+            fmt::format(
+                "{} deep; by \"{}\" {} changes {} by {:.1f} ± {:.1f} %, which is within the scatter between samples, "
+                "and is {:.1f} times cheaper",
+                advice.now->level, study.title, one->level, finding.metric, 100 * finding.error,
+                100 * finding.standard_error, saved)};
       }
     }
   }
   return std::nullopt;
 }
 
-/// What a specimen is deep along, as nothing differs along it.
+/// The depth of a scene that does not vary along it.
 struct Depth {
   double length = 0;  ///< m
-  double fewest = 0;  ///< diameters that it needs
+  double fewest = 0;  ///< minimum, in diameters
   std::string pointer, why;
 };
 
-/// Whether a wall neither moves nor drags grains, in any stage.
+/// Whether a wall is at rest and frictionless in all stages.
 bool is_still_and_smooth(const Scene& described, const std::string& name) {
   return always_by_law(described, [&](const SceneDescription& scene, const ContactLaw& law) {
     if (!scene.walls.contains(name)) return false;
@@ -78,14 +80,13 @@ bool is_still_and_smooth(const Scene& described, const std::string& name) {
   });
 }
 
-bool weighs_along(const Scene& described, int axis) {
+bool has_gravity_along(const Scene& described, int axis) {
   return !always_by_engines(described, [&](const SceneDescription&, const EngineMap& engines) {
     return settings_of(engines).gravity[axis] == 0;
   });
 }
 
-/// Whether grains lie from one end of the cell to the other, between planes that go on along this axis, from the start.
-/// Of a scenario it is known.
+/// Whether bodies fill the cell along this axis from the start, between planes parallel to it. Scenarios are known to.
 bool is_alike_along(const SceneDescription& scene, const World& world, int axis) {
   const auto walls = world.walls();
   const bool planes =
@@ -97,8 +98,8 @@ bool is_alike_along(const SceneDescription& scene, const World& world, int axis)
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Row& x : world.positions())
     low = std::min(low, xyz(x)[axis] - x.w), high = std::max(high, xyz(x)[axis] + x.w);
-  const double room = 2 * world.mean_diameter();
-  return planes && !later && low < world.cell().low[axis] + room && high > world.cell().high[axis] - room;
+  const double margin = 2 * world.mean_diameter();
+  return planes && !later && low < world.cell().low[axis] + margin && high > world.cell().high[axis] - margin;
 }
 
 std::optional<Depth> depth_of(const Scene& described, const World& world, bool plain) {
@@ -107,16 +108,16 @@ std::optional<Depth> depth_of(const Scene& described, const World& world, bool p
   const std::string scenarios = "/scenario/depth";  // a scenario writes domain and walls
   if (std::ranges::count(periodic, true) == 1) {
     const auto axis = static_cast<int>(std::ranges::find(periodic, true) - periodic.begin());
-    if (weighs_along(described, axis) || (plain && !is_alike_along(scene, world, axis))) return std::nullopt;
+    if (has_gravity_along(described, axis) || (plain && !is_alike_along(scene, world, axis))) return std::nullopt;
     return Depth{world.cell().high[axis] - world.cell().low[axis], fewest_diameters,
                  plain ? fmt::format("/domain/high/{}", axis) : scenarios,
-                 fmt::format("the cell repeats along {}", "xyz"[axis])};
+                 fmt::format("the cell is periodic along {}", "xyz"[axis])};
   }
   constexpr int axis = 1;
   const Region specimen = world.specimen();
   const double size = specimen.high[axis] - specimen.low[axis];
   if (plain || std::ranges::count(periodic, true) > 0 || !std::isfinite(size) || world.positions().empty() ||
-      weighs_along(described, axis))
+      has_gravity_along(described, axis))
     return std::nullopt;
   Vec3 inside = xyz(world.positions().front());
   inside[axis] = specimen.low[axis] + 0.5 * size;
@@ -131,11 +132,11 @@ std::optional<Depth> depth_of(const Scene& described, const World& world, bool p
   }
   if (low.empty() || high.empty()) return std::nullopt;
   return Depth{length, fewest_between_panes, scenarios,
-               fmt::format("walls \"{}\" and \"{}\", which bound it along y, stand still and are smooth", low, high)};
+               fmt::format("its walls \"{}\" and \"{}\" along y are at rest and frictionless", low, high)};
 }
 
-std::optional<std::string> by_contacts(const Scene& described, const Components& components, const World& world,
-                                       bool plain) {
+std::optional<UnusedSetting> by_contacts(const Scene& described, const Components& components, const World& world,
+                                         bool plain) {
   const SceneDescription& scene = *described.description;
   if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
   const auto depth = depth_of(described, world, plain);
@@ -144,21 +145,22 @@ std::optional<std::string> by_contacts(const Scene& described, const Components&
   for (const auto& [name, group] : scene.bodies)
     if (!group.stage.empty()) bodies += body_count(group, *components.body_kinds.at(name));
   const double contacts = contacts_a_body * static_cast<double>(bodies);
-  const double share =
+  const double fraction =
       std::max(1 / (fine_scatter * fine_scatter) / contacts, depth->fewest * world.mean_diameter() / depth->length);
-  if (share * far_beyond > 1) return std::nullopt;
-  return fmt::format(
-      "{}: {}, and with {:.2g} m there are some {:.0f} contacts, whose means scatter between samples by about "
-      "1/√contacts, {:.2g} %; {:.2g} m would give {:.2g} % for {:.2g} of the cost",
-      depth->pointer, depth->why, depth->length, contacts, 100 / std::sqrt(contacts), share * depth->length,
-      100 / std::sqrt(share * contacts), share);
+  if (fraction * far_beyond > 1) return std::nullopt;
+  return UnusedSetting{
+      depth->pointer,
+      fmt::format("{}; a depth of {:.2g} m has about {:.0f} contacts, so that means scatter between samples by about "
+                  "1/√contacts = {:.2g} %; {:.2g} m would give {:.2g} % at {:.2g} of the cost",
+                  depth->why, depth->length, contacts, 100 / std::sqrt(contacts), fraction * depth->length,
+                  100 / std::sqrt(fraction * contacts), fraction)};
 }
 
 }  // namespace
 
-std::optional<std::string> excess_depth(const Scene& described, const Components& components, const World& world,
-                                        const std::string& scenario, const std::vector<ChartedStudy>& studies,
-                                        const std::function<bool(const std::vector<std::string>&)>& same) {
+std::optional<UnusedSetting> excess_depth(const Scene& described, const Components& components, const World& world,
+                                          const std::string& scenario, const std::vector<EvaluatedStudy>& studies,
+                                          const std::function<bool(const std::vector<std::string>&)>& same) {
   const SceneDescription& scene = *described.description;
   bool tried = false;
   auto line = by_studies(studies, scenario, parts_of(resolved(scene)), same, tried);

@@ -1,4 +1,4 @@
-// A depth that costs more than it tells.
+// Finds a depth that is larger than scatter between samples justifies.
 #pragma once
 
 #include <functional>
@@ -9,15 +9,16 @@
 #include "description/components.hpp"
 #include "grit/world.hpp"
 #include "input/scene.hpp"
+#include "lint/unused_setting.hpp"
 #include "study/advice.hpp"
 
 namespace grit {
 
-/// One line, with the pointer, if the scene is at least twice as deep as what shows beside the scatter between samples:
-/// by one of `studies`, if it varied the depth of scenes like this; else by 1/√contacts. `same(sets)`:
-/// whether the description stays the same with these.
-std::optional<std::string> excess_depth(const Scene& described, const Components& components, const World& world,
-                                        const std::string& scenario, const std::vector<ChartedStudy>& studies,
-                                        const std::function<bool(const std::vector<std::string>&)>& same);
+/// The depth, if half of it or less would give the same results within the scatter between samples: from one of
+/// `studies`, if it varied the depth of similar scenes; else estimated as 1/√contacts. `same(sets)`: whether the
+/// description is unchanged by these.
+std::optional<UnusedSetting> excess_depth(const Scene& described, const Components& components, const World& world,
+                                          const std::string& scenario, const std::vector<EvaluatedStudy>& studies,
+                                          const std::function<bool(const std::vector<std::string>&)>& same);
 
 }  // namespace grit

@@ -19,15 +19,15 @@ InstalledStudies installed_studies() {
   InstalledStudies studies;
   for (const auto& file : files) {
     try {
-      studies.readable.push_back(read_charted_study(file, {}));
-    } catch (const FileError& error) {  // the others count all the same
+      studies.readable.push_back(read_evaluated_study(file, {}));
+    } catch (const FileError& error) {  // the others are still used
       studies.unreadable.push_back(error.what());
     }
   }
   return studies;
 }
 
-bool is_of(const ChartedStudy& study, const std::string& scenario, const std::vector<std::string>& parts) {
+bool is_of(const EvaluatedStudy& study, const std::string& scenario, const std::vector<std::string>& parts) {
   if (!study.advice || study.scenario != scenario) return false;
   return !scenario.empty() || study.parts == parts;
 }

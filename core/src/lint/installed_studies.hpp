@@ -9,13 +9,13 @@
 namespace grit {
 
 struct InstalledStudies {
-  std::vector<ChartedStudy> readable;   ///< by name of the file
-  std::vector<std::string> unreadable;  ///< why, one message a file
+  std::vector<EvaluatedStudy> readable;  ///< by file name
+  std::vector<std::string> unreadable;   ///< reasons, one message per file
 };
 InstalledStudies installed_studies();
 
-/// Whether a study varies the method of computation, for scenes like this one: of the same scenario, or of the same
-/// parts (parts_of()) where there is none.
-bool is_of(const ChartedStudy& study, const std::string& scenario, const std::vector<std::string>& parts);
+/// Whether a study varies numerical settings for similar scenes: of the same scenario, or without one of the same
+/// components (parts_of()).
+bool is_of(const EvaluatedStudy& study, const std::string& scenario, const std::vector<std::string>& parts);
 
 }  // namespace grit

@@ -36,7 +36,7 @@ bool changes_nothing(const Description& value, const std::function<bool(const st
     try {
       idle = idle && same(other);
       tried = true;
-    } catch (const Error&) {  // beyond what is allowed, no whole number, or the name of a file that there is not
+    } catch (const Error&) {  // out of range, not an integer, or the name of a missing file
     }
   }
   return tried && idle;

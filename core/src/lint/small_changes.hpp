@@ -1,4 +1,4 @@
-// Whether a value matters, by trying a little more and a little less of it.
+// Tests whether a value has an effect by small changes.
 #pragma once
 
 #include <functional>
@@ -8,9 +8,8 @@
 
 namespace grit {
 
-/// Whether all is the `same("other value, as JSON")` with 1 % more and less of a number, or of one with its unit as a
-/// text; and with one more of a whole number, which may take no 1 %. False for 0, for all else, and where no other
-/// value is allowed.
+/// Whether `same("other value, as JSON")` holds with the number, or number with unit, changed by ±1 %, and an integer
+/// also by +1. False for 0, for other types, and if no other value is allowed.
 bool changes_nothing(const Description& value, const std::function<bool(const std::string&)>& same);
 
 }  // namespace grit

@@ -15,10 +15,10 @@
 namespace grit {
 namespace {
 
-/// Materials as they are from one instant of a run to the next that changes them.
+/// Materials during a period of the run in which they do not change.
 struct Materials {
-  SceneDescription scene;  ///< of which only materials, interfaces, and what is of them, are there
-  std::size_t stages = 0;  ///< that have begun
+  SceneDescription scene;  ///< only materials, interfaces, and the materials of bodies and walls
+  std::size_t stages = 0;  ///< number of stages that have begun
 };
 
 SceneDescription materials_alone(const SceneDescription& now) {
@@ -51,7 +51,7 @@ std::vector<Materials> all_materials(const Scene& described) {
   return all;
 }
 
-/// All numbers of contacts that may be.
+/// Appends the parameters of all possible contacts.
 void add_mixed(const SceneDescription& scene, MixedLaw& mixed, std::vector<double>& all) {
   mixed.follow(scene);
   const auto names = material_names(scene);
@@ -67,20 +67,20 @@ void add_mixed(const SceneDescription& scene, MixedLaw& mixed, std::vector<doubl
   }
 }
 
-/// Before how many stages have begun a value is the one that the description begins with.
+/// The number of stages begun before which a value keeps its initial value.
 std::size_t stages_with(const Scene& described, const std::string& pointer) {
   const auto& stages = described.description->stages;
   const auto sets = [&](const StageDescription& stage) {
-    // A change of it, or null in place of what holds it; a ramp.
+    // By a change of it, by null for a parent, or by a ramp.
     for (std::string at = pointer; !at.empty(); at.erase(at.rfind('/')))
-      if (const Description::json_pointer place(at); stage.change.contains(place))
-        if (at == pointer || stage.change.at(place).is_null()) return true;
+      if (const Description::json_pointer parent(at); stage.change.contains(parent))
+        if (at == pointer || stage.change.at(parent).is_null()) return true;
     return std::ranges::any_of(stage.ramps, [&](const RampDescription& ramp) { return ramp.pointer == pointer; });
   };
   return static_cast<std::size_t>(std::ranges::find_if(stages, sets) - stages.begin()) + 1;
 }
 
-/// The range that a law declares for a value; null if it declares none of this name.
+/// The declaration of a law's parameter; null if there is none of this name.
 const Parameter* declared(const Parameters& parameters, const std::string& key) {
   const auto found = std::ranges::find(parameters.entries(), key, &Parameter::name);
   return found == parameters.entries().end() ? nullptr : &*found;
@@ -88,8 +88,8 @@ const Parameter* declared(const Parameters& parameters, const std::string& key) 
 
 }  // namespace
 
-std::vector<std::string> unused_materials(const Scene& scene,
-                                          const std::function<bool(const std::string&)>& is_written) {
+std::vector<UnusedSetting> unused_materials(const Scene& scene,
+                                            const std::function<bool(const std::string&)>& is_written) {
   const SceneDescription& start = *scene.description;
   std::vector<Materials> all = all_materials(scene);
   MixedLaw mixed(start);
@@ -99,11 +99,11 @@ std::vector<std::string> unused_materials(const Scene& scene,
     return found;
   };
   const std::vector<double> now = numbers();
-  std::vector<std::string> lines;
+  std::vector<UnusedSetting> unused;
 
-  // `value_in` gives the value in a scene, null where it is not there.
-  const auto look = [&](const std::string& section, const std::string& name, const std::string& key,
-                        const Description& value, const Parameters& parameters, const auto& value_in) {
+  // `value_in` returns the value in a scene; null if the scene does not have it.
+  const auto inspect = [&](const std::string& section, const std::string& name, const std::string& key,
+                           const Description& value, const Parameters& parameters, const auto& value_in) {
     const std::string pointer = fmt::format("/{}/{}/{}", section, pointer_token(name), pointer_token(key));
     const Parameter* const parameter = declared(parameters, key);
     if (!value.is_number() || parameter == nullptr || !is_written(pointer)) return;
@@ -113,17 +113,18 @@ std::vector<std::string> unused_materials(const Scene& scene,
       if (!parameter->allows(tried.get<double>())) throw Error("out of range");
       std::vector<std::pair<Description*, Description>> before;
       for (Materials& one : all)
-        if (Description* const place = one.stages < lasts ? value_in(one.scene) : nullptr) {
-          before.emplace_back(place, *place);
-          *place = tried;
+        if (Description* const target = one.stages < lasts ? value_in(one.scene) : nullptr) {
+          before.emplace_back(target, *target);
+          *target = tried;
         }
       const bool is_same = numbers() == now;
-      for (const auto& [place, old] : before) *place = old;
+      for (const auto& [target, old] : before) *target = old;
       return is_same;
     };
     if (changes_nothing(value, same))
-      lines.push_back(pointer + ": no contact depends on it: what meets takes it of the other material, of an " +
-                      "interface, or not at all");
+      unused.push_back(
+          {pointer,
+           "no contact depends on it: contacts use the value of the other material, of an interface, or none"});
   };
   const auto in = [](Description& values, const std::string& key) {
     const auto found = values.find(key);
@@ -134,7 +135,7 @@ std::vector<std::string> unused_materials(const Scene& scene,
     Parameters parameters;
     law->declare_material(name, parameters);
     for (const auto& [key, value] : material.values.items())
-      look("materials", name, key, value, parameters, [&, &name = name, &key = key](SceneDescription& one) {
+      inspect("materials", name, key, value, parameters, [&, &name = name, &key = key](SceneDescription& one) {
         const auto found = one.materials.find(name);
         return found == one.materials.end() ? nullptr : in(found->second.values, key);
       });
@@ -143,12 +144,12 @@ std::vector<std::string> unused_materials(const Scene& scene,
     Parameters parameters;
     law->declare_interface(interface.a, interface.b, parameters);
     for (const auto& [key, value] : interface.values.items())
-      look("interfaces", interface.name(), key, value, parameters, [&, &key = key](SceneDescription& one) {
+      inspect("interfaces", interface.name(), key, value, parameters, [&, &key = key](SceneDescription& one) {
         InterfaceDescription* const found = one.find_interface(interface.name());
         return found == nullptr ? nullptr : in(found->values, key);
       });
   }
-  return lines;
+  return unused;
 }
 
 }  // namespace grit

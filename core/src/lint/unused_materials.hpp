@@ -1,4 +1,4 @@
-// Values of materials and interfaces that change no contact.
+// Values of materials and interfaces that affect no contact.
 #pragma once
 
 #include <functional>
@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "input/scene.hpp"
+#include "lint/unused_setting.hpp"
 
 namespace grit {
 
-/// One line each, with the pointer and why: with a little more and a little less of it all contacts that may be have
-/// the same numbers, in all stages. Of those that `is_written(pointer)`.
-std::vector<std::string> unused_materials(const Scene& scene,
-                                          const std::function<bool(const std::string&)>& is_written);
+/// Values for which small changes leave the parameters of all possible contacts unchanged in all stages. Checks values
+/// for which `is_written(pointer)`.
+std::vector<UnusedSetting> unused_materials(const Scene& scene,
+                                            const std::function<bool(const std::string&)>& is_written);
 
 }  // namespace grit

@@ -11,7 +11,7 @@
 namespace grit {
 namespace {
 
-/// Whether a wall's motion is so in all that a run goes by.
+/// Whether `is` holds for a wall's motion throughout the run.
 template <class Is>
 bool always_of(const Scene& described, const std::string& wall, Is is) {
   return always(described, [&](const SceneDescription& scene) { return is(scene, scene.walls.at(wall).motion); });
@@ -21,9 +21,9 @@ bool has_speed(const MotionDescription& motion) {
   return !motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation;
 }
 
-/// The first stage that a wall's ramp is longer than, if it is longer than all in which the wall moves.
+/// A message naming the first stage in which the wall moves, if the wall's ramp is longer than all such stages.
 std::optional<std::string> never_at_full_speed(const Scene& described, const std::string& wall) {
-  std::string told;
+  std::string message;
   std::optional<std::size_t> present;
   double ramp = 0;  // as the present stage begins
   const bool never = through_stages(
@@ -35,42 +35,44 @@ std::optional<std::string> never_at_full_speed(const Scene& described, const std
         const StageDescription& stage = described.description->stages[*number];
         const double lasts = longest(stage);
         if (ramp <= lasts) return false;
-        if (told.empty())
-          told = fmt::format("the ramp takes {:g} s, and the stage \"{}\" {:g} s at most", ramp, stage.name, lasts);
+        if (message.empty())
+          message = fmt::format("the ramp takes {:g} s, the stage \"{}\" at most {:g} s", ramp, stage.name, lasts);
         return true;
       });
-  return !never || told.empty() ? std::nullopt : std::optional(told);
+  return !never || message.empty() ? std::nullopt : std::optional(message);
 }
 
 }  // namespace
 
-std::vector<std::string> unused_motions(const Scene& described) {
-  std::vector<std::string> lines;
+std::vector<UnusedSetting> unused_motions(const Scene& described) {
+  std::vector<UnusedSetting> unused;
   for (const auto& [name, wall] : described.description->walls) {
     const MotionDescription& motion = wall.motion;
-    const auto say = [&lines, at = "/walls/" + pointer_token(name) + "/motion/"](
-                         const char* key, const std::string& why) { lines.push_back(at + key + ": " + why); };
+    const auto say = [&unused, at = "/walls/" + pointer_token(name) + "/motion/"](const char* key,
+                                                                                  const std::string& why) {
+      unused.push_back({at + key, why});
+    };
     const std::string& wall_name = name;
     if (motion.ramp_time > 0 &&
         always_of(described, name, [](const auto&, const MotionDescription& now) { return !has_speed(now); }))
-      say("ramp_time", "the wall has no velocity, spin or oscillation that could rise");
-    else if (const auto told = never_at_full_speed(described, name))
-      say("ramp_time", "the wall never comes to its full speed: " + *told + ", and it begins anew with each stage");
+      say("ramp_time", "the wall has no velocity, spin or oscillation");
+    else if (const auto message = never_at_full_speed(described, name))
+      say("ramp_time", "the wall never reaches its full speed: " + *message + "; it starts again with each stage");
     if (motion.free)
       for (const char axis : {'x', 'y', 'z'})
         if (motion.free->load[axis - 'x'] != 0 && always_of(described, name, [axis](const auto&, const auto& now) {
               return !now.free || now.free->axes.find(axis) == std::string::npos;
             }))
-          say("free/load", std::string("it has a part along ") + axis + ", along which the wall is not free");
+          say("free/load", std::string("it has a component along ") + axis + ", along which the wall is not free");
     if (motion.follow && always_of(described, name, [&](const SceneDescription& scene, const MotionDescription& now) {
           return !now.follow || std::ranges::all_of(now.follow->axes, [&](char axis) {
             return ways(scene.walls, wall_name, axis).none();
           });
         }))
       say("follow", "the wall \"" + motion.follow->wall + "\" does not move along " + motion.follow->axes +
-                        "; a turn is not followed");
+                        "; rotation is not followed");
   }
-  return lines;
+  return unused;
 }
 
 }  // namespace grit

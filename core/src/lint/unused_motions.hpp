@@ -1,14 +1,14 @@
-// Parts of walls' motions that come to nothing.
+// Settings of wall motions without effect.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "input/scene.hpp"
+#include "lint/unused_setting.hpp"
 
 namespace grit {
 
-/// One line each, with the pointer and why.
-std::vector<std::string> unused_motions(const Scene& described);
+std::vector<UnusedSetting> unused_motions(const Scene& described);
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Parameters of a scenario that change nothing of the scene.
+// Parameters of a scenario without effect on the scene.
 #pragma once
 
 #include <functional>
@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "input/document.hpp"
+#include "lint/unused_setting.hpp"
 
 namespace grit {
 
-/// One line each, with the pointer and why: with a little more and a little less of it the scenario expands to the
-/// same. Of the numbers that are `written`, lists left aside; `same({"/pointer=value"})` tells whether the scene so
-/// changed is the same.
-std::vector<std::string> unused_scenario_parameters(const Document& written,
-                                                    const std::function<bool(const std::vector<std::string>&)>& same);
+/// Parameters for which the scenario expands to the same scene after small changes. Checks numbers that are `written`,
+/// except in lists. `same({"/pointer=value"})`: whether the changed scene is the same.
+std::vector<UnusedSetting> unused_scenario_parameters(const Document& written,
+                                                      const std::function<bool(const std::vector<std::string>&)>& same);
 
 }  // namespace grit

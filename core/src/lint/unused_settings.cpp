@@ -25,14 +25,14 @@ bool is_changed(const SceneDescription& scene, const std::string& section, const
   });
 }
 
-/// Whether the law can leave shear out, and no pair that may meet in any stage needs it.
+/// Whether no possible contact has shear in any stage, so that the law omits it.
 bool is_smooth(const Scene& described) {
   return always_by_law(described, [](const SceneDescription&, const ContactLaw& law) {
-    return std::ranges::count(law.loop().left_out, "shear") > 0;
+    return std::ranges::count(law.loop().inactive, "shear") > 0;
   });
 }
 
-/// Whether a parameter of contacts is 0 for all materials and interfaces, and stays so.
+/// Whether a contact parameter is 0 for all materials and interfaces throughout.
 bool is_zero(const Scene& described, const std::string& key) {
   bool found = false;
   const bool zero = always(described, [&](const SceneDescription& scene) {
@@ -48,8 +48,7 @@ bool is_zero(const Scene& described, const std::string& key) {
   return zero && found;
 }
 
-/// Whether no grain that stays in the domain ever comes near a wall that stands still. Spheres that cover the domain
-/// stand for all places.
+/// Whether a wall at rest is out of reach of all bodies in the domain. Tests spheres that cover the domain.
 bool is_out_of_reach(const SceneDescription& scene, const Kernel& kernel, std::size_t wall, const std::string& name) {
   const DomainDescription& domain = scene.domain;
   const bool deforms = !domain.strain_rate.isZero(0.0) || std::ranges::any_of(scene.stages, [](const auto& stage) {
@@ -64,7 +63,7 @@ bool is_out_of_reach(const SceneDescription& scene, const Kernel& kernel, std::s
   if (bodies.empty()) return false;
   constexpr int cells = 16;
   const Vec3 low = *domain.low, step = (*domain.high - low) / double{cells};
-  // Who is outside is found at a search; what is a little beyond by then is less than a diameter away.
+  // Escaped bodies are found at the next neighbour search, by when they are less than a diameter outside.
   const double largest = std::ranges::max_element(bodies, {}, &Row::w)->w, reach = 0.5 * step.norm() + 3 * largest;
   const Walls& walls = kernel.state().walls;
   for (int x = 0; x < cells; ++x)
@@ -80,7 +79,7 @@ bool of_body(const SceneDescription& scene, const std::string& material) {
   return std::ranges::any_of(scene.bodies, [&](const auto& group) { return group.second.material == material; });
 }
 
-/// Now, or by what a stage changes.
+/// Now, or by a change in a stage.
 bool of_wall(const SceneDescription& scene, const std::string& material) {
   return std::ranges::any_of(scene.walls, [&](const auto& wall) { return wall.second.material == material; }) ||
          std::ranges::any_of(scene.stages, [&](const StageDescription& stage) {
@@ -93,7 +92,7 @@ bool meet(const SceneDescription& scene, const std::string& a, const std::string
   return (of_body(scene, a) && (of_body(scene, b) || of_wall(scene, b))) || (of_body(scene, b) && of_wall(scene, a));
 }
 
-/// Longest time that the stages can take in which a probe looks.
+/// Maximum total duration of the stages in which a probe samples [s].
 double time_of_stages(const SceneDescription& scene, const std::vector<std::string>& names) {
   double sum = 0;
   for (const StageDescription& stage : scene.stages) {
@@ -103,14 +102,14 @@ double time_of_stages(const SceneDescription& scene, const std::vector<std::stri
   return sum;
 }
 
-/// Whether a grain that a stage brings spins when it comes.
+/// Whether a body that is inserted by a stage has an initial spin.
 bool comes_spinning(const BodiesDescription& group) {
-  const auto* placed = std::get_if<PlacedGrains>(&group.grains.value());
+  const auto* placed = std::get_if<ListSource>(&group.source.value());
   return !group.stage.empty() && placed != nullptr &&
-         std::ranges::any_of(placed->grains, [](const PlacedGrain& one) { return !one.spin.isZero(0.0); });
+         std::ranges::any_of(placed->bodies, [](const ListedBody& one) { return !one.spin.isZero(0.0); });
 }
 
-/// Whether nothing could turn a sphere that does not turn, but contacts: no engine, no wall that spins, no clump.
+/// Whether only contacts can make a sphere rotate: no engine with moments, no spinning or free wall, no clump.
 bool only_contacts_turn(const Scene& described) {
   return always_by_engines(described, [](const SceneDescription& scene, const EngineMap& engines) {
     return std::ranges::none_of(engines, [](const auto& one) { return one.second->phase() == Phase::forces; }) &&
@@ -125,28 +124,28 @@ bool only_contacts_turn(const Scene& described) {
 
 }  // namespace
 
-std::vector<std::string> unused_settings(const Scene& described, const Components& components, const Kernel& kernel) {
+std::vector<UnusedSetting> unused_settings(const Scene& described, const Components& components, const Kernel& kernel) {
   const World& world = kernel.world();
   const SceneDescription& scene = *described.description;
-  std::vector<std::string> lines;
-  const auto say = [&](const std::string& pointer, const std::string& why) { lines.push_back(pointer + ": " + why); };
+  std::vector<UnusedSetting> unused;
+  const auto say = [&](const std::string& pointer, const std::string& why) { unused.push_back({pointer, why}); };
 
   for (const auto& [engine, instance] : components.engines) {
     const std::string& name = engine;
     const bool is_of_settings = instance->phase() == Phase::settings;
-    // Where it is; elsewhere it does nothing anyway.
+    // Compares scenes with the engine and without it; scenes that lack it are equal.
     const auto idle = [&](auto is) {
       return is_of_settings && always_by_engines(described, [&](const SceneDescription&, const EngineMap& engines) {
                return !engines.contains(name) || is(settings_of(engines), settings_of(engines, name));
              });
     };
     if (idle([](const MotionSettings& with, const MotionSettings& without) { return same(with, without); }))
-      say("/engines/" + name, "with these values it does nothing");
+      say("/engines/" + name, "it has no effect with these values");
     else if (idle([](const MotionSettings& with, MotionSettings without) {
                if (with.flat) without.gravity[*with.flat] = with.gravity[*with.flat];
                return with.flat && same(with, without);
              }))
-      say("/engines/" + name, "bodies are held along the axis that it acts along");
+      say("/engines/" + name, "bodies are held along the axis on which it acts");
   }
   const bool never_turn = always_by_engines(
       described, [](const SceneDescription&, const EngineMap& engines) { return settings_of(engines).hold_rotation; });
@@ -156,14 +155,14 @@ std::vector<std::string> unused_settings(const Scene& described, const Component
   const bool smooth = is_smooth(described);
   const std::string still = spun                                      ? ""
                             : never_turn                              ? "rotations are held"
-                            : smooth && only_contacts_turn(described) ? "without friction nothing turns a sphere"
+                            : smooth && only_contacts_turn(described) ? "without friction spheres do not rotate"
                                                                       : "";
   if (!still.empty()) {
     if (scene.output.picture && scene.output.picture->color == "rotation")
-      say("/output/picture/color", still + ", so that all rotations are 0; another colour would show something");
+      say("/output/picture/color", still + ", so that all rotations are 0; choose another colour");
     for (const auto& [name, probe] : components.probes)
       if (probe->needs().has(BodyState::rotation))
-        say("/probes/" + name, "it looks at rotations, and " + still + ": those are all 0");
+        say("/probes/" + name, "it samples rotations, but " + still + ", so that they are all 0");
   }
   const Description& written = described.document.json();
   if (!still.empty() && only_contacts_turn(described))
@@ -173,7 +172,7 @@ std::vector<std::string> unused_settings(const Scene& described, const Component
           for (const char* of : {"_stiffness", "_limit"}) {
             const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + of;
             if (written.contains(Description::json_pointer(pointer)) && one.at(kind + of) != 0.0)
-              say(pointer, still + ", so that no moment comes of it");
+              say(pointer, still + ", so that the moment is 0");
           }
   for (const std::string kind : {"rolling", "twisting"})
     for (const auto& [lacking, given] : {std::pair("_limit", "_stiffness"), std::pair("_stiffness", "_limit")}) {
@@ -182,22 +181,23 @@ std::vector<std::string> unused_settings(const Scene& described, const Component
         for (const auto& [name, one] : values.at(section).items()) {
           const std::string pointer = std::string("/") + section + '/' + pointer_token(name) + '/' + kind + given;
           if (written.contains(Description::json_pointer(pointer)) && one.at(kind + given) != 0.0)
-            say(pointer, kind + lacking + " is 0, so that no moment comes of it");
+            say(pointer, kind + lacking + " is 0, so that the moment is 0");
         }
     }
   if (smooth && values.at("contacts").value("shear_damping", false))
-    say("/contacts/shear_damping", "without friction there is no shear force to damp");
+    say("/contacts/shear_damping", "without friction there is no shear force");
 
-  if (!is_random(values) && scene.seed != 1) say("/seed", "nothing is random: all grains are given");
+  if (!is_random(values) && scene.seed != 1) say("/seed", "nothing is random: all bodies are given");
   const auto radii = world.positions();
   const auto smallest = std::ranges::min_element(radii, {}, &Row::w);
   for (const auto& [name, group] : scene.bodies)
-    if (group.stage.empty() && group.heavier_below > 0 && smallest != radii.end() &&
-        group.heavier_below <= 2 * smallest->w)
-      say("/bodies/" + name + "/heavier_below", "no grain is smaller");
+    if (group.stage.empty() && group.scaled_below() > 0 && smallest != radii.end() &&
+        group.scaled_below() <= 2 * smallest->w)
+      say("/bodies/" + name + "/density_scaling/below", "no body is smaller");
   for (const auto& [name, group] : scene.bodies)
     if (group.stage.empty() && group.overlap != BodiesDescription::usual_overlap)
-      say("/bodies/" + name + "/overlap", "it is looked at where bodies appear in a stage, and these are there before");
+      say("/bodies/" + name + "/overlap",
+          "it applies to bodies inserted by a stage, and these are present from the start");
 
   const bool given = always(described, [](const SceneDescription& now) { return now.time_step.value.has_value(); });
   if (given && scene.time_step.safety != TimeStepDescription().safety)
@@ -208,14 +208,15 @@ std::vector<std::string> unused_settings(const Scene& described, const Component
       always(described, [](const SceneDescription& now) { return !now.time_step.value && now.time_step.safety <= 1; }))
     say("/time_step/allow_unstable", "with this safety the step is not above the critical one");
   for (const auto& [name, material] : scene.materials)
-    if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall is of it");
+    if (!of_body(scene, name) && !of_wall(scene, name)) say("/materials/" + name, "no body and no wall uses it");
   for (const InterfaceDescription& one : scene.interfaces)
     if (!meet(scene, one.a, one.b) && !is_changed(scene, "interfaces", one.name()))
-      say("/interfaces/" + pointer_token(one.name()),
-          one.a == one.b ? "no two things of " + one.a + " meet" : one.a + " and " + one.b + " never meet");
+      say("/interfaces/" + pointer_token(one.name()), one.a == one.b
+                                                          ? "no two bodies or walls of " + one.a + " come into contact"
+                                                          : one.a + " and " + one.b + " never come into contact");
   if (const auto& every = scene.output.frames.every_time; every && *every < world.dt())
     say("/output/frames/every_time",
-        fmt::format("{:g} s is less than a step takes, {:g} s at the start: there is a frame at each step, {:.3g} a "
+        fmt::format("{:g} s is shorter than the time step, {:g} s at the start: each step writes a frame, {:.3g} per "
                     "simulated second",
                     *every, world.dt(), 1 / world.dt()));
   const auto walls = world.walls();
@@ -223,19 +224,19 @@ std::vector<std::string> unused_settings(const Scene& described, const Component
   others.erase("walls");
   const std::string elsewhere = others.dump();
   for (std::size_t wall = 0; wall < walls.size(); ++wall)
-    // What bounds the specimen, or is asked for by a probe or a condition, is of use wherever it is.
+    // Walls that bound the specimen, or are named by a probe or a condition, have a use wherever they are.
     if (const std::string& name = walls[wall].name;
         elsewhere.find('"' + name + '"') == elsewhere.npos && is_out_of_reach(scene, kernel, wall, name))
-      say("/walls/" + name, "it stands still outside the domain, further off than any grain that stays inside reaches");
+      say("/walls/" + name, "it is at rest outside the domain, out of reach of all bodies inside");
   for (const auto& [name, probe] : scene.probes)
     if (probe.cadence.never())
       say("/probes/" + name,
-          "it never looks: it has none of every_time, every_steps, every_displacement and every_left");
+          "it never samples: it has none of every_time, every_steps, every_displacement and every_discharged");
     else if (const double most = time_of_stages(scene, probe.stages); probe.cadence.every_time > most)
       say("/probes/" + name + "/every_time",
-          fmt::format("{:g} s is longer than its stages take, {:g} s at most: it looks where they begin and end only",
+          fmt::format("{:g} s is longer than its stages, {:g} s at most: it samples only at their start and end",
                       *probe.cadence.every_time, most));
-  return lines;
+  return unused;
 }
 
 }  // namespace grit

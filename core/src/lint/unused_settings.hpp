@@ -1,4 +1,4 @@
-// Parts of a description that change nothing.
+// Settings of a description without effect.
 #pragma once
 
 #include <string>
@@ -6,10 +6,11 @@
 
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
+#include "lint/unused_setting.hpp"
 
 namespace grit {
 
-/// One line each, with the pointer of the part and why; `components` and `kernel` are of the scene at its start.
-std::vector<std::string> unused_settings(const Scene& described, const Components& components, const Kernel& kernel);
+/// `components` and `kernel` are those of the initial scene.
+std::vector<UnusedSetting> unused_settings(const Scene& described, const Components& components, const Kernel& kernel);
 
 }  // namespace grit

@@ -10,7 +10,7 @@ namespace {
 class Gravity final : public Engine {
  public:
   void declare(Parameters& p) override {
-    p.add("acceleration", acceleration_).unit("m/s^2").symbol("g").doc("of every body");
+    p.add("acceleration", acceleration_).unit("m/s^2").symbol("g").doc("acceleration of every body");
   }
   Phase phase() const override { return Phase::settings; }
   void settings(MotionSettings& settings) const override { settings.gravity += acceleration_; }
@@ -27,7 +27,7 @@ class LocalDamping final : public Engine {
         .at_least(0)
         .below(1)
         .doc(
-            "lessens forces that speed a body up, adds to those that slow it down: F (1 - lambda sgn(F v)), each "
+            "reduces forces that accelerate a body, increases those that decelerate it: F (1 - lambda sgn(F v)), each "
             "component");
   }
   Phase phase() const override { return Phase::settings; }
@@ -40,8 +40,8 @@ class LocalDamping final : public Engine {
 class Hold final : public Engine {
  public:
   void declare(Parameters& p) override {
-    p.add("rotation", rotation_).doc("bodies keep their spins, whatever moments act");
-    p.add("translation", translation_).doc("bodies keep their velocities, whatever forces act");
+    p.add("rotation", rotation_).doc("keep the spins of bodies constant");
+    p.add("translation", translation_).doc("keep the velocities of bodies constant");
   }
   Phase phase() const override { return Phase::settings; }
   void settings(MotionSettings& settings) const override {
@@ -57,7 +57,7 @@ class Planar final : public Engine {
   void declare(Parameters& p) override {
     p.add("normal", normal_)
         .one_of({"x", "y", "z"})
-        .doc("axis along which nothing moves, and about which alone bodies turn");
+        .doc("axis without translation; bodies rotate about this axis only");
   }
   Phase phase() const override { return Phase::settings; }
   void settings(MotionSettings& settings) const override { settings.flat = normal_[0] - 'x'; }
@@ -80,8 +80,8 @@ std::span<const PluginInfo> builtin_engines() {
   static const std::array<PluginInfo, 4> engines{
       engine<Gravity>("gravity", "the same acceleration for every body"),
       engine<LocalDamping>("local-damping", "Cundall's non-viscous damping of forces and moments"),
-      engine<Hold>("hold", "holds rotations or translations, for preparation"),
-      engine<Planar>("planar", "keeps bodies in planes: a two-dimensional scene")};
+      engine<Hold>("hold", "holds spins or velocities of bodies constant"),
+      engine<Planar>("planar", "restricts bodies to planar motion: a two-dimensional model")};
   return engines;
 }
 

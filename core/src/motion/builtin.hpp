@@ -1,4 +1,4 @@
-// Engines that are part of the kernel: what they ask for is done inside the kernel's own passes.
+// Built-in engines. The kernel applies their settings in its own passes over the bodies.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// gravity, local-damping, hold.
+/// gravity, local-damping, hold, planar.
 std::span<const PluginInfo> builtin_engines();
 
 }  // namespace grit

@@ -6,14 +6,14 @@
 namespace grit {
 namespace {
 
-/// Component by component, as of spheres: lessens what speeds up, adds to what slows down.
+/// Local damping by components, as for spheres: reduces what accelerates, increases what decelerates.
 Vec3 damped(const Vec3& push, const Vec3& velocity, double coefficient) {
   return push.binaryExpr(
       velocity, [=](double p, double v) { return p - coefficient * (v != 0 ? std::copysign(std::abs(p), v) : 0.0); });
 }
 
-// A body turns little in a step. Up to here a few terms of the series are as good as the functions, and take a tenth of
-// their time.
+// Rotations in a step are small. Up to this angle a few terms of the series are exact to rounding and take a tenth of the
+// time of the functions.
 constexpr double little = 0.02;
 
 /// Sine and cosine to rounding.
@@ -26,7 +26,7 @@ SineCosine sine_cosine(double angle) {
   return {angle - angle * s * (1.0 / 6 - s * (1.0 / 120 - s * (1.0 / 5040))),
           1 - s * (1.0 / 2 - s * (1.0 / 24 - s * (1.0 / 720)))};
 }
-/// Arc sine over its argument, to rounding; `square` is that of the argument.
+/// Arc sine over its argument, to rounding; `square` is the square of the argument.
 double arc_over_sine(double square) {
   if (square > little * little) {
     const double sine = std::sqrt(std::min(square, 1.0));
@@ -35,8 +35,8 @@ double arc_over_sine(double square) {
   return 1 + square * (1.0 / 6 + square * (3.0 / 40 + square * (5.0 / 112 + square * (35.0 / 1152))));
 }
 
-/// Turns about one principal axis by the angular velocity that the momentum along it alone would give; `time` is
-/// divided by twice the moment of inertia.
+/// Rotates about one principal axis with the angular velocity of the momentum along this axis; `time` is divided by twice
+/// the moment of inertia.
 template <int axis>
 [[gnu::always_inline]] inline void turn_about(double time, Eigen::Quaterniond& orientation, Vec3& momentum) {
   constexpr int next = (axis + 1) % 3, last = (axis + 2) % 3;
@@ -46,7 +46,7 @@ template <int axis>
   const double along = q[axis], one = q[next], other = q[last], scalar = q[3];
   q[3] = cosine * scalar - sine * along, q[axis] = cosine * along + sine * scalar;
   q[next] = cosine * one + sine * other, q[last] = cosine * other - sine * one;
-  // The momentum, seen from the axes, turns the other way by the whole angle.
+  // In the frame of the axes, the momentum rotates by the opposite of the whole angle.
   const double double_sine = 2 * sine * cosine, double_cosine = 1 - 2 * sine * sine;
   const double p = momentum[next], r = momentum[last];
   momentum[next] = double_cosine * p + double_sine * r, momentum[last] = double_cosine * r - double_sine * p;
@@ -61,7 +61,7 @@ void turn_freely(Clump& clump, double dt) {
   turn_about<2>(time[2], now, momentum);
   turn_about<1>(0.5 * time[1], now, momentum);
   turn_about<0>(0.5 * time[0], now, momentum);
-  // It was a unit before, so that one step of Newton's makes it one to rounding.
+  // It was normalised before, so that one Newton step normalises it to rounding.
   now.coeffs() *= 1.5 - 0.5 * now.squaredNorm();
   Eigen::Quaterniond turn = now * clump.orientation.conjugate();
   if (turn.w() < 0) turn.coeffs() *= -1;
@@ -72,13 +72,13 @@ void turn_freely(Clump& clump, double dt) {
   clump.spin = 2 * arc_over_sine(turn.vec().squaredNorm()) / dt * turn.vec();
 }
 
-/// Puts a clump's body where the clump has moved it; its velocity is its way in the step over the step.
+/// Moves a body with its clump; its velocity is its displacement in the step over the step.
 [[gnu::always_inline]] inline void carry(std::uint32_t body, const Clump& clump, Bodies& bodies,
                                          const MotionStep& step) {
   const ClumpSphere& own = bodies.clumps.of_body[body];
   const Vec3 arm = clump.axes * own.place;
   const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
-  // The chord of the arc over the step: from the arm turned back to the arm.
+  // Chord of the arc over the step: from the arm before the rotation to the arm.
   const Vec3 across = clump.half_turn.cross(arm);
   const Vec3 v = clump.velocity + clump.chord_rate * (across - clump.half_turn.cross(across)) -
                  periods.cwiseProduct(step.period_growth);
@@ -89,7 +89,7 @@ void turn_freely(Clump& clump, double dt) {
   spin.x = clump.spin.x(), spin.y = clump.spin.y(), spin.z = clump.spin.z();
 }
 
-/// Spheres of a clump lie as space has them, where the processor does not guess.
+/// Prefetches: spheres of a clump are in spatial order, which the processor cannot predict.
 constexpr std::size_t ahead = 3;
 void fetch(const Clump& clump, const Bodies& bodies, const BodySum* sum) {
   for (std::uint32_t k = clump.first; k < clump.last; ++k) {

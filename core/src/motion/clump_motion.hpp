@@ -1,4 +1,4 @@
-// Rigid clumps: forces of their spheres to one force and moment, a step, and where the spheres are then.
+// Rigid clumps: resultant of the forces on their spheres, a step of integration, and the new positions of the spheres.
 #pragma once
 
 #include "bodies/bodies.hpp"
@@ -7,18 +7,17 @@
 
 namespace grit {
 
-/// What acts on a clump: force [N], and moment about its centre [N m].
+/// Resultant on a clump: force [N], and moment about its centre of mass [N m].
 struct ClumpLoad {
   Vec3 force, moment;
 };
-/// Of its spheres' contacts, in their order.
+/// Sum over the contacts of its spheres, in their order.
 ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum);
 
-/// Moves clumps first … last − 1 under `sum`, by body index, and puts their spheres where they are then: a
-/// sphere's velocity is its way in the step over the step. Angular momentum is kept in
-/// space; the free top turns by its parts about the principal axes one after the other and back, which is symplectic
-/// and of second order: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) 5840,
-/// doi:10.1063/1.474310.
+/// Moves clumps first … last − 1 under the forces `sum`, by body index, and their spheres with them: the velocity of a
+/// sphere is its displacement in the step over the step. Angular momentum is stored in the global frame. The free rotation
+/// is split into rotations about the principal axes, one after the other and back; this is symplectic and of second
+/// order: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) 5840, doi:10.1063/1.474310.
 Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Bodies that become larger where they are.
+// Growth of bodies.
 #pragma once
 
 #include <cstddef>
@@ -7,11 +7,11 @@
 
 namespace grit {
 
-/// Raises all lengths of the bodies of one chunk by `factor`, masses by its cube and moments of inertia by its fifth
-/// power. Velocities and spins stay. Spheres of clumps move away from the middle of their clump as much.
+/// Multiplies all lengths of the bodies of one chunk by `factor`, masses by its cube and moments of inertia by its fifth
+/// power. Velocities and spins stay. The arms of spheres of clumps grow by the same factor.
 void grow_bodies(std::size_t chunk, Bodies& bodies, double factor);
 
-/// The same of what clumps have as a whole.
+/// The same for the properties of clumps as a whole.
 void grow_clumps(Bodies& bodies, double factor);
 
 }  // namespace grit

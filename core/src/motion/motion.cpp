@@ -9,14 +9,14 @@ namespace {
 
 Quad quad(const Vec3& v) { return Quad{v.x(), v.y(), v.z(), 0}; }
 
-/// Lessens components that speed the body up, adds to those that slow it down; does nothing to a body at rest.
+/// Local damping: reduces components that accelerate the body, increases those that decelerate it; no effect at rest.
 Quad damped(const Quad& force, const Quad& velocity, double coefficient) {
   const Quad power = force * velocity;
   const Quad less = force * (1 - coefficient), more = force * (1 + coefficient);
   return power > 0 ? less : power < 0 ? more : force;
 }
 
-/// What that takes off the force, over the coefficient; `push` has the force's signs.
+/// The reduction of the force over the damping coefficient; `push` has the signs of the force.
 Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
   const Quad power = push * velocity, none{};
   return power > 0 ? force : power < 0 ? -force : none;
@@ -24,7 +24,7 @@ Quad taken(const Quad& force, const Quad& push, const Quad& velocity) {
 
 Quad absolute(const Quad& a) { return a < 0 ? -a : a; }
 
-/// Adds up by how much a body turns; nothing where nobody asks for it.
+/// Accumulates rotations of a body, if requested.
 void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift) {
   if (turned == nullptr) return;
   const Quad angle = spin * drift;
@@ -33,29 +33,29 @@ void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// What of the bodies' energies is kept. Constants for the compiler: it would divide by what may not be needed, for
-/// every body, and a division by body is what a ledger costs most.
-enum class Ledger { none, without_weight, with_weight, with_flow };
+/// Which energies are summed up. Compile-time constants: otherwise the compiler divides for every body even if the result
+/// is not needed, and these divisions are the main cost of an energy balance.
+enum class EnergyTerms { none, without_weight, with_weight, with_flow };
 
-/// Not inlined: all of them in one function would have their constants in memory.
-template <Ledger ledger, bool Clumps>
+/// Not inlined: with all variants in one function, their constants would be in memory.
+template <EnergyTerms energies, bool Clumps>
 [[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
-  // The mean flow at a body grows as the body goes with it: without that, bodies would fall behind the cell's sides.
+  // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's sides.
   const Quad growth = rate * step.flowed;
-  // The fourth number of a row (radius, 1/mass, 1/inertia) stays as it is.
+  // The fourth number of a row (radius, 1/mass, 1/inertia) is unchanged.
   const Quad free = quad(step.free_translation());
   const Quad kick = step.kick * free, turn_kick = step.kick * quad(step.free_rotation());
   const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
   const Quad drift{step.drift, step.drift, step.drift, 0};
   const double damping = settings.local_damping;
-  constexpr bool flows = ledger == Ledger::with_flow, falls = flows || ledger == Ledger::with_weight;
+  constexpr bool flows = energies == EnergyTerms::with_flow, falls = flows || energies == EnergyTerms::with_weight;
   const Quad weight = quad(settings.gravity);
   Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
   double fastest_carried = 0;
-  // What is stored might be the arrays' own pointers for all that the compiler knows.
+  // Local copies of the pointers: for the compiler, stores might alias them.
   Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
              *const spin = bodies.spin.data();
   Vec3* const turned = bodies.rotation.empty() ? nullptr : bodies.rotation.data();
@@ -80,7 +80,7 @@ template <Ledger ledger, bool Clumps>
     const double mass = falls ? 1 / inverse_mass : 0;
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
-      if constexpr (ledger != Ledger::none) {
+      if constexpr (energies != EnergyTerms::none) {
         const Quad less = taken(falls ? force + weight * mass : force, push, v - flow);
         damped_power += less * (v - flow + 0.5 * pushed);
         if constexpr (flows) flow_power -= less * flow;
@@ -119,14 +119,14 @@ Vec3 MotionStep::free_rotation() const {
 }
 
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
-  const auto with = [&]<Ledger ledger>() {
-    return bodies.clumps.none() ? move<ledger, false>(chunk, bodies, sum, step)
-                                : move<ledger, true>(chunk, bodies, sum, step);
+  const auto with = [&]<EnergyTerms energies>() {
+    return bodies.clumps.none() ? move<energies, false>(chunk, bodies, sum, step)
+                                : move<energies, true>(chunk, bodies, sum, step);
   };
-  if (!step.energies) return with.operator()<Ledger::none>();
-  if (step.flows()) return with.operator()<Ledger::with_flow>();
-  return step.settings.gravity.isZero(0.0) ? with.operator()<Ledger::without_weight>()
-                                           : with.operator()<Ledger::with_weight>();
+  if (!step.energies) return with.operator()<EnergyTerms::none>();
+  if (step.flows()) return with.operator()<EnergyTerms::with_flow>();
+  return step.settings.gravity.isZero(0.0) ? with.operator()<EnergyTerms::without_weight>()
+                                           : with.operator()<EnergyTerms::with_weight>();
 }
 
 }  // namespace grit

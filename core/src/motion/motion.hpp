@@ -1,4 +1,4 @@
-// From forces to positions: one pass over the bodies damps and integrates.
+// Damping and integration of bodies in one pass.
 #pragma once
 
 #include "bodies/bodies.hpp"
@@ -8,34 +8,34 @@
 
 namespace grit {
 
-/// One step of the leap-frog.
+/// One step of the leap-frog scheme.
 struct MotionStep {
   MotionSettings settings;
-  double kick;         ///< s: from the last mid-step to the next, the time over which forces act
-  double drift;        ///< s: the step
-  double flowed;       ///< s: the step before, in which bodies went with the mean flow
-  Vec3 strain_rate;    ///< of a deforming cell [1/s]: damping and travel refer to its mean flow
-  Vec3 centre;         ///< where that flow is zero [m]
-  Vec3 period;         ///< of the cell after the step [m], 0 along axes that are not periodic
+  double kick;         ///< from the last mid-step to the next, during which forces act [s]
+  double drift;        ///< time step [s]
+  double flowed;       ///< previous step, in which bodies moved with the mean flow [s]
+  Vec3 strain_rate;    ///< of a deforming cell [1/s]; damping and displacements are relative to its mean flow
+  Vec3 centre;         ///< point of zero mean flow [m]
+  Vec3 period;         ///< of the cell after the step [m]; 0 along axes that are not periodic
   Vec3 period_growth;  ///< m/s
-  bool energies;       ///< whether Motion's are asked for
+  bool energies;       ///< whether the energies of Motion are needed
 
   bool flows() const { return !strain_rate.isZero(0.0); }
-  /// 1 along axes along, or about, which bodies are free to move, 0 along others.
+  /// 1 for axes along (or about) which bodies may move, 0 for others.
   Vec3 free_translation() const;
   Vec3 free_rotation() const;
 };
 
-/// What a chunk's bodies did.
+/// Summary of the motion of a chunk's bodies.
 struct Motion {
-  double largest_speed = 0;  ///< upper bound of the speeds against the mean flow, m/s
+  double largest_speed = 0;  ///< upper bound of speeds relative to the mean flow [m/s]
   bool finite = true;        ///< no velocity is inf or NaN
-  double damped = 0;         ///< what local damping took away [J]
+  double damped = 0;         ///< energy dissipated by local damping [J]
   double fallen = 0;         ///< work of gravity [J]
-  double carried = 0;        ///< work of what has bodies go with the mean flow of a deforming cell [J]
+  double carried = 0;        ///< work of moving bodies with the mean flow of a deforming cell [J]
 };
 
-/// Moves the bodies of one chunk under `sum`, by index; those of clumps are where these have moved them.
+/// Moves the bodies of one chunk under the forces `sum`, by index; bodies of clumps have already been moved.
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
 }  // namespace grit

@@ -17,23 +17,23 @@ namespace grit {
 
 namespace {
 
-/// Steps, times the gain, in which a servo gets used to a velocity. A stack of some dozens of grains is slower.
+/// Averaging time of a servo's velocity in steps, times the gain; longer than a stack of some dozens of grains responds.
 constexpr double habit_steps = 30;
-/// How often a servo counts the dashpots it touches. A change of its velocity shows in their forces at once and whole,
-/// and it sees them a step late: counted once, a gain of 1 chatters on dashpots that are stable by themselves; three
-/// times, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
+/// Factor by which a servo weights the dashpots of its contacts. Their forces follow a change of its velocity immediately,
+/// but the servo reads them one step late. With a factor of 1, a gain of 1 oscillates on dashpots that are stable in
+/// isolation; with 3, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
 constexpr double dashpots_counted = 3;
-/// Of the force that a servo keeps, by how much it may be off and is not told.
+/// Relative error of the force of a servo above which it is reported.
 constexpr double most_behind = 0.05;
-/// Of the force that a servo keeps, what a step may add however little is wanting.
+/// Fraction of the target force that a servo may always add in one step.
 constexpr double always_added = 0.25;
-/// Halvings after which a step's way is as good as none.
+/// Number of halvings after which the displacement in a step is practically zero.
 constexpr int most_halvings = 50;
-/// Fewest steps to a period of an oscillation: by then the mean velocity of a step differs from the one at its middle
-/// by (ω dt)²/24, 0.4 %.
+/// Minimum number of steps per period of an oscillation: there the mean velocity of a step differs from that at its middle
+/// by (ω dt)²/24 = 0.4 %.
 constexpr double steps_to_a_period = 20;
 
-/// `key` is the motion's that is wrong.
+/// `key`: the key of the motion at fault.
 [[noreturn]] void fail(const std::string& wall, const std::string& key, const std::string& what) {
   throw PlacedError({"walls", wall, "motion", key}, "wall \"" + wall + "\": " + what);
 }
@@ -44,15 +44,15 @@ constexpr double steps_to_a_period = 20;
 std::array<bool, 3> axes_of(const WallSetup& setup, const std::string& motion, const std::string& letters) {
   std::array<bool, 3> axes{};
   for (const char letter : letters) {
-    if (letter < 'x' || letter > 'z') fail(setup, motion + " along \"" + letters + "\"; allowed are x, y and z");
+    if (letter < 'x' || letter > 'z') fail(setup, motion + " along \"" + letters + "\"; allowed is x, y or z");
     axes[letter - 'x'] = true;
   }
-  if (letters.empty()) fail(setup, motion + " along no axis; name one or more of x, y and z");
+  if (letters.empty()) fail(setup, motion + " has no axis; give one or more of x, y and z");
   return axes;
 }
 
-/// The same place, told from another reference point.
-void tell_from(const Vec3& about, WallState& state) {
+/// The same pose with another reference point.
+void change_reference(const Vec3& about, WallState& state) {
   if (about == state.pose.about) return;
   const Vec3 before = state.pose.about + state.pose.shift, now = state.pose.to_world(about), shift = now - about;
   state.stage_start += shift - state.pose.shift;
@@ -67,13 +67,13 @@ void check_oscillation(const std::string& wall, const MotionDescription& motion,
   const double frequency = motion.oscillation->frequency;
   if (frequency * dt * steps_to_a_period > 1)
     fail(wall, "oscillation",
-         fmt::format("oscillates at {:.4g} Hz, of which a period has {:.3g} steps of {:.4g} s; allowed are {:g} or "
+         fmt::format("oscillates at {:.4g} Hz, with {:.3g} steps of {:.4g} s per period; allowed is {:g} or "
                      "more: lower the frequency, or shorten the time step by /time_step/safety or "
                      "/time_step/value",
                      frequency, 1 / (frequency * dt), dt, steps_to_a_period));
 }
 
-/// Where a wall turns about if nothing is said: the middle of its bounds, 0 along axes where they are infinite.
+/// Default reference point of a wall: the centre of its bounds; 0 along axes where they are infinite.
 Vec3 middle(const Geometry& geometry) {
   const Bounds bounds = geometry.bounds();
   Vec3 middle = 0.5 * (bounds.low + bounds.high);
@@ -82,7 +82,7 @@ Vec3 middle(const Geometry& geometry) {
   return middle;
 }
 
-/// How far an oscillation of amplitude 1 has gone some time [s] after it began.
+/// Displacement of an oscillation of amplitude 1 at a time [s] after its start.
 double swing(const MotionDescription& motion, double time, double lead) {
   const OscillationDescription& how = *motion.oscillation;
   const double periods = how.frequency * time + lead,
@@ -91,8 +91,7 @@ double swing(const MotionDescription& motion, double time, double lead) {
   return ramp * (std::sin(angle) - std::sin(how.phase));
 }
 
-/// What becomes of an oscillation when the motion may have changed: it goes on from where it is, at its new frequency,
-/// or begins.
+/// Updates an oscillation after a change of motion: it continues from its present phase at the new frequency, or starts.
 void swing_on(const MotionDescription& motion, WallState& state) {
   const OscillationDescription how = motion.oscillation.value_or(OscillationDescription{});
   if (state.swing_frequency > 0 && how.frequency > 0 && state.swing_phase == how.phase)
@@ -101,7 +100,7 @@ void swing_on(const MotionDescription& motion, WallState& state) {
   state.swing_frequency = how.frequency, state.swing_phase = how.phase;
 }
 
-/// Component of a servo's wall's normal along its axis. Throws if the servo has nothing to press with.
+/// Component of the normal of a servo's wall along its axis. Throws if it is zero.
 double facing(const WallSetup& setup, const Pose& pose) {
   const Vec3 normal = pose.turn * setup.geometry->normal();
   if (const std::string why = presses_with_nothing(setup.motion, *setup.geometry, normal); !why.empty())
@@ -109,17 +108,16 @@ double facing(const WallSetup& setup, const Pose& pose) {
   return normal[setup.motion.servo->axis.front() - 'x'];
 }
 
-/// A servo sees what a step has done when it is done: one grain that is stiff, or many of one height, would bear a
-/// multiple of what is wanted in the step in which it comes to touch them. So it goes no further in a step than to
-/// where they bear what is wanting; `velocity` is what it wishes.
+/// A servo reads the effect of a step only afterwards: a stiff grain, or many grains of one height, could carry a multiple
+/// of the target force in the step in which they come into contact. Therefore a step moves the wall at most to where the
+/// estimated force reaches the target; `velocity` is the requested one.
 double braked(double velocity, std::size_t wall, int axis, double wanted, const WallState& state, double dt,
               const Walls::Ahead& ahead) {
   if (ahead == nullptr || !(velocity * wanted > 0)) return velocity;
   const double most = std::abs(wanted), borne = -std::copysign(1.0, wanted) * state.force[axis],
                may_add = std::max(most - borne, always_added * most);
-  // Costs nothing, and says for nearly all steps that all that is near, as stiff as what touches, would not be too
-  // much.
-  if ((state.stiffness * dt + state.dashpot) * std::abs(velocity) * state.near < always_added * most * state.touches)
+  // Cheap bound that suffices in nearly all steps: the force if all nearby bodies were as stiff as those in contact.
+  if ((state.stiffness * dt + state.dashpot) * std::abs(velocity) * state.near < always_added * most * state.contacts)
     return velocity;
   for (int halving = 0; halving < most_halvings; ++halving) {
     const Vec3 moves = velocity * Vec3::Unit(axis);
@@ -131,14 +129,14 @@ double braked(double velocity, std::size_t wall, int axis, double wanted, const 
   return velocity;
 }
 
-/// Moves as a dashpot between the force and the wall's own recent velocity does: takes `gain` of the force's error away
-/// in one step if the touches are springs, less where they damp, and leaves no error behind when the specimen swells or
-/// shrinks steadily.
+/// Moves like a dashpot relative to the recent mean velocity of the wall. It corrects the fraction `gain` of the force
+/// error in one step if contacts are springs, less with dashpots, and leaves no error when the specimen expands or
+/// contracts steadily.
 double servo_velocity(const WallSetup& setup, std::size_t wall, int axis, double area, WallState& state, double dt,
                       const Walls::Ahead& ahead) {
   const ServoDescription& servo = *setup.motion.servo;
   const double wanted = servo.force ? *servo.force : *servo.pressure * area * facing(setup, state.pose);
-  if (state.touches == 0 || !(state.stiffness > 0)) {  // nothing to press on yet: close
+  if (state.contacts == 0 || !(state.stiffness > 0)) {  // no contact yet: close
     state.habit = 0;
     return wanted != 0 ? braked(std::copysign(servo.max_velocity, wanted), wall, axis, wanted, state, dt, ahead) : 0;
   }
@@ -184,7 +182,7 @@ void Walls::change(std::vector<WallSetup> setups) {
     if (known != setups_.end()) state = states_[static_cast<std::size_t>(known - setups_.begin())];
     else state.pose.about = middle(*setup.geometry);
     swing_on(setup.motion, state);
-    tell_from(setup.motion.about.value_or(state.pose.about), state);
+    change_reference(setup.motion.about.value_or(state.pose.about), state);
     drives.push_back(drive_of(setups, setup));
     if (drives.back().servo_axis >= 0 && setup.motion.servo->pressure) facing(setup, state.pose);
     states.push_back(state);
@@ -202,17 +200,17 @@ Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSet
   if (motion.servo) {
     servo = axes_of(setup, "servo", motion.servo->axis);
     if (std::count(servo.begin(), servo.end(), true) != 1)
-      fail(setup, "a servo along \"" + motion.servo->axis + "\"; it acts along one axis");
-    if (!(motion.servo->max_velocity > 0)) fail(setup, "a servo needs a max_velocity above 0");
+      fail(setup, "a servo along \"" + motion.servo->axis + "\"; allowed is one axis");
+    if (!(motion.servo->max_velocity > 0)) fail(setup, "a servo needs max_velocity above 0");
     if (motion.servo->pressure.has_value() == motion.servo->force.has_value())
-      fail(setup, "a servo keeps a pressure or a force, one of them");
+      fail(setup, "a servo needs either a pressure or a force");
     drive.servo_axis = static_cast<int>(std::find(servo.begin(), servo.end(), true) - servo.begin());
   }
   if (motion.follow) {
     drive.follow = axes_of(setup, "following", motion.follow->axes);
     const auto leader =
         std::find_if(setups.begin(), setups.end(), [&](const auto& s) { return s.name == motion.follow->wall; });
-    if (leader == setups.end()) fail(setup, "follows the wall \"" + motion.follow->wall + "\", which there is not");
+    if (leader == setups.end()) fail(setup, "follows the wall \"" + motion.follow->wall + "\", which does not exist");
     drive.leader = static_cast<std::size_t>(leader - setups.begin());
   }
   if (motion.free) {
@@ -234,7 +232,7 @@ std::vector<std::size_t> Walls::leaders_first(const std::vector<WallSetup>& setu
   std::vector<std::size_t> order;
   const std::function<void(std::size_t)> place = [&](std::size_t wall) {
     if (marks[wall] == Mark::placed) return;
-    if (marks[wall] == Mark::waiting) fail(setups[wall], "follows itself, directly or by way of others");
+    if (marks[wall] == Mark::waiting) fail(setups[wall], "follows itself, directly or through other walls");
     marks[wall] = Mark::waiting;
     if (setups[wall].motion.follow) place(drives[wall].leader);
     marks[wall] = Mark::placed;
@@ -270,7 +268,7 @@ void Walls::clear_forces() {
     state.force.setZero();
     state.moment.setZero();
     state.stiffness = state.spring = state.dashpot = 0;
-    state.touches = state.near = 0;
+    state.contacts = state.near = 0;
   }
 }
 
@@ -279,7 +277,7 @@ void Walls::add(std::size_t wall, const WallLoad& load) {
   state.force += load.force;
   state.moment += load.moment;
   state.stiffness += load.stiffness, state.spring += load.spring, state.dashpot += load.dashpot;
-  state.touches += load.touches, state.near += load.near;
+  state.contacts += load.contacts, state.near += load.near;
 }
 
 void Walls::drive(double dt, const Ahead& ahead) {
@@ -287,9 +285,9 @@ void Walls::drive(double dt, const Ahead& ahead) {
     const MotionDescription& motion = setups_[wall].motion;
     const Drive& how = drives_[wall];
     WallState& state = states_[wall];
-    // The ramp in the middle of the step: so a ramp of whole steps covers exactly half of velocity × ramp_time.
+    // The ramp at the middle of the step: a ramp of whole steps then covers exactly velocity × ramp_time / 2.
     const double ramp = motion.ramp_time > 0 ? std::min(1.0, (state.stage_time + 0.5 * dt) / motion.ramp_time) : 1.0;
-    double swings = 0;  // amplitudes in a second
+    double swings = 0;  // amplitudes per second
     if (motion.oscillation)
       swings =
           (swing(motion, state.swing_time + dt, state.swing_lead) - swing(motion, state.swing_time, state.swing_lead)) /
@@ -314,7 +312,7 @@ std::string Walls::fallen_behind() const {
   for (std::size_t wall = 0; wall < size(); ++wall) {
     const int axis = drives_[wall].servo_axis;
     const WallState& state = states_[wall];
-    if (axis < 0 || state.touches == 0) continue;  // what does not touch is on its way
+    if (axis < 0 || state.contacts == 0) continue;  // without contact it is still approaching
     const ServoDescription& servo = *setups_[wall].motion.servo;
     const double kept = servo.force ? *servo.force : *servo.pressure,
                  pressed = -state.force[axis] / (servo.force ? 1 : area(wall) * facing(setups_[wall], state.pose));
@@ -322,7 +320,7 @@ std::string Walls::fallen_behind() const {
         std::abs(pressed - kept) <= most_behind * std::abs(kept))
       continue;
     words += fmt::format(
-        "{}servo of wall \"{}\" fell behind at its max_velocity of {:g} m/s: {:.4g} {}, to be kept at {:.4g}",
+        "{}servo of wall \"{}\" is limited by its max_velocity of {:g} m/s: {:.4g} {}, target {:.4g}",
         words.empty() ? "" : "; ", name(wall), servo.max_velocity, pressed, servo.force ? "N" : "Pa", kept);
   }
   return words;
@@ -342,7 +340,7 @@ void Walls::move(double dt) {
     state.pose.shift += dt * state.velocity;
     state.stage_time += dt, state.swing_time += dt;
     const double angle = dt * state.spin.norm();
-    if (angle == 0) continue;  // the turn of a wall that does not spin stays the exact identity
+    if (angle == 0) continue;  // the rotation of a wall without spin stays exactly the identity
     const Mat3 turn = Eigen::AngleAxisd(angle, state.spin.normalized()) * state.pose.turn;
     state.pose.turn = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
   }
@@ -364,16 +362,16 @@ void Walls::view(std::vector<WallView>& views) const {
     view.area = area(wall), view.flat = geometry.flat();
     view.normal = state.pose.turn * geometry.normal();
     view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
-    view.touches = state.touches;
+    view.contacts = state.contacts;
     view.pose = state.pose;
   }
 }
 
-void Walls::remember(Memory& memory) {
+void Walls::serialize(Archive& archive) {
   const std::size_t walls = states_.size();
-  memory(states_);
+  archive(states_);
   if (states_.size() != walls)
-    throw Error("a checkpoint with " + std::to_string(states_.size()) + " walls, but the scene has " +
+    throw Error("the checkpoint has " + std::to_string(states_.size()) + " walls, but the description has " +
                 std::to_string(walls) + "; continue with the description that wrote it");
 }
 

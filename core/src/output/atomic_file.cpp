@@ -19,7 +19,7 @@ namespace {
 
 }  // namespace
 
-std::filesystem::path beside(const std::filesystem::path& path) {
+std::filesystem::path temporary_path(const std::filesystem::path& path) {
   auto temporary = path;
   temporary += ".part";
   return temporary;
@@ -27,8 +27,8 @@ std::filesystem::path beside(const std::filesystem::path& path) {
 
 void publish(const std::filesystem::path& path) {
   std::error_code error;
-  std::filesystem::rename(beside(path), path, error);
-  if (error) throw FileError(path.string() + ": cannot put the new file in place: " + error.message());
+  std::filesystem::rename(temporary_path(path), path, error);
+  if (error) throw FileError(path.string() + ": cannot replace the file: " + error.message());
 }
 
 void sync_to_disk(const std::filesystem::path& path) {
@@ -40,12 +40,12 @@ void sync_to_disk(const std::filesystem::path& path) {
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view text) {
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(beside(path).c_str(), "wb"), std::fclose);
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary_path(path).c_str(), "wb"), std::fclose);
   if (!file) fail(path, errno);
-  // What a full disk has taken of it is of no use.
+  // Removes the incomplete file that a full disk leaves.
   const auto give_up = [&](int error) {
     std::error_code ignored;
-    std::filesystem::remove(beside(path), ignored);
+    std::filesystem::remove(temporary_path(path), ignored);
     fail(path, error);
   };
   if (std::fwrite(text.data(), 1, text.size(), file.get()) != text.size()) give_up(errno);

@@ -1,4 +1,4 @@
-// A text file that is either the old one or the whole new one, whenever its writer is killed.
+// Atomic replacement of files: a reader finds the old file or the complete new one, even if the writer is killed.
 #pragma once
 
 #include <filesystem>
@@ -6,16 +6,16 @@
 
 namespace grit {
 
-/// Where a file is written before it is renamed to `path`: beside it, so that the rename is atomic.
-std::filesystem::path beside(const std::filesystem::path& path);
+/// The temporary file that is renamed to `path`: in the same folder, so that the rename is atomic.
+std::filesystem::path temporary_path(const std::filesystem::path& path);
 
-/// Renames what was written beside. Throws FileError.
+/// Renames the temporary file to `path`. Throws FileError.
 void publish(const std::filesystem::path& path);
 
-/// Returns when a file is on the disk itself, and so outlives the machine. Throws FileError.
+/// Returns when a file is on disk and survives a crash of the machine. Throws FileError.
 void sync_to_disk(const std::filesystem::path& path);
 
-/// Writes beside and publishes. Throws FileError with the system's reason; what was there stays.
+/// Writes a temporary file and renames it. Throws FileError with the system's reason; the old file then stays.
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace grit

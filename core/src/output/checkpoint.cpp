@@ -9,11 +9,12 @@
 namespace grit {
 namespace {
 
-/// Of the layout of the file and of what is in the memory.
+/// Version of the layout of the file and of the state.
 constexpr std::uint64_t format = 2;
-constexpr const char* advice = "go on with what began the run, or begin anew (--overwrite)";
+constexpr const char* advice =
+    "resume with the original program, plugins and description, or start again (--overwrite)";
 
-/// Wherever its file lies.
+/// The build of a plugin, without the path of its file.
 Description build_of(const PluginUsed& used) {
   Description facts = plugin_facts(used);
   facts.erase("file");
@@ -24,7 +25,7 @@ std::string text_of(const Description& facts) {
   return facts.dump(-1, ' ', false, Description::error_handler_t::replace);
 }
 
-/// A file knows neither infinite numbers nor texts that are not UTF-8.
+/// JSON has neither infinite numbers nor texts that are not UTF-8.
 Description as_written(const Description& facts) { return Description::parse(text_of(facts)); }
 
 Description facts_of(const RunFacts& facts) {
@@ -33,7 +34,7 @@ Description facts_of(const RunFacts& facts) {
   return as_written(all);
 }
 
-/// What differs, a line each, up to a few.
+/// The differences, one line each, up to a maximum.
 std::string lines(const Description& now, const Description& then) {
   constexpr std::size_t most = 8, longest = 60;
   std::string text;
@@ -62,7 +63,7 @@ std::string differences(const Description& now, const Description& then) {
       output->erase("checkpoint_every");
     if (const auto stages = description.find("stages"); stages != description.end() && stages->is_array())
       for (Description& stage : *stages)
-        if (stage.is_object()) stage.erase("usual_time");
+        if (stage.is_object()) stage.erase("typical_time");
     return description;
   };
   return lines(without(as_written(now)), without(as_written(then)));
@@ -78,7 +79,7 @@ std::string differences_on_the_way(const Description& now, const Description& th
 }
 
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint) {
-  const auto part = beside(path);
+  const auto part = temporary_path(path);
   try {
     hdf5::File file(part, hdf5::Mode::replace);
     file.set_attribute("format", format);
@@ -86,12 +87,12 @@ void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, 
     file.set_attribute("time", checkpoint.time);
     file.set_attribute("step", checkpoint.step);
     file.write_checked("facts", bytes_of(text_of(facts_of(facts))));
-    file.write_checked("memory", checkpoint.memory);
+    file.write_checked("state", checkpoint.state);
     file.close();
     sync_to_disk(part);
   } catch (const FileError&) {
     std::error_code ignored;
-    std::filesystem::remove(part, ignored);  // what a full disk has taken of it is of no use
+    std::filesystem::remove(part, ignored);  // incomplete, e.g. because the disk is full
     throw;
   }
   publish(path);
@@ -109,21 +110,22 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
     then = Description::parse(reinterpret_cast<const char*>(text.data()),
                               reinterpret_cast<const char*>(text.data()) + text.size());
     for (const char* key : {"grit", "plugins", "description"})
-      if (!then.contains(key)) throw FileError(path.string() + ": says nothing of \"" + key + '"');
-    checkpoint.memory = file.dataset("memory").read_bytes();
+      if (!then.contains(key)) throw FileError(path.string() + ": lacks \"" + key + '"');
+    checkpoint.state = file.dataset("state").read_bytes();
   } catch (const FileError& error) {
-    throw FileError(std::string(error.what()) + "\n  it is no whole checkpoint of this grit; begin anew (--overwrite)");
+    throw FileError(std::string(error.what()) +
+                    "\n  it is not a complete checkpoint of this grit; start again (--overwrite)");
   } catch (const Description::exception&) {
-    throw FileError(path.string() + ": what it says of its run is no JSON\n  it is damaged; begin anew (--overwrite)");
+    throw FileError(path.string() + ": its facts are not JSON\n  the file is damaged; start again (--overwrite)");
   }
   const Description now = facts_of(facts);
   if (const auto other = lines(now.at("grit"), then.at("grit")); !other.empty())
-    throw FileError(path.string() + ": was written by another grit, so that a run would not go on to the same bits:" +
+    throw FileError(path.string() + ": was written by another grit, so that results would not be bitwise identical:" +
                     other + "\n  " + advice);
   if (const auto other = differences_on_the_way(now.at("description"), then.at("description")); !other.empty())
     throw Error(path.string() + ": is of another description:" + other + "\n  " + advice);
   if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
-    throw PluginError(path.string() + ": plugins were built otherwise when it was written:" + other + "\n  " + advice);
+    throw PluginError(path.string() + ": was written with other builds of plugins:" + other + "\n  " + advice);
   return checkpoint;
 }
 

@@ -10,7 +10,7 @@ std::optional<Segment> clipped(const Segment& segment, double low_x, double high
   Segment part = segment;
   auto& [x1, y1, x2, y2] = part;
   if (!(drawable(x1) && drawable(y1) && drawable(x2) && drawable(y2))) return std::nullopt;
-  // Ends are set to where they are cut off, not reckoned: of a long way nothing is left by that.
+  // Cut ends are set to the limit exactly: computing them would lose all precision for very long segments.
   const auto cut = [](double& a1, double& b1, double& a2, double& b2, double low, double high) {
     if (std::max(a1, a2) < low || std::min(a1, a2) > high) return false;
     const double slope = a1 == a2 ? 0 : (b2 - b1) / (a2 - a1);

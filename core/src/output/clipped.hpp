@@ -1,4 +1,4 @@
-// Lines that reach out of sight.
+// Clipping of line segments.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace grit {
 
-/// The part of a segment that lies in a box; none where it passes by, or is not drawable(). What is far outside would
-/// be too long for those who draw it.
+/// The part of a segment inside a box; none if it misses the box or is not drawable(). Renderers cannot handle
+/// coordinates far outside.
 std::optional<Segment> clipped(const Segment& segment, double low_x, double high_x, double low_y, double high_y);
 
 }  // namespace grit

@@ -9,8 +9,8 @@ namespace grit {
 
 double colour_limit(std::vector<double> sizes) {
   if (sizes.empty()) return 0;
-  constexpr double share = 0.98;
-  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
+  constexpr double fraction = 0.98;
+  const auto nth = sizes.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(sizes.size() - 1));
   std::ranges::nth_element(sizes, nth);
   return *nth;
 }

@@ -1,4 +1,4 @@
-// Colours that every reader tells apart, wherever pictures and pages need some.
+// Colour-blind-safe colours of pictures and pages.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace grit {
 
-/// Okabe and Ito's colours, on white and on black; the last is for what is none of the others.
+/// Okabe and Ito's colours, for white and black backgrounds; the last is for everything else.
 inline constexpr std::array<const char*, 7> series_colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                            "#e69f00", "#56b4e9", "#8a8a86"};
 
@@ -22,10 +22,10 @@ inline constexpr std::array<Rgb, 7> diverging_colours{
 inline constexpr std::array<Rgb, 7> sequential_colours{
     {{68, 1, 84}, {68, 57, 131}, {49, 104, 142}, {33, 145, 140}, {53, 183, 121}, {144, 215, 67}, {253, 231, 37}}};
 
-/// What 98 % of sizes stay below, where colours end: a fast one leaves the others theirs. 0 without any.
+/// The 98th percentile of magnitudes, where the colour scale ends, so that outliers do not dominate it. 0 if empty.
 double colour_limit(std::vector<double> sizes);
 
-/// "#rrggbb" at a place of a scale, 0 to 1; the nearest end beyond.
+/// "#rrggbb" at a position of a scale, clamped to 0 … 1.
 std::string colour_at(std::span<const Rgb> scale, double place);
 
 }  // namespace grit

@@ -5,9 +5,8 @@
 
 namespace grit {
 
-/// A lock on a folder that is there; nothing is written. Programs that this one starts have it too, so that it lasts as
-/// long as any of them: the system takes it off those that end or are killed. Where a file system knows no such locks,
-/// it is never refused.
+/// A lock on an existing folder; nothing is written. Child processes inherit it, so that it lasts as long as any of
+/// them; the system releases it when they end or are killed. On a file system without locks it is always granted.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder);
@@ -15,7 +14,7 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// Whether nobody else had it.
+  /// Whether the lock was acquired.
   bool held() const { return held_; }
 
  private:

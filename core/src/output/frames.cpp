@@ -67,10 +67,10 @@ void write_bodies(hdf5::Group group, const World& world) {
   bodies.vector({"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}},
                 [rows = world.spins()](auto i) { return xyz(rows[i]); });
   bodies.scalar<std::int32_t>(
-      {"material", "1", "number of the material, from 0: its place in /model/materials of run.json", {}},
+      {"material", "1", "number of the material, from 0: its index in /model/materials of run.json", {}},
       [materials = world.materials()](auto i) { return materials[i]; });
   if (const auto clump_of = world.clump_of(); !clump_of.empty())
-    bodies.scalar<std::int64_t>({"clump", "1", "id of the clump that the body is part of; -1 by itself", {}},
+    bodies.scalar<std::int64_t>({"clump", "1", "id of the clump that the body is part of; -1 for a single body", {}},
                                 [&, clumps = world.clumps()](auto i) -> std::int64_t {
                                   return clump_of[i] == no_clump ? -1 : std::int64_t{clumps[clump_of[i]].id};
                                 });
@@ -100,7 +100,7 @@ void write_clumps(hdf5::Group group, const World& world) {
   put(group, {"orientation", "1", "unit quaternion (w, x, y, z) of the principal axes", {}}, {n, 4}, orientation);
   put(group, {"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}}, {n, 3},
       spin);
-  put(group, {"radius", "m", "of the enclosing sphere", {}}, {n}, radius);
+  put(group, {"radius", "m", "radius of the enclosing sphere", {}}, {n}, radius);
 }
 
 void write_contacts(hdf5::Group group, const World& world) {
@@ -121,11 +121,10 @@ void write_contacts(hdf5::Group group, const World& world) {
   const auto m = contacts.size();
   put(group, {"body_a", "1", "id of the first body", {}}, {m}, a);
   put(group, {"body_b", "1", "id of the second body; -1 - index of the wall for a wall", {}}, {m}, b);
-  put(group, {"feature", "1", "of the wall, as its geometry numbers what is touched; -1 between bodies", {}}, {m},
-      feature);
+  put(group, {"feature", "1", "feature of the wall, as numbered by its geometry; -1 between bodies", {}}, {m}, feature);
   put(group, {"force", "N", "force on the second body or wall; its opposite acts on the first", {}}, {m, 3}, force);
   put(group, {"normal_force", "N", "normal force, positive in compression", {}}, {m}, normal_force);
-  put(group, {"branch", "m", "from the first body's centre to the second's, or to the touching point on the wall", {}},
+  put(group, {"branch", "m", "from the first body's centre to the second's, or to the contact point on the wall", {}},
       {m, 3}, branch);
   put(group, {"middle", "m", "middle of the branch", {}}, {m, 3}, middle);
 }
@@ -137,9 +136,8 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
     std::vector<double> corners;
     for (const auto& corner : triangles_of(wall, shapes, world.stage()))
       corners.insert(corners.end(), corner.data(), corner.data() + 3);
-    auto triangles =
-        put(group, {wall.name, "m", "corners of the wall's triangles where it has moved and turned to", {}},
-            {corners.size() / 9, 3, 3}, corners);
+    auto triangles = put(group, {wall.name, "m", "corners of the wall's triangles in its present position", {}},
+                         {corners.size() / 9, 3, 3}, corners);
     triangles.set_attribute("index", static_cast<std::int64_t>(index));
     triangles.set_attribute("pressure", wall.pressure);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -150,13 +148,13 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
   }
 }
 
-/// ParaView takes triangles by the places of their corners, and as many rows of these as a wall has triangles.
+/// ParaView needs the corner indices of triangles, with one row per triangle of a wall.
 void write_corners(hdf5::Group& file, const std::vector<std::pair<std::string, std::size_t>>& walls) {
   std::size_t most = 0;
   for (const auto& [name, triangles] : walls) most = std::max(most, triangles);
   std::vector<std::int32_t> corners(3 * most);
   std::iota(corners.begin(), corners.end(), 0);
-  put(file, {"corners", "1", "0, 1, 2 …: places of the corners of the triangles of any wall", {}}, {most, 3}, corners);
+  put(file, {"corners", "1", "0, 1, 2 …: corner indices of the triangles of any wall", {}}, {most, 3}, corners);
 }
 
 void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
@@ -164,8 +162,8 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
     auto tables = group.create_group(probe.name);
     for (const auto& field : probe.fields) {
       if (field.width == 0 || field.values.size() % field.width != 0)
-        throw PluginError(fmt::format("probe '{}': its field '{}' has {} numbers, which are not whole rows of {}",
-                                      probe.name, field.name, field.values.size(), field.width));
+        throw PluginError(fmt::format("probe '{}': found {} values in field '{}'; allowed are whole rows of {}",
+                                      probe.name, field.values.size(), field.name, field.width));
       const auto rows = field.values.size() / field.width;
       auto table = put(tables, {field.name, field.unit, field.doc, {}},
                        field.width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, field.width}, field.values);
@@ -177,7 +175,7 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
 
 // ---- the index
 
-/// A dataset of a group that ParaView gets with its points.
+/// A dataset that ParaView shows on the points of its group.
 struct Column {
   const char *name, *type;
   int bytes, width;
@@ -280,7 +278,7 @@ Frames::Instant Frames::instant_of(const hdf5::File& file) {
 
 void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   const auto path = results_ / "frames" / file_name(instants_.size());
-  hdf5::File file(beside(path), hdf5::Mode::replace);
+  hdf5::File file(temporary_path(path), hdf5::Mode::replace);
   file.set_attribute("time", world.time());
   file.set_attribute("step", world.step());
   file.set_attribute("stage", world.stage());

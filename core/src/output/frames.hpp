@@ -1,4 +1,4 @@
-// frames/000123.h5, one instant a file, and frames.xdmf, which opens them all in ParaView.
+// frames/000123.h5, one file per instant, and frames.xdmf, which opens them all in ParaView.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@
 
 namespace grit {
 
-/// What a wall looks like, at the place where the description puts it.
+/// The shape of a wall at its initial position.
 struct WallShape {
   std::string name;
   std::vector<Vec3> triangles;  ///< three corners each [m]
-  std::string stage = {};       ///< that changes the wall into this; empty: whatever it is in no such stage
+  std::string stage = {};       ///< stage with this shape; empty: all stages without a shape of their own
 };
 
-/// The triangles of a wall where it is now; none if no shape has its name.
+/// The triangles of a wall at its present position; none if no shape has its name.
 std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> shapes, const std::string& stage);
 
 /// Writes frames: /bodies sorted by id, /contacts, /walls/<name>, /probes/<name>/<field>; every dataset has `units` and
@@ -26,7 +26,7 @@ std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> 
 /// throw FileError.
 class Frames {
  public:
-  /// The first `kept` frames that are there stay, later ones are removed.
+  /// Keeps the first `kept` existing frames and removes later ones.
   Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0);
 
   void write(const World& world, std::span<const FieldGroup> fields);
@@ -37,7 +37,7 @@ class Frames {
     double time;
     std::size_t bodies, contacts;
     bool clump, rotation, displacement;
-    std::vector<std::pair<std::string, std::size_t>> walls;  ///< names, and how many triangles
+    std::vector<std::pair<std::string, std::size_t>> walls;  ///< names and numbers of triangles
   };
   static Instant instant_of(const hdf5::File& file);
 

@@ -13,7 +13,7 @@
 namespace grit {
 namespace {
 
-/// Axes of a view. `away` is the sign of the depth axis along the line of sight.
+/// Axes of a view. `away`: sign of the depth axis along the line of sight.
 struct Sight {
   int right, up, depth;
   double away;
@@ -23,19 +23,19 @@ Sight sight(const std::string& view) {
   if (view == "xz") return {0, 2, 1, 1};
   if (view == "xy") return {0, 1, 2, -1};
   if (view == "yz") return {1, 2, 0, -1};
-  throw Error("picture: there is no view '" + view + "'; there are 'xz', 'xy' and 'yz'");
+  throw Error("picture: found the view '" + view + "'; allowed are 'xz', 'xy' and 'yz'");
 }
 
 using Value = std::function<double(std::uint32_t)>;
 
-/// Sets what colours mean in `shown`, and says how to get it for a body.
+/// Sets the meaning of colours in `shown`; returns a function that gives the value of a body.
 Value colouring(const SeenBodies& seen, const Sight& look, const std::string& color, GrainView& shown) {
   const Value grey = [](std::uint32_t) { return std::numeric_limits<double>::quiet_NaN(); };
   if (color == "rotation") {
     shown.value = {"rotation", "rad"};
     shown.note = "clockwise +";
     if (seen.rotations.empty()) return grey;
-    // A right-handed turn about the line of sight is clockwise for who looks along it.
+    // A right-handed rotation about the line of sight appears clockwise.
     return [rotations = seen.rotations, look](std::uint32_t i) { return look.away * rotations[i][look.depth]; };
   }
   if (color == "displacement") {
@@ -57,10 +57,10 @@ Value colouring(const SeenBodies& seen, const Sight& look, const std::string& co
       return layers[i] > 0 ? layers[i] : std::numeric_limits<double>::quiet_NaN();
     };
   }
-  throw Error("picture: there is no color '" + color + "'; there are 'rotation', 'displacement' and 'speed'");
+  throw Error("picture: found the color '" + color + "'; allowed are 'rotation', 'displacement' and 'speed'");
 }
 
-/// Whether each body is near enough to the others to be seen beside them.
+/// Whether each body is no outlier.
 std::vector<bool> those_in_sight(std::span<const Row> rows) {
   std::vector<double> positions, diameters;
   for (const Row& row : rows) {
@@ -73,7 +73,7 @@ std::vector<bool> those_in_sight(std::span<const Row> rows) {
   return near;
 }
 
-/// Where the plane at `depth` cuts the triangles.
+/// Appends the section of the triangles with the plane at `depth`.
 void cut(std::span<const Vec3> triangles, const Sight& look, double depth, std::vector<Segment>& segments) {
   for (std::size_t first = 0; first + 2 < triangles.size(); first += 3) {
     std::vector<Vec3> points;

@@ -13,14 +13,14 @@ namespace {
 
 static_assert(std::same_as<hid_t, std::int64_t> && std::same_as<herr_t, int>);
 
-// 2 · 128 chunks of an index fit one node: it is not split, and so not rewritten in parts, for half a million samples.
+// 2 · 128 chunks fit one node of the index: for half a million samples it is not split, and so never partly rewritten.
 constexpr unsigned chunk_index_half = 128;
-// By which a copy in memory would grow.
+// Growth increment of a copy in memory.
 constexpr std::size_t copy_increment = std::size_t{1} << 16;
-// That share a checksum.
+// Block size of a checksum.
 constexpr std::size_t checked_bytes = std::size_t{1} << 20;
 
-/// The innermost message of the library: closest to the cause. Of failed system calls, the system's words.
+/// The library's innermost message, which is closest to the cause. For failed system calls, the system's message.
 std::string reason() {
   std::string text;
   H5Ewalk2(
@@ -95,17 +95,17 @@ Handle rows_of(hid_t dataset, const Shape& shape, std::size_t first, std::size_t
 }
 
 hid_t open_file(const std::filesystem::path& path, Mode mode) {
-  // A file that a full disk keeps from being closed would be closed again when the process exits, and crash it. All
-  // others are closed by then. Only before the first call that opens the library does this count.
+  // A file that could not be closed because of a full disk would be closed again at exit, which crashes. All other
+  // files are closed by then. Must be called before any other function of the library.
   static const herr_t no_cleanup = H5dont_atexit();
   static_cast<void>(no_cleanup);
-  // Per thread, where HDF5 is built for threads: so at every file, not once.
+  // The setting is per thread in a thread-safe HDF5, hence set for every file.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const auto where = path.string();
   const auto access = owned(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, where, "prepare to open");
   H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
   H5Pset_file_locking(access.id(), false, true);
-  // Metadata that the cache writes back when it likes would tear the file of a run killed between two flushes.
+  // Metadata that the cache writes back at any time would corrupt the file of a run killed between two flushes.
   H5AC_cache_config_t cache{};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
   H5Pget_mdc_config(access.id(), &cache);
@@ -123,7 +123,7 @@ hid_t open_file(const std::filesystem::path& path, Mode mode) {
       return checked(H5Fopen(where.c_str(), H5F_ACC_RDONLY, access.id()), where, "read");
     case Mode::change: {
       Handle file = owned(H5Fopen(where.c_str(), H5F_ACC_RDWR, access.id()), H5Fclose, where, "change");
-      // The length of the file is the last that a flush writes: a writer killed in one may have left it too short.
+      // A flush writes the file length last: a writer killed during a flush may have left it too short.
       checked(H5Fincrement_filesize(file.id(), 0), where, "change");
       return file.release();
     }
@@ -141,7 +141,7 @@ hid_t open_file(const std::filesystem::path& path, Mode mode) {
 
 void Object::set_attribute(const std::string& name, std::string_view text) {
   const auto what = "write attribute '" + name + "'";
-  // Of variable length: h5py gives these as str, those of fixed length as bytes.
+  // Variable length: h5py reads these as str, and fixed-length ones as bytes.
   const auto string = owned(H5Tcopy(H5T_C_S1), H5Tclose, where_, what);
   checked(H5Tset_size(string.id(), H5T_VARIABLE), where_, what);
   checked(H5Tset_cset(string.id(), H5T_CSET_UTF8), where_, what);
@@ -173,7 +173,8 @@ std::string Object::text(const std::string& name) const {
   const auto what = "read attribute '" + name + "'";
   const auto attribute = owned(H5Aopen(handle_.id(), name.c_str(), H5P_DEFAULT), H5Aclose, where_, what);
   const auto string = owned(H5Aget_type(attribute.id()), H5Tclose, where_, what);
-  if (H5Tis_variable_str(string.id()) <= 0) throw FileError(where_ + ": attribute '" + name + "' is no text of grit's");
+  if (H5Tis_variable_str(string.id()) <= 0)
+    throw FileError(where_ + ": attribute '" + name + "' is not a variable-length text");
   char* value = nullptr;
   checked(H5Aread(attribute.id(), string.id(), &value), where_, what);
   std::string text(value == nullptr ? "" : value);
@@ -297,7 +298,7 @@ Dataset Group::write(const std::string& name, const Shape& shape, Number type, s
 Dataset Group::write_checked(const std::string& name, std::span<const std::byte> bytes) {
   auto where = child(where_, name);
   const Shape shape{bytes.size()};
-  if (bytes.empty()) return write(name, shape, Number::uint8, 0, nullptr);  // a chunk has a byte at least
+  if (bytes.empty()) return write(name, shape, Number::uint8, 0, nullptr);  // a chunk cannot be empty
   const auto extent = space(shape, where);
   const auto creation = owned(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, where, "prepare the dataset");
   const hsize_t chunk = std::min(bytes.size(), checked_bytes);

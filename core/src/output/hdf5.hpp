@@ -1,4 +1,4 @@
-// HDF5 files, as little of them as the results need. hdf5.cpp alone sees the library's own header.
+// The part of HDF5 that the results need. Only hdf5.cpp includes the library's header.
 #pragma once
 
 #include <concepts>
@@ -15,10 +15,10 @@
 
 namespace grit::hdf5 {
 
-/// Lengths of the dimensions, slowest first; empty: one number.
+/// Lengths of the dimensions, slowest first; empty for a scalar.
 using Shape = std::vector<std::size_t>;
 
-/// An identifier of the library, closed with its owner.
+/// An owned identifier of the library.
 class Handle {
  public:
   using Close = int (*)(std::int64_t);
@@ -64,7 +64,7 @@ inline std::size_t product(std::span<const std::size_t> shape) {
 // T below is one of the types of Number; reading converts. Everything throws FileError with the file, the object and
 // the library's innermost message.
 
-/// What may carry attributes.
+/// An object with attributes.
 class Object {
  public:
   void set_attribute(const std::string& name, std::string_view text);
@@ -74,7 +74,7 @@ class Object {
   }
   bool has_attribute(const std::string& name) const;
   std::string text(const std::string& name) const;
-  /// Words of a text with blanks between them; none where there is no such attribute.
+  /// Space-separated words of a text; none if there is no such attribute.
   std::vector<std::string> words(const std::string& name) const;
   template <class T>
   T number(const std::string& name) const {
@@ -83,7 +83,7 @@ class Object {
     return value;
   }
 
-  /// The file, and the object's path in it, for messages.
+  /// The file and the object's path in it, for messages.
   const std::string& where() const { return where_; }
 
  protected:
@@ -99,7 +99,7 @@ class Object {
 class Dataset : public Object {
  public:
   Shape shape() const;
-  /// The first dimension; 1 for one number.
+  /// The first dimension; 1 for a scalar.
   std::size_t rows() const;
   /// All numbers, or those of rows [first, first + count).
   template <class T>
@@ -116,14 +116,14 @@ class Dataset : public Object {
     get(number_of<T>(), first, count, values.data());
     return values;
   }
-  /// Adds whole rows at the end of a dataset that grows.
+  /// Appends whole rows to a growing dataset.
   template <class T>
   void append(std::span<const T> values) {
     append(number_of<T>(), values.size(), values.data());
   }
-  /// Of write_checked().
+  /// Reads a dataset of write_checked().
   std::vector<std::byte> read_bytes() const;
-  /// Forgets the rows from `rows` on.
+  /// Removes the rows from `rows` on.
   void truncate(std::size_t rows);
 
  private:
@@ -147,7 +147,7 @@ class Group : public Object {
   Dataset write(const std::string& name, const Shape& shape, std::span<const T> values) {
     return write(name, shape, number_of<T>(), values.size(), values.data());
   }
-  /// Bytes with checksums: reading them fails where they are no longer what was written.
+  /// Writes bytes with checksums: reading fails if they are damaged.
   Dataset write_checked(const std::string& name, std::span<const std::byte> bytes);
   /// A dataset whose first dimension grows; `row` is the shape of one row.
   template <class T>
@@ -165,19 +165,19 @@ class Group : public Object {
 
 enum class Mode {
   read,
-  copy,  ///< reads a copy of the whole file as it is now, and does not look at the file again
+  copy,  ///< reads the whole file into memory when it is opened
   change,
   replace
 };
 
-/// An open file. Not locked, so that others may read a file that is being written; in the oldest format, which has
-/// neither checksums nor a mark "open for writing" that a killed writer would leave behind. Nothing of what is written
-/// need be on disk before flush() or close(), and no metadata is. Its groups and datasets are closed with it.
+/// An open file. It is not locked, so that it can be read while it is being written. It uses the oldest format, which
+/// has neither checksums nor an "open for writing" mark that a killed writer would leave behind. Data may be on disk
+/// only after flush() or close(); metadata is written only then. Groups and datasets are closed with the file.
 class File : public Group {
  public:
   File(const std::filesystem::path& path, Mode mode);
   void flush();
-  /// Writes what is left and closes; the destructor does so too, but cannot say that it failed.
+  /// Flushes and closes; the destructor does so too, but cannot report errors.
   void close();
 };
 

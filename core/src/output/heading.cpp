@@ -5,8 +5,8 @@
 namespace grit {
 namespace {
 
-constexpr double narrowest = 420;                          // px, of a frame: less cuts a title into single words
-constexpr double title_letter = 11.8, facts_letter = 6.9;  // about how wide one is, px
+constexpr double narrowest = 420;                          // px, of a frame: in less a title breaks into single words
+constexpr double title_letter = 11.8, facts_letter = 6.9;  // approximate widths, px
 constexpr double first_line = 44, title_line = 26, facts_line = 19;
 constexpr std::string_view between = "  ·  ";
 
@@ -20,7 +20,7 @@ std::vector<std::string> parts_of(std::string_view text, std::string_view separa
   }
 }
 
-/// Lines of at most so many letters, broken at the separator, and within a part that is too long at blanks.
+/// Lines of at most `most` letters, broken at the separator, and within parts that are too long at spaces.
 std::vector<std::string> wrapped(std::string_view text, std::string_view separator, double most) {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& part, std::string_view glue) {

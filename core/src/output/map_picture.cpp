@@ -24,12 +24,12 @@ namespace {
 constexpr double inner_width = Heading::widest - 2 * Heading::margin, axis_wide = 58, axis_high = 50, colour_bar = 92,
                  panel_gap = 20, tallest = 480,
                  label_letter = 8.4;                 // px
-constexpr int few = 4;                               // of panels that stand below each other where they are wide
+constexpr int few = 4;                               // up to this number wide panels are stacked
 constexpr int most_columns = 3, large_enough = 200;  // of panels; px of the longer side
-constexpr double share_shown = 0.98;  // of the cells, in the middle: the rest is drawn as the scale's ends
-constexpr double gap_closed = 0.75;   // of a cell: what is wider between two is a place without cells
-constexpr double wall_reach = 0.2;    // of the longer side of the cells' box
-constexpr double wall_room = 0.02;    // of the longer side of the plot, about walls: none lies on the frame
+constexpr double scale_fraction = 0.98;              // of the cells, in the middle, covered by the colour scale
+constexpr double gap_closed = 0.75;                  // of a cell: wider gaps stay empty
+constexpr double wall_reach = 0.2;                   // of the longer side of the cells' box
+constexpr double wall_margin = 0.02;  // of the longer side of the plot, so that no wall lies on the frame
 constexpr const char* sheet =
     ".label{font-size:14px;font-weight:600;fill:#222}.axis{font-size:13px;fill:#222}.m{text-anchor:middle}\n"
     ".e{text-anchor:end}.small{font-size:11px;fill:#666}.frame{fill:none;stroke:#8a8a86;stroke-width:1}\n"
@@ -51,16 +51,16 @@ Colours colours_of(const std::vector<MapCell>& cells, std::size_t panel, bool ab
   if (about_zero) colours = {-1, 1, diverging_colours};
   if (finite.empty()) return colours;
   std::ranges::sort(finite);
-  const auto rim = static_cast<std::size_t>(0.5 * (1 - share_shown) * static_cast<double>(finite.size()));
+  const auto rim = static_cast<std::size_t>(0.5 * (1 - scale_fraction) * static_cast<double>(finite.size()));
   colours.low = finite[rim], colours.high = finite[finite.size() - 1 - rim];
   const double most = std::max(std::abs(colours.low), std::abs(colours.high));
   if (about_zero) colours.high = most > 0 ? most : 1, colours.low = -colours.high;
-  else if (!(colours.high - colours.low > 1e-9 * most))  // round-off is nothing to see
+  else if (!(colours.high - colours.low > 1e-9 * most))  // ignores round-off
     colours.low -= 0.5 * (most > 0 ? most : 1), colours.high += 0.5 * (most > 0 ? most : 1);
   return colours;
 }
 
-/// Where metres are in the plot of a panel, which begins at the pixel (0, 0).
+/// Maps metres to pixels of a panel's plot, whose upper left corner is (0, 0).
 struct Plot {
   double low_x, high_y, scale;  ///< m, px/m
   int wide, high;               ///< px
@@ -71,16 +71,16 @@ struct Plot {
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double value) { low = std::min(low, value), high = std::max(high, value); }
-  /// Never so small that places within it have no digits left [m].
+  /// Never below the precision of the coordinates [m].
   double span() const { return std::max({high - low, 1e-12, 1e-9 * std::abs(low), 1e-9 * std::abs(high)}); }
 };
 
-/// Those that are not far from all others, and no larger than that.
+/// The cells that are no outliers.
 std::vector<MapCell> near_cells(const std::vector<MapCell>& cells) {
-  std::vector<double> places, sizes;
+  std::vector<double> positions, sizes;
   for (const MapCell& cell : cells)
-    places.insert(places.end(), {cell.x, cell.y, 0}), sizes.push_back(std::max(cell.wide, cell.high));
-  const Fences fences(places, median(sizes), far_to_draw);
+    positions.insert(positions.end(), {cell.x, cell.y, 0}), sizes.push_back(std::max(cell.wide, cell.high));
+  const Fences fences(positions, median(sizes), far_to_draw);
   std::vector<MapCell> near;
   for (const MapCell& cell : cells)
     if (drawable(cell.x) && drawable(cell.y) && fences.hold(0, cell.x - 0.5 * cell.wide, cell.x + 0.5 * cell.wide) &&
@@ -89,10 +89,10 @@ std::vector<MapCell> near_cells(const std::vector<MapCell>& cells) {
   return near;
 }
 
-/// Of so many columns [px].
-double room_of_a_panel(int columns) { return (inner_width - panel_gap * (columns - 1)) / columns; }
+/// Width available to a panel in so many columns [px].
+double panel_space(int columns) { return (inner_width - panel_gap * (columns - 1)) / columns; }
 
-/// In so many columns, of which each has room for axes and the scale of colours.
+/// The plot of a panel in so many columns, each with space for axes and the colour scale.
 Plot plot_of(const MapPicture& picture, int columns) {
   Extent x, y;
   for (const MapCell& cell : picture.cells)
@@ -113,18 +113,18 @@ Plot plot_of(const MapPicture& picture, int columns) {
     walls = true;
   }
   if (walls) {
-    const double room = wall_room * std::max(x.span(), y.span());
-    x = {x.low - room, x.high + room}, y = {y.low - room, y.high + room};
+    const double border = wall_margin * std::max(x.span(), y.span());
+    x = {x.low - border, x.high + border}, y = {y.low - border, y.high + border};
   }
-  const double room = room_of_a_panel(columns) - axis_wide - colour_bar;
-  const double scale = std::min(room / x.span(), tallest / y.span());
+  const double space = panel_space(columns) - axis_wide - colour_bar;
+  const double scale = std::min(space / x.span(), tallest / y.span());
   return {x.low, y.high, scale, std::max(1, static_cast<int>(std::lround(scale * x.span()))),
           std::max(1, static_cast<int>(std::lround(scale * y.span())))};
 }
 
-/// By pixel of the plot, row by row, the place of its cell; -1 of none. It is the cell that is nearest in its own
-/// measure. Cells grow by what is to be closed between two, by whole pixels; then what has grown is taken back
-/// ("closing" of image analysis): beyond its edge a cell keeps what has cells all about it, as on the page.
+/// The index of the cell at each pixel of the plot, row by row; -1 for none. It is the nearest cell, in units of the
+/// cell's size. Gaps are closed by morphological closing: cells grow by whole pixels, then shrink again except at
+/// pixels surrounded by cells.
 std::vector<int> cells_by_pixel(const std::vector<MapCell>& cells, const Plot& plot) {
   struct Seen {  // px of the plot
     double x, y, half_wide, half_high;
@@ -139,12 +139,12 @@ std::vector<int> cells_by_pixel(const std::vector<MapCell>& cells, const Plot& p
         {plot.across(cell.x), plot.down(cell.y), half_wide, half_high, beyond(half_wide), beyond(half_high)});
     margin = std::max({margin, seen.back().beyond_x, seen.back().beyond_y});
   }
-  // With what cells need about the plot when they have grown.
+  // Includes a margin for grown cells.
   const int wide = plot.wide + 2 * margin, high = plot.high + 2 * margin;
-  const auto place = [](int row, int column, int length) {
+  const auto index_of = [](int row, int column, int length) {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(length) + static_cast<std::size_t>(column);
   };
-  std::vector<int> nearest(place(high, 0, wide), -1);
+  std::vector<int> nearest(index_of(high, 0, wide), -1);
   std::vector<double> distance(nearest.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const Seen& cell = seen[i];
@@ -159,44 +159,44 @@ std::vector<int> cells_by_pixel(const std::vector<MapCell>& cells, const Plot& p
       for (int column = left; column <= right; ++column) {
         const double off = std::max(std::abs(column - margin + 0.5 - cell.x) / cell.half_wide,
                                     std::abs(row - margin + 0.5 - cell.y) / cell.half_high);
-        const auto p = place(row, column, wide);
+        const auto p = index_of(row, column, wide);
         if (off < distance[p]) distance[p] = off, nearest[p] = static_cast<int>(i);
       }
   }
-  std::vector<int> before(place(high + 1, 0, wide + 1));  // pixels of cells above and to the left
+  std::vector<int> before(index_of(high + 1, 0, wide + 1));  // pixels of cells above and to the left
   for (int row = 0; row < high; ++row)
     for (int column = 0, along = 0; column < wide; ++column) {
-      along += nearest[place(row, column, wide)] >= 0 ? 1 : 0;
-      before[place(row + 1, column + 1, wide + 1)] = before[place(row, column + 1, wide + 1)] + along;
+      along += nearest[index_of(row, column, wide)] >= 0 ? 1 : 0;
+      before[index_of(row + 1, column + 1, wide + 1)] = before[index_of(row, column + 1, wide + 1)] + along;
     }
   constexpr double inside = 1 + 1e-6;
-  std::vector<int> owner(place(plot.high, 0, plot.wide), -1);
+  std::vector<int> owner(index_of(plot.high, 0, plot.wide), -1);
   for (int row = 0; row < plot.high; ++row)
     for (int column = 0; column < plot.wide; ++column) {
-      const auto p = place(row + margin, column + margin, wide);
+      const auto p = index_of(row + margin, column + margin, wide);
       if (nearest[p] < 0) continue;
       const auto [across, up] = std::pair(seen[static_cast<std::size_t>(nearest[p])].beyond_x,
                                           seen[static_cast<std::size_t>(nearest[p])].beyond_y);
       const auto until = [&](int down, int right) {
-        return before[place(row + margin + down, column + margin + right, wide + 1)];
+        return before[index_of(row + margin + down, column + margin + right, wide + 1)];
       };
       const int about =
           until(up + 1, across + 1) - until(-up, across + 1) - until(up + 1, -across) + until(-up, -across);
       if (distance[p] <= inside || about == (2 * across + 1) * (2 * up + 1))
-        owner[place(row, column, plot.wide)] = nearest[p];
+        owner[index_of(row, column, plot.wide)] = nearest[p];
     }
   return owner;
 }
 
-/// Pixels of one cell that make a rectangle.
+/// A rectangle of pixels of one cell.
 struct Tile {
   int cell, x, y, wide, high;
 };
 
-/// Whole pixels: two tiles that meet have no seam at any zoom.
+/// Tiles of whole pixels, so that adjacent ones have no seam at any zoom.
 std::vector<Tile> tiles_of(const std::vector<int>& owner, const Plot& plot) {
   std::vector<Tile> tiles;
-  std::vector<std::size_t> above, here;  // of the row before and of this one, from left to right
+  std::vector<std::size_t> above, here;  // tiles in the previous and in this row, from left to right
   for (int row = 0; row < plot.high; ++row) {
     here.clear();
     std::size_t candidate = 0;
@@ -222,9 +222,9 @@ std::vector<Tile> tiles_of(const std::vector<int>& owner, const Plot& plot) {
   return tiles;
 }
 
-/// An axis that ends where it is told, even where whole steps leave it fewer than 4 ticks or more than 8.
-AxisTicks axis_within(double low, double high, double pixels, double room) {
-  const auto apart = [&](const AxisTicks& axis) { return axis.step / (axis.high - axis.low) * pixels >= room; };
+/// An axis with the given ends, even if this gives fewer than 4 ticks or more than 8.
+AxisTicks axis_within(double low, double high, double pixels, double spacing) {
+  const auto apart = [&](const AxisTicks& axis) { return axis.step / (axis.high - axis.low) * pixels >= spacing; };
   const AxisTicks axis = axis_ticks(low, high, AxisEnds::kept, apart);
   if (axis.low == low && axis.high == high) return axis;
   return {low, high, nice_step(high - low, 7), ticks(low, high, 7)};
@@ -244,7 +244,7 @@ void draw_bar(Svg& svg, const Colours& colours, double factor, double left, doub
   }
 }
 
-/// Ticks that lie within the plot, numbers on its left and below it.
+/// Draws ticks within the plot, and numbers to its left and below it.
 void draw_axes(Svg& svg, const MapPicture& picture, const Plot& plot, double left, double top) {
   const double span_x = plot.wide / plot.scale, span_y = plot.high / plot.scale, low_y = plot.high_y - span_y;
   const ReadableUnit unit = readable(
@@ -273,7 +273,7 @@ std::string draw(const MapPicture& whole) {
   MapPicture picture = whole;
   picture.cells = near_cells(whole.cells);
   if (const std::size_t far = whole.cells.size() - picture.cells.size(); far > 0)
-    picture.facts += fmt::format("  ·  {} of the cells far from all others, not shown", grouped(far));
+    picture.facts += fmt::format("  ·  {} outlying cells not shown", grouped(far));
   const int count = static_cast<int>(picture.panels.size());
   struct Panel {
     Colours colours;
@@ -290,13 +290,12 @@ std::string draw(const MapPicture& whole) {
     panels.push_back({colours, std::move(unit), std::move(title)});
   }
   const auto panel_wide = [&](const Plot& plot) { return axis_wide + std::max(plot.wide + colour_bar, longest); };
-  // What is tall stands side by side, and so do many panels, or nobody finds their way: as long as they are large
-  // enough.
+  // Tall panels, and many panels, are placed side by side as long as they stay large enough.
   Plot plot = plot_of(picture, 1);
   int columns = 1;
   for (int more = 2; more <= std::min(count, most_columns) && (plot.high > plot.wide || count > few); ++more)
     if (const Plot smaller = plot_of(picture, more); std::max(smaller.wide, smaller.high) >= large_enough &&
-                                                     panel_wide(smaller) <= room_of_a_panel(more) + 1)  // whole pixels
+                                                     panel_wide(smaller) <= panel_space(more) + 1)  // whole pixels
       plot = smaller, columns = more;
   const Heading heading(picture.title, picture.facts, columns * (panel_wide(plot) + panel_gap) - panel_gap);
   const double first = std::round(Heading::margin + axis_wide +

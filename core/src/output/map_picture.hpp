@@ -1,4 +1,4 @@
-// A map of cells as a picture: knows numbers, not worlds.
+// Draws a map of cells. Independent of the simulation.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@
 
 namespace grit {
 
-/// A cell of a map: its middle, what it fills [m], and a value of each panel, in SI; not finite: grey.
+/// A cell of a map: its centre, its size [m], and a value for each panel in SI units. Values that are not finite are
+/// grey.
 struct MapCell {
   double x, y, wide, high;
   std::vector<double> values;
@@ -16,7 +17,7 @@ struct MapCell {
 
 struct MapPanel {
   std::string label;
-  bool about_zero = false;  ///< blue–white–red, zero being white, else from dark to bright
+  bool about_zero = false;  ///< blue–white–red with white at zero, else from dark to bright
 };
 
 struct MapPicture {
@@ -29,10 +30,9 @@ struct MapPicture {
   std::string unit;  ///< of all values
 };
 
-/// The picture as SVG, up to 900 px wide: a panel a value, each with its axes and the scale of its colours, side by
-/// side where they are tall or more than four. It tells 98 of 100 cells apart, the middle ones. Cells meet: what is
-/// less than three quarters of a cell between two is coloured as the nearest one. Of walls what is near the cells is
-/// seen.
+/// The picture as SVG, up to 900 px wide: one panel per value, each with axes and a colour scale, side by side if they
+/// are tall or more than four. The colour scale covers the middle 98 % of the cells. Gaps of less than three quarters
+/// of a cell are closed by the nearest cell. Walls are drawn near the cells only.
 std::string draw(const MapPicture& picture);
 
 }  // namespace grit

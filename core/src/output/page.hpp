@@ -1,4 +1,4 @@
-// The frame of every page: one file that opens from disk, light or dark as its reader likes.
+// The frame of every HTML page: self-contained, light or dark by the reader's preference.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace grit {
 
-/// From the doctype into the body, with page.css and then `style`. `head` is HTML that goes before the styles.
+/// From the doctype to the start of the body, with page.css followed by `style`. `head`: HTML before the styles.
 std::string page_begin(std::string_view title, std::string_view style, std::string_view head = {});
 
 /// Closes what page_begin() opened.

@@ -22,17 +22,17 @@
 namespace grit {
 namespace {
 
-constexpr double margin = Heading::margin, widest = Heading::widest - 2 * margin;  // px, of what is between margins
-constexpr int classes = 21;                                                        // of colour, odd: one is for zero
+constexpr double margin = Heading::margin, widest = Heading::widest - 2 * margin;  // px, between the margins
+constexpr int classes = 21;  // of colour; odd, so that one is zero
 
-// Okabe and Ito's colours that stand out on white, told apart by all readers.
+// Colour-blind-safe colours with contrast on white, after Okabe and Ito.
 constexpr std::array<const char*, 6> palette{"#0b5394", "#d55e00", "#00866b", "#a8518a", "#7a6a00", "#555555"};
-/// Of references.
+/// Dash patterns of references.
 constexpr std::array<const char*, 4> dashes{"2 4", "8 3 2 3", "6 4", "12 3"};
-constexpr double peak_width = 0.015, peak_height = 0.05;  // of the axis along, of what the curve spans; see is_peak()
-constexpr double letter = 6.6;                            // about how wide one is, px
+constexpr double peak_width = 0.015, peak_height = 0.05;  // fractions of the x axis and of the curve's range; is_peak()
+constexpr double letter = 6.6;                            // approximate width, px
 
-/// About how wide a title of an axis is [px].
+/// Approximate width of an axis title [px].
 double title_wide(const std::string& title) {
   constexpr double title_letter = 7.2;
   return title_letter * static_cast<double>(letters(title));
@@ -80,7 +80,7 @@ std::string style(const Picture& picture) {
   return sheet + '\n';
 }
 
-/// Names of curves, and of references, in the order of their first appearance; their places choose how they are drawn.
+/// Names of curves and of references in the order of their first appearance; their indices select the line style.
 struct Names {
   std::vector<std::string> curves, references;
 
@@ -91,19 +91,19 @@ struct Names {
         if (std::ranges::find(names, curve.name) == names.end()) names.push_back(curve.name);
       }
   }
-  static std::size_t place(const std::vector<std::string>& names, const std::string& name) {
+  static std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   }
-  std::size_t colour_of(const std::string& name) const { return place(curves, name) % palette.size(); }
-  /// The class of a line.
+  std::size_t colour_of(const std::string& name) const { return index_of(curves, name) % palette.size(); }
+  /// The style class of a line.
   std::string style_of(const std::string& name, bool reference) const {
-    return reference ? fmt::format("r{}", place(references, name) % dashes.size())
+    return reference ? fmt::format("r{}", index_of(references, name) % dashes.size())
                      : fmt::format("k{}", colour_of(name));
   }
   bool tell_apart() const { return curves.size() > 1 || !references.empty(); }
 };
 
-/// The legend's entries, row by row; draws them where there is something to draw on. Returns how high it is.
+/// Lays out the legend row by row and draws it unless `svg` is null. Returns its height [px].
 double legend(Svg* svg, const Names& names, double top) {
   if (!names.tell_apart()) return 0;
   constexpr double sample = 26, row = 20;
@@ -156,7 +156,7 @@ class PanelDrawing {
     svg_.line({left_, top_}, {left_, bottom_}, "class=\"frame\"");
     svg_.text({left_ - 40, top_ - 12}, axis_title(panel_.y.label, y_unit_.unit), "class=\"axis\"");
     svg_.text({(left_ + right_) / 2, bottom_ + 37}, axis_title(panel_.x.label, x_unit_.unit), "class=\"axis m\"");
-    for (const bool reference : {true, false})  // curves above what they are seen against
+    for (const bool reference : {true, false})  // curves above references
       for (const auto& curve : panel_.curves)
         if (curve.reference == reference) draw_curve(curve);
     for (const auto& curve : panel_.curves)
@@ -170,16 +170,17 @@ class PanelDrawing {
     return {across(curve.x[i] * x_unit_.factor), down(curve.y[i] * y_unit_.factor)};
   }
 
-  /// y from tick to tick, with zero where it is near, and no tick more for noise about one; nothing of no width.
+  /// Rounds the y range to ticks, includes zero if it is near, adds no tick for noise around one, and avoids empty
+  /// ranges.
   void settle_ranges() {
     if (x_.span() <= 0) x_ = {x_.low - 0.5, x_.high + 0.5};
     if (y_.low > 0 && y_.low < 0.5 * y_.high) y_.low = 0;
     if (y_.high < 0 && y_.high > 0.5 * y_.low) y_.high = 0;
     if (y_.span() <= 1e-12 * y_.largest() || y_.span() <= 0) {
-      const double room = y_.largest() > 0 ? 0.5 * y_.largest() : 1;
-      y_ = {y_.low - room, y_.high + room};
+      const double border = y_.largest() > 0 ? 0.5 * y_.largest() : 1;
+      y_ = {y_.low - border, y_.high + border};
     }
-    // Room above for the number at a peak.
+    // Leaves space above for the number at a peak.
     y_ticks_ = axis_ticks(y_.low + 0.03 * y_.span(), y_.high + 0.04 * y_.span(), AxisEnds::whole_steps);
     y_ = {y_ticks_.low, y_ticks_.high};
     const auto apart = [&](const AxisTicks& axis) {
@@ -206,15 +207,15 @@ class PanelDrawing {
         continue;
       }
       const auto point = place(curve, i);
-      // What moves less than a quarter of a pixel is not seen, but would be paid for in bytes.
+      // Skips points that move by less than a quarter of a pixel, to keep files small.
       if (points.empty() || i + 1 == count || std::hypot(point.x - points.back().x, point.y - points.back().y) > 0.25)
         points.push_back(point);
     }
     finish();
   }
 
-  /// Whether the mean of the points on one side of it at least comes near it, or there are none: else it is a spike of
-  /// noise.
+  /// Whether the mean of the points on at least one side is near the peak, or there are no such points; else it is a
+  /// spike of noise.
   bool is_peak(const Curve& curve, std::size_t peak) const {
     Range all;
     const std::size_t count = std::min(curve.x.size(), curve.y.size());
@@ -223,11 +224,11 @@ class PanelDrawing {
     bool alone = true, near = false;
     for (const int step : {-1, 1}) {
       double sum = curve.y[peak], points = 1;
-      const auto there = [&](std::size_t i) {  // beyond the first point is a place that no curve has
+      const auto is_neighbour = [&](std::size_t i) {  // before the first point i wraps around to more than count
         return i < count && drawable(curve.x[i]) && drawable(curve.y[i]) &&
                std::abs(curve.x[i] - curve.x[peak]) * x_unit_.factor <= peak_width * x_.span();
       };
-      for (std::size_t i = peak + static_cast<std::size_t>(step); there(i); i += static_cast<std::size_t>(step))
+      for (std::size_t i = peak + static_cast<std::size_t>(step); is_neighbour(i); i += static_cast<std::size_t>(step))
         sum += curve.y[i], ++points;
       if (points == 1) continue;
       alone = false;
@@ -250,7 +251,7 @@ class PanelDrawing {
     svg_.circle(at, 3, fmt::format("class=\"f{}\"", k));
     const char* anchor = at.x > right_ - 30 ? "e" : at.x < left_ + 30 ? "" : "m";
     const double aside = at.x < left_ + 30 ? 6 : 0;
-    const bool below = curve.y[peak] < 0 && at.y + 17 < bottom_;  // never among the axis's numbers
+    const bool below = curve.y[peak] < 0 && at.y + 17 < bottom_;  // never among the numbers of the axis
     svg_.text({at.x + aside, below ? at.y + 17 : at.y - 8}, short_number(curve.y[peak] * y_unit_.factor),
               fmt::format("class=\"peak {} f{}\"", anchor, k));
   }
@@ -268,7 +269,7 @@ class PolarDrawing {
  public:
   PolarDrawing(Svg& svg, const Panel& panel, const Names& names, Point corner, double wide, double high)
       : svg_(svg), panel_(panel), names_(names), corner_(corner) {
-    constexpr double above = 34, around = 22;  // px: a title, names of directions
+    constexpr double above = 34, around = 22;  // px, for the title and the names of directions
     radius_ = 0.5 * std::min(wide, high - above) - around;
     middle_ = {corner.x + 0.5 * wide, corner.y + above + around + radius_};
     double most = 0;
@@ -281,7 +282,7 @@ class PolarDrawing {
   }
 
   void draw() {
-    constexpr double told_at = 75 * degree;
+    constexpr double label_angle = 75 * degree;
     svg_.text({corner_.x + 6, corner_.y + 14}, axis_title(panel_.y.label, unit_.unit), "class=\"axis\"");
     for (const double ring : rings_.marks)
       if (ring > 0) svg_.circle(middle_, radius_ * ring / rings_.high, "class=\"grid\" fill=\"none\"");
@@ -293,8 +294,8 @@ class PolarDrawing {
     for (const Curve& curve : panel_.curves) draw_curve(curve);
     for (const double ring : rings_.marks)
       if (ring > 0) {
-        const Point told = at(told_at, ring);
-        svg_.text({told.x, told.y + 4}, tick_label(ring, rings_.step), "class=\"small ring m\"");
+        const Point label = at(label_angle, ring);
+        svg_.text({label.x, label.y + 4}, tick_label(ring, rings_.step), "class=\"small ring m\"");
       }
   }
 
@@ -305,7 +306,7 @@ class PolarDrawing {
     const double r = radius_ * value / rings_.high;
     return {middle_.x + r * std::cos(angle), middle_.y - r * std::sin(angle)};
   }
-  /// Each number stands for the directions about it.
+  /// Each value applies to the interval of directions around it.
   void draw_curve(const Curve& curve) {
     const std::size_t count = std::min(curve.x.size(), curve.y.size());
     if (count < 2) return;
@@ -328,18 +329,18 @@ class PolarDrawing {
   ReadableUnit unit_;
 };
 
-/// Where the view of the grains goes, and what its colours mean.
+/// Layout of the view of grains and its colour scale.
 struct ViewLayout {
   Range x, y;               ///< m
   double scale = 1;         ///< px/m
   double wide, high;        ///< px
   double limit = 1;         ///< value of the outermost colour
-  ReadableUnit unit{};      ///< of that
+  ReadableUnit unit{};      ///< of that value
   std::string value_title;  ///< above the colour bar
-  double bar = 0;           ///< px that the colour bar takes beside the view, the gap between included; 0 of none
+  double bar = 0;           ///< width of the colour bar, including the gap [px]; 0 without one
 };
 
-constexpr double bar_gap = 28;  // between the view and what its colours mean, px
+constexpr double bar_gap = 28;  // between the view and the colour bar, px
 
 ViewLayout layout(const GrainView& view) {
   constexpr double tallest = 640;
@@ -353,7 +354,7 @@ ViewLayout layout(const GrainView& view) {
     }
     if (drawable(disc.value)) sizes.push_back(std::abs(disc.value));
   }
-  // Walls may reach far beyond the grains; a third of the grains' extent of them is enough to understand the scene.
+  // Walls may extend far beyond the grains; they are shown over a third of the grains' extent.
   const bool bare = result.x.empty();
   const double reach = bare ? 0 : 0.35 * std::max(result.x.span(), result.y.span());
   const Range x = result.x, y = result.y;
@@ -362,7 +363,7 @@ ViewLayout layout(const GrainView& view) {
     const auto beyond = [&](double a, double b, const Range& range) {
       return std::max(a, b) < range.low - reach || std::min(a, b) > range.high + reach;
     };
-    if (!bare && (beyond(wall.x1, wall.x2, x) || beyond(wall.y1, wall.y2, y))) continue;  // as a gate that is put away
+    if (!bare && (beyond(wall.x1, wall.x2, x) || beyond(wall.y1, wall.y2, y))) continue;  // e.g. a gate moved far away
     const auto within = [&](double value, const Range& range) {
       return bare ? value : std::clamp(value, range.low - reach, range.high + reach);
     };
@@ -374,8 +375,9 @@ ViewLayout layout(const GrainView& view) {
   if (result.x.span() < 1e-3 * most) result.x = {result.x.low - 0.1 * most, result.x.high + 0.1 * most};
   if (result.y.span() < 1e-3 * most) result.y = {result.y.low - 0.1 * most, result.y.high + 0.1 * most};
   if (most <= 0) {
-    const double room = std::max({0.5, 1e-3 * std::abs(result.x.low), 1e-3 * std::abs(result.y.low)});
-    result.x = {result.x.low - room, result.x.low + room}, result.y = {result.y.low - room, result.y.low + room};
+    const double border = std::max({0.5, 1e-3 * std::abs(result.x.low), 1e-3 * std::abs(result.y.low)});
+    result.x = {result.x.low - border, result.x.low + border},
+    result.y = {result.y.low - border, result.y.low + border};
   }
   if (!sizes.empty()) {
     if (const double limit = colour_limit(std::move(sizes)); limit > 0) result.limit = limit;
@@ -417,7 +419,7 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double l
                coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view))] : "class=\"n\"");
   }
   svg.close_group();
-  // Half as far again as is seen: what is cut off has no end in sight.
+  // Clips at half the view's extent beyond its edges, so that cut ends are not visible.
   const double beyond_x = 0.5 * at.x.span(), beyond_y = 0.5 * at.y.span();
   const auto in_sight = [&](const Segment& segment) {
     return clipped(segment, at.x.low - beyond_x, at.x.high + beyond_x, at.y.low - beyond_y, at.y.high + beyond_y);
@@ -448,10 +450,10 @@ void draw_scale_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doubl
   const double end = left + length * at.scale;
   svg.line({left, y}, {end, y}, "class=\"scale\"");
   for (const double x : {left, end}) svg.line({x, y - 4}, {x, y + 4}, "class=\"scale\"");
-  const std::string told = fmt::format("{:g} {}", length * unit.factor, unit.unit),
+  const std::string label = fmt::format("{:g} {}", length * unit.factor, unit.unit),
                     axes = view.horizontal + " →\u2003" + view.vertical + " ↑";
-  svg.text({end + 10, y + 4}, told);
-  const double taken = end + 10 + letter * static_cast<double>(letters(told) + letters(axes) + 2);
+  svg.text({end + 10, y + 4}, label);
+  const double taken = end + 10 + letter * static_cast<double>(letters(label) + letters(axes) + 2);
   if (taken < left + at.wide) svg.text({left + at.wide, y + 4}, axes, "class=\"e small\"");
   else svg.text({left, y + 22}, axes, "class=\"small\"");
 }
@@ -488,14 +490,13 @@ std::string draw(const Picture& picture) {
     return (widest - gap * static_cast<double>(columns - 1)) / static_cast<double>(columns);
   };
   auto columns = count <= 3 ? std::max<std::size_t>(count, 1) : count % 3 == 0 ? 3 : 2;
-  for (const Panel& panel : picture.panels)  // a title has the room above its panel
+  for (const Panel& panel : picture.panels)  // each title fits above its panel
     while (columns > 1 && title_wide(axis_title(panel.y.label, panel.y.unit)) > panel_wide_of(columns)) --columns;
   const auto rows = (count + columns - 1) / columns;
   const auto view = picture.grains ? layout(*picture.grains) : ViewLayout{};
   const std::size_t left_out = picture.grains ? picture.grains->left_out : 0;
   const Heading heading(
-      picture.title,
-      picture.facts + (left_out > 0 ? fmt::format("  ·  {} far from all others, not shown", grouped(left_out)) : ""),
+      picture.title, picture.facts + (left_out > 0 ? fmt::format("  ·  {} outliers not shown", grouped(left_out)) : ""),
       count > 0 ? widest : view.wide + view.bar);
   const Names names(picture.panels);
   const double panels_top = heading.bottom() + legend(nullptr, names, 0), panel_high = columns == 1   ? 300

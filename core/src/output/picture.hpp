@@ -1,4 +1,4 @@
-// A page about a run: test curves above, the grains below. Knows numbers, not worlds.
+// Draws a picture of a run: curves above, grains below. Independent of the simulation.
 #pragma once
 
 #include <optional>
@@ -8,29 +8,29 @@
 namespace grit {
 
 struct Curve {
-  std::string name;  ///< for the legend; one colour, or way of breaking the line, a name, in all panels
+  std::string name;  ///< in the legend; a name has the same colour, or dash pattern, in all panels
   std::vector<double> x, y;
-  bool reference = false;  ///< what the others are seen against: grey and broken, without a mark
+  bool reference = false;  ///< drawn grey and dashed, without a peak mark
 };
 
 struct Axis {
   std::string label;
-  std::string unit = "1";  ///< SI; shown with the prefix that reads best, radians as degrees
+  std::string unit = "1";  ///< SI; shown with a readable prefix, radians as degrees
 };
 
-/// Curves that share two axes, of 4 to 8 ticks each. Points that are not drawable() interrupt a curve; the value
-/// farthest from zero is marked where `peaks` says so, unless it is a spike: on both sides the mean over 1.5 % of the
-/// abscissa differs from it by more than 5 % of what the curve spans.
+/// Curves that share two axes with 4 to 8 ticks each. Points that are not drawable() interrupt a curve. With `peaks`
+/// the value of largest magnitude is marked, unless it is a spike: on both sides the mean over 1.5 % of the abscissa
+/// differs from it by more than 5 % of the curve's range.
 struct Panel {
   Axis x, y;
   std::vector<Curve> curves;
   bool peaks = true;
-  bool polar = false;  ///< x are directions, from the right towards above, round a middle where y is 0: a step a point
+  bool polar = false;  ///< polar steps: x are directions, counter-clockwise from the right; y is 0 at the centre
 };
 
 struct Disc {
   double x, y, radius;  ///< m
-  double value;         ///< what its colour says; not drawable(): grey
+  double value;         ///< sets the colour; grey if not drawable()
 };
 
 struct Segment {
@@ -43,17 +43,17 @@ struct Link {
   double weight;          ///< 0 to 1 of the widest
 };
 
-/// Grains seen along an axis.
+/// Grains as seen along an axis.
 struct GrainView {
   std::string horizontal = "x", vertical = "z";
   std::vector<Disc> discs;  ///< back to front
   std::vector<Segment> walls;
-  std::vector<Link> links;  ///< above the grains, which are faint then
+  std::vector<Link> links;  ///< drawn above the grains, which are then faint
   Axis value;
-  std::string note;          ///< beneath the colour bar: the sign convention
+  std::string note;          ///< below the colour bar: the sign convention
   bool symmetric = true;     ///< blue–white–red about zero, else dark to bright from zero
-  int layers = 0;            ///< above 0: values are 1, 2, … up to it, with a colour each
-  std::size_t left_out = 0;  ///< bodies that are far from all others: the picture says how many
+  int layers = 0;            ///< if above 0: values are 1, 2, … up to this, each with its own colour
+  std::size_t left_out = 0;  ///< number of outliers, which are not drawn; stated in the picture
 };
 
 struct Picture {
@@ -63,8 +63,7 @@ struct Picture {
   std::optional<GrainView> grains;
 };
 
-/// The picture as SVG: 900 px wide, of grains alone as wide as they need; title and facts in as many lines as that
-/// takes.
+/// The picture as SVG, 900 px wide; a view of grains alone is as wide as it needs. Title and facts are wrapped.
 std::string draw(const Picture& picture);
 
 }  // namespace grit

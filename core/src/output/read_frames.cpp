@@ -8,12 +8,12 @@
 namespace grit {
 namespace {
 
-/// A dataset that has `rows` rows of `width` numbers.
+/// Reads a dataset of `rows` rows of `width` values.
 template <class T>
 std::vector<T> column(const hdf5::Group& group, const std::string& name, std::size_t rows, std::size_t width = 1) {
   const auto dataset = group.dataset(name);
   if (hdf5::product(dataset.shape()) != rows * width)
-    throw FileError(dataset.where() + ": has " + std::to_string(hdf5::product(dataset.shape())) + " numbers, not " +
+    throw FileError(dataset.where() + ": has " + std::to_string(hdf5::product(dataset.shape())) + " values, not " +
                     std::to_string(rows * width));
   return dataset.read<T>();
 }
@@ -36,7 +36,7 @@ void read_contacts(const hdf5::Group& group, Frame& frame) {
   frame.branch = column<double>(group, "branch", m, 3);
 }
 
-/// A probe's rows are of the frame's contacts, those of pairs or all, where their forces are the same.
+/// The rows of a probe correspond to the first contacts of the frame if their normal forces are equal.
 void read_chains(const hdf5::Group& probes, Frame& frame) {
   for (const auto& probe : probes.names()) {
     const auto tables = probes.group(probe);

@@ -1,4 +1,4 @@
-// Reads back the instants that a run has left in its folder.
+// Reads the frames of a run.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace grit {
 
-/// One file of frames/. Lists have one entry a body or a contact, those of vectors three numbers.
+/// One file of frames/. Lists have one entry per body or contact; vectors have three values per entry.
 struct Frame {
   double time = 0;  ///< s
   std::uint64_t step = 0;
@@ -20,39 +20,39 @@ struct Frame {
   std::vector<std::int64_t> id;          ///< rising
   std::vector<double> position, radius;  ///< m
   std::vector<double> velocity;          ///< m/s
-  std::vector<double> rotation;          ///< rad; empty where it is not kept
-  std::vector<double> displacement;      ///< m; empty where it is not kept
-  std::vector<std::int64_t> clump;       ///< id of the clump, -1 for a sphere by itself; empty without clumps
+  std::vector<double> rotation;          ///< rad; empty if not tracked
+  std::vector<double> displacement;      ///< m; empty if not tracked
+  std::vector<std::int64_t> clump;       ///< id of the clump, -1 for a single sphere; empty without clumps
   std::size_t bodies() const { return id.size(); }
 
   std::vector<std::int64_t> body_a;  ///< id of a contact's first body
   std::vector<double> normal_force;  ///< N, > 0 in compression
   std::vector<double> branch;        ///< from the first body's centre to the second's or to the wall [m]
-  /// The linear force chain, from 1, that each contact is a link of, 0 for none; empty where no probe tells.
+  /// Number, from 1, of the linear force chain of each contact, 0 for none; empty if no probe records it.
   std::vector<std::uint32_t> chain;
 
   struct Wall {
     std::string name;
-    std::vector<double> corners;  ///< of its triangles where it has moved and turned to: nine numbers a triangle [m]
+    std::vector<double> corners;  ///< of its triangles in their present position: nine values per triangle [m]
     Vec3 displacement;            ///< since the start of the run [m]
   };
   std::vector<Wall> walls;
 };
 
-/// The files of a run's folder in the order of their numbers; none if there is no frame.
+/// The frame files of a run's folder in the order of their numbers.
 std::vector<std::filesystem::path> frame_files(const std::filesystem::path& folder);
 
-/// Throws FileError for what is not whole.
+/// Throws FileError for an incomplete file.
 Frame read_frame(const std::filesystem::path& file);
 
-/// Tables of a frame that are maps, a group a probe: its fields "centre" and "size" first, then those of as many rows.
-/// Throws FileError.
+/// The maps of a frame, one group per probe: its fields "centre" and "size" first, then those with as many rows. Throws
+/// FileError.
 std::vector<FieldGroup> read_maps(const std::filesystem::path& file);
 
-/// How many bodies a frame has. Throws FileError.
+/// Number of bodies in a frame. Throws FileError.
 std::size_t bodies_in_frame(const std::filesystem::path& file);
 
-/// The stage that a frame is of. Throws FileError.
+/// The stage of a frame. Throws FileError.
 std::string stage_of_frame(const std::filesystem::path& file);
 
 }  // namespace grit

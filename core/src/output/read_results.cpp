@@ -13,11 +13,11 @@ namespace grit {
 namespace {
 
 std::string listed(const std::vector<std::string>& names) {
-  return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, ", "));
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What differs if something was written in between. Times of files are as fine as the system's ticks, up to 10 ms: so
-/// it counts for a file that has rested for longer.
+/// Differs if the file was written in between. The resolution of file times is up to 10 ms, so that a stamp is valid
+/// only for a file that has rested for longer.
 struct Stamp {
   ino_t inode;
   off_t size;
@@ -26,7 +26,7 @@ struct Stamp {
 };
 
 constexpr std::int64_t rest_ns = 20'000'000;
-constexpr std::chrono::milliseconds between_looks{10};
+constexpr std::chrono::milliseconds retry_interval{10};
 
 Stamp stamp_of(const std::filesystem::path& path) {
   struct stat state {};
@@ -37,10 +37,10 @@ Stamp stamp_of(const std::filesystem::path& path) {
 bool has_rested(const Stamp& stamp) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   const auto age = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - stamp.changed_ns;
-  return age < 0 || age >= rest_ns;  // below zero by another machine's clock
+  return age < 0 || age >= rest_ns;  // negative if another machine's clock is ahead
 }
 
-/// The file as it was when nobody was writing to it: in the midst of that it fits together for nobody.
+/// A copy of the file taken while no writer was active: during a flush the file is temporarily inconsistent.
 hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
   for (;;) {
@@ -53,9 +53,10 @@ hdf5::File settled(const std::filesystem::path& path, std::chrono::milliseconds 
         if (has_stayed()) throw;
       }
     if (std::chrono::steady_clock::now() >= until)
-      throw BeingWritten(fmt::format("{}: has been written to for {} s; try again, or look whether its run is halted",
-                                     path.string(), static_cast<double>(patience.count()) / 1000));
-    std::this_thread::sleep_for(between_looks);
+      throw BeingWritten(
+          fmt::format("{}: has been written to for {} s; try again, or check whether its run is suspended",
+                      path.string(), static_cast<double>(patience.count()) / 1000));
+    std::this_thread::sleep_for(retry_interval);
   }
 }
 
@@ -68,10 +69,10 @@ SampledChannel SeriesFile::channel(const std::string& name) const {
   const auto slash = name.find('/');
   const std::string probe = name.substr(0, slash), channel = slash == std::string::npos ? "" : name.substr(slash + 1);
   if (!file_.has(probe))
-    throw FileError(file_.where() + ": there is no probe \"" + probe + "\" but " + listed(file_.names()));
+    throw FileError(file_.where() + ": there is no probe \"" + probe + "\"; the probes are " + listed(file_.names()));
   const auto group = file_.group(probe);
   if (channel.empty() || !group.has(channel))
-    throw FileError(file_.where() + ": probe \"" + probe + "\" has no channel \"" + channel + "\" but " +
+    throw FileError(file_.where() + ": probe \"" + probe + "\" has no channel \"" + channel + "\"; its channels are " +
                     listed(group.names()));
   const auto dataset = group.dataset(channel);
   const auto text = [&](const char* attribute, const char* otherwise) {

@@ -1,4 +1,4 @@
-// Reads back what a run has left in its folder.
+// Reads the results of a run.
 #pragma once
 
 #include <chrono>
@@ -13,35 +13,35 @@
 
 namespace grit {
 
-/// A channel over all samples of its probe.
+/// All samples of a channel.
 struct SampledChannel {
   std::string unit, doc;
-  std::string coordinate = {};  ///< the channel of the same probe that says where each number is; may be empty
-  std::vector<std::string> components = {};  ///< what each number of a sample is; may be empty
+  std::string coordinate = {};  ///< channel of the same probe with the coordinates of the values; may be empty
+  std::vector<std::string> components = {};  ///< names of the values of a sample; may be empty
   std::size_t samples = 0;
-  std::vector<double> values;  ///< sample after sample; one number each, or as many as the channel's shape has
+  std::vector<double> values;  ///< sample by sample; one value each, or as many as the channel's shape has
 };
 
-/// A file that a run was writing to whenever it was looked at.
+/// A file that a run was writing at every attempt to read it.
 class BeingWritten : public FileError {
  public:
   using FileError::FileError;
 };
 
-/// For how long a file is looked at again that is being written to. A run writes for some milliseconds a second; on a
-/// machine that has too much to do, or where the run is halted, longer.
+/// For how long reading a file that is being written is retried. A run writes for some milliseconds per second, but
+/// longer on an overloaded machine or if it is suspended.
 constexpr std::chrono::milliseconds reader_patience{5000};
 
-/// series.h5 as it was between two flushes of the run, which may go on meanwhile: channels of a probe have as many
-/// samples as each other. All functions throw FileError.
+/// A consistent copy of series.h5, taken between two flushes of a run that may continue: all channels of a probe have
+/// the same number of samples. All functions throw FileError.
 class SeriesFile {
  public:
-  /// Throws BeingWritten where the patience is used up.
+  /// Throws BeingWritten after `patience`.
   explicit SeriesFile(const std::filesystem::path& folder, std::chrono::milliseconds patience = reader_patience);
 
-  /// "probe/channel", sorted; of each probe "probe/time" and "probe/step" too.
+  /// "probe/channel", sorted, including "probe/time" and "probe/step".
   std::vector<std::string> channels() const;
-  /// `name` is one of them; of others the error lists what there is.
+  /// Reads one of channels(). For another name the error lists the available ones.
   SampledChannel channel(const std::string& name) const;
 
  private:
@@ -51,7 +51,7 @@ class SeriesFile {
 /// One channel of SeriesFile.
 SampledChannel read_channel(const std::filesystem::path& folder, const std::string& name);
 
-/// run.json; nothing if there is none, or none that can be read.
+/// run.json; nothing if it is missing or unreadable.
 std::optional<Description> read_run_json(const std::filesystem::path& folder);
 
 }  // namespace grit

@@ -12,8 +12,8 @@ struct ReferencePoints {
   std::vector<double> x, y;
 };
 
-/// The finite points of the file whose abscissa exceeds those of all before. Throws FileError for a file that
-/// read_columns() refuses, or with fewer than two such points.
+/// The finite points of the file whose abscissae exceed all before. Throws FileError as read_columns() does, or if
+/// there are fewer than two such points.
 ReferencePoints read_reference(const ReferenceCurve& curve);
 
 }  // namespace grit

@@ -18,7 +18,7 @@
 namespace grit {
 namespace {
 
-/// The grains in the order of their ids; of a large packing not even positions are copied.
+/// Writes the bodies by id. Positions are not copied, as packings may be large.
 void write_grains(const std::filesystem::path& path, const World& world, const std::string& comment) {
   std::vector<std::uint32_t> order(world.ids().size());
   std::iota(order.begin(), order.end(), 0u);
@@ -31,7 +31,7 @@ void write_grains(const std::filesystem::path& path, const World& world, const s
   write_packing(path, order.size(), grain, comment);
 }
 
-/// What another description needs besides the grains: the cell, if it repeats.
+/// The comment of a packing: title, and the cell if it is periodic, which another description needs.
 std::string comment_on(const World& world, const std::string& title) {
   const Cell& cell = world.cell();
   if (!(cell.periodic[0] || cell.periodic[1] || cell.periodic[2])) return title;
@@ -39,7 +39,7 @@ std::string comment_on(const World& world, const std::string& title) {
   return fmt::format("{}\ncell {} {} {} to {} {} {}, m", title, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
 }
 
-/// Makes a folder. Returns those that were not there, the innermost first.
+/// Creates a folder. Returns all folders that were created, the innermost first.
 std::vector<std::filesystem::path> made(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> all;
   std::error_code error;
@@ -47,11 +47,11 @@ std::vector<std::filesystem::path> made(const std::filesystem::path& folder) {
        at = at.parent_path())
     if (all.push_back(at); !at.has_relative_path()) break;
   std::filesystem::create_directories(folder, error);
-  if (error) throw FileError(folder.string() + ": cannot make the folder of results: " + error.message());
+  if (error) throw FileError(folder.string() + ": cannot create the results folder: " + error.message());
   return all;
 }
 
-/// Sees to it that what is in the folder may be used.
+/// Checks that the folder may be used, and removes old results.
 std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& lock) {
   const auto& folder = options.folder;
   if (!lock.held()) refuse_busy(folder);
@@ -60,7 +60,7 @@ std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& 
   for (const char* mark : {"run.json", "series.h5", "checkpoint.h5"})
     if (options.existing == Existing::refuse && std::filesystem::exists(folder / mark))
       throw FileError(folder.string() + ": holds a run already (" + mark +
-                      " is there): choose another folder, resume that run, or allow it to be overwritten");
+                      "); choose another folder, resume that run, or allow it to be overwritten");
   for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "frames", "frames.xdmf",
                            "packing.txt", "picture.svg", "report.html", "curves.svg", "curves.png", "grains.svg",
                            "grains.png", "layers.svg", "layers.png"}) {
@@ -73,7 +73,7 @@ std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& 
 }  // namespace
 
 void refuse_busy(const std::filesystem::path& folder) {
-  throw FileError(folder.string() + ": another run writes there now; wait for it, or choose another folder");
+  throw FileError(folder.string() + ": another run is writing there; wait for it, or choose another folder");
 }
 
 ResultsFolder::ResultsFolder(ResultsOptions options)
@@ -134,12 +134,12 @@ void ResultsFolder::stage_ended(const World& world, const std::string& what) {
 
 void ResultsFolder::flush() { series_->flush(); }
 
-void ResultsFolder::remember(Memory& memory) {
-  if (!memory.restoring()) {
+void ResultsFolder::serialize(Archive& archive) {
+  if (!archive.restoring()) {
     resumed_ = {series_->samples(), frames_->count(), {}, {}};
     for (const Kept& kept : kept_) resumed_.steps.push_back(kept.steps), resumed_.values.push_back(kept.values);
   }
-  memory(resumed_, run_json_);
+  archive(resumed_, run_json_);
 }
 
 void ResultsFolder::checkpoint(const Checkpoint& checkpoint) {
@@ -154,8 +154,8 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
   run_json_.finish(world, summary);
   if (summary.status != "done") return;
-  std::error_code nobody_needs_it;
-  std::filesystem::remove(options_.folder / "checkpoint.h5", nobody_needs_it);
+  std::error_code ignored;
+  std::filesystem::remove(options_.folder / "checkpoint.h5", ignored);
 }
 
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {
@@ -169,7 +169,7 @@ void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) 
   };
   const auto& x = kept_.front();
   for (const auto& y : std::span(kept_).subspan(1)) {
-    // Probes may sample at different steps: a point is where both did.
+    // Probes may sample at different steps: only common steps give a point.
     Curve curve;
     for (std::size_t i = 0, j = 0; i < x.steps.size() && j < y.steps.size();) {
       if (x.steps[i] == y.steps[j]) {

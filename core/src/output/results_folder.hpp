@@ -1,4 +1,4 @@
-// The folder that a run leaves behind: run.json, series.h5, frames, description, grains, picture.
+// The results folder of a run: run.json, series.h5, frames, description, packing, picture.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "grit/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "output/run_json.hpp"
@@ -15,7 +16,7 @@
 
 namespace grit {
 
-/// A picture drawn at the end: channels, or the time of the samples, as "probe/channel", one curve a panel; see
+/// The picture drawn at the end: channels, or the time of samples, as "probe/channel", one curve per panel. See
 /// grain_view() for view and color.
 struct PictureRequest {
   std::string x;
@@ -23,11 +24,11 @@ struct PictureRequest {
   std::string view = "xz", color = "rotation";
 };
 
-/// What to do with a folder that holds a run.
+/// What to do if the folder holds a run.
 enum class Existing {
   refuse,
-  overwrite,  ///< its results are removed; other files in it stay
-  resume,     ///< what it says up to the checkpoint from which the run goes on is kept
+  overwrite,  ///< remove its results; other files in it stay
+  resume,     ///< keep the results up to the checkpoint from which the run is resumed
 };
 
 struct ResultsOptions {
@@ -40,45 +41,47 @@ struct ResultsOptions {
   Flushing flushing = {};
 };
 
-/// Throws FileError that says so of a folder that another run keeps.
+/// Throws FileError: another run is writing to the folder.
 [[noreturn]] void refuse_busy(const std::filesystem::path& folder);
 
-/// Writes, at the start: description.json, run.json; meanwhile: series.h5, frames/, frames.xdmf, run.json,
-/// checkpoint.h5, which goes when the run is done; at the end:
-/// packing.txt (`x y z radius` in m, by id, to the last bit; not for a failed run), picture.svg, and run.json last, so
-/// that its status vouches for the rest. All functions throw FileError for what the disk refuses.
+/// Writes at the start description.json and run.json; during the run series.h5, frames/, frames.xdmf, run.json and
+/// checkpoint.h5, which is removed when the run is done; at the end packing.txt (`x y z radius` in m, by id, in full
+/// precision; not for a failed run), picture.svg, and run.json last, so that its status implies that the rest is
+/// complete. All functions throw FileError for write errors.
 class ResultsFolder final : public Recorder {
  public:
-  /// Makes the folder. Throws FileError where it cannot, where another run writes now, or where it holds a run and
-  /// `existing` says refuse.
+  /// Creates the folder. Throws FileError if that fails, if another run is writing to it, or if it holds a run and
+  /// `existing` is refuse.
   explicit ResultsFolder(ResultsOptions options);
-  /// Removes what was written, and the folders that were made, if begin() was never called: nothing is left of a run
-  /// that does not get to its first step.
+  /// If begin() was never called, removes the files and folders that were created, so that a run that does not reach
+  /// its first step leaves nothing behind.
   ~ResultsFolder() override;
 
-  /// Throws Error for a channel of the picture that no probe has, or that is not one number.
+  /// Throws Error for a channel of the picture that no probe has, or that is not a single value.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override;
   void stage_ended(const World& world, const std::string& what) override;
   void flush() override;
-  void remember(Memory& memory) override;
-  void checkpoint(const Checkpoint& checkpoint) override;
+  void serialize(Archive& archive) override;
   void finish(const World& world, const RunSummary& summary) override;
 
+  /// Writes checkpoint.h5, once the series it belongs to is on the disk.
+  void checkpoint(const Checkpoint& checkpoint);
+
  private:
-  /// A channel that the picture shows, kept in memory.
+  /// A channel of the picture, kept in memory.
   struct Kept {
     SingleChannel channel;
     std::vector<double> steps = {}, values = {};
   };
 
-  /// How much there was at a checkpoint.
+  /// The amount of results at a checkpoint.
   struct Extent {
     std::vector<std::uint64_t> samples;  ///< of each probe
     std::uint64_t frames = 0;
     std::vector<std::vector<double>> steps, values;  ///< of the picture's channels
-    void remember(Memory& memory) { memory(samples, frames, steps, values); }
+    void serialize(Archive& archive) { archive(samples, frames, steps, values); }
   };
 
   void draw_picture(const World& world, const RunSummary& summary) const;

@@ -11,7 +11,7 @@ namespace {
 
 Description layout(const Layout& layout) { return {{"size", layout.size}, {"alignment", layout.alignment}}; }
 
-/// Of the bytes of a file, since two builds may say the same of themselves; of none for what is built in.
+/// Checksum of a file, as two builds may report the same facts; that of no bytes for built-in components.
 std::uint32_t checksum(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};

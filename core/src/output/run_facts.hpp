@@ -1,4 +1,4 @@
-// What a run is of: its description, and the program and the plugins that run it.
+// Facts of a run: its description, the program and the plugins.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +20,24 @@ struct PluginUsed {
   BuildTag tag;
 };
 
-/// What bodies of a group are, where they are clumps.
+/// Facts of a group of clumps.
 struct ClumpFacts {
   std::size_t spheres = 0;
   ShapeErrors errors;
 };
 
-/// What is known before a run begins.
+/// Facts that are known before a run begins.
 struct RunFacts {
-  Description description;  ///< resolved: everything inherited, set, and by default
+  Description description;  ///< resolved: with inherited, set and default values
   std::vector<PluginUsed> plugins;
   std::int64_t seed = 0;
   unsigned threads = 1;
-  std::map<std::string, ClumpFacts> clumps;  ///< by the name of their group
+  std::map<std::string, ClumpFacts> clumps;  ///< by name of the group
 };
 
 /// This grit: version, revision, compiler and so on.
 Description grit_facts();
-/// Of a plugin: kind, name, version, file, and how it was built, with a checksum of the file.
+/// Kind, name, version, file and build of a plugin, with a checksum of the file.
 Description plugin_facts(const PluginUsed& used);
 
 }  // namespace grit

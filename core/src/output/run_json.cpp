@@ -37,7 +37,7 @@ Description load_average() {
   return count == 3 ? Description(load) : Description();
 }
 
-/// Of all threads of this process, since it began.
+/// CPU time of all threads of this process since its start.
 double cpu_seconds() {
   timespec time{};
   return clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time) == 0
@@ -97,11 +97,11 @@ void RunJson::begin(const World& world, bool resumed) {
   write();
 }
 
-void RunJson::remember(Memory& memory) {
+void RunJson::serialize(Archive& archive) {
   std::string started = json_["started"], stages = json_["stages"].dump();
   double wall = wall_s(), cpu = cpu_s();
-  memory(started, stages, wall, cpu);
-  if (!memory.restoring()) return;
+  archive(started, stages, wall, cpu);
+  if (!archive.restoring()) return;
   json_["started"] = started, json_["stages"] = Description::parse(stages);
   wall_before_ = wall, cpu_before_ = cpu;
 }

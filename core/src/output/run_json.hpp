@@ -1,4 +1,4 @@
-// run.json: what ran, on what, how far it came and how fast.
+// run.json: what ran, on which machine, how far and how fast.
 #pragma once
 
 #include <chrono>
@@ -15,12 +15,12 @@ namespace grit {
 class RunJson {
  public:
   RunJson(std::filesystem::path path, const RunFacts& facts);
-  /// status "running". A run that goes on counts on from the file that is there how often it has been resumed.
+  /// Sets the status "running". A resumed run increments the count of resumptions in the existing file.
   void begin(const World& world, bool resumed);
   void stage_ended(const World& world, const std::string& what);
   void finish(const World& world, const RunSummary& summary);
-  /// When the run started, stages that it has left behind, and the seconds that it took.
-  void remember(Memory& memory);
+  /// Start of the run, completed stages, and elapsed wall and CPU time.
+  void serialize(Archive& archive);
 
  private:
   void progress(const World& world);
@@ -31,7 +31,7 @@ class RunJson {
   std::filesystem::path path_;
   Description json_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-  double wall_before_ = 0, cpu_before_ = 0;  // s, up to the checkpoint from which the run goes on
+  double wall_before_ = 0, cpu_before_ = 0;  // s, up to the checkpoint from which the run was resumed
 };
 
 }  // namespace grit

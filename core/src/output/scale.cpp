@@ -17,7 +17,7 @@ double nice_step(double span, int pieces) {
 }
 
 std::vector<double> ticks(double low, double high, int pieces) {
-  // Of a narrower range the steps have no digits left.
+  // A narrower range is below the precision of its ends.
   if (!(high - low > 1e-12 * std::max(std::abs(low), std::abs(high))) || !std::isfinite(high - low)) return {low};
   const double step = nice_step(high - low, pieces);
   std::vector<double> marks;
@@ -28,10 +28,10 @@ std::vector<double> ticks(double low, double high, int pieces) {
 AxisTicks axis_ticks(double low, double high, AxisEnds ends, const std::function<bool(const AxisTicks&)>& fits) {
   constexpr int fewest = 4, most = 8;
   if (!std::isfinite(high - low)) low = 0, high = 1;
-  constexpr double nothing = 1e-300;  // below which steps lose their digits
+  constexpr double nothing = 1e-300;  // below this, steps lose precision
   if (const double size = std::max(std::abs(low), std::abs(high)); !(high - low > std::max(1e-12 * size, nothing))) {
-    const double room = size > nothing ? 0.5 * size : 1;
-    low -= room, high += room;
+    const double margin = size > nothing ? 0.5 * size : 1;
+    low -= margin, high += margin;
   }
   std::optional<AxisTicks> best;
   for (double step = nice_step(high - low, 4 * most);; step = nice_step(2 * step, 1)) {

@@ -9,7 +9,7 @@
 namespace grit {
 namespace {
 
-// 16 KiB: small runs stay small files, and long ones open a new chunk, the one change of the index, seldom.
+// 16 KiB: keeps files of short runs small; long runs rarely open a new chunk, the only change of the index.
 constexpr std::size_t numbers_per_chunk = 2048;
 
 template <class T>
@@ -31,18 +31,16 @@ hdf5::Dataset reopened(const hdf5::Group& group, const Channel& channel, std::si
   shape.erase(shape.begin());
   if (shape != channel.shape)
     throw FileError(dataset.where() +
-                    ": has another shape than the probe's channel: resume with the description that "
-                    "the run began with, or write to another folder");
+                    ": has another shape than the probe's channel; resume with the original description, or write to "
+                    "another folder");
   if (dataset.rows() < rows)
-    throw FileError(dataset.where() + ": has " + std::to_string(dataset.rows()) + " samples of the " +
-                    std::to_string(rows) +
-                    " that were there at the checkpoint: the file is another one, or damaged; "
-                    "begin anew (--overwrite)");
+    throw FileError(dataset.where() + ": has " + std::to_string(dataset.rows()) + " of the " + std::to_string(rows) +
+                    " samples at the checkpoint: the file was replaced or is damaged; start again (--overwrite)");
   dataset.truncate(rows);
   return dataset;
 }
 
-/// While a file is being written; also a failed one is not for longer.
+/// Marks a file while it is being written, also if writing fails.
 class Marked {
  public:
   explicit Marked(const WritingMark& mark) : mark_(mark) { mark_.set(); }
@@ -67,9 +65,9 @@ Series::Series(const std::filesystem::path& path, std::span<const ProbeGroup> pr
                std::span<const std::uint64_t> kept, Flushing flushing)
     : mark_(path, WritingMark::Absent::leave), file_(path, hdf5::Mode::change), flushing_(flushing) {
   if (kept.size() != probes.size())
-    throw FileError(path.string() + ": a run with " + std::to_string(kept.size()) +
+    throw FileError(path.string() + ": is of a run with " + std::to_string(kept.size()) +
                     " probes, but the description has " + std::to_string(probes.size()) +
-                    ": resume with the description that the run began with");
+                    "; resume with the original description");
   for (std::size_t i = 0; i < probes.size(); ++i) tables_.push_back(reopen(probes[i], kept[i]));
   file_.flush();
   mark_.clear();

@@ -1,4 +1,4 @@
-// series.h5: what the probes said, sample after sample.
+// series.h5: the samples of all probes.
 #pragma once
 
 #include <chrono>
@@ -12,32 +12,32 @@
 
 namespace grit {
 
-/// When samples go from memory to the file: after so many numbers, or when a sample comes this long after the last
-/// time.
+/// When samples are flushed to the file: after so many values, or with the first sample after this interval.
 struct Flushing {
   std::size_t numbers = 1 << 16;
   std::chrono::steady_clock::duration interval = std::chrono::seconds(1);
 };
 
-/// One group a probe with `time` [s], `step` and one dataset a channel: first dimension the samples, then the channel's
-/// shape; attributes `units` (UDUNITS) and `long_name`. While the file is being written, and fits together for nobody,
-/// it bears a WritingMark. What was flushed stays readable if the process is killed. If that happens within a flush
-/// that opens a new chunk (2048 numbers), the samples of this chunk may be counted but not readable: 7 of 600 writers
-/// killed while they did nothing but flush left such a tail. Going on mends it. All functions throw FileError.
+/// One group per probe with `time` [s], `step` and one dataset per channel: first dimension the samples, then the
+/// channel's shape; attributes `units` (UDUNITS) and `long_name`. During a flush, when the file is temporarily
+/// inconsistent, it has a WritingMark. Flushed samples stay readable if the process is killed. If it is killed during a
+/// flush that opens a new chunk (2048 values), the samples of this chunk may be counted but unreadable: 7 of 600
+/// writers that were killed while flushing continuously left such a tail. Resuming the run repairs it. All functions
+/// throw FileError.
 class Series {
  public:
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, Flushing flushing = {});
-  /// Goes on with a file: of each probe so many samples are kept, later ones are forgotten.
+  /// Continues a file: keeps so many samples of each probe and removes later ones.
   Series(const std::filesystem::path& path, std::span<const ProbeGroup> probes, std::span<const std::uint64_t> kept,
          Flushing flushing = {});
-  /// Closes a file that was not closed, whatever comes of it.
+  /// Closes the file if close() was not called, ignoring errors.
   ~Series();
 
-  /// One sample of the probe with this place in the list; one span a channel.
+  /// Appends a sample of the probe with this index; one span per channel.
   void append(std::size_t probe, double time, std::uint64_t step, std::span<const std::span<const double>> values);
   void flush();
   void close();
-  /// Of each probe, how many.
+  /// Number of samples of each probe.
   std::vector<std::uint64_t> samples() const;
 
  private:
@@ -57,7 +57,7 @@ class Series {
   Table reopen(const ProbeGroup& probe, std::uint64_t samples);
   void write();
 
-  WritingMark mark_;  ///< before the file, which is opened and closed under it
+  WritingMark mark_;  ///< outlives the file, which is opened and closed while marked
   hdf5::File file_;
   std::vector<Table> tables_;
   Flushing flushing_;

@@ -1,12 +1,12 @@
-// Words of commands that people copy out of a message.
+// Quotes words of commands in messages, for copying into a shell.
 #pragma once
 
 #include <string>
 
 namespace grit {
 
-/// A word as a shell takes it, an interactive one too: as it is, or in quotes where it has blanks or letters that a
-/// shell would read; single ones where it has some that a shell reads within double quotes.
+/// A word quoted for a shell, also an interactive one: plain if possible, else in double quotes, or in single quotes if
+/// it has characters that are special within double quotes.
 std::string shell_word(const std::string& word);
 
 }  // namespace grit

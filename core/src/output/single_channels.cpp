@@ -26,8 +26,8 @@ const SingleChannel* SingleChannels::find(const std::string& name) const {
 
 std::string SingleChannels::refusal(const std::string& name) const {
   return fmt::format(
-      "found \"{}\", which no probe has as one number; allowed is {}", name,
-      all_.empty() ? "nothing without probes"
+      "found \"{}\", which is not a scalar channel of any probe; allowed is {}", name,
+      all_.empty() ? "none without probes"
                    : fmt::format("one of {}", fmt::join(std::views::transform(all_, &SingleChannel::full_name), ", ")));
 }
 

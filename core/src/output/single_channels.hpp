@@ -1,4 +1,4 @@
-// Channels of one number: what the picture, the references and the summary of a description may name.
+// Scalar channels, which the picture, the references and the summary of a description may name.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace grit {
 struct SingleChannel {
   std::string probe_name, name, unit;
   std::size_t probe = 0;
-  std::optional<std::size_t> channel;  ///< nothing: the time of the samples
+  std::optional<std::size_t> channel;  ///< empty: the time of the samples
   std::string full_name() const { return probe_name + '/' + name; }
   /// `values` of a sample of its probe.
   double of(const World& world, std::span<const std::span<const double>> values) const {
@@ -24,13 +24,13 @@ struct SingleChannel {
   }
 };
 
-/// Those of a run, and of each probe the time of its samples, by "probe/channel".
+/// The scalar channels of a run, and the sampling time of each probe, by "probe/channel".
 class SingleChannels {
  public:
   explicit SingleChannels(std::span<const ProbeGroup> probes);
-  /// `pointer`: where the description has the name. Throws Error for one that is not there.
+  /// `pointer`: location of the name in the description. Throws Error if there is no such channel.
   const SingleChannel& at(const std::string& name, const std::string& pointer) const;
-  /// Throws DescriptionError with all names of the section that are not there, each with its place in the document.
+  /// Throws DescriptionError with all names in the section that do not exist, each with its location.
   void check(const Document& document, const OutputDescription& output) const;
 
  private:

@@ -28,16 +28,16 @@ Fences::Fences(const Frame& frame, const Far& far) : Fences(frame.position, mean
 
 Fences::Fences(const std::vector<double>& positions, double diameter, const Far& far) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::vector<double> places;
+    std::vector<double> finite;
     for (std::size_t i = axis; i < positions.size(); i += 3)
-      if (drawable(positions[i])) places.push_back(positions[i]);
+      if (drawable(positions[i])) finite.push_back(positions[i]);
     double lower = 0, upper = 0;
-    if (!places.empty()) {
-      const auto last = static_cast<double>(places.size() - 1);
-      const auto first = places.begin() + std::lround(0.25 * last), third = places.begin() + std::lround(0.75 * last);
-      std::nth_element(places.begin(), first, places.end());
+    if (!finite.empty()) {
+      const auto last = static_cast<double>(finite.size() - 1);
+      const auto first = finite.begin() + std::lround(0.25 * last), third = finite.begin() + std::lround(0.75 * last);
+      std::nth_element(finite.begin(), first, finite.end());
       lower = *first;
-      std::nth_element(first, third, places.end());  // which moves that one
+      std::nth_element(first, third, finite.end());  // moves *first
       upper = *third;
     }
     const double beyond = far.widths * (upper - lower) + far.diameters * diameter;

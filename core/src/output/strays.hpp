@@ -1,4 +1,4 @@
-// Which bodies are so far from all others that a picture which shows them shows nothing else.
+// Detection of outliers: bodies so far from the others that a picture including them would show little else.
 #pragma once
 
 #include <array>
@@ -8,36 +8,36 @@
 
 namespace grit {
 
-/// How far from the middle half of all positions along an axis, in its widths, and more than that, in mean diameters:
-/// a layer of no height has room by these.
+/// Distance from the middle half of all positions along an axis: multiples of its width plus multiples of the mean
+/// diameter, which count for a layer of zero height.
 struct Far {
   double widths, diameters;
 };
 
-/// What is beyond is out of sight at first. 3 widths are Tukey's outer fence (Exploratory Data Analysis, 1977, 2D).
+/// Beyond this, bodies are outside the initial view. 3 widths are Tukey's outer fence (Exploratory Data Analysis, 1977,
+/// 2D).
 inline constexpr Far far_to_see{3, 5};
-/// What is beyond is left out of pictures, in which nobody can look for it: all others would be less than a twentieth
-/// of one. Among far smaller ones a large body may well lie where it is out of sight at first.
+/// Beyond this, bodies are omitted from pictures, as all others would be less than a twentieth of one. It is wider than
+/// far_to_see, as pictures cannot be zoomed out, and a large body among small ones may lie far outside.
 inline constexpr Far far_to_draw{10, 100};
-/// What is beyond would leave the others too few of the 65 536 places of an axis: two of them are a thousandth of the
-/// middle half and a sixtieth of a diameter apart at most.
+/// Beyond this, bodies would leave too few of the 65 536 positions of an axis to the others: within it, their spacing
+/// is at most a thousandth of the middle half plus a sixtieth of a diameter.
 inline constexpr Far far_to_keep{30, 500};
 
-/// The one in the middle, of those that are drawable(); 0 without any.
+/// Median of the drawable() numbers; 0 if there are none.
 double median(std::vector<double> numbers);
 
-/// Two on each axis, with what is not far between them.
+/// Limits on each axis between which bodies are not outliers.
 class Fences {
  public:
-  /// `positions` has x, y, z of one body after another [m]; what is not drawable() counts for nothing. `diameter`: the
-  /// mean one [m].
+  /// `positions`: x, y, z of each body [m]; ignores values that are not drawable(). `diameter`: mean diameter [m].
   Fences(const std::vector<double>& positions, double diameter, const Far& far);
-  /// About the bodies of a frame.
+  /// Limits for the bodies of a frame.
   Fences(const Frame& frame, const Far& far);
 
-  /// Whether the range is between them, of what has a size along an axis [m].
+  /// Whether a range along an axis lies within the limits [m].
   bool hold(std::size_t axis, double low, double high) const { return low >= low_[axis] && high <= high_[axis]; }
-  /// Whether the body at this place of the list is between them. It is not where its position is not finite.
+  /// Whether the body of this index lies within the limits; false if its position is not finite.
   bool hold(const std::vector<double>& positions, std::size_t body) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// A text as it stands in SVG and HTML.
+/// Escapes a text for SVG and HTML.
 std::string escaped(std::string_view text);
 
 struct Point {
@@ -16,13 +16,13 @@ struct Point {
 
 class Svg {
  public:
-  /// `style` is the sheet that classes refer to; `title` is what a screen reader says.
+  /// `style`: style sheet of the classes; `title`: text for screen readers.
   Svg(double width, double height, std::string_view title, std::string_view style);
 
-  // `attributes` are written as they are, e.g. `class="grid"`.
+  // `attributes` are written verbatim, e.g. `class="grid"`.
   void open_group(std::string_view attributes);
   void close_group();
-  /// A rectangle that clips what a group with clip-path="url(#id)" draws.
+  /// A rectangle that clips groups with clip-path="url(#id)".
   void clip(std::string_view id, Point corner, double width, double height);
   void line(Point from, Point to, std::string_view attributes = {});
   void polyline(std::span<const Point> points, std::string_view attributes = {});

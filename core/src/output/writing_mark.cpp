@@ -6,7 +6,8 @@
 namespace grit {
 namespace {
 
-/// Of the whole file, held by who opened it and not by the process: else closing any other descriptor would end it.
+/// A lock on the whole file, held by the open file description, not by the process: else closing any other descriptor
+/// of the file would release it.
 struct flock whole_file(short type) {
   struct flock lock {};
   lock.l_type = type;
@@ -37,9 +38,9 @@ bool is_being_written(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;
   auto lock = whole_file(F_RDLCK);
-  const bool told = ::fcntl(file, F_OFD_GETLK, &lock) == 0;
+  const bool known = ::fcntl(file, F_OFD_GETLK, &lock) == 0;
   ::close(file);
-  return told && lock.l_type != F_UNLCK;
+  return known && lock.l_type != F_UNLCK;
 }
 
 }  // namespace grit

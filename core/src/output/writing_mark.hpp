@@ -1,16 +1,16 @@
-// Tells processes that read a file that it is being changed in place.
+// Marks a file that is being changed in place, for its readers.
 #pragma once
 
 #include <filesystem>
 
 namespace grit {
 
-/// A lock on the file that readers ask for and never take: so none keeps the writer waiting, and the system takes it
-/// off a writer that is killed. Where a file system knows no such locks, it says nothing.
+/// A lock on the file that readers query but never take, so that they never block the writer. The system releases it if
+/// the writer is killed. It has no effect on file systems without such locks.
 class WritingMark {
  public:
   enum class Absent { leave, make };
-  /// Sets the mark. A file that is not there is made, or left to who opens it to complain about.
+  /// Sets the mark. A missing file is created, or left missing for the error when it is opened.
   WritingMark(const std::filesystem::path& file, Absent absent);
   ~WritingMark();
   WritingMark(const WritingMark&) = delete;
@@ -23,7 +23,7 @@ class WritingMark {
   int file_;
 };
 
-/// Whether a writer has its mark on the file.
+/// Whether a writer has marked the file.
 bool is_being_written(const std::filesystem::path& file);
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Where the kernel enters the code of a plugin that has no reason to throw.
+// Calls into the code of plugins that should not throw.
 #pragma once
 
 #include <exception>
@@ -8,11 +8,11 @@
 
 namespace grit {
 
-/// Returns `call()`. Whatever it throws leaves as a PluginError that names the plugin and the part of it that ran.
+/// Returns `call()`. Any exception becomes a PluginError that names the plugin and the called function.
 template <class Call>
 decltype(auto) at_boundary(const std::string& plugin, const std::string& part, Call&& call) {
   const auto thrown = [&](const std::string& what) {
-    return PluginError(plugin + ": its " + part + " threw: " + what + "\n  mend the plugin, or choose another one");
+    return PluginError(plugin + ": its " + part + " threw: " + what + "\n  fix the plugin, or choose another one");
   };
   try {
     return call();

@@ -1,4 +1,4 @@
-// A plugin that a description chooses by its name.
+// A plugin that a description selects by name.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@
 
 namespace grit {
 
-/// A choice among the installed plugins of one kind, described: its name and the values of all its parameters. An
-/// instance serves to read them, and is gone once they were read.
+/// A choice of an installed plugin of one kind: its name and the values of all its parameters. An instance exists only
+/// while they are read.
 template <class Interface>
 class Component : public Choice {
  public:
@@ -44,7 +44,7 @@ class Component : public Choice {
   }
   std::unique_ptr<Choice> twin() const override { return std::make_unique<Component>(*registry_); }
 
-  /// Of all its parameters, in SI.
+  /// Values of all parameters, in SI.
   const Description& values() const { return values_; }
   bool operator==(const Component& other) const { return type_ == other.type_ && values_ == other.values_; }
 
@@ -54,13 +54,13 @@ class Component : public Choice {
     if (!prototype_) assign_to(*made);
     return made;
   }
-  /// Sets an instance of this type to these values.
+  /// Sets the parameters of an instance of this type to these values.
   void assign_to(Interface& instance) const {
     Parameters own;
     declare_of(instance, own);
     assign(own, values_);
   }
-  /// The plugin as messages name it.
+  /// The name of the plugin in messages.
   std::string title() const { return registry_->title(kind_name<Interface>(), type_); }
 
  private:

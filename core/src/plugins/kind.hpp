@@ -1,4 +1,4 @@
-// The kinds of plugins: the name and folder of each, and the member of PluginInfo that makes one.
+// The kinds of plugins: name, folder and the member of PluginInfo that creates one.
 #pragma once
 
 #include "grit/plugin.hpp"
@@ -32,7 +32,7 @@ constexpr const char* kind_name<Scenario>() {
   return "scenario";
 }
 
-/// Where PluginInfo keeps the maker of an interface.
+/// The make_ member of PluginInfo for an interface.
 template <class Interface>
 inline constexpr Interface* (*PluginInfo::*maker)() = nullptr;
 template <>
@@ -51,7 +51,7 @@ inline constexpr auto maker<Scenario> = &PluginInfo::make_scenario;
 struct Kind {
   const char* name;
   const char* folder;                    ///< below a plugin directory
-  bool (*has_maker)(const PluginInfo&);  ///< whether the plugin can make one
+  bool (*has_maker)(const PluginInfo&);  ///< whether the plugin has the make_ function of this kind
 };
 
 template <class Interface>

@@ -18,7 +18,7 @@ namespace {
 
 using Library = boost::dll::shared_library;
 
-/// Text of fixed size, which a foreign file need not have ended with a zero.
+/// Text of fixed size; an unknown file may lack the terminating zero.
 template <std::size_t N>
 std::string text(const char (&field)[N]) {
   std::string result;
@@ -32,8 +32,8 @@ std::string text(const Layout& layout) {
   return std::to_string(layout.size) + " bytes aligned to " + std::to_string(layout.alignment);
 }
 
-/// The package of the SDK: lib/cmake/grit, where this library is in lib/grit of a build folder, or installed in
-/// lib/grit/<instruction set>.
+/// The CMake package of the SDK: lib/cmake/grit, if this library is in lib/grit of a build folder or in
+/// lib/grit/<instruction set> of an installation.
 std::string sdk_package() {
   const auto above = library_directory().parent_path();
   return ((above.filename() == "grit" ? above.parent_path() : above) / "cmake/grit").string();
@@ -44,8 +44,8 @@ std::string rebuild() {
          " -DGRIT_ARCH=" + build_facts().arch + " && cmake --build BUILD --clean-first";
 }
 
-/// Keeps a library open until the process ends, and on purpose beyond the destructors of statics: objects, exceptions
-/// and virtual tables made inside a plugin may be held anywhere, and their code must not vanish before they do.
+/// Keeps a library open until the process ends, intentionally beyond the destructors of static objects: objects,
+/// exceptions and virtual tables of a plugin may be referenced anywhere, and their code must outlive them.
 const Library& keep(Library library) {
   static std::mutex mutex;
   static auto& kept = *new std::deque<Library>;
@@ -93,16 +93,16 @@ const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kin
   std::error_code failed;
   opened.load(file, failed, boost::dll::load_mode::rtld_now | boost::dll::load_mode::rtld_local);
   if (failed) {
-    const char* const reason = ::dlerror();  // says more than the code, which is always the same
+    const char* const reason = ::dlerror();  // more specific than the error code, which is always the same
     throw refuse("cannot be opened: " + (reason != nullptr ? reason : failed.message()),
                  "build it with the function grit_plugin of the CMake package in " + sdk_package() + "; `ldd -r " +
-                     file.string() + "` lists what it lacks");
+                     file.string() + "` lists undefined symbols");
   }
   const Library& library = keep(std::move(opened));
   if (!library.has(plugin_entry_name))
     throw refuse(std::string("has no function ") + plugin_entry_name,
                  std::string("define extern \"C\" const grit::PluginInfo* ") + plugin_entry_name +
-                     "() as grit/plugin.hpp declares it, or take the file away");
+                     "() as declared in grit/plugin.hpp, or remove the file");
 
   const PluginEntry entry = &library.get<const PluginInfo*()>(plugin_entry_name);
   const PluginInfo* info = at_boundary(title, plugin_entry_name + std::string("()"), entry);
@@ -122,10 +122,10 @@ const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kin
     throw refuse("kind: expected " + text(kind.name) + " of a file in " + kind.folder + "/, found " + text(info->kind),
                  "move the file to the folder of its kind, or set PluginInfo::kind to " + text(kind.name));
   if (text(info->name) != text(name.c_str()))
-    throw refuse("name: expected " + text(name.c_str()) + ", the file's, found " + text(info->name),
+    throw refuse("name: expected " + text(name.c_str()) + " as in the file name, found " + text(info->name),
                  "rename the file, or set PluginInfo::name to " + text(name.c_str()));
   if (!kind.has_maker(*info))
-    throw refuse(std::string("has no maker: PluginInfo::make_") + kind.name + " is null",
+    throw refuse(std::string("cannot create objects: PluginInfo::make_") + kind.name + " is null",
                  std::string("set make_") + kind.name + " to a function that returns a new object");
   return *info;
 }

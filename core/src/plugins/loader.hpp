@@ -1,4 +1,4 @@
-// Opens the file of a plugin and believes nothing that it has not checked.
+// Opens the file of a plugin and checks it before use.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@
 
 namespace grit {
 
-/// The directory of this library: the plugins that come with it are there too.
+/// The directory of this library, which also contains the plugins that come with it.
 std::filesystem::path library_directory();
 
-/// Every difference between two build tags, each as "what: expected …, found …"; none if a plugin with the tag `found`
-/// may be used by a kernel with the tag `expected`. Reads no further than what `found` proves to have.
+/// All differences between two build tags, as "what: expected …, found …"; none if a kernel with the tag `expected` can
+/// use a plugin with the tag `found`. Reads `found` only as far as it has been verified.
 std::vector<std::string> mismatches(const BuildTag& expected, const BuildTag& found);
 
-/// Opens `file`, which is never closed again, and checks what it says of itself. The build tag is compared before
-/// anything else is touched. Throws PluginError with the file and what mends it. Safe to call from several threads.
+/// Opens `file`, which is never closed again, and checks its PluginInfo, the build tag before anything else. Throws
+/// PluginError with the file and the remedy. Safe to call from several threads.
 const PluginInfo& load_plugin(const std::filesystem::path& file, const Kind& kind, const std::string& name);
 
 }  // namespace grit

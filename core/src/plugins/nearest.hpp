@@ -1,4 +1,4 @@
-// The name that somebody probably meant.
+// Suggestions for misspelt names.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@
 
 namespace grit {
 
-/// How many insertions, deletions, replacements and swaps of neighbours make one text of the other.
+/// Number of insertions, deletions, replacements and swaps of neighbours that turn one text into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The first of the closest names, unless more than half of it would have to change.
+/// The first of the closest names; none if more than half of it would have to change.
 std::optional<std::string> nearest(std::string_view name, std::span<const std::string> names);
 
 }  // namespace grit

@@ -99,7 +99,7 @@ void set(const MapTarget& target, const Description& value) {
   }
 }
 
-/// What write() leaves out: optional and absent, a list that is shorter than one that is given, a choice not made.
+/// Values that write() omits: absent optional ones, lists below their minimum length, choices not made.
 template <class T>
 void leave_out(const T&) {}
 void leave_out(std::optional<double>* place) { place->reset(); }
@@ -193,7 +193,7 @@ Description write(Parameters& parameters) {
 
 std::optional<Description> write(const Parameter& parameter) {
   auto value = std::visit([](const auto& target) { return value_of(target); }, parameter.target());
-  // A list that is shorter than it may be was not given.
+  // A list below its minimum length was not given.
   if (value && value->is_structured() && value->size() < parameter.least_entries()) return std::nullopt;
   return value;
 }

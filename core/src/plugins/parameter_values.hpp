@@ -1,5 +1,4 @@
-// Values of declared parameters, in SI, as JSON: taken from where they are declared, set there again, and single
-// numbers among them.
+// Values of declared parameters, in SI, as JSON: reads and sets all values of a declaration, or single numbers.
 #pragma once
 
 #include <optional>
@@ -12,18 +11,18 @@
 
 namespace grit {
 
-/// All present values of a declaration, defaults too, numbers in SI; reading them gives the same values. What is
-/// optional and absent, and choices that were not made, are left out. Values of free form stay as they were read.
+/// All present values of a declaration, with defaults, numbers in SI; reading them gives the same values. Absent
+/// optional values and choices that were not made are omitted. Values of free form stay as they were read.
 Description write(Parameters& parameters);
 
-/// The value of one parameter; nothing if it is absent.
+/// The value of one parameter; none if it is absent.
 std::optional<Description> write(const Parameter& parameter);
 
-/// Sets a declaration to values that write() gave for the same declaration; what they leave out becomes absent or
-/// empty. Objects in lists and maps whose length and names stay are kept. Nothing is checked.
+/// Sets a declaration to values that write() returned for the same declaration. Omitted values become absent or empty.
+/// Objects in lists and maps whose length and names do not change are kept. Nothing is checked.
 void assign(Parameters& parameters, const Description& values);
 
-/// A number where it is kept: a declared member, or a value of a described component.
+/// Reference to a number: a declared member, or a value of a component that is described but not created.
 class NumberPlace {
  public:
   using Place = std::variant<double*, std::int64_t*, Description*>;
@@ -36,8 +35,8 @@ class NumberPlace {
   Place place_;
 };
 
-/// The number that `keys` lead to in a declaration; nothing if there is no number, or none at present. It stays valid
-/// as long as the members that were declared, and the lists and maps in them, stay where they are.
+/// The number at `keys` in a declaration; none if there is no number at present. It stays valid as long as the declared
+/// members, and the lists and maps in them, are not moved.
 std::optional<NumberPlace> find_number(Parameters& parameters, std::span<const std::string> keys);
 
 }  // namespace grit

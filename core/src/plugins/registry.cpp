@@ -37,10 +37,10 @@ const Kind& kind_named(const std::string& name) {
   for (const auto& one : kinds) all.push_back(one.name);
   const auto meant = nearest(name, all);
   throw PluginError("unknown kind of plugin " + quoted(name) + (meant ? ", perhaps " + quoted(*meant) : "") +
-                    "; there are " + listed(all, ""));
+                    "; allowed are " + listed(all, ""));
 }
 
-/// Whether `name` can be the name of a file and nothing more than that.
+/// Whether `name` is a plain file name, without a path.
 bool is_plain(const std::string& name) {
   return !name.empty() && std::ranges::all_of(name, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
@@ -49,10 +49,9 @@ bool is_plain(const std::string& name) {
 
 void refuse_path(const Kind& kind, const std::string& name) {
   if (!is_plain(name))
-    throw PluginError(
-        quoted(name) + " is not the name of a " + kind.name +
-        " plugin: a name has letters, digits and hyphens only, and a description cannot name a path; name "
-        "the plugin's directory by --plugin-path or GRIT_PLUGIN_PATH");
+    throw PluginError(quoted(name) + " is not the name of a " + kind.name +
+                      " plugin: allowed are letters, digits and hyphens, not a path; give "
+                      "the plugin's directory by --plugin-path or GRIT_PLUGIN_PATH");
 }
 
 std::optional<fs::path> find_file(const std::vector<fs::path>& directories, const Kind& kind, const std::string& name) {
@@ -120,8 +119,8 @@ fs::path Registry::file(const std::string& kind, const std::string& name) const 
     searched.push_back(folder.string() + (fs::is_directory(folder, none) ? "" : " (no such directory)"));
   }
   throw PluginError("unknown " + kind + " plugin " + quoted(name) + (meant ? ", perhaps " + quoted(*meant) : "") +
-                    "\n  there are: " + listed(all, "none") + "\n  searched: " + listed(searched, "no directory") +
-                    "\n  put " + name + ".so there, or name the directory above its folder " + wanted.folder +
+                    "\n  available: " + listed(all, "none") + "\n  searched: " + listed(searched, "no directory") +
+                    "\n  copy " + name + ".so there, or give the parent directory of its folder " + wanted.folder +
                     "/ by --plugin-path or GRIT_PLUGIN_PATH");
 }
 
@@ -134,9 +133,10 @@ template <class Interface>
 std::shared_ptr<Interface> Registry::make(const std::string& name) const {
   constexpr auto kind = kind_name<Interface>();
   const PluginInfo& plugin = info(kind, name);
-  std::shared_ptr<Interface> made(at_boundary(title(kind, name), "maker", plugin.*maker<Interface>));
+  const std::string function = std::string("make_") + kind;
+  std::shared_ptr<Interface> made(at_boundary(title(kind, name), function + "()", plugin.*maker<Interface>));
   if (!made)
-    throw PluginError(title(kind, name) + ": its maker returned null\n  let make_" + kind +
+    throw PluginError(title(kind, name) + ": " + function + "() returned null\n  let " + function +
                       " return a new object, or throw with the reason");
   return made;
 }

@@ -1,4 +1,4 @@
-// What is there to choose from: built-in components and plugins on the search path, loaded when asked for.
+// Available components: built-in ones and plugins on the search path, loaded on demand.
 #pragma once
 
 #include <filesystem>
@@ -18,30 +18,32 @@ struct Installed {
   std::filesystem::path file;  ///< empty for a built-in component
 };
 
-/// Not copied: components hold a pointer to it. Safe to use from one thread. What it made stays valid without it.
+/// Not copyable: components hold a pointer to it. For use from one thread. Created components outlive it.
 class Registry {
  public:
-  /// Directories are searched in this order; each holds one folder a kind with <name>.so in it.
+  /// Directories are searched in this order; each contains one folder per kind with files <name>.so.
   explicit Registry(std::vector<std::filesystem::path> directories);
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
-  /// Adds a component that needs no file. Its name wins over files. `info` must outlive the registry.
+  /// Adds a built-in component, which takes precedence over files. `info` must outlive the registry.
   void add(const PluginInfo& info);
 
-  /// Everything that may be chosen, by kind and name; files are listed, not opened.
+  /// All available components, by kind and name; files are listed, not opened.
   std::vector<Installed> installed() const;
-  /// The names of one kind, sorted; files are listed, not opened. Throws PluginError for a kind that is none.
+  /// The names of one kind, sorted; files are listed, not opened. Throws PluginError for an unknown kind.
   std::vector<std::string> names(const std::string& kind) const;
-  /// Loads, if need be, and checks the plugin. Throws PluginError: unknown (with the nearest name and the directories
-  /// searched), not loadable, built differently (every mismatch), wrong kind or name, no maker.
+  /// Loads the plugin, if necessary, and checks it. Throws PluginError if it is unknown (with the nearest name and the
+  /// directories searched), cannot be loaded, was built differently (with all mismatches), has a wrong kind or name, or
+  /// has no make_ function.
   const PluginInfo& info(const std::string& kind, const std::string& name) const;
-  /// The file it comes from, which is not opened; empty for a built-in component. Throws PluginError if unknown.
+  /// The file of a component, which is not opened; empty for a built-in one. Throws PluginError if unknown.
   std::filesystem::path file(const std::string& kind, const std::string& name) const;
-  /// Makes one. Throws PluginError as info() does, and for a maker that threw or made nothing.
+  /// Creates a component. Throws PluginError as info() does, and if its make_ function throws or returns null.
   template <class Interface>
   std::shared_ptr<Interface> make(const std::string& name) const;
-  /// The plugin as messages name it, e.g. `contact plugin "linear-rolling" (/usr/lib/grit/contacts/linear-rolling.so)`.
+  /// The name of a plugin in messages, e.g. `contact plugin "linear-rolling"
+  /// (/usr/lib/grit/contacts/linear-rolling.so)`.
   std::string title(const std::string& kind, const std::string& name) const;
 
  private:
@@ -52,8 +54,9 @@ class Registry {
   mutable std::map<Key, const PluginInfo*> loaded_;
 };
 
-/// The directories of --plugin-path (in order), GRIT_PLUGIN_PATH (colon-separated), then `beside`. Before each of the
-/// user's comes its folder named after this build's `arch`, if there is one: a folder of plugins can serve several.
+/// The directories of --plugin-path (in order), of GRIT_PLUGIN_PATH (colon-separated), and `beside`. Before each user
+/// directory comes its subfolder with the name of this build's `arch`, if it exists, so that one directory can serve
+/// several builds.
 std::vector<std::filesystem::path> plugin_directories(const std::vector<std::string>& option,
                                                       const std::filesystem::path& beside);
 

@@ -12,9 +12,9 @@
 namespace grit {
 namespace {
 
-constexpr double share_shown = 0.98;  // of the cells of a frame, in the middle: the rest is drawn as the scale's ends
+constexpr double fraction_shown = 0.98;  // of the cells of a frame, by value: the rest gets the colours of the ends
 
-/// One component of all rows; NaN for what is not drawable().
+/// One component of all rows; NaN for values that are not drawable().
 std::vector<float> column(const Field& field, std::size_t component) {
   std::vector<float> all;
   for (std::size_t i = component; i < field.values.size(); i += field.width) {
@@ -33,8 +33,8 @@ CellMaps::Map& CellMaps::map_of(const FieldGroup& group) {
   for (const Field& field : group.fields) {
     if (field.name == "centre" || field.name == "size" || is_bookkeeping(field)) continue;
     map.fields.push_back(
-        {field.name, field.unit, field.doc, components_of(field), field.width, {}, telling_rank(field), {}});
-    for (std::size_t k = 0; k < field.width; ++k) map.fields.back().parted.push_back(is_signed(field, k));
+        {field.name, field.unit, field.doc, components_of(field), field.width, {}, field_rank(field), {}});
+    for (std::size_t k = 0; k < field.width; ++k) map.fields.back().is_signed.push_back(grit::is_signed(field, k));
   }
   return maps_.emplace_back(std::move(map));
 }
@@ -43,7 +43,7 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
   for (const FieldGroup& group : groups) {
     Map& map = map_of(group);
     const std::size_t cells = group.fields[0].values.size() / 3;
-    // Those that are far from all others would leave these no room.
+    // Cells far from all others are ignored.
     const std::vector<double>&centres = group.fields[0].values, &sizes = group.fields[1].values;
     const Fences fences(centres, median(sizes), far_to_draw);
     for (std::size_t i = 0; i < 3 * cells; ++i) {
@@ -71,14 +71,14 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
         std::ranges::copy_if(all, std::back_inserter(finite), [](float value) { return std::isfinite(value); });
         if (finite.empty()) continue;
         std::ranges::sort(finite);
-        const auto rim = static_cast<std::size_t>(0.5 * (1 - share_shown) * static_cast<double>(finite.size()));
+        const auto rim = static_cast<std::size_t>(0.5 * (1 - fraction_shown) * static_cast<double>(finite.size()));
         const Range here{finite[rim], finite[finite.size() - 1 - rim]};
         if (auto& range = ranges[k]) *range = {std::min(range->low, here.low), std::max(range->high, here.high)};
         else range = here;
       }
     }
     const std::size_t bytes = sizeof(float) * numbers.size();
-    // A probe with a cell a grain shall not leave the others without their last frames.
+    // A probe with one cell per grain must not use up the space of the others.
     if (bytes > bytes_left_ || map.bytes + bytes > bytes_ / groups.size()) {
       ++map.left_out;
       continue;
@@ -91,7 +91,7 @@ void CellMaps::add(std::size_t frame, const std::string& stage, const std::vecto
 Description CellMaps::result() const {
   Description all = Description::array();
   for (const Map& map : maps_) {
-    if (map.boxes.empty() || map.fields.empty()) continue;  // no cell in any frame, or nothing to see of them
+    if (map.boxes.empty() || map.fields.empty()) continue;  // no cell in any frame, or no field to show
     Description fields = Description::array(), boxes = Description::object();
     for (const auto& [stage, box] : map.boxes) boxes[stage] = {{"low", box.low}, {"high", box.high}};
     for (const MapField& field : map.fields) {
@@ -115,7 +115,7 @@ Description CellMaps::result() const {
                                    {"factor", shown.factor},
                                    {"about", with_symbols(field.doc)},
                                    {"components", field.components},
-                                   {"signed", field.parted},
+                                   {"signed", field.is_signed},
                                    {"rank", field.rank},
                                    {"ranges", ranges}});
     }

@@ -1,4 +1,4 @@
-// Maps of cells that probes leave in frames, as a page carries them.
+// Maps of cells from probes in frames, in the form of the page.
 #pragma once
 
 #include <array>
@@ -16,25 +16,25 @@
 
 namespace grit {
 
-/// Takes frames one after another. Of a probe the page knows what fields the first of its frames had.
+/// Takes frames in order. The fields of a probe are those of its first frame.
 class CellMaps {
  public:
-  /// Numbers are kept as float32, of `bytes` before deflating at most, of which each probe of a frame has the same
-  /// share: a probe of which a frame would go beyond that has no map there.
+  /// Numbers are float32, at most `bytes` in all before deflating. Each probe of a frame may use the same part of it: a
+  /// map that would exceed it is omitted.
   CellMaps(DataElements& data, std::size_t bytes) : data_(data), bytes_(bytes), bytes_left_(bytes) {}
 
-  /// The maps of a frame. What they lack is NaN.
+  /// Adds the maps of a frame. Missing fields are NaN.
   void add(std::size_t frame, const std::string& stage, const std::vector<FieldGroup>& maps);
 
-  /// [{probe, boxes, fields, frames}], a probe each:
+  /// [{probe, boxes, fields, frames}], one entry per probe:
   ///   boxes    by stage {low, high}: corners of the box of all cells of its frames [m]
-  ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, rank, ranges}], of what cells hold,
-  ///            bookkeeping apart: signed says of each component whether zero parts its values, rank which field is
-  ///            looked at first (see map_fields); ranges has for each stage [[low, high] a component] that 98 of 100
-  ///            cells of each of its frames lie within, null where there is no number
-  ///   frames   [{frame, cells, data}]: of those frames that have it, float32: of all cells x, y and z of the centre,
-  ///            then of the size [m], then component after component of the fields
-  ///   left_out frames that had no room
+  ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, rank, ranges}], of the cells,
+  ///            without bookkeeping: signed, by component, whether the quantity is signed; rank, the order of fields
+  ///            (see map_fields); ranges, by stage, [[low, high] per component] of the central 98 % of the cells of
+  ///            each frame, null without numbers
+  ///   frames   [{frame, cells, data}]: for frames that have the map, float32: of all cells x, y and z of the centre,
+  ///            then of the size [m], then each component of the fields
+  ///   left_out number of frames omitted for lack of space
   Description result() const;
 
  private:
@@ -49,9 +49,9 @@ class CellMaps {
     std::string name, unit, doc;
     std::vector<std::string> components;
     std::size_t width;
-    std::map<std::string, std::vector<std::optional<Range>>> ranges;  ///< by stage, a component each
+    std::map<std::string, std::vector<std::optional<Range>>> ranges;  ///< by stage, one per component
     int rank;
-    std::vector<bool> parted;  ///< by zero, a component each
+    std::vector<bool> is_signed;  ///< one per component
   };
   struct Map {
     std::string probe;

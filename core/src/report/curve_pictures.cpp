@@ -48,7 +48,7 @@ std::vector<std::string> curves_wanted(const RunResults& run) {
   return names;
 }
 
-/// What a curve is drawn over.
+/// The abscissa of a curve.
 Named abscissa_of(const RunResults& run, const Named& y) {
   const Description& wanted = run.at("/description/output/picture/x");
   if (wanted.is_string())
@@ -56,7 +56,7 @@ Named abscissa_of(const RunResults& run, const Named& y) {
   return {y.probe, y.probe->channel("time")};
 }
 
-/// A point where both were sampled.
+/// The points at which both were sampled.
 Curve curve_of(const std::string& name, const Named& x, const Named& y) {
   const auto *x_time = x.probe->channel("time"), *y_time = y.probe->channel("time");
   Curve curve{.name = name, .x = {}, .y = {}};
@@ -85,7 +85,7 @@ std::string facts_line(std::span<const RunResults> runs) {
   return fmt::format("{}", fmt::join(parts, "  ·  "));
 }
 
-/// The curve of a reference in a panel: a value goes along all of it.
+/// The curve of a reference in a panel: a value extends over its whole width.
 Curve drawn(const Reference& reference, const Panel& panel) {
   Curve curve{.name = reference.name, .x = reference.x, .y = reference.y, .reference = true};
   if (!reference.value) return curve;
@@ -97,7 +97,7 @@ Curve drawn(const Reference& reference, const Panel& panel) {
   return curve;
 }
 
-/// A panel of the channel, with what all runs have of it over the same abscissa; nothing where that is no point.
+/// A panel of the channel, with the curves of all runs over the same abscissa; empty if there is no point.
 std::optional<Panel> panel_of(const std::string& wanted, std::span<const RunResults> runs,
                               const std::vector<std::vector<Reference>>& references) {
   std::optional<Panel> panel;
@@ -138,7 +138,7 @@ std::optional<Panel> panel_of(const std::string& wanted, std::span<const RunResu
   return panel;
 }
 
-/// A list over what is measured in one of these units.
+/// Whether a channel is a list over a coordinate in one of these units.
 bool is_list_over(const std::vector<std::string>& units, const ProbeSeries& probe,
                   const ProbeSeries::Channel& channel) {
   const auto* place = channel.sampled.coordinate.empty() ? nullptr : probe.channel(channel.sampled.coordinate);
@@ -152,7 +152,7 @@ std::vector<double> row(const SampledChannel& list, std::size_t sample) {
   return {first, first + static_cast<std::ptrdiff_t>(width)};
 }
 
-/// What the description's picture draws curves over, at an instant: ": settlement 3.2 mm"; nothing where that is time.
+/// The value at an instant of the abscissa in the description's picture: ": settlement 3.2 mm"; empty for time.
 std::string abscissa_at(const RunResults& run, double instant) {
   const Description& wanted = run.at("/description/output/picture/x");
   if (!wanted.is_string()) return "";
@@ -170,7 +170,7 @@ std::string abscissa_at(const RunResults& run, double instant) {
   return ": " + spelled(x.channel->name) + ' ' + number + (unit == "1" ? "" : (unit == "°" ? "" : " ") + unit);
 }
 
-/// A picture a probe with a panel of each of its lists over such units.
+/// A picture per probe, with a panel for each of its lists over such units.
 std::vector<NamedPicture> list_pictures(const RunResults& run, const std::string& what,
                                         const std::vector<std::string>& units, bool polar) {
   std::vector<NamedPicture> pictures;
@@ -210,7 +210,7 @@ std::optional<std::string> curves_picture(std::span<RunResults> runs) {
       if (std::ranges::find(wanted, name) == wanted.end()) wanted.push_back(std::move(name));
     references.push_back(references_of(run));
     if (runs.size() == 1) continue;
-    // Other runs may have others of that name.
+    // Other runs may have another reference of that name.
     for (Reference& reference : references.back())
       for (const auto& before : references)
         for (const Reference& other : before)

@@ -1,4 +1,4 @@
-// Curves and profiles of runs without a browser, as SVG.
+// Pictures of curves and profiles of runs, as SVG, without a browser.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,16 @@
 
 namespace grit {
 
-/// Curves that the descriptions' pictures name, or else those of one number of "test", or else of the first probe; over
-/// the picture's abscissa, or else time: a panel a curve, with all runs that have it and what their descriptions have
-/// it compared with. Nothing where there is no curve. References that cannot be read are among the runs' problems.
+/// The curves named by the descriptions' pictures; otherwise the scalar channels of "test", or of the first probe. The
+/// abscissa is that of the picture, or time. A panel per curve, with all runs that have it and the references. Empty if
+/// there is no curve. Unreadable references are added to the runs' problems.
 std::optional<std::string> curves_picture(std::span<RunResults> runs);
 
-/// Of each probe that has profiles a picture with a panel each: lists over places, a third and two thirds through the
-/// samples and at the last.
+/// For each probe with profiles (lists over positions) a picture with a panel per profile, with the samples at one and
+/// two thirds and the last one.
 std::vector<NamedPicture> profile_pictures(const RunResults& run);
 
-/// The same of lists over directions, as polar plots.
+/// The same for lists over directions, as polar plots.
 std::vector<NamedPicture> direction_pictures(const RunResults& run);
 
 }  // namespace grit

@@ -17,22 +17,22 @@ std::optional<double> number(const RunResults& run, const std::string& pointer) 
   return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
 }
 
-/// Whether run.json knows how far the run is and how long it took: it is written when a stage ends, and then of that.
+/// Whether run.json contains progress and run time: it is written at the end of each stage.
 bool has_ended_a_stage(const RunResults& run) {
   return status_of(run) != "running" || number(run, "/steps").value_or(0) > 0;
 }
 
-/// When the last stage began [s]: what came before it was preparation.
+/// Start of the last stage [s]; stages before it are preparation.
 double last_stage_began(const RunResults& run) {
   const Description& stages = run.at("/stages");
   if (!stages.is_array()) return 0;
-  // A run that stopped within a stage has not noted it.
+  // A run that stopped within a stage has not recorded it.
   const std::size_t ended = stages.size(), before = status_of(run) == "done" ? 2 : 1;
   const Description& stage = ended >= before ? stages[ended - before] : Description();
   return stage.is_object() && stage.contains("time") && stage["time"].is_number() ? stage["time"].get<double>() : 0;
 }
 
-/// The value of a channel that is farthest from zero in the last stage, of all probes that have it.
+/// The value of a channel with the largest magnitude in the last stage, over all probes that have it.
 std::optional<double> largest(const RunResults& run, const std::string& channel) {
   const double from = last_stage_began(run);
   std::optional<double> found;
@@ -48,7 +48,7 @@ std::optional<double> largest(const RunResults& run, const std::string& channel)
   return found;
 }
 
-/// "758", "45 800": large ratios are not known better.
+/// "758", "45 800": the precision of large ratios.
 std::string three_digits(double value) {
   if (value < 1000) return fmt::format("{:.3g}", value);
   const double step = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -59,15 +59,16 @@ bool has_channel(const RunResults& run, const std::string& channel) {
   return std::ranges::any_of(run.probes, [&](const ProbeSeries& probe) { return probe.channel(channel) != nullptr; });
 }
 
-/// How far what went in and what came out differ; where that is not known, why.
+/// Closure error of the energy balance; if unknown, why.
 std::optional<Fact> closure_fact(const RunResults& run) {
-  if (const auto closure = largest(run, "closure_share"))
+  if (const auto closure = largest(run, "closure_fraction"))
     return Fact{"energy closure", fmt::format("{:.2g} %", 100 * std::abs(*closure)),
-                "of all energy turned over, in the last stage", std::abs(*closure) > 0.01};
-  if (has_channel(run, "closure_share")) return Fact{"energy closure", "unknown", "not told in the last stage", false};
+                "of the energy converted, in the last stage", std::abs(*closure) > 0.01};
+  if (has_channel(run, "closure_fraction"))
+    return Fact{"energy closure", "unknown", "not sampled in the last stage", false};
   if (!run.at("/description").is_object() || !has_ended_a_stage(run)) return std::nullopt;
-  return Fact{"energy closure", "not kept",
-              R"(--set '/probes/energy={"type": "energy", "every_steps": 1000}' keeps a ledger)", false};
+  return Fact{"energy closure", "not measured",
+              R"(--set '/probes/energy={"type": "energy", "every_steps": 1000}' adds an energy balance)", false};
 }
 
 bool has_engine(const RunResults& run, const std::string& type) {
@@ -76,7 +77,7 @@ bool has_engine(const RunResults& run, const std::string& type) {
   });
 }
 
-/// Of the materials that have one.
+/// Of all materials that have one.
 std::optional<double> least_modulus(const RunResults& run) {
   std::optional<double> least;
   for (const Description& material : run.at("/description/materials"))
@@ -109,21 +110,21 @@ std::vector<Fact> cost_facts(const RunResults& run) {
                      contacts ? fmt::format("{:.2f} contacts each", *contacts) : "", false,
                      grouped(static_cast<std::uint64_t>(*bodies)) + " bodies"});
   }
-  const bool told = has_ended_a_stage(run);
-  if (const auto time = number(run, "/time"); time && told) {
+  const bool has_progress = has_ended_a_stage(run);
+  if (const auto time = number(run, "/time"); time && has_progress) {
     const auto steps = number(run, "/steps");
     facts.push_back({"simulated", written_time(*time),
                      steps ? grouped(static_cast<std::uint64_t>(*steps)) + " steps" : "", false,
                      written_time(*time) + " simulated"});
   }
-  if (const auto wall = number(run, "/wall_s"); wall && told) {
+  if (const auto wall = number(run, "/wall_s"); wall && has_progress) {
     const auto threads = number(run, "/threads");
-    facts.push_back({"took", cost_text(*wall),
+    facts.push_back({"run time", cost_text(*wall),
                      threads ? fmt::format("{:g} thread{}", *threads, *threads == 1 ? "" : "s") : "", false,
                      "took " + cost_text(*wall)});
   }
-  if (const auto speed = number(run, "/particle_steps_per_s"); speed && told)
-    facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps a second", false,
+  if (const auto speed = number(run, "/particle_steps_per_s"); speed && has_progress)
+    facts.push_back({"speed", fmt::format("{:.3g} M", 1e-6 * *speed), "particle-steps per second", false,
                      fmt::format("{:.3g} million particle-steps/s", 1e-6 * *speed)});
   return facts;
 }
@@ -132,9 +133,9 @@ std::vector<Fact> trust_facts(const RunResults& run, double mean_diameter) {
   std::vector<Fact> facts;
   if (const auto dt = number(run, "/time_step_s"); dt && has_ended_a_stage(run)) {
     const auto critical = number(run, "/critical_time_step_s");
-    const double share = critical && *critical > 0 ? *dt / *critical : 0;
-    facts.push_back(
-        {"time step", written_time(*dt), share > 0 ? fmt::format("{:.2g} of the critical one", share) : "", share > 1});
+    const double ratio = critical && *critical > 0 ? *dt / *critical : 0;
+    facts.push_back({"time step", written_time(*dt),
+                     ratio > 0 ? fmt::format("{:.2g} of the critical time step", ratio) : "", ratio > 1});
   }
   if (auto closure = closure_fact(run)) facts.push_back(std::move(*closure));
   const bool flows = has_engine(run, "gravity");

@@ -18,7 +18,7 @@
 namespace grit {
 namespace {
 
-/// Files of which all fit into the page, the first and the last among them.
+/// Evenly chosen files that fit into the page, including the first and the last.
 std::vector<std::filesystem::path> chosen(std::span<const std::filesystem::path> files, const GrainLimits& limits,
                                           std::vector<std::string>& problems, std::size_t& left_out) {
   std::vector<std::filesystem::path> whole;
@@ -48,7 +48,7 @@ std::vector<double> speeds(const Frame& frame) {
   return all;
 }
 
-/// Largest component, and of each axis what most bodies stay below.
+/// Largest component, and for each axis a bound of most bodies.
 struct VectorRange {
   double largest = 0;
   std::array<double, 3> limits{};
@@ -81,7 +81,7 @@ struct Box {
   }
 };
 
-/// What the frames of a stage reach: a fast one leaves the others their colours.
+/// Ranges of a stage. By stage, so that a fast one does not compress the colours of others.
 struct StageExtent {
   double speed = 0, speed_limit = 0;
   VectorRange rotation, displacement;
@@ -95,7 +95,7 @@ struct StageExtent {
   }
 };
 
-/// What all frames together reach.
+/// Ranges of all frames.
 struct Extent : Box {
   double reach = 0, diameters = 0;
   std::size_t bodies = 0;
@@ -114,8 +114,7 @@ struct Extent : Box {
   }
 };
 
-/// Takes out of a frame the bodies that are nowhere, or all but there, as those of a run that has failed; returns how
-/// many.
+/// Removes bodies without a finite position, or extremely far away, as after a failed run; returns their number.
 std::size_t drop_unplaced(Frame& frame) {
   const Fences fences(frame, far_to_keep);
   std::vector<std::size_t> kept;
@@ -152,7 +151,7 @@ std::vector<double> component(const std::vector<double>& vectors, std::size_t ax
   return all;
 }
 
-/// Strongest contacts first among those above the mean; by their places in the frame.
+/// Indices of the strongest contacts above the mean, at most `most`.
 std::vector<std::uint32_t> chain_contacts(const Frame& frame, std::size_t most, double& mean) {
   const auto& force = frame.normal_force;
   mean = force.empty() ? 0 : std::accumulate(force.begin(), force.end(), 0.0) / static_cast<double>(force.size());
@@ -167,7 +166,7 @@ std::vector<std::uint32_t> chain_contacts(const Frame& frame, std::size_t most, 
   return strong;
 }
 
-/// But for what a displacement leaves when it is taken off again.
+/// Equal up to rounding of the subtracted displacement.
 bool alike(const std::vector<float>& a, const std::vector<float>& b) {
   const auto size = [](float most, float x) { return std::max(most, std::abs(x)); };
   const float slack = 1e-6f * std::accumulate(a.begin(), a.end(), 0.0f, size);
@@ -218,7 +217,7 @@ class Writer {
   }
 
  private:
-  /// Bodies that several frames have.
+  /// A set of bodies shared by frames.
   struct Set {
     std::vector<std::int64_t> id;
     std::size_t data, first_frame;
@@ -227,10 +226,10 @@ class Writer {
   struct Wall {
     std::string name;
     std::size_t data;
-    std::vector<float> corners;  ///< less its displacement then
+    std::vector<float> corners;  ///< without its displacement
   };
 
-  /// Where the grains are, but for those that are far from all others.
+  /// Box of the grains, without those far from all others.
   void add_box(const Frame& frame, Description& json) const {
     const Fences fences(frame, far_to_see);
     std::vector<double> seen;
@@ -264,7 +263,7 @@ class Writer {
       append(numbers, component(frame.position, axis), extent_.low[axis], extent_.high[axis]);
     if (set.positions.empty()) {
       set.positions = numbers;
-    } else {  // what moves little is small then, and deflates well
+    } else {  // small differences deflate well
       for (std::size_t i = 0; i < numbers.size(); ++i)
         numbers[i] = static_cast<std::uint16_t>(numbers[i] - set.positions[i]);
     }
@@ -295,7 +294,7 @@ class Writer {
     const auto [links, lines] = put_contacts(frame, linear, strongest);
     json["linear_contacts"] = links, json["linear_chains"] = lines;
   }
-  /// How many of the contacts at these places of the frame have a body there, and the data element of all of them.
+  /// Number of the contacts with these indices whose body is in the frame, and their data element.
   std::pair<std::size_t, std::size_t> put_contacts(const Frame& frame, const std::vector<std::uint32_t>& places,
                                                    double strongest) {
     Numbers low, high, branch[3], force;
@@ -322,7 +321,7 @@ class Writer {
       std::vector<float> corners(wall.corners.size());
       for (std::size_t i = 0; i < corners.size(); ++i)
         corners[i] = static_cast<float>(wall.corners[i] - wall.displacement[static_cast<Eigen::Index>(i % 3)]);
-      // A stage may have made another of it, or it has turned.
+      // A stage may have changed it, or it has rotated.
       auto known = std::ranges::find_if(
           walls_, [&](const Wall& one) { return one.name == wall.name && alike(one.corners, corners); });
       if (known == walls_.end() && wall_bytes_ + corners.size() * sizeof(float) > limits_.wall_bytes) {
@@ -355,7 +354,7 @@ Description grain_frames(std::span<const std::filesystem::path> files, const Gra
                          std::vector<std::string>& problems) {
   std::size_t left_out = 0;
   const auto taken = chosen(files, limits, problems, left_out);
-  // Twice through the files: their ranges come first, and all of them need not fit into memory.
+  // Two passes: ranges first; the frames together may not fit into memory.
   Extent extent;
   std::vector<std::filesystem::path> whole;
   for (const auto& file : taken) try {
@@ -375,7 +374,7 @@ Description grain_frames(std::span<const std::filesystem::path> files, const Gra
       const std::size_t unplaced = drop_unplaced(frame);
       maps.add(writer.frames(), frame.stage, read_maps(file));
       writer.add(frame, unplaced);
-    } catch (const FileError& error) {  // gone, or written anew, since
+    } catch (const FileError& error) {  // removed or rewritten since
       problems.emplace_back(error.what());
     }
   if (writer.frames() == 0) return nullptr;

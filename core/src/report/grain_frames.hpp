@@ -1,4 +1,4 @@
-// The frames of a run as a page carries them: 16-bit numbers, few enough for a browser.
+// The frames of a run in the form of the page: 16-bit numbers, limited for a browser.
 #pragma once
 
 #include <filesystem>
@@ -11,42 +11,41 @@
 
 namespace grit {
 
-/// Bounds on what a page carries, so that it opens in seconds.
+/// Limits of the content of a page, so that it opens in seconds.
 struct GrainLimits {
-  std::size_t bytes = 96u << 20;           ///< of all frames before deflating; frames are left out evenly beyond it
-  std::size_t contacts = 20'000;           ///< a frame: the strongest above the mean normal force
-  std::size_t wall_corners = 3 * 100'000;  ///< a wall; one that has more is not shown
-  std::size_t wall_bytes = 8u << 20;       ///< of all walls before deflating; beyond it they turn no further
+  std::size_t bytes = 96u << 20;           ///< of all frames before deflating; above it, frames are omitted evenly
+  std::size_t contacts = 20'000;           ///< per frame: the strongest above the mean normal force
+  std::size_t wall_corners = 3 * 100'000;  ///< per wall; one with more is not shown
+  std::size_t wall_bytes = 8u << 20;       ///< of all walls before deflating; above it, rotations are not shown
   std::size_t map_bytes = 32u << 20;       ///< of all maps of cells before deflating
 };
 
-/// Adds the frames to `data`, and says how they are to be taken apart; null where no frame can be read.
+/// Adds the frames to `data` and returns how to decode them; null if no frame is readable.
 ///
-///   low, high      corners of the box of all centres [m]: what 0 and 65535 of a position mean
+///   low, high      corners of the box of all centres [m], i.e. 0 and 65535 of a position
 ///   mean_diameter  m
-///   bodies         [{count, data}]: of each set of bodies, float32 radius [m], int32 id, and, where there are clumps,
-///                  int32 clump
+///   bodies         [{count, data}]: for each set of bodies, float32 radius [m], int32 id, and with clumps int32 clump
 ///   clumps         whether there are any
-///   stages         by name {ranges, limits}, of the frames of the stage, and only what all frames of all stages have:
-///     ranges         {speed, rotation, displacement}: what 65535 means, from 0 for speed, from −range for the vectors
-///     limits         {speed: one, rotation: [x, y, z], displacement: [x, y, z]}: what 98 of 100 bodies stay below
-///   walls          [{name, data}]: float32 corners of triangles, not displaced [m]; anew where a stage changes a wall
-///                  or it turns
+///   stages         by name {ranges, limits}, for the frames of the stage, only quantities in all frames of all stages:
+///     ranges         {speed, rotation, displacement}: value of 65535; 0 is 0 for speed, −range for vectors
+///     limits         {speed: one, rotation: [x, y, z], displacement: [x, y, z]}: bound of 98 % of the bodies
+///   walls          [{name, data}]: float32 corners of triangles, without displacement [m]; a new entry if a stage
+///   changes
+///                  a wall or it rotates
 ///   frames         [{time, step, stage, low, high, set, base, data, contacts, chains, strongest, mean_force, walls}]:
-///     low, high      corners of the box of its centres [m]; not without bodies
-///     set            place in bodies
-///     unplaced       bodies without a finite position, which are left out; not without any
+///     low, high      corners of the box of its centres [m]; absent without bodies
+///     set            index in bodies
+///     unplaced       number of omitted bodies, without a finite position; absent if 0
 ///     data           byte planes of uint16: x of all bodies, y, z, speed, then rotation x, y, z, displacement x, y, z
-///     base           positions are less those of that frame, modulo 65536; itself: they are as they are
-///     chains         byte planes of uint16: low and high half of the body's place, branch x, y, z (of 2 · reach, about
-///                    32768), force (of strongest), all contacts after one another; contacts: how many
-///     linear_chains  the same of the links of linear force chains, linear_contacts: how many; not without any
-///     walls          [[place in walls, x, y, z]]: displacement of each wall [m]
-///   layers         {frame, stage}: the place of the frame by whose heights layers are told, and the stage that begins
-///                  there
-///   maps           what CellMaps makes of the probes' fields
+///     base           positions are relative to those of that frame, modulo 65536; absolute if it is this frame
+///     chains         byte planes of uint16: low and high half of the body's index, branch x, y, z (of 2 · reach, about
+///                    32768), force (of strongest), each for all contacts; contacts: their number
+///     linear_chains  the same for the links of linear force chains, linear_contacts: their number; absent if 0
+///     walls          [[index in walls, x, y, z]]: displacement of each wall [m]
+///   layers         {frame, stage}: index of the frame whose heights define the layers, and the stage that begins there
+///   maps           CellMaps::result() of the probes' fields
 ///   reach          m
-///   left_out       frames that were not taken
+///   left_out       number of frames omitted
 Description grain_frames(std::span<const std::filesystem::path> files, const GrainLimits& limits, DataElements& data,
                          std::vector<std::string>& problems);
 

@@ -1,4 +1,4 @@
-// Where grains are told apart by the layers in which they were.
+// The frame at which layers of grains are defined.
 #pragma once
 
 #include <cstddef>
@@ -7,19 +7,19 @@
 
 namespace grit {
 
-/// A frame, as far as it matters here.
+/// Stage and number of bodies of a frame.
 struct StageAndCount {
   std::string stage;
   std::size_t bodies;
 };
 
 struct LayersBegin {
-  std::size_t frame;  ///< by whose heights layers are told
+  std::size_t frame;  ///< whose heights define the layers
   std::string stage;  ///< that begins there
 };
 
-/// The first frame of the stage in which grains begin to leave, or else of the last one; where a stage's first frame
-/// has lost grains already, the one before, which is nearer to how it began. Of one frame at least.
+/// The first frame of the stage in which grains begin to leave, or else of the last stage; if that frame has already
+/// lost grains, the frame before. Needs at least one frame.
 LayersBegin where_layers_begin(std::span<const StageAndCount> frames);
 
 }  // namespace grit

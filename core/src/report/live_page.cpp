@@ -16,14 +16,14 @@ std::string stamp_of_file(const path& file) {
   return fmt::format("{} {} ", size, changed.time_since_epoch().count());
 }
 
-/// Another one, if something was written in between. Frames are counted as well: two may come within a tick of the
-/// clock.
+/// Differs if something was written in between. Includes the number of frames, as two may be written within the clock
+/// resolution.
 std::string stamp_of(const path& folder) {
   return stamp_of_file(folder / "run.json") + stamp_of_file(folder / "series.h5") + stamp_of_file(folder / "frames") +
          std::to_string(frame_files(folder).size());
 }
 
-// So often in a row may something be unreadable in a folder that has changed while it was read, and not be told.
+// Maximum number of consecutive unreported read errors in a folder that changed during reading.
 constexpr int most_slips = 3;
 
 }  // namespace
@@ -44,7 +44,7 @@ bool LivePage::refresh() {
   ReportContent content;
   try {
     content = report_content(std::span(&folder_, 1), limits_, data, patience_);
-  } catch (const std::exception&) {  // of files that are being replaced
+  } catch (const std::exception&) {  // files are being replaced
     return false;
   }
   if (content.unsettled) return false;

@@ -1,4 +1,4 @@
-// The page of a run that goes on: first whole, then what is new again and again.
+// The page of a run in progress: first complete, then updates.
 #pragma once
 
 #include <chrono>
@@ -9,26 +9,25 @@
 
 namespace grit {
 
-/// What the folder of a run shows now. Only reads; the run need not know of it.
+/// The present content of the folder of a run. Only reads it.
 class LivePage {
  public:
-  /// `run` tells runs apart that are shown one after the other at one place.
+  /// `run` identifies a run among those served one after the other at the same address.
   LivePage(std::filesystem::path folder, std::string run, const GrainLimits& limits = {.bytes = 24u << 20},
            std::chrono::milliseconds patience = std::chrono::seconds(1));
 
-  /// Reads the folder if its files have changed. Returns whether there is news. What was being written all the time, or
-  /// could not be read in a folder that changed meanwhile, leaves the page as it is until the next time; if the latter
-  /// lasts, it is told.
+  /// Reads the folder if its files have changed. Returns whether the page changed. Files that were being written, or
+  /// were unreadable while the folder changed, leave the page unchanged until the next call; if the latter persists,
+  /// the page reports it.
   bool refresh();
-  /// The whole page; it asks `new?since=…` beside it for more.
+  /// The complete page; it requests updates from `new?since=…`, relative to its address.
   std::string html() const;
-  /// For a page of which data elements below `since` are known:
-  ///   run                whether it is still the same
-  ///   since, head, report, elements, used    only where there is news: what to ask for next; HTML; JSON as in the
-  ///   page;
-  ///                      {number: text}; numbers of all elements of this JSON
+  /// The update of a page that has the data elements below `since`:
+  ///   run                identifies the run
+  ///   since, head, report, elements, used    only if there are changes: the next `since`; HTML; JSON as
+  ///                      in the page; {number: text}; numbers of all elements of this JSON
   Description news(std::size_t since) const;
-  /// What a page that has everything asks for.
+  /// `since` of a page that is up to date.
   std::size_t since() const { return data_.end(); }
 
  private:

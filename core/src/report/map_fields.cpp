@@ -13,11 +13,11 @@ using std::string_view;
 constexpr std::array<string_view, 10> bookkeeping{"id",    "bodies", "grains", "contacts", "chain",
                                                   "count", "number", "step",   "samples",  "began_at"};
 
-constexpr std::array<string_view, 10> telling{
+constexpr std::array<string_view, 10> informative{
     "void_ratio", "strain",      "displacement",      "rotation",       "velocity",
     "stress",     "mean_stress", "deviatoric_stress", "friction_angle", "coordination_number"};
 
-constexpr std::array<string_view, 2> of_trust{"free_share", "correlation"};
+constexpr std::array<string_view, 2> of_reliability{"free_volume_fraction", "correlation"};
 
 template <class List>
 bool has(const List& list, const std::string& name) {
@@ -38,20 +38,20 @@ std::vector<std::string> components_of(const Field& field) {
 
 bool is_bookkeeping(const Field& field) { return has(bookkeeping, field.name); }
 
-int telling_rank(const Field& field) {
-  const auto place = std::ranges::find(telling, field.name) - telling.begin();
-  return static_cast<int>(place) + (has(of_trust, field.name) ? 1 : 0);
+int field_rank(const Field& field) {
+  const auto place = std::ranges::find(informative, field.name) - informative.begin();
+  return static_cast<int>(place) + (has(of_reliability, field.name) ? 1 : 0);
 }
 
 bool is_signed(const Field& field, std::size_t component) {
   const auto names = components_of(field);
-  const bool presses = field.unit == "Pa";
+  const bool is_stress = field.unit == "Pa";
   if (names.empty())
-    return !presses &&
+    return !is_stress &&
            (field.doc.find("positive") != std::string::npos || field.doc.find("clockwise") != std::string::npos);
   const std::string& name = names[component];
   const bool on_diagonal = name.size() == 2 && name[0] == name[1];
-  return !(presses && on_diagonal);
+  return !(is_stress && on_diagonal);
 }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// What the fields of cells are as maps: which are none, which is looked at first, where zero parts colours.
+// Properties of cell fields as maps: whether they are shown, in which order, whether they are signed.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,18 @@
 
 namespace grit {
 
-/// What the numbers of a row are: the field's own words, or x, y, z of three, xx … of nine; none of one number.
+/// Names of the components: those of the field, or x, y, z for three, xx … for nine; none for one.
 std::vector<std::string> components_of(const Field& field);
 
-/// Whether a field only says which, how many or from where: ids, counters, places. Nobody looks at a map of those.
+/// Whether a field only holds ids, counters or indices, which are not shown as maps.
 bool is_bookkeeping(const Field& field);
 
-/// Fields are offered in this order, the most telling first: void ratio, motion, stress; then those that are not known
-/// here; last what says how far others are to be trusted. As many are alike, they stay as the frame has them.
-int telling_rank(const Field& field);
+/// Order of the fields, the most informative first: void ratio, motion, stress; then unknown ones; last those on the
+/// reliability of others. Fields of equal rank keep their order in the frame.
+int field_rank(const Field& field);
 
-/// Whether zero parts the values of a component, whatever they are in a frame: so vectors, strains and what tensors
-/// have off their diagonal; of single numbers those whose doc says what is positive. What Pa presses on a face, or all
-/// round, is not: it is there or not.
+/// Whether a component is signed, whatever its values in a frame: vectors, strains and off-diagonal components of
+/// tensors; scalars if their doc states what is positive. Normal and mean stresses in Pa are not.
 bool is_signed(const Field& field, std::size_t component);
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// A picture and what its file is to be called.
+// A picture and the name of its file.
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@
 namespace grit {
 
 std::string packed(std::span<const std::byte> bytes) {
-  // Level 1: others take three times as long for a few hundredths of what frames need.
+  // Level 1: higher levels take three times as long and save a few percent.
   uLongf size = compressBound(bytes.size());
   std::vector<unsigned char> deflated(size);
   if (compress2(deflated.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 1) != Z_OK)

@@ -53,7 +53,7 @@ std::vector<std::vector<Vec3>> walls_of(const Frame& frame) {
   return walls;
 }
 
-/// The grains of a frame as the description's picture sees them.
+/// The grains of a frame in the view of the description's picture.
 Picture view_of(const RunResults& run, const Frame& frame, const std::string& color, std::span<const int> layers) {
   std::vector<Row> positions, velocities;
   for (std::size_t i = 0; i < frame.bodies(); ++i) {
@@ -87,7 +87,7 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
     std::vector<std::size_t> cells(centre.size() / 3);
     std::iota(cells.begin(), cells.end(), std::size_t{0});
     if (cells.empty()) continue;
-    // Through the middle of cells, so that the cut is never between two.
+    // Through centres of cells, so that the section is never between two.
     const auto depth_of = [&](std::size_t cell) { return at(centre, cell, depth); };
     std::vector<double> depths(cells.size());
     std::ranges::transform(cells, depths.begin(), depth_of);
@@ -137,7 +137,7 @@ std::optional<std::string> grains_picture(RunResults& run) {
 
 namespace {
 
-/// Faint grains under links between them, as wide as their normal force, and the force of the widest [N].
+/// Faint grains below links, of a width proportional to the normal force; and the largest force [N].
 std::pair<Picture, double> picture_of_links(const RunResults& run, const Frame& frame,
                                             const std::vector<std::size_t>& contacts) {
   std::pair<Picture, double> made{view_of(run, frame, "speed", {}), 0};
@@ -151,8 +151,9 @@ std::pair<Picture, double> picture_of_links(const RunResults& run, const Frame& 
     const auto body = std::ranges::lower_bound(frame.id, frame.body_a[k]);
     if (body == frame.id.end() || *body != frame.body_a[k]) continue;
     const double* start = &frame.position[3 * static_cast<std::size_t>(body - frame.id.begin())];
-    const double* way = &frame.branch[3 * k];
-    links.push_back({start[right], start[up], start[right] + way[right], start[up] + way[up], frame.normal_force[k]});
+    const double* branch = &frame.branch[3 * k];
+    links.push_back(
+        {start[right], start[up], start[right] + branch[right], start[up] + branch[up], frame.normal_force[k]});
     if (drawable(frame.normal_force[k])) strongest = std::max(strongest, frame.normal_force[k]);
   }
   for (Link& link : links) link.weight /= strongest > 0 ? strongest : 1;
@@ -174,7 +175,7 @@ std::optional<std::string> force_chains_picture(RunResults& run) {
   if (above.empty()) return std::nullopt;
   auto [picture, strongest] = picture_of_links(run, *frame, above);
   picture.facts +=
-      fmt::format("  ·  contacts above the mean of {:.3g} N, as wide as their normal force, {:.3g} N at most",
+      fmt::format("  ·  contacts above the mean of {:.3g} N, width proportional to normal force, at most {:.3g} N",
                   sum / count, strongest);
   return draw(picture);
 }
@@ -188,7 +189,7 @@ std::optional<std::string> chains_picture(RunResults& run) {
     if (frame->chain[k] > 0) linked.push_back(k), last = std::max(last, frame->chain[k]);
   if (linked.empty()) return std::nullopt;
   auto [picture, strongest] = picture_of_links(run, *frame, linked);
-  picture.facts += fmt::format("  ·  {} linear chains, links as wide as their normal force, {:.3g} N at most",
+  picture.facts += fmt::format("  ·  {} linear chains, width proportional to normal force, at most {:.3g} N",
                                grouped(last), strongest);
   return draw(picture);
 }
@@ -212,15 +213,15 @@ std::optional<std::string> layers_picture(RunResults& run) {
   const auto up = static_cast<std::size_t>(view_wanted(run)[1] - 'x');
   const auto height = [&](std::size_t i) { return start.position[3 * i + up]; };
   std::map<std::int64_t, int> layer_of;
-  // Between those that are not far from all others, as on the page.
+  // Without grains far from all others, as on the page.
   const Fences fences(start, far_to_see);
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (std::size_t i = 0; i < start.bodies(); ++i)
     if (fences.hold(start.position, i)) low = std::min(low, height(i)), high = std::max(high, height(i));
   for (std::size_t i = 0; i < start.bodies(); ++i)
     if (std::isfinite(height(i))) {
-      const double share = high > low ? std::clamp((height(i) - low) / (high - low), 0.0, 1.0) : 0;
-      layer_of[start.id[i]] = 1 + std::min(layer_count - 1, static_cast<int>(layer_count * share));
+      const double fraction = high > low ? std::clamp((height(i) - low) / (high - low), 0.0, 1.0) : 0;
+      layer_of[start.id[i]] = 1 + std::min(layer_count - 1, static_cast<int>(layer_count * fraction));
     }
   std::vector<int> layers;
   for (const std::int64_t id : frame->id) {
@@ -228,7 +229,7 @@ std::optional<std::string> layers_picture(RunResults& run) {
     layers.push_back(found == layer_of.end() ? 0 : found->second);
   }
   Picture picture = view_of(run, *frame, "layer", layers);
-  picture.facts += fmt::format("  ·  layers by {} when {} began", "xyz"[up], stage);
+  picture.facts += fmt::format("  ·  layers by {} at the start of {}", "xyz"[up], stage);
   return draw(picture);
 }
 

@@ -1,4 +1,4 @@
-// Grains and maps of a run without a browser, as SVG.
+// Pictures of grains and maps of a run, as SVG, without a browser.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,23 @@
 
 namespace grit {
 
-/// The grains of the last frame that can be read, as the description's picture has them; by speed where nothing else is
-/// kept. Nothing where there is no frame.
+/// The grains of the last readable frame, as defined by the description's picture; coloured by speed if nothing else is
+/// stored. Empty if there is no frame.
 std::optional<std::string> grains_picture(RunResults& run);
 
-/// The same, coloured by the layers in which grains were when the stage began in which some leave, or else the last
-/// one. Nothing where there is no frame after that.
+/// The same, coloured by layers at the start of the stage in which grains begin to leave, or else of the last stage.
+/// Empty if there is no later frame.
 std::optional<std::string> layers_picture(RunResults& run);
 
-/// The same, faint, under the contacts above the mean normal force, through the whole depth. Nothing where
-/// there is none.
+/// The same, faint, below the contacts above the mean normal force, through the whole depth. Empty if there is none.
 std::optional<std::string> force_chains_picture(RunResults& run);
 
-/// The same under the links of the linear force chains that a probe tells of.
+/// The same below the links of the linear force chains of a probe.
 std::optional<std::string> chains_picture(RunResults& run);
 
-/// The maps of the last frame that can be read, a picture a field with a panel a component. Seen as the description's
-/// picture has it, cut through the middle, with the walls there. Fields that only count or number are left out.
+/// The maps of the last readable frame: a picture per field with a panel per component. The view is that of the
+/// description's picture, in a section through the middle, with the walls. Fields that only count or number are
+/// omitted.
 std::vector<NamedPicture> map_pictures(RunResults& run);
 
 }  // namespace grit

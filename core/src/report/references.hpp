@@ -1,4 +1,4 @@
-// What a description has its curves compared with.
+// References of a description for its curves.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace grit {
 
-/// A value, or a curve that was read from its file; in the units of the channels.
+/// A value, or a curve read from its file, in the units of the channels.
 struct Reference {
-  std::string name;     ///< as people write it
+  std::string name;     ///< readable
   std::string of;       ///< "probe/channel"
   std::string against;  ///< the abscissa of a curve, "probe/channel"; empty: time
   std::optional<double> value;
   std::vector<double> x = {}, y = {};
 };
 
-/// Those of a run. What cannot be read is among its problems.
+/// The references of a run. Unreadable ones are added to its problems.
 std::vector<Reference> references_of(RunResults& run);
 
 }  // namespace grit

@@ -19,12 +19,12 @@
 
 namespace grit {
 
-// What CMake makes of page/ and of Vega.
+// Embedded by CMake from page/ and Vega.
 extern const std::string_view report_style, report_script, live_script, vega_script, vega_licence;
 
 namespace {
 
-// Vega makes functions of its expressions.
+// Vega compiles its expressions to functions.
 constexpr const char* policy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
     "script-src 'unsafe-inline' 'unsafe-eval'; img-src data: blob:; {}base-uri 'none'; form-action 'none'\">\n";
@@ -62,7 +62,7 @@ std::string cards(const std::vector<Fact>& facts) {
   return html + "</dl>\n";
 }
 
-/// Facts of several runs: one column a run.
+/// Facts of several runs, one column per run.
 std::string facts_table(const std::vector<RunResults>& runs, const std::vector<std::vector<Fact>>& facts) {
   std::vector<std::string> names;
   for (const auto& of_run : facts)
@@ -87,7 +87,7 @@ std::string facts_table(const std::vector<RunResults>& runs, const std::vector<s
       const auto fact = std::ranges::find(of_run, name, &Fact::name);
       row.push_back(fact == of_run.end() ? nullptr : &*fact);
     }
-    // What is said of all of them is said once.
+    // A note common to all runs is written once.
     const Fact& known = **std::ranges::find_if(row, [](const Fact* fact) { return fact != nullptr; });
     const bool once = std::ranges::all_of(row, [&](const Fact* fact) { return !fact || fact->note == known.note; });
     html += "<tr><td class=\"name\">" + escaped(name);
@@ -101,7 +101,7 @@ std::string facts_table(const std::vector<RunResults>& runs, const std::vector<s
   return html + "</tbody></table></div>\n";
 }
 
-/// Where the time went, as one bar.
+/// Run time by phase, as one bar.
 std::string phases_bar(const RunResults& run) {
   const Description& phases = run.at("/phases_s");
   double all = 0;
@@ -112,12 +112,12 @@ std::string phases_bar(const RunResults& run) {
   std::size_t place = 0;
   for (const auto& [name, seconds] : phases.items()) {
     if (!seconds.is_number()) continue;
-    const double share = 100 * seconds.get<double>() / all;
+    const double fraction = 100 * seconds.get<double>() / all;
     const char* colour = series_colours[place++ % series_colours.size()];
-    bar +=
-        fmt::format("<span style=\"width:{:.2f}%;background:{}\" title=\"{}\"></span>", share, colour, escaped(name));
+    bar += fmt::format("<span style=\"width:{:.2f}%;background:{}\" title=\"{}\"></span>", fraction, colour,
+                       escaped(name));
     legend += fmt::format("<li><span class=\"key\" style=\"background:{}\"></span>{} {}</li>", colour, escaped(name),
-                          percent(share / 100));
+                          percent(fraction / 100));
   }
   return "<div class=\"phases\">" + bar + "</div>\n<ul class=\"legend\">" + legend + "</ul>\n";
 }
@@ -142,9 +142,9 @@ std::string stages_table(const RunResults& run) {
 
 std::string details(const RunResults& run) {
   std::string html = phases_bar(run) + stages_table(run);
-  if (!html.empty()) html = "<details><summary>stages, and where the time went</summary>" + html + "</details>\n";
+  if (!html.empty()) html = "<details><summary>stages and run time by phase</summary>" + html + "</details>\n";
   if (const Description& description = run.at("/description"); description.is_object())
-    html += "<details><summary>description, all defaults included</summary><pre>" + escaped(description.dump(2)) +
+    html += "<details><summary>description, with all defaults</summary><pre>" + escaped(description.dump(2)) +
             "</pre></details>\n";
   return html;
 }
@@ -152,7 +152,7 @@ std::string details(const RunResults& run) {
 std::string message_of(const RunResults& run) {
   std::string message = text_at(run, "/message");
   if (const std::string where = where_interrupted(run); message.empty() && !where.empty())
-    message = where + " 'grit run --resume " + shell_word(run.folder.string()) + "' goes on.";
+    message = where + " 'grit run --resume " + shell_word(run.folder.string()) + "' continues it.";
   return message.empty() ? "" : "<p class=\"message\">" + escaped(message) + "</p>\n";
 }
 
@@ -163,7 +163,7 @@ std::string head_of(const std::vector<RunResults>& runs, const std::vector<doubl
     html += "<p class=\"provenance\">" + badge(run) + ' ' + escaped(provenance(run)) + "</p>\n" + message_of(run);
     html += cards(cost_facts(run));
     if (const auto trust = cards(trust_facts(run, diameters[0])); !trust.empty())
-      html += "<h2>How far to trust it</h2>\n" + trust;
+      html += "<h2>Reliability</h2>\n" + trust;
     return html + details(run) + "</header>\n";
   }
   std::vector<std::vector<Fact>> facts;
@@ -225,7 +225,7 @@ void add_readable_units(Description& runs) {
   });
 }
 
-/// What the description has curves compared with: [{name, of, against, x, y}], x and y being data, or value.
+/// References of the description: [{name, of, against, x, y}], x and y being data elements, or value.
 Description references_json(RunResults& run, DataElements& data) {
   Description all = Description::array();
   for (const Reference& reference : references_of(run)) {
@@ -249,7 +249,7 @@ Description run_json(RunResults& run, DataElements& data) {
   return json;
 }
 
-/// JSON that may stand in a script element.
+/// JSON escaped for a script element.
 std::string json_element(const char* id, const Description& json) {
   std::string text = json.dump(-1, ' ', false, Description::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
@@ -274,15 +274,15 @@ ReportContent report_content(std::span<const std::filesystem::path> folders, con
       unread.emplace_back(error.what());
     }
   if (runs.empty()) throw FileError(fmt::format("{}", fmt::join(unread, "\n  ")));
-  tell_apart(runs);
-  GrainLimits share = limits;
-  share.bytes /= std::max<std::size_t>(1, runs.size());
-  share.map_bytes /= std::max<std::size_t>(1, runs.size());
+  make_names_unique(runs);
+  GrainLimits of_run = limits;
+  of_run.bytes /= std::max<std::size_t>(1, runs.size());
+  of_run.map_bytes /= std::max<std::size_t>(1, runs.size());
   ReportContent content = empty_content(runs.size() == 1 ? runs[0].title() : "Runs side by side", "");
   std::vector<double> diameters;
   for (RunResults& run : runs) {
     Description one = run_json(run, data);
-    one["grains"] = grain_frames(run.frames, share, data, run.problems);
+    one["grains"] = grain_frames(run.frames, of_run, data, run.problems);
     diameters.push_back(one["grains"].is_null() ? 0 : one["grains"]["mean_diameter"].get<double>());
     content.problems.insert(content.problems.end(), run.problems.begin(), run.problems.end());
     content.unsettled = content.unsettled || run.unsettled;
@@ -312,8 +312,8 @@ std::string report_html(const ReportContent& content, const DataElements& data, 
   html += "<div id=\"head\">\n" + content.head + "</div>\n";
   html +=
       "<main>\n<section id=\"curves\"></section>\n<section id=\"grains\"></section>\n<section id=\"maps\"></section>\n"
-      "<noscript><p class=\"message\">Curves and grains are drawn by JavaScript, which is switched "
-      "off.</p></noscript>\n"
+      "<noscript><p class=\"message\">JavaScript is disabled; it is needed to draw curves and grains."
+      "</p></noscript>\n"
       "</main>\n";
   html += json_element("report", content.json);
   html += data.html();

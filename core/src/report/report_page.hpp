@@ -12,27 +12,27 @@
 
 namespace grit {
 
-/// What a page shows, its data elements apart.
+/// The content of a page, without its data elements.
 struct ReportContent {
   std::string title;
-  std::string head;  ///< HTML: what ran, how far to trust it, what could not be read
-  Description json;  ///< what curves and grains are drawn from; its numbers of data elements are those of `data`
-  std::vector<std::string> problems;  ///< what could not be read; the page says so too
-  bool unsettled = false;             ///< some of it because a run was writing to it whenever it was looked at
-  std::vector<std::string> unread;    ///< why folders hold nothing of a run; the page says so too
-  std::filesystem::path first;        ///< folder that does
+  std::string head;                   ///< HTML: run, reliability, unreadable files
+  Description json;                   ///< of curves and grains; its numbers of data elements refer to `data`
+  std::vector<std::string> problems;  ///< unreadable files; also on the page
+  bool unsettled = false;             ///< a run was writing to some of them at each attempt to read
+  std::vector<std::string> unread;    ///< folders without a run, and why; also on the page
+  std::filesystem::path first;        ///< first folder with a run
 };
 
-/// Head, curves over each other, grains. Throws FileError where no folder holds anything of a run.
+/// Head, curves, grains. Throws FileError if no folder holds a run.
 ReportContent report_content(std::span<const std::filesystem::path> folders, const GrainLimits& limits,
                              DataElements& data, std::chrono::milliseconds patience = reader_patience);
 
-/// Of a run that has left nothing yet.
+/// Of a run without results yet.
 ReportContent empty_content(const std::string& title, const std::string& words);
 
 enum class Reach {
-  closed,  ///< fetches nothing, and so can tell nobody that it was opened
-  server,  ///< asks where it came from for what is new
+  closed,  ///< fetches nothing: no request leaves the reader's machine
+  server,  ///< requests updates from its server
 };
 
 std::string report_html(const ReportContent& content, const DataElements& data, Reach reach);

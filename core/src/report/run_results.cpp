@@ -34,7 +34,7 @@ std::vector<ProbeSeries> read_probes(const SeriesFile& series, std::vector<std::
 std::string ProbeSeries::Channel::label() const {
   const std::string along = ", along ", &doc = sampled.doc;
   const std::size_t length = along.size() + 1;
-  const bool places = name == "place" && sampled.unit == "m" && doc.size() > length;
+  const bool places = name == "position" && sampled.unit == "m" && doc.size() > length;
   if (places && doc.compare(doc.size() - length, along.size(), along) == 0 && doc.back() >= 'x' && doc.back() <= 'z')
     return {doc.back()};
   return spelled(name);
@@ -106,7 +106,7 @@ RunResults read_results(const std::filesystem::path& folder, std::chrono::millis
   return results;
 }
 
-void tell_apart(std::vector<RunResults>& runs) {
+void make_names_unique(std::vector<RunResults>& runs) {
   const auto rename_alike = [&](auto name_of) {
     std::vector<std::size_t> alike;
     for (std::size_t i = 0; i < runs.size(); ++i)

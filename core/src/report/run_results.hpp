@@ -1,4 +1,4 @@
-// All that a folder of results says, as far as it can be read.
+// The results in a folder, as far as they are readable.
 #pragma once
 
 #include <filesystem>
@@ -15,9 +15,9 @@ struct ProbeSeries {
   struct Channel {
     std::string name;
     SampledChannel sampled;
-    /// Numbers a sample; 1 where there is no sample.
+    /// Numbers per sample; 1 without samples.
     std::size_t width() const { return sampled.samples == 0 ? 1 : sampled.values.size() / sampled.samples; }
-    /// At an axis: x, y or z of places that its line says are along that one, else its name as people write it.
+    /// Title of an axis: x, y or z for positions whose doc names that axis, otherwise the readable name.
     std::string label() const;
     /// Whether there are finite numbers, and all of them are 0.
     bool zero_throughout() const;
@@ -30,23 +30,23 @@ struct ProbeSeries {
 struct RunResults {
   std::filesystem::path folder;
   std::string name;                           ///< of the folder
-  Description json = Description::object();   ///< run.json; empty where it cannot be read
+  Description json = Description::object();   ///< run.json; empty if unreadable
   std::vector<ProbeSeries> probes;            ///< "test" first
   std::vector<std::filesystem::path> frames;  ///< not opened yet
-  std::vector<std::string> problems;          ///< what could not be read, and why; one sentence each
-  bool unsettled = false;                     ///< series.h5 was being written to whenever it was looked at
+  std::vector<std::string> problems;          ///< unreadable files, and why; one sentence each
+  bool unsettled = false;                     ///< series.h5 was being written at each attempt to read
 
-  /// What is at a JSON pointer of run.json; null where there is nothing.
+  /// The value at a JSON pointer of run.json; null if there is none.
   const Description& at(const std::string& pointer) const;
   std::string title() const;  ///< of the description, or the folder's name
-  /// Whether the description asks for a curve, "probe/channel": its picture names it, or a reference is beside it.
+  /// Whether the description names a curve, "probe/channel", in its picture or in a reference.
   bool asks_for(const std::string& curve) const;
 };
 
-/// What cannot be read is among the problems. Throws FileError where nothing in the folder is of a run.
+/// Unreadable files are added to the problems. Throws FileError if the folder holds no run.
 RunResults read_results(const std::filesystem::path& folder, std::chrono::milliseconds patience = reader_patience);
 
-/// Folders of one name are called by their ways, and the same folder given twice by its place.
-void tell_apart(std::vector<RunResults>& runs);
+/// Makes names unique: by paths for folders of the same name, by numbers for a folder given twice.
+void make_names_unique(std::vector<RunResults>& runs);
 
 }  // namespace grit

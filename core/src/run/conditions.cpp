@@ -12,10 +12,10 @@ namespace {
 const WallView& wall(const World& world, const std::string& name) {
   for (const WallView& view : world.walls())
     if (view.name == name) return view;
-  throw Error("a stage waits for wall \"" + name + "\", which does not exist");
+  throw Error("a condition of a stage refers to wall \"" + name + "\", which does not exist");
 }
 
-double stage_travel(const DisplacementCondition& c, const World& world) {
+double stage_displacement(const DisplacementCondition& c, const World& world) {
   return wall(world, c.wall).stage_position[c.axis[0] - 'x'];
 }
 
@@ -23,10 +23,10 @@ struct Met {
   const Kernel& kernel;
   const StageStart& start;
   bool without_forces;
-  bool always_look = false;
+  bool always_due = false;
 
-  bool look_now(std::uint64_t every = slow_conditions_every) const {
-    return always_look || (kernel.world().step() - start.step) % every == 0;
+  bool due_now(std::uint64_t every = slow_conditions_every) const {
+    return always_due || (kernel.world().step() - start.step) % every == 0;
   }
 
   // Half a step of tolerance: a stage of 1 ms at 0.1 ms a step has ten steps, whatever the rounding of the sum.
@@ -37,25 +37,25 @@ struct Met {
     return kernel.world().step() - start.step >= static_cast<std::uint64_t>(c.value);
   }
   bool operator()(const DisplacementCondition& c) const {
-    const double travel = stage_travel(c, kernel.world());
-    return c.value > 0 ? travel >= c.value : travel <= c.value;
+    const double u = stage_displacement(c, kernel.world());
+    return c.value > 0 ? u >= c.value : u <= c.value;
   }
   bool operator()(const UnbalancedForceCondition& c) const {
-    if (!look_now()) return false;
+    if (!due_now()) return false;
     if (without_forces) return true;
-    const Unrest now = unrest(kernel.world());
+    const Equilibrium now = equilibrium(kernel.world());
     return now.mean_contact_force > 0 && now.unbalanced_force < c.below;
   }
   bool operator()(const KineticEnergyCondition& c) const {
-    return look_now() && (without_forces || kernel.kinetic_energy_ratio() < c.below);
+    return due_now() && (without_forces || kernel.kinetic_energy_ratio() < c.below);
   }
   bool operator()(const VoidRatioCondition& c) const {
-    if (!look_now()) return false;
+    if (!due_now()) return false;
     const double e = void_ratio(kernel.world(), kernel.world().interior(kernel.world().mean_diameter()));
     return (!c.below || e < *c.below) && (!c.above || e > *c.above);
   }
   bool operator()(const MeanStressCondition& c) const {
-    if (!look_now(stress_condition_every)) return false;
+    if (!due_now(stress_condition_every)) return false;
     if (without_forces) return true;
     const double p = mean_stress(kernel.world(), kernel.world().interior(kernel.world().mean_diameter())).trace() / 3;
     return (!c.below || p < *c.below) && (!c.above || p > *c.above);
@@ -64,8 +64,8 @@ struct Met {
     return without_forces ||
            std::abs(wall(kernel.world(), c.wall).pressure - c.value) <= c.within * std::max(c.value, 1e-300);
   }
-  bool operator()(const LeftCondition& c) const {
-    return kernel.state().discharged_fraction() >= c.share * (1 - 1e-12) || kernel.world().ids().empty();
+  bool operator()(const DischargedCondition& c) const {
+    return kernel.state().discharged_fraction() >= c.fraction * (1 - 1e-12) || kernel.world().ids().empty();
   }
   bool operator()(const AllCondition& c) const {
     return std::all_of(c.of.begin(), c.of.end(), [&](const auto& one) { return std::visit(*this, one.is.value()); });
@@ -76,7 +76,7 @@ struct Met {
   bool operator()(std::monostate) const { return true; }
 };
 
-/// A condition as its types, "all" and "any" opened.
+/// The types in a condition, with "all" and "any" resolved.
 std::string in_words(const Condition& condition, const Met& met) {
   const auto joined = [&](const auto& of, const char* with, bool met_alone) {
     std::string text;
@@ -96,7 +96,7 @@ bool has_choice(const Condition& condition) {
   return all && std::ranges::any_of(all->of, [](const auto& one) { return has_choice(one); });
 }
 
-struct ShareReached {
+struct FractionReached {
   const Kernel& kernel;
   const StageStart& start;
 
@@ -107,25 +107,26 @@ struct ShareReached {
     return static_cast<double>(kernel.world().step() - start.step) / static_cast<double>(c.value);
   }
   std::optional<double> operator()(const DisplacementCondition& c) const {
-    return stage_travel(c, kernel.world()) / c.value;
+    return stage_displacement(c, kernel.world()) / c.value;
   }
-  std::optional<double> operator()(const LeftCondition& c) const {
-    if (c.share <= start.share_left) return 1;
-    return (kernel.state().discharged_fraction() - start.share_left) / (c.share - start.share_left);
+  std::optional<double> operator()(const DischargedCondition& c) const {
+    if (c.fraction <= start.discharged_fraction) return 1;
+    return (kernel.state().discharged_fraction() - start.discharged_fraction) /
+           (c.fraction - start.discharged_fraction);
   }
   std::optional<double> operator()(const AllCondition& c) const {
-    std::optional<double> least;
-    bool all_tell = true;
+    std::optional<double> lowest;
+    bool all_known = true;
     for (const auto& one : c.of)
-      if (const auto p = progress(one, kernel, start)) least = least ? std::min(*least, *p) : p;
-      else all_tell = false;
-    return all_tell || (least && *least < 1) ? least : std::nullopt;
+      if (const auto p = progress(one, kernel, start)) lowest = lowest ? std::min(*lowest, *p) : p;
+      else all_known = false;
+    return all_known || (lowest && *lowest < 1) ? lowest : std::nullopt;
   }
   std::optional<double> operator()(const AnyCondition& c) const {
-    std::optional<double> most;
+    std::optional<double> highest;
     for (const auto& one : c.of)
-      if (const auto p = progress(one, kernel, start)) most = most ? std::max(*most, *p) : p;
-    return most;
+      if (const auto p = progress(one, kernel, start)) highest = highest ? std::max(*highest, *p) : p;
+    return highest;
   }
   template <class Other>
   std::optional<double> operator()(const Other&) const {
@@ -133,8 +134,8 @@ struct ShareReached {
   }
 };
 
-/// What conditions that do not hold have come to, and what they wait for; "" of one that holds.
-struct Wanting {
+/// Present and required values of conditions that do not hold; "" for one that holds.
+struct Unmet {
   const Met met;
 
   std::string of(const Condition& condition) const {
@@ -145,7 +146,7 @@ struct Wanting {
     std::string text;
     if (above) text = " above " + number(*above) + unit;
     if (below) text += (above ? " and below " : " below ") + number(*below) + unit;
-    return ", waits for one" + text;
+    return ", required" + text;
   }
 
   std::string operator()(const TimeCondition& c) const {
@@ -156,11 +157,11 @@ struct Wanting {
   }
   std::string operator()(const DisplacementCondition& c) const {
     return "displacement of wall \"" + c.wall + "\" along " + c.axis + " " +
-           number(stage_travel(c, met.kernel.world())) + " of " + number(c.value) + " m";
+           number(stage_displacement(c, met.kernel.world())) + " of " + number(c.value) + " m";
   }
   std::string operator()(const UnbalancedForceCondition& c) const {
-    const Unrest now = unrest(met.kernel.world());
-    if (!(now.mean_contact_force > 0)) return "no force at any contact, by which to tell the unbalanced one";
+    const Equilibrium now = equilibrium(met.kernel.world());
+    if (!(now.mean_contact_force > 0)) return "unbalanced force undefined: no contact forces";
     return "unbalanced force " + number(now.unbalanced_force) + between({}, c.below);
   }
   std::string operator()(const KineticEnergyCondition& c) const {
@@ -177,11 +178,11 @@ struct Wanting {
   }
   std::string operator()(const PressureCondition& c) const {
     return "pressure on wall \"" + c.wall + "\" " + number(wall(met.kernel.world(), c.wall).pressure + 0.0) +
-           " Pa, waits for " + number(c.value) + " Pa ± " + number(100 * c.within) + " %";
+           " Pa, required " + number(c.value) + " Pa ± " + number(100 * c.within) + " %";
   }
-  std::string operator()(const LeftCondition& c) const {
-    return number(100 * met.kernel.state().discharged_fraction()) + " % of the mass has left, waits for " +
-           number(100 * c.share) + " %";
+  std::string operator()(const DischargedCondition& c) const {
+    return number(100 * met.kernel.state().discharged_fraction()) + " % of the mass discharged, required " +
+           number(100 * c.fraction) + " %";
   }
   std::string operator()(const AllCondition& c) const { return joined(c.of, "; "); }
   std::string operator()(const AnyCondition& c) const {
@@ -199,6 +200,7 @@ struct Wanting {
   }
 };
 
+/// Duration of conditions that time ends within half a step.
 struct Brief {
   double half_a_step;
 
@@ -239,8 +241,8 @@ std::string ended_by(const Condition& condition, const Kernel& kernel, const Sta
 }
 
 std::string still_wanting(const Condition& condition, const Kernel& kernel, const StageStart& start) {
-  const std::string parts = Wanting{{kernel, start, false, true}}.of(condition);
-  return parts.empty() ? "what it waits for holds now, and did not when it was last looked at" : parts;
+  const std::string parts = Unmet{{kernel, start, false, true}}.of(condition);
+  return parts.empty() ? "its condition holds now, but did not when it was last evaluated" : parts;
 }
 
 std::optional<double> time_without_a_step(const Condition& condition, const Kernel& kernel) {
@@ -248,7 +250,7 @@ std::optional<double> time_without_a_step(const Condition& condition, const Kern
 }
 
 std::optional<double> progress(const Condition& condition, const Kernel& kernel, const StageStart& start) {
-  const auto raw = std::visit(ShareReached{kernel, start}, condition.is.value());
+  const auto raw = std::visit(FractionReached{kernel, start}, condition.is.value());
   return raw ? std::optional(std::clamp(*raw, 0.0, 1.0)) : std::nullopt;
 }
 

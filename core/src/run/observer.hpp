@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <sstream>
 #include <string>
 #include <typeinfo>
 #include <utility>
@@ -13,7 +11,7 @@
 
 #include "description/placed_error.hpp"
 #include "kernel/stopwatch.hpp"
-#include "plugins/component_memory.hpp"
+#include "plugins/component_archive.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
 
@@ -22,16 +20,14 @@ namespace grit {
 /// Samples when its schedule says, once a step at most, and in the stages that it watches.
 class Observer {
  public:
+  /// Prepares the probe. Throws PlacedError for what it refuses.
   Observer(const std::string& name, const ProbeDescription& description, std::shared_ptr<Probe> probe,
            const World& world)
-      : name_(name), description_(&description), probe_(std::move(probe)), schedule_(description.cadence) {
-    prepare(description.probe.type(), world);
-    for (const Channel& channel : probe_->channels()) {
-      std::size_t size = 1;
-      for (const std::size_t n : channel.shape) size *= n;
-      values_.emplace_back(size);
-    }
-  }
+      : name_(name),
+        description_(&description),
+        probe_(std::move(probe)),
+        schedule_(description.cadence),
+        values_(prepared(world)) {}
   ProbeGroup group() const { return {name_, probe_->channels()}; }
   bool watches(const std::string& stage) const {
     return description_->stages.empty() ||
@@ -41,47 +37,40 @@ class Observer {
   void sample(std::size_t index, const World& world, Recorder& recorder) {
     if (last_step_ == world.step()) return;
     last_step_ = world.step();
-    std::vector<std::span<double>> out(values_.begin(), values_.end());
     ++samples_;
     {
       const Stopwatch watch(seconds_);
-      probe_->sample(world, out);
+      values_.clear();
+      probe_->sample(world, values_);
+      values_.check();
     }
-    const std::vector<std::span<const double>> in(values_.begin(), values_.end());
-    recorder.sample(index, world, in);
+    recorder.sample(index, world, values_.all());
   }
   ProbeTime cost() const { return {name_, samples_, seconds_}; }
   bool in_frames() const { return description_->frames; }
-  void remember(Memory& memory) {
-    memory(schedule_, last_step_, samples_, seconds_);
-    remember_by_itself("probe \"" + name_ + '"', *probe_, memory);
+  void serialize(Archive& archive) {
+    archive(schedule_, last_step_, samples_, seconds_);
+    serialize_component("probe \"" + name_ + '"', *probe_, archive);
   }
   FieldGroup fields(const World& world) const { return {name_, probe_->fields(world)}; }
 
  private:
-  /// What a probe says against the world begins with "probe TYPE" and, as a rule, the key that it means: ", /KEY".
-  void prepare(const std::string& type, const World& world) const try {
+  /// Room for the samples of the probe, which is prepared.
+  ChannelValues prepared(const World& world) const try {
     probe_->prepare(world);
+    return {"probe \"" + name_ + "\" of type \"" + description_->probe.type() + '"', probe_->channels()};
+  } catch (const ParameterError& error) {
+    throw PlacedError(placed(error, {"probes", name_}));
   } catch (const Error& error) {
-    if (typeid(error) != typeid(Error)) throw;  // says by its kind what it is about
-    std::vector<std::string> keys{"probes", name_};
-    std::string what = error.what();
-    const std::size_t colon = what.find(": ");
-    if (const std::string who = "probe " + type; what.starts_with(who) && colon != std::string::npos) {
-      std::istringstream pointer(what.substr(who.size(), colon - who.size()));
-      std::string key;
-      if (std::getline(pointer, key, '/') && key == ", ")
-        while (std::getline(pointer, key, '/')) keys.push_back(key);
-      what.erase(0, colon + 2);
-    }
-    throw PlacedError(std::move(keys), what);
+    if (typeid(error) != typeid(Error)) throw;  // its class says what it is about
+    throw PlacedError({"probes", name_}, error.what());
   }
 
   std::string name_;
   const ProbeDescription* description_;
   std::shared_ptr<Probe> probe_;
   Schedule schedule_;
-  std::vector<std::vector<double>> values_;
+  ChannelValues values_;
   std::uint64_t last_step_ = ~0ull, samples_ = 0;
   double seconds_ = 0;
 };

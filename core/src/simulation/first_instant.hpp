@@ -1,4 +1,4 @@
-// Faults of a description that show only when the forces of the first instant are known.
+// Faults of a description that are found with the forces of the first instant.
 #pragma once
 
 #include "description/placed_error.hpp"
@@ -7,9 +7,9 @@
 
 namespace grit {
 
-/// Does work that ends before the first step. A guard that trips, and an error of a part, become a DescriptionError
-/// with file, line and pointer: overlapping bodies, a wall that faces away from them, a time step above the critical
-/// one.
+/// Runs `work`, which ends before the first step. A guard that stops it, or an error of a component, becomes a
+/// DescriptionError with file, line and pointer: overlapping bodies, a wall that faces away from them, a time step
+/// above the critical one.
 template <class Work>
 auto at_first_instant(const Document& document, const Work& work) {
   return at_its_place(document, [&] {

@@ -1,7 +1,5 @@
 #include "simulation/live_components.hpp"
 
-#include <sstream>
-
 #include "description/placed_error.hpp"
 
 namespace grit {
@@ -16,18 +14,13 @@ std::shared_ptr<Interface> prepared_instance(const Component<Interface>& describ
 } catch (const PluginError&) {
   throw;
 } catch (const ParameterError& error) {
-  for (const ParameterError::Fault& fault : error.faults()) {
-    std::vector<std::string> place = keys;
-    std::istringstream deeper(fault.key);
-    for (std::string key; std::getline(deeper, key, '/');) place.push_back(key);
-    report(place, fault.message());
-  }
+  for (const PlacedError::Fault& fault : placed(error, keys)) report(fault.keys, fault.message);
   return nullptr;
 } catch (const Error& error) {
   report(keys, error.what());
   return nullptr;
 } catch (const std::exception& error) {
-  report(keys, described.title() + ": its prepare() threw: " + error.what());
+  report(keys, described.title() + ": prepare() failed: " + error.what());
   return nullptr;
 }
 
@@ -70,7 +63,7 @@ std::optional<NumberPlace> LiveLaw::number(const NumberPointer& place) {
   } else {
     return std::nullopt;
   }
-  materials_.clear();  // what is set from outside is not what was described
+  materials_.clear();  // values set from outside differ from the description
   return find_number(parameters, place.keys);
 }
 

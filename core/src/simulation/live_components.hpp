@@ -1,4 +1,4 @@
-// Live components that follow a description: made once, and set to new values as the description changes.
+// Live components that follow a description: made once, and updated as the description changes.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace grit {
 
-/// Reports a fault of a component: the keys that lead to it from the root, and what is wrong.
+/// Reports a fault of a component: its keys from the root of the description, and the message.
 using ReportFault = std::function<void(const std::vector<std::string>& keys, const std::string& message)>;
 /// Throws the fault as a PlacedError.
 void throw_fault(const std::vector<std::string>& keys, const std::string& message);
@@ -24,12 +24,12 @@ void throw_fault(const std::vector<std::string>& keys, const std::string& messag
 class LiveLaw {
  public:
   explicit LiveLaw(const SceneDescription& described);
-  /// Takes over materials and interfaces where they differ. Returns whether they did.
+  /// Updates materials and interfaces that differ. Returns whether any did.
   bool follow(const SceneDescription& now);
   ContactLaw& operator*() const { return *law_; }
   ContactLaw* operator->() const { return law_.get(); }
   const std::shared_ptr<ContactLaw>& get() const { return law_; }
-  /// Binds a number of a material or an interface; nothing if it is none of the law's.
+  /// Binds a number of a material or an interface; empty if the law has no such parameter.
   std::optional<NumberPlace> number(const NumberPointer& place);
 
  private:
@@ -38,7 +38,7 @@ class LiveLaw {
   std::vector<InterfaceDescription> interfaces_;
 };
 
-/// The engines of a description, which keep their instances, and what these remember, as long as their types stay.
+/// The engines of a description. An engine keeps its instance and state as long as its type does not change.
 class LiveEngines {
  public:
   void follow(const SceneDescription& now);
@@ -49,13 +49,13 @@ class LiveEngines {
  private:
   std::map<std::string, std::shared_ptr<Engine>> engines_;
   std::map<std::string, Component<Engine>> described_;
-  std::set<std::string> set_from_outside_;  // by a bound number, so that they are not what was described
+  std::set<std::string> set_from_outside_;  // by a bound number, so that they differ from the description
 };
 
-/// The geometries of walls, each prepared once and replaced where its values change.
+/// The geometries of walls, each prepared once and replaced when its values change.
 class LiveGeometries {
  public:
-  /// Returns whether there was a change. A geometry that cannot be made or prepared is reported, and left out.
+  /// Returns whether there was a change. A geometry that cannot be made or prepared is reported and omitted.
   bool follow(const SceneDescription& now, const ReportFault& report = throw_fault);
   const std::map<std::string, std::shared_ptr<const Geometry>>& all() const { return geometries_; }
 
@@ -64,7 +64,7 @@ class LiveGeometries {
   std::map<std::string, Component<Geometry>> described_;
 };
 
-/// A prepared instance; null where it cannot be made or prepared, which is reported at `keys`.
+/// A prepared instance; null if it cannot be made or prepared, which is reported at `keys`.
 std::shared_ptr<BodyKind> prepared(const Component<BodyKind>& described, const std::vector<std::string>& keys,
                                    const ReportFault& report);
 

@@ -1,4 +1,4 @@
-// A scene while it runs: its description as it is now, and its components, which follow it.
+// A scene during a run: its present description, and the components that follow it.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@
 
 namespace grit {
 
-/// Made before a run, and brought forward by it. Not copied: a simulation refers to it.
+/// Made before a run and advanced by it. Not copied: a simulation refers to it.
 class LiveScene {
  public:
-  /// Makes all components as the run begins, and sees that those of all stages can be made and do what the stages ask
-  /// of them. Throws DescriptionError with every fault; PluginError for a plugin that cannot be had.
+  /// Makes all components at the start of the run, and checks that those of all stages can be made and are compatible
+  /// with the stages. Throws DescriptionError with every fault; PluginError for a plugin that is not available.
   explicit LiveScene(const Scene& scene);
   LiveScene(const LiveScene&) = delete;
   LiveScene& operator=(const LiveScene&) = delete;
@@ -22,13 +22,14 @@ class LiveScene {
   const Components& components() const { return components_; }
   const LiveGeometries& geometries() const { return geometries_; }
 
-  /// Begins the next stage. Throws PlacedError where a geometry cannot be prepared any more.
+  /// Begins the next stage. Throws PlacedError if a geometry cannot be prepared.
   void begin_stage();
-  /// Brings the present stage's ramps to where so many of all their increments are done. False if nothing changed.
+  /// Advances the ramps of the present stage until `increments` of all their increments are done. False if nothing
+  /// changed.
   bool advance_ramps(std::size_t increments);
-  /// Changes parts from outside the stages' plans.
+  /// Changes parts independently of the stages.
   void apply(const SettingsChange& change);
-  /// Goes from the start to this stage, with so many increments done.
+  /// Advances from the start to this stage, with `increments` done.
   void go_to(std::size_t stage, std::size_t increments);
 
  private:
@@ -39,8 +40,8 @@ class LiveScene {
   LiveEngines engines_;
   LiveGeometries geometries_;
   Components components_;
-  const RampPlan* bound_ = nullptr;    // the ramp that goes on, once it has begun
-  std::optional<NumberPlace> number_;  // that it sets in a live law or engine
+  const RampPlan* bound_ = nullptr;    // the active ramp, after it has begun
+  std::optional<NumberPlace> number_;  // set by the ramp in a live law or engine
 };
 
 }  // namespace grit

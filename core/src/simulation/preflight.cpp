@@ -11,7 +11,7 @@
 namespace grit {
 namespace {
 
-/// Servos of all stages.
+/// Checks the servos of all stages.
 class ServoCheck {
  public:
   explicit ServoCheck(Faults& faults) : faults_(faults) {}
@@ -34,7 +34,7 @@ class ServoCheck {
     }
   }
 
-  /// Which way a wall faces once it has turned, the run alone knows.
+  /// The normal of a wall after a rotation is known only during the run.
   void note_turns(const SceneDescription& now) {
     for (const auto& [name, wall] : now.walls)
       if (const MotionDescription& motion = wall.motion;

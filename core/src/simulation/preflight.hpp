@@ -1,4 +1,4 @@
-// What shows to be wrong in a description once its components are there, found before a run.
+// Faults of a description that need its components to be found, before a run.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace grit {
 
-/// Faults, each with its place in the files of a description.
+/// Faults, each with its position in the files of a description.
 class Faults {
  public:
   explicit Faults(const Document& document) : document_(&document) {}
-  /// One at a pointer.
+  /// Adds a fault at a pointer.
   void add(const std::string& pointer, const std::string& message);
-  /// One of what stands at one of these pointers, where it was written last by the changes of the first stages.
+  /// Adds a fault of the values at `pointers`, at their last assignment in the first `stages` stages.
   void add(const std::vector<std::string>& pointers, std::size_t stages, const std::string& message);
-  /// Adds faults of components after so many stages have begun.
+  /// A reporter for faults of components after `stages` stages have begun.
   ReportFault report_of(std::size_t stages);
   /// Throws DescriptionError with all of them.
   void throw_if_any();
@@ -28,8 +28,8 @@ class Faults {
   std::vector<Problem> problems_;
 };
 
-/// Goes through all stages: sees that geometries can be prepared, that servos have something to press with, and that
-/// conditions can come true. `geometries` are those of the beginning.
+/// Checks in all stages that geometries can be prepared, that servos have an area and a normal for their pressure, and
+/// that conditions can be met. `geometries` are those at the start of the run.
 void check_stages(const Scene& scene, LiveGeometries geometries, Faults& faults);
 
 }  // namespace grit

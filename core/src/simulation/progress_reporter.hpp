@@ -1,4 +1,4 @@
-// Reports how far a stage is, now and then.
+// Reports the progress of a stage at intervals.
 #pragma once
 
 #include <chrono>
@@ -33,8 +33,8 @@ class ProgressReporter {
     Progress now;
     now.stage = runner_.description().name, now.stage_number = runner_.stage() + 1, now.stages = stages_;
     now.fraction = runner_.progress();
-    if (const double gone = now.fraction.value_or(0) - done_at_begin_; gone > 1e-3)
-      now.seconds_left = seconds_since(began_) * (1 - *now.fraction) / gone;
+    if (const double done = now.fraction.value_or(0) - done_at_begin_; done > 1e-3)
+      now.seconds_left = seconds_since(began_) * (1 - *now.fraction) / done;
     now.time = world_.time();
     now.particle_steps_per_second =
         static_cast<double>(world_.step() - last_step_) * static_cast<double>(world_.positions().size()) / since;

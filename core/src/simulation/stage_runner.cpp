@@ -27,8 +27,15 @@ StageRunner::StageRunner(const Scene& scene, LiveScene& live, Kernel& kernel, Re
       phases_{{"probes", 0}, {"output", 0}} {}
 
 void StageRunner::prepare() {
-  for (const auto& [name, probe] : scene_.description->probes)
-    observers_.emplace_back(name, probe, live_.components().probes.at(name), world_);
+  std::vector<PlacedError::Fault> faults;
+  for (const auto& [name, probe] : scene_.description->probes) {
+    try {
+      observers_.emplace_back(name, probe, live_.components().probes.at(name), world_);
+    } catch (const PlacedError& error) {
+      faults.insert(faults.end(), error.faults().begin(), error.faults().end());
+    }
+  }
+  if (!faults.empty()) throw PlacedError(std::move(faults));
 }
 
 void StageRunner::start() {
@@ -44,8 +51,8 @@ void StageRunner::begin_recording() {
 }
 
 void StageRunner::resume(const Checkpoint& checkpoint) {
-  Memory memory(checkpoint.memory);
-  memory(stage_, increments_, sets_);
+  Archive archive(checkpoint.state);
+  archive(stage_, increments_, sets_);
   stages_begun_ = stage_ + 1;
   if (stage_ >= scene_.stages.size() || increments_ > scene_.stages[stage_].increments())
     throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
@@ -55,9 +62,9 @@ void StageRunner::resume(const Checkpoint& checkpoint) {
     live_.apply(change_of(live_.now(), set.pointer, Description::parse(set.value)));
   }
   live_.go_to(stage_, increments_);
-  kernel_.restore(live_.now(), live_.components(), memory);
-  remember(memory);
-  if (!memory.at_end()) throw Error("a checkpoint holds more than this simulation restores");
+  kernel_.restore(live_.now(), live_.components(), archive);
+  serialize(archive);
+  if (!archive.at_end()) throw Error("a checkpoint holds more than this simulation restores");
   begin_recording();
   enter_stage();
 }
@@ -71,6 +78,7 @@ void StageRunner::begin_stage() {
   for (Callback& one : callbacks_) one.schedule.restart(kernel_);
   frames_.restart(kernel_);
   increments_ = 0;
+  instant_ = {};
   enter_stage();
 }
 
@@ -82,20 +90,15 @@ void StageRunner::enter_stage() {
 
 StageRunner::Event StageRunner::next(bool stop) {
   const StageDescription& stage = description();
-  ramp();
-  // Decided before forces, which may change the time step: a stage ends at the same step, whoever samples.
-  const bool may_end = may_be_met(stage.until, kernel_, start_);
-  ask_schedules();
-  if (!may_end && !stop && !forces_are_needed(stage)) {
+  decide();
+  if (!instant_.may_end && !stop && !instant_.has_forces && !forces_are_needed(stage)) {
     const Stopwatch watch(stepping_);
     kernel_.step_on();
+    instant_ = {};
     return Event::stepped;
   }
-  {
-    const Stopwatch watch(stepping_);
-    kernel_.find_forces();
-  }
-  const bool met = may_end && is_met(stage.until, kernel_, start_);
+  find_forces();
+  const bool met = instant_.may_end && is_met(stage.until, kernel_, start_);
   observe(met);
   if (met) {
     end_stage(stage);
@@ -105,7 +108,30 @@ StageRunner::Event StageRunner::next(bool stop) {
   if (too_late(stage)) fail_late(stage);
   const Stopwatch watch(stepping_);
   kernel_.advance();
+  instant_ = {};
   return Event::stepped;
+}
+
+void StageRunner::show_instant() {
+  if (done()) return;  // the end of the stage has found them
+  decide();
+  find_forces();
+}
+
+void StageRunner::decide() {
+  if (instant_.is_decided) return;
+  instant_.is_decided = true;
+  ramp();
+  // Before forces, which may change the time step: a stage ends at the same step, whoever samples.
+  instant_.may_end = may_be_met(description().until, kernel_, start_);
+  ask_schedules();
+}
+
+void StageRunner::find_forces() {
+  if (instant_.has_forces) return;
+  const Stopwatch watch(stepping_);
+  kernel_.find_forces();
+  instant_.has_forces = true;
 }
 
 void StageRunner::end_stage(const StageDescription& stage) {
@@ -143,11 +169,13 @@ void StageRunner::ramp() {
 void StageRunner::call(const Cadence& cadence, std::function<void(const World&)> observer) {
   callbacks_.push_back({Schedule(cadence), std::move(observer)});
   callbacks_.back().schedule.restart(kernel_);
+  if (instant_.is_decided) callbacks_.back().schedule.ask(kernel_);
 }
 
 void StageRunner::set(const std::string& pointer, const Description& value) {
   live_.apply(change_of(live_.now(), pointer, value));
   kernel_.change(live_.now(), live_.components());
+  instant_.has_forces = false;
   sets_.push_back({stage_, pointer, value.dump()});
 }
 
@@ -156,18 +184,19 @@ std::optional<double> StageRunner::progress() const { return grit::progress(desc
 Checkpoint StageRunner::save() {
   const Stopwatch watch(phases_[1].seconds);
   recorder_.flush();
-  Memory memory;
-  memory(stage_, increments_, sets_);
-  kernel_.save(memory);
-  remember(memory);
-  return {world_.stage(), world_.time(), world_.step(), memory.bytes()};
+  Archive archive;
+  archive(stage_, increments_, sets_);
+  kernel_.save(archive);
+  serialize(archive);
+  return {world_.stage(), world_.time(), world_.step(), archive.bytes()};
 }
 
-void StageRunner::remember(Memory& memory) {
-  memory(start_.time, start_.step, start_.share_left, frames_, last_frame_, contact_samples_, contact_sum_, stepping_);
-  for (PhaseTime& phase : phases_) memory(phase.seconds);
-  for (Observer& observer : observers_) observer.remember(memory);
-  recorder_.remember(memory);
+void StageRunner::serialize(Archive& archive) {
+  archive(instant_.is_decided, instant_.may_end);
+  archive(start_.time, start_.step, start_.discharged_fraction, frames_, last_frame_, contact_samples_, contact_sum_, stepping_);
+  for (PhaseTime& phase : phases_) archive(phase.seconds);
+  for (Observer& observer : observers_) observer.serialize(archive);
+  recorder_.serialize(archive);
 }
 
 void StageRunner::refuse_without_a_step(const StageDescription& stage) const {
@@ -203,8 +232,8 @@ bool StageRunner::forces_are_needed(const StageDescription& stage) const {
 void StageRunner::observe(bool all) {
   sample(all);
   if (frames_.is_due()) frame();
-  for (const Callback& one : callbacks_)
-    if (one.schedule.is_due() || (all && one.schedule.never())) one.call(world_);
+  for (Callback& one : callbacks_)
+    if (one.schedule.take() || (all && one.schedule.never())) one.call(world_);
 }
 
 void StageRunner::sample(bool all) {
@@ -231,7 +260,7 @@ void StageRunner::frame() {
 }
 
 std::string StageRunner::reached() const {
-  std::string text = "unbalanced force " + number(unrest(world_).unbalanced_force);
+  std::string text = "unbalanced force " + number(equilibrium(world_).unbalanced_force);
   const double e = interior_void_ratio(world_), overall = void_ratio(world_, world_.specimen());
   if (std::isfinite(e) && std::isfinite(overall))
     text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
@@ -244,7 +273,7 @@ std::string StageRunner::reached() const {
 }
 
 void StageRunner::finish(RunSummary& summary) {
-  observe(true);
+  sample(true);
   if (!frames_.never()) frame();
   fill(summary);
   recorder_.finish(world_, summary);

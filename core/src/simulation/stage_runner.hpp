@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "grit/checkpoint.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
 #include "run/conditions.hpp"
@@ -22,7 +23,7 @@ class StageRunner {
   /// `live` is the scene at its beginning, and the kernel was made of it.
   StageRunner(const Scene& scene, LiveScene& live, Kernel& kernel, Recorder& recorder);
 
-  /// Makes probes ready. Throws PlacedError for what a probe refuses.
+  /// Prepares the probes. Throws PlacedError for all that they refuse.
   void prepare();
   /// Finds the first forces, begins the first stage, then the recording; after prepare().
   void start();
@@ -34,6 +35,8 @@ class StageRunner {
   /// forces are of one instant. Throws NumericsError if a guard trips, the stage takes longer than its limit, or misses
   /// what it expects.
   Event next(bool stop);
+  /// Finds the forces of the present instant. Which step ends the stage or is sampled does not depend on it.
+  void show_instant();
 
   bool done() const { return stage_ == scene_.stages.size(); }
   /// Index of the present stage, and how many have begun.
@@ -61,18 +64,26 @@ class StageRunner {
   struct Set {
     std::size_t stage;
     std::string pointer, value;
-    void remember(Memory& memory) { memory(stage, pointer, value); }
+    void serialize(Archive& archive) { archive(stage, pointer, value); }
   };
   struct Callback {
     Schedule schedule;
     std::function<void(const World&)> call;
+  };
+  /// What has been done at the present instant, which is done once.
+  struct Instant {
+    bool is_decided = false;  // ramps are set, and schedules know whether they are due
+    bool may_end = false;     // the stage
+    bool has_forces = false;
   };
   void begin_recording();
   void begin_stage();
   void enter_stage();
   void end_stage(const StageDescription& stage);
   void ramp();
-  void remember(Memory& memory);
+  void decide();
+  void find_forces();
+  void serialize(Archive& archive);
   void refuse_without_a_step(const StageDescription& stage) const;
   [[noreturn]] void fail_late(const StageDescription& stage) const;
   bool too_late(const StageDescription& stage) const { return world_.time() - start_.time > stage.limit; }
@@ -95,6 +106,7 @@ class StageRunner {
   std::vector<Callback> callbacks_;
   std::vector<Observer*> watching_;  // those that sample in the present stage
   std::size_t stage_ = 0, stages_begun_ = 0;
+  Instant instant_;
   StageStart start_;
   std::size_t increments_ = 0;  // of the stage's ramps, done
   std::vector<Set> sets_;

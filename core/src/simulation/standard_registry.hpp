@@ -1,4 +1,4 @@
-// The components of the library itself and the plugins that are installed.
+// The built-in components and the installed plugins.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace grit {
 
-/// Searches the folders of `plugin_path` first, then those of GRIT_PLUGIN_PATH, then those beside the library.
+/// Searches the folders of `plugin_path` first, then those of GRIT_PLUGIN_PATH, then those next to the library.
 std::unique_ptr<Registry> standard_registry(const std::vector<std::string>& plugin_path);
 
 }  // namespace grit

@@ -25,15 +25,14 @@ struct Judge {
     if (const auto* time = std::get_if<TimeCondition>(&is)) return complaints(judge(*time));
     if (const auto* displacement = std::get_if<DisplacementCondition>(&is)) return complaints(judge(*displacement));
     if (const auto* pressure = std::get_if<PressureCondition>(&is)) return complaints(judge(*pressure));
-    if (std::holds_alternative<LeftCondition>(is) && states.domain.open_sides.empty())
+    if (std::holds_alternative<DischargedCondition>(is) && states.domain.open_sides.empty())
       return complaints(
-          "found a wait for mass that leaves, and all sides of the domain hold bodies back; name those that let them "
-          "through in /domain/open_sides");
+          "found a condition on discharged mass, but no side of the domain is open; set /domain/open_sides");
     return {};
   }
 
  private:
-  /// Where one of several is enough, only if none of them can come true.
+  /// If one of several is enough, complaints only if none of them can be met.
   Complaints each(const Parts& parts, const std::string& pointer, bool one_is_enough) const {
     Complaints all;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -46,9 +45,8 @@ struct Judge {
 
   std::string judge(const TimeCondition& c) const {
     if (c.value <= states.stage.limit) return "";
-    return fmt::format(
-        "found a wait of {:g} s; allowed is at most the limit of the stage, {:g} s, beyond which it has failed",
-        c.value, states.stage.limit);
+    return fmt::format("found a time of {:g} s; allowed is at most the limit of the stage, {:g} s", c.value,
+                       states.stage.limit);
   }
 
   std::string judge(const DisplacementCondition& c) const {
@@ -58,10 +56,10 @@ struct Judge {
       way = {way.along || then.along, way.against || then.against};
     }
     if (c.value > 0 ? way.along : way.against) return "";
-    return "found a wait for the wall \"" + c.wall + "\" to go along " + c.axis + ", where its reference point " +
-           (way.none() ? "stands still" : "goes the other way") +
-           " in this stage; allowed is a displacement of the sign of a motion that it has: of /walls/" + c.wall +
-           "/motion, or of what the stage changes it to";
+    return "found a condition on the displacement of wall \"" + c.wall + "\" along " + c.axis +
+           ", but its reference point " + (way.none() ? "does not move along it" : "moves in the opposite direction") +
+           " in this stage; allowed is a displacement in the direction of the motion in /walls/" + c.wall +
+           "/motion or in the change of the stage";
   }
 
   std::string judge(const PressureCondition& c) const {
@@ -70,9 +68,9 @@ struct Judge {
     const bool on_specimen = wall.motion.servo && wall.motion.servo->area == "specimen",
                holds_at_none = c.value == 0 || c.within >= 1;
     if (on_specimen || holds_at_none || geometry == states.geometries.end() || geometry->second->area() > 0) return "";
-    return "found a wait for the pressure on the wall \"" + c.wall +
-           "\", whose geometry has no area; allowed is a wall with one: a rectangle, or /walls/" + c.wall +
-           "/area where the geometry takes it";
+    return "found a condition on the pressure on wall \"" + c.wall +
+           "\", whose geometry has no area; allowed is a wall with an area: a rectangle, or /walls/" + c.wall +
+           "/area if the geometry has it";
   }
 };
 

@@ -1,4 +1,4 @@
-// Conditions that a stage would wait for until its limit.
+// Conditions that cannot be met, so that a stage would run to its limit.
 #pragma once
 
 #include <map>
@@ -11,22 +11,22 @@
 
 namespace grit {
 
-/// A part of a description, and what is wrong with it.
+/// A part of a description and its fault.
 struct Complaint {
   std::string pointer, message;
 };
 
-/// What a stage's condition is judged by.
+/// The states that decide whether the condition of a stage can be met.
 struct StageStates {
   const StageDescription& stage;
-  DomainDescription domain;  ///< as the stage begins
-  /// As the stage begins, and as each of its ramps begins and ends; never empty.
+  DomainDescription domain;  ///< at the start of the stage
+  /// At the start of the stage, and at the start and end of each of its ramps; never empty.
   std::vector<std::map<std::string, WallDescription>> walls;
-  std::map<std::string, std::shared_ptr<const Geometry>> geometries;  ///< as the stage begins
+  std::map<std::string, std::shared_ptr<const Geometry>> geometries;  ///< at the start of the stage
 };
 
-/// Why the condition of a stage cannot come true: one complaint for each part that prevents it, with pointers from the
-/// root of the description; none if it may.
+/// Why the condition of a stage cannot be met: one complaint for each part that prevents it, with pointers from the
+/// root of the description; none if it can.
 std::vector<Complaint> unreachable_conditions(const StageStates& states, std::size_t stage);
 
 }  // namespace grit

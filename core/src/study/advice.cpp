@@ -16,51 +16,52 @@ namespace {
 
 double number_or_nan(const Description& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
 
-/// Of the figures that are wanted.
-std::vector<Finding> findings_of(const Description& deviations, const std::vector<std::string>& figures) {
+/// Findings of the selected metrics.
+std::vector<Finding> findings_of(const Description& deviations, const std::vector<std::string>& metrics) {
   std::vector<Finding> all;
   for (const auto& [name, one] : deviations.items())
-    if (std::ranges::find(figures, name) != figures.end())
+    if (std::ranges::find(metrics, name) != metrics.end())
       all.push_back({name, number_or_nan(one.at("error")), number_or_nan(one.at("standard_error"))});
   return all;
 }
 
-/// Sorts the figures that count by whether they are charted; all count if none is named.
-void read_figures(ChartedStudy& study, const Description& json, const std::vector<std::string>& wanted) {
+/// Splits the selected metrics into evaluated and unevaluated ones; all are selected if `wanted` is empty.
+void read_metrics(EvaluatedStudy& study, const Description& json, const std::vector<std::string>& wanted) {
   std::vector<std::string> with_reference;
-  for (const auto& [name, figure] : json.at("figures").items()) {
+  for (const auto& [name, metric] : json.at("metrics").items()) {
     if (!wanted.empty() && std::ranges::find(wanted, name) == wanted.end()) continue;
-    const Description why = figure.value("not_charted", Description());
-    if (why.is_string()) study.uncharted[name] = why.get<std::string>();
-    else study.figures.push_back(name);
-    if (figure.value("reference", "finest") != "finest") with_reference.push_back(name);
+    const Description why = metric.value("not_charted", Description());
+    if (why.is_string()) study.unevaluated[name] = why.get<std::string>();
+    else study.metrics.push_back(name);
+    if (metric.value("reference", "finest") != "finest") with_reference.push_back(name);
   }
   if (with_reference.empty()) return;
   for (const auto& variant : json.at("variants"))
-    if (!variant.at("figures").empty())
+    if (!variant.at("metrics").empty())
       study.beside_references.push_back({.level = variant.at("name").get<std::string>(),
                                          .sets = {},
-                                         .findings = findings_of(variant.at("figures"), with_reference)});
+                                         .findings = findings_of(variant.at("metrics"), with_reference)});
 }
 
-/// Throws Description::exception if the chart lacks something.
-ChartedStudy charted_study(const std::filesystem::path& file, const Description& json,
-                           const std::vector<std::string>& figures) {
-  for (const auto& name : figures)
-    if (!json.at("figures").contains(name)) {
+/// Throws Description::exception if something is missing.
+EvaluatedStudy evaluated_study(const std::filesystem::path& file, const Description& json,
+                               const std::vector<std::string>& metrics) {
+  for (const auto& name : metrics)
+    if (!json.at("metrics").contains(name)) {
       std::vector<std::string> known;
-      for (const auto& [figure, _] : json.at("figures").items()) known.push_back(figure);
-      throw Error(fmt::format("{}: has no figure \"{}\" but {}", file.string(), name, fmt::join(known, ", ")));
+      for (const auto& [metric, _] : json.at("metrics").items()) known.push_back(metric);
+      throw Error(
+          fmt::format("{}: has no metric \"{}\"; its metrics are {}", file.string(), name, fmt::join(known, ", ")));
     }
-  ChartedStudy study{file,
-                     json.at("title").get<std::string>(),
-                     json.at("scenario").get<std::string>(),
-                     json.value("parts", std::vector<std::string>()),
-                     json.value("advice", true),
-                     json.at("samples").get<std::size_t>(),
-                     json.value("of_samples", "")};
-  read_figures(study, json, figures);
-  bool told = false;
+  EvaluatedStudy study{file,
+                       json.at("title").get<std::string>(),
+                       json.at("scenario").get<std::string>(),
+                       json.value("parts", std::vector<std::string>()),
+                       json.value("advice", true),
+                       json.at("samples").get<std::size_t>(),
+                       json.value("of_samples", "")};
+  read_metrics(study, json, metrics);
+  bool has_errors = false;
   for (const auto& [name, setting] : json.at("settings").items()) {
     auto& levels = study.settings[name];
     const auto& all = setting.at("levels");
@@ -74,34 +75,33 @@ ChartedStudy charted_study(const std::filesystem::path& file, const Description&
       if (effect != json.at("effects").end()) {
         evidence.cost = effect->at("cost").get<double>();
         evidence.cost_error = number_or_nan(effect->value("cost_standard_error", Description()));
-        evidence.findings = findings_of(effect->at("figures"), study.figures);
+        evidence.findings = findings_of(effect->at("metrics"), study.metrics);
       }
       evidence.known = &level == &all.back() || !evidence.findings.empty();
-      told |= std::ranges::any_of(evidence.findings, [](const Finding& one) { return std::isfinite(one.error); });
+      has_errors |= std::ranges::any_of(evidence.findings, [](const Finding& one) { return std::isfinite(one.error); });
     }
   }
-  if (!told)
+  if (!has_errors)
     throw FileError(
-        fmt::format("{}: has no errors of {}, so that nothing can be advised by it; its page says why, and "
-                    "'grit chart' makes it anew",
-                    file.string(), figures.empty() ? "any figure" : fmt::format("{}", fmt::join(figures, ", "))));
+        fmt::format("{}: has no errors of {}, so that it gives no advice; see its page, or run 'grit study' again",
+                    file.string(), metrics.empty() ? "any metric" : fmt::format("{}", fmt::join(metrics, ", "))));
   return study;
 }
 
-/// Of a finer level: whether no figure is changed by more than another level changes it.
+/// Whether a finer level changes no metric by more than another level does.
 bool changes_no_more(const Evidence& finer, const Evidence& than) {
   return std::ranges::all_of(finer.findings, [&](const Finding& one) {
-    const auto other = std::ranges::find(than.findings, one.figure, &Finding::figure);
+    const auto other = std::ranges::find(than.findings, one.metric, &Finding::metric);
     return other != than.findings.end() && one.error <= other->error;
   });
 }
 
-/// With the changes of one more setting: errors of a figure add up.
+/// Adds the changes by one more setting: errors of a metric are summed.
 void add(Evidence& sum, const Evidence& one) {
   sum.cost *= one.cost;
   for (const Finding& finding : one.findings) {
-    auto own = std::ranges::find(sum.findings, finding.figure, &Finding::figure);
-    if (own == sum.findings.end()) own = sum.findings.insert(own, {finding.figure});
+    auto own = std::ranges::find(sum.findings, finding.metric, &Finding::metric);
+    if (own == sum.findings.end()) own = sum.findings.insert(own, {finding.metric});
     own->error += finding.error;
     own->standard_error = std::hypot(own->standard_error, finding.standard_error);
   }
@@ -111,8 +111,8 @@ double largest_error(const Evidence& one) {
   return one.findings.empty() ? 0 : std::ranges::max(std::views::transform(one.findings, &Finding::error));
 }
 
-/// The cheapest combination of levels within the tolerance. Goes through all but those that begin like one that is
-/// beyond it, or that cannot be cheaper than one found before: errors only add up.
+/// The cheapest combination of levels within the tolerance, by branch and bound. A branch is cut off if its sum exceeds
+/// the tolerance, as errors only grow, or if it cannot be cheaper than the best found.
 class Cheapest {
  public:
   Cheapest(std::vector<Advice>& advices, double tolerance) : tolerance_(tolerance) {
@@ -126,7 +126,7 @@ class Cheapest {
     }
   }
 
-  /// Takes it, if there is any.
+  /// Stores the best combination in the advice, if there is any.
   void take() {
     choose({});
     for (std::size_t k = 0; k < best_.size(); ++k)
@@ -142,15 +142,15 @@ class Cheapest {
       best_ = chosen_, best_cost_ = sum.cost, best_error_ = largest_error(sum);
       return;
     }
-    const auto go_on_with = [&](const Evidence* level) {
+    const auto try_level = [&](const Evidence* level) {
       Evidence more = sum;
       add(more, *level);
       chosen_.push_back(level);
       choose(more);
       chosen_.pop_back();
     };
-    for (const Evidence* level : settings_[k]->within) go_on_with(level);
-    go_on_with(settings_[k]->then());
+    for (const Evidence* level : settings_[k]->within) try_level(level);
+    try_level(settings_[k]->then());
   }
 
   double tolerance_;
@@ -162,14 +162,14 @@ class Cheapest {
 
 }  // namespace
 
-ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures) {
+EvaluatedStudy read_evaluated_study(const std::filesystem::path& file, const std::vector<std::string>& metrics) {
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file))
-    throw FileError(file.string() + ": cannot be read; it should be a chart.json that 'grit chart' wrote");
+    throw FileError(file.string() + ": cannot be read; give a study.json written by 'grit study'");
   try {
-    return charted_study(file, Description::parse(stream), figures);
+    return evaluated_study(file, Description::parse(stream), metrics);
   } catch (const Description::exception&) {
-    throw FileError(file.string() + ": is no chart.json; 'grit chart' writes one");
+    throw FileError(file.string() + ": is not a study.json; 'grit study' writes one");
   }
 }
 
@@ -189,16 +189,16 @@ const Evidence& least_sure(const std::vector<Evidence>& levels, const Evidence& 
   return *found;
 }
 
-std::vector<Finding> far_off(const ChartedStudy& study, double tolerance) {
+std::vector<Finding> far_off(const EvaluatedStudy& study, double tolerance) {
   std::map<std::string, Finding> nearest;
   std::vector<std::string> reached;
   for (const Evidence& variant : study.beside_references)
     for (const Finding& one : variant.findings) {
-      if (confidence(one.error, one.standard_error, tolerance) != Confidence::impossible) reached.push_back(one.figure);
-      if (const auto [found, is_new] = nearest.emplace(one.figure, one); !is_new && one.error < found->second.error)
+      if (confidence(one.error, one.standard_error, tolerance) != Confidence::exceeded) reached.push_back(one.metric);
+      if (const auto [found, is_new] = nearest.emplace(one.metric, one); !is_new && one.error < found->second.error)
         found->second = one;
     }
-  for (const auto& figure : reached) nearest.erase(figure);
+  for (const auto& metric : reached) nearest.erase(metric);
   const auto all = std::views::values(nearest);
   return {all.begin(), all.end()};
 }
@@ -235,7 +235,7 @@ Evidence together(const std::vector<Advice>& advices) {
   return all;
 }
 
-std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
+std::vector<Advice> advise(const EvaluatedStudy& study, double tolerance,
                            const std::function<bool(const std::vector<std::string>&)>& same) {
   std::vector<Advice> all;
   for (const auto& [name, levels] : study.settings) {
@@ -245,16 +245,16 @@ std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
       for (const Evidence& level : levels)
         if (same(level.sets)) advice.now = &level;
     } catch (const Error&) {
-      advice.found = "means nothing in this description";
+      advice.found = "does not apply to this description";
       continue;
     }
     if (advice.now == nullptr) {
-      advice.found = fmt::format("has a value that the study did not try; it tried {}",
+      advice.found = fmt::format("has a value that was not studied; studied values are {}",
                                  fmt::join(std::views::transform(levels, &Evidence::level), ", "));
       continue;
     }
     if (!advice.now->known) {
-      advice.found = advice.now->level + " here, with which the study's scene failed";
+      advice.found = advice.now->level + " here, at which runs of the study failed";
       advice.now = nullptr;
       continue;
     }

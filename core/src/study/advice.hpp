@@ -1,4 +1,4 @@
-// Applies the evidence of a study to a description.
+// Applies the results of a study to a description.
 #pragma once
 
 #include <filesystem>
@@ -11,87 +11,87 @@
 
 namespace grit {
 
-/// What a figure was found to change by. Shares of the figure's scale; NaN is the standard error of a single sample.
+/// Change of a metric, as a fraction of the metric's scale. The standard error of a single sample is NaN.
 struct Finding {
-  std::string figure;
+  std::string metric;
   double error = 0, standard_error = 0;
 };
 
-/// What a level of a setting was found to do, the finest level as the reference.
+/// Cost and changes of a level of a setting, relative to the finest level.
 struct Evidence {
   std::string level;
   std::vector<std::string> sets;       ///< "/pointer=value"
-  double cost = 1, cost_error = 0;     ///< over that of the finest level, and its standard error
-  std::vector<Finding> findings = {};  ///< of each figure that counts; none for the finest
-  bool known = true;                   ///< false if runs of it, or of the finest level, failed
+  double cost = 1, cost_error = 0;     ///< relative to the finest level, and its standard error
+  std::vector<Finding> findings = {};  ///< one per selected metric; none for the finest
+  bool known = true;                   ///< false if runs at this or the finest level failed
 
-  /// Its own, of the figure that is least sure.
+  /// Confidence of this level alone: that of its least certain metric.
   Confidence confidence(double tolerance) const;
-  /// That figure, of several the one that changes most; nothing for the finest.
+  /// The least certain metric; if several, the one that changes most. Null for the finest level.
   const Finding* decisive(double tolerance) const;
 };
 
-/// A chart.json, as far as advice needs it.
-struct ChartedStudy {
+/// The part of study.json that advice needs.
+struct EvaluatedStudy {
   std::filesystem::path file;
   std::string title, scenario;
-  std::vector<std::string> parts;  ///< of its scene, as parts_of() says them
-  bool advice = true;              ///< whether its settings are of the method, not of what is modelled
+  std::vector<std::string> parts;  ///< components of its scene, from parts_of()
+  bool advice = true;              ///< whether it varies numerical settings, not model parameters
   std::size_t samples = 0;
-  std::string of_samples = {};                                 ///< what there is to say of them; may be empty
+  std::string of_samples = {};                                 ///< a remark on the samples; may be empty
   std::map<std::string, std::vector<Evidence>> settings = {};  ///< from the cheapest level to the finest
-  std::vector<std::string> figures = {};                       ///< those that count and are charted
-  std::map<std::string, std::string> uncharted = {};           ///< those that count as well, and why they are not
-  /// Variants beside the references that figures have of their own.
+  std::vector<std::string> metrics = {};                       ///< selected metrics that were evaluated
+  std::map<std::string, std::string> unevaluated = {};         ///< other selected metrics, and the reasons
+  /// Errors of variants relative to metrics' own references.
   std::vector<Evidence> beside_references = {};
 };
 
-/// `figures`: those that count; none: all. Throws FileError, also if the chart tells nothing of them, and Error if a
-/// figure is unknown.
-ChartedStudy read_charted_study(const std::filesystem::path& file, const std::vector<std::string>& figures);
+/// `metrics`: selected metrics; all if empty. Throws FileError, also if no selected metric has errors, and Error if a
+/// metric is unknown.
+EvaluatedStudy read_evaluated_study(const std::filesystem::path& file, const std::vector<std::string>& metrics);
 
-/// The nearest that any variant gets to the reference that a figure has of its own, for each figure where all are too
-/// far from it.
-std::vector<Finding> far_off(const ChartedStudy& study, double tolerance);
+/// For each metric with its own reference from which all variants deviate by more than the tolerance: the smallest
+/// deviation.
+std::vector<Finding> far_off(const EvaluatedStudy& study, double tolerance);
 
-/// One setting.
+/// Advice on one setting.
 struct Advice {
   std::string setting;
-  std::string found;              ///< why there is no level; empty if there is one
-  const Evidence* now = nullptr;  ///< level that the description has
-  /// Those cheaper than that which are within the tolerance by themselves, certain or likely, but for those that save
-  /// nothing beside a finer one and change no figure by less; the cheapest first.
+  std::string found;              ///< why the description has none of the levels; empty if it has one
+  const Evidence* now = nullptr;  ///< level of the description
+  /// Cheaper levels that are within the tolerance on their own, certain or likely, cheapest first. Without levels that
+  /// save nothing over a finer one that changes no metric by more.
   std::vector<const Evidence*> within;
-  /// The cheapest that is cheaper than that and finer, and changes no figure by more: nothing speaks against it.
+  /// The cheapest level that is cheaper and finer than the present one and changes no metric by more.
   const Evidence* finer = nullptr;
-  std::vector<const Evidence*> cheaper;  ///< all that are cheaper than now, or are coarser and failed
-  const Evidence* taken = nullptr;       ///< one of these that is part of what is advised together
+  std::vector<const Evidence*> cheaper;  ///< all levels that are cheaper, or coarser and failed
+  const Evidence* taken = nullptr;       ///< the advised level; null: no change
 
-  /// What the setting has once the advice is taken.
+  /// The level after the advice is applied.
   const Evidence* then() const { return taken != nullptr ? taken : now; }
-  /// Levels stand from the cheapest to the finest.
+  /// Levels are ordered from the cheapest to the finest.
   bool is_relaxed() const { return taken != nullptr && taken < now; }
 };
 
-/// What decides whether a level is within the tolerance: the level itself, or the finest of those finer ones of its
-/// setting that are less sure. `levels`: all of the setting, as in ChartedStudy.
+/// The level that decides whether `level` is within the tolerance: itself, or the least certain of the finer ones (of
+/// several the finest). `levels`: all levels of the setting, as in EvaluatedStudy.
 const Evidence& least_sure(const std::vector<Evidence>& levels, const Evidence& level, double tolerance);
 
-/// Whether a level costs less than another by more than their times scatter.
+/// Whether a level costs less than another by more than twice the standard error.
 bool saves(const Evidence& level, const Evidence& than);
 
-/// `same(sets)`: whether the description stays the same with these. Of all combinations of levels the cheapest is taken
-/// for which the tolerance holds with what all settings change, those that stay as they are included. What is finer and
-/// cheaper is taken whatever the others change.
-std::vector<Advice> advise(const ChartedStudy& study, double tolerance,
+/// `same(sets)`: whether the description is unchanged by these. Advises the cheapest combination of levels for which
+/// the summed changes of all settings, including unchanged ones, are within the tolerance. A level that is finer and
+/// cheaper is always advised.
+std::vector<Advice> advise(const EvaluatedStudy& study, double tolerance,
                            const std::function<bool(const std::vector<std::string>&)>& same);
 
-/// The cheapest finer level that is within the tolerance, certain or likely; nothing for the finest. `levels`: all of
-/// the setting, as in ChartedStudy.
+/// The cheapest finer level that is within the tolerance, certain or likely; null if there is none. `levels`: all
+/// levels of the setting, as in EvaluatedStudy.
 const Evidence* within_and_finer(const std::vector<Evidence>& levels, const Evidence& level, double tolerance);
 
-/// What all settings of a description change once the advice is taken, if they do not act on each other: errors of a
-/// figure add up. The cost is over what it is without the advice.
+/// Changes by all settings after the advice is applied, assuming that they do not interact: errors of a metric are
+/// summed. The cost is relative to that without the advice.
 Evidence together(const std::vector<Advice>& advices);
 
 }  // namespace grit

@@ -17,7 +17,7 @@
 namespace grit {
 namespace {
 
-constexpr auto look_every = std::chrono::milliseconds(50);
+constexpr auto poll_interval = std::chrono::milliseconds(50);
 
 pid_t start(const BatchJob& job) {
   std::vector<char*> words;
@@ -34,7 +34,7 @@ pid_t start(const BatchJob& job) {
   posix_spawn_file_actions_destroy(&files);
   if (error != 0)
     throw FileError(job.words.front() + " cannot be started, or " + job.log.string() +
-                    " not be written: " + std::strerror(error));
+                    " cannot be written: " + std::strerror(error));
   return pid;
 }
 
@@ -42,35 +42,35 @@ pid_t start(const BatchJob& job) {
 
 void run_batch(std::span<const BatchJob> jobs, std::size_t at_once, const std::atomic<bool>& interrupted,
                const BatchEvents& events) {
-  std::map<pid_t, std::size_t> at_work;
+  std::map<pid_t, std::size_t> running;
   std::size_t next = 0;
-  bool go_on = true, told = false;
+  bool go_on = true, stopped = false;
   const auto stop_all = [&] {
-    for (const auto& [pid, index] : at_work) ::kill(pid, SIGTERM);
+    for (const auto& [pid, index] : running) ::kill(pid, SIGTERM);
   };
   try {
     while (true) {
       go_on = go_on && !interrupted.load();
-      if (!go_on && !std::exchange(told, true)) stop_all();
-      while (go_on && next < jobs.size() && at_work.size() < at_once) {
-        at_work.emplace(start(jobs[next]), next);
+      if (!go_on && !std::exchange(stopped, true)) stop_all();
+      while (go_on && next < jobs.size() && running.size() < at_once) {
+        running.emplace(start(jobs[next]), next);
         ++next;
       }
-      if (at_work.empty()) return;
+      if (running.empty()) return;
       int status = 0;
       const pid_t pid = ::waitpid(-1, &status, WNOHANG);
-      if (const auto found = at_work.find(pid); found != at_work.end()) {
+      if (const auto found = running.find(pid); found != running.end()) {
         const std::size_t index = found->second;
-        at_work.erase(found);
+        running.erase(found);
         go_on = events.ended(index, WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status)) && go_on;
         continue;
       }
-      events.waiting(at_work.size());
-      std::this_thread::sleep_for(look_every);
+      events.waiting(running.size());
+      std::this_thread::sleep_for(poll_interval);
     }
   } catch (...) {
     stop_all();
-    for (const auto& [pid, index] : at_work) ::waitpid(pid, nullptr, 0);
+    for (const auto& [pid, index] : running) ::waitpid(pid, nullptr, 0);
     throw;
   }
 }

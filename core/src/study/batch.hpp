@@ -1,4 +1,4 @@
-// Runs programs, several at once.
+// Runs programs concurrently.
 #pragma once
 
 #include <atomic>
@@ -11,20 +11,20 @@
 namespace grit {
 
 struct BatchJob {
-  std::vector<std::string> words;  ///< first the program's path, or its name, which PATH is searched for
-  std::filesystem::path log;       ///< takes what it says, on both outputs
+  std::vector<std::string> words;  ///< command line; first the program's path, or its name in PATH
+  std::filesystem::path log;       ///< receives standard output and standard error
 };
 
 struct BatchEvents {
-  /// A program ended: its index, and its exit status, or minus the signal that killed it. Returns whether to go on
-  /// with those that have not been started.
+  /// Called when a program ends: its index, and its exit status, or minus the signal that killed it. Returns whether to
+  /// start the remaining ones.
   std::function<bool(std::size_t, int)> ended;
-  /// Called several times a second: how many are at work.
+  /// Called several times a second with the number of running programs.
   std::function<void(std::size_t)> waiting;
 };
 
-/// Starts programs in their order, `at_once` at a time, and waits for all that were started. Once `interrupted` is set
-/// those at work are asked to stop (SIGTERM) and no more are started. Throws FileError if one cannot be started.
+/// Starts programs in order, at most `at_once` at a time, and waits for all that were started. Once `interrupted` is
+/// set the running ones get SIGTERM and no more are started. Throws FileError if one cannot be started.
 void run_batch(std::span<const BatchJob> jobs, std::size_t at_once, const std::atomic<bool>& interrupted,
                const BatchEvents& events);
 

@@ -6,10 +6,10 @@
 namespace grit {
 
 Confidence confidence(double error, double standard_error, double tolerance) {
-  if (std::isnan(error) || std::isnan(standard_error)) return Confidence::untold;
+  if (std::isnan(error) || std::isnan(standard_error)) return Confidence::inconclusive;
   if (error + 2 * standard_error <= tolerance) return Confidence::certain;
   if (error + standard_error <= tolerance) return Confidence::likely;
-  return error <= std::max(tolerance, 2 * standard_error) ? Confidence::untold : Confidence::impossible;
+  return error <= std::max(tolerance, 2 * standard_error) ? Confidence::inconclusive : Confidence::exceeded;
 }
 
 const char* word_of(Confidence confidence) {
@@ -18,10 +18,10 @@ const char* word_of(Confidence confidence) {
       return "certain";
     case Confidence::likely:
       return "likely";
-    case Confidence::untold:
-      return "cannot be told";
-    case Confidence::impossible:
-      return "too much";
+    case Confidence::inconclusive:
+      return "inconclusive";
+    case Confidence::exceeded:
+      return "too large";
   }
   return "";
 }

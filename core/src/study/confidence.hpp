@@ -1,20 +1,20 @@
-// What an error that was found between samples says of a tolerance.
+// Whether an error with a standard error is within a tolerance.
 #pragma once
 
 namespace grit {
 
-/// From the best to the worst.
+/// From best to worst, for an error e with standard error s and a tolerance t.
 enum class Confidence {
-  certain,     ///< twice the standard error more would still be within the tolerance
-  likely,      ///< the standard error once more would be, twice would not
-  untold,      ///< the error is within the tolerance or twice the standard error, and not as above; or of one sample
-  impossible,  ///< the error is beyond the tolerance, and is no scatter
+  certain,       ///< e + 2 s ≤ t
+  likely,        ///< e + s ≤ t
+  inconclusive,  ///< otherwise, if e ≤ t or e ≤ 2 s; or s unknown (one sample)
+  exceeded,      ///< e > t and e > 2 s
 };
 
-/// Shares of one scale; NaN is the standard error of a single sample.
+/// All arguments are fractions of the same scale. The standard error of a single sample is NaN.
 Confidence confidence(double error, double standard_error, double tolerance);
 
-/// "certain", "likely", "cannot be told", "too much"
+/// "certain", "likely", "inconclusive", "too large"
 const char* word_of(Confidence confidence);
 
 }  // namespace grit

@@ -10,10 +10,10 @@
 namespace grit {
 namespace {
 
-/// Up to here each whole number is a double of its own.
+/// Integers up to here are exact in double precision.
 constexpr double largest_seed = 1e15;
 
-/// A value as people would write it: texts without quotes.
+/// A value as text, strings without quotes.
 std::string plain(const Description& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_array()) return value.dump();
@@ -22,15 +22,15 @@ std::string plain(const Description& value) {
   return text;
 }
 
-/// A pointer, and where in the study it stands.
+/// A pointer, and its location in the study.
 struct Changed {
   std::string pointer, where;
 };
 
-/// Whether what the first pointer changes has all that the second does.
+/// Whether the first pointer lies at or below the second.
 bool covers(const std::string& one, const std::string& other) { return (other + '/').starts_with(one + '/'); }
 
-/// What is changed twice has the value of the last, and a chart of it is of runs that do not differ.
+/// Refuses values that are changed twice: only the last change would count, and levels would not differ.
 void check_pointers(const StudyDescription& study, const Complain& complain) {
   std::vector<Changed> varied;
   for (const auto& [name, setting] : study.settings)
@@ -42,51 +42,50 @@ void check_pointers(const StudyDescription& study, const Complain& complain) {
       if (covers(varied[i].pointer, varied[k].pointer) || covers(varied[k].pointer, varied[i].pointer))
         complain(varied[i].where,
                  fmt::format("{}, of which /{} changes {}", varied[i].pointer, varied[k].where, varied[k].pointer),
-                 "what no other setting and no seed changes");
+                 "a value that no other setting and no seed changes");
 }
 
 }  // namespace
 
-void MeanFigure::declare(Parameters& p) {
-  p.add("share", share).above(0).at_most(1).doc("of the abscissa's range, at its end, that the mean is taken over");
+void MeanMetric::declare(Parameters& p) {
+  p.add("fraction", fraction).above(0).at_most(1).doc("final fraction of the abscissa's range over which to average");
 }
-void ValueFigure::declare(Parameters& p) {
-  p.add("at", at).required().doc("abscissa at which the curve is read, in the channel's own unit");
+void ValueMetric::declare(Parameters& p) {
+  p.add("at", at).required().doc("abscissa at which to evaluate the curve, in the unit of its channel");
 }
-void FigureDescription::declare(Parameters& p) {
+void MetricDescription::declare(Parameters& p) {
   p.choose(what);
-  p.add("of", of).required().doc("channel: probe's name, slash, name of the channel");
+  p.add("of", of).required().doc("channel, as PROBE/CHANNEL");
   p.add("against", against)
       .doc(
-          "channel of the abscissa; left out: time, or the place in a profile. Where it goes back, a curve has what it "
-          "passes for the first time");
-  p.add("scale", scale).above(0).doc("what errors are divided by; left out: the largest of the reference");
-  p.add("value", value).doc("what it should be; left out: what the finest settings give");
-  p.add("curve", curve).doc("what the curve should be; left out: what the finest settings give");
+          "channel of the abscissa; default: time, or the index in a profile. A curve omits points at which the "
+          "abscissa does not exceed all values before");
+  p.add("scale", scale).above(0).doc("divisor of errors; default: largest magnitude of the reference");
+  p.add("value", value).doc("reference value; default: result of the finest settings");
+  p.add("curve", curve).doc("reference curve; default: result of the finest settings");
   p.check([this](const Complain& complain) {
     check_channel(of, "of", complain), check_channel(against, "against", complain);
     if (value && is_curve()) complain("value", "one value for a curve", "a reference curve, or neither");
-    if (value == 0.0 && !scale)
-      complain("value", "0 without a scale", "a scale as well, to which errors can be put in relation");
+    if (value == 0.0 && !scale) complain("value", "0 without a scale", "0 with a scale, by which errors are divided");
     if (curve && !is_curve()) complain("curve", "a curve for one value", "a reference value, or neither");
   });
 }
-bool FigureDescription::is_curve() const {
-  return std::holds_alternative<CurveFigure>(what.value()) || std::holds_alternative<ProfileFigure>(what.value());
+bool MetricDescription::is_curve() const {
+  return std::holds_alternative<CurveMetric>(what.value()) || std::holds_alternative<ProfileMetric>(what.value());
 }
 
 void SettingDescription::declare(Parameters& p) {
-  p.add("about", about).doc("what it means, in a few words");
-  p.add("pointers", pointers).required().entries(1).doc("JSON pointers of what it changes in the scene");
+  p.add("doc", doc).doc("short explanation");
+  p.add("pointers", pointers).required().entries(1).doc("JSON pointers of the values to vary in the scene");
   p.add("values", values)
       .required()
-      .doc("from the cheapest to the finest; with several pointers, a list of values for each level");
-  p.add("labels", labels).doc("names of the levels; left out: the values themselves");
-  p.add("usual", usual).doc("label of the level that counts while other settings vary; left out: the first");
+      .doc("levels, from the cheapest to the finest; with several pointers, a list of values per level");
+  p.add("labels", labels).doc("names of the levels; default: the values");
+  p.add("usual", usual).doc("label of the level used while other settings vary; default: the first");
   p.check(
       [this](const Complain& complain) {
         if (!values.is_array() || values.size() < 2) {
-          complain("values", "not a list of two or more", "a list of values, the finest last");
+          complain("values", "not a list of two or more", "a list of two or more values, the finest last");
           return;
         }
         if (pointers.size() > 1)
@@ -95,7 +94,7 @@ void SettingDescription::declare(Parameters& p) {
               complain("values/" + std::to_string(i), plain(values[i]),
                        "a list of " + std::to_string(pointers.size()) + " values, one for each pointer");
         if (!labels.empty() && labels.size() != values.size())
-          complain("labels", std::to_string(labels.size()) + " labels", "one for each of the values, or none");
+          complain("labels", std::to_string(labels.size()) + " labels", "one per value, or none");
         for (std::size_t i = 0; i < levels(); ++i)
           for (std::size_t k = 0; k < i; ++k)
             if (label(i) == label(k)) complain("values", "the level \"" + label(i) + "\" twice", "different levels");
@@ -124,7 +123,7 @@ std::vector<std::string> SettingDescription::sets(std::size_t level) const {
 
 void SeedsDescription::declare(Parameters& p) {
   p.add("pointer", pointer).doc("JSON pointer of the seed");
-  p.add("values", values).entries(1).doc("seeds: each variant is run with all of them");
+  p.add("values", values).entries(1).doc("seeds; each variant is run with each of them");
   p.check(
       [this](const Complain& complain) {
         for (std::size_t i = 0; i < values.size(); ++i)
@@ -138,24 +137,26 @@ void SeedsDescription::declare(Parameters& p) {
 
 void StudyDescription::declare(Parameters& p) {
   p.add("title", title).doc("one line");
-  p.add("scene", scene).file().required().doc("description that is run again and again");
-  p.add("set", set).doc("values by JSON pointer that differ from the scene's in all runs");
-  p.add("settings", settings).required().doc("what is varied, by name");
+  p.add("scene", scene).file().required().doc("description to run");
+  p.add("set", set).doc("values by JSON pointer that override those of the scene in all runs");
+  p.add("settings", settings).required().doc("settings to vary, by name");
   p.add("vary", vary)
       .one_of({"one-at-a-time", "crossed"})
-      .doc("each setting alone, the others as usual, and all at their finest; or every combination");
-  p.add("seeds", seeds).doc("samples: their scatter is the floor below which accuracy buys nothing");
-  p.add("figures", figures).required().doc("what counts, by name");
-  p.add("tolerance", tolerance).above(0).doc("error that is good enough");
+      .doc(
+          "one-at-a-time: each setting alone, the others at their usual levels, and all at their finest; crossed: all "
+          "combinations");
+  p.add("seeds", seeds).doc("samples; errors below the scatter between samples are not resolved");
+  p.add("metrics", metrics).required().doc("results to compare, by name");
+  p.add("tolerance", tolerance).above(0).doc("allowed error, as a fraction of the scale");
   p.add("advice", advice)
-      .doc("whether 'grit advise' may go by it; false where settings are what the sand is, not how it is computed");
+      .doc("whether 'grit advise' may use the study; false if it varies model parameters, not numerical settings");
   p.check(
       [this](const Complain& complain) {
         if (!set.is_object()) complain("set", describe_value(set), "an object of values by JSON pointer");
         if (settings.empty()) complain("settings", "none", "at least one");
-        if (figures.empty()) complain("figures", "none", "at least one");
+        if (metrics.empty()) complain("metrics", "none", "at least one");
       },
-      {"set", "settings", "figures"});
+      {"set", "settings", "metrics"});
   p.check([this](const Complain& complain) { check_pointers(*this, complain); }, {"settings", "seeds"});
 }
 

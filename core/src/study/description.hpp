@@ -1,4 +1,4 @@
-// A study of speed against accuracy, typed: one scene, settings that vary, and the figures that count.
+// Description of a study of speed against accuracy: one scene, varied settings, and metrics.
 #pragma once
 
 #include <cstdint>
@@ -14,46 +14,46 @@
 
 namespace grit {
 
-/// What is taken from a run. Channels are named "group/channel", as in series.h5.
-struct MaximumFigure {
+/// Metrics of a run. Channels are named "probe/channel", as in series.h5.
+struct MaximumMetric {
   static constexpr const char* type_name = "maximum";
   void declare(Parameters&) {}
 };
-struct PlaceOfMaximumFigure {
-  static constexpr const char* type_name = "place-of-maximum";
+struct PositionOfMaximumMetric {
+  static constexpr const char* type_name = "position-of-maximum";
   void declare(Parameters&) {}
 };
-struct MinimumFigure {
+struct MinimumMetric {
   static constexpr const char* type_name = "minimum";
   void declare(Parameters&) {}
 };
-struct LastFigure {
+struct LastMetric {
   static constexpr const char* type_name = "last";
   void declare(Parameters&) {}
 };
-struct MeanFigure {
+struct MeanMetric {
   static constexpr const char* type_name = "mean";
-  double share = 0.2;
+  double fraction = 0.2;
   void declare(Parameters& p);
 };
-struct ValueFigure {
+struct ValueMetric {
   static constexpr const char* type_name = "value";
   double at = 0;
   void declare(Parameters& p);
 };
-struct CurveFigure {
+struct CurveMetric {
   static constexpr const char* type_name = "curve";
   void declare(Parameters&) {}
 };
-struct ProfileFigure {
+struct ProfileMetric {
   static constexpr const char* type_name = "profile";
   void declare(Parameters&) {}
 };
 
-struct FigureDescription {
-  OneOf<MaximumFigure, PlaceOfMaximumFigure, MinimumFigure, LastFigure, MeanFigure, ValueFigure, CurveFigure,
-        ProfileFigure>
-      what{"figure"};
+struct MetricDescription {
+  OneOf<MaximumMetric, PositionOfMaximumMetric, MinimumMetric, LastMetric, MeanMetric, ValueMetric, CurveMetric,
+        ProfileMetric>
+      what{"metric"};
   std::string of, against;
   std::optional<double> scale, value;
   std::optional<ReferenceCurve> curve;
@@ -63,7 +63,7 @@ struct FigureDescription {
 };
 
 struct SettingDescription {
-  std::string about;
+  std::string doc;
   std::vector<std::string> pointers;
   Description values = Description::array();
   std::vector<std::string> labels;
@@ -89,9 +89,9 @@ struct StudyDescription {
   Description set = Description::object();
   std::map<std::string, SettingDescription> settings;
   SeedsDescription seeds;
-  std::map<std::string, FigureDescription> figures;
+  std::map<std::string, MetricDescription> metrics;
   double tolerance = 0.05;
-  bool advice = true;  ///< whether descriptions may be advised by it
+  bool advice = true;  ///< whether `grit advise` may use it
 
   void declare(Parameters& p);
 };

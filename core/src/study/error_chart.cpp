@@ -9,12 +9,12 @@
 #include "format/number.hpp"
 #include "output/colours.hpp"
 #include "output/svg.hpp"
-#include "study/chart_words.hpp"
+#include "study/study_sentences.hpp"
 
 namespace grit {
 namespace {
 
-/// A logarithmic axis from power to power, or to 2 and 5 where that is shorter.
+/// A logarithmic axis with limits at 1, 2 or 5 times a power of ten.
 class LogAxis {
  public:
   LogAxis(double low, double high, double from, double to) : from_(from), to_(to) {
@@ -29,8 +29,8 @@ class LogAxis {
     const bool dense = high_ - low_ < 2.4;
     for (double power = std::floor(low_); power <= high_ + 1e-9; ++power)
       for (const double lead : {1.0, 2.0, 5.0}) {
-        const double place = power + std::log10(lead);
-        if ((dense || lead == 1) && place >= low_ - 1e-9 && place <= high_ + 1e-9)
+        const double exponent = power + std::log10(lead);
+        if ((dense || lead == 1) && exponent >= low_ - 1e-9 && exponent <= high_ + 1e-9)
           all.push_back(lead * std::pow(10, power));
       }
     return all;
@@ -48,16 +48,16 @@ class LogAxis {
   double low_, high_, from_, to_;
 };
 
-/// Error of one figure, or of the worst, against cost.
+/// Error of one metric, or of the worst metric, against cost.
 class ErrorChart {
  public:
-  /// `figure`: empty for the worst of each variant.
-  ErrorChart(const Chart& chart, std::string figure) : chart_(chart), figure_(std::move(figure)) {}
+  /// `metric`: empty for the worst of each variant.
+  ErrorChart(const StudyResult& result, std::string metric) : result_(result), metric_(std::move(metric)) {}
 
   std::string svg() const {
     Svg svg(width, height, title(), "");
-    double least = chart_.study.tolerance, largest = chart_.study.tolerance, cheapest = 1e300, dearest = 0;
-    for (const VariantResult& one : chart_.variants) {
+    double least = result_.study.tolerance, largest = result_.study.tolerance, cheapest = 1e300, dearest = 0;
+    for (const VariantResult& one : result_.variants) {
       if (one.core_seconds > 0)
         cheapest = std::min(cheapest, one.core_seconds), dearest = std::max(dearest, one.core_seconds);
       if (!one.complete()) continue;
@@ -67,13 +67,13 @@ class ErrorChart {
     }
     if (dearest == 0) return "";
     const double floor =
-        finite(reference().scatter) * std::sqrt(2.0 / static_cast<double>(chart_.study.seeds.values.size()));
+        finite(reference().scatter) * std::sqrt(2.0 / static_cast<double>(result_.study.seeds.values.size()));
     if (floor > 0) least = std::min(least, 0.7 * floor);
     const LogAxis x(0.9 * cheapest, 1.1 * dearest, left, right), y(std::max(least, 1e-6), largest, bottom, top);
 
     if (floor > 0) {
       svg.rectangle({left, y(floor)}, right - left, bottom - y(floor), "class=\"floor\"");
-      svg.text({left + 6, bottom - 8}, "differences between samples: " + percent(floor), "class=\"small\"");
+      svg.text({left + 6, bottom - 8}, "scatter between samples: " + percent(floor), "class=\"small\"");
     }
     for (const double mark : x.marks()) {
       svg.line({x(mark), top}, {x(mark), bottom}, "class=\"grid\"");
@@ -85,13 +85,13 @@ class ErrorChart {
     }
     svg.line({left, bottom}, {right, bottom}, "class=\"frame\"");
     svg.line({left, top}, {left, bottom}, "class=\"frame\"");
-    svg.line({left, y(chart_.study.tolerance)}, {right, y(chart_.study.tolerance)}, "class=\"wish\"");
-    svg.text({right - 6, y(chart_.study.tolerance) - 6}, "tolerance " + percent(chart_.study.tolerance),
+    svg.line({left, y(result_.study.tolerance)}, {right, y(result_.study.tolerance)}, "class=\"wish\"");
+    svg.text({right - 6, y(result_.study.tolerance) - 6}, "tolerance " + percent(result_.study.tolerance),
              "class=\"small e\"");
     svg.text({left - 50, top - 14}, title(), "class=\"axis\"");
-    svg.text({(left + right) / 2, bottom + 40}, "core-seconds of one run", "class=\"axis m\"");
+    svg.text({(left + right) / 2, bottom + 40}, "core-seconds per run", "class=\"axis m\"");
     front(svg, x, y);
-    for (std::size_t i = chart_.variants.size(); i-- > 0;) point(svg, x, y, i);  // the usual, which is first, on top
+    for (std::size_t i = result_.variants.size(); i-- > 0;) point(svg, x, y, i);  // the usual variant, number 1, on top
     return std::move(svg).finish();
   }
 
@@ -100,25 +100,25 @@ class ErrorChart {
 
   static double finite(double value) { return std::isfinite(value) ? value : 0; }
   const Deviation& of(const VariantResult& one) const {
-    return figure_.empty() ? one.of_worst() : one.deviations.at(figure_);
+    return metric_.empty() ? one.of_worst() : one.deviations.at(metric_);
   }
-  /// Of the finest: its scatter; of several figures the largest.
+  /// Scatter of the finest variant; the largest if there are several metrics.
   Deviation reference() const {
     Deviation largest;
     largest.scatter = 0;
-    if (chart_.finest().complete())
-      for (const auto& [name, one] : chart_.finest().deviations)
-        if (figure_.empty() || figure_ == name) largest.scatter = std::max(largest.scatter, finite(one.scatter));
+    if (result_.finest().complete())
+      for (const auto& [name, one] : result_.finest().deviations)
+        if (metric_.empty() || metric_ == name) largest.scatter = std::max(largest.scatter, finite(one.scatter));
     return largest;
   }
   std::string title() const {
-    const std::string error = word_for_error(chart_.study);
-    return figure_.empty() ? "largest " + error + " of all figures" : error + " of " + figure_;
+    const std::string error = word_for_error(result_.study);
+    return metric_.empty() ? "largest " + error + " of all metrics" : error + " of " + metric_;
   }
 
   void front(Svg& svg, const LogAxis& x, const LogAxis& y) const {
     std::vector<const VariantResult*> all;
-    for (const VariantResult& one : chart_.variants)
+    for (const VariantResult& one : result_.variants)
       if (one.complete() && of(one).error > 0) all.push_back(&one);
     std::ranges::sort(all, {}, &VariantResult::core_seconds);
     std::vector<Point> points;
@@ -129,9 +129,9 @@ class ErrorChart {
       least = of(*one).error;
       points.push_back({x(one->core_seconds), y(least)});
     }
-    // The finest, which others are compared with, is exact and at the foot of the chart.
-    if (const VariantResult& finest = chart_.finest(); !points.empty() && finest.complete() && of(finest).error <= 0 &&
-                                                       finest.core_seconds > all.front()->core_seconds) {
+    // The finest variant is the reference: its error is 0, at the bottom of the chart.
+    if (const VariantResult& finest = result_.finest(); !points.empty() && finest.complete() && of(finest).error <= 0 &&
+                                                        finest.core_seconds > all.front()->core_seconds) {
       const double across = std::max(x(finest.core_seconds), points.back().x);
       points.push_back({across, points.back().y}), points.push_back({across, bottom});
     }
@@ -139,7 +139,7 @@ class ErrorChart {
   }
 
   void point(Svg& svg, const LogAxis& x, const LogAxis& y, std::size_t i) const {
-    const VariantResult& one = chart_.variants[i];
+    const VariantResult& one = result_.variants[i];
     if (one.core_seconds == 0 && one.complete()) return;
     const std::string number = std::to_string(i + 1);
     if (!one.complete()) {
@@ -150,7 +150,7 @@ class ErrorChart {
       return;
     }
     const double across = x(one.core_seconds), error = of(one).error, spread = finite(of(one).standard_error);
-    const std::string look = fmt::format("style=\"fill:{0};stroke:{0}\"", colour_of(chart_, one));
+    const std::string look = fmt::format("style=\"fill:{0};stroke:{0}\"", colour_of(result_, one));
     svg.open_group("");
     const bool zero = error <= 0;
     const double down = zero ? bottom : y(error);
@@ -161,21 +161,23 @@ class ErrorChart {
     svg.close_group();
   }
 
-  const Chart& chart_;
-  std::string figure_;
+  const StudyResult& result_;
+  std::string metric_;
 };
 
 }  // namespace
 
-std::string error_chart(const Chart& chart, const std::string& figure) { return ErrorChart(chart, figure).svg(); }
+std::string error_chart(const StudyResult& result, const std::string& metric) {
+  return ErrorChart(result, metric).svg();
+}
 
-const char* colour_of(const Chart& chart, const VariantResult& result) {
+const char* colour_of(const StudyResult& result, const VariantResult& outcome) {
   std::size_t k = 0, colour = 0, differing = 0;
-  for (const auto& [name, setting] : chart.study.settings) {
-    if (result.variant.levels[k] != setting.usual_level()) ++differing, colour = k % (series_colours.size() - 1);
+  for (const auto& [name, setting] : result.study.settings) {
+    if (outcome.variant.levels[k] != setting.usual_level()) ++differing, colour = k % (series_colours.size() - 1);
     ++k;
   }
-  // Variants that vary several settings, or none, have the last.
+  // Variants with several changed settings, or none, get the last colour.
   return series_colours[differing == 1 ? colour : series_colours.size() - 1];
 }
 

@@ -1,16 +1,16 @@
-// Error against cost, drawn.
+// Plots error against cost.
 #pragma once
 
 #include <string>
 
-#include "study/chart.hpp"
+#include "study/study_result.hpp"
 
 namespace grit {
 
-/// SVG of one figure's errors, or of the largest of each variant where `figure` is empty. Empty if nothing has a cost.
-std::string error_chart(const Chart& chart, const std::string& figure);
+/// SVG of one metric's errors, or of the largest error of each variant if `metric` is empty. Empty without any cost.
+std::string error_chart(const StudyResult& result, const std::string& metric);
 
-/// The colour of a variant: that of the setting which it varies alone.
-const char* colour_of(const Chart& chart, const VariantResult& result);
+/// The colour of a variant: that of the only setting that it varies.
+const char* colour_of(const StudyResult& result, const VariantResult& outcome);
 
 }  // namespace grit

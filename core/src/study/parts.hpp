@@ -1,4 +1,4 @@
-// What a description is made of, whatever its numbers: by that a study of another scene is told from one of the same.
+// Components of a description without their parameters. They decide whether a study is of the same kind of scene.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace grit {
 
-/// One line each, sorted: the law of contacts, bodies, walls and engines with their types, stages, and axes along which
-/// the domain repeats. `resolved` has all its defaults, as that of run.json.
+/// One line each, sorted: the contact law; bodies, walls and engines with their types; stages; periodic axes.
+/// `resolved` includes all defaults, as in run.json.
 std::vector<std::string> parts_of(const Description& resolved);
 
-/// Whether a seed decides anything of it: places and sizes of a cloud, orientations of clumps that a file has places
-/// of.
+/// Whether the seed has an effect: on positions and sizes of a cloud, or on orientations of clumps whose positions come
+/// from a file.
 bool is_random(const Description& resolved);
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Which runs a study asks for.
+// The runs of a study.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,16 @@ namespace grit {
 /// One combination of levels, in the order of the study's settings.
 struct Variant {
   std::vector<std::size_t> levels;
-  std::string name;  ///< what differs from the usual, e.g. "safety=0.4"; "usual"; "finest"
+  std::string name;  ///< the differences from the usual levels, e.g. "safety=0.4"; "usual"; "finest"
 };
 
-/// The usual, then what varies, the finest last; none twice.
+/// The usual variant first, the finest last, without duplicates.
 std::vector<Variant> variants(const StudyDescription& study);
 
-/// What `grit run --set` is given for one sample of a variant.
+/// The values of `grit run --set` for one sample of a variant.
 std::vector<std::string> sets_of(const StudyDescription& study, const Variant& variant, double seed);
 
-/// Where its results go, below the study's own folder.
+/// The folder of a sample's results, relative to that of the study.
 std::filesystem::path folder_of(const Variant& variant, double seed);
 
 }  // namespace grit

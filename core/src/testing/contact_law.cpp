@@ -8,7 +8,7 @@ int contact_law_contract() { return 0; }
 
 namespace {
 
-TEST_P(ContactLawContract, RemembersOnlyWhatItsParametersNeed) {
+TEST_P(ContactLawContract, KeepsOnlyTheHistoryThatItsParametersNeed) {
   EXPECT_EQ(law_->state().size(), GetParam().state_size);
   for (const StateField& field : law_->state()) {
     EXPECT_EQ(std::abs(field.swap), 1);
@@ -55,13 +55,13 @@ std::unique_ptr<ContactLaw> single_law(LawValues values) {
 }
 
 TEST_P(ContactLawContract, SinglePrecisionIsThatOfItsScalarTwinAndNearDouble) {
-  if (!has_single_precision()) GTEST_SKIP() << "the law is for double precision alone";
+  if (!has_single_precision()) GTEST_SKIP() << "the law has no single precision";
   const auto fields = law_->state();
   auto single = single_law(GetParam().values);
   ASSERT_EQ(single->state().size(), fields.size());
   EXPECT_EQ(law_->loop().precision, "double");
   EXPECT_EQ(single->loop().precision, "single");
-  // Some tens of roundings, each of a 2^24th; forces add up from 31 steps.
+  // Some tens of rounding errors of 2^-24 each; forces accumulate over 31 steps.
   constexpr double eps = 5e-6;
   for (const bool periodic : {false, true})
     for (const bool materials : {false, true})
@@ -78,7 +78,7 @@ TEST_P(ContactLawContract, SinglePrecisionIsThatOfItsScalarTwinAndNearDouble) {
           ASSERT_EQ(lanes.touching(c), exact.touching(c));
           ASSERT_EQ(twin.touching(c), exact.touching(c));
           if (!exact.touching(c)) continue;
-          // Where spring and dashpot nearly cancel, what is left has the rounding of either.
+          // If spring and dashpot nearly cancel, their sum has the rounding errors of each.
           const double force = std::max(scale(exact, c, "N"), spring_force(exact, c));
           const auto scale_of = [&](const std::string& unit) {
             return unit == "N" ? force : unit == "N m" ? force * exact.position(exact.a(c)).w : scale(exact, c, unit);
@@ -93,16 +93,16 @@ TEST_P(ContactLawContract, SinglePrecisionIsThatOfItsScalarTwinAndNearDouble) {
           }
           furthest = std::max(furthest, (vec(lanes.row(c).force) - vec(exact.row(c).force)).norm() / force);
         }
-        EXPECT_GT(furthest, 1e-9) << "the arithmetic was double";
+        EXPECT_GT(furthest, 1e-9) << "evaluated in double precision";
       }
 }
 
-TEST_P(ContactLawContract, BlockWhereNoneTouchesSleepsUntilOneCan) {
+TEST_P(ContactLawContract, BlockWithoutContactsIsSkippedUntilOneIsPossible) {
   sleeps_until_one_can(*law_);
   if (has_single_precision()) sleeps_until_one_can(*single_law(GetParam().values));
 }
 
-TEST_P(ContactLawContract, LanesThatDoNotTouchAreZero) {
+TEST_P(ContactLawContract, LanesWithoutContactAreZero) {
   Pairs pairs = scene(true, true);
   for (std::size_t c = 0; c < pairs.places(); ++c) {
     const ContactRow& row = pairs.row(c);
@@ -124,7 +124,7 @@ TEST_P(ContactLawContract, LanesThatDoNotTouchAreZero) {
     EXPECT_TRUE(vec(pairs.sum(i).force).allFinite() && vec(pairs.sum(i).moment).allFinite());
 }
 
-TEST_P(ContactLawContract, PlaceInBlockDoesNotMatter) {
+TEST_P(ContactLawContract, PositionInBlockDoesNotMatter) {
   const auto result = [&](std::size_t place, bool company) {
     random_.seed(7);
     Pairs pairs(*law_, dt_);
@@ -181,7 +181,7 @@ TEST_P(ContactLawContract, WithinAChunkBothBodiesHaveTheirSums) {
   }
 }
 
-TEST_P(ContactLawContract, AskedAgainAnswersTheSameAndRemembersNothingNew) {
+TEST_P(ContactLawContract, EvaluatedAgainGivesTheSameForceAndHistory) {
   const auto fields = law_->state();
   Pairs pairs = scene(true, true);
   Pairs once = pairs;
@@ -253,7 +253,7 @@ TEST_P(ContactLawContract, OrderOfTheTwoDoesNotMatter) {
       continue;
     }
     other.pair(one.b(c), one.a(c));
-    if (one.touching(c)) other.mark_touching(c);
+    if (one.touching(c)) other.mark_contacts(c);
     for (std::size_t f = 0; f < fields.size(); ++f) other.state(c, f) = fields[f].swap * one.state(c, f);
   }
   one.step(), other.step();
@@ -269,7 +269,7 @@ TEST_P(ContactLawContract, OrderOfTheTwoDoesNotMatter) {
   }
 }
 
-TEST_P(ContactLawContract, PairThatTurnsAsOneBodyDoesNotSlip) {
+TEST_P(ContactLawContract, PairThatRotatesAsOneBodyDoesNotSlip) {
   Pairs pairs = two(0.05);
   slip(pairs, 2e-3), roll(pairs, 1e-3);
   const auto fields = law_->state();
@@ -317,7 +317,7 @@ TEST_P(ContactLawContract, NeverAttracts) {
   }
 }
 
-/// Parameters of materials and interfaces that take a spring away where they are nothing.
+/// Parameters of materials and interfaces that remove a spring if they are 0.
 std::vector<std::string> switches(const LawValues& values) {
   const Stiffness on = make_law(values)->stiffness({1, 0.7, 1, 1, 0.02}, 0, 0);
   Parameters parameters;
@@ -333,7 +333,7 @@ std::vector<std::string> switches(const LawValues& values) {
   return names;
 }
 
-/// A spring that was taken away for a while has let go, whether the others of its law go on or not.
+/// A spring that was removed for some time restarts unloaded, whether or not the other springs of the law were kept.
 TEST_P(ContactLawContract, SpringsThatWereOffComeBackUnloaded) {
   const Stiffness k = law_->stiffness({1, 0.7, 1, 1, 0.02}, 0, 0);
   const std::vector<std::string> names = switches(GetParam().values);
@@ -360,7 +360,7 @@ TEST_P(ContactLawContract, SpringsOnWallsThatWereOffComeBackUnloaded) {
   for (const std::string& name : switches(GetParam().values)) {
     const auto off = make_law(without(GetParam().values, name));
     WallPair wall(*law_, {.radius = 0.8, .spin = {30, -20, 40}}, dt_);
-    wall.touch.overlap = 0.01;
+    wall.contact.overlap = 0.01;
     wall.evaluate();
     set(wall.spin, Vec3::Zero());
     wall.evaluate();
@@ -374,7 +374,7 @@ TEST_P(ContactLawContract, SpringsOnWallsThatWereOffComeBackUnloaded) {
 }
 
 TEST_P(ContactLawContract, LimitsHold) {
-  if (!GetParam().usual_limits) GTEST_SKIP() << "the law has limits of its own";
+  if (!GetParam().usual_limits) GTEST_SKIP() << "the law has other limits";
   Pairs pairs = scene(false, true);
   for (std::size_t c = 0; c < pairs.places(); ++c) {
     if (!pairs.touching(c)) continue;
@@ -389,7 +389,7 @@ TEST_P(ContactLawContract, LimitsHold) {
 }
 
 TEST_P(ContactLawContract, LimitsAreReached) {
-  if (!GetParam().usual_limits) GTEST_SKIP() << "the law has limits of its own";
+  if (!GetParam().usual_limits) GTEST_SKIP() << "the law has other limits";
   Pairs pairs = two(0.01);
   const PairSize at = size(pairs, 0.01);
   const Stiffness k = law_->stiffness(at, 0, 0);
@@ -410,7 +410,7 @@ TEST_P(ContactLawContract, LimitsAreReached) {
   }
 }
 
-TEST_P(ContactLawContract, SeparationForgets) {
+TEST_P(ContactLawContract, SeparationClearsTheHistory) {
   Pairs pairs = two(0.02), fresh = two(0.02);
   slip(pairs, 1e-3), roll(pairs, 1e-3), twist(pairs, 1e-3);
   EXPECT_TRUE(pairs.touching(0));
@@ -471,7 +471,7 @@ TEST_P(ContactLawContract, StiffnessIsTheSlopeOfTheForce) {
   }
 }
 
-/// Resistance points against what causes it.
+/// Forces and moments oppose the motion that causes them.
 TEST_P(ContactLawContract, ResistanceOpposesMotion) {
   const Stiffness k = law_->stiffness(PairSize{1, 0.7, 1, 1, 0.02}, 0, 0);
   Pairs moved = two(0.02), rolled = moved, twirled = moved;
@@ -489,7 +489,7 @@ TEST_P(ContactLawContract, ResistanceOpposesMotion) {
 }
 
 TEST_P(ContactLawContract, ClosedCyclesLeaveNoForceAndYieldNoEnergy) {
-  // Shear alone, with the normal in phase and against it, and a quarter turn behind.
+  // Shear only; with normal motion in phase, in antiphase, and with a phase lag of 90 degrees.
   for (const double press : {0.0, 1e-3, -1e-3})
     for (const double lag : {0.0, 0.25}) {
       Pairs pairs = two(0.02);
@@ -511,14 +511,14 @@ TEST_P(ContactLawContract, ClosedCyclesLeaveNoForceAndYieldNoEnergy) {
         largest = std::max(largest, shear(pairs, 0).norm());
       }
       rest(pairs), pairs.step();
-      // Out and back on one line, the spring is what it was, unless its stiffness follows the overlap.
+      // Back and forth on one line, the spring returns to its state, unless its stiffness depends on the overlap.
       if (press == 0 || (lag == 0 && !stiffness_follows_overlap())) {
-        // A stiffness that follows the overlap follows its round-off, too.
+        // A stiffness that depends on the overlap includes its round-off.
         const double closed = stiffness_follows_overlap() ? 1e-11 : 1e-12;
         EXPECT_LE(shear(pairs, 0).norm(), closed * largest + 1e-9 * closed) << press;
       }
-      // The increment uses radii, the force the branch: where both overlap and shear go round, they differ by
-      // 1 - branch / radii, of the second order.
+      // Slip increments use the radii, forces the branch: if both overlap and shear change in a cycle, they differ by
+      // the factor 1 - branch / radii, an effect of second order.
       EXPECT_LE(work, (0.1 * std::abs(press) + 1e-9) * turnover) << press << ' ' << lag;
     }
   Pairs pairs = two(0.02);
@@ -542,10 +542,10 @@ TEST_P(ContactLawContract, WallIsLikeAFixedSphere) {
                .material = ratio == 1 ? std::uint8_t{0} : static_cast<std::uint8_t>(surface)});
     pairs.pair(0, 1);
     WallPair wall(*law_, {.radius = radius, .velocity = velocity, .spin = spin, .mass = 1.3}, dt_);
-    wall.touch.normal = wall.touch.normal_before = Vec3::UnitZ();
-    wall.touch.overlap = overlap;
-    // A wall that takes the grain's stiffness does so whatever its own material.
-    wall.touch.material = ratio == 1 ? 0 : static_cast<std::uint32_t>(surface);
+    wall.contact.normal = wall.contact.normal_before = Vec3::UnitZ();
+    wall.contact.overlap = overlap;
+    // For laws where a wall takes the stiffness of the grain, its own material does not matter.
+    wall.contact.material = ratio == 1 ? 0 : static_cast<std::uint32_t>(surface);
     for (int step = 0; step < 3; ++step) pairs.evaluate(), wall.evaluate();
     const double force = vec(pairs.row(0).force).norm(), eps = ratio == 1 ? 1e-12 : 1e-5;
     EXPECT_LE((vec(pairs.row(0).force) - vec(wall.row.force)).norm(), eps * force);
@@ -566,24 +566,24 @@ TEST_P(ContactLawContract, StiffnessAndEnergyOfAWallFitItsForces) {
         .radius_a = radius, .radius_b = radius, .inverse_mass_a = 1, .inverse_mass_b = 0, .overlap = overlap};
     ASSERT_TRUE(size.wall);
     const Stiffness k = law_->stiffness(size, 0, surface);
-    const auto touch = [&](double at, const Vec3& spin, const Vec3& wall_velocity) {
+    const auto contact = [&](double at, const Vec3& spin, const Vec3& wall_velocity) {
       WallPair wall(*law_, {.radius = radius, .spin = spin}, dt_);
-      wall.touch.overlap = at, wall.touch.material = static_cast<std::uint32_t>(surface);
-      wall.touch.velocity = wall_velocity;
+      wall.contact.overlap = at, wall.contact.material = static_cast<std::uint32_t>(surface);
+      wall.contact.velocity = wall_velocity;
       wall.evaluate();
-      set(wall.spin, Vec3::Zero()), wall.touch.velocity.setZero();
+      set(wall.spin, Vec3::Zero()), wall.contact.velocity.setZero();
       wall.evaluate();
       return wall;
     };
     const Vec3 none = Vec3::Zero();
-    const auto normal = [&](double at) { return touch(at, none, none).row.force.w; };
+    const auto normal = [&](double at) { return contact(at, none, none).row.force.w; };
     const double h = 1e-4 * overlap;
     EXPECT_NEAR((normal(overlap + h) - normal(overlap - h)) / (2 * h), k.normal, 1e-6 * k.normal);
-    auto slid = touch(overlap, none, {little / dt_, 0, 0});
+    auto slid = contact(overlap, none, {little / dt_, 0, 0});
     EXPECT_NEAR(-slid.row.force.x / little, k.shear, 1e-9 * k.shear);
-    auto rolled = touch(overlap, {0, -little / dt_, 0}, {0, 0, 0});
+    auto rolled = contact(overlap, {0, -little / dt_, 0}, {0, 0, 0});
     EXPECT_NEAR(-rolled.law_moment().y() / little, k.rolling, 1e-9 * k.rolling);
-    auto twirled = touch(overlap, {0, 0, -little / dt_}, none);
+    auto twirled = contact(overlap, {0, 0, -little / dt_}, none);
     EXPECT_NEAR(-twirled.law_moment().z() / little, k.twisting, 1e-9 * k.twisting);
     PairSize deeper = size, flatter = size;
     deeper.overlap += h, flatter.overlap -= h;
@@ -597,21 +597,21 @@ TEST_P(ContactLawContract, StiffnessAndEnergyOfAWallFitItsForces) {
   }
 }
 
-TEST_P(ContactLawContract, GrainCarriedByATurningWallDoesNotSlip) {
+TEST_P(ContactLawContract, GrainCarriedByARotatingWallDoesNotSlip) {
   WallPair wall(*law_, {.radius = 1}, dt_);
   const double overlap = 0.02, angle = 1e-4;
   const Eigen::AngleAxisd turn(angle, Vec3::UnitY());
   Vec3 normal = -Vec3::UnitZ(), centre(5, 0, 3);
-  wall.touch.overlap = overlap;
+  wall.contact.overlap = overlap;
   for (int step = 0; step < 12000; ++step) {
     const Vec3 next = turn * centre;
-    wall.touch.normal_before = normal, normal = turn * normal, wall.touch.normal = normal;
+    wall.contact.normal_before = normal, normal = turn * normal, wall.contact.normal = normal;
     set(wall.velocity, (next - centre) / dt_), set(wall.spin, angle / dt_ * Vec3::UnitY());
     centre = next;
-    wall.touch.spin = angle / dt_ * Vec3::UnitY();
-    // At the middle of the step, as the sphere's velocity is.
+    wall.contact.spin = angle / dt_ * Vec3::UnitY();
+    // At the middle of the step, as the velocity of the sphere.
     const Vec3 point = centre + (1 - overlap) * normal;
-    wall.touch.velocity = (point - turn.inverse() * point) / dt_;
+    wall.contact.velocity = (point - turn.inverse() * point) / dt_;
     wall.evaluate();
   }
   const Vec3 force = vec(wall.row.force), slip = force - force.dot(normal) * normal;

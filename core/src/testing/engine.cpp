@@ -18,25 +18,24 @@ TEST_P(EngineContract, DocumentsItsParameters) {
   }
 }
 
-TEST_P(EngineContract, BeginsAsItsLike) {
+TEST_P(EngineContract, StartsIdentically) {
   const auto other = GetParam().make();
   for (int look = 0; look < 6; ++look)
     EXPECT_TRUE(same_bits(acted(*engine_, later(world_, look)), acted(*other, later(world_, look)))) << look;
 }
 
-/// What it remembers from one step for the next must be in remember(): an engine that goes on from a checkpoint does
-/// the same as the one that was not stopped.
-TEST_P(EngineContract, GoesOnFromACheckpoint) {
+/// State kept between steps must be in serialize(): a restored engine acts exactly as one that was not interrupted.
+TEST_P(EngineContract, ContinuesFromACheckpoint) {
   const int looks = 12, stops_after = 6;
   std::shared_ptr<Engine> goes_on;
   for (int look = 0; look < looks; ++look) {
     const FakeWorld now = later(world_, look);
     const auto expected = acted(*engine_, now);
-    if (goes_on) ASSERT_TRUE(same_bits(acted(*goes_on, now), expected)) << "look " << look;
+    if (goes_on) ASSERT_TRUE(same_bits(acted(*goes_on, now), expected)) << "sample " << look;
     if (look != stops_after) continue;
     goes_on = GetParam().make();
-    restore_memory(*goes_on, saved_memory(*engine_));
-    EXPECT_TRUE(saved_memory(*goes_on) == saved_memory(*engine_));
+    restore_state(*goes_on, saved_state(*engine_));
+    EXPECT_TRUE(saved_state(*goes_on) == saved_state(*engine_));
   }
 }
 

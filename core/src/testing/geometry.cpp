@@ -12,30 +12,30 @@ TEST_P(GeometryContract, AppendsInTheOrderOfSpheresThenFeatures) {
   std::vector<Sphere> spheres;
   for (std::uint32_t i = 0; i < samples; ++i) {
     spheres.push_back(draw_sphere());
-    spheres.back().body = samples - i;  // the order of the spheres counts, not that of their numbers
+    spheres.back().body = samples - i;  // the order of the spheres matters, not that of their ids
   }
-  const Touch first{Vec3::UnitX(), 1, samples + 1, 0};
-  std::vector<Touch> touches{first};
-  shape().touch({}, spheres, touches);
-  ASSERT_GT(touches.size(), samples / 100u) << "too few samples touch";
-  EXPECT_EQ(touches.front().body, first.body) << "touches are appended";
-  for (std::size_t i = 1; i < touches.size(); ++i) {
-    EXPECT_GE(touches[i - 1].body, touches[i].body);
-    if (touches[i - 1].body == touches[i].body) {
-      EXPECT_LT(touches[i - 1].feature, touches[i].feature);
+  const SurfaceContact first{Vec3::UnitX(), 1, samples + 1, 0};
+  std::vector<SurfaceContact> contacts{first};
+  shape().find_contacts({}, spheres, contacts);
+  ASSERT_GT(contacts.size(), samples / 100u) << "too few samples are in contact";
+  EXPECT_EQ(contacts.front().body, first.body) << "contacts are appended";
+  for (std::size_t i = 1; i < contacts.size(); ++i) {
+    EXPECT_GE(contacts[i - 1].body, contacts[i].body);
+    if (contacts[i - 1].body == contacts[i].body) {
+      EXPECT_LT(contacts[i - 1].feature, contacts[i].feature);
     }
   }
 }
 
-TEST_P(GeometryContract, TouchesManySpheresAsItDoesEachByItself) {
+TEST_P(GeometryContract, FindsContactsOfManySpheresAsOfEachAlone) {
   std::vector<Sphere> spheres;
-  std::vector<Touch> one_by_one, together;
+  std::vector<SurfaceContact> one_by_one, together;
   for (std::uint32_t i = 0; i < samples; ++i) {
     spheres.push_back(draw_sphere());
     spheres.back().body = i;
-    shape().touch({}, {&spheres.back(), 1}, one_by_one);
+    shape().find_contacts({}, {&spheres.back(), 1}, one_by_one);
   }
-  shape().touch({}, spheres, together);
+  shape().find_contacts({}, spheres, together);
   ASSERT_EQ(together.size(), one_by_one.size());
   for (std::size_t i = 0; i < together.size(); ++i) {
     EXPECT_EQ(together[i].body, one_by_one[i].body);
@@ -45,14 +45,14 @@ TEST_P(GeometryContract, TouchesManySpheresAsItDoesEachByItself) {
   }
 }
 
-TEST_P(GeometryContract, EachTouchLiesOnTheSurfaceAlongItsUnitNormal) {
+TEST_P(GeometryContract, EachContactLiesOnTheSurfaceAlongItsUnitNormal) {
   for (int i = 0; i < samples; ++i) {
     const Sphere sphere = draw_sphere();
-    for (const Touch& touch : touches_of(shape(), sphere.centre, sphere.radius)) {
-      EXPECT_NEAR(touch.normal.norm(), 1, 1e-15);
-      EXPECT_GT(touch.overlap, 0);
+    for (const SurfaceContact& contact : contacts_of(shape(), sphere.centre, sphere.radius)) {
+      EXPECT_NEAR(contact.normal.norm(), 1, 1e-15);
+      EXPECT_GT(contact.overlap, 0);
       if (!one().in_front(sphere.centre)) continue;
-      const Vec3 point = sphere.centre + (sphere.radius - touch.overlap) * touch.normal;
+      const Vec3 point = sphere.centre + (sphere.radius - contact.overlap) * contact.normal;
       EXPECT_LE(distance(point), one().facet_error + rounding());
     }
   }
@@ -61,15 +61,15 @@ TEST_P(GeometryContract, EachTouchLiesOnTheSurfaceAlongItsUnitNormal) {
 TEST_P(GeometryContract, NormalsPointIntoTheShape) {
   for (int i = 0; i < samples; ++i) {
     const Sphere sphere = draw_sphere();
-    for (const Touch& touch : touches_of(shape(), sphere.centre, sphere.radius)) {
-      const double step = 1e-3 * (sphere.radius - touch.overlap);
+    for (const SurfaceContact& contact : contacts_of(shape(), sphere.centre, sphere.radius)) {
+      const double step = 1e-3 * (sphere.radius - contact.overlap);
       if (step < 1e-6 * sphere.radius) continue;
-      const Vec3 closer = sphere.centre + step * touch.normal;
-      const auto after = touches_of(shape(), closer, sphere.radius);
-      const auto same =
-          std::find_if(after.begin(), after.end(), [&](const Touch& t) { return t.feature == touch.feature; });
+      const Vec3 closer = sphere.centre + step * contact.normal;
+      const auto after = contacts_of(shape(), closer, sphere.radius);
+      const auto same = std::find_if(after.begin(), after.end(),
+                                     [&](const SurfaceContact& t) { return t.feature == contact.feature; });
       ASSERT_NE(same, after.end());
-      EXPECT_NEAR(same->overlap, touch.overlap + step, rounding());
+      EXPECT_NEAR(same->overlap, contact.overlap + step, rounding());
     }
   }
 }
@@ -81,26 +81,26 @@ TEST_P(GeometryContract, OverlapIsRadiusLessDistance) {
     const Sphere sphere = draw_sphere();
     if (!one().in_front(sphere.centre)) continue;
     double overlap = 0;
-    for (const Touch& touch : touches_of(shape(), sphere.centre, sphere.radius))
-      overlap = std::max(overlap, touch.overlap);
+    for (const SurfaceContact& contact : contacts_of(shape(), sphere.centre, sphere.radius))
+      overlap = std::max(overlap, contact.overlap);
     EXPECT_NEAR(overlap, std::max(sphere.radius - distance(sphere.centre), 0.0), error) << sphere.centre.transpose();
     touching += overlap > 0;
   }
-  EXPECT_GT(touching, samples / 100) << "too few samples touch";
+  EXPECT_GT(touching, samples / 100) << "too few samples are in contact";
 }
 
-TEST_P(GeometryContract, NearNeverMissesATouch) {
+TEST_P(GeometryContract, NearNeverMissesAContact) {
   int touching = 0;
   for (int i = 0; i < samples; ++i) {
     const Sphere sphere = draw_sphere();
     const Pose pose = i % 2 == 0 ? Pose{} : draw_pose();
     const Vec3 centre = pose.to_world(sphere.centre);
-    if (touches_of(shape(), centre, sphere.radius, pose).empty()) continue;
+    if (contacts_of(shape(), centre, sphere.radius, pose).empty()) continue;
     ++touching;
     EXPECT_TRUE(shape().near(pose, centre, sphere.radius));
     EXPECT_TRUE(shape().near(pose, centre, 2 * sphere.radius));
   }
-  EXPECT_GT(touching, samples / 100) << "too few samples touch";
+  EXPECT_GT(touching, samples / 100) << "too few samples are in contact";
 }
 
 TEST_P(GeometryContract, NearIsTrueOfALargerSphereAroundOneThatIsNear) {
@@ -118,21 +118,21 @@ TEST_P(GeometryContract, NearIsTrueOfALargerSphereAroundOneThatIsNear) {
   EXPECT_GT(near, samples / 100) << "too few samples are near";
 }
 
-TEST_P(GeometryContract, NearIsWorthAsking) {
+TEST_P(GeometryContract, NearExcludesMostSpheres) {
   int far = 0;
   const double reach = 1e-3 * size();
   for (int i = 0; i < samples; ++i) far += !shape().near({}, draw(one().where.low, one().where.high), reach);
   EXPECT_GT(far, samples / 10);
 }
 
-TEST_P(GeometryContract, MovedShapeTouchesWhatTheInverselyMovedSphereTouches) {
+TEST_P(GeometryContract, MovedShapeHasTheContactsOfTheInverselyMovedSphere) {
   for (int i = 0; i < samples; ++i) {
     const Sphere sphere = draw_sphere();
     const Pose pose = draw_pose();
-    const auto here = touches_of(shape(), sphere.centre, sphere.radius);
-    const auto there = touches_of(shape(), pose.to_world(sphere.centre), sphere.radius, pose);
+    const auto here = contacts_of(shape(), sphere.centre, sphere.radius);
+    const auto there = contacts_of(shape(), pose.to_world(sphere.centre), sphere.radius, pose);
     const double tolerance = 4 * rounding();
-    const auto grazes = [&](const Touch& touch) { return touch.overlap < tolerance; };
+    const auto grazes = [&](const SurfaceContact& contact) { return contact.overlap < tolerance; };
     if (std::any_of(here.begin(), here.end(), grazes) || std::any_of(there.begin(), there.end(), grazes)) continue;
     ASSERT_EQ(here.size(), there.size()) << sphere.centre.transpose();
     for (std::size_t k = 0; k < here.size(); ++k) {
@@ -154,7 +154,7 @@ TEST_P(GeometryContract, BoundsHoldAllTriangles) {
     }
 }
 
-TEST_P(GeometryContract, SaysWhereItsPressureActs) {
+TEST_P(GeometryContract, DefinesAreaAndNormalOfItsPressure) {
   const double length = shape().normal().norm();
   EXPECT_GE(shape().area(), 0);
   EXPECT_TRUE(length == 0 || std::abs(length - 1) < 1e-15) << length;
@@ -163,50 +163,52 @@ TEST_P(GeometryContract, SaysWhereItsPressureActs) {
   }
 }
 
-// Overlap changes no faster than the centre moves; the normal no faster than the centre's direction seen from the
-// surface, or from where that is centred if it is hollow.
-TEST_P(GeometryContract, NothingJumpsOnTheWayAcross) {
+// The overlap changes at most as fast as the centre moves; the normal at most as fast as the direction of the centre
+// from the surface, or from the centre of curvature of a concave surface.
+TEST_P(GeometryContract, ContactsAreContinuousAlongPaths) {
   constexpr int steps = 2000;
-  for (const Way& way : one().across) {
+  for (const Path& way : one().across) {
     const double step = (way.to - way.from).norm() / steps, radius = one().radius;
-    std::vector<Touch> before;
+    std::vector<SurfaceContact> before;
     bool touched = false;
     for (int i = 0; i <= steps; ++i) {
-      const auto now = touches_of(shape(), way.from + i * (way.to - way.from) / steps, radius);
-      const auto compare = [&](const Touch& touch, const std::vector<Touch>& own, const std::vector<Touch>& others) {
-        const auto of = [](const std::vector<Touch>& touches, std::uint32_t feature) {
-          return std::find_if(touches.begin(), touches.end(), [&](const Touch& t) { return t.feature == feature; });
+      const auto now = contacts_of(shape(), way.from + i * (way.to - way.from) / steps, radius);
+      const auto compare = [&](const SurfaceContact& contact, const std::vector<SurfaceContact>& own,
+                               const std::vector<SurfaceContact>& others) {
+        const auto of = [](const std::vector<SurfaceContact>& contacts, std::uint32_t feature) {
+          return std::find_if(contacts.begin(), contacts.end(),
+                              [&](const SurfaceContact& t) { return t.feature == feature; });
         };
-        auto other = of(others, touch.feature);
+        auto other = of(others, contact.feature);
         if (other == others.end() && one().hands_on)
-          other = std::find_if(others.begin(), others.end(), [&](const Touch& t) {
-            return t.normal.dot(touch.normal) > 0.9 && of(own, t.feature) == own.end();
+          other = std::find_if(others.begin(), others.end(), [&](const SurfaceContact& t) {
+            return t.normal.dot(contact.normal) > 0.9 && of(own, t.feature) == own.end();
           });
         const double overlap = other == others.end() ? 0 : other->overlap;
-        EXPECT_LE(std::abs(touch.overlap - overlap), 1.001 * step + rounding())
-            << "feature " << touch.feature << ", step " << i;
+        EXPECT_LE(std::abs(contact.overlap - overlap), 1.001 * step + rounding())
+            << "feature " << contact.feature << ", step " << i;
         if (other != others.end()) {
-          const double off = radius - touch.overlap, pivot = std::min(off, one().hollow_radius - off);
-          EXPECT_LE((touch.normal - other->normal).norm(), 1.01 * step / pivot + 1e-12) << "step " << i;
+          const double off = radius - contact.overlap, pivot = std::min(off, one().hollow_radius - off);
+          EXPECT_LE((contact.normal - other->normal).norm(), 1.01 * step / pivot + 1e-12) << "step " << i;
         }
       };
       if (i > 0) {
-        for (const Touch& touch : now) compare(touch, now, before);
-        for (const Touch& touch : before) compare(touch, before, now);
+        for (const SurfaceContact& contact : now) compare(contact, now, before);
+        for (const SurfaceContact& contact : before) compare(contact, before, now);
       }
       touched = touched || !now.empty();
       before = now;
     }
-    EXPECT_TRUE(touched) << "a way that touches nothing tests nothing";
+    EXPECT_TRUE(touched) << "a path without contact tests nothing";
   }
 }
 
 TEST_P(GeometryContract, OneFeatureAlongAFlank) {
   constexpr int steps = 500;
-  for (const Way& way : one().flanks) {
+  for (const Path& way : one().flanks) {
     std::optional<std::uint32_t> feature;
     for (int i = 0; i <= steps; ++i) {
-      const auto now = touches_of(shape(), way.from + i * (way.to - way.from) / steps, one().radius);
+      const auto now = contacts_of(shape(), way.from + i * (way.to - way.from) / steps, one().radius);
       ASSERT_EQ(now.size(), 1u) << "step " << i;
       EXPECT_EQ(now.front().feature, feature.value_or(now.front().feature)) << "step " << i;
       feature = now.front().feature;
@@ -214,19 +216,19 @@ TEST_P(GeometryContract, OneFeatureAlongAFlank) {
   }
 }
 
-TEST_P(GeometryContract, AnswersSeveralThreadsAlike) {
+TEST_P(GeometryContract, GivesTheSameContactsInSeveralThreads) {
   std::vector<Sphere> spheres;
   for (int i = 0; i < samples; ++i) spheres.push_back(draw_sphere());
-  std::vector<std::vector<Touch>> touches(4);
+  std::vector<std::vector<SurfaceContact>> contacts(4);
   std::vector<std::thread> threads;
-  for (auto& mine : touches) threads.emplace_back([&] { shape().touch({}, spheres, mine); });
+  for (auto& mine : contacts) threads.emplace_back([&] { shape().find_contacts({}, spheres, mine); });
   for (auto& thread : threads) thread.join();
-  for (const auto& mine : touches) {
-    ASSERT_EQ(mine.size(), touches.front().size());
+  for (const auto& mine : contacts) {
+    ASSERT_EQ(mine.size(), contacts.front().size());
     for (std::size_t i = 0; i < mine.size(); ++i) {
-      EXPECT_EQ(mine[i].body, touches.front()[i].body);
-      EXPECT_EQ(mine[i].overlap, touches.front()[i].overlap);
-      EXPECT_EQ(mine[i].normal, touches.front()[i].normal);
+      EXPECT_EQ(mine[i].body, contacts.front()[i].body);
+      EXPECT_EQ(mine[i].overlap, contacts.front()[i].overlap);
+      EXPECT_EQ(mine[i].normal, contacts.front()[i].normal);
     }
   }
 }

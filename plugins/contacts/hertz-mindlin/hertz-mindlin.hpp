@@ -1,4 +1,4 @@
-// The law itself, apart from the plugin, so that tests see it.
+// The law, separate from the plugin for use in tests.
 #pragma once
 
 #include <cmath>
@@ -46,7 +46,7 @@ struct HertzMindlin : LawBase {
     L friction;
     L damping;  ///< 2 √(5/6) ζ
     L rolling, rolling_limit;
-    L curved;  ///< 1: b is a sphere, 0: b is a wall, flat at the scale of the contact
+    L curved;  ///< 1: b is a sphere; 0: b is a wall, flat at the scale of the contact
   };
 
   static constexpr LawTraits traits{
@@ -63,7 +63,7 @@ struct HertzMindlin : LawBase {
       {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear},
       {.name = "contact_radius",
        .unit = "m",
-       .doc = "radius of the area of contact",
+       .doc = "radius of the contact area",
        .needed_by = with_shear | with_rolling},
       {.name = "rolling",
        .unit = "N m",
@@ -93,13 +93,13 @@ struct HertzMindlin : LawBase {
     pair.damping = 2 * std::sqrt(5.0 / 6) * damping_of_restitution(restitution);
     pair.rolling = 0.5 * (a.rolling_stiffness + b.rolling_stiffness);
     pair.rolling_limit = interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit));
-    // A spring without stiffness holds nothing, of what it was loaded with before neither.
+    // A spring without stiffness carries no force, not even one stored before.
     if (pair.rolling == 0) pair.rolling_limit = 0;
     pair.curved = wall ? 0 : 1;
     return pair;
   }
 
-  /// R* [m]; a wall's radius_b does not count.
+  /// R* [m]; radius_b is ignored at a wall.
   template <class L>
   [[gnu::always_inline]] static L reduced_radius(const L& a, const L& b, const L& curved) {
     return a * b / max(curved * a + b, L(tiny<L>));
@@ -117,7 +117,7 @@ struct HertzMindlin : LawBase {
       response.normal_force = max(L(0.0), response.normal_force - dash * dot(at.velocity, at.normal));
     }
 
-    // Springs that soften as the contact is unloaded give their energy away with their force.
+    // A spring that softens during unloading loses force and energy in proportion to its stiffness.
     const L kept = min(L(1.0), contact_radius / max(state.contact_radius, L(tiny<L>)));
     state.contact_radius = contact_radius;
     if constexpr ((Features & with_shear) != 0) {
@@ -135,23 +135,23 @@ struct HertzMindlin : LawBase {
     return response;
   }
 
-  /// What springs lose as their stiffness changes with the area of contact counts as slip.
+  /// Energy that springs lose as stiffness follows the contact area counts as slip.
   template <unsigned Features, class L>
   [[gnu::always_inline]] static Loss<L> losses(const ContactPoint<L>& at, const Pair<L>& pair, const State<L>& before,
                                                const State<L>& after, const Response<L>& response) {
     const L contact_radius = sqrt(reduced_radius(at.radius_a, at.radius_b, pair.curved) * at.overlap);
     const L kn = L(2.0) * pair.modulus * contact_radius, ks = L(8.0) * pair.shear_modulus * contact_radius;
     const L kept = min(L(1.0), contact_radius / max(before.contact_radius, L(tiny<L>)));
-    // What a spring held when it was switched off is booked with that.
+    // A change of parameters that removes a spring accounts for its energy.
     const auto lost = [&](const L& limit, const Vec<L>& stored, const Vec<L>& now, const L& stiffness_per_ks,
                           const Vec<L>& rate) {
       const L stiffness = stiffness_per_ks * ks;
       const L stiffness_before = stiffness_per_ks * L(8.0) * pair.shear_modulus * before.contact_radius;
-      const Vec<L> left = kept * stored;
-      const L given = L(0.5) * (dot(stored, stored) / max(stiffness_before, L(tiny<L>)) -
-                                dot(left, left) / max(stiffness, L(tiny<L>)));
-      const L slipped = slip_work(at.turn(left), stretched(at, left, stiffness, rate), now, stiffness);
-      return select(limit > L(0.0), select(before.contact_radius > L(0.0), given, L(0.0)) + slipped, L(0.0));
+      const Vec<L> remaining = kept * stored;
+      const L released = L(0.5) * (dot(stored, stored) / max(stiffness_before, L(tiny<L>)) -
+                                   dot(remaining, remaining) / max(stiffness, L(tiny<L>)));
+      const L slipped = slip_work(at.turn(remaining), stretched(at, remaining, stiffness, rate), now, stiffness);
+      return select(limit > L(0.0), select(before.contact_radius > L(0.0), released, L(0.0)) + slipped, L(0.0));
     };
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
     if constexpr ((Features & with_damping) != 0)
@@ -164,7 +164,7 @@ struct HertzMindlin : LawBase {
     return loss;
   }
 
-  /// The least overlap over R* that stiffness() reckons with: a contact just made will be deeper soon.
+  /// Smallest overlap over R* used by stiffness(): new contacts soon become deeper.
   static constexpr double least_overlap = 1e-4;
 
   static Stiffness stiffness_at(const PairSize& size, const Pair<double>& pair, double contact_radius) {
@@ -180,7 +180,7 @@ struct HertzMindlin : LawBase {
   }
   static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const double radius = reduced_radius(size.radius_a, size.radius_b, pair.curved);
-    // Those of shear and rolling as they are loaded: as the area changes, losses() takes what they hold less.
+    // Shear and rolling stiffness at the last step: losses() accounts for changes of the area since.
     const Stiffness k = stiffness_at(size, pair, state.contact_radius);
     const double kn = stiffness_at(size, pair, std::sqrt(radius * size.overlap)).normal;
     return {.normal = 4.0 / 15 * kn * size.overlap * size.overlap,

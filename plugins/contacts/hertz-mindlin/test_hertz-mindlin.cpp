@@ -1,4 +1,4 @@
-// The general contract, and what is this law's own: Hertz's impact, restitution, Mindlin's shear, rolling.
+// The contract of contact laws, and Hertz impact, restitution, Mindlin shear and rolling.
 #include <gmock/gmock.h>
 
 #include "grit/contact/law_parameters.hpp"
@@ -75,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Impact{"3 aluminium oxide", 380e9, 0.23, 4000, 0.0025, 3.9, true, 8.0888, 615.352, 6.1044},
                     Impact{"3 cast iron", 100e9, 0.25, 7000, 0.0025, 3.9, true, 17.1887, 506.760, 12.972}));
 
-TEST(HertzMindlin, RestitutionOutIsRestitutionIn) {
-  // Test 3 of Chung & Ooi; the duration of the elastic impact sets the step.
+TEST(HertzMindlin, RestitutionEqualsItsParameter) {
+  // Test 3 of Chung & Ooi; the time step follows from the duration of the elastic impact.
   struct Case {
     double modulus, poisson, density, duration;
   };
@@ -93,17 +93,18 @@ TEST(HertzMindlin, RestitutionOutIsRestitutionIn) {
     }
 }
 
-/// The linear closed form serves Hertz: against the collision in its own units, x″ = −4/3 x^1.5 − 2 ζ √(5/3) x^¼ x′.
-TEST(HertzMindlin, DampedImpactMapsOntoTheLinearOne) {
+/// The linear closed form holds for Hertz: compared with the dimensionless collision x″ = −4/3 x^1.5 − 2 ζ √(5/3) x^¼
+/// x′.
+TEST(HertzMindlin, DampedImpactEqualsTheLinearOne) {
   for (const double ratio : {0.01, 0.1, 0.5, 0.9, 1.5, 4.0}) {
     const double viscous = 2 * std::sqrt(5.0 / 3) * ratio;
-    // p = x′ + 4/5 D x^1.25 takes the dashpot's infinite slope at first touch out of the right-hand side.
+    // p = x′ + 4/5 D x^1.25 removes the infinite slope of the dashpot at first contact.
     const auto power = [](double x) { return x > 0 ? x * std::sqrt(std::sqrt(x)) : 0.0; };
     const auto speed = [&](double x, double p) { return p - 0.8 * viscous * power(x); };
     const auto push = [](double x) { return x > 0 ? -4.0 / 3 * x * std::sqrt(x) : 0.0; };
     const double h = 0.003 / (1 + viscous);
     double x = 0, p = 1, before = 2, now = 1;
-    while (x >= 0 && now <= before) {  // the force is gone when the speed stops falling
+    while (x >= 0 && now <= before) {  // the force is zero when the speed stops falling
       const double x1 = speed(x, p), p1 = push(x);
       const double x2 = speed(x + 0.5 * h * x1, p + 0.5 * h * p1), p2 = push(x + 0.5 * h * x1);
       const double x3 = speed(x + 0.5 * h * x2, p + 0.5 * h * p2), p3 = push(x + 0.5 * h * x2);
@@ -131,27 +132,28 @@ TEST(HertzMindlin, StiffnessesInClosedForm) {
       {.radius_a = ra, .radius_b = ra, .inverse_mass_a = 1, .inverse_mass_b = 0, .overlap = overlap, .wall = false}, 0,
       1);
   EXPECT_NEAR(fixed.normal, wall.normal / std::sqrt(2), 1e-12 * wall.normal);
-  // New contacts count as a ten-thousandth of R* deep.
+  // New contacts use an overlap of 1e-4 R*.
   EXPECT_NEAR(law->stiffness({ra, rb, 1, 1, 0}, 0, 1).normal, 2 * e * r * 0.01, 1e-12 * e * r);
 }
 
 TEST(HertzMindlin, ShearFallsWithTheContactRadius) {
   const auto law = law_of(material(5e6, 0.2, 45, 1));
   WallPair wall(*law, {.radius = 1}, 1e-5);
-  wall.touch.overlap = 0.04, wall.touch.velocity = {100, 0, 0};
+  wall.contact.overlap = 0.04, wall.contact.velocity = {100, 0, 0};
   wall.evaluate();
   const double loaded = -wall.row.force.x;
   EXPECT_NEAR(loaded, 8 * 5e6 / 2.4 / 2 / 1.8 * 0.2 * 1e-3, 1e-9 * loaded);
-  wall.touch.velocity.setZero();
-  wall.touch.overlap = 0.09;
+  wall.contact.velocity.setZero();
+  wall.contact.overlap = 0.09;
   wall.evaluate();
-  EXPECT_NEAR(-wall.row.force.x, loaded, 1e-12 * loaded) << "pressing harder keeps the force";
-  wall.touch.overlap = 0.0225;
+  EXPECT_NEAR(-wall.row.force.x, loaded, 1e-12 * loaded) << "loading keeps the shear force";
+  wall.contact.overlap = 0.0225;
   wall.evaluate();
-  EXPECT_NEAR(-wall.row.force.x, loaded * 0.15 / 0.3, 1e-12 * loaded) << "easing off takes its share";
+  EXPECT_NEAR(-wall.row.force.x, loaded * 0.15 / 0.3, 1e-12 * loaded)
+      << "unloading reduces it in proportion to the contact radius";
 }
 
-TEST(HertzMindlin, ObliqueImpactSlidesAsInClosedForm) {
+TEST(HertzMindlin, ObliqueImpactSlidesByTheClosedForm) {
   // Chung & Ooi test 4, gross sliding: e_t = 1 − μ(1+e)/tan θ, ω = −2.5 μ(1+e) v_n / r.
   const double e = 0.98, mu = 0.092, radius = 0.0025, mass = 4000 * 4.0 / 3 * pi * std::pow(radius, 3);
   const auto law = law_of(material(380e9, 0.23, std::atan(mu) / degree, e));
@@ -160,7 +162,7 @@ TEST(HertzMindlin, ObliqueImpactSlidesAsInClosedForm) {
     WallPair wall(*law, {.position = {0, 0, radius}, .radius = radius, .velocity = {vt, 0, -vn}, .mass = mass}, dt);
     do {
       wall.position.z += dt * wall.velocity.z;
-      wall.touch.overlap = radius - wall.position.z;
+      wall.contact.overlap = radius - wall.position.z;
       wall.evaluate();
       wall.velocity.x += dt * wall.velocity.w * wall.sum.force.x;
       wall.velocity.z += dt * wall.velocity.w * wall.sum.force.z;
@@ -177,7 +179,7 @@ TEST(HertzMindlin, InterfaceOverridesTheSmallerOfTwo) {
     a["rolling_limit"] = 0.1, b["rolling_limit"] = 0.2;
     const auto law = make_law({{}, {a, b}, std::move(interfaces)});
     WallPair wall(*law, {.radius = 0.5, .spin = {0, -1e6, 0}}, 1e-3);
-    wall.touch.overlap = 0.01, wall.touch.material = 1;
+    wall.contact.overlap = 0.01, wall.contact.material = 1;
     wall.evaluate();
     return -wall.law_moment().y() / (0.5 * wall.row.force.w);
   };
@@ -185,7 +187,7 @@ TEST(HertzMindlin, InterfaceOverridesTheSmallerOfTwo) {
   EXPECT_NEAR(rolled({{{0, 1}, {{"rolling_limit", 0.7}}}}), 0.7, 1e-12);
 }
 
-TEST(HertzMindlin, RefusesWhatCannotBe) {
+TEST(HertzMindlin, RefusesInvalidParameters) {
   EXPECT_THAT(
       [] {
         law_of({{"poisson_ratio", 0.51}});

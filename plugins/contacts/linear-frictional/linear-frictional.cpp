@@ -1,4 +1,4 @@
-// Linear normal and shear springs with Coulomb's limit, with dashpots from a restitution. See README.md.
+// Linear normal and shear springs, Coulomb friction, dashpots from a coefficient of restitution. See README.md.
 #include "linear-frictional.hpp"
 
 #include "grit/contact/law_plugin.hpp"

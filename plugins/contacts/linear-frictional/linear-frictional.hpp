@@ -1,4 +1,4 @@
-// The law itself, apart from the plugin, so that tests see it.
+// The law, separate from the plugin for use in tests.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ struct LinearFrictional : LawBase {
     bool shear_damping = false;
 
     void declare(Parameters& p) {
-      p.add("shear_damping", shear_damping).doc("whether the restitution damps sticking contacts in shear as well");
+      p.add("shear_damping", shear_damping).doc("whether restitution also damps sticking contacts in shear");
     }
   };
 
@@ -44,7 +44,7 @@ struct LinearFrictional : LawBase {
   template <class L>
   struct Pair {
     L modulus_a, modulus_b, shear_ratio, friction;
-    L damping, shear_damping;  ///< over critical
+    L damping, shear_damping;  ///< damping ratios
   };
 
   static constexpr LawTraits traits{
@@ -57,7 +57,7 @@ struct LinearFrictional : LawBase {
   };
   static constexpr LawField fields[] = {{.name = "shear",
                                          .unit = "N",
-                                         .doc = "force of the shear spring on b",
+                                         .doc = "shear spring force on b",
                                          .width = 3,
                                          .swap = -1,
                                          .needed_by = with_shear}};
@@ -68,7 +68,7 @@ struct LinearFrictional : LawBase {
            (shear && pair.shear_damping > 0 ? with_shear_damping : 0u);
   }
 
-  /// A wall lends its friction and restitution: stiffness, like the radius, is the grain's.
+  /// A wall contributes friction and restitution; stiffness and radius are those of the body.
   static Pair<double> mix(const Settings& settings, const Material& a, const Material& b, const Interface& interface,
                           bool wall) {
     const Material& stiff_b = wall ? a : b;
@@ -76,7 +76,7 @@ struct LinearFrictional : LawBase {
     pair.modulus_a = a.contact_modulus, pair.modulus_b = stiff_b.contact_modulus;
     pair.shear_ratio = 0.5 * (a.shear_to_normal_stiffness + stiff_b.shear_to_normal_stiffness);
     pair.friction = std::tan(interface.friction_angle.value_or(std::min(a.friction_angle, b.friction_angle)));
-    // A spring without stiffness holds nothing, of what it was loaded with before neither.
+    // A spring without stiffness carries no force, not even one stored before.
     if (pair.shear_ratio == 0) pair.friction = 0;
     pair.damping = damping_of_restitution(interface.restitution.value_or(std::min(a.restitution, b.restitution)));
     pair.shear_damping = settings.shear_damping ? pair.damping : 0;
@@ -103,8 +103,7 @@ struct LinearFrictional : LawBase {
       response.shear = spring;
       if constexpr ((Features & with_shear_damping) != 0) {
         const L dash = dashpot(pair.shear_damping, ks, L(3.5) * inverse_mass);
-        // Clearly below the limit, so that a contact that has just slid is not taken for one that sticks when asked
-        // again.
+        // Clearly below the limit, so that a second evaluation does not treat a contact that just slid as sticking.
         const L sticking = select(dot(trial, trial) < L(1 - beyond_rounding<L>) * limit * limit, dash, L(0.0));
         response.shear = shortened(spring - sticking * at.tangential(at.velocity), limit);
       }
@@ -121,7 +120,7 @@ struct LinearFrictional : LawBase {
       loss.viscosity = dashpot_work(at, response.normal_force, kn * at.overlap);
     if constexpr ((Features & with_shear) != 0) {
       const Vec<L>&shear = before.shear, &spring = after.shear;
-      // What a spring held when it was switched off is booked with that.
+      // A change of parameters that removes a spring accounts for its energy.
       loss.friction = select(pair.friction > L(0.0),
                              slip_work(at.turn(shear), stretched(at, shear, ks, at.velocity), spring, ks), L(0.0));
       loss.viscosity = loss.viscosity - at.dt * dot(response.shear - spring, at.velocity);

@@ -1,4 +1,4 @@
-// The general contract, and what is this law's own: Coulomb's friction, and restitution.
+// The contract of contact laws, Coulomb friction and restitution.
 #include <gmock/gmock.h>
 
 #include "grit/contact/law_parameters.hpp"
@@ -33,7 +33,7 @@ std::unique_ptr<ContactLaw> law_of(const Values& values, bool shear_damping = fa
   return make_law({{{"shear_damping", shear_damping}}, {values}, {}});
 }
 
-TEST(LinearFrictional, StiffnessesAreThoseOfTwoSpringsInLine) {
+TEST(LinearFrictional, StiffnessesAreThoseOfTwoSpringsInSeries) {
   const auto law = make_law({{}, {material(1e6, 25, 1, 0.4), material(3e6, 20, 1, 0.2)}, {}});
   const Stiffness k = law->stiffness({2, 0.5, 1, 1, 0.01}, 0, 1);
   EXPECT_DOUBLE_EQ(k.normal, 2 * 2e6 * 1.5e6 / 3.5e6);
@@ -45,11 +45,11 @@ TEST(LinearFrictional, StiffnessesAreThoseOfTwoSpringsInLine) {
 }
 
 TEST(LinearFrictional, InterfaceOverridesTheSmallerOfTwo) {
-  const double normal = 1e6 * 0.01;  // of the spring, at rest
+  const double normal = 1e6 * 0.01;  // normal force at rest
   const auto slid = [&](std::map<std::pair<std::size_t, std::size_t>, Values> interfaces) {
     const auto law = make_law({{}, {material(1e6, 25, 1), material(1e6, 15, 1)}, std::move(interfaces)});
     WallPair wall(*law, {.radius = 1}, 1e-3);
-    wall.touch.overlap = 0.01, wall.touch.material = 1, wall.touch.velocity = {1e3, 0, 0};
+    wall.contact.overlap = 0.01, wall.contact.material = 1, wall.contact.velocity = {1e3, 0, 0};
     wall.evaluate();
     return -wall.row.force.x;
   };
@@ -67,7 +67,7 @@ TEST(LinearFrictional, ElasticCollisionLastsHalfAPeriod) {
   EXPECT_NEAR(hit.restitution, 1, 1e-7);
 }
 
-TEST(LinearFrictional, RestitutionOutIsRestitutionIn) {
+TEST(LinearFrictional, RestitutionEqualsItsParameter) {
   for (int tenths = 1; tenths <= 10; ++tenths) {
     const double e = 0.1 * tenths;
     const auto law = law_of(material(1e6, 25, e));
@@ -84,7 +84,7 @@ TEST(Restitution, ClosedFormAtKnownPoints) {
   EXPECT_NEAR(restitution_of_damping(1), std::exp(-2), 1e-12);
   EXPECT_NEAR(restitution_of_damping(1 - 1e-6), std::exp(-2), 1e-5);
   EXPECT_NEAR(restitution_of_damping(1 + 1e-6), std::exp(-2), 1e-5);
-  // ζ = cos 60° and ζ = cosh 1: the angle is π/3, and 1.
+  // ζ = cos 60° and ζ = cosh 1.
   EXPECT_NEAR(restitution_of_damping(0.5), std::exp(-2 * std::numbers::pi / 3 / std::sqrt(3)), 1e-14);
   EXPECT_NEAR(restitution_of_damping(std::cosh(1)), std::exp(-2 / std::tanh(1)), 1e-14);
   for (const double e : {least_restitution, 0.1, 0.5, 0.99, 1.0})
@@ -97,7 +97,7 @@ TEST(LinearFrictional, ShearDashpotActsOnlyWhileSticking) {
   const double dash = 2 * damping_of_restitution(0.5) * std::sqrt(ks / (3.5 * inverse_mass));
   const auto at = [&](double speed) {
     WallPair wall(*law, {.radius = 1, .mass = 1.3}, dt);
-    wall.touch.overlap = overlap, wall.touch.velocity = {speed, 0, 0};
+    wall.contact.overlap = overlap, wall.contact.velocity = {speed, 0, 0};
     wall.evaluate();
     return wall;
   };
@@ -116,7 +116,7 @@ TEST(LinearFrictional, SlippingSphereStartsToRoll) {
   const double gravity = 9.81, mass = 2, radius = 0.1, dt = 2e-5, mu = std::tan(15 * degree);
   const double u0 = 1, weight = mass * gravity, slipping = 2 * u0 / (7 * mu * gravity);
   WallPair wall(*law, {.radius = radius, .velocity = {u0, 0, 0}, .mass = mass}, dt);
-  wall.touch.overlap = weight / (1e8 * radius);
+  wall.contact.overlap = weight / (1e8 * radius);
   for (double t = 0; t < 2 * slipping; t += dt) {
     wall.evaluate();
     wall.velocity.x += dt * wall.velocity.w * wall.sum.force.x;
@@ -129,7 +129,7 @@ TEST(LinearFrictional, SlippingSphereStartsToRoll) {
   EXPECT_NEAR(wall.spin.y * radius, 5.0 / 7 * u0, 1.5e-2);
 }
 
-TEST(LinearFrictional, RefusesWhatCannotBe) {
+TEST(LinearFrictional, RefusesInvalidParameters) {
   EXPECT_THAT(
       [] {
         law_of({{"restitution", 0.0}});

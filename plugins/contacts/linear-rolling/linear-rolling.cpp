@@ -1,5 +1,4 @@
-// Linear normal and shear springs with Coulomb's limit, rolling and twisting springs with a limit moment. See
-// README.md.
+// Linear normal and shear springs, Coulomb friction, rolling and twisting springs with a limit. See README.md.
 #include "linear-rolling.hpp"
 
 #include "grit/contact/law_plugin.hpp"

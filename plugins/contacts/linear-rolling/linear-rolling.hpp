@@ -1,4 +1,4 @@
-// The law itself, apart from the plugin, so that tests see it.
+// The law, separate from the plugin for use in tests.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@ struct LinearRolling : LawBase {
     void declare(Parameters& p) {
       p.add("limit_radius", limit_radius)
           .one_of({"mean", "smaller"})
-          .doc("radius in the rolling limit: (R_a + R_b) / 2, or the smaller of the two as YADE has it");
+          .doc("radius in rolling and twisting limits: (R_a + R_b) / 2, or the smaller of the two as in YADE");
     }
   };
 
@@ -39,12 +39,12 @@ struct LinearRolling : LawBase {
           .symbol("beta_t")
           .at_least(0)
           .at_most(100)
-          .doc("twisting stiffness over k_s R_a R_b; the mean of two materials counts");
+          .doc("twisting stiffness over k_s R_a R_b; two materials: their mean");
       p.add("twisting_limit", twisting_limit)
           .symbol("eta_t")
           .at_least(0)
           .at_most(100)
-          .doc("limit of the twisting moment over normal force and radius; the smaller of two materials counts");
+          .doc("limit of the twisting moment over normal force times radius; two materials: the smaller value");
     }
   };
 
@@ -66,7 +66,7 @@ struct LinearRolling : LawBase {
   struct Pair {
     L modulus_a, modulus_b, shear_ratio, friction;
     L rolling, rolling_limit, twisting, twisting_limit;
-    L smaller_radius;  ///< 1: limits by the smaller radius, 0: by the mean
+    L smaller_radius;  ///< 1: limits by the smaller radius; 0: by the mean
   };
 
   static constexpr LawTraits traits{
@@ -96,7 +96,7 @@ struct LinearRolling : LawBase {
            (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u);
   }
 
-  /// A wall lends its strength only: stiffness, like the radius, is the grain's.
+  /// A wall contributes strength only; stiffness and radius are those of the body.
   static Pair<double> mix(const Settings& settings, const Material& a, const Material& b, const Interface& interface,
                           bool wall) {
     const Material& stiff_b = wall ? a : b;
@@ -109,7 +109,7 @@ struct LinearRolling : LawBase {
     pair.rolling_limit = interface.rolling_limit.value_or(std::min(a.rolling_limit, b.rolling_limit));
     pair.twisting = mean(a.twisting_stiffness, stiff_b.twisting_stiffness);
     pair.twisting_limit = interface.twisting_limit.value_or(std::min(a.twisting_limit, b.twisting_limit));
-    // A spring without stiffness holds nothing, of what it was loaded with before neither.
+    // A spring without stiffness carries no force, not even one stored before.
     if (pair.shear_ratio == 0) pair.friction = 0;
     if (pair.shear_ratio * pair.rolling == 0) pair.rolling_limit = 0;
     if (pair.shear_ratio * pair.twisting == 0) pair.twisting_limit = 0;
@@ -117,7 +117,7 @@ struct LinearRolling : LawBase {
     return pair;
   }
 
-  /// Limits of moments are in it times the normal force [m].
+  /// Radius in moment limits [m], multiplied by the normal force.
   template <class L>
   [[gnu::always_inline]] static L limiting_radius(const ContactPoint<L>& at, const Pair<L>& pair) {
     const L mean = L(0.5) * (at.radius_a + at.radius_b), smaller = min(at.radius_a, at.radius_b);
@@ -153,8 +153,7 @@ struct LinearRolling : LawBase {
     return response;
   }
 
-  /// slip_work() times twice the stiffness, where evaluate() has shortened `trial` to `limit`: by the share that is
-  /// kept, which is known from there.
+  /// slip_work() times twice the stiffness, from the fraction of `trial` that evaluate() keeps at `limit`.
   template <class L>
   [[gnu::always_inline]] static L slipped(const Vec<L>& before, const Vec<L>& trial, const L& limit) {
     const L square = dot(trial, trial), kept = min(L(1.0), limit / max(sqrt(square), L(tiny<L>)));
@@ -173,7 +172,7 @@ struct LinearRolling : LawBase {
                      pair.friction * response.normal_force);
     }
     const L angular = ks * at.radius_a * at.radius_b, rolling_stiffness = pair.rolling * angular;
-    // Of rolling, where it is on; one division serves both springs.
+    // Rolling stiffness if active; one division serves both springs.
     L other(1.0), rolled(0.0);
     if constexpr ((Features & with_rolling) != 0) {
       const L arm = limiting_radius(at, pair) * response.normal_force;
@@ -183,17 +182,17 @@ struct LinearRolling : LawBase {
     }
     // A spring without stiffness has no limit, see mix().
     const L half = L(0.5) / (ks * other);
-    // What a spring held when it was switched off is booked with that.
-    const auto where_on = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
+    // A change of parameters that removes a spring accounts for its energy.
+    const auto if_active = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
-    if constexpr ((Features & with_shear) != 0) loss.friction = where_on(pair.friction, slid * (half * other));
-    if constexpr ((Features & with_rolling) != 0) loss.rolling = where_on(pair.rolling_limit, rolled * (half * ks));
+    if constexpr ((Features & with_shear) != 0) loss.friction = if_active(pair.friction, slid * (half * other));
+    if constexpr ((Features & with_rolling) != 0) loss.rolling = if_active(pair.rolling_limit, rolled * (half * ks));
     if constexpr ((Features & with_twisting) != 0) {
       const L stiffness = pair.twisting * angular;
       const L trial = before.twisting - (stiffness * at.dt) * dot(at.spin, at.normal);
       loss.rolling =
-          loss.rolling + where_on(pair.twisting_limit, L(0.5) * (before.twisting + after.twisting) *
-                                                           (trial - after.twisting) / max(stiffness, L(tiny<L>)));
+          loss.rolling + if_active(pair.twisting_limit, L(0.5) * (before.twisting + after.twisting) *
+                                                            (trial - after.twisting) / max(stiffness, L(tiny<L>)));
     }
     return loss;
   }

@@ -1,4 +1,4 @@
-// The general contract, and what is this law's own: stiffnesses, limits and walls of DESIGN, rolling, twisting.
+// The contract of contact laws, stiffnesses, limits, walls, rolling and twisting.
 #include <gmock/gmock.h>
 
 #include "grit/contact/law_parameters.hpp"
@@ -46,7 +46,7 @@ TEST(LinearRolling, StiffnessesInClosedForm) {
   EXPECT_DOUBLE_EQ(law->stiffness({ra, rb, 1, 1, 0}, 0, 0).normal, 1e8 * 2 * ra * rb / (ra + rb));
 }
 
-TEST(LinearRolling, WallTakesRadiusAndStiffnessOfTheGrain) {
+TEST(LinearRolling, WallUsesRadiusAndStiffnessOfTheBody) {
   const auto law = make_law({{}, {material(1e8, 18, 0.7, 0.2, 0.3), material(3e8, 30, 0.3, 0.6, 0.5)}, {}});
   const double r = 0.002;
   const Stiffness k = law->stiffness({r, r, 1, 0, 0}, 0, 1);
@@ -56,15 +56,15 @@ TEST(LinearRolling, WallTakesRadiusAndStiffnessOfTheGrain) {
   EXPECT_DOUBLE_EQ(k.twisting, 0.2 * k.shear * r * r);
 }
 
-/// Moment on a wall, over normal force and radius, of a grain that rolls or twists without end.
+/// Moment on a wall over normal force and radius, for a grain that rolls or twists indefinitely.
 Vec3 most(const ContactLaw& law, const Vec3& spin) {
   WallPair wall(law, {.radius = 0.5, .spin = spin}, 1e-3);
-  wall.touch.overlap = 0.01, wall.touch.material = 1;
+  wall.contact.overlap = 0.01, wall.contact.material = 1;
   wall.evaluate();
   return wall.law_moment() / (0.5 * wall.row.force.w);
 }
 
-TEST(LinearRolling, SmallerLimitCountsUnlessTheInterfaceSaysOtherwise) {
+TEST(LinearRolling, SmallerLimitCountsUnlessTheInterfaceOverridesIt) {
   Values a = material(1e6, 25, 0.7, 0.5), b = a;
   a["rolling_limit"] = 0.1, b["rolling_limit"] = 0.2, a["twisting_limit"] = 0.05, b["twisting_limit"] = 0.03;
   const auto plain = make_law({{}, {a, b}, {}});
@@ -104,7 +104,7 @@ TEST(LinearRolling, SphereOnASlopeStaysUpToTheRollingLimit) {
   for (const double slope : {0.9 * std::atan(eta), 1.3 * std::atan(eta)}) {
     const double weight = mass * gravity, pull = weight * std::sin(slope);
     WallPair wall(*law, {.radius = radius, .mass = mass}, dt);
-    wall.touch.overlap = weight * std::cos(slope) / (1e8 * radius);
+    wall.contact.overlap = weight * std::cos(slope) / (1e8 * radius);
     const int steps = 40000;
     for (int step = 0; step < steps; ++step) {
       wall.evaluate();
@@ -116,8 +116,8 @@ TEST(LinearRolling, SphereOnASlopeStaysUpToTheRollingLimit) {
   }
 }
 
-TEST(LinearRolling, TwoTopsStopOnlyByTwisting) {
-  // Equal and opposite spins about the normal: M = −β_t k_s R_a R_b φ, an oscillator with ω² = 2 k_t / I.
+TEST(LinearRolling, TwistingSpheresStopOnlyByTwistingResistance) {
+  // Equal and opposite spins about the normal: M = −β_t k_s R_a R_b ψ, an oscillator with ω² = 2 k_t / I.
   const auto law = make_law({{}, {material(1e6, 25, 0, 0.5)}, {}});
   const double k = 0.5 * 0.4 * 1e6, inertia = 0.4, omega = std::sqrt(2 * k / inertia), spin = 1e-3;
   Pairs pairs(*law, 1e-4 / omega);
@@ -138,7 +138,7 @@ TEST(LinearRolling, TwoTopsStopOnlyByTwisting) {
   EXPECT_NEAR(largest, k * turned, 1e-3 * largest);
 }
 
-TEST(LinearRolling, RefusesWhatCannotBe) {
+TEST(LinearRolling, RefusesInvalidParameters) {
   const auto with = [](const Values& values) { return [=] { make_law({{}, {values}, {}}); }; };
   EXPECT_THAT(with({{"rolling_limit", -0.1}}),
               testing::ThrowsMessage<std::invalid_argument>("rolling_limit: out of range"));

@@ -8,34 +8,34 @@
 
 namespace grit {
 
-/// Where the box has moved to.
+/// Current position of the box.
 struct Box::Frame {
   Vec3 low;
   Mat3 axes;  // unit columns
 
-  /// From the low corner, along the box's own axes.
-  Vec3 place(const Vec3& centre) const { return axes.transpose() * (centre - low); }
+  /// Coordinates from the low corner along the box's own axes.
+  Vec3 local(const Vec3& centre) const { return axes.transpose() * (centre - low); }
 };
 
 namespace {
 
-/// Outward from a face, along its axis.
+/// Sign of the outward direction of a face along its axis.
 double outward(int face) { return face % 2 == 0 ? -1 : 1; }
 
-/// From the closest point of a box [0, size], surface or inside, to `place`.
-Vec3 offset(const Vec3& place, const Vec3& size) { return place - place.cwiseMax(0.0).cwiseMin(size); }
+/// From the closest point of a solid box [0, size] to `local`.
+Vec3 offset(const Vec3& local, const Vec3& size) { return local - local.cwiseMax(0.0).cwiseMin(size); }
 
 }  // namespace
 
 Box::Frame Box::frame(const Pose& pose) const { return {pose.to_world(low_), pose.turn.colwise().normalized()}; }
 
 void Box::declare(Parameters& p) {
-  p.add("low", low_).unit("m").required().doc("corner where x, y and z are smallest");
-  p.add("high", high_).unit("m").required().doc("corner where x, y and z are largest");
+  p.add("low", low_).unit("m").required().doc("corner with the smallest x, y and z");
+  p.add("high", high_).unit("m").required().doc("corner with the largest x, y and z");
   p.add("open", open_)
       .one_of({face_names.begin(), face_names.end()})
-      .doc("faces of a container that are left out, e.g. [\"z_high\"]");
-  p.add("inside", inside_).doc("whether bodies are inside, in a container, or outside, around a solid block");
+      .doc("faces without a wall, e.g. [\"z_high\"]; containers only");
+  p.add("inside", inside_).doc("true: a container with bodies inside; false: a solid block");
   p.check([this](const Complain& complain) {
     for (int axis = 0; axis < 3; ++axis)
       if (!(high_[axis] > low_[axis])) {
@@ -60,16 +60,17 @@ void Box::prepare() {
     closed_[face] = std::find(open_.begin(), open_.end(), face_names[face]) == open_.end();
 }
 
-void Box::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
+void Box::find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                        std::vector<SurfaceContact>& contacts) const {
   const Frame at = frame(pose);
   for (const Sphere& sphere : spheres) {
-    if (inside_) touch_container(at, sphere, touches);
-    else touch_block(at, sphere, touches);
+    if (inside_) container_contacts(at, sphere, contacts);
+    else block_contacts(at, sphere, contacts);
   }
 }
 
-void Box::touch_container(const Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const {
-  const Vec3 place = at.place(sphere.centre), out = offset(place, size_);
+void Box::container_contacts(const Frame& at, const Sphere& sphere, std::vector<SurfaceContact>& contacts) const {
+  const Vec3 local = at.local(sphere.centre), out = offset(local, size_);
   bool past_rim = false;                  // the centre has left through an open face
   std::array<int, 3> behind{-1, -1, -1};  // the closed face that it lies behind, along each axis
   for (int axis = 0; axis < 3; ++axis) {
@@ -82,16 +83,16 @@ void Box::touch_container(const Frame& at, const Sphere& sphere, std::vector<Tou
   for (int face = 0; face < 6; ++face) {
     if (!closed_[face]) continue;
     const int axis = face / 2;
-    const double above = height(face, place);
+    const double above = height(face, local);
     if (!past_rim) {
-      // Faces that meet in a closed edge reach on behind each other, so that a centre pressed out there is pushed back.
+      // Faces continue behind closed edges, so that a centre pressed out there is pushed back.
       if (above < sphere.radius)
-        touches.push_back(
+        contacts.push_back(
             {outward(face) * at.axes.col(axis), sphere.radius - above, sphere.body, static_cast<std::uint32_t>(face)});
       continue;
     }
-    // Over the rim the closest point of a face may lie on an edge shared with the closed face of another axis. It
-    // counts only if it is the closest point of that face too, and then to the first of them.
+    // Over the rim the closest point of a face may lie on an edge shared with a closed face of another axis. It
+    // counts only if it is the closest point of that face too, and then for the first of them.
     const bool shared = std::any_of(behind.begin(), behind.end(), [&](int other) {
       return other >= 0 && other / 2 != axis && (above > 0 || other < face);
     });
@@ -100,32 +101,32 @@ void Box::touch_container(const Frame& at, const Sphere& sphere, std::vector<Tou
     away[axis] = -outward(face) * above;
     const double distance = away.norm();
     if (distance < sphere.radius)
-      touches.push_back(
+      contacts.push_back(
           {-(at.axes * away).normalized(), sphere.radius - distance, sphere.body, static_cast<std::uint32_t>(face)});
   }
 }
 
-void Box::touch_block(const Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const {
-  const Vec3 place = at.place(sphere.centre), out = offset(place, size_);
+void Box::block_contacts(const Frame& at, const Sphere& sphere, std::vector<SurfaceContact>& contacts) const {
+  const Vec3 local = at.local(sphere.centre), out = offset(local, size_);
   const double distance = out.norm();
   if (distance >= sphere.radius) return;
   if (distance > 0) {
-    touches.push_back({-(at.axes * out).normalized(), sphere.radius - distance, sphere.body, 0});
+    contacts.push_back({-(at.axes * out).normalized(), sphere.radius - distance, sphere.body, 0});
     return;
   }
   int nearest = 0;
   for (int face = 1; face < 6; ++face)
-    if (height(face, place) < height(nearest, place)) nearest = face;
-  touches.push_back(
-      {-outward(nearest) * at.axes.col(nearest / 2), sphere.radius + height(nearest, place), sphere.body, 0});
+    if (height(face, local) < height(nearest, local)) nearest = face;
+  contacts.push_back(
+      {-outward(nearest) * at.axes.col(nearest / 2), sphere.radius + height(nearest, local), sphere.body, 0});
 }
 
 bool Box::near(const Pose& pose, const Vec3& centre, double reach) const {
-  const Vec3 place = frame(pose).place(centre), out = offset(place, size_);
+  const Vec3 local = frame(pose).local(centre), out = offset(local, size_);
   if (!inside_) return out.norm() <= reach;
   if (out.cwiseAbs().maxCoeff() > reach) return false;
   for (int face = 0; face < 6; ++face)
-    if (closed_[face] && height(face, place) <= reach) return true;
+    if (closed_[face] && height(face, local) <= reach) return true;
   return false;
 }
 
@@ -139,7 +140,7 @@ std::vector<Vec3> Box::triangles() const {
     Vec3 u = Vec3::Zero(), v = Vec3::Zero();
     u[(axis + 1) % 3] = size_[(axis + 1) % 3];
     v[(axis + 2) % 3] = size_[(axis + 2) % 3];
-    if ((face % 2 == 1) == inside_) std::swap(u, v);  // counter-clockwise as the bodies see it
+    if ((face % 2 == 1) == inside_) std::swap(u, v);  // counter-clockwise as seen by the bodies
     for (const Vec3& corner : {a, Vec3(a + u), Vec3(a + u + v), a, Vec3(a + u + v), Vec3(a + v)})
       corners.push_back(corner);
   }
@@ -152,7 +153,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "geometry",
                                      .name = "box",
                                      .version = "1.0.0",
-                                     .doc = "box along the axes: container, open where wished, or solid block",
+                                     .doc = "box along the axes: open or closed container, or solid block",
                                      .make_geometry = []() -> grit::Geometry* { return new grit::Box; }};
   return &info;
 }

@@ -1,4 +1,4 @@
-// A box along the axes: a container that may be open, or a solid block.
+// A box along the axes: an open or closed container, or a solid block.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace grit {
 
-/// A container, touched once a face; or a block, touched once where it is closest.
+/// A sphere has one contact per face of a container, or one contact with a block, at its closest point.
 class Box : public Geometry {
  public:
   /// The faces in the order of their features.
@@ -18,21 +18,22 @@ class Box : public Geometry {
   void prepare() override;
   Bounds bounds() const override { return {low_, high_}; }
   bool hollow() const override { return inside_; }
-  /// None: no single pressure acts on all faces.
+  /// Zero: pressure has no single direction on a box.
   double area() const override { return 0; }
   Vec3 normal() const override { return Vec3::Zero(); }
   bool flat() const override { return true; }
-  void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
+  void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                     std::vector<SurfaceContact>& contacts) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
   std::vector<Vec3> triangles() const override;
 
  private:
   struct Frame;
   Frame frame(const Pose& pose) const;
-  void touch_container(const Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const;
-  void touch_block(const Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const;
-  double height(int face, const Vec3& place) const {
-    return face % 2 == 0 ? place[face / 2] : size_[face / 2] - place[face / 2];
+  void container_contacts(const Frame& at, const Sphere& sphere, std::vector<SurfaceContact>& contacts) const;
+  void block_contacts(const Frame& at, const Sphere& sphere, std::vector<SurfaceContact>& contacts) const;
+  double height(int face, const Vec3& local) const {
+    return face % 2 == 0 ? local[face / 2] : size_[face / 2] - local[face / 2];
   }
 
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Ones(), size_ = Vec3::Ones();

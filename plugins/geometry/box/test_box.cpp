@@ -18,7 +18,7 @@ std::shared_ptr<Box> block() { return made<Box>({{"low", low}, {"high", high}, {
 
 std::vector<std::uint32_t> features(const Geometry& geometry, const Vec3& centre, double radius) {
   std::vector<std::uint32_t> result;
-  for (const Touch& touch : touches_of(geometry, centre, radius)) result.push_back(touch.feature);
+  for (const SurfaceContact& contact : contacts_of(geometry, centre, radius)) result.push_back(contact.feature);
   return result;
 }
 
@@ -56,38 +56,38 @@ INSTANTIATE_TEST_SUITE_P(
                                  .in_front = [](const Vec3& c) { return !within(c); }}),
     case_name);
 
-TEST(Box, ContainerIsTouchedOnceAFace) {
+TEST(Box, ContainerHasOneContactPerFace) {
   const auto box = container();
   EXPECT_THAT(features(*box, {0.5, 1, 1.5}, 0.1), IsEmpty());
   EXPECT_THAT(features(*box, {0.09, 1, 1.5}, 0.1), ElementsAre(0));
   EXPECT_THAT(features(*box, {0.09, 1.91, 1.5}, 0.1), ElementsAre(0, 3));
   EXPECT_THAT(features(*box, {0.09, 1.91, 0.09}, 0.1), ElementsAre(0, 3, 4));
   EXPECT_THAT(features(*box, {0.5, 1, 1.5}, 0.6), ElementsAre(0, 1)) << "wider than the box";
-  const auto touches = touches_of(*box, {0.91, 0.08, 2.93}, 0.1);
-  ASSERT_EQ(touches.size(), 3u);
-  EXPECT_EQ(touches[0].normal, Vec3(1, 0, 0));
-  EXPECT_EQ(touches[1].normal, Vec3(0, -1, 0));
-  EXPECT_EQ(touches[2].normal, Vec3(0, 0, 1));
-  EXPECT_NEAR(touches[0].overlap, 0.01, 1e-15);
-  EXPECT_NEAR(touches[1].overlap, 0.02, 1e-15);
-  EXPECT_NEAR(touches[2].overlap, 0.03, 1e-15);
+  const auto contacts = contacts_of(*box, {0.91, 0.08, 2.93}, 0.1);
+  ASSERT_EQ(contacts.size(), 3u);
+  EXPECT_EQ(contacts[0].normal, Vec3(1, 0, 0));
+  EXPECT_EQ(contacts[1].normal, Vec3(0, -1, 0));
+  EXPECT_EQ(contacts[2].normal, Vec3(0, 0, 1));
+  EXPECT_NEAR(contacts[0].overlap, 0.01, 1e-15);
+  EXPECT_NEAR(contacts[1].overlap, 0.02, 1e-15);
+  EXPECT_NEAR(contacts[2].overlap, 0.03, 1e-15);
 }
 
 TEST(Box, ContainerPushesBackACentreBehindItsFaces) {
-  const auto touches = touches_of(*container(), {-0.02, -0.03, 1}, 0.1);
-  ASSERT_EQ(touches.size(), 2u);
-  EXPECT_EQ(touches[0].normal, Vec3(-1, 0, 0));
-  EXPECT_EQ(touches[1].normal, Vec3(0, -1, 0));
-  EXPECT_NEAR(touches[0].overlap, 0.12, 1e-15);
-  EXPECT_NEAR(touches[1].overlap, 0.13, 1e-15);
-  EXPECT_EQ(touches_of(*container(), {-0.0999, 1, 1}, 0.1).size(), 1u);
-  EXPECT_TRUE(touches_of(*container(), {-0.1001, 1, 1}, 0.1).empty()) << "it has passed";
+  const auto contacts = contacts_of(*container(), {-0.02, -0.03, 1}, 0.1);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_EQ(contacts[0].normal, Vec3(-1, 0, 0));
+  EXPECT_EQ(contacts[1].normal, Vec3(0, -1, 0));
+  EXPECT_NEAR(contacts[0].overlap, 0.12, 1e-15);
+  EXPECT_NEAR(contacts[1].overlap, 0.13, 1e-15);
+  EXPECT_EQ(contacts_of(*container(), {-0.0999, 1, 1}, 0.1).size(), 1u);
+  EXPECT_TRUE(contacts_of(*container(), {-0.1001, 1, 1}, 0.1).empty()) << "one radius behind";
 }
 
-TEST(Box, OpenFaceIsNotTouchedAndItsRimCountsOnceAWall) {
+TEST(Box, OpenFaceHasNoContactAndItsRimOnePerWall) {
   const auto cup = container({"z_high"});
   EXPECT_THAT(features(*cup, {0.5, 1, 2.95}, 0.1), IsEmpty());
-  const auto rim = touches_of(*cup, {0.03, 1, 3.04}, 0.1);
+  const auto rim = contacts_of(*cup, {0.03, 1, 3.04}, 0.1);
   ASSERT_EQ(rim.size(), 1u);
   EXPECT_NEAR((rim[0].normal - Vec3(-0.6, 0, -0.8)).norm(), 0, 1e-13);
   EXPECT_NEAR(rim[0].overlap, 0.05, 1e-15);
@@ -103,13 +103,13 @@ TEST(Box, OpenFaceIsNotTouchedAndItsRimCountsOnceAWall) {
       << "a tray shallower than the grain";
 }
 
-TEST(Box, BlockIsTouchedOnceWhereItIsClosest) {
+TEST(Box, BlockHasOneContactAtItsClosestPoint) {
   const auto solid = block();
   const auto only = [&](const Vec3& centre) {
-    const auto touches = touches_of(*solid, centre, 0.1);
-    EXPECT_EQ(touches.size(), 1u);
-    EXPECT_EQ(touches.at(0).feature, 0u);
-    return touches.at(0);
+    const auto contacts = contacts_of(*solid, centre, 0.1);
+    EXPECT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts.at(0).feature, 0u);
+    return contacts.at(0);
   };
   EXPECT_EQ(only({0.5, 1, 3.09}).normal, Vec3(0, 0, -1));
   EXPECT_NEAR((only({1.03, 1, 3.04}).normal - Vec3(-0.6, 0, -0.8)).norm(), 0, 1e-13);
@@ -117,10 +117,10 @@ TEST(Box, BlockIsTouchedOnceWhereItIsClosest) {
   EXPECT_NEAR((only({1.02, 2.03, 3.06}).normal - Vec3(-2, -3, -6) / 7).norm(), 0, 1e-13);
   EXPECT_EQ(only({0.97, 1, 1}).normal, Vec3(-1, 0, 0)) << "pushed out by the nearest face";
   EXPECT_NEAR(only({0.97, 1, 1}).overlap, 0.13, 1e-15);
-  EXPECT_NEAR(only({0.5, 1, 2.4}).overlap, 0.1 + 0.5, 1e-15) << "however deep";
+  EXPECT_NEAR(only({0.5, 1, 2.4}).overlap, 0.1 + 0.5, 1e-15) << "at any depth";
 }
 
-TEST(Box, TrianglesCoverClosedFacesAndLookAtTheBodies) {
+TEST(Box, TrianglesCoverClosedFacesAndFaceTheBodies) {
   const auto area = [](const Box& box, const Vec3& bodies) {
     double sum = 0;
     const auto t = box.triangles();
@@ -141,7 +141,7 @@ TEST(Box, TrianglesCoverClosedFacesAndLookAtTheBodies) {
   EXPECT_NEAR(outwards, 6, 1e-13) << "the volume that outward triangles enclose";
 }
 
-TEST(Box, RefusesWhatIsNoBox) {
+TEST(Box, RefusesInvalidBoxes) {
   const auto complaint = [](const std::vector<std::pair<std::string, Setting>>& settings) -> std::string {
     try {
       made<Box>(settings);

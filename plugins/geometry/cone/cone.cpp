@@ -1,4 +1,4 @@
-// The lateral surface of a cone, whole or cut. See README.md.
+// The lateral surface of a cone, whole or truncated. See README.md.
 #include "cone.hpp"
 
 #include "grit/plugin.hpp"

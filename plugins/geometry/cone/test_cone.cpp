@@ -10,7 +10,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// About z, from 0 to its height.
+/// A cone about z, from 0 to its height.
 struct Shape {
   double start_radius = 0.4, end_radius = 1.3, height = 1.2;
 
@@ -24,7 +24,7 @@ struct Shape {
                              {"two_sided", two_sided}});
   }
   double radius(double z) const { return start_radius + (end_radius - start_radius) * z / height; }
-  /// Of the section on the side of x > 0 to a place there, by search along it; and which way.
+  /// Vector from a point in the half plane x > 0 to the closest point of the section, by ternary search.
   Vec3 closest(double off_axis, double z) const {
     const auto at = [&](double part) {
       return Vec3(start_radius + part * (end_radius - start_radius), 0, part * height);
@@ -38,13 +38,13 @@ struct Shape {
     }
     return at(low) - from;
   }
-  /// Which side a centre is on, off the cone or where it would go on past its ends.
+  /// Whether a centre is inside the cone, extended past its ends.
   bool within(const Vec3& centre) const { return std::hypot(centre.x(), centre.y()) < radius(centre.z()); }
-  /// Whether its closest place is on a rim.
+  /// Whether its closest point is on a rim.
   bool past_rim(const Vec3& centre) const {
-    const double slid =
+    const double along =
         (std::hypot(centre.x(), centre.y()) - start_radius) * (end_radius - start_radius) + centre.z() * height;
-    return slid < 0 || slid > std::pow(end_radius - start_radius, 2) + height * height;
+    return along < 0 || along > std::pow(end_radius - start_radius, 2) + height * height;
   }
 };
 
@@ -53,21 +53,21 @@ const Shape steep{.start_radius = 0.5, .end_radius = 0.35, .height = 2};
 const Shape tip{.start_radius = 0, .end_radius = 1, .height = 1};
 
 GeometryCase one_case(const std::string& name, const Shape& shape, bool inside, bool two_sided, double radius) {
-  const double most = std::max(shape.start_radius, shape.end_radius) + radius;
+  const double extent = std::max(shape.start_radius, shape.end_radius) + radius;
   return {.name = name,
           .geometry = shape.made(inside, two_sided),
-          .where = {{-most, -most, -radius}, {most, most, shape.height + radius}},
+          .where = {{-extent, -extent, -radius}, {extent, extent, shape.height + radius}},
           .radius = radius,
-          .facet_error = most * (1 - std::cos(pi / 64)),
+          .facet_error = extent * (1 - std::cos(pi / 64)),
           .hollow_radius = std::min(shape.start_radius, shape.end_radius),
           .in_front = [=](const Vec3& c) { return two_sided || shape.past_rim(c) || shape.within(c) == inside; }};
 }
 
 GeometryCase funnel() {
   GeometryCase one = one_case("hopper", hopper, true, false, 0.15);
-  one.flanks = {{{0.4, 0, 0.2}, {0.85, 0, 0.8}},         // down its slope
-                {{0.68, -0.1, 0.6}, {0.68, 0.1, 0.6}}};  // round it
-  one.across = {{{0.35, 0, 0.2}, {0.33, 0.05, -0.15}},   // out at the outlet
+  one.flanks = {{{0.4, 0, 0.2}, {0.85, 0, 0.8}},         // down the slope
+                {{0.68, -0.1, 0.6}, {0.68, 0.1, 0.6}}};  // around the axis
+  one.across = {{{0.35, 0, 0.2}, {0.33, 0.05, -0.15}},   // out through the outlet
                 {{1.1, 0, 1.1}, {1.3, 0, 1.35}}};        // over the upper rim
   return one;
 }
@@ -95,15 +95,15 @@ TEST(Cone, TouchesWhereItIsClosest) {
     for (int i = 0; i < 10000; ++i) {
       const double radius = 0.2 * draw(0.1, 1), angle = draw(-pi, pi), z = draw(-0.2, shape.height + 0.2),
                    off = std::abs(shape.radius(z) + draw(-0.2, 0.2));
-      const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
-      const Vec3 centre = turn * Vec3(off, 0, z), way = turn * shape.closest(off, z);
-      const auto touches = touches_of(*shell, centre, radius);
-      if (std::abs(way.norm() - radius) < 1e-12 * radius) continue;
-      ASSERT_EQ(touches.size(), way.norm() < radius ? 1u : 0u) << centre.transpose();
-      if (touches.empty()) continue;
-      EXPECT_NEAR(touches[0].overlap, radius - way.norm(), 1e-12 * radius);
-      EXPECT_LE((touches[0].normal - way.normalized()).norm(), 1e-7 / std::sqrt(way.norm()))
-          << "as far as a search can tell";
+      const Mat3 rotation = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+      const Vec3 centre = rotation * Vec3(off, 0, z), to_wall = rotation * shape.closest(off, z);
+      const auto contacts = contacts_of(*shell, centre, radius);
+      if (std::abs(to_wall.norm() - radius) < 1e-12 * radius) continue;
+      ASSERT_EQ(contacts.size(), to_wall.norm() < radius ? 1u : 0u) << centre.transpose();
+      if (contacts.empty()) continue;
+      EXPECT_NEAR(contacts[0].overlap, radius - to_wall.norm(), 1e-12 * radius);
+      EXPECT_LE((contacts[0].normal - to_wall.normalized()).norm(), 1e-7 / std::sqrt(to_wall.norm()))
+          << "to the accuracy of the search";
       ++touching, on_rims += shape.past_rim(centre);
     }
     EXPECT_GT(touching, 2000);
@@ -116,53 +116,53 @@ TEST(Cone, WallPushesAlongItsNormal) {
   const Vec3 inward(-std::cos(half_angle), 0, std::sin(half_angle));
   for (const double off : {0.04, 1e-12, 0.0, -0.04}) {
     const Vec3 centre = Vec3(0.85, 0, 0.6) + off * inward;
-    const auto in_hopper = touches_of(*hopper.made(true, false), centre, 0.05);
+    const auto in_hopper = contacts_of(*hopper.made(true, false), centre, 0.05);
     ASSERT_EQ(in_hopper.size(), 1u);
     EXPECT_LE((in_hopper[0].normal + inward).norm(), 1e-15);
     EXPECT_NEAR(in_hopper[0].overlap, 0.05 - off, 1e-15);
-    const auto on_spike = touches_of(*hopper.made(false, false), centre, 0.05);
+    const auto on_spike = contacts_of(*hopper.made(false, false), centre, 0.05);
     ASSERT_EQ(on_spike.size(), 1u);
     EXPECT_LE((on_spike[0].normal - inward).norm(), 1e-15);
     EXPECT_NEAR(on_spike[0].overlap, 0.05 + off, 1e-15);
   }
-  EXPECT_TRUE(touches_of(*hopper.made(true, false), Vec3(0.85, 0, 0.6) - 0.051 * inward, 0.05).empty());
+  EXPECT_TRUE(contacts_of(*hopper.made(true, false), Vec3(0.85, 0, 0.6) - 0.051 * inward, 0.05).empty());
 }
 
 TEST(Cone, OutletIsAHoleWithARim) {
   const auto wall = hopper.made(true, false);
-  EXPECT_TRUE(touches_of(*wall, {0, 0, 0}, 0.31).empty()) << "0.32 m from the wall";
-  EXPECT_TRUE(touches_of(*wall, {0.1, 0, -0.1}, 0.3).empty());
-  const auto rim = touches_of(*wall, {0.34, 0, -0.08}, 0.11);
+  EXPECT_TRUE(contacts_of(*wall, {0, 0, 0}, 0.31).empty()) << "0.32 m from the wall";
+  EXPECT_TRUE(contacts_of(*wall, {0.1, 0, -0.1}, 0.3).empty());
+  const auto rim = contacts_of(*wall, {0.34, 0, -0.08}, 0.11);
   ASSERT_EQ(rim.size(), 1u);
   EXPECT_NEAR(rim[0].overlap, 0.01, 1e-15);
   EXPECT_LE((rim[0].normal - Vec3(0.6, 0, 0.8)).norm(), 1e-14);
 }
 
-TEST(Cone, IsOneFeatureAllRound) {
+TEST(Cone, IsOneFeatureAroundItsAxis) {
   const auto wall = hopper.made(true, false);
   for (int i = 0; i <= 1000; ++i) {
     const double angle = 2 * pi * i / 1000, z = 0.2 + 0.9 * i / 1000;
-    const auto touches = touches_of(
+    const auto contacts = contacts_of(
         *wall, {(hopper.radius(z) - 0.1) * std::cos(angle), (hopper.radius(z) - 0.1) * std::sin(angle), z}, 0.1);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_EQ(touches[0].feature, 0u);
-    EXPECT_NEAR(touches[0].overlap, 0.1 - 0.08, 1e-14) << "0.1 m across is 0.08 m off";
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts[0].feature, 0u);
+    EXPECT_NEAR(contacts[0].overlap, 0.1 - 0.08, 1e-14) << "0.1 m along the radius is 0.08 m along the normal";
   }
 }
 
-// A ball in a funnel is touched on two sides, and no side takes over from the other at once.
-TEST(Cone, FunnelHoldsABallThatCannotPass) {
+// A sphere held by a funnel has contacts on two sides, and neither replaces the other suddenly.
+TEST(Cone, FunnelHoldsASphereThatCannotPass) {
   const auto funnel = tip.made(true, false);
   const double root = std::sqrt(0.5);
-  for (const double aside : {0.0, 1e-9, 0.01}) {
-    const auto touches = touches_of(*funnel, {aside, 0, 0.4}, 0.3);
-    ASSERT_EQ(touches.size(), 2u) << aside;
-    EXPECT_NEAR(touches[0].overlap, 0.3 - root * (0.4 - aside), 1e-15);
-    EXPECT_NEAR(touches[1].overlap, 0.3 - root * (0.4 + aside), 1e-15);
-    EXPECT_LE((touches[0].normal + touches[1].normal - Vec3(0, 0, -2 * root)).norm(), 1e-15);
+  for (const double offset : {0.0, 1e-9, 0.01}) {
+    const auto contacts = contacts_of(*funnel, {offset, 0, 0.4}, 0.3);
+    ASSERT_EQ(contacts.size(), 2u) << offset;
+    EXPECT_NEAR(contacts[0].overlap, 0.3 - root * (0.4 - offset), 1e-15);
+    EXPECT_NEAR(contacts[1].overlap, 0.3 - root * (0.4 + offset), 1e-15);
+    EXPECT_LE((contacts[0].normal + contacts[1].normal - Vec3(0, 0, -2 * root)).norm(), 1e-15);
   }
-  const auto below = touches_of(*funnel, {0.03, 0, -0.04}, 0.1);
-  ASSERT_EQ(below.size(), 1u) << "the tip counts once";
+  const auto below = contacts_of(*funnel, {0.03, 0, -0.04}, 0.1);
+  ASSERT_EQ(below.size(), 1u) << "the tip is one contact";
   EXPECT_NEAR(below[0].overlap, 0.05, 1e-15);
   EXPECT_LE((below[0].normal - Vec3(-0.6, 0, 0.8)).norm(), 1e-14);
 }
@@ -183,7 +183,7 @@ TEST(Cone, GivesBoundsAndTriangles) {
   }
 }
 
-TEST(Cone, RefusesWhatIsNoCone) {
+TEST(Cone, RefusesInvalidShapes) {
   const auto complaint = [](const Shape& shape, const Vec3& axis = Vec3::UnitZ()) -> std::string {
     try {
       shape.made(true, false, Vec3::Zero(), axis);
@@ -193,8 +193,8 @@ TEST(Cone, RefusesWhatIsNoCone) {
     return "";
   };
   EXPECT_EQ(complaint({.start_radius = 0, .end_radius = 0}),
-            "end_radius: found a cone whose radii are both 0, allowed: one above 0; ");
-  EXPECT_EQ(complaint(hopper, Vec3::Zero()), "end: found the place of start, allowed: another place than start; ");
+            "end_radius: found a cone whose radii are both 0, allowed: at least one radius above 0; ");
+  EXPECT_EQ(complaint(hopper, Vec3::Zero()), "end: found the same point as start, allowed: a different point; ");
   EXPECT_EQ(complaint(hopper), "");
   EXPECT_EQ(complaint(tip), "");
 }

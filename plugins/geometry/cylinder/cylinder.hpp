@@ -9,7 +9,7 @@ class Cylinder : public Frustum {
  public:
   void declare(Parameters& p) override {
     declare_axis(p);
-    p.add("radius", start_radius_).unit("m").symbol("R").required().above(0).doc("of the cylinder");
+    p.add("radius", start_radius_).unit("m").symbol("R").required().above(0).doc("radius");
     declare_sides(p);
   }
   void prepare() override {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// About z, from 0 to 2 m, 1 m in radius, unless said.
+// A cylinder of radius 1 m about z, from 0 to 2 m by default.
 std::shared_ptr<Cylinder> tube(bool inside, bool two_sided, const Vec3& start = Vec3::Zero(),
                                const Vec3& end = Vec3(0, 0, 2)) {
   return made<Cylinder>(
@@ -33,7 +33,7 @@ GeometryCase one_case(const std::string& name, bool inside, bool two_sided) {
 GeometryCase drum() {
   GeometryCase one = one_case("drum", true, false);
   one.flanks = {{{0.83, 0, 0.3}, {0.83, 0, 1.7}},    // along the axis
-                {{0.81, -0.3, 1}, {0.81, 0.3, 1}},   // round it
+                {{0.81, -0.3, 1}, {0.81, 0.3, 1}},   // around the axis
                 {{0.83, 0, 1.8}, {0.95, 0, 2.15}}};  // over the rim
   one.across = {{{-0.9, 0.1, 1}, {-0.7, 0.3, 1.1}},
                 {{0.85, 0, 1.5}, {0.9, 0.1, 2.3}},      // out over the rim
@@ -60,7 +60,7 @@ GeometryCase turned() {
 INSTANTIATE_TEST_SUITE_P(Cylinder, GeometryContract,
                          testing::Values(drum(), rod(), one_case("shell", true, true), turned()), case_name);
 
-// Inside and outside, by closed forms: on the face the distance is |R − off axis|, else that to the rim.
+// Closed forms: the distance is |R − off axis| to the face, else that to the rim.
 TEST(Cylinder, TouchesWhereItIsClosest) {
   std::mt19937_64 random(5);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
@@ -69,75 +69,75 @@ TEST(Cylinder, TouchesWhereItIsClosest) {
   for (int i = 0; i < 20000; ++i) {
     const double radius = 0.3 * draw(0.1, 1), angle = draw(-pi, pi), off = draw(0.6, 1.4), z = draw(-0.3, 2.3);
     const Vec3 out(std::cos(angle), std::sin(angle), 0), centre = off * out + z * Vec3::UnitZ();
-    const Vec3 way = Vec3(out.x(), out.y(), std::clamp(z, 0.0, 2.0)) - centre;
-    const auto touches = touches_of(*shell, centre, radius);
-    ASSERT_EQ(touches.size(), way.norm() < radius ? 1u : 0u) << centre.transpose();
-    if (touches.empty()) continue;
-    EXPECT_NEAR(touches[0].overlap, radius - way.norm(), 1e-12 * radius);
-    EXPECT_LE((touches[0].normal - way.normalized()).norm(), 1e-15 / way.norm());
-    EXPECT_EQ(touches[0].feature, 0u);
+    const Vec3 to_wall = Vec3(out.x(), out.y(), std::clamp(z, 0.0, 2.0)) - centre;
+    const auto contacts = contacts_of(*shell, centre, radius);
+    ASSERT_EQ(contacts.size(), to_wall.norm() < radius ? 1u : 0u) << centre.transpose();
+    if (contacts.empty()) continue;
+    EXPECT_NEAR(contacts[0].overlap, radius - to_wall.norm(), 1e-12 * radius);
+    EXPECT_LE((contacts[0].normal - to_wall.normalized()).norm(), 1e-15 / to_wall.norm());
+    EXPECT_EQ(contacts[0].feature, 0u);
     ++(beside(centre) ? faces : rims);
   }
   EXPECT_GT(faces, 2000);
   EXPECT_GT(rims, 300);
 }
 
-TEST(Cylinder, FacePushesAlongItsNormalHoweverCloseTheCentre) {
+TEST(Cylinder, FacePushesAlongItsNormalAtAnyDistance) {
   const Vec3 out(0.6, 0.8, 0);
-  for (const double off : {1e-3, 1e-12, 0.0, -1e-12, -1e-3}) {  // within, and behind
-    const auto touches = touches_of(*tube(true, false), (1 - off) * out + Vec3::UnitZ(), 0.1);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_LE((touches[0].normal - out).norm(), 1e-15);
-    EXPECT_NEAR(touches[0].overlap, 0.1 - off, 1e-15);
+  for (const double off : {1e-3, 1e-12, 0.0, -1e-12, -1e-3}) {  // in front and behind
+    const auto contacts = contacts_of(*tube(true, false), (1 - off) * out + Vec3::UnitZ(), 0.1);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_LE((contacts[0].normal - out).norm(), 1e-15);
+    EXPECT_NEAR(contacts[0].overlap, 0.1 - off, 1e-15);
   }
 }
 
 TEST(Cylinder, PushesBackACentreUpToOneRadiusBehind) {
   const auto only = [](const Geometry& geometry, const Vec3& centre) {
-    const auto touches = touches_of(geometry, centre, 0.1);
-    EXPECT_EQ(touches.size(), 1u);
-    return touches.at(0);
+    const auto contacts = contacts_of(geometry, centre, 0.1);
+    EXPECT_EQ(contacts.size(), 1u);
+    return contacts.at(0);
   };
-  const Touch drum = only(*tube(true, false), {1.05, 0, 1}), rod = only(*tube(false, false), {0.95, 0, 1}),
-              shell = only(*tube(true, true), {1.05, 0, 1});
+  const SurfaceContact drum = only(*tube(true, false), {1.05, 0, 1}), rod = only(*tube(false, false), {0.95, 0, 1}),
+                       shell = only(*tube(true, true), {1.05, 0, 1});
   EXPECT_EQ(drum.normal, Vec3::UnitX());
   EXPECT_NEAR(drum.overlap, 0.15, 1e-15);
   EXPECT_EQ(rod.normal, Vec3(-Vec3::UnitX()));
   EXPECT_NEAR(rod.overlap, 0.15, 1e-15);
   EXPECT_EQ(shell.normal, Vec3(-Vec3::UnitX()));
   EXPECT_NEAR(shell.overlap, 0.05, 1e-15);
-  EXPECT_TRUE(touches_of(*tube(true, false), {1.101, 0, 1}, 0.1).empty());
-  EXPECT_TRUE(touches_of(*tube(false, false), {0.899, 0, 1}, 0.1).empty());
-  EXPECT_NEAR(only(*tube(true, false), {1.03, 0, -0.04}).overlap, 0.05, 1e-15) << "thin at the rim";
+  EXPECT_TRUE(contacts_of(*tube(true, false), {1.101, 0, 1}, 0.1).empty());
+  EXPECT_TRUE(contacts_of(*tube(false, false), {0.899, 0, 1}, 0.1).empty());
+  EXPECT_NEAR(only(*tube(true, false), {1.03, 0, -0.04}).overlap, 0.05, 1e-15) << "no back side at the rim";
 }
 
-TEST(Cylinder, IsOneFeatureAllRoundAndOverItsRim) {
+TEST(Cylinder, IsOneFeatureAroundTheAxisAndOverItsRim) {
   const auto drum = tube(true, false);
   for (int i = 0; i <= 1000; ++i) {
     const double angle = 2 * pi * i / 1000, z = 2.1 * i / 1000;
     const Vec3 out(std::cos(angle), std::sin(angle), 0);
-    const auto touches = touches_of(*drum, 0.85 * out + z * Vec3::UnitZ(), 0.2);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_EQ(touches[0].feature, 0u);
+    const auto contacts = contacts_of(*drum, 0.85 * out + z * Vec3::UnitZ(), 0.2);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts[0].feature, 0u);
     if (z <= 2) {
-      EXPECT_LE((touches[0].normal - out).norm(), 1e-14);
+      EXPECT_LE((contacts[0].normal - out).norm(), 1e-14);
     }
   }
 }
 
 TEST(Cylinder, SphereTooLargeForItIsHeldOnBothSides) {
   const auto drum = tube(true, false);
-  const auto within = touches_of(*drum, {0.1, 0, 1}, 1.2);
+  const auto within = contacts_of(*drum, {0.1, 0, 1}, 1.2);
   ASSERT_EQ(within.size(), 2u);
   EXPECT_NEAR(within[0].overlap, 0.3, 1e-15);
   EXPECT_NEAR(within[1].overlap, 0.1, 1e-15);
   EXPECT_LE((within[0].normal - Vec3(1, 0, 0)).norm(), 1e-15);
   EXPECT_LE((within[1].normal - Vec3(-1, 0, 0)).norm(), 1e-15);
-  const auto on_rim = touches_of(*drum, {0, 0, 2.7}, 1.25);  // a ball on a pipe
+  const auto on_rim = contacts_of(*drum, {0, 0, 2.7}, 1.25);  // a sphere on a pipe
   ASSERT_EQ(on_rim.size(), 2u);
-  for (const Touch& touch : on_rim) EXPECT_NEAR(touch.overlap, 1.25 - std::hypot(1, 0.7), 1e-15);
+  for (const SurfaceContact& contact : on_rim) EXPECT_NEAR(contact.overlap, 1.25 - std::hypot(1, 0.7), 1e-15);
   EXPECT_LE((on_rim[0].normal + on_rim[1].normal - Vec3(0, 0, -1.4 / std::hypot(1, 0.7))).norm(), 1e-15);
-  EXPECT_EQ(touches_of(*tube(false, false), {2.1, 0, 1}, 3.2).size(), 1u) << "the near side hides the far one";
+  EXPECT_EQ(contacts_of(*tube(false, false), {2.1, 0, 1}, 3.2).size(), 1u) << "the near side hides the far one";
 }
 
 TEST(Cylinder, GivesBoundsAndNoArea) {
@@ -149,7 +149,7 @@ TEST(Cylinder, GivesBoundsAndNoArea) {
   EXPECT_EQ(slanted->area(), 0);
 }
 
-TEST(Cylinder, TrianglesLookAtTheBodies) {
+TEST(Cylinder, TrianglesFaceTheBodies) {
   for (const bool inside : {true, false}) {
     const auto t = tube(inside, false)->triangles();
     ASSERT_FALSE(t.empty());
@@ -163,12 +163,12 @@ TEST(Cylinder, TrianglesLookAtTheBodies) {
   }
 }
 
-TEST(Cylinder, RefusesWhatHasNoLengthOrRadius) {
+TEST(Cylinder, RefusesZeroLengthAndRadius) {
   try {
     tube(true, false, {1, 2, 3}, {1, 2, 3});
     FAIL() << "a cylinder of no length";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "end: found the place of start, allowed: another place than start; ");
+    EXPECT_STREQ(error.what(), "end: found the same point as start, allowed: a different point; ");
   }
   Cylinder cylinder;
   Parameters parameters;

@@ -32,7 +32,7 @@ FacetIndex::FacetIndex(const std::vector<std::pair<Bounds, std::uint32_t>>& boxe
     : tree_(std::make_unique<const Tree>(entries(boxes))) {}
 FacetIndex::~FacetIndex() = default;
 
-void FacetIndex::meeting(const Bounds& bounds, std::vector<std::uint32_t>& facets) const {
+void FacetIndex::intersecting(const Bounds& bounds, std::vector<std::uint32_t>& facets) const {
   facets.clear();
   tree_->query(index::intersects(box(bounds)),
                boost::make_function_output_iterator([&](const auto& entry) { facets.push_back(entry.second); }));

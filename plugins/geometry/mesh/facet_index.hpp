@@ -1,4 +1,4 @@
-// Finds facets by where they are.
+// Spatial index of facets.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace grit {
 
-/// An R-tree of boxes: what is asked of it costs the logarithm of their number.
+/// An R-tree of boxes: the cost of a query grows with the logarithm of their number.
 class FacetIndex {
  public:
-  /// Of facets by their numbers.
+  /// Bounding boxes with facet numbers.
   explicit FacetIndex(const std::vector<std::pair<Bounds, std::uint32_t>>& boxes);
   ~FacetIndex();
-  /// The facets whose boxes meet this one, in rising order, in place of what was in `facets`.
-  void meeting(const Bounds& box, std::vector<std::uint32_t>& facets) const;
+  /// Replaces `facets` by those whose boxes intersect `box`, in ascending order.
+  void intersecting(const Bounds& box, std::vector<std::uint32_t>& facets) const;
 
  private:
   struct Tree;

@@ -1,4 +1,4 @@
-// A surface of triangles out of a file. See README.md.
+// A surface of triangles from a file. See README.md.
 #include "mesh.hpp"
 
 #include "grit/error.hpp"
@@ -7,22 +7,22 @@
 namespace grit {
 
 void Mesh::declare(Parameters& p) {
-  p.add("path", path_).file().required().doc("file in STL, ASCII or binary");
-  p.add("scale", options_.scale).unit("m").required().above(0).doc("what 1 is in the file, e.g. \"1 mm\"");
-  p.add("position", options_.position).unit("m").doc("where the file's origin comes to lie");
-  p.add("merge", options_.merge).unit("m").at_least(0).doc("corners no farther apart than this are one");
-  p.add("open", options_.open).doc("whether the surface may have a rim, as a sheet or a container without a lid has");
+  p.add("path", path_).file().required().doc("STL file, ASCII or binary");
+  p.add("scale", options_.scale).unit("m").required().above(0).doc("length of one file unit, e.g. \"1 mm\"");
+  p.add("position", options_.position).unit("m").doc("position of the file's origin in the scene");
+  p.add("merge_distance", options_.merge_distance).unit("m").at_least(0).doc("corners closer than this are merged");
+  p.add("open", options_.open).doc("whether the surface may have a rim, such as a sheet or a container without a lid");
   p.add("two_sided", options_.two_sided)
       .doc("whether bodies may be on either side; if not, a centre up to one radius behind the surface is pushed back");
-  p.add("inside", options_.inside).doc("whether bodies are on the side that facets face away from, as in a container");
-  p.add("crease", options_.crease)
+  p.add("inside", options_.inside).doc("whether bodies are behind the facets as drawn, such as inside a container");
+  p.add("feature_angle", options_.feature_angle)
       .unit("rad")
       .at_least(0)
       .at_most(std::numbers::pi / 2)
-      .doc("facets that meet at less than this are of one curved surface, whose valleys are not felt");
-  p.add("skip_degenerate", options_.skip_degenerate).doc("whether facets without area are left out, not refused");
+      .doc("facets that meet at less than this form one curved surface with a single contact");
+  p.add("skip_degenerate", options_.skip_degenerate).doc("whether facets without area are skipped rather than refused");
   p.add("ignore_normals", options_.ignore_normals)
-      .doc("whether normals in the file may contradict the order of corners, which counts");
+      .doc("whether normals in the file may contradict the order of corners, which is used");
   p.check([this](const Complain& complain) {
     if (path_.empty()) complain("path", "an empty text", "the path of a file");
   });
@@ -40,13 +40,15 @@ Vec3 Mesh::normal() const {
   return vector.isZero(0.0) ? vector : vector.normalized();
 }
 
-void Mesh::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
+void Mesh::find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                         std::vector<SurfaceContact>& contacts) const {
   std::vector<std::uint32_t> facets;
   std::vector<Surface::Nearest> found;
   for (const Sphere& sphere : spheres) {
     surface_->nearest(pose.to_local(sphere.centre), sphere.radius, facets, found);
     for (const Surface::Nearest& one : found)
-      touches.push_back({-(pose.turn * one.away).normalized(), sphere.radius - one.distance, sphere.body, one.feature});
+      contacts.push_back(
+          {-(pose.turn * one.away).normalized(), sphere.radius - one.distance, sphere.body, one.feature});
   }
 }
 
@@ -56,7 +58,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "geometry",
                                      .name = "mesh",
                                      .version = "1.0.0",
-                                     .doc = "surface of triangles, from a file in STL",
+                                     .doc = "surface of triangles from an STL file",
                                      .make_geometry = []() -> grit::Geometry* { return new grit::Mesh; }};
   return &info;
 }

@@ -1,4 +1,4 @@
-// A surface of triangles out of a file.
+// A surface of triangles from a file.
 #pragma once
 
 #include <memory>
@@ -9,18 +9,19 @@
 
 namespace grit {
 
-/// Solid behind its facets, or a sheet. A sphere touches each place where the surface is closest to it, once.
+/// Solid behind its facets, or a sheet. A sphere has one contact at each local minimum of distance.
 class Mesh : public Geometry {
  public:
   void declare(Parameters& p) override;
-  /// Reads the file. Throws ParameterError for each defect of its surface.
+  /// Reads the file. Throws ParameterError with every defect of its surface.
   void prepare() override;
   Bounds bounds() const override { return surface_->bounds(); }
   bool hollow() const override { return options_.inside; }
-  /// Of the flat sheet that an open surface has the rim of; none if it is closed.
+  /// Of the flat sheet with the same rim; 0 for a closed surface.
   double area() const override { return surface_->area_vector().norm(); }
   Vec3 normal() const override;
-  void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
+  void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                     std::vector<SurfaceContact>& contacts) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override {
     return surface_->near(pose.to_local(centre), reach);
   }
@@ -28,7 +29,7 @@ class Mesh : public Geometry {
 
  private:
   std::string path_;
-  SurfaceOptions options_{.crease = std::numbers::pi / 12};
+  SurfaceOptions options_{.feature_angle = std::numbers::pi / 12};
   std::shared_ptr<const Surface> surface_;  // after prepare()
 };
 

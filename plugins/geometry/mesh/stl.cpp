@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t longest_word = 20;                                // in a message
 constexpr std::size_t header = 80, preamble = header + 4, record = 50;  // bytes of a binary file
-constexpr const char* whole_facets =
+constexpr const char* facet_syntax =
     "facets as \"facet normal x y z, outer loop, vertex x y z (three times), endloop, endfacet\", then \"endsolid\"; "
     "export the file again";
 
@@ -23,7 +23,7 @@ char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned 
 bool is_blank(char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }
 bool same_word(std::string_view a, std::string_view b) { return std::ranges::equal(a, b, {}, lower, lower); }
 
-/// The words of a text, and in which line they are.
+/// Words of a text with their line numbers.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
@@ -88,8 +88,8 @@ class Text {
   Defect misplaced(std::string_view found, std::string_view wanted) const {
     const std::string what = found.empty() ? "the end of the file" : '"' + std::string(found.substr(0, 40)) + '"';
     return {what + " in line " + std::to_string(words_.line()) + ", after " + std::to_string(facets_.size()) +
-                " whole facets, where " + std::string(wanted) + " should be",
-            whole_facets};
+                " complete facets, where " + std::string(wanted) + " should be",
+            facet_syntax};
   }
 
   Words words_;
@@ -104,7 +104,7 @@ std::uint32_t count_of(std::string_view bytes) {
 
 std::size_t size_with(std::uint32_t facets) { return preamble + record * std::size_t{facets}; }
 
-/// Whether bytes are an ASCII file. Headers of binary ones may say "solid" too, but their size tells.
+/// Whether bytes are an ASCII file. A binary header may also begin with "solid"; file size then decides.
 bool is_text(std::string_view bytes) {
   if (bytes.size() >= preamble && bytes.size() == size_with(count_of(bytes))) return false;
   Words words(bytes);
@@ -127,11 +127,11 @@ void read_binary(std::string_view bytes, std::vector<Stl::Facet>& facets) {
   if (bytes.size() != size_with(count) && std::ranges::all_of(bytes.substr(0, preamble), is_print))
     throw Defect{"a text that begins with \"" + std::string(Words(bytes).next().substr(0, longest_word)) +
                      "\" instead of \"solid\"",
-                 "STL, ASCII or binary; other formats are to be converted"};
+                 "STL, ASCII or binary; convert other formats"};
   if (bytes.size() != size_with(count))
-    throw Defect{"a binary file of " + std::to_string(bytes.size()) + " bytes that announces " + std::to_string(count) +
-                     " facets, which take " + std::to_string(size_with(count)),
-                 "STL, ASCII or binary, that is whole; export or copy the file again"};
+    throw Defect{"a binary file of " + std::to_string(bytes.size()) + " bytes whose header gives " +
+                     std::to_string(count) + " facets, that is " + std::to_string(size_with(count)) + " bytes",
+                 "a complete STL file, ASCII or binary; export or copy the file again"};
   for (std::uint32_t i = 0; i < count; ++i) {
     const char* at = bytes.data() + size_with(i);
     facets.push_back(
@@ -140,13 +140,13 @@ void read_binary(std::string_view bytes, std::vector<Stl::Facet>& facets) {
 }
 
 std::string whole_file(const std::filesystem::path& path) {
-  const auto refuse = [&](int reason) {
+  const auto unreadable = [&](int reason) {
     return Defect{path.string() + ", which cannot be read: " + std::strerror(reason), "the path of an STL file"};
   };
-  if (std::filesystem::is_directory(path)) throw refuse(EISDIR);
+  if (std::filesystem::is_directory(path)) throw unreadable(EISDIR);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw refuse(errno);
+  if (!file) throw unreadable(errno);
   std::ostringstream bytes;
   bytes << file.rdbuf();
   return std::move(bytes).str();

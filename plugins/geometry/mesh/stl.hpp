@@ -1,4 +1,4 @@
-// Facets out of a file in STL, ASCII or binary.
+// Facets from an STL file, ASCII or binary.
 #pragma once
 
 #include <array>
@@ -10,25 +10,25 @@
 
 namespace grit {
 
-/// Why a mesh is refused, in the words of a complaint.
+/// Why a mesh is refused, worded as a parameter error.
 struct Defect {
   std::string found, allowed;
 };
 
 struct Stl {
   struct Facet {
-    std::array<Vec3, 3> corners;  ///< in the file's unit; counter-clockwise as seen from in front
-    Vec3 normal;                  ///< as the file says it, of any length
+    std::array<Vec3, 3> corners;  ///< in the file's unit; counter-clockwise as seen from the front
+    Vec3 normal;                  ///< as in the file, of any length
   };
   std::vector<Facet> facets;    ///< in the file's order
-  std::vector<Defect> defects;  ///< if there are any, nothing is sure of the facets
+  std::vector<Defect> defects;  ///< if any, facets are undefined
 };
 
-/// What the file holds: all solids of an ASCII file as one. Files that say "solid" and are binary all the same are
-/// known by their size. Throws nothing for what is wrong with the file: that is a defect.
+/// Reads the file; all solids of an ASCII file are joined. A binary file that begins with "solid" is recognised by its
+/// size. Faults of the file are reported as defects, not thrown.
 Stl read_stl(const std::filesystem::path& path);
 
-/// "3, 8, 11 and 5 more": numbers of facets, from 1, out of their indices.
+/// "3, 8, 11 and 5 more": numbers of facets, from 1, for their indices.
 std::string facet_numbers(const std::vector<std::size_t>& facets);
 
 }  // namespace grit

@@ -12,15 +12,15 @@
 namespace grit {
 namespace {
 
-constexpr double flat = 1e-10;      // height of a triangle over its longest side that counts as none
-constexpr double rounding = 1e-15;  // of coordinates; and of directions, of which more may add up:
+constexpr double flat = 1e-10;      // height of a triangle over its longest side below which it has no area
+constexpr double rounding = 1e-15;  // relative to coordinates and directions
 constexpr double slack_of_radius = 1e-12;
-constexpr double one_point = 1e3;  // slacks: points no farther apart are one
-// What rounding leaves between corners that should be one: in text of six digits 5e-6 of a coordinate, in floats 6e-8.
-constexpr double no_gap = 1e-5;         // of the surface's largest side
-constexpr double long_as_a_seam = 100;  // such gaps: edges that part at 0.6 degrees or more are no seam
-// Sine of the angle from which on two faces make a valley. At 15 degrees a sphere over one of them reaches the rim of
-// the other where it overlaps by 1 - cos(15 degrees), 3 % of its radius.
+constexpr double one_point = 1e3;  // in slacks: closer points coincide
+// Rounding between corners that should coincide: 5e-6 of a coordinate in text of six digits, 6e-8 in floats.
+constexpr double no_gap = 1e-5;         // relative to the largest side of the surface
+constexpr double long_as_a_seam = 100;  // in gaps: edges that diverge at 0.6 degrees or more are no seam
+// Sine of the smallest angle of a valley. At 15 degrees a sphere over one face reaches the rim of the other at an
+// overlap of 1 - cos(15 degrees), 3 % of its radius.
 constexpr double valley = 0.2588;
 
 auto coordinates(const Vec3& v) { return std::tuple(v.x(), v.y(), v.z()); }
@@ -29,7 +29,7 @@ std::string text(const Vec3& v) {
   return (std::ostringstream() << '(' << v.x() << ", " << v.y() << ", " << v.z() << ')').str();
 }
 
-/// What is joined to what; the root of a group is its lowest member.
+/// Disjoint sets; the root of a group is its lowest member.
 class Groups {
  public:
   explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -49,7 +49,7 @@ class Groups {
 }  // namespace
 
 Surface::Surface(const Stl& stl, const SurfaceOptions& options)
-    : defects_(stl.defects), like_(std::cos(options.crease)), two_sided_(options.two_sided) {
+    : defects_(stl.defects), smooth_cosine_(std::cos(options.feature_angle)), two_sided_(options.two_sided) {
   if (!defects_.empty()) return;
   merge_corners(stl, options);
   span_facets(stl, options);
@@ -59,11 +59,11 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
   find_regions();
   gather_corners();
 
-  bounds_ = {vertices_.front().place, vertices_.front().place};
+  bounds_ = {vertices_.front().position, vertices_.front().position};
   std::vector<std::pair<Bounds, std::uint32_t>> boxes;
   double total_area = 0;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
-    if (facets_[f].left_out) continue;
+    if (facets_[f].skipped) continue;
     const Vec3 &a = corner(facets_[f], 0), &b = corner(facets_[f], 1), &c = corner(facets_[f], 2);
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     boxes.push_back({{low, high}, f});
@@ -74,35 +74,37 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
   index_.emplace(boxes);
   size_ = std::max(bounds_.low.cwiseAbs().maxCoeff(), bounds_.high.cwiseAbs().maxCoeff());
   if (!closed_) check_seams();
-  // That of a tube is zero but for its corners' rounding, in STL to floats.
+  // For a tube it is zero except for rounding of the corners.
   if (closed_ || !oriented_ || area_vector_.norm() <= 1e-6 * total_area) area_vector_.setZero();
 }
 
-/// Numbers the corners' places; corners that are one get one number, that of the first of them.
+/// Numbers the corners; merged corners get the number of the first of them.
 void Surface::merge_corners(const Stl& stl, const SurfaceOptions& options) {
   std::map<std::tuple<double, double, double>, std::uint32_t> exact;
-  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // as wide as what is merged
-  const auto cell = [&](const Vec3& place, double x, double y, double z) {
-    return std::array{std::floor(place.x() / options.merge) + x, std::floor(place.y() / options.merge) + y,
-                      std::floor(place.z() / options.merge) + z};
+  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // cell size: merge_distance
+  const auto cell = [&](const Vec3& position, double x, double y, double z) {
+    return std::array{std::floor(position.x() / options.merge_distance) + x,
+                      std::floor(position.y() / options.merge_distance) + y,
+                      std::floor(position.z() / options.merge_distance) + z};
   };
-  const auto close_to = [&](const Vec3& place) -> std::optional<std::uint32_t> {
+  const auto close_to = [&](const Vec3& position) -> std::optional<std::uint32_t> {
     for (const double x : {-1, 0, 1})
       for (const double y : {-1, 0, 1})
         for (const double z : {-1, 0, 1})
-          if (const auto found = cells.find(cell(place, x, y, z)); found != cells.end())
+          if (const auto found = cells.find(cell(position, x, y, z)); found != cells.end())
             for (const std::uint32_t other : found->second)
-              if ((vertices_[other].place - place).norm() <= options.merge) return other;
+              if ((vertices_[other].position - position).norm() <= options.merge_distance) return other;
     return {};
   };
-  const auto number_of = [&](const Vec3& place) {
-    const auto [known, fresh] = exact.try_emplace(coordinates(place), static_cast<std::uint32_t>(vertices_.size()));
-    if (!fresh) return known->second;
-    if (options.merge > 0) {
-      if (const auto other = close_to(place)) return known->second = *other;
-      cells[cell(place, 0, 0, 0)].push_back(known->second);
+  const auto number_of = [&](const Vec3& position) {
+    const auto [known, inserted] =
+        exact.try_emplace(coordinates(position), static_cast<std::uint32_t>(vertices_.size()));
+    if (!inserted) return known->second;
+    if (options.merge_distance > 0) {
+      if (const auto other = close_to(position)) return known->second = *other;
+      cells[cell(position, 0, 0, 0)].push_back(known->second);
     }
-    vertices_.push_back({.place = place});
+    vertices_.push_back({.position = position});
     return known->second;
   };
   for (const Stl::Facet& facet : stl.facets) {
@@ -113,7 +115,7 @@ void Surface::merge_corners(const Stl& stl, const SurfaceOptions& options) {
   }
 }
 
-/// Normals; facets that have none, and those whose file says another.
+/// Normals; facets without one, and those with a contradicting normal in the file.
 void Surface::span_facets(const Stl& stl, const SurfaceOptions& options) {
   std::vector<std::size_t> degenerate, against;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -125,8 +127,8 @@ void Surface::span_facets(const Stl& stl, const SurfaceOptions& options) {
       longest = std::max(longest, side[i].norm());
     }
     const Vec3 twice_area = side[0].cross(side[1]);
-    facet.left_out = !(twice_area.norm() > flat * longest * longest);
-    if (facet.left_out) {
+    facet.skipped = !(twice_area.norm() > flat * longest * longest);
+    if (facet.skipped) {
       degenerate.push_back(f);
       continue;
     }
@@ -136,18 +138,17 @@ void Surface::span_facets(const Stl& stl, const SurfaceOptions& options) {
   }
   if (!degenerate.empty() && !options.skip_degenerate)
     defects_.push_back({"degenerate facets, without area: " + facet_numbers(degenerate),
-                        "facets whose corners span an area; mend the file, or say \"skip_degenerate\": true to leave "
-                        "them out"});
+                        "facets whose corners span an area; repair the file, or set \"skip_degenerate\": true to skip "
+                        "them"});
   if (degenerate.size() == facets_.size() && options.skip_degenerate)
     defects_.push_back({"degenerate facets only", "at least one facet that has an area"});
   if (!against.empty() && !options.ignore_normals)
-    defects_.push_back(
-        {"facets whose corners go round against the normal that the file gives: " + facet_numbers(against),
-         "corners that are counter-clockwise as seen from where the normal points; mend the file, or "
-         "say \"ignore_normals\": true if the corners are right"});
+    defects_.push_back({"facets whose order of corners contradicts the normal in the file: " + facet_numbers(against),
+                        "corners that are counter-clockwise as seen from the tip of the normal; repair the file, or "
+                        "set \"ignore_normals\": true if the corners are right"});
 }
 
-/// Edges, and those that do not join two facets which face one way.
+/// Edges; defects where an edge does not join two facets of the same orientation.
 void Surface::join_edges(const SurfaceOptions& options) {
   struct Entry {
     std::uint32_t from, to;
@@ -155,7 +156,7 @@ void Surface::join_edges(const SurfaceOptions& options) {
   };
   std::vector<Entry> entries;
   for (std::uint32_t f = 0; f < facets_.size(); ++f)
-    for (std::uint32_t i = 0; i < 3 && !facets_[f].left_out; ++i) {
+    for (std::uint32_t i = 0; i < 3 && !facets_[f].skipped; ++i) {
       const auto [low, high] = std::minmax(facets_[f].corners[i], facets_[f].corners[(i + 1) % 3]);
       entries.push_back({low, high, {f, i}});
     }
@@ -166,7 +167,7 @@ void Surface::join_edges(const SurfaceOptions& options) {
   for (std::size_t i = 0; i < entries.size();) {
     const auto [from, to, first] = entries[i];
     const auto number = static_cast<std::uint32_t>(edges_.size()), begin = static_cast<std::uint32_t>(sides_.size());
-    const Vec3 along = vertices_[to].place - vertices_[from].place;
+    const Vec3 along = vertices_[to].position - vertices_[from].position;
     Edge edge{from, to, begin, begin, along.normalized()};
     edge.length = along.norm();
     int forwards = 0;
@@ -182,7 +183,7 @@ void Surface::join_edges(const SurfaceOptions& options) {
     edge.rim = sides == 1;
     edges_.push_back(edge);
     if (edge.rim) {
-      if (single.empty()) first_single = text(vertices_[from].place) + " to " + text(vertices_[to].place);
+      if (single.empty()) first_single = text(vertices_[from].position) + " to " + text(vertices_[to].position);
       single.push_back(first.facet);
     }
     if (sides > 2)
@@ -195,24 +196,24 @@ void Surface::join_edges(const SurfaceOptions& options) {
   closed_ = single.empty(), oriented_ = crowded.empty() && turned.empty();
 
   if (!closed_ && !options.open)
-    defects_.push_back(
-        {"an open surface: " + std::to_string(single.size()) + " edges of one facet alone, the first from " +
-             first_single + " m, of facets " + facet_numbers(single),
-         "a closed one; close it, let \"merge\" join corners that should be one, or say \"open\": true if "
-         "it is a sheet"});
+    defects_.push_back({"an open surface: " + std::to_string(single.size()) +
+                            " edges with one facet only, the first from " + first_single + " m, of facets " +
+                            facet_numbers(single),
+                        "a closed surface; close it, merge corners with \"merge_distance\", or set \"open\": true if "
+                        "it is a sheet"});
   if (!crowded.empty() && !two_sided_)
     defects_.push_back(
-        {"edges that more than two facets share, of facets " + facet_numbers(crowded),
-         "two facets at an edge; mend the file, or say \"two_sided\": true where bodies may be on either "
+        {"edges shared by more than two facets, of facets " + facet_numbers(crowded),
+         "two facets per edge; repair the file, or set \"two_sided\": true where bodies may be on either "
          "side of sheets that meet"});
   if (!turned.empty() && !two_sided_)
     defects_.push_back(
-        {"inverted facets, which face another way than most of their neighbours: " + facet_numbers(turned),
-         "facets that all face outwards; mend the file, or say \"two_sided\": true if bodies may be on "
+        {"inverted facets, oriented against most of their neighbours: " + facet_numbers(turned),
+         "facets that all face outwards; repair the file, or set \"two_sided\": true if bodies may be on "
          "either side"});
 }
 
-/// The lowest number of each facet's group: of those joined by edges of two facets where `joins`.
+/// For each facet the lowest number in its group; groups are joined by edges of two facets for which `joins` holds.
 template <class Joins>
 std::vector<std::uint32_t> Surface::groups(Joins joins) const {
   Groups groups(facets_.size());
@@ -226,7 +227,7 @@ std::vector<std::uint32_t> Surface::groups(Joins joins) const {
   return group;
 }
 
-/// Facets that face another way than most of those which they are joined to.
+/// Facets oriented against most of those to which they are joined.
 std::vector<std::size_t> Surface::inverted() const {
   const auto part = groups([](auto&&...) { return true; }),
              facing = groups([](const Edge&edge, auto&&...) { return !edge.turns; });
@@ -240,7 +241,7 @@ std::vector<std::size_t> Surface::inverted() const {
   return facets;
 }
 
-/// Closed parts must enclose something, unless they are the surface of a hole within another part.
+/// Closed parts must enclose a positive volume, unless they are a cavity in another part.
 void Surface::check_volumes(bool inside) {
   struct Part {
     Bounds bounds;
@@ -251,7 +252,7 @@ void Surface::check_volumes(bool inside) {
   const auto group = groups([](auto&&...) { return true; });
   const double outwards = inside ? -1 : 1;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
-    if (facets_[f].left_out) continue;
+    if (facets_[f].skipped) continue;
     const Vec3 &a = corner(facets_[f], 0), &b = corner(facets_[f], 1), &c = corner(facets_[f], 2);
     Part& part = parts[group[f]];
     if (part.facets.empty()) part.bounds = {a, a};
@@ -268,15 +269,15 @@ void Surface::check_volumes(bool inside) {
     };
     if (part.volume < 0 && std::ranges::none_of(parts, holds))
       defects_.push_back({"a closed surface that faces inwards: facets " + facet_numbers(part.facets),
-                          "facets that face outwards; turn them round. Where bodies are inside of such a surface, say "
-                          "\"inside\": true beside it"});
+                          "facets that face outwards; reverse them. For bodies inside such a surface also set "
+                          "\"inside\": true"});
   }
 }
 
-/// Regions of curved surface: of facets, and of edges and corners that are within one.
+/// Curved surfaces: regions of facets, and of edges and corners within one.
 void Surface::find_regions() {
   const auto group = groups([&](const Edge& edge, const Facet& a, const Facet& b) {
-    return (edge.turns ? -1 : 1) * a.normal.dot(b.normal) > like_;
+    return (edge.turns ? -1 : 1) * a.normal.dot(b.normal) > smooth_cosine_;
   });
   region_.assign(group.begin(), group.end());
   for (Edge& edge : edges_) {
@@ -286,16 +287,16 @@ void Surface::find_regions() {
   }
 }
 
-/// What meets at each corner.
+/// Normal, lowest facet and edges of each corner.
 void Surface::gather_corners() {
   constexpr std::int32_t unknown = -2;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {
     const Facet& facet = facets_[f];
-    if (facet.left_out) continue;
+    if (facet.skipped) continue;
     for (std::size_t i = 0; i < 3; ++i) {
       Vertex& vertex = vertices_[facet.corners[i]];
-      const Vec3 a = (corner(facet, (i + 1) % 3) - vertex.place).normalized(),
-                 b = (corner(facet, (i + 2) % 3) - vertex.place).normalized();
+      const Vec3 a = (corner(facet, (i + 1) % 3) - vertex.position).normalized(),
+                 b = (corner(facet, (i + 2) % 3) - vertex.position).normalized();
       vertex.normal += std::atan2(a.cross(b).norm(), a.dot(b)) * facet.normal;
       vertex.owner = std::min(vertex.owner, f);
       vertex.region = vertex.region == unknown || vertex.region == region_[f] ? region_[f] : -1;
@@ -311,7 +312,7 @@ void Surface::gather_corners() {
       vertex_edges_[vertex->end_edge++] = e, vertex->rim = vertex->rim || edges_[e].rim;
 }
 
-/// Rims that lie on other facets are no rims: corners were not merged, or a facet ends on the middle of another.
+/// Rims that lie on other facets are defects: corners were not merged, or a facet ends on the middle of another.
 void Surface::check_seams() {
   const double gap = no_gap * (bounds_.high - bounds_.low).maxCoeff();
   std::vector<std::uint32_t> near;
@@ -322,8 +323,8 @@ void Surface::check_seams() {
   for (const Edge& edge : edges_) {
     if (!edge.rim) continue;
     const Side& side = sides_[edge.first_side];
-    const Vec3 &a = vertices_[edge.from].place, &b = vertices_[edge.to].place;
-    index_->meeting({a.cwiseMin(b) - Vec3::Constant(gap), a.cwiseMax(b) + Vec3::Constant(gap)}, near);
+    const Vec3 &a = vertices_[edge.from].position, &b = vertices_[edge.to].position;
+    index_->intersecting({a.cwiseMin(b) - Vec3::Constant(gap), a.cwiseMax(b) + Vec3::Constant(gap)}, near);
     for (const std::uint32_t other : near) {
       const auto found = seam(side, other, gap);
       if (!found) continue;
@@ -337,33 +338,32 @@ void Surface::check_seams() {
   std::ranges::sort(facets);
   facets.erase(std::ranges::unique(facets).begin(), facets.end());
   const auto metres = [](double length) { return (std::ostringstream() << std::setprecision(2) << length).str(); };
-  std::string mend;
-  if (merge > 0)
-    mend = "say \"merge\": " + metres(1.1 * merge) + " or more, in m, which joins corners that should be one";
+  std::string remedy;
+  if (merge > 0) remedy = "set \"merge_distance\" to " + metres(1.1 * merge) + " m or more, to merge corners";
   if (split)
-    mend += std::string(mend.empty() ? "" : ", and ") +
-            "split facets in the file where corners of others lie on them, so that both have these corners";
+    remedy +=
+        std::string(remedy.empty() ? "" : ", and ") + "split facets in the file at corners of others that lie on them";
   defects_.push_back(
-      {"edges of one facet alone that lie on other facets, where a body would be pushed twice: the first "
+      {"edges with one facet only that lie on other facets, where a body would have two contacts: the first "
        "of facet " +
            std::to_string(first->facet + 1) + " on facet " + std::to_string(first->other + 1) + ", from " +
            text(first->from) + " to " + text(first->to) + " m, " + metres(first->gap) + " m apart; of facets " +
            facet_numbers(facets),
-       "facets that share the edges where one goes on in another; " + mend});
+       "facets that share their common edges; " + remedy});
 }
 
-/// Where a facet's rim lies on another facet over some length, no farther away than `gap`, and both would be touched
-/// where a surface that is joined there is touched once: all but sharp valleys.
+/// Where a facet's rim lies within `gap` of another facet over some length, and a sphere would have two contacts where
+/// a joined surface has one: everywhere but in sharp valleys.
 std::optional<Surface::Seam> Surface::seam(const Side& side, std::uint32_t number, double gap) const {
   const Facet &facet = facets_[side.facet], &other = facets_[number];
   const Edge& edge = edges_[facet.edges[side.edge]];
 
-  // The part of the edge that is beside or above the other, at first as seen along the edge alone.
-  const Vec3& start = vertices_[edge.from].place;
+  // The part of the edge over the other facet; first by projection on the edge.
+  const Vec3& start = vertices_[edge.from].position;
   const auto along = [&](std::size_t i) { return edge.along.dot(corner(other, i) - start); };
   double from = std::max(0.0, std::min({along(0), along(1), along(2)})),
          to = std::min(edge.length, std::max({along(0), along(1), along(2)}));
-  const auto clip = [&](double at_start, double slope) {  // to where at_start + slope x ≥ −gap
+  const auto clip = [&](double at_start, double slope) {  // to at_start + slope x ≥ −gap
     if (slope > 0) from = std::max(from, (-gap - at_start) / slope);
     else if (slope < 0) to = std::min(to, (-gap - at_start) / slope);
     else if (at_start < -gap) to = from;
@@ -372,28 +372,29 @@ std::optional<Surface::Seam> Surface::seam(const Side& side, std::uint32_t numbe
   for (std::uint32_t i = 0; i < 3; ++i) clip(inside_edge({number, i}, start), other.inward[i].dot(edge.along));
   if (!(to - from > long_as_a_seam * gap)) return {};
 
-  const auto at = [&](double share) -> Vec3 { return start + (from + share * (to - from)) * edge.along; };
+  const auto at = [&](double fraction) -> Vec3 { return start + (from + fraction * (to - from)) * edge.along; };
   std::uint32_t nearest = 0;
   for (std::uint32_t i = 1; i < 3; ++i)
     if (inside_edge({number, i}, at(0.5)) < inside_edge({number, nearest}, at(0.5))) nearest = i;
   const Vec3 &mine = facet.inward[side.edge], &its = other.inward[nearest];
   const bool at_its_edge = inside_edge({number, nearest}, at(0.5)) <= gap;
-  // The facet that has the edge, and in a fan of narrow ones about a corner those after it.
+  // Facets that share a corner in a fan of narrow ones.
   const auto has = [&](std::uint32_t corner) { return std::ranges::count(other.corners, corner) > 0; };
   if (at_its_edge && (has(edge.from) || has(edge.to)) && mine.dot(its) > 0.5) return {};
 
   const double rises = other.normal.dot(mine);
   if (at_its_edge && edges_[other.edges[nearest]].rim) {
-    // From two sides the sharpest valley is a convex edge as well.
-    if (!two_sided_ && rises >= valley && facet.normal.dot(its) >= valley && mine.dot(its) > -like_) return {};
+    // Seen from the other side a valley is a convex edge.
+    if (!two_sided_ && rises >= valley && facet.normal.dot(its) >= valley && mine.dot(its) > -smooth_cosine_) return {};
   } else if ((two_sided_ ? std::abs(rises) : rises) >= valley) {
-    return {};  // stands on the other's front
+    return {};  // it stands on the front of the other
   }
 
-  double farthest = 0;  // of this edge's ends from the other's corners
+  double farthest = 0;  // distance of the edge's ends from the other's corners
   for (const std::uint32_t end : {edge.from, edge.to}) {
     double closest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < 3; ++i) closest = std::min(closest, (corner(other, i) - vertices_[end].place).norm());
+    for (std::size_t i = 0; i < 3; ++i)
+      closest = std::min(closest, (corner(other, i) - vertices_[end].position).norm());
     farthest = std::max(farthest, closest);
   }
   const bool mergeable = farthest <= 2 * gap;
@@ -405,7 +406,7 @@ std::optional<Surface::Seam> Surface::seam(const Side& side, std::uint32_t numbe
 std::vector<Vec3> Surface::triangles() const {
   std::vector<Vec3> corners;
   for (const Facet& facet : facets_)
-    for (std::size_t i = 0; i < 3; ++i) corners.push_back(corner(facet, facet.left_out ? 0 : i));
+    for (std::size_t i = 0; i < 3; ++i) corners.push_back(corner(facet, facet.skipped ? 0 : i));
   return corners;
 }
 
@@ -414,7 +415,7 @@ double Surface::inside_edge(const Side& side, const Vec3& centre) const {
   return facet.inward[side.edge].dot(centre - corner(facet, side.edge));
 }
 
-/// Of a sphere's centre, from all its closest points on one facet that the facets around them are not closer than.
+/// Adds the closest points on one facet that are local minima of the distance from a centre.
 void Surface::closest_of(std::uint32_t number, const Vec3& centre, double radius, std::vector<Nearest>& found) const {
   const Facet& facet = facets_[number];
   const double height = this->height(facet, centre), slack = slack_of_radius * radius + rounding * size_;
@@ -425,7 +426,7 @@ void Surface::closest_of(std::uint32_t number, const Vec3& centre, double radius
     found.push_back({.away = height < 0 ? Vec3(-facet.normal) : facet.normal,
                      .distance = std::abs(height),
                      .behind = !two_sided_ && height < 0,
-                     .feature = features_a_facet * number,
+                     .feature = features_per_facet * number,
                      .region = region_[number]});
     return;
   }
@@ -436,30 +437,31 @@ void Surface::closest_of(std::uint32_t number, const Vec3& centre, double radius
     found.push_back({.away = (distance > 0 ? away : of.normal).normalized(),
                      .distance = distance,
                      .behind = !two_sided_ && !of.rim && away.dot(of.normal) < 0,
-                     .feature = features_a_facet * number + feature,
+                     .feature = features_per_facet * number + feature,
                      .region = of.region});
   };
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Edge& edge = edges_[facet.edges[i]];
     const Vertex& vertex = vertices_[facet.corners[i]];
     if (sides_[edge.first_side].facet == number && touches_edge(edge, centre, slack))
-      add(vertices_[edge.from].place + edge.along.dot(centre - vertices_[edge.from].place) * edge.along, edge, 1 + i);
-    if (vertex.owner == number && touches_vertex(vertex, centre, slack)) add(vertex.place, vertex, 4 + i);
+      add(vertices_[edge.from].position + edge.along.dot(centre - vertices_[edge.from].position) * edge.along, edge,
+          1 + i);
+    if (vertex.owner == number && touches_vertex(vertex, centre, slack)) add(vertex.position, vertex, 4 + i);
   }
 }
 
-/// Whether, of all its facets, an edge is what is closest, and not an end of it.
+/// Whether the inner part of an edge is the closest point of all its facets.
 bool Surface::touches_edge(const Edge& edge, const Vec3& centre, double slack) const {
-  const double along = edge.along.dot(centre - vertices_[edge.from].place);
+  const double along = edge.along.dot(centre - vertices_[edge.from].position);
   if (!(along > 0 && along < edge.length)) return false;
   for (std::uint32_t s = edge.first_side; s < edge.end_side; ++s)
     if (inside_edge(sides_[s], centre) > slack) return false;
   return true;
 }
 
-/// Whether, of all its edges, a corner is what is closest.
+/// Whether a corner is the closest point of all its edges.
 bool Surface::touches_vertex(const Vertex& vertex, const Vec3& centre, double slack) const {
-  const Vec3 away = centre - vertex.place;
+  const Vec3 away = centre - vertex.position;
   for (std::uint32_t e = vertex.first_edge; e < vertex.end_edge; ++e) {
     const Edge& edge = edges_[vertex_edges_[e]];
     const double along = edge.along.dot(away);
@@ -473,7 +475,7 @@ void Surface::nearest(const Vec3& centre, double radius, std::vector<std::uint32
   facets_near(centre, radius, facets);
   found.clear();
   for (const std::uint32_t facet : facets) closest_of(facet, centre, radius, found);
-  if (found.size() > 1) leave_out_doubles(centre, radius, found);
+  if (found.size() > 1) remove_duplicates(centre, radius, found);
   if (found.empty()) return;
   const auto closest = std::ranges::min_element(found, {}, &Nearest::distance);
   if (closest->behind) {
@@ -483,16 +485,16 @@ void Surface::nearest(const Vec3& centre, double radius, std::vector<std::uint32
     return;
   }
   std::erase_if(found, [](const Nearest& one) { return one.behind; });
-  if (found.size() > 1) leave_out_of_one_curve(found);
+  if (found.size() > 1) keep_closest_per_curve(found);
   std::ranges::sort(found, {}, &Nearest::feature);
 }
 
-/// What slacks let count twice counts once: as a facet rather than an edge, as an edge rather than a corner.
-void Surface::leave_out_doubles(const Vec3& centre, double radius, std::vector<Nearest>& found) const {
+/// Removes points found twice within tolerances: a facet precedes an edge, an edge a corner.
+void Surface::remove_duplicates(const Vec3& centre, double radius, std::vector<Nearest>& found) const {
   const double same = one_point * (slack_of_radius * radius + rounding * size_);
   const auto point = [&](const Nearest& one) -> Vec3 { return centre - one.distance * one.away; };
   std::ranges::sort(found, {}, [](const Nearest& one) {
-    const std::uint32_t kind = (one.feature % features_a_facet + 2) / 3;
+    const std::uint32_t kind = (one.feature % features_per_facet + 2) / 3;
     return std::tuple(kind, one.feature);
   });
   std::size_t kept = 0;
@@ -505,13 +507,14 @@ void Surface::leave_out_doubles(const Vec3& centre, double radius, std::vector<N
   found.resize(kept);
 }
 
-/// Of those on one curved surface that go on into each other the closest counts.
-void Surface::leave_out_of_one_curve(std::vector<Nearest>& found) const {
+/// On each curved surface keeps the closest of the contacts linked by similar normals.
+void Surface::keep_closest_per_curve(std::vector<Nearest>& found) const {
   std::ranges::sort(found, {}, [](const Nearest& one) { return std::tuple(one.distance, one.feature); });
   Groups curves(found.size());
   for (std::uint32_t i = 0; i < found.size(); ++i)
     for (std::uint32_t j = 0; j < i; ++j)
-      if (found[i].region >= 0 && found[i].region == found[j].region && found[i].away.dot(found[j].away) > like_)
+      if (found[i].region >= 0 && found[i].region == found[j].region &&
+          found[i].away.dot(found[j].away) > smooth_cosine_)
         curves.join(i, j);
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < found.size(); ++i)
@@ -531,7 +534,7 @@ double Surface::distance(std::uint32_t number, const Vec3& centre) const {
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (inside_edge({number, i}, centre) > 0) continue;
     const Edge& edge = edges_[facet.edges[i]];
-    const Vec3 from = centre - vertices_[edge.from].place;
+    const Vec3 from = centre - vertices_[edge.from].position;
     least = std::min(least, (from - std::clamp(edge.along.dot(from), 0.0, edge.length) * edge.along).norm());
   }
   return std::isinf(least) ? std::abs(height(facet, centre)) : least;

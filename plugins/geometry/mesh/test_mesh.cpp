@@ -60,7 +60,7 @@ Corners without_top() {
   return corners;
 }
 
-/// A sheet over [0, 2] × [0, 1] whose height changes along x alone, from place to place in 0.1 m.
+/// A sheet over [0, 2] × [0, 1] whose height varies along x, in straight parts of 0.1 m.
 constexpr double heights[] = {0,     0.02, 0.1,  0.03, 0,    0, 0,   0.15, 0.2,  0.12, 0,
                               -0.05, 0,    0.02, 0.03, 0.02, 0, 0.1, 0,    0.05, 0};
 double height(double x) {
@@ -148,47 +148,47 @@ INSTANTIATE_TEST_SUITE_P(
                                  .in_front = [](const Vec3& c) { return !within(askew.transpose() * c); }}),
     case_name);
 
-TEST(Mesh, EachFaceOfACornerIsTouchedOnce) {
-  const auto touches = touches_of(*mesh(box(low, high), {{"inside", true}}), {0.91, 0.08, 2.93}, 0.1);
-  ASSERT_EQ(touches.size(), 3u);
+TEST(Mesh, EachFaceOfACornerHasOneContact) {
+  const auto contacts = contacts_of(*mesh(box(low, high), {{"inside", true}}), {0.91, 0.08, 2.93}, 0.1);
+  ASSERT_EQ(contacts.size(), 3u);
   std::vector<double> overlaps;
-  for (const Touch& touch : touches) {
-    EXPECT_EQ(touch.normal.lpNorm<1>(), 1);
-    overlaps.push_back(touch.overlap);
+  for (const SurfaceContact& contact : contacts) {
+    EXPECT_EQ(contact.normal.lpNorm<1>(), 1);
+    overlaps.push_back(contact.overlap);
   }
   EXPECT_THAT(overlaps,
               testing::UnorderedElementsAre(testing::DoubleNear(0.01, 1e-15), testing::DoubleNear(0.02, 1e-15),
                                             testing::DoubleNear(0.03, 1e-15)));
 }
 
-TEST(Mesh, AConvexEdgeAndACornerAreTouchedAsWhatTheyAre) {
+TEST(Mesh, ConvexEdgesAndCornersHaveTheirOwnContact) {
   const auto block = mesh(box(low, high));
-  const auto edge = touches_of(*block, high + Vec3(0.03, -1, 0.04), 0.06);
+  const auto edge = contacts_of(*block, high + Vec3(0.03, -1, 0.04), 0.06);
   ASSERT_EQ(edge.size(), 1u);
   EXPECT_LE((edge[0].normal - Vec3(-0.6, 0, -0.8)).norm(), 1e-14);
   EXPECT_NEAR(edge[0].overlap, 0.01, 1e-15);
-  const auto corner = touches_of(*block, high + Vec3(0.02, 0.03, 0.06), 0.08);
+  const auto corner = contacts_of(*block, high + Vec3(0.02, 0.03, 0.06), 0.08);
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_LE((corner[0].normal - Vec3(-2, -3, -6) / 7).norm(), 1e-14);
   EXPECT_NEAR(corner[0].overlap, 0.01, 1e-15);
 }
 
-TEST(Mesh, RoundAConvexEdgeTheOverlapStaysAndTheNormalTurns) {
+TEST(Mesh, AroundAConvexEdgeTheOverlapStaysAndTheNormalRotates) {
   const auto block = mesh(box(low, high));
   const Vec3 edge(1, 0.7, 3);
   for (int i = -20; i <= 120; ++i) {
     const double angle = std::clamp(i, 0, 100) * 0.9 * degree;
     const Vec3 away(std::sin(angle), 0, std::cos(angle));
     const Vec3 along = i < 0 ? Vec3(0.01 * i, 0, 0) : i > 100 ? Vec3(0, 0, -0.01 * (i - 100)) : Vec3(0, 0, 0);
-    const auto touches = touches_of(*block, edge + along + 0.39 * away, 0.4);
-    ASSERT_EQ(touches.size(), 1u) << i;
-    EXPECT_NEAR(touches[0].overlap, 0.01, 2e-15);
-    EXPECT_LE((touches[0].normal + away).norm(), 2e-15);
+    const auto contacts = contacts_of(*block, edge + along + 0.39 * away, 0.4);
+    ASSERT_EQ(contacts.size(), 1u) << i;
+    EXPECT_NEAR(contacts[0].overlap, 0.01, 2e-15);
+    EXPECT_LE((contacts[0].normal + away).norm(), 2e-15);
   }
 }
 
-TEST(Mesh, WhatIsRightOverSeamsIsTouchedOnce) {
-  // A flat fan of unequal triangles about the origin, turned so that nothing is exact.
+TEST(Mesh, ACentreOverASeamHasOneContact) {
+  // A flat fan of unequal triangles about the origin, rotated so that coordinates are rounded.
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> draw(-1, 1);
   for (int trial = 0; trial < 200; ++trial) {
@@ -202,71 +202,72 @@ TEST(Mesh, WhatIsRightOverSeamsIsTouchedOnce) {
       return Vec3((1 + i % n) * std::cos(angle), (1 + i % n) * std::sin(angle), 0);
     };
     for (int i = 0; i < n; ++i) corners.insert(corners.end(), {Vec3::Zero(), at(i), at(i + 1)});
-    const auto fan = mesh(turned(corners, turn, shift), {{"open", true}, {"crease", 0.0}});
+    const auto fan = mesh(turned(corners, turn, shift), {{"open", true}, {"feature_angle", 0.0}});
     for (const Vec3& over : {Vec3(0, 0, 0), Vec3(0.3 * at(1)), Vec3(1e-16, -2e-16, 0), Vec3(1e-13, 1e-13, 0)}) {
-      const auto touches = touches_of(*fan, turn * (over + Vec3(0, 0, 0.09)) + shift, 0.1);
-      ASSERT_EQ(touches.size(), 1u) << "trial " << trial;
-      EXPECT_NEAR(touches[0].overlap, 0.01, 1e-14);
-      EXPECT_LE((touches[0].normal + turn.col(2)).norm(), 1e-11);
+      const auto contacts = contacts_of(*fan, turn * (over + Vec3(0, 0, 0.09)) + shift, 0.1);
+      ASSERT_EQ(contacts.size(), 1u) << "trial " << trial;
+      EXPECT_NEAR(contacts[0].overlap, 0.01, 1e-14);
+      EXPECT_LE((contacts[0].normal + turn.col(2)).norm(), 1e-11);
     }
   }
 }
 
 TEST(Mesh, PushesBackACentreUpToOneRadiusBehind) {
   const auto block = mesh(box(low, high));
-  const auto inside = touches_of(*block, {0.5, 1, 2.92}, 0.1);
+  const auto inside = contacts_of(*block, {0.5, 1, 2.92}, 0.1);
   ASSERT_EQ(inside.size(), 1u);
   EXPECT_EQ(inside[0].normal, Vec3(0, 0, -1));
   EXPECT_NEAR(inside[0].overlap, 0.18, 1e-15);
-  EXPECT_THAT(touches_of(*block, {0.5, 1, 2.89}, 0.1), IsEmpty());
-  const auto under_an_edge = touches_of(*block, {0.95, 1, 2.96}, 0.1);
+  EXPECT_THAT(contacts_of(*block, {0.5, 1, 2.89}, 0.1), IsEmpty());
+  const auto under_an_edge = contacts_of(*block, {0.95, 1, 2.96}, 0.1);
   ASSERT_EQ(under_an_edge.size(), 1u) << "by the nearest face";
   EXPECT_EQ(under_an_edge[0].normal, Vec3(0, 0, -1));
-  const auto past_an_edge = touches_of(*mesh(box(low, high), {{"inside", true}}), {-0.03, 1, -0.04}, 0.1);
+  const auto past_an_edge = contacts_of(*mesh(box(low, high), {{"inside", true}}), {-0.03, 1, -0.04}, 0.1);
   ASSERT_EQ(past_an_edge.size(), 1u);
   EXPECT_LE((past_an_edge[0].normal - Vec3(-0.6, 0, -0.8)).norm(), 1e-14);
   EXPECT_NEAR(past_an_edge[0].overlap, 0.15, 1e-15);
 }
 
-TEST(Mesh, AThinPlateIsTouchedFromTheSideOfTheCentreAlone) {
+TEST(Mesh, AThinPlateHasOneContactOnTheSideOfTheCentre) {
   const auto plate = mesh(box({0, 0, 0}, {1, 1, 0.01}));
   for (const double side : {-1.0, 1.0}) {
-    const auto touches = touches_of(*plate, {0.5, 0.4, 0.005 + side * 0.09}, 0.1);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_EQ(touches[0].normal, Vec3(0, 0, -side));
-    EXPECT_NEAR(touches[0].overlap, 0.015, 1e-15);
+    const auto contacts = contacts_of(*plate, {0.5, 0.4, 0.005 + side * 0.09}, 0.1);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts[0].normal, Vec3(0, 0, -side));
+    EXPECT_NEAR(contacts[0].overlap, 0.015, 1e-15);
   }
-  EXPECT_THAT(touches_of(*plate, {1.05, 0.4, 0.005}, 0.1), SizeIs(1)) << "its narrow side, not four edges";
+  EXPECT_THAT(contacts_of(*plate, {1.05, 0.4, 0.005}, 0.1), SizeIs(1)) << "its narrow side, not its four edges";
 }
 
-TEST(Mesh, ASharpValleyKeepsBothFacesAFlatOneTheDeeper) {
+TEST(Mesh, ASharpValleyKeepsBothFacesAShallowOneTheDeeper) {
   const double radius = 0.3;
   for (const int n : {8, 12, 23}) {
     const auto tube = mesh(pipe(n), {{"open", true}, {"inside", true}});
-    EXPECT_THAT(touches_of(*tube, {0.71, 0, 0.1}, radius), SizeIs(2)) << n;
+    EXPECT_THAT(contacts_of(*tube, {0.71, 0, 0.1}, radius), SizeIs(2)) << n;
   }
   for (const int n : {25, 60, 1000}) {
     const auto tube = mesh(pipe(n), {{"open", true}, {"inside", true}}),
-               unlike = mesh(pipe(n), {{"open", true}, {"inside", true}, {"crease", 0.0}});
+               unlike = mesh(pipe(n), {{"open", true}, {"inside", true}, {"feature_angle", 0.0}});
     for (const double turn : {0.0, 0.3, 0.5, 0.9}) {
       const double angle = turn * 2 * std::numbers::pi / n;
       const Vec3 centre = 0.71 * Vec3(std::cos(angle), std::sin(angle), 0) + Vec3(0, 0, 0.1);
-      const auto touches = touches_of(*tube, centre, radius);
-      ASSERT_EQ(touches.size(), 1u) << n;
+      const auto contacts = contacts_of(*tube, centre, radius);
+      ASSERT_EQ(contacts.size(), 1u) << n;
       double deepest = 0;
-      for (const Touch& touch : touches_of(*unlike, centre, radius)) deepest = std::max(deepest, touch.overlap);
-      EXPECT_EQ(touches[0].overlap, deepest);
+      for (const SurfaceContact& contact : contacts_of(*unlike, centre, radius))
+        deepest = std::max(deepest, contact.overlap);
+      EXPECT_EQ(contacts[0].overlap, deepest);
     }
-    EXPECT_THAT(touches_of(*unlike, {0.71, 0, 0.1}, radius), SizeIs(testing::Ge(2))) << n;
+    EXPECT_THAT(contacts_of(*unlike, {0.71, 0, 0.1}, radius), SizeIs(testing::Ge(2))) << n;
   }
 }
 
-TEST(Mesh, OneCurvedSurfaceIsTouchedOnOppositeSides) {
+TEST(Mesh, OneCurvedSurfaceHasContactsOnOppositeSides) {
   Corners oval = pipe(60);
   for (Vec3& corner : oval) corner.x() *= 3;
-  const auto touches = touches_of(*mesh(oval, {{"open", true}, {"inside", true}}), {0, 0, 0.1}, 1.01);
-  ASSERT_EQ(touches.size(), 2u);
-  EXPECT_LE((touches[0].normal + touches[1].normal).norm(), 1e-14);
+  const auto contacts = contacts_of(*mesh(oval, {{"open", true}, {"inside", true}}), {0, 0, 0.1}, 1.01);
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_LE((contacts[0].normal + contacts[1].normal).norm(), 1e-14);
 }
 
 TEST(Mesh, TestsAsFewFacetsOnALargeSurfaceAsOnASmallOne) {
@@ -285,14 +286,14 @@ TEST(Mesh, TestsAsFewFacetsOnALargeSurfaceAsOnASmallOne) {
   EXPECT_EQ(counted(100), 2u);
 }
 
-TEST(Mesh, FeaturesTellTheFacet) {
+TEST(Mesh, FeaturesIdentifyTheFacet) {
   const auto sheet = mesh(hills(), {{"open", true}});
   const Corners corners = sheet->triangles();
   for (const double y : {0.05, 0.2, 0.4, 0.6, 0.9}) {
-    const auto touches = touches_of(*sheet, {0.47, y, 0.07}, 0.08);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_EQ(touches[0].feature % 7, 0u);
-    const std::size_t first = 3 * (touches[0].feature / 7);
+    const auto contacts = contacts_of(*sheet, {0.47, y, 0.07}, 0.08);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(contacts[0].feature % 7, 0u);
+    const std::size_t first = 3 * (contacts[0].feature / 7);
     const Vec3 below(0.47, y, 0);
     EXPECT_LE((closest_on_triangle(below, corners[first], corners[first + 1], corners[first + 2]) - below).norm(),
               1e-15);
@@ -307,26 +308,26 @@ TEST(Mesh, GivesAreaNormalAndBounds) {
   EXPECT_EQ(closed->bounds().high, high);
   EXPECT_FALSE(closed->hollow());
   const auto cup = mesh(without_top(), {{"inside", true}, {"open", true}});
-  EXPECT_NEAR(cup->area(), 2, 1e-14) << "that of its floor: the walls' pressures balance";
+  EXPECT_NEAR(cup->area(), 2, 1e-14) << "of its floor: pressures on the walls balance";
   EXPECT_LE((cup->normal() - Vec3::UnitZ()).norm(), 1e-15);
   EXPECT_TRUE(cup->hollow());
   const auto tube = mesh(pipe(64), {{"open", true}, {"inside", true}});
-  EXPECT_EQ(tube->area(), 0) << "there is rounding to it";
+  EXPECT_EQ(tube->area(), 0) << "despite rounding";
   EXPECT_EQ(tube->normal(), Vec3::Zero());
-  EXPECT_NEAR(mesh(hills(), {{"open", true}})->area(), 2, 1e-14) << "as of a flat sheet";
+  EXPECT_NEAR(mesh(hills(), {{"open", true}})->area(), 2, 1e-14) << "of a flat sheet";
 }
 
-TEST(Mesh, RefusesARimUnlessItIsMeant) {
+TEST(Mesh, RefusesARimUnlessOpen) {
   EXPECT_THAT(
       complaint(without_top()),
-      HasSubstr("path: found an open surface: 4 edges of one facet alone, the first from (0, 0, 3) to (0, 2, 3) m, "
-                "of facets 1, 4, 6, 7; allowed is a closed one; close it, let \"merge\" join"));
+      HasSubstr("path: found an open surface: 4 edges with one facet only, the first from (0, 0, 3) to (0, 2, 3) m, "
+                "of facets 1, 4, 6, 7; allowed is a closed surface; close it, merge corners"));
   EXPECT_EQ(complaint(without_top(), {{"open", true}}), "");
 }
 
-/// What a test of seams calls refused, with `open` and with `two_sided` beside it.
+/// Whether a seam is refused with `open`, with and without `two_sided`.
 bool both_refuse_a_seam(const Corners& corners) {
-  const std::string why = "edges of one facet alone that lie on other facets, where a body would be pushed twice";
+  const std::string why = "edges with one facet only that lie on other facets, where a body would have two contacts";
   const auto refused = [&](const Settings& more) { return complaint(corners, more).find(why) != std::string::npos; };
   return refused({{"open", true}}) && refused({{"open", true}, {"two_sided", true}});
 }
@@ -344,19 +345,18 @@ Corners quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return corners;
 }
 
-TEST(Mesh, RefusesAFacetThatEndsOnTheMiddleOfAnotherEvenWhereARimIsMeant) {
+TEST(Mesh, RefusesAFacetThatEndsOnTheMiddleOfAnotherEvenIfOpen) {
   const Corners junction{{0, 0, 0}, {1, 0, 0},     {1, 1, 0}, {0, 0, 0}, {0.5, 0.5, 0},
                          {0, 1, 0}, {0.5, 0.5, 0}, {1, 1, 0}, {0, 1, 0}};
   EXPECT_EQ(complaint(junction, {{"open", true}}),
-            "path: found edges of one facet alone that lie on other facets, where a body would be pushed twice: the "
+            "path: found edges with one facet only that lie on other facets, where a body would have two contacts: the "
             "first of facet 1 on facet 2, from (0, 0, 0) to (0.5, 0.5, 0) m, 0 m apart; of facets 1, 2, 3; allowed is "
-            "facets that share the edges where one goes on in another; split facets in the file where corners of "
-            "others lie on them, so that both have these corners");
+            "facets that share their common edges; split facets in the file at corners of others that lie on them");
   EXPECT_TRUE(both_refuse_a_seam(junction));
   EXPECT_TRUE(both_refuse_a_seam(turned(junction, askew, {3, 4, 5})));
   Corners near = junction;
   near[4] = near[6] = Vec3(0.5, 0.5 + 4e-6, 3e-6);
-  EXPECT_TRUE(both_refuse_a_seam(near)) << "what six digits leave";
+  EXPECT_TRUE(both_refuse_a_seam(near)) << "rounding to six digits";
   near[4] = near[6] = Vec3(0.5, 0.52, 0);
   EXPECT_TRUE(both_accept(near)) << "a notch";
   const auto apart = [](double gap) {
@@ -370,26 +370,25 @@ TEST(Mesh, RefusesAFacetThatEndsOnTheMiddleOfAnotherEvenWhereARimIsMeant) {
       << "staggered";
   EXPECT_TRUE(both_refuse_a_seam(joined(quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}),
                                         quad({0.3, 0.8, 0}, {1.3, 0.8, 0}, {1.3, 2, 0}, {0.3, 2, 0}))))
-      << "one over the other";
+      << "overlapping";
 }
 
-TEST(Mesh, RefusesCornersThatAreNotMergedEvenWhereARimIsMeant) {
+TEST(Mesh, RefusesCornersThatAreNotMergedEvenIfOpen) {
   const Corners apart{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1e-9, 0, 0}, {1, 1 + 1e-9, 0}, {0, 1, 0}};
-  EXPECT_THAT(
-      complaint(apart, {{"open", true}}),
-      HasSubstr("pushed twice: the first of facet 1 on facet 2, from (5e-10, 5e-10, 0) to (1, 1, 0) m, 1e-09 m "
-                "apart; of facets 1, 2; allowed is facets that share the edges where one goes on in another; say "
-                "\"merge\": 1.1e-09 or more, in m, which joins corners that should be one"));
+  EXPECT_THAT(complaint(apart, {{"open", true}}),
+              HasSubstr("two contacts: the first of facet 1 on facet 2, from (5e-10, 5e-10, 0) to (1, 1, 0) m, 1e-09 m "
+                        "apart; of facets 1, 2; allowed is facets that share their common edges; set "
+                        "\"merge_distance\" to 1.1e-09 m or more, to merge corners"));
   EXPECT_TRUE(both_refuse_a_seam(apart));
-  EXPECT_EQ(complaint(apart, {{"open", true}, {"merge", 1.1e-9}}), "");
+  EXPECT_EQ(complaint(apart, {{"open", true}, {"merge_distance", 1.1e-9}}), "");
 
   Corners crack{{0, 0, 0}, {1, 0, 0},  {0, 1, 0},  {0, 0, 0}, {0, 1, 0},  {-1, 0, 0},
                 {0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 0}, {0, -1, 0}, {1, 1e-9, 0}};
   EXPECT_TRUE(both_refuse_a_seam(crack)) << "one corner is shared";
 }
 
-TEST(Mesh, RefusesSeamsByTheAngleAtWhichTheyWouldBeFelt) {
-  // Two sheets whose edges lie along each other, bent upwards by an angle; the second is not as long.
+TEST(Mesh, RefusesSeamsThatAreNotSharpValleys) {
+  // Two sheets that meet at an angle along their edges; the second is shorter.
   const auto bent = [](double angle) {
     const Vec3 on(std::cos(angle * degree), 0, std::sin(angle * degree));
     return joined(quad({-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}),
@@ -398,12 +397,12 @@ TEST(Mesh, RefusesSeamsByTheAngleAtWhichTheyWouldBeFelt) {
   for (const double angle : {-90, -30, -1, 0, 1, 14}) EXPECT_TRUE(both_refuse_a_seam(bent(angle))) << angle;
   for (const double angle : {16, 45, 90, 120}) {
     EXPECT_EQ(complaint(bent(angle), {{"open", true}}), "") << angle << ", a valley";
-    EXPECT_THAT(complaint(bent(angle), {{"open", true}, {"two_sided", true}}), HasSubstr("twice")) << angle;
+    EXPECT_THAT(complaint(bent(angle), {{"open", true}, {"two_sided", true}}), HasSubstr("two contacts")) << angle;
   }
-  EXPECT_THAT(complaint(bent(45), {{"open", true}, {"crease", 50 * degree}}), HasSubstr("twice"));
+  EXPECT_THAT(complaint(bent(45), {{"open", true}, {"feature_angle", 50 * degree}}), HasSubstr("two contacts"));
   const auto valley = mesh(bent(90), {{"open", true}});
-  EXPECT_THAT(touches_of(*valley, {-0.099, 0.5, 0.09}, 0.1), SizeIs(2));
-  EXPECT_THAT(touches_of(*valley, {-0.099, 0.5, 0.11}, 0.1), SizeIs(1));
+  EXPECT_THAT(contacts_of(*valley, {-0.099, 0.5, 0.09}, 0.1), SizeIs(2));
+  EXPECT_THAT(contacts_of(*valley, {-0.099, 0.5, 0.11}, 0.1), SizeIs(1));
 }
 
 TEST(Mesh, AcceptsABaffleThatStandsOnAWall) {
@@ -413,20 +412,21 @@ TEST(Mesh, AcceptsABaffleThatStandsOnAWall) {
   EXPECT_TRUE(both_accept(turned(joined(wall, baffle), askew, {3, 4, 5})));
   const auto tee = mesh(joined(wall, baffle), {{"open", true}, {"two_sided", true}});
   for (const double x : {0.201, 0.399}) {
-    EXPECT_THAT(touches_of(*tee, {x, 0.9, 0.099}, 0.1), SizeIs(2)) << "each face once";
-    EXPECT_THAT(touches_of(*tee, {x + (x - 0.3), 0.9, 0.099}, 0.1), SizeIs(1));
+    EXPECT_THAT(contacts_of(*tee, {x, 0.9, 0.099}, 0.1), SizeIs(2)) << "each face once";
+    EXPECT_THAT(contacts_of(*tee, {x + (x - 0.3), 0.9, 0.099}, 0.1), SizeIs(1));
   }
   EXPECT_TRUE(both_accept(joined(wall, quad({0.5, 0.5, 0}, {1.5, 1.5, 0}, {1.5, 1.5, 1}, {0.5, 0.5, 1}))))
       << "on an edge of two facets";
   const Corners behind = quad({0.3, 0.5, 0}, {0.3, 1.2, 0}, {0.3, 1.2, -1}, {0.3, 0.5, -1});
-  EXPECT_THAT(complaint(joined(wall, behind), {{"open", true}}), HasSubstr("twice")) << "its edge would be felt";
+  EXPECT_THAT(complaint(joined(wall, behind), {{"open", true}}), HasSubstr("two contacts"))
+      << "a contact with its edge";
   EXPECT_EQ(complaint(joined(wall, behind), {{"open", true}, {"two_sided", true}}), "");
   EXPECT_TRUE(both_refuse_a_seam(joined(wall, quad({0.3, 0.5, 0}, {0.3, 1.2, 0}, {1.3, 1.2, 0.2}, {1.3, 0.5, 0.2}))))
       << "a shallow ramp";
 }
 
-TEST(Mesh, AcceptsHonestRims) {
-  Corners hopper;  // of 24 narrow sides, whose upper and lower rims go up and down
+TEST(Mesh, AcceptsRims) {
+  Corners hopper;  // 24 narrow sides with zigzag rims
   const auto at = [](int i, double radius, double z) {
     const double angle = 2 * std::numbers::pi * (i % 24) / 24;
     return Vec3(radius * std::cos(angle), radius * std::sin(angle), z + 0.05 * (i % 2));
@@ -434,7 +434,7 @@ TEST(Mesh, AcceptsHonestRims) {
   for (int i = 0; i < 24; ++i) add_quad(hopper, at(i, 0.2, 0), at(i + 1, 0.2, 0), at(i + 1, 1, 1), at(i, 1, 1));
   EXPECT_TRUE(both_accept(hopper));
 
-  Corners teeth;  // a floor below 0 and a row of teeth above it, whose tips nearly reach it
+  Corners teeth;  // a floor and a row of teeth whose tips nearly reach it
   add_quad(teeth, {0, -1, 0}, {10, -1, 0}, {10, 0, 0}, {0, 0, 0});
   for (int i = 0; i < 10; ++i) {
     const double x = i;
@@ -442,7 +442,7 @@ TEST(Mesh, AcceptsHonestRims) {
   }
   EXPECT_TRUE(both_accept(teeth));
 
-  Corners fan;  // facets as narrow as 0.01 degrees, as round flanges are cut into, whose rims are all but one line
+  Corners fan;  // facets of 0.01 degrees, as in round flanges, with nearly collinear rims
   for (int i = 0; i < 5; ++i) {
     const double a = 1e-4 * i * i, b = 1e-4 * (i + 1) * (i + 1);
     fan.insert(fan.end(), {Vec3::Zero(), {std::cos(a), std::sin(a), 0}, {std::cos(b), std::sin(b), 0}});
@@ -453,32 +453,32 @@ TEST(Mesh, AcceptsHonestRims) {
   EXPECT_TRUE(both_accept(strip));
 }
 
-TEST(Mesh, RefusesInvertedFacetsUnlessItHasTwoSides) {
+TEST(Mesh, RefusesInvertedFacetsUnlessTwoSided) {
   Corners corners = box(low, high);
   std::swap(corners[3 * 6 + 1], corners[3 * 6 + 2]);
   EXPECT_THAT(complaint(corners),
-              HasSubstr("found inverted facets, which face another way than most of their neighbours: 7; allowed"));
+              HasSubstr("found inverted facets, oriented against most of their neighbours: 7; allowed"));
   EXPECT_EQ(complaint(corners, {{"two_sided", true}}), "");
   EXPECT_EQ(mesh(corners, {{"two_sided", true}})->area(), 0);
 }
 
-TEST(Mesh, RefusesDegenerateFacetsUnlessToldToSkipThem) {
+TEST(Mesh, RefusesDegenerateFacetsUnlessSkipped) {
   Corners corners = box(low, high);
   corners.insert(corners.begin() + 3, {Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, 3)});
   corners.insert(corners.end(), {high, high, low});
   EXPECT_THAT(complaint(corners),
               HasSubstr("found degenerate facets, without area: 2, 14; allowed is facets whose corners"));
   EXPECT_EQ(complaint(corners, {{"skip_degenerate", true}}), "");
-  EXPECT_THAT(touches_of(*mesh(corners, {{"skip_degenerate", true}}), {0.5, 1, 3.05}, 0.1), SizeIs(1));
+  EXPECT_THAT(contacts_of(*mesh(corners, {{"skip_degenerate", true}}), {0.5, 1, 3.05}, 0.1), SizeIs(1));
   EXPECT_THAT(complaint({high, high, low}, {{"skip_degenerate", true}}), HasSubstr("found degenerate facets only"));
 }
 
-TEST(Mesh, RefusesEdgesOfManyFacetsUnlessItHasTwoSides) {
+TEST(Mesh, RefusesEdgesOfManyFacetsUnlessTwoSided) {
   Corners fin = without_top();
   add_quad(fin, {0, 0, 3}, {0, 2, 3}, {-1, 2, 3}, {-1, 0, 3});
   add_quad(fin, {0, 0, 3}, {0, 2, 3}, {-1, 2, 4}, {-1, 0, 4});
   EXPECT_THAT(complaint(fin, {{"open", true}}),
-              HasSubstr("found edges that more than two facets share, of facets 1, 11, 13; allowed"));
+              HasSubstr("found edges shared by more than two facets, of facets 1, 11, 13; allowed"));
   EXPECT_EQ(complaint(fin, {{"open", true}, {"two_sided", true}}), "");
 }
 
@@ -500,10 +500,10 @@ TEST(Mesh, RefusesAClosedSurfaceThatFacesInwards) {
   EXPECT_EQ(complaint(beside(box({2, 0, 0}, {3, 1, 1}))), "");
   EXPECT_THAT(complaint(beside(reversed(box({2, 0, 0}, {3, 1, 1})))),
               HasSubstr("inwards: facets 13, 14, 15, 16, 17 and"));
-  EXPECT_EQ(complaint(beside(reversed(box({0.3, 0.3, 0.3}, {0.6, 0.6, 0.6})))), "") << "a hole within";
+  EXPECT_EQ(complaint(beside(reversed(box({0.3, 0.3, 0.3}, {0.6, 0.6, 0.6})))), "") << "a cavity";
 }
 
-TEST(Mesh, RefusesNormalsAgainstTheCornersUnlessToldToIgnoreThem) {
+TEST(Mesh, RefusesContradictingNormalsUnlessIgnored) {
   std::string text = test::stl_text(box(low, high));
   text.replace(text.find("normal -1"), 9, "normal 1 ");
   const StlFile file(text);
@@ -518,20 +518,20 @@ TEST(Mesh, RefusesNormalsAgainstTheCornersUnlessToldToIgnoreThem) {
     return "";
   };
   EXPECT_THAT(with({}),
-              HasSubstr("found facets whose corners go round against the normal that the file gives: 1; allowed"));
+              HasSubstr("found facets whose order of corners contradicts the normal in the file: 1; allowed"));
   EXPECT_EQ(with({{"ignore_normals", true}}), "");
 }
 
-TEST(Mesh, MergesCornersWithinTheToleranceAlone) {
+TEST(Mesh, MergesCornersWithinTheTolerance) {
   Corners corners = box(low, high);
   for (std::size_t i = 0; i < corners.size(); ++i)
     corners[i] += 1e-7 * Vec3(std::sin(i), std::cos(3. * i), std::sin(7. * i));
   EXPECT_THAT(complaint(corners), HasSubstr("found an open surface: 36 edges"));
-  EXPECT_THAT(complaint(corners, {{"merge", 1e-8}}), HasSubstr("found an open surface"));
-  EXPECT_EQ(complaint(corners, {{"merge", 1e-6}}), "");
+  EXPECT_THAT(complaint(corners, {{"merge_distance", 1e-8}}), HasSubstr("found an open surface"));
+  EXPECT_EQ(complaint(corners, {{"merge_distance", 1e-6}}), "");
 }
 
-TEST(Mesh, SaysWhatIsWrongWithItsFile) {
+TEST(Mesh, ReportsWhatIsWrongWithItsFile) {
   EXPECT_EQ(complaint({}), "path: found a file without facets; allowed is at least one facet");
   EXPECT_THAT(
       [] {

@@ -19,7 +19,7 @@ void expect_two_facets(const Stl& stl) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(stl.facets[i / 3].corners[i % 3], two_facets[i]);
 }
 
-/// What the only defect says was found.
+/// What was found, by the only defect.
 std::string refused(std::string_view bytes) {
   const Stl stl = read(bytes);
   if (stl.defects.size() != 1) return std::to_string(stl.defects.size()) + " defects";
@@ -37,7 +37,7 @@ TEST(Stl, ReadsText) {
   EXPECT_EQ(stl.facets[0].normal, Vec3::UnitZ());
 }
 
-TEST(Stl, ReadsTextAsOthersWriteIt) {
+TEST(Stl, ReadsTextOfOtherPrograms) {
   expect_two_facets(
       read("SOLID a name of facet words\r\n FACET NORMAL 0 0 1 OUTER LOOP\r\n"
            "\tVERTEX 0 0 0\r\n\tVERTEX +1 0.0E0 0\r\n VERTEX 0 10e-1 0 ENDLOOP ENDFACET\r\nENDSOLID\r\n"
@@ -45,39 +45,40 @@ TEST(Stl, ReadsTextAsOthersWriteIt) {
            "endloop\nendfacet\nendsolid the second"));
 }
 
-TEST(Stl, ReadsBinaryWhateverItsHeaderSays) {
+TEST(Stl, ReadsBinaryWithAnyHeader) {
   expect_two_facets(read(test::stl_binary(two_facets)));
   expect_two_facets(read(test::stl_binary(two_facets, "solid facet normal")));
   EXPECT_EQ(read(test::stl_binary(two_facets)).facets[1].normal, Vec3::Zero());
 }
 
-TEST(Stl, RefusesFilesThatAreNotWhole) {
+TEST(Stl, RefusesIncompleteFiles) {
   const std::string text = test::stl_text(two_facets), binary = test::stl_binary(two_facets);
   EXPECT_EQ(refused(""), "an empty file");
   EXPECT_EQ(refused("solid nothing\nendsolid nothing\n"), "a file without facets");
   EXPECT_EQ(refused(test::stl_binary({})), "a file without facets");
   EXPECT_EQ(refused(text.substr(0, text.find("endsolid"))),
-            "the end of the file in line 16, after 2 whole facets, where facet should be");
+            "the end of the file in line 16, after 2 complete facets, where facet should be");
   EXPECT_EQ(refused(text.substr(0, text.rfind("vertex"))),
-            "the end of the file in line 13, after 1 whole facets, where vertex should be");
-  EXPECT_EQ(refused(binary.substr(0, 183)), "a binary file of 183 bytes that announces 2 facets, which take 184");
-  EXPECT_EQ(refused(binary + 'x'), "a binary file of 185 bytes that announces 2 facets, which take 184");
+            "the end of the file in line 13, after 1 complete facets, where vertex should be");
+  EXPECT_EQ(refused(binary.substr(0, 183)),
+            "a binary file of 183 bytes whose header gives 2 facets, that is 184 bytes");
+  EXPECT_EQ(refused(binary + 'x'), "a binary file of 185 bytes whose header gives 2 facets, that is 184 bytes");
   EXPECT_EQ(refused(test::stl_binary(two_facets, "solid").substr(0, 150)),
-            "a binary file of 150 bytes that announces 2 facets, which take 184");
+            "a binary file of 150 bytes whose header gives 2 facets, that is 184 bytes");
   EXPECT_EQ(refused("v 0 0 0\nv 1 0 0\n" + std::string(90, '#')), "a text that begins with \"v\" instead of \"solid\"");
   EXPECT_EQ(refused("{\"a\": 1}"), "8 bytes, neither \"solid\" at their beginning nor a binary header");
 }
 
-TEST(Stl, RefusesWhatIsNoFacet) {
+TEST(Stl, RefusesInvalidFacets) {
   const std::string text = test::stl_text(two_facets);
   EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex one ")),
-            "\"one\" in line 5, after 0 whole facets, where a number should be");
+            "\"one\" in line 5, after 0 complete facets, where a number should be");
   EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex 1e999 ")),
-            "\"1e999\" in line 5, after 0 whole facets, where a number should be");
+            "\"1e999\" in line 5, after 0 complete facets, where a number should be");
   EXPECT_EQ(refused(replaced(text, " endloop", "  vertex 3 3 3\n endloop")),
-            "\"vertex\" in line 7, after 0 whole facets, where endloop should be");
+            "\"vertex\" in line 7, after 0 complete facets, where endloop should be");
   EXPECT_EQ(refused(replaced(text, "endsolid", "garbage")),
-            "\"garbage\" in line 16, after 2 whole facets, where facet should be");
+            "\"garbage\" in line 16, after 2 complete facets, where facet should be");
 }
 
 TEST(Stl, RefusesNumbersThatAreNotFinite) {
@@ -88,14 +89,14 @@ TEST(Stl, RefusesNumbersThatAreNotFinite) {
             "corners that are not finite, of facet 1");
 }
 
-TEST(Stl, SaysWhyAFileCannotBeRead) {
+TEST(Stl, ReportsWhyAFileCannotBeRead) {
   const Stl gone = read_stl("/nowhere/at all.stl");
   ASSERT_EQ(gone.defects.size(), 1u);
   EXPECT_EQ(gone.defects[0].found, "/nowhere/at all.stl, which cannot be read: No such file or directory");
   EXPECT_THAT(read_stl("/tmp").defects.at(0).found, HasSubstr("cannot be read: Is a directory"));
 }
 
-TEST(Stl, NumbersAFewFacetsAndCountsTheRest) {
+TEST(Stl, ListsAFewFacetsAndCountsTheRest) {
   EXPECT_EQ(facet_numbers({0, 6}), "1, 7");
   EXPECT_EQ(facet_numbers({0, 1, 2, 3, 4, 5, 6}), "1, 2, 3, 4, 5 and 2 more");
 }

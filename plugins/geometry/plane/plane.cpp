@@ -11,18 +11,18 @@ namespace grit {
 
 void Plane::declare(Parameters& p) {
   p.add("point", point_).unit("m").doc("any point of the plane");
-  p.add("normal", normal_).doc("towards the bodies; any length but zero");
+  p.add("normal", normal_).doc("normal towards the bodies; any length above 0");
   p.add("area", area_)
       .unit("m^2")
       .symbol("A")
       .at_least(0)
-      .doc("area that carries pressure; 0: none, so no servo on pressure");
+      .doc("area for pressures; 0: none, and no servo for pressure");
   p.add("extent", extent_)
       .unit("m")
       .above(0)
-      .doc("side of the square drawn in pictures; default: that of the area, or else as far as the scene reaches");
+      .doc("side of the square drawn in pictures; default: that of the area, else the extent of the scene");
   p.check([this](const Complain& complain) {
-    if (!(normal_.norm() > 0)) complain("normal", "a vector of length 0", "a vector that has a direction");
+    if (!(normal_.norm() > 0)) complain("normal", "a vector of length 0", "a vector of non-zero length");
   });
 }
 
@@ -34,11 +34,12 @@ Bounds Plane::bounds() const {
   return bounds;
 }
 
-void Plane::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
+void Plane::find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                          std::vector<SurfaceContact>& contacts) const {
   const Vec3 point = pose.to_world(point_), normal = (pose.turn * normal_).normalized();
   for (const Sphere& sphere : spheres) {
     const double overlap = sphere.radius - normal.dot(sphere.centre - point);
-    if (overlap > 0) touches.push_back({-normal, overlap, sphere.body, 0});
+    if (overlap > 0) contacts.push_back({-normal, overlap, sphere.body, 0});
   }
 }
 
@@ -49,7 +50,7 @@ bool Plane::near(const Pose& pose, const Vec3& centre, double reach) const {
 std::vector<Vec3> Plane::triangles() const {
   const double half = 0.5 * extent_.value_or(std::sqrt(area_));
   if (half == 0) return {};
-  int least;  // the axis that lies flattest in the plane: squares on axis-aligned planes are axis-aligned
+  int least;  // axis closest to the plane; keeps squares on axis-aligned planes axis-aligned
   normal_.cwiseAbs().minCoeff(&least);
   const Vec3 axis = Vec3::Unit(least), u = half * (axis - normal_.dot(axis) * normal_).normalized(),
              v = normal_.cross(u);

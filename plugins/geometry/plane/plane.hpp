@@ -7,19 +7,20 @@
 
 namespace grit {
 
-/// Everything behind the plane is solid: overlap = radius − signed distance, however deep the centre lies.
+/// Solid behind the plane at any depth: overlap = radius − signed distance.
 class Plane : public Geometry {
  public:
   void declare(Parameters& p) override;
   void prepare() override { normal_.normalize(); }
-  /// Infinite, but flat along the axis that the normal points along, if it does.
+  /// Infinite, except along an axis parallel to the normal.
   Bounds bounds() const override;
   double area() const override { return area_; }
   Vec3 normal() const override { return normal_; }
   bool flat() const override { return true; }
-  void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
+  void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                     std::vector<SurfaceContact>& contacts) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
-  /// A square about `point`; none if neither extent nor area says how large.
+  /// A square about `point`; none if neither extent nor area is set.
   std::vector<Vec3> triangles() const override;
 
  private:

@@ -26,16 +26,16 @@ INSTANTIATE_TEST_SUITE_P(Plane, GeometryContract,
                                          plane_case("oblique", {0.3, -0.2, 0.1}, {1, -2, 0.5})),
                          case_name);
 
-TEST(Plane, PushesBackHoweverDeepTheCentreLies) {
+TEST(Plane, PushesBackAtAnyDepth) {
   const auto plane = made<Plane>({{"point", Vec3(0, 0, 1)}});
   for (const double height : {0.09, 0.0, -0.05, -0.1, -7.0}) {
-    const auto touches = touches_of(*plane, {3, 4, 1 + height}, 0.1);
-    ASSERT_EQ(touches.size(), 1u) << height;
-    EXPECT_EQ(touches[0].normal, Vec3(-up));
-    EXPECT_NEAR(touches[0].overlap, 0.1 - height, 1e-15);
-    EXPECT_EQ(touches[0].feature, 0u);
+    const auto contacts = contacts_of(*plane, {3, 4, 1 + height}, 0.1);
+    ASSERT_EQ(contacts.size(), 1u) << height;
+    EXPECT_EQ(contacts[0].normal, Vec3(-up));
+    EXPECT_NEAR(contacts[0].overlap, 0.1 - height, 1e-15);
+    EXPECT_EQ(contacts[0].feature, 0u);
   }
-  EXPECT_TRUE(touches_of(*plane, {3, 4, 1.1000001}, 0.1).empty());
+  EXPECT_TRUE(contacts_of(*plane, {3, 4, 1.1000001}, 0.1).empty());
 }
 
 TEST(Plane, IsFlatAlongTheAxisOfItsNormalOnly) {
@@ -47,7 +47,7 @@ TEST(Plane, IsFlatAlongTheAxisOfItsNormalOnly) {
   EXPECT_EQ(oblique.high, Vec3::Constant(infinity));
 }
 
-TEST(Plane, DrawsTheSquareOfItsExtentElseOfItsArea) {
+TEST(Plane, DrawsASquareOfItsExtentOrItsArea) {
   const auto side = [](const Plane& plane) {
     const auto t = plane.triangles();
     return t.empty() ? 0 : (t[1] - t[0]).norm();
@@ -57,7 +57,7 @@ TEST(Plane, DrawsTheSquareOfItsExtentElseOfItsArea) {
   EXPECT_NEAR(side(*made<Plane>({{"area", 4.0}, {"extent", 3.0}})), 3, 1e-15);
   const auto t = made<Plane>({{"normal", Vec3(1, 2, -3)}, {"extent", 2.0}})->triangles();
   EXPECT_NEAR(((t[1] - t[0]).cross(t[2] - t[0]).normalized() - Vec3(1, 2, -3).normalized()).norm(), 0, 1e-15)
-      << "counter-clockwise as the bodies see it";
+      << "counter-clockwise as seen by the bodies";
 }
 
 TEST(Plane, RefusesANormalWithoutDirection) {
@@ -65,7 +65,7 @@ TEST(Plane, RefusesANormalWithoutDirection) {
     made<Plane>({{"normal", Vec3(0, 0, 0)}});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "normal: found a vector of length 0, allowed: a vector that has a direction; ");
+    EXPECT_STREQ(error.what(), "normal: found a vector of length 0, allowed: a vector of non-zero length; ");
   }
 }
 

@@ -13,24 +13,25 @@ void Rectangle::declare(Parameters& p) {
       .doc("whether bodies may be on either side; if not, a centre up to one radius behind the face is pushed back");
 }
 
-/// From the closest point of the sheet to `centre`, along a, b and the normal. Above the face the first two are
+/// From the closest point of the sheet to `centre`, along a, b and the normal; above the face the first two are
 /// exactly 0.
 Vec3 Rectangle::offset(const Sheet::Frame& at, const Vec3& centre) const {
-  const Vec3 place = at.place(centre);
-  return {place.x() - std::clamp(place.x(), 0.0, sheet_.length_a),
-          place.y() - std::clamp(place.y(), 0.0, sheet_.length_b), place.z()};
+  const Vec3 local = at.local(centre);
+  return {local.x() - std::clamp(local.x(), 0.0, sheet_.length_a),
+          local.y() - std::clamp(local.y(), 0.0, sheet_.length_b), local.z()};
 }
 
-void Rectangle::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
+void Rectangle::find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                              std::vector<SurfaceContact>& contacts) const {
   const Sheet::Frame at = sheet_.at(pose);
   for (const Sphere& sphere : spheres) {
     const Vec3 away = offset(at, sphere.centre);
     if (!(away.squaredNorm() < sphere.radius * sphere.radius)) continue;
     if (away.x() == 0 && away.y() == 0) {
       const double side = two_sided_ && away.z() < 0 ? -1 : 1;
-      touches.push_back({-side * at.axes.col(2), sphere.radius - side * away.z(), sphere.body, 0});
+      contacts.push_back({-side * at.axes.col(2), sphere.radius - side * away.z(), sphere.body, 0});
     } else {
-      touches.push_back({-(at.axes * away).normalized(), sphere.radius - away.norm(), sphere.body, 0});
+      contacts.push_back({-(at.axes * away).normalized(), sphere.radius - away.norm(), sphere.body, 0});
     }
   }
 }

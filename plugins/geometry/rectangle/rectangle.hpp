@@ -5,7 +5,7 @@
 
 namespace grit {
 
-/// A sheet without thickness: it is touched where it is closest, on its face, an edge or a corner, once a sphere.
+/// A sheet without thickness. A sphere has at most one contact, at the closest point of face, edges and corners.
 class Rectangle : public Geometry {
  public:
   void declare(Parameters& p) override;
@@ -14,7 +14,8 @@ class Rectangle : public Geometry {
   double area() const override { return sheet_.length_a * sheet_.length_b; }
   Vec3 normal() const override { return sheet_.axes.col(2); }
   bool flat() const override { return true; }
-  void touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const override;
+  void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                     std::vector<SurfaceContact>& contacts) const override;
   bool near(const Pose& pose, const Vec3& centre, double reach) const override;
   std::vector<Vec3> triangles() const override;
 

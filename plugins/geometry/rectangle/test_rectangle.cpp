@@ -12,8 +12,8 @@ std::shared_ptr<Rectangle> floor(bool two_sided) {
       {{"corner", Vec3(0, 0, 0)}, {"edge_a", Vec3(2, 0, 0)}, {"edge_b", Vec3(0, 1, 0)}, {"two_sided", two_sided}});
 }
 
-const std::vector<Way> flanks{{{0.5, 0.5, 0.07}, {1.5, 0.2, 0.05}}, {{1, 0.5, 0.05}, {2.04, 0.5, 0.05}}};
-const std::vector<Way> across{{{-0.3, 0.5, 0.05}, {2.3, 0.6, 0.05}},      // edge, face, edge
+const std::vector<Path> flanks{{{0.5, 0.5, 0.07}, {1.5, 0.2, 0.05}}, {{1, 0.5, 0.05}, {2.04, 0.5, 0.05}}};
+const std::vector<Path> across{{{-0.3, 0.5, 0.05}, {2.3, 0.6, 0.05}},      // edge, face, edge
                               {{-0.2, -0.2, 0.02}, {1, 1, 0.06}},         // over a corner
                               {{-0.01, 0.5, 0.15}, {-0.01, 0.5, -0.15}},  // down past an edge
                               {{1, 0.5, 0.2}, {1, 0.5, 0.01}}};
@@ -50,12 +50,12 @@ INSTANTIATE_TEST_SUITE_P(Rectangle, GeometryContract,
 TEST(Rectangle, TouchesFaceEdgeAndCornerOnce) {
   const auto sheet = floor(true);
   const auto only = [&](const Vec3& centre, double radius) {
-    const auto touches = touches_of(*sheet, centre, radius);
-    EXPECT_EQ(touches.size(), 1u);
-    return touches.at(0);
+    const auto contacts = contacts_of(*sheet, centre, radius);
+    EXPECT_EQ(contacts.size(), 1u);
+    return contacts.at(0);
   };
-  const Touch face = only({1, 0.5, 0.09}, 0.1), edge = only({2.03, 0.5, 0.04}, 0.1),
-              corner = only({2.02, 1.03, 0.06}, 0.1);
+  const SurfaceContact face = only({1, 0.5, 0.09}, 0.1), edge = only({2.03, 0.5, 0.04}, 0.1),
+                       corner = only({2.02, 1.03, 0.06}, 0.1);
   EXPECT_EQ(face.normal, Vec3(0, 0, -1));
   EXPECT_NEAR(face.overlap, 0.01, 1e-15);
   EXPECT_NEAR((edge.normal - Vec3(-0.6, 0, -0.8)).norm(), 0, 1e-14);
@@ -68,33 +68,35 @@ TEST(Rectangle, TouchesFaceEdgeAndCornerOnce) {
 
 TEST(Rectangle, TwoSidedPushesToTheSideOfTheCentre) {
   const auto sheet = floor(true);
-  EXPECT_EQ(touches_of(*sheet, {1, 0.5, -0.04}, 0.1).at(0).normal, Vec3(0, 0, 1));
-  EXPECT_NEAR(touches_of(*sheet, {1, 0.5, -0.04}, 0.1).at(0).overlap, 0.06, 1e-15);
-  EXPECT_EQ(touches_of(*sheet, {1, 0.5, 0}, 0.1).at(0).normal, Vec3(0, 0, -1)) << "in doubt towards the normal";
+  EXPECT_EQ(contacts_of(*sheet, {1, 0.5, -0.04}, 0.1).at(0).normal, Vec3(0, 0, 1));
+  EXPECT_NEAR(contacts_of(*sheet, {1, 0.5, -0.04}, 0.1).at(0).overlap, 0.06, 1e-15);
+  EXPECT_EQ(contacts_of(*sheet, {1, 0.5, 0}, 0.1).at(0).normal, Vec3(0, 0, -1))
+      << "a centre on the sheet is pushed along the normal";
 }
 
 TEST(Rectangle, OneSidedPushesBackACentreUpToOneRadiusBehind) {
   const auto face = floor(false);
-  EXPECT_EQ(touches_of(*face, {1, 0.5, -0.04}, 0.1).at(0).normal, Vec3(0, 0, -1));
-  EXPECT_NEAR(touches_of(*face, {1, 0.5, -0.04}, 0.1).at(0).overlap, 0.14, 1e-15);
-  EXPECT_EQ(touches_of(*face, {1, 0.5, -0.0999}, 0.1).size(), 1u);
-  EXPECT_TRUE(touches_of(*face, {1, 0.5, -0.1001}, 0.1).empty());
+  EXPECT_EQ(contacts_of(*face, {1, 0.5, -0.04}, 0.1).at(0).normal, Vec3(0, 0, -1));
+  EXPECT_NEAR(contacts_of(*face, {1, 0.5, -0.04}, 0.1).at(0).overlap, 0.14, 1e-15);
+  EXPECT_EQ(contacts_of(*face, {1, 0.5, -0.0999}, 0.1).size(), 1u);
+  EXPECT_TRUE(contacts_of(*face, {1, 0.5, -0.1001}, 0.1).empty());
 }
 
-// Walls do not know of each other: this is the limit that the README states, and why `box` exists.
+// Walls act independently: the limit stated in the README, and the reason for `box`.
 TEST(Rectangle, TwoWallsDoubleTheForceAtTheirSeam) {
   const auto left = floor(true);
   const auto right = made<Rectangle>({{"corner", Vec3(2, 0, 0)}, {"edge_a", Vec3(2, 0, 0)}, {"edge_b", Vec3(0, 1, 0)}});
   const auto lift = [&](double x) {
     double sum = 0;
     for (const auto& wall : {left, right})
-      for (const Touch& touch : touches_of(*wall, {x, 0.5, 0.09}, 0.1)) sum -= touch.overlap * touch.normal.z();
+      for (const SurfaceContact& contact : contacts_of(*wall, {x, 0.5, 0.09}, 0.1))
+        sum -= contact.overlap * contact.normal.z();
     return sum;
   };
   EXPECT_NEAR(lift(1.9), 0.01, 1e-15);
   EXPECT_NEAR(lift(2.1), 0.01, 1e-15);
   EXPECT_NEAR(lift(2), 0.02, 1e-15);
-  const double width = std::sqrt(0.1 * 0.1 - 0.09 * 0.09);  // half of the circle that the sphere cuts out of the floor
+  const double width = std::sqrt(0.1 * 0.1 - 0.09 * 0.09);  // radius of the contact circle on the floor
   EXPECT_NEAR(lift(2 - 1.001 * width), 0.01, 1e-15);
   EXPECT_GT(lift(2 - 0.9 * width), 0.0101);
 }
@@ -120,9 +122,9 @@ TEST(Rectangle, RefusesEdgesThatAreNotPerpendicular) {
             "edge_b: found an edge whose angle to edge_a has the cosine 0.707107, allowed: an edge perpendicular to "
             "edge_a; ");
   EXPECT_EQ(complaint({0, 0, 0}, {1, 1, 0}),
-            "edge_a: found a vector of length 0, allowed: a vector that has a direction; ");
+            "edge_a: found a vector of length 0, allowed: a vector of non-zero length; ");
   EXPECT_EQ(complaint({1, 0, 0}, {0, 0, 0}),
-            "edge_b: found a vector of length 0, allowed: a vector that has a direction; ");
+            "edge_b: found a vector of length 0, allowed: a vector of non-zero length; ");
   EXPECT_EQ(complaint({0.8660254, 0, 0.5}, {-0.5, 0, 0.8660254}), "");
 }
 

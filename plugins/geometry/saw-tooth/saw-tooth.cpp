@@ -16,20 +16,20 @@ namespace grit {
 
 namespace {
 
-constexpr double same_length = 1e-9;  // of a period: room for decimals written by hand
-constexpr double most_grooves = 1e6;  // each is drawn, and a feature's number has 32 bits
-constexpr std::size_t several = lane_width<Lane>;
+constexpr double same_length = 1e-9;  // relative to a period; allows for rounded decimals
+constexpr double most_grooves = 1e6;  // limited by drawing; feature numbers have 32 bits
+constexpr std::size_t lane_count = lane_width<Lane>;
 
 std::string number(double value) { return (std::ostringstream() << value).str(); }
 
 }  // namespace
 
-/// Where a tooth or a floor is closest to a centre, in the section.
+/// Closest point of a tooth or a floor to a centre, in the section.
 struct SawTooth::Closest {
-  double past = 0, above = 0;  // where the centre is from there: along the face, beyond what it has, and off it
+  double past = 0, above = 0;  // offset of the centre from it: along the face past its ends, and normal to it
   double squared = std::numeric_limits<double>::infinity();
   double height = -std::numeric_limits<double>::infinity();  // of the centre above the highest of its faces
-  const Face* face = nullptr;                                // where it is closest
+  const Face* face = nullptr;                                // closest face
   const Face* highest = nullptr;
   bool in_valley = false;
 };
@@ -37,31 +37,31 @@ struct SawTooth::Closest {
 void SawTooth::declare(Parameters& p) {
   constexpr double right_angle = std::numbers::pi / 2;
   sheet_.declare(p);
-  p.add("depth", depth_).unit("m").symbol("h").required().above(0).doc("of a groove, from the tips down to its bottom");
+  p.add("depth", depth_).unit("m").symbol("h").required().above(0).doc("depth of a groove, from tips to bottom");
   p.add("inclination", inclination_)
       .unit("rad")
       .symbol("α")
       .above(0)
       .below(right_angle)
-      .doc("of the flanks against the sheet; if the second differs, of the one that falls along edge_a");
+      .doc("angle of the flanks to the sheet; with second_inclination, of the flank that falls along edge_a");
   p.add("second_inclination", second_inclination_)
       .unit("rad")
       .symbol("α_2")
       .above(0)
       .below(right_angle)
-      .doc("of the flank that rises along edge_a; default: that of the first");
-  p.add("floor", floor_).unit("m").symbol("f").at_least(0).doc("width of the flat bottom of a groove; 0: it is sharp");
+      .doc("angle of the flank that rises along edge_a; default: inclination");
+  p.add("floor", floor_).unit("m").symbol("f").at_least(0).doc("width of the flat bottom of a groove; 0: sharp");
   p.add("spacing", given_spacing_)
       .unit("m")
       .symbol("s")
       .above(0)
-      .doc("from groove to groove; flat lands are left between them; default: the width of a groove, no lands");
-  p.add("offset", offset_).unit("m").symbol("o").doc("from the corner along edge_a to where some groove begins");
+      .doc("period of the grooves; the rest is flat land; default: the width of a groove, no land");
+  p.add("offset", offset_).unit("m").symbol("o").doc("distance along edge_a from the corner to the start of a groove");
   p.check([this](const Complain& complain) {
     const Widths width = widths();
     if (width.spacing < (1 - same_length) * width.groove())
       complain("spacing", number(width.spacing) + " m",
-               "at least the width of a groove, its flanks and its floor: " + number(width.groove()) + " m");
+               "at least the width of a groove, flanks and floor: " + number(width.groove()) + " m");
     const double grooves = sheet_.edge_a.norm() / width.spacing;
     if (grooves > most_grooves)
       complain(given_spacing_ ? "spacing" : "depth", number(grooves) + " grooves on the sheet",
@@ -83,7 +83,7 @@ void SawTooth::prepare() {
   Widths width = widths();
   spacing_ = width.spacing;
   double land = spacing_ - width.groove();
-  if (std::abs(land) < same_length * spacing_) {  // no sliver of a land, and no overlapping teeth
+  if (std::abs(land) < same_length * spacing_) {  // avoids slivers of land and overlapping teeth
     const double factor = spacing_ / width.groove();
     width.falling *= factor, width.floor *= factor, width.rising *= factor;
     land = 0;
@@ -102,7 +102,7 @@ void SawTooth::prepare() {
                  .to_valley = corners[i + 1].y() < 0};
   }
 
-  // The first period is the one that the sheet starts in. A tooth or floor of which it has but a sliver is left out.
+  // The sheet starts in the first period. Teeth and floors with only a sliver on the sheet are omitted.
   const double sliver = same_length * spacing_, before = std::fmod(offset_, spacing_) - width.rising - land;
   start_ = before + spacing_ * std::floor(-before / spacing_);
   per_spacing_ = 1 / spacing_;
@@ -110,7 +110,7 @@ void SawTooth::prepare() {
   first_ = feature_at(sliver), last_ = feature_at(sheet_.length_a - sliver);
 }
 
-/// The tooth or floor that spans `a`; beyond the sheet its first or last.
+/// The tooth or floor at `a`; beyond the sheet the first or last.
 int SawTooth::feature_at(double a) const {
   const double period = std::floor((a - start_) * per_spacing_);
   const bool on_floor = floor_ > 0 && a - start_ - period * spacing_ > tooth_;
@@ -121,7 +121,7 @@ std::span<const SawTooth::Face> SawTooth::faces(int feature) const {
   return std::span(faces_).subspan(feature % 2 == 0 ? 0 : 3, feature % 2 == 0 ? 3 : 1);
 }
 
-/// The part of a face that is on the sheet, from and to where along it; none if that is no more than rounding.
+/// Start and end along a face of its part on the sheet; none if that is within rounding.
 std::optional<std::pair<double, double>> SawTooth::extent(int feature, const Face& face) const {
   if (face.length == 0) return {};
   if (feature != first_ && feature != last_) return std::pair(0.0, face.length);
@@ -130,7 +130,7 @@ std::optional<std::pair<double, double>> SawTooth::extent(int feature, const Fac
   if (feature == first_) from = std::max(from, -start / face.along.x());
   if (feature == last_) to = std::min(to, (sheet_.length_a - start) / face.along.x());
   const bool cut = from > 0 || to < face.length;
-  if (cut && to - from < same_length / 3 * spacing_) return {};  // of three faces on a sliver one has a third of it
+  if (cut && to - from < same_length / 3 * spacing_) return {};  // one of three faces on a sliver has a third of it
   return std::pair(from, to);
 }
 
@@ -151,35 +151,36 @@ SawTooth::Closest SawTooth::closest(int feature, const Vec2& centre) const {
   return best;
 }
 
-/// From the closest point of the box that just holds the grooves.
-Vec3 SawTooth::beyond(const Vec3& place) const {
-  return place - place.cwiseMax(Vec3(0, 0, -depth_)).cwiseMin(Vec3(sheet_.length_a, sheet_.length_b, 0));
+/// From the closest point of the bounding box of the grooves.
+Vec3 SawTooth::beyond(const Vec3& local) const {
+  return local - local.cwiseMax(Vec3(0, 0, -depth_)).cwiseMin(Vec3(sheet_.length_a, sheet_.length_b, 0));
 }
 
-/// The sheet at one instant.
-struct SawTooth::Standing {
+/// The sheet at its current pose.
+struct SawTooth::PlacedSheet {
   Sheet::Frame at;
-  std::array<Vec3, 4> into;  // against the normal of each face
+  std::array<Vec3, 4> into;  // opposite to the normal of each face
 };
-/// As many spheres as there are lanes.
-struct SawTooth::Several {
-  Lane x, z;  // of the centres in the section, from where the periods start that they are over
+/// One sphere per lane.
+struct SawTooth::SphereLanes {
+  Lane x, z;  // of centres in the section, from the start of their period
   Lane past_end, radius;
 };
-/// What they touch of a tooth.
-struct SawTooth::Touched {
-  std::array<Quad, several> normal_and_overlap;
+/// Their contacts with one tooth.
+struct SawTooth::ToothContacts {
+  std::array<Quad, lane_count> normal_and_overlap;
   std::uint32_t lanes = 0;
 };
 
-void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vector<Touch>& touches) const {
-  Standing sheet{.at = sheet_.at(pose), .into = {}};
+void SawTooth::find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                             std::vector<SurfaceContact>& contacts) const {
+  PlacedSheet sheet{.at = sheet_.at(pose), .into = {}};
   for (std::size_t i = 0; i < faces_.size(); ++i)
     if (faces_[i].length > 0)
       sheet.into[i] = -(sheet.at.axes * Vec3(faces_[i].normal.x(), 0, faces_[i].normal.y())).normalized();
   const Lane zero(0.0);
-  for (std::size_t first = 0; first < spheres.size(); first += several) {
-    const std::span<const Sphere> some = spheres.subspan(first, std::min(several, spheres.size() - first));
+  for (std::size_t first = 0; first < spheres.size(); first += lane_count) {
+    const std::span<const Sphere> some = spheres.subspan(first, std::min(lane_count, spheres.size() - first));
     const RowLanes<Lane> sphere =
         load_fours<Lane>([&](std::size_t k) { return some[std::min(k, some.size() - 1)].centre.data(); });
     const Vec<Lane> from_corner =
@@ -188,59 +189,59 @@ void SawTooth::touch(const Pose& pose, std::span<const Sphere> spheres, std::vec
       return Lane(sheet.at.axes(0, axis)) * from_corner.x + Lane(sheet.at.axes(1, axis)) * from_corner.y +
              Lane(sheet.at.axes(2, axis)) * from_corner.z;
     };
-    const Vec<Lane> place{along(0), along(1), along(2)};
-    const Vec<Lane> beyond{place.x - min(max(place.x, zero), Lane(sheet_.length_a)),
-                           place.y - min(max(place.y, zero), Lane(sheet_.length_b)),
-                           place.z - min(max(place.z, Lane(-depth_)), zero)};
+    const Vec<Lane> local{along(0), along(1), along(2)};
+    const Vec<Lane> beyond{local.x - min(max(local.x, zero), Lane(sheet_.length_a)),
+                           local.y - min(max(local.y, zero), Lane(sheet_.length_b)),
+                           local.z - min(max(local.z, Lane(-depth_)), zero)};
     const auto reaches = dot(beyond, beyond) < sphere.w * sphere.w;
     const std::uint32_t reaching = detail::bits(reaches) & ((1u << some.size()) - 1);
     if (reaching == 0) continue;
 
-    const Lane periods = (place.x - Lane(start_)) * Lane(per_spacing_);
+    const Lane periods = (local.x - Lane(start_)) * Lane(per_spacing_);
     const Lane period([&](std::size_t k) { return std::floor(periods[k]); });
-    const auto whole_teeth_alone = sphere.w <= Lane(floor_ == 0 ? spacing_ : 0) &&
-                                   Lane(2.0) * period - Lane(2.0) > Lane(first_) &&
-                                   Lane(2.0) * period + Lane(2.0) < Lane(last_);
-    const std::uint32_t together = detail::bits(whole_teeth_alone) & reaching;
-    std::array<Touched, 3> teeth;  // before, under and after the centres
+    const auto whole_teeth_only = sphere.w <= Lane(floor_ == 0 ? spacing_ : 0) &&
+                                  Lane(2.0) * period - Lane(2.0) > Lane(first_) &&
+                                  Lane(2.0) * period + Lane(2.0) < Lane(last_);
+    const std::uint32_t together = detail::bits(whole_teeth_only) & reaching;
+    std::array<ToothContacts, 3> teeth;  // before, under and after the centres
     if (together != 0)
-      touch(sheet,
-            {.x = place.x - (Lane(start_) + period * Lane(spacing_)),
-             .z = place.z,
-             .past_end = beyond.y,
-             .radius = sphere.w},
-            teeth);
+      add_contacts(sheet,
+                   {.x = local.x - (Lane(start_) + period * Lane(spacing_)),
+                    .z = local.z,
+                    .past_end = beyond.y,
+                    .radius = sphere.w},
+                   teeth);
     for (std::uint32_t left = reaching; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
       if ((together >> k & 1u) == 0) {
-        touch(sheet.at, some[k], touches);
+        add_contacts(sheet.at, some[k], contacts);
         continue;
       }
       for (std::size_t tooth = 0; tooth < teeth.size(); ++tooth) {
         if ((teeth[tooth].lanes >> k & 1u) == 0) continue;
-        Touch& touch = touches.emplace_back();
-        std::memcpy(touch.normal.data(), &teeth[tooth].normal_and_overlap[k], sizeof(Quad));
-        touch.body = some[k].body;
-        touch.feature = static_cast<std::uint32_t>(2 * (static_cast<int>(period[k]) + static_cast<int>(tooth) - 1));
+        SurfaceContact& contact = contacts.emplace_back();
+        std::memcpy(contact.normal.data(), &teeth[tooth].normal_and_overlap[k], sizeof(Quad));
+        contact.body = some[k].body;
+        contact.feature = static_cast<std::uint32_t>(2 * (static_cast<int>(period[k]) + static_cast<int>(tooth) - 1));
       }
     }
   }
 }
 
-/// One sphere, wherever it is.
-void SawTooth::touch(const Sheet::Frame& at, const Sphere& sphere, std::vector<Touch>& touches) const {
+/// One sphere, at any position.
+void SawTooth::add_contacts(const Sheet::Frame& at, const Sphere& sphere, std::vector<SurfaceContact>& contacts) const {
   const double squared_radius = sphere.radius * sphere.radius;
-  const Vec3 place = at.place(sphere.centre), beyond = this->beyond(place);
+  const Vec3 local = at.local(sphere.centre), beyond = this->beyond(local);
   const double past_end = beyond.y();
   const double half_width = std::sqrt(squared_radius - past_end * past_end - beyond.z() * beyond.z());
   const bool over = beyond.x() == 0 && past_end == 0;
-  const int own = feature_at(place.x()), last = feature_at(place.x() + half_width);
-  for (int feature = feature_at(place.x() - half_width); feature <= last; ++feature) {
-    const Closest to = closest(feature, {place.x(), place.z()});
+  const int own = feature_at(local.x()), last = feature_at(local.x() + half_width);
+  for (int feature = feature_at(local.x() - half_width); feature <= last; ++feature) {
+    const Closest to = closest(feature, {local.x(), local.z()});
     const double squared = to.squared + past_end * past_end;
     if (!(squared < squared_radius)) continue;
-    // What is under the centre is always touched. Of the rest no valley is: there the face that shares it comes
-    // closer, and whatever is seen from behind is seen at its valley.
+    // The feature under the centre always counts. Others do not where their closest point is in a valley: the
+    // neighbour is closer there. Features seen from behind have their closest point in a valley too.
     if (feature != own && to.in_valley) continue;
     const Face& face = *to.face;
     Vec3 away(to.past * face.along.x() + to.above * face.normal.x(), past_end,
@@ -249,19 +250,20 @@ void SawTooth::touch(const Sheet::Frame& at, const Sphere& sphere, std::vector<T
     if (over && to.height < 0) {
       away = {to.highest->normal.x(), 0, to.highest->normal.y()};
       distance = to.height;
-    } else if (to.past == 0 && past_end == 0) {  // however close the centre is
+    } else if (to.past == 0 && past_end == 0) {  // the offset may be 0
       const double side = to.above < 0 ? -1 : 1;
       away = {side * face.normal.x(), 0, side * face.normal.y()};
     }
-    touches.push_back(
+    contacts.push_back(
         {-(at.axes * away).normalized(), sphere.radius - distance, sphere.body, static_cast<std::uint32_t>(feature)});
   }
 }
 
-/// The same for spheres that reach no further than the whole teeth before, under and after their centres, tooth by
-/// tooth. Most grains at a rough wall are such, and between two flanks no branch can be foretold.
-void SawTooth::touch(const Standing& sheet, const Several& spheres, std::array<Touched, 3>& teeth) const {
-  static_assert(offsetof(Touch, overlap) == sizeof(Vec3));
+/// The same for spheres that reach no further than the whole teeth before, under and after their centres: most grains
+/// at a rough wall. Without branches, since those between two flanks are unpredictable.
+void SawTooth::add_contacts(const PlacedSheet& sheet, const SphereLanes& spheres,
+                            std::array<ToothContacts, 3>& teeth) const {
+  static_assert(offsetof(SurfaceContact, overlap) == sizeof(Vec3));
   const Lane zero(0.0), end_squared = spheres.past_end * spheres.past_end;
   const auto over = spheres.past_end == zero;
   for (int tooth = 0; tooth < 3; ++tooth) {
@@ -290,11 +292,11 @@ void SawTooth::touch(const Standing& sheet, const Several& spheres, std::array<T
     squared = squared + end_squared;
     auto touching = squared < spheres.radius * spheres.radius;
     if (tooth != 1) touching = touching && !in_valley;
-    Touched& to = teeth[static_cast<std::size_t>(tooth)];
+    ToothContacts& to = teeth[static_cast<std::size_t>(tooth)];
     to.lanes = detail::bits(touching);
     if (to.lanes == 0) continue;
 
-    // However close the centre is.
+    // On a face the normal of the face is used: the offset may be 0.
     const auto on_face = over && past == zero, behind = over && height < zero;
     Vec<Lane> normal = face_into;
     Lane distance = above;
@@ -303,9 +305,9 @@ void SawTooth::touch(const Standing& sheet, const Several& spheres, std::array<T
         return -(Lane(sheet.at.axes(i, 0)) * away.x + Lane(sheet.at.axes(i, 1)) * away.y +
                  Lane(sheet.at.axes(i, 2)) * away.z);
       };
-      const Vec<Lane> way{row(0), row(1), row(2)};
-      const Lane length = sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
-      normal = select<Lane>(on_face, normal, {way.x / length, way.y / length, way.z / length});
+      const Vec<Lane> towards{row(0), row(1), row(2)};
+      const Lane length = sqrt(towards.x * towards.x + towards.y * towards.y + towards.z * towards.z);
+      normal = select<Lane>(on_face, normal, {towards.x / length, towards.y / length, towards.z / length});
       distance = select(on_face, distance, sqrt(squared));
     }
     normal = select<Lane>(behind, highest_into, normal);
@@ -316,7 +318,7 @@ void SawTooth::touch(const Standing& sheet, const Several& spheres, std::array<T
 }
 
 bool SawTooth::near(const Pose& pose, const Vec3& centre, double reach) const {
-  return beyond(sheet_.at(pose).place(centre)).squaredNorm() <= reach * reach;
+  return beyond(sheet_.at(pose).local(centre)).squaredNorm() <= reach * reach;
 }
 
 Bounds SawTooth::bounds() const {
@@ -334,8 +336,8 @@ std::vector<Vec3> SawTooth::triangles() const {
       const Vec2 start = Vec2(period_start(feature), 0) + face.start, left = start + part->first * face.along,
                  right = start + part->second * face.along;
       const Vec3 a(left.x(), 0, left.y()), b(right.x(), 0, right.y()), along_b(0, sheet_.length_b, 0);
-      for (const Vec3& place : {a, b, Vec3(b + along_b), a, Vec3(b + along_b), Vec3(a + along_b)})
-        corners.push_back(sheet_.corner + sheet_.axes * place);
+      for (const Vec3& local : {a, b, Vec3(b + along_b), a, Vec3(b + along_b), Vec3(a + along_b)})
+        corners.push_back(sheet_.corner + sheet_.axes * local);
     }
   return corners;
 }

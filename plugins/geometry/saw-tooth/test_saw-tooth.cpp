@@ -14,7 +14,7 @@ using Settings = std::vector<std::pair<std::string, Setting>>;
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// What a sheet on z = 0 from the origin is to be, and by plain means what it then is.
+/// A sheet on z = 0 from the origin, with a plain reference solution.
 struct Grooves {
   double length_a = 2, length_b = 1;
   double depth = 0.1, inclination = 45 * degree, second_inclination = inclination, floor = 0, land = 0, offset = 0;
@@ -35,7 +35,7 @@ struct Grooves {
                                  {"offset", offset}});
   }
 
-  /// z of the surface at x, also where it would go on past the ends.
+  /// z of the surface at x, extended past the ends.
   double height(double x) const {
     const double groove = x - offset - spacing() * std::floor((x - offset) / spacing());
     const double bottom = std::max(-depth, -groove * std::tan(inclination));
@@ -64,8 +64,8 @@ struct Grooves {
     return strips;
   }
 
-  /// All places where a sphere in front of the surface touches: the closest point of each strip, where it is neither
-  /// in a valley nor at a tip that is not the closest point of both of its strips; those of a tip once.
+  /// All contact points of a sphere in front of the surface: the closest point of each strip, except in valleys, and at
+  /// tips only, and once, if the tip is the closest point of both of its strips.
   std::vector<Vec3> touched(const Vec3& centre, double radius) const {
     const auto strips = this->strips();
     struct Point {
@@ -75,10 +75,10 @@ struct Grooves {
     std::vector<Point> closest;
     for (const Strip& s : strips) {
       const double dx = s.x1 - s.x0, dz = s.z1 - s.z0;
-      const double part = ((centre.x() - s.x0) * dx + (centre.z() - s.z0) * dz) / (dx * dx + dz * dz);
-      if (part <= 0) closest.push_back({s.x0, s.z0, true, false});
-      else if (part >= 1) closest.push_back({s.x1, s.z1, false, true});
-      else closest.push_back({s.x0 + part * dx, s.z0 + part * dz, false, false});
+      const double fraction = ((centre.x() - s.x0) * dx + (centre.z() - s.z0) * dz) / (dx * dx + dz * dz);
+      if (fraction <= 0) closest.push_back({s.x0, s.z0, true, false});
+      else if (fraction >= 1) closest.push_back({s.x1, s.z1, false, true});
+      else closest.push_back({s.x0 + fraction * dx, s.z0 + fraction * dz, false, false});
     }
     std::vector<Vec3> points;
     for (std::size_t i = 0; i < strips.size(); ++i) {
@@ -172,22 +172,21 @@ INSTANTIATE_TEST_SUITE_P(
         turned()),
     case_name);
 
-// Strips and tips one by one, against which the plugin is held.
-// Grooves of 0.1 m at 45 degrees are 0.2 m apart; fmod leaves what is left of 2^70 m exactly.
-TEST(SawTooth, OffsetBeyondAllBoundsCountsByItsPartOfAGroove) {
+// Grooves of 0.1 m at 45 degrees are 0.2 m apart; fmod of 2^70 m is exact.
+TEST(SawTooth, HugeOffsetCountsModuloSpacing) {
   Grooves part, far;
   far.offset = 0x1p70, part.offset = std::fmod(far.offset, far.spacing());
   const auto a_sheet = part.made(), b_sheet = far.made();
   for (int i = 0; i < 40; ++i) {
     const Vec3 centre(0.013 + 0.05 * i, 0.5, 0.01);
-    const auto a = touches_of(*a_sheet, centre, 0.12), b = touches_of(*b_sheet, centre, 0.12);
+    const auto a = contacts_of(*a_sheet, centre, 0.12), b = contacts_of(*b_sheet, centre, 0.12);
     ASSERT_EQ(a.size(), b.size()) << i;
     ASSERT_FALSE(a.empty()) << i;
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].overlap, b[k].overlap) << i;
   }
 }
 
-TEST(SawTooth, TouchesWhatSingleStripsDo) {
+TEST(SawTooth, EqualsContactsOfSingleStrips) {
   std::mt19937_64 random(7);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   for (const Grooves& grooves : {sharp, fine, oblique, flat_bottomed, steep}) {
@@ -200,15 +199,15 @@ TEST(SawTooth, TouchesWhatSingleStripsDo) {
                         draw(-grooves.depth, radius));
       if (!grooves.in_front(centre)) continue;
       std::vector<Vec3> expected = grooves.touched(centre, radius);
-      const auto touches = touches_of(*sheet, centre, radius);
-      ASSERT_EQ(touches.size(), expected.size()) << centre.transpose() << ", radius " << radius;
+      const auto contacts = contacts_of(*sheet, centre, radius);
+      ASSERT_EQ(contacts.size(), expected.size()) << centre.transpose() << ", radius " << radius;
       for (std::size_t k = 0; k < expected.size(); ++k) {
-        const Vec3 way = expected[k] - centre;
-        EXPECT_NEAR(touches[k].overlap, radius - way.norm(), 1e-12 * radius);
-        EXPECT_LE((touches[k].normal - way.normalized()).norm(), 1e-15 * grooves.length_a / way.norm());
+        const Vec3 to_wall = expected[k] - centre;
+        EXPECT_NEAR(contacts[k].overlap, radius - to_wall.norm(), 1e-12 * radius);
+        EXPECT_LE((contacts[k].normal - to_wall.normalized()).norm(), 1e-15 * grooves.length_a / to_wall.norm());
       }
-      touching += !touches.empty();
-      at_several += touches.size() > 1;
+      touching += !contacts.empty();
+      at_several += contacts.size() > 1;
     }
     EXPECT_GT(touching, 4000);
     EXPECT_GT(at_several, 400);
@@ -217,7 +216,7 @@ TEST(SawTooth, TouchesWhatSingleStripsDo) {
 
 std::vector<std::uint32_t> features(const Geometry& geometry, const Vec3& centre, double radius) {
   std::vector<std::uint32_t> result;
-  for (const Touch& touch : touches_of(geometry, centre, radius)) result.push_back(touch.feature);
+  for (const SurfaceContact& contact : contacts_of(geometry, centre, radius)) result.push_back(contact.feature);
   return result;
 }
 
@@ -225,44 +224,44 @@ std::vector<std::uint32_t> features(const Geometry& geometry, const Vec3& centre
 TEST(SawTooth, FlankPushesAlongItsNormal) {
   const double root = std::sqrt(0.5);
   const auto sheet = sharp.made();
-  const auto right = touches_of(*sheet, {0.63 + root * 0.02, 0.5, -0.03 + root * 0.02}, 0.025);
+  const auto right = contacts_of(*sheet, {0.63 + root * 0.02, 0.5, -0.03 + root * 0.02}, 0.025);
   ASSERT_EQ(right.size(), 1u);
   EXPECT_LE((right[0].normal - Vec3(-root, 0, -root)).norm(), 1e-15);
   EXPECT_NEAR(right[0].overlap, 0.005, 1e-12 * 0.025);
-  const auto left = touches_of(*sheet, {0.57 - root * 0.02, 0.5, -0.03 + root * 0.02}, 0.025);
+  const auto left = contacts_of(*sheet, {0.57 - root * 0.02, 0.5, -0.03 + root * 0.02}, 0.025);
   ASSERT_EQ(left.size(), 1u);
   EXPECT_LE((left[0].normal - Vec3(root, 0, -root)).norm(), 1e-15);
   EXPECT_EQ(left[0].feature, right[0].feature) << "both flanks of a tooth";
 }
 
-TEST(SawTooth, FlankPushesAlongItsNormalHoweverCloseTheCentre) {
+TEST(SawTooth, FlankPushesAlongItsNormalAtAnyDistance) {
   const Vec3 normal(std::sin(30 * degree), 0, std::cos(30 * degree)),
       centre = Vec3(0.05, 0.5, -0.05 * std::tan(30 * degree)) + 1e-12 * normal;
-  const Touch touch = touches_of(*Grooves{.inclination = 30 * degree}.made(), centre, 0.025).at(0);
-  EXPECT_LE((touch.normal + normal).norm(), 1e-15);
-  EXPECT_NEAR(touch.overlap, 0.025 - 1e-12, 1e-12 * 0.025);
+  const SurfaceContact contact = contacts_of(*Grooves{.inclination = 30 * degree}.made(), centre, 0.025).at(0);
+  EXPECT_LE((contact.normal + normal).norm(), 1e-15);
+  EXPECT_NEAR(contact.overlap, 0.025 - 1e-12, 1e-12 * 0.025);
 }
 
-TEST(SawTooth, TipCountsOnce) {
+TEST(SawTooth, TipIsOneContact) {
   const auto sheet = sharp.made();
-  const auto above = touches_of(*sheet, {0.6, 0.5, 0.04}, 0.05);
+  const auto above = contacts_of(*sheet, {0.6, 0.5, 0.04}, 0.05);
   ASSERT_EQ(above.size(), 1u);
   EXPECT_LE((above[0].normal - Vec3(0, 0, -1)).norm(), 1e-13);
   EXPECT_NEAR(above[0].overlap, 0.01, 1e-12 * 0.05);
-  const auto beside = touches_of(*sheet, {0.603, 0.5, 0.004}, 0.01);
+  const auto beside = contacts_of(*sheet, {0.603, 0.5, 0.004}, 0.01);
   ASSERT_EQ(beside.size(), 1u);
   EXPECT_LE((beside[0].normal - Vec3(-0.6, 0, -0.8)).norm(), 1e-13);
   EXPECT_NEAR(beside[0].overlap, 0.005, 1e-12 * 0.01);
 }
 
 TEST(SawTooth, ValleyIsTwoFlanks) {
-  const auto touches = touches_of(*sharp.made(), {0.7, 0.5, -0.1 + 0.04}, 0.03);
-  ASSERT_EQ(touches.size(), 2u);
+  const auto contacts = contacts_of(*sharp.made(), {0.7, 0.5, -0.1 + 0.04}, 0.03);
+  ASSERT_EQ(contacts.size(), 2u);
   const double root = std::sqrt(0.5);
-  for (const Touch& touch : touches) EXPECT_NEAR(touch.overlap, 0.03 - root * 0.04, 1e-12 * 0.03);
-  EXPECT_LE((touches[0].normal - Vec3(-root, 0, -root)).norm(), 1e-15);
-  EXPECT_LE((touches[1].normal - Vec3(root, 0, -root)).norm(), 1e-15);
-  EXPECT_EQ(touches[1].feature, touches[0].feature + 2);
+  for (const SurfaceContact& contact : contacts) EXPECT_NEAR(contact.overlap, 0.03 - root * 0.04, 1e-12 * 0.03);
+  EXPECT_LE((contacts[0].normal - Vec3(-root, 0, -root)).norm(), 1e-15);
+  EXPECT_LE((contacts[1].normal - Vec3(root, 0, -root)).norm(), 1e-15);
+  EXPECT_EQ(contacts[1].feature, contacts[0].feature + 2);
 }
 
 TEST(SawTooth, FlatBottomTouchesFloorAndFlanks) {
@@ -271,21 +270,21 @@ TEST(SawTooth, FlatBottomTouchesFloorAndFlanks) {
   EXPECT_THAT(features(*grooves.made(), {0.15, 0.5, -0.06}, 0.041), ElementsAre(1));
   EXPECT_THAT(features(*grooves.made(), {0.12, 0.5, -0.06}, 0.045), ElementsAre(0, 1));
   EXPECT_THAT(features(*grooves.made(), {0.15, 0.5, -0.03}, 0.09), ElementsAre(0, 1, 2));
-  EXPECT_EQ(touches_of(*grooves.made(), {0.15, 0.5, -0.06}, 0.041).at(0).normal, Vec3(0, 0, -1));
+  EXPECT_EQ(contacts_of(*grooves.made(), {0.15, 0.5, -0.06}, 0.041).at(0).normal, Vec3(0, 0, -1));
 }
 
 TEST(SawTooth, LargeGrainTouchesSeveralTipsOnceEach) {
   const double radius = 1, height = 0.999;
-  const auto touches = touches_of(*fine.made(), {0.25, 0.2, height}, radius);  // tips at 0.02 k
+  const auto contacts = contacts_of(*fine.made(), {0.25, 0.2, height}, radius);  // tips at 0.02 k
   const double half_width = std::sqrt(radius * radius - height * height);
   const int first = static_cast<int>(std::ceil((0.25 - half_width) / 0.02));
-  ASSERT_EQ(touches.size(), static_cast<std::size_t>((0.25 + half_width) / 0.02) - first + 1);
-  for (std::size_t i = 0; i < touches.size(); ++i) {
+  ASSERT_EQ(contacts.size(), static_cast<std::size_t>((0.25 + half_width) / 0.02) - first + 1);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
     const double x = 0.02 * (first + static_cast<double>(i)) - 0.25;
-    EXPECT_NEAR(touches[i].overlap, radius - std::hypot(x, height), 1e-12 * radius);
-    EXPECT_LE((touches[i].normal - Vec3(x, 0, -height).normalized()).norm(), 1e-14);
-    EXPECT_EQ(touches[i].feature, 2 * (first + i));
-    EXPECT_EQ(touches[i].body, 0u);
+    EXPECT_NEAR(contacts[i].overlap, radius - std::hypot(x, height), 1e-12 * radius);
+    EXPECT_LE((contacts[i].normal - Vec3(x, 0, -height).normalized()).norm(), 1e-14);
+    EXPECT_EQ(contacts[i].feature, 2 * (first + i));
+    EXPECT_EQ(contacts[i].body, 0u);
   }
 }
 
@@ -294,23 +293,23 @@ TEST(SawTooth, LandIsAsSmoothAsAPlane) {
   const auto sheet = grooves.made();  // a groove 0.35 … 0.37, then a land up to 0.67
   for (int i = 0; i <= 1000; ++i) {
     const Vec3 centre(0.37 + 0.3 * i / 1000, 0.5, 0.009);
-    const auto touches = touches_of(*sheet, centre, 0.01);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_NEAR(touches[0].overlap, 0.001, 1e-16);
-    EXPECT_LE((touches[0].normal - Vec3(0, 0, -1)).norm(), 1e-13);
-    EXPECT_EQ(touches[0].feature, 4u);
+    const auto contacts = contacts_of(*sheet, centre, 0.01);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_NEAR(contacts[0].overlap, 0.001, 1e-16);
+    EXPECT_LE((contacts[0].normal - Vec3(0, 0, -1)).norm(), 1e-13);
+    EXPECT_EQ(contacts[0].feature, 4u);
   }
 }
 
-TEST(SawTooth, TooFineToFeelIsFlat) {
+TEST(SawTooth, VeryFineGroovesActAsAFlatWall) {
   const Grooves grooves{.depth = 1e-6};
   const auto sheet = grooves.made();
   for (int i = 0; i <= 100; ++i) {
     double deepest = 0;
-    for (const Touch& touch : touches_of(*sheet, {1 + 1e-6 * i, 0.5, 0.099}, 0.1)) {
-      deepest = std::max(deepest, touch.overlap);
+    for (const SurfaceContact& contact : contacts_of(*sheet, {1 + 1e-6 * i, 0.5, 0.099}, 0.1)) {
+      deepest = std::max(deepest, contact.overlap);
     }
-    EXPECT_NEAR(deepest, 0.001, 1e-6 * 1e-6 / 0.1) << "half a groove beside a tip";
+    EXPECT_NEAR(deepest, 0.001, 1e-6 * 1e-6 / 0.1) << "half a groove from a tip";
   }
 }
 
@@ -318,17 +317,17 @@ TEST(SawTooth, PushesBackACentreUpToOneRadiusBehind) {
   const auto sheet = sharp.made();
   const double root = std::sqrt(0.5);
   const auto only = [&](const Vec3& centre, double radius) {
-    const auto touches = touches_of(*sheet, centre, radius);
-    EXPECT_EQ(touches.size(), 1u);
-    return touches.at(0);
+    const auto contacts = contacts_of(*sheet, centre, radius);
+    EXPECT_EQ(contacts.size(), 1u);
+    return contacts.at(0);
   };
-  const Touch flank = only({0.65, 0.5, -0.07}, 0.05);
+  const SurfaceContact flank = only({0.65, 0.5, -0.07}, 0.05);
   EXPECT_LE((flank.normal - Vec3(-root, 0, -root)).norm(), 1e-15);
   EXPECT_NEAR(flank.overlap, 0.05 + root * 0.02, 1e-12 * 0.05);
   EXPECT_NEAR(only({0.65, 0.5, -0.05 - 0.0499 / root}, 0.05).overlap, 0.0999, 1e-12);
   EXPECT_THAT(features(*sheet, {0.65, 0.5, -0.05 - 0.0501 / root}, 0.05), IsEmpty());
   EXPECT_GT(only({0.69, 0.5, -0.13}, 0.05).overlap, 0.05) << "under a valley";
-  const Touch floor = touches_of(*flat_bottomed.made(), {0.37, 0.5, -0.23}, 0.05).at(0);
+  const SurfaceContact floor = contacts_of(*flat_bottomed.made(), {0.37, 0.5, -0.23}, 0.05).at(0);
   EXPECT_EQ(floor.normal, Vec3(0, 0, -1));
   EXPECT_NEAR(floor.overlap, 0.08, 1e-15);
 }
@@ -344,9 +343,11 @@ TEST(SawTooth, NothingSlipsThroughBehind) {
       const Vec3 centre(draw(0, grooves.length_a), draw(0, grooves.length_b), -draw(0, 0.2));
       if (grooves.in_front(centre)) continue;
       ++behind;
-      const auto touches = touches_of(*sheet, centre, radius);
-      const auto pushes_out = [&](const Touch& touch) { return touch.overlap >= radius && touch.normal.z() < 0; };
-      EXPECT_EQ(std::count_if(touches.begin(), touches.end(), pushes_out), 1) << centre.transpose();
+      const auto contacts = contacts_of(*sheet, centre, radius);
+      const auto pushes_out = [&](const SurfaceContact& contact) {
+        return contact.overlap >= radius && contact.normal.z() < 0;
+      };
+      EXPECT_EQ(std::count_if(contacts.begin(), contacts.end(), pushes_out), 1) << centre.transpose();
     }
     EXPECT_GT(behind, 500);
   }
@@ -367,28 +368,28 @@ TEST(SawTooth, NumbersRiseAlongTheSheetWhereverAGrooveBegins) {
 
 TEST(SawTooth, EndsInAValleyAsAnEdge) {
   const auto sheet = Grooves{.length_a = 0.6, .floor = 0.1, .offset = -0.1}.made();  // starts with a floor, at −0.1 m
-  const auto edge = touches_of(*sheet, {-0.03, 0.5, -0.06}, 0.055);
+  const auto edge = contacts_of(*sheet, {-0.03, 0.5, -0.06}, 0.055);
   ASSERT_EQ(edge.size(), 1u);
   EXPECT_LE((edge[0].normal - Vec3(0.6, 0, -0.8)).norm(), 1e-14);
   EXPECT_NEAR(edge[0].overlap, 0.005, 1e-15);
-  const auto sharp_end = touches_of(*Grooves{.offset = -0.1}.made(), {-0.03, 0.5, -0.14}, 0.055);
+  const auto sharp_end = contacts_of(*Grooves{.offset = -0.1}.made(), {-0.03, 0.5, -0.14}, 0.055);
   ASSERT_EQ(sharp_end.size(), 1u);
   EXPECT_LE((sharp_end[0].normal - Vec3(0.6, 0, 0.8)).norm(), 1e-14);
-  for (int valleys = 1; valleys < 50; ++valleys) {  // whichever way the place of the last is rounded
+  for (int valleys = 1; valleys < 50; ++valleys) {  // for either rounding of the last valley's position
     const double end = 0.2 * valleys - 0.1;
-    EXPECT_EQ(touches_of(*Grooves{.length_a = end}.made(), {end + 0.03, 0.5, -0.14}, 0.055).size(), 1u) << end;
+    EXPECT_EQ(contacts_of(*Grooves{.length_a = end}.made(), {end + 0.03, 0.5, -0.14}, 0.055).size(), 1u) << end;
   }
-  const auto corner = touches_of(*sheet, {-0.02, -0.03, -0.04}, 0.08);
+  const auto corner = contacts_of(*sheet, {-0.02, -0.03, -0.04}, 0.08);
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_LE((corner[0].normal - Vec3(2, 3, -6) / 7).norm(), 1e-14);
 }
 
 TEST(SawTooth, MillionthGrooveIsAsExactAsTheFirst) {
   const auto sheet = Grooves{.length_a = 200000}.made();
-  const auto touches = touches_of(*sheet, {199999.8, 0.5, 0.04}, 0.05);
-  ASSERT_EQ(touches.size(), 1u);
-  EXPECT_EQ(touches[0].feature, 2 * 999999u);
-  EXPECT_NEAR(touches[0].overlap, 0.01, 1e-12);
+  const auto contacts = contacts_of(*sheet, {199999.8, 0.5, 0.04}, 0.05);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts[0].feature, 2 * 999999u);
+  EXPECT_NEAR(contacts[0].overlap, 0.01, 1e-12);
 }
 
 TEST(SawTooth, GivesAreaNormalAndBounds) {
@@ -400,7 +401,7 @@ TEST(SawTooth, GivesAreaNormalAndBounds) {
   EXPECT_EQ(wall->bounds().high, Vec3(1, 3, 4)) << "the tips are in the plane of the sheet";
 }
 
-TEST(SawTooth, TrianglesCoverTheFacesAndLookAtTheBodies) {
+TEST(SawTooth, TrianglesCoverTheFacesAndFaceTheBodies) {
   for (const Grooves& grooves : {sharp, fine, oblique, flat_bottomed, steep}) {
     double expected = 0, area = 0, projected = 0;
     for (const auto& strip : grooves.strips())
@@ -423,14 +424,14 @@ Settings sheet_and(Settings more) {
   return settings;
 }
 
-TEST(SawTooth, SpacingIsTheGroovesWidthUnlessSaid) {
-  const auto silent = made<SawTooth>(sheet_and({{"depth", 0.5e-3}})),
-             said = made<SawTooth>(sheet_and({{"depth", 0.5e-3}, {"spacing", 1e-3}}));
-  EXPECT_EQ(silent->triangles().size(), 10u * 2 * 6) << "ten grooves, two flanks each, and no slivers of lands";
-  EXPECT_EQ(said->triangles().size(), 10u * 2 * 6);
+TEST(SawTooth, SpacingIsTheWidthOfAGrooveByDefault) {
+  const auto by_default = made<SawTooth>(sheet_and({{"depth", 0.5e-3}})),
+             given = made<SawTooth>(sheet_and({{"depth", 0.5e-3}, {"spacing", 1e-3}}));
+  EXPECT_EQ(by_default->triangles().size(), 10u * 2 * 6) << "ten grooves, two flanks each, no slivers of land";
+  EXPECT_EQ(given->triangles().size(), 10u * 2 * 6);
 }
 
-TEST(SawTooth, RefusesWhatIsNoSawTooth) {
+TEST(SawTooth, RefusesInvalidGrooves) {
   const auto complaint = [](const Settings& settings) -> std::string {
     try {
       made<SawTooth>(settings);
@@ -440,18 +441,18 @@ TEST(SawTooth, RefusesWhatIsNoSawTooth) {
     return "";
   };
   EXPECT_EQ(complaint(sheet_and({{"depth", 0.5e-3}, {"spacing", 0.9e-3}})),
-            "spacing: found 0.0009 m, allowed: at least the width of a groove, its flanks and its floor: 0.001 m; ");
+            "spacing: found 0.0009 m, allowed: at least the width of a groove, flanks and floor: 0.001 m; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 0.5e-3}, {"floor", 1e-4}, {"spacing", 1e-3}})),
-            "spacing: found 0.001 m, allowed: at least the width of a groove, its flanks and its floor: 0.0011 m; ");
+            "spacing: found 0.001 m, allowed: at least the width of a groove, flanks and floor: 0.0011 m; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 0.5e-3}, {"second_inclination", 30 * degree}, {"spacing", 1e-3}})),
-            "spacing: found 0.001 m, allowed: at least the width of a groove, its flanks and its floor: "
+            "spacing: found 0.001 m, allowed: at least the width of a groove, flanks and floor: "
             "0.00136603 m; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 1e-10}})),
             "depth: found 5e+07 grooves on the sheet, allowed: at most 1e+06; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 1e-10}, {"spacing", 1e-9}})),
             "spacing: found 1e+07 grooves on the sheet, allowed: at most 1e+06; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 0.5e-3}, {"edge_b", Vec3(0, 0, 0)}})),
-            "edge_b: found a vector of length 0, allowed: a vector that has a direction; ");
+            "edge_b: found a vector of length 0, allowed: a vector of non-zero length; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 0.5e-3}, {"spacing", 1e-3}})), "");
 }
 

@@ -14,7 +14,7 @@ using Settings = std::vector<std::pair<std::string, Setting>>;
 
 constexpr double pi = std::numbers::pi;
 
-/// What a sheet on z = 0 from the origin is to be, and by plain means what it then is.
+/// A sheet on z = 0 from the origin, with a plain reference solution.
 struct Waves {
   double length_a = 2, length_b = 1;
   double depth = 0.1, wavelength = 0.4, offset = 0;
@@ -34,12 +34,12 @@ struct Waves {
   long double slope(long double x) const {
     return -std::numbers::pi_v<long double> * depth / wavelength * std::sin(phase(x));
   }
-  /// A place that is `off` the surface at x, along its normal.
+  /// A point at distance `off` from the surface at x, along its normal.
   Vec3 off_surface(double x, double y, double off) const {
     const double slope = static_cast<double>(this->slope(x)), root = std::hypot(1, slope);
     return {x - off * slope / root, y, static_cast<double>(height(x)) + off / root};
   }
-  /// From a place in the section to the closest one on the waves, by search.
+  /// Distance of a point in the section from the surface, by search.
   double distance(double x, double z) const {
     const auto to = [&](double u) { return std::hypot(u - x, static_cast<double>(height(u)) - z); };
     const double step = std::min(wavelength, length_a) / 100;
@@ -55,8 +55,8 @@ struct Waves {
   }
   bool in_front(const Vec3& centre) const { return centre.z() >= height(std::clamp(centre.x(), 0.0, length_a)); }
 
-  /// All places where a sphere in front of the surface touches: the local minima of distance, by bisection of its
-  /// derivative, that are seen from above, and not across a crest. None where it is too close to call.
+  /// All contact points of a sphere in front of the surface: local minima of distance, by bisection of its derivative,
+  /// visible from above and not across a crest. None if rounding decides.
   std::optional<std::vector<Vec3>> touched(const Vec3& centre, double radius) const {
     const long double x = centre.x(), z = centre.z(), y = std::clamp(centre.y(), 0.0, length_b);
     const auto rate = [&](long double u) { return u - x + (height(u) - z) * slope(u); };
@@ -90,7 +90,7 @@ struct Waves {
   }
 };
 
-// By d / l: 0.25, 0.05, 0.427 as the steepest of the laboratory's, 3; the last ends in troughs.
+// d / l: 0.25, 0.05, 0.427 (the steepest in the laboratory), 3; the last ends in troughs.
 const Waves usual{};
 const Waves gentle{.depth = 0.02};
 const Waves steep{.depth = 0.1708, .offset = 0.07};
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
         turned()),
     case_name);
 
-TEST(Sinusoidal, TouchesAtEachLocalMinimumOfDistance) {
+TEST(Sinusoidal, HasAContactAtEachLocalMinimumOfDistance) {
   std::mt19937_64 random(7);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   int at_several = 0;
@@ -172,15 +172,15 @@ TEST(Sinusoidal, TouchesAtEachLocalMinimumOfDistance) {
       const Vec3 centre(x, draw(-margin, waves.length_b + margin), from + radius * draw(0, 1.5));
       const auto expected = waves.touched(centre, radius);
       if (!expected) continue;
-      const auto touches = touches_of(*sheet, centre, radius);
-      ASSERT_EQ(touches.size(), expected->size()) << centre.transpose() << ", radius " << radius;
-      for (std::size_t k = 0; k < touches.size(); ++k) {
-        const Vec3 way = (*expected)[k] - centre;
-        EXPECT_NEAR(touches[k].overlap, radius - way.norm(), 1e-12 * radius);
-        EXPECT_LE((touches[k].normal - way.normalized()).norm(), 1e-9 + 1e-14 * waves.length_a / way.norm());
+      const auto contacts = contacts_of(*sheet, centre, radius);
+      ASSERT_EQ(contacts.size(), expected->size()) << centre.transpose() << ", radius " << radius;
+      for (std::size_t k = 0; k < contacts.size(); ++k) {
+        const Vec3 to_wall = (*expected)[k] - centre;
+        EXPECT_NEAR(contacts[k].overlap, radius - to_wall.norm(), 1e-12 * radius);
+        EXPECT_LE((contacts[k].normal - to_wall.normalized()).norm(), 1e-9 + 1e-14 * waves.length_a / to_wall.norm());
       }
-      touching += !touches.empty();
-      at_several += touches.size() > 1;
+      touching += !contacts.empty();
+      at_several += contacts.size() > 1;
     }
     EXPECT_GT(touching, 1000);
   }
@@ -189,7 +189,7 @@ TEST(Sinusoidal, TouchesAtEachLocalMinimumOfDistance) {
 
 std::vector<std::uint32_t> features(const Geometry& geometry, const Vec3& centre, double radius) {
   std::vector<std::uint32_t> result;
-  for (const Touch& touch : touches_of(geometry, centre, radius)) result.push_back(touch.feature);
+  for (const SurfaceContact& contact : contacts_of(geometry, centre, radius)) result.push_back(contact.feature);
   return result;
 }
 
@@ -197,42 +197,42 @@ std::vector<std::uint32_t> features(const Geometry& geometry, const Vec3& centre
 TEST(Sinusoidal, CrestsAndTroughsPushUpright) {
   for (const double x : {0.4, 1.2, 0.6, 1.4}) {
     const double height = x == 0.4 || x == 1.2 ? 0 : -0.1;
-    const auto touches = touches_of(*usual.made(), {x, 0.5, height + 0.07}, 0.08);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_LE((touches[0].normal - Vec3(0, 0, -1)).norm(), 1e-13);
-    EXPECT_NEAR(touches[0].overlap, 0.01, 1e-12 * 0.08);
+    const auto contacts = contacts_of(*usual.made(), {x, 0.5, height + 0.07}, 0.08);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_LE((contacts[0].normal - Vec3(0, 0, -1)).norm(), 1e-13);
+    EXPECT_NEAR(contacts[0].overlap, 0.01, 1e-12 * 0.08);
   }
 }
 
-TEST(Sinusoidal, FlankPushesAlongItsNormalHoweverCloseTheCentre) {
+TEST(Sinusoidal, FlankPushesAlongItsNormalAtAnyDistance) {
   const Vec3 at = steep.off_surface(0.31, 0.5, 0), normal = (steep.off_surface(0.31, 0.5, 1) - at).normalized();
   for (const double off : {1e-3, 1e-9, 0.0, -1e-9, -1e-3}) {
-    const auto touches = touches_of(*steep.made(), at + off * normal, 0.03);
-    ASSERT_EQ(touches.size(), 1u) << off;
-    EXPECT_LE((touches[0].normal + normal).norm(), 1e-13) << off;
-    EXPECT_NEAR(touches[0].overlap, 0.03 - off, 1e-12 * 0.03) << off;
+    const auto contacts = contacts_of(*steep.made(), at + off * normal, 0.03);
+    ASSERT_EQ(contacts.size(), 1u) << off;
+    EXPECT_LE((contacts[0].normal + normal).norm(), 1e-13) << off;
+    EXPECT_NEAR(contacts[0].overlap, 0.03 - off, 1e-12 * 0.03) << off;
   }
 }
 
 // Where the normals of both flanks meet above a trough.
-TEST(Sinusoidal, ValleyNarrowerThanTheSphereIsTwoTouches) {
+TEST(Sinusoidal, ValleyNarrowerThanTheSphereIsTwoContacts) {
   for (const double x : {0.1, 0.13, 0.17}) {
     const double slope = static_cast<double>(usual.slope(x)), height = static_cast<double>(usual.height(x));
     const Vec3 centre(0.2, 0.5, height + (0.2 - x) / -slope);
     const double radius = std::hypot(centre.x() - x, centre.z() - height) + 1e-3;
     ASSERT_GT(radius, usual.trough_radius());
-    const auto touches = touches_of(*usual.made(), centre, radius);
-    ASSERT_EQ(touches.size(), 2u);
+    const auto contacts = contacts_of(*usual.made(), centre, radius);
+    ASSERT_EQ(contacts.size(), 2u);
     for (const double side : {-1.0, 1.0}) {
-      const Touch& touch = touches[side > 0];
-      EXPECT_NEAR(touch.overlap, 1e-3, 1e-12 * radius);
-      EXPECT_LE((touch.normal - Vec3(-side * slope, 0, -1).normalized()).norm(), 1e-13);
+      const SurfaceContact& contact = contacts[side > 0];
+      EXPECT_NEAR(contact.overlap, 1e-3, 1e-12 * radius);
+      EXPECT_LE((contact.normal - Vec3(-side * slope, 0, -1).normalized()).norm(), 1e-13);
     }
-    EXPECT_EQ(touches[1].feature, touches[0].feature + 1);
+    EXPECT_EQ(contacts[1].feature, contacts[0].feature + 1);
   }
 }
 
-TEST(Sinusoidal, SphereThatFitsTouchesOnce) {
+TEST(Sinusoidal, SphereThatFitsHasOneContact) {
   std::mt19937_64 random(5);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   for (const Waves& waves : {usual, gentle, steep, fine, deep}) {
@@ -251,37 +251,37 @@ TEST(Sinusoidal, SphereThatFitsTouchesOnce) {
   }
 }
 
-/// The largest change of a touch's overlap beyond what a sphere's way explains, while it slides through a trough of
+/// Largest change of a contact's overlap in excess of the sphere's displacement, while it slides through a trough of
 /// `waves` pressed by `overlap` into the deeper flank.
 double largest_jump(const Waves& waves, double radius, double overlap) {
   const auto sheet = waves.made();
   constexpr int steps = 20000;
   const double crest = waves.offset + waves.wavelength, trough = crest + 0.5 * waves.wavelength;
   double largest = 0;
-  std::vector<Touch> before;
+  std::vector<SurfaceContact> before;
   Vec3 from;
   for (int i = 0; i <= steps; ++i) {
     const Vec3 centre = waves.off_surface(crest + i * (trough - crest) / steps, 0.5, radius - overlap);
-    if (centre.x() > trough) break;  // from there on it is mirrored
-    const auto now = touches_of(*sheet, centre, radius);
-    const auto compare = [&](const Touch& touch, const std::vector<Touch>& others) {
+    if (centre.x() > trough) break;  // the rest is symmetric
+    const auto now = contacts_of(*sheet, centre, radius);
+    const auto compare = [&](const SurfaceContact& contact, const std::vector<SurfaceContact>& others) {
       double other_overlap = 0;
-      for (const Touch& other : others)
-        if (other.feature == touch.feature) other_overlap = other.overlap;
-      largest = std::max(largest, std::abs(touch.overlap - other_overlap) - (centre - from).norm());
+      for (const SurfaceContact& other : others)
+        if (other.feature == contact.feature) other_overlap = other.overlap;
+      largest = std::max(largest, std::abs(contact.overlap - other_overlap) - (centre - from).norm());
     };
     if (i > 0) {
-      for (const Touch& touch : now) compare(touch, before);
-      for (const Touch& touch : before) compare(touch, now);
+      for (const SurfaceContact& contact : now) compare(contact, before);
+      for (const SurfaceContact& contact : before) compare(contact, now);
     }
     before = now, from = centre;
   }
   return largest;
 }
 
-// How deep a sphere that does not fit may be pressed in before a flank takes hold of it or lets it go at once; from the
-// evolute of the section, by bisection.
-TEST(Sinusoidal, FlanksTakeHoldSteadilyWithinTheLimit) {
+// Overlap up to which contacts of a sphere that does not fit start and end continuously; limits from the evolute of the
+// section, by bisection.
+TEST(Sinusoidal, ContactsStartContinuouslyWithinTheLimit) {
   struct Limit {
     double depth_to_length, radius_to_trough, overlap_to_radius;
   };
@@ -296,17 +296,17 @@ TEST(Sinusoidal, FlanksTakeHoldSteadilyWithinTheLimit) {
   }
 }
 
-TEST(Sinusoidal, LargeGrainTouchesEachCrestWithinReachOnce) {
+TEST(Sinusoidal, LargeGrainHasOneContactPerCrestWithinReach) {
   const double radius = 1, height = 0.9995;
-  const auto touches = touches_of(*fine.made(), {0.25, 0.2, height}, radius);  // crests at 0.02 k
+  const auto contacts = contacts_of(*fine.made(), {0.25, 0.2, height}, radius);  // crests at 0.02 k
   const double half_width = std::sqrt(radius * radius - height * height);
   const int first = static_cast<int>(std::ceil((0.25 - half_width) / 0.02)),
             last = static_cast<int>(std::floor((0.25 + half_width) / 0.02));
-  ASSERT_EQ(touches.size(), static_cast<std::size_t>(last - first + 1));
-  for (std::size_t i = 0; i < touches.size(); ++i) {
+  ASSERT_EQ(contacts.size(), static_cast<std::size_t>(last - first + 1));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
     const double x = 0.02 * (first + static_cast<double>(i)) - 0.25;
-    EXPECT_NEAR(touches[i].overlap, radius - std::hypot(x, height), 2e-6) << "the crest's own height beside its top";
-    EXPECT_EQ(touches[i].feature, first + 1 + i);
+    EXPECT_NEAR(contacts[i].overlap, radius - std::hypot(x, height), 2e-6) << "the crest is lower beside its top";
+    EXPECT_EQ(contacts[i].feature, first + 1 + i);
   }
 }
 
@@ -321,12 +321,12 @@ TEST(Sinusoidal, FlatIsTheRectangleToTheLastBit) {
     const Vec3 off(centre.x() - std::clamp(centre.x(), 0.0, 2.0), centre.y() - std::clamp(centre.y(), 0.0, 1.0),
                    centre.z());
     const bool face = off.x() == 0 && off.y() == 0;
-    const auto touches = touches_of(*sheet, centre, 0.2);
-    ASSERT_EQ(touches.size(), off.squaredNorm() < 0.2 * 0.2 ? 1u : 0u) << centre.transpose();
-    if (touches.empty()) continue;
-    EXPECT_EQ(touches[0].overlap, 0.2 - (face ? off.z() : off.norm()));
-    EXPECT_EQ(touches[0].normal, face ? Vec3(0, 0, -1) : Vec3(-off.normalized()));
-    EXPECT_EQ(touches[0].feature, 0u);
+    const auto contacts = contacts_of(*sheet, centre, 0.2);
+    ASSERT_EQ(contacts.size(), off.squaredNorm() < 0.2 * 0.2 ? 1u : 0u) << centre.transpose();
+    if (contacts.empty()) continue;
+    EXPECT_EQ(contacts[0].overlap, 0.2 - (face ? off.z() : off.norm()));
+    EXPECT_EQ(contacts[0].normal, face ? Vec3(0, 0, -1) : Vec3(-off.normalized()));
+    EXPECT_EQ(contacts[0].feature, 0u);
     ++(face ? faces : edges);
   }
   EXPECT_GT(faces, 5000);
@@ -345,15 +345,15 @@ TEST(Sinusoidal, NothingSlipsThroughBehind) {
       const Vec3 centre(draw(0, waves.length_a), draw(0, waves.length_b), -draw(0, 0.25));
       if (waves.in_front(centre)) continue;
       const double distance = waves.distance(centre.x(), centre.z());
-      const auto touches = touches_of(*sheet, centre, radius);
+      const auto contacts = contacts_of(*sheet, centre, radius);
       if (std::abs(distance - radius) < 1e-12) continue;
-      ASSERT_EQ(touches.size(), distance < radius ? 1u : 0u) << centre.transpose();
-      if (touches.empty()) {
+      ASSERT_EQ(contacts.size(), distance < radius ? 1u : 0u) << centre.transpose();
+      if (contacts.empty()) {
         ++too_far;
         continue;
       }
-      EXPECT_NEAR(touches[0].overlap, radius + distance, 1e-12) << centre.transpose();
-      EXPECT_LT(touches[0].normal.z(), 0);
+      EXPECT_NEAR(contacts[0].overlap, radius + distance, 1e-12) << centre.transpose();
+      EXPECT_LT(contacts[0].normal.z(), 0);
       ++behind;
     }
     EXPECT_GT(behind, 250);
@@ -361,20 +361,21 @@ TEST(Sinusoidal, NothingSlipsThroughBehind) {
   }
 }
 
-// Crests are curved with the radius of troughs: from that deep on, either flank is as close.
+// Crests have the radius of curvature of troughs: below that depth both flanks are equally close.
 TEST(Sinusoidal, PushesOutOfTheFlankOnItsSideOfACrest) {
   constexpr double crest = 0.8, aside = 1e-9, radius = 0.2;
-  const auto touch = [&](double x, double below) {
-    const auto touches = touches_of(*usual.made(), {x, 0.5, -below}, radius);
-    EXPECT_EQ(touches.size(), 1u);
-    return touches.empty() ? Touch{} : touches[0];
+  const auto contact = [&](double x, double below) {
+    const auto contacts = contacts_of(*usual.made(), {x, 0.5, -below}, radius);
+    EXPECT_EQ(contacts.size(), 1u);
+    return contacts.empty() ? SurfaceContact{} : contacts[0];
   };
   const double shallow = 0.95 * usual.trough_radius(), deep = 1.2 * usual.trough_radius();
   for (const double x : {crest - aside, crest, crest + aside}) {
-    EXPECT_NEAR(touch(x, shallow).overlap, radius + shallow, 1e-9);
-    EXPECT_NEAR(touch(x, shallow).normal.x(), 0, 1e-6);
+    EXPECT_NEAR(contact(x, shallow).overlap, radius + shallow, 1e-9);
+    EXPECT_NEAR(contact(x, shallow).normal.x(), 0, 1e-6);
   }
-  const Touch before = touch(crest - aside, deep), at = touch(crest, deep), after = touch(crest + aside, deep);
+  const SurfaceContact before = contact(crest - aside, deep), at = contact(crest, deep),
+                       after = contact(crest + aside, deep);
   EXPECT_LT(at.overlap, radius + deep - 1e-4);
   EXPECT_NEAR(before.overlap, at.overlap, 2 * aside);
   EXPECT_NEAR(after.overlap, at.overlap, 2 * aside);
@@ -383,31 +384,31 @@ TEST(Sinusoidal, PushesOutOfTheFlankOnItsSideOfACrest) {
   EXPECT_NEAR(at.normal.x(), after.normal.x(), 1e-6);
 }
 
-TEST(Sinusoidal, SideIsThinWhereNothingIsOnIt) {
+TEST(Sinusoidal, SideHasNoThickness) {
   const Vec3 at = steep.off_surface(0.31, 0, 0), normal = (steep.off_surface(0.31, 0, 1) - at).normalized();
   for (const double off : {0.03, -0.03}) {  // over the edge, and under it
-    const auto touches = touches_of(*steep.made(), at + Vec3(0, -0.04, 0) + off * normal, 0.06);
-    ASSERT_EQ(touches.size(), 1u);
-    EXPECT_NEAR(touches[0].overlap, 0.01, 1e-12 * 0.06);
-    EXPECT_LE((touches[0].normal - (Vec3(0, 0.8, 0) - off / 0.05 * normal)).norm(), 1e-12);
+    const auto contacts = contacts_of(*steep.made(), at + Vec3(0, -0.04, 0) + off * normal, 0.06);
+    ASSERT_EQ(contacts.size(), 1u);
+    EXPECT_NEAR(contacts[0].overlap, 0.01, 1e-12 * 0.06);
+    EXPECT_LE((contacts[0].normal - (Vec3(0, 0.8, 0) - off / 0.05 * normal)).norm(), 1e-12);
   }
 }
 
 TEST(Sinusoidal, EndsAreEdges) {
-  const auto crest = touches_of(*usual.made(), {-0.03, 0.5, -0.04}, 0.055);
+  const auto crest = contacts_of(*usual.made(), {-0.03, 0.5, -0.04}, 0.055);
   ASSERT_EQ(crest.size(), 1u);
   EXPECT_LE((crest[0].normal - Vec3(0.6, 0, 0.8)).norm(), 1e-14);
   EXPECT_NEAR(crest[0].overlap, 0.005, 1e-15);
-  const auto trough = touches_of(*Waves{.offset = 0.2}.made(), {2.03, 0.5, -0.14}, 0.055);
+  const auto trough = contacts_of(*Waves{.offset = 0.2}.made(), {2.03, 0.5, -0.14}, 0.055);
   ASSERT_EQ(trough.size(), 1u);
   EXPECT_LE((trough[0].normal - Vec3(-0.6, 0, 0.8)).norm(), 1e-14);
   EXPECT_NEAR(trough[0].overlap, 0.005, 1e-15);
-  const auto corner = touches_of(*usual.made(), {-0.02, -0.03, 0.06}, 0.08);
+  const auto corner = contacts_of(*usual.made(), {-0.02, -0.03, 0.06}, 0.08);
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_LE((corner[0].normal - Vec3(2, 3, -6) / 7).norm(), 1e-14);
 }
 
-// The sheet starts in a trough at x = 0, as it were half of a valley, and rises to crests at 0.2, 0.6, …
+// The sheet starts in a trough at x = 0, half of a valley, with crests at 0.2, 0.6, …
 TEST(Sinusoidal, EndInATroughAndTheFlankBesideItAreTwo) {
   const Waves waves{.depth = 0.16, .offset = 0.2};
   const auto sheet = waves.made();
@@ -415,7 +416,7 @@ TEST(Sinusoidal, EndInATroughAndTheFlankBesideItAreTwo) {
              centre = waves.off_surface(0.1, 0.5, 0.1 / std::sin(std::atan(0.4 * pi)));
   EXPECT_NEAR(centre.x(), 0, 1e-15) << "above the end";
   const double to_flank = (centre - at).norm(), to_end = centre.z() + 0.16, radius = std::max(to_flank, to_end) + 0.01;
-  const auto both = touches_of(*sheet, centre + Vec3(-0.001, 0, 0), radius);
+  const auto both = contacts_of(*sheet, centre + Vec3(-0.001, 0, 0), radius);
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0].feature, 0u);
   EXPECT_EQ(both[1].feature, 1u);
@@ -437,12 +438,12 @@ TEST(Sinusoidal, NumbersRiseAlongTheSheetWhereverACrestIs) {
   }
 }
 
-TEST(Sinusoidal, OffsetBeyondAllBoundsCountsByItsPartOfAWave) {
+TEST(Sinusoidal, HugeOffsetCountsModuloWavelength) {
   const double huge = 0x1p1000;
   const auto near = Waves{.offset = std::remainder(huge, usual.wavelength)}.made(), far = Waves{.offset = huge}.made();
   for (int i = 0; i < 40; ++i) {
     const Vec3 centre(0.013 + 0.05 * i, 0.5, 0.02);
-    const auto a = touches_of(*near, centre, 0.15), b = touches_of(*far, centre, 0.15);
+    const auto a = contacts_of(*near, centre, 0.15), b = contacts_of(*far, centre, 0.15);
     ASSERT_EQ(a.size(), b.size()) << i;
     ASSERT_FALSE(a.empty()) << i;
     for (std::size_t k = 0; k < a.size(); ++k) EXPECT_EQ(a[k].overlap, b[k].overlap) << i;
@@ -451,10 +452,10 @@ TEST(Sinusoidal, OffsetBeyondAllBoundsCountsByItsPartOfAWave) {
 
 TEST(Sinusoidal, MillionthWaveIsAsExactAsTheFirst) {
   const auto sheet = Waves{.length_a = 400000}.made();
-  const auto touches = touches_of(*sheet, {399999.6, 0.5, 0.07}, 0.09);
-  ASSERT_EQ(touches.size(), 1u);
-  EXPECT_EQ(touches[0].feature, 999999u + 1);
-  EXPECT_NEAR(touches[0].overlap, 0.02, 1e-12);
+  const auto contacts = contacts_of(*sheet, {399999.6, 0.5, 0.07}, 0.09);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts[0].feature, 999999u + 1);
+  EXPECT_NEAR(contacts[0].overlap, 0.02, 1e-12);
 }
 
 TEST(Sinusoidal, GivesAreaNormalAndBounds) {
@@ -469,7 +470,7 @@ TEST(Sinusoidal, GivesAreaNormalAndBounds) {
   EXPECT_EQ(wall->bounds().high, Vec3(1, 3, 4)) << "the crests are in the plane of the sheet";
 }
 
-TEST(Sinusoidal, TrianglesLieOnTheWavesAndLookAtTheBodies) {
+TEST(Sinusoidal, TrianglesLieOnTheSurfaceAndFaceTheBodies) {
   for (const Waves& waves : {usual, gentle, steep, fine, cut}) {
     double projected = 0;
     const auto t = waves.made()->triangles();
@@ -489,7 +490,7 @@ Settings sheet_and(Settings more) {
   return settings;
 }
 
-TEST(Sinusoidal, RefusesWhatIsNoSheetOfWaves) {
+TEST(Sinusoidal, RefusesInvalidSheets) {
   const auto complaint = [](const Settings& settings) -> std::string {
     try {
       made<Sinusoidal>(settings);
@@ -501,7 +502,7 @@ TEST(Sinusoidal, RefusesWhatIsNoSheetOfWaves) {
   EXPECT_EQ(complaint(sheet_and({{"depth", 1e-4}, {"wavelength", 1e-9}})),
             "wavelength: found 1e+07 waves on the sheet, allowed: at most 1e+06; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 1e-4}, {"wavelength", 1e-3}, {"edge_b", Vec3(0, 0, 0)}})),
-            "edge_b: found a vector of length 0, allowed: a vector that has a direction; ");
+            "edge_b: found a vector of length 0, allowed: a vector of non-zero length; ");
   EXPECT_EQ(complaint(sheet_and({{"depth", 1e-4}, {"wavelength", 1e-3}})), "");
 }
 

@@ -71,10 +71,9 @@ void CoarseGraining::prepare(const World& world) {
   const auto count = counts(world);
   const double all = count[0] * count[1] * count[2];
   if (!(all <= most_points))
-    throw Error("probe coarse-graining, /spacing: makes " +
-                std::to_string(static_cast<std::uint64_t>(std::min(all, 1e18))) +
-                " points, 5000000 are allowed; space them wider, say a slice, or a smaller box by region_low and "
-                "region_high");
+    throw ParameterError(
+        {{"spacing", "a grid of " + std::to_string(static_cast<std::uint64_t>(std::min(all, 1e18))) + " points",
+          "at most 5000000 points; use a larger spacing, a slice, or a smaller box by region_low and region_high"}});
 }
 
 std::optional<PointGrid> CoarseGraining::grid(const World& world) const {
@@ -89,11 +88,12 @@ std::optional<PointGrid> CoarseGraining::grid(const World& world) const {
   return points;
 }
 
-void CoarseGraining::sample(const World& world, std::span<const std::span<double>> values) {
+void CoarseGraining::sample(const World& world, ChannelValues& values) {
   const auto points = grid(world);
   if (!points) {
-    for (const auto& channel : values.first(3)) channel[0] = std::numeric_limits<double>::quiet_NaN();
-    values[3][0] = 0;
+    for (const char* of_points : {"density", "mean_stress", "kinetic_stress"})
+      values[of_points] = std::numeric_limits<double>::quiet_NaN();
+    values["points"] = 0;
     return;
   }
   const auto all = smoothed(world, *points);
@@ -103,8 +103,10 @@ void CoarseGraining::sample(const World& world, std::span<const std::span<double
     stress += (field.contact + field.kinetic).trace() / 3;
   }
   const auto count = static_cast<double>(all.size());
-  values[0][0] = density / count, values[1][0] = stress / count, values[2][0] = kinetic / count;
-  values[3][0] = static_cast<double>(all.size());
+  values["density"] = density / count;
+  values["mean_stress"] = stress / count;
+  values["kinetic_stress"] = kinetic / count;
+  values["points"] = count;
 }
 
 std::vector<Field> CoarseGraining::fields(const World& world) {

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -19,10 +18,10 @@ class CoarseGraining final : public Probe {
   std::optional<Vec3> region_low, region_high;  ///< m
 
   void declare(Parameters& parameters) override;
-  /// Throws Error where the grid has too many points.
+  /// Throws ParameterError where the grid has too many points.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
 
  private:

@@ -85,7 +85,7 @@ std::vector<CoarseFields> coarse_fields(const World& world, const PointGrid& gri
 
   for (const Contact& contact : world.contacts()) {
     const Branch branch = branch_of(world, contact);
-    const Vec3& way = branch.way;
+    const Vec3& way = branch.vector;
     const Mat3 load = contact.force * way.transpose();
     const Lucy::Line line(way);
     spread(fields, branch.start, way.cwiseMin(0.0), way.cwiseMax(0.0), [&](CoarseFields& field, const Vec3& off) {

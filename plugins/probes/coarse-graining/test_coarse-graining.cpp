@@ -61,8 +61,8 @@ FakeWorld moving() {
   world.density = 2;
   world.add({0, 0, 0}, 1, {0.5, -0.25, 1}), world.add({1.5, 0.5, 1}, 0.8, {-1, 0.5, 0}), world.add({3, 0, 0.5}, 0.9);
   world.wall.push_back(still_wall("wall"));
-  world.touch(0, 1, Vec3(1.5, 0.5, 1), Vec3(4, 1, -2)), world.touch(1, 2, Vec3(1.5, -0.5, -0.5), Vec3(1, 3, 2));
-  world.touch_wall(0, 0, Vec3(-0.9, 0, -0.2), Vec3(-5, 2, 1));
+  world.add_contact(0, 1, Vec3(1.5, 0.5, 1), Vec3(4, 1, -2)), world.add_contact(1, 2, Vec3(1.5, -0.5, -0.5), Vec3(1, 3, 2));
+  world.add_wall_contact(0, 0, Vec3(-0.9, 0, -0.2), Vec3(-5, 2, 1));
   return world;
 }
 double mass(const FakeWorld& world, std::size_t body) { return 1 / world.velocity[body].w; }
@@ -124,11 +124,11 @@ TEST(CoarseFields, HoldAPackingAtRestInBalance) {
   world.add(left, 1), world.add(right, 1), world.add(top, 1);
   for (const auto* name : {"floor", "left", "right"}) world.wall.push_back(still_wall(name));
   const double weight = 10 * mass(world, 0), thrust = weight / 1.6;
-  world.touch(2, 0, left - top, thrust * (left - top) / 2), world.touch(2, 1, right - top, thrust * (right - top) / 2);
-  world.touch_wall(0, 0, Vec3(0, 0, -1), Vec3(0, 0, -1.5 * weight));
-  world.touch_wall(1, 0, Vec3(0, 0, -1), Vec3(0, 0, -1.5 * weight));
-  world.touch_wall(0, 1, Vec3(-1, 0, 0), Vec3(-0.6 * thrust, 0, 0));
-  world.touch_wall(1, 2, Vec3(1, 0, 0), Vec3(0.6 * thrust, 0, 0));
+  world.add_contact(2, 0, left - top, thrust * (left - top) / 2), world.add_contact(2, 1, right - top, thrust * (right - top) / 2);
+  world.add_wall_contact(0, 0, Vec3(0, 0, -1), Vec3(0, 0, -1.5 * weight));
+  world.add_wall_contact(1, 0, Vec3(0, 0, -1), Vec3(0, 0, -1.5 * weight));
+  world.add_wall_contact(0, 1, Vec3(-1, 0, 0), Vec3(-0.6 * thrust, 0, 0));
+  world.add_wall_contact(1, 2, Vec3(1, 0, 0), Vec3(0.6 * thrust, 0, 0));
   for (const double cutoff : {1.7, 3.3})
     for (const Vec3& point : points) {
       const CoarseFields here = at(world, point, cutoff);
@@ -190,12 +190,12 @@ TEST(CoarseFields, CountPeriodicImages) {
   FakeWorld world, images;
   world.make_periodic({0, 0, 0}, {2, 3, 4});
   const Vec3 place(1.9, 0.2, 0.1), branch(0.5, -0.6, 0.3), force(1, 2, 3);
-  world.add(place, 0.5, {1, 0, 0}), world.touch(0, 0, branch, force);
+  world.add(place, 0.5, {1, 0, 0}), world.add_contact(0, 0, branch, force);
   for (int i = -4; i <= 4; ++i)
     for (int j = -4; j <= 4; ++j)
       for (int k = -4; k <= 4; ++k) {
         const auto body = images.add(place + Vec3(2.0 * i, 3.0 * j, 4.0 * k), 0.5, {1, 0, 0});
-        images.touch(body, body, branch, force);
+        images.add_contact(body, body, branch, force);
       }
   for (const double cutoff : {1.5, 5.0})  // the larger sees the same grain several times
     for (const Vec3& point : points) {
@@ -270,8 +270,9 @@ TEST(CoarseGraining, RefusesGridsThatAreNoneOrTooLarge) {
     probe.prepare(world);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("probe coarse-graining, /spacing: makes 125000000000"));
-    EXPECT_THAT(error.what(), HasSubstr("points, 5000000 are allowed; space them wider, say a slice"));
+    EXPECT_THAT(error.what(), HasSubstr("spacing: found a grid of 125000000000"));
+    EXPECT_THAT(error.what(),
+                HasSubstr(" points; allowed is at most 5000000 points; use a larger spacing, a slice, or a smaller "));
   }
   probe.region_low = Vec3(0, 0, 0), probe.region_high = Vec3(1, 1, 0);
   EXPECT_EQ(

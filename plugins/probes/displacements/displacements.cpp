@@ -10,6 +10,13 @@
 
 namespace grit {
 
+namespace {
+
+/// Its gradient; strips count from 1.
+std::string strip_channel(std::int64_t strip) { return "gradient_strip_" + std::to_string(strip); }
+
+}  // namespace
+
 void Displacements::declare(Parameters& p) {
   p.add("along", along).one_of({"x", "y", "z"}).doc("component whose profile is taken");
   profile.declare(p);
@@ -27,26 +34,26 @@ void Displacements::declare(Parameters& p) {
 }
 
 std::vector<Channel> Displacements::channels() const {
-  const std::vector<std::size_t> each{static_cast<std::size_t>(profile.places)};
+  const std::vector<std::size_t> each{static_cast<std::size_t>(profile.points)};
   std::vector<Channel> channels{
-      {"place", "m", "of each value of the profiles, along " + profile.across, each},
+      {"position", "m", "of each value of the profiles, along " + profile.across, each},
       {"profile", "m",
        "displacement along " + along +
            " at each place, by the line that fits the bodies around it, since the stage began; " + "NaN without any",
-       each, "place"},
+       each, "position"},
       {"gradient", "1", "slope of that line, along " + profile.across + "; NaN where bodies are too few", each,
-       "place"},
+       "position"},
       {"fluctuation", "m",
        "root of the mean square of the bodies' displacements less the profiles of all three components, around each "
        "place; " +
            std::string("NaN without any"),
-       each, "place"}};
+       each, "position"}};
   std::ranges::copy(zone_channels("gradient"), std::back_inserter(channels));
   for (std::int64_t strip = 1; strip <= strips; ++strip)
-    channels.push_back({"gradient_strip_" + std::to_string(strip), "1",
+    channels.push_back({strip_channel(strip), "1",
                         "the same as gradient, of the bodies in strip " + std::to_string(strip) + " of " +
                             std::to_string(strips) + " along " + strips_along + "; NaN where bodies are too few",
-                        each, "place"});
+                        each, "position"});
   return channels;
 }
 
@@ -59,7 +66,7 @@ Displacements::Profiles Displacements::profiles(const World& world) const {
 
 std::vector<Vec3> Displacements::fluctuations(const World& world, const Profiles& mean) const {
   const auto nodes = profile.nodes(world);
-  const double last = static_cast<double>(profile.places - 1), unknown = std::numeric_limits<double>::quiet_NaN();
+  const double last = static_cast<double>(profile.points - 1), unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<Vec3> left(world.displacements().begin(), world.displacements().end());
   for (std::size_t i = 0; i < left.size(); ++i) {
     const double x = xyz(world.positions()[i])[profile.across[0] - 'x'];
@@ -78,11 +85,11 @@ std::vector<Vec3> Displacements::fluctuations(const World& world, const Profiles
   return left;
 }
 
-void Displacements::fill_strips(const World& world, std::span<const std::span<double>> values) const {
+void Displacements::fill_strips(const World& world, ChannelValues& values) const {
   const Region box = specimen_box(world);
   const int side = strips_along[0] - 'x', axis = along[0] - 'x';
   const double width = (box.high[side] - box.low[side]) / static_cast<double>(strips);
-  for (std::size_t strip = 0; strip < values.size(); ++strip) {
+  for (std::int64_t strip = 0; strip < strips; ++strip) {
     const auto of_strip = [&](std::size_t i) {
       const double across = (world.cell().inside(xyz(world.positions()[i])[side], side) - box.low[side]) / width;
       // What lies beyond the outermost ones is theirs.
@@ -90,22 +97,26 @@ void Displacements::fill_strips(const World& world, std::span<const std::span<do
       return place == static_cast<double>(strip) ? world.displacements()[i][axis]
                                                  : std::numeric_limits<double>::quiet_NaN();
     };
-    std::ranges::copy(profile.fit(world, of_strip).slope, values[strip].begin());
+    std::ranges::copy(profile.fit(world, of_strip).slope, values.list(strip_channel(strip + 1)).begin());
   }
 }
 
-void Displacements::sample(const World& world, std::span<const std::span<double>> values) {
+void Displacements::sample(const World& world, ChannelValues& values) {
   const auto nodes = profile.nodes(world);
   const Profiles mean = profiles(world);
   const Profile::Lines& lines = mean[static_cast<std::size_t>(along[0] - 'x')];
   const auto left = fluctuations(world, mean);
   const auto squares = profile.fit(world, [&](std::size_t i) { return left[i].squaredNorm(); }).value;
-  for (std::size_t k = 0; k < lines.value.size(); ++k) {
-    values[0][k] = nodes.at(k), values[1][k] = lines.value[k], values[2][k] = lines.slope[k];
-    values[3][k] = std::sqrt(squares[k] < 0 ? 0 : squares[k]);
+  const auto places = values.list("position");
+  const auto fluctuation = values.list("fluctuation");
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    places[k] = nodes.at(k);
+    fluctuation[k] = std::sqrt(squares[k] < 0 ? 0 : squares[k]);
   }
-  fill_zone(shear_zone(nodes, lines.slope), world, values.subspan(4, zone_channel_count));
-  fill_strips(world, values.subspan(4 + zone_channel_count));
+  std::ranges::copy(lines.value, values.list("profile").begin());
+  std::ranges::copy(lines.slope, values.list("gradient").begin());
+  fill_zone(shear_zone(nodes, lines.slope), world, values);
+  fill_strips(world, values);
 }
 
 std::vector<Field> Displacements::fields(const World& world) {

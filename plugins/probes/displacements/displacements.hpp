@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -21,9 +20,9 @@ class Displacements final : public Probe {
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::displacement; }
-  void prepare(const World& world) override { profile.prepare(world, "probe displacements"); }
+  void prepare(const World& world) override { profile.prepare(world); }
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
 
  private:
@@ -31,8 +30,8 @@ class Displacements final : public Probe {
   Profiles profiles(const World& world) const;
   /// Of each body, less the profiles, which are linear between places; NaN where those are unknown.
   std::vector<Vec3> fluctuations(const World& world, const Profiles& mean) const;
-  /// Slopes at all places of each strip.
-  void fill_strips(const World& world, std::span<const std::span<double>> values) const;
+  /// Writes the slopes at all places of each strip.
+  void fill_strips(const World& world, ChannelValues& values) const;
 };
 
 }  // namespace grit

@@ -26,7 +26,7 @@ double figure(Displacements& probe, const FakeWorld& world, const std::string& c
 TEST(Displacements, ALinearFieldHasOneGradientAndNoFluctuation) {
   const FakeWorld world = column([](double z) { return Vec3(0.3 * z, -z, 7); });
   Displacements probe;
-  probe.profile.places = 11;
+  probe.profile.points = 11;
   probe.prepare(world);
   const auto gradient = channel_values(probe, world, "gradient"), left = channel_values(probe, world, "fluctuation");
   for (std::size_t k = 0; k < 11; ++k) {
@@ -39,7 +39,7 @@ TEST(Displacements, FluctuationsAreWhatTheMeanLeaves) {
   int count = 0;
   const FakeWorld world = column([&](double z) { return Vec3(0.3 * z, ++count % 2 == 0 ? 0.1 : -0.1, 0); });
   Displacements probe;
-  probe.profile.places = 11, probe.profile.reach = 10;
+  probe.profile.points = 11, probe.profile.averaging_length = 10;
   probe.prepare(world);
   const auto left = channel_values(probe, world, "fluctuation");
   for (std::size_t k = 3; k < 8; ++k) EXPECT_NEAR(left[k], 0.1, 1e-4) << k;
@@ -76,7 +76,7 @@ TEST(Displacements, StripsHaveGradientsOfTheirOwn) {
     }
   world.whole = {Vec3::Zero(), Vec3::Ones()};
   Displacements probe;
-  probe.profile.places = 11, probe.strips = 3;
+  probe.profile.points = 11, probe.strips = 3;
   probe.prepare(world);
   const auto first = channel_values(probe, world, "gradient_strip_1"),
              none = channel_values(probe, world, "gradient_strip_2"),
@@ -102,7 +102,7 @@ TEST(Displacements, StripsHaveBodiesThatArePastAPeriodicSide) {
   world.make_periodic(Vec3::Zero(), Vec3::Ones());
   world.box.periodic[2] = false;
   Displacements probe;
-  probe.profile.places = 11, probe.strips = 3;
+  probe.profile.points = 11, probe.strips = 3;
   probe.prepare(world);
   const auto first = channel_values(probe, world, "gradient_strip_1"),
              last = channel_values(probe, world, "gradient_strip_3");
@@ -126,7 +126,7 @@ TEST(Displacements, ZoneLiesBetweenTheInflectionsOfTheShear) {
   const double centre = 0.55, width = 0.1;
   const FakeWorld world = column([=](double z) { return Vec3(-std::tanh((z - centre) / width), 0, 0); });
   Displacements probe;
-  probe.profile.reach = 1, probe.profile.places = 201;
+  probe.profile.averaging_length = 1, probe.profile.points = 201;
   probe.prepare(world);
   const double half = width * std::atanh(std::sqrt(1.0 / 3));
   EXPECT_NEAR(figure(probe, world, "zone_low"), centre - half, 2e-2 * half);
@@ -139,7 +139,7 @@ TEST(Displacements, ZoneAtASideBeginsThere) {
   const double width = 0.1;
   const FakeWorld world = column([=](double z) { return Vec3(z < width ? std::sin(z / width) : std::sin(1.0), 0, 0); });
   Displacements probe;
-  probe.profile.places = 101, probe.profile.reach = 1;
+  probe.profile.points = 101, probe.profile.averaging_length = 1;
   probe.prepare(world);
   EXPECT_EQ(figure(probe, world, "zone_low"), 0);
   EXPECT_NEAR(figure(probe, world, "zone_high"), width, 0.02);

@@ -1,4 +1,4 @@
-// The ledger of energies.
+// The energy balance.
 #pragma once
 
 #include "grit/probe.hpp"
@@ -10,7 +10,7 @@ class EnergyProbe final : public Probe {
   void declare(Parameters&) override {}
   StateRequest needs() const override { return BodyState::energy; }
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 };
 
 }  // namespace grit

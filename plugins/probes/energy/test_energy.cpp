@@ -7,27 +7,23 @@
 namespace grit {
 namespace {
 
-class LedgerWorld : public FakeWorld {
+class EnergyWorld : public FakeWorld {
  public:
-  EnergyLedger ledger;
-  EnergyLedger energies() const override { return ledger; }
+  Energies energy;
+  Energies energies() const override { return energy; }
 };
 
 std::map<std::string, double> sampled(const World& world) {
   EnergyProbe probe;
-  const auto channels = probe.channels();
-  std::vector<double> numbers(channels.size());
-  std::vector<std::span<double>> spans;
-  for (double& number : numbers) spans.emplace_back(&number, 1);
-  probe.sample(world, spans);
+  const ChannelValues values = sampled(probe, world);
   std::map<std::string, double> named;
-  for (std::size_t i = 0; i < channels.size(); ++i) named[channels[i].name] = numbers[i];
+  for (const Channel& channel : probe.channels()) named[channel.name] = values[channel.name];
   return named;
 }
 
 TEST(EnergyProbe, SaysEveryEntryOfTheLedger) {
-  LedgerWorld world;
-  world.ledger = {.kinetic = 1,
+  EnergyWorld world;
+  world.energy = {.kinetic = 1,
                   .elastic_normal = 2,
                   .elastic_shear = 3,
                   .elastic_rolling = 4,
@@ -45,13 +41,13 @@ TEST(EnergyProbe, SaysEveryEntryOfTheLedger) {
       {"kinetic", 1},        {"elastic_normal", 2}, {"elastic_shear", 3},    {"elastic_rolling", 4},
       {"gravitational", -5}, {"work_of_walls", 6},  {"work_of_cell", -12},   {"work_of_engines", 22},
       {"settings", -7},      {"friction", 8},       {"rolling", 9},          {"viscosity", 10},
-      {"local_damping", 11}, {"closure_error", -1}, {"closure_share", -0.01}};
+      {"local_damping", 11}, {"closure_error", -1}, {"closure_fraction", -0.01}};
   EXPECT_EQ(sampled(world), expected);
 }
 
 TEST(EnergyProbe, AsksForTheLedger) {
   EXPECT_TRUE(EnergyProbe().needs().has(BodyState::energy));
-  EXPECT_EQ(sampled(LedgerWorld()).at("closure_share"), 0) << "of nothing";
+  EXPECT_EQ(sampled(EnergyWorld()).at("closure_fraction"), 0) << "of nothing";
 }
 
 INSTANTIATE_TEST_SUITE_P(Energy, ProbeContract,

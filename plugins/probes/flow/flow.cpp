@@ -12,6 +12,13 @@
 
 namespace grit {
 
+namespace {
+
+std::string mass_channel(const std::string& outlet) { return outlet + "_discharged_mass"; }
+std::string rate_channel(const std::string& outlet) { return outlet + "_discharge_rate"; }
+
+}  // namespace
+
 void FlowProbe::Outlet::declare(Parameters& parameters) {
   parameters.add("low", low).unit("m").required().doc("where it begins, along the axis");
   parameters.add("high", high).unit("m").required().doc("where it ends");
@@ -24,8 +31,8 @@ void FlowProbe::Outlet::declare(Parameters& parameters) {
 
 void FlowPattern::declare(Parameters& parameters) {
   Averaging::declare(parameters, "of the specimen");
-  parameters.add("rim", rim).above(0).doc("width of what counts as being at the walls, over the mean diameter");
-  parameters.add("moving", moving)
+  parameters.add("wall_zone", wall_zone).above(0).doc("width of what counts as being at the walls, over the mean diameter");
+  parameters.add("moving_fraction", moving_fraction)
       .above(0)
       .below(1)
       .doc("share of the mean speed of a slice above which what is at the walls counts as moving");
@@ -62,24 +69,24 @@ void FlowProbe::declare(Parameters& parameters) {
 
 std::vector<Channel> FlowProbe::channels() const {
   std::vector<Channel> channels{
-      {"mass", "kg", "that has left since the start of the run", {}},
-      {"bodies", "1", "number of spheres and clumps that have left", {}},
-      {"mass_left", "kg", "of the bodies that are still there", {}},
-      {"rate", "kg s-1", "mass that left in the window before the sample, over its time", {}}};
+      {"discharged_mass", "kg", "since the start of the run", {}},
+      {"discharged_bodies", "1", "number of spheres and clumps discharged", {}},
+      {"remaining_mass", "kg", "of the bodies in the domain", {}},
+      {"discharge_rate", "kg s-1", "mass discharged in the window before the sample, over its length", {}}};
   for (const auto& [name, outlet] : outlets) {
-    channels.push_back({name + "_mass", "kg", "that has left through this outlet", {}});
-    channels.push_back({name + "_rate", "kg s-1", "through this outlet, as rate", {}});
+    channels.push_back({mass_channel(name), "kg", "that has left through this outlet", {}});
+    channels.push_back({rate_channel(name), "kg s-1", "through this outlet, as rate", {}});
   }
   if (pattern) {
     const auto slices = static_cast<std::size_t>(pattern->slices);
-    channels.push_back(pattern->place_channel());
-    channels.push_back({"speed", "m s-1", "mean speed downwards of each slice; NaN without bodies", {slices}, "place"});
-    channels.push_back({"wall_speed_share",
+    channels.push_back(pattern->position_channel());
+    channels.push_back({"speed", "m s-1", "mean speed downwards of each slice; NaN without bodies", {slices}, "position"});
+    channels.push_back({"wall_speed_ratio",
                         "1",
                         "that of what is at the walls over that of the slice; NaN without bodies at both walls, or "
                         "where the slice does not sink",
                         {slices},
-                        "place"});
+                        "position"});
     channels.push_back({"transition_height",
                         "m",
                         "above which all that is at the walls moves: the effective transition; NaN where nothing "
@@ -93,30 +100,40 @@ std::vector<Channel> FlowProbe::channels() const {
   return channels;
 }
 
-void FlowProbe::sample(const World& world, std::span<const std::span<double>> values) {
-  for (const auto& value : values) value.front() = 0;
+void FlowProbe::sample(const World& world, ChannelValues& values) {
+  double mass = 0, bodies = 0, rate = 0;
+  struct Through {
+    double &mass, &rate;
+  };
+  std::vector<Through> through;  // each outlet
+  for (const auto& outlet : outlets) {
+    through.push_back({values[mass_channel(outlet.first)], values[rate_channel(outlet.first)]});
+    through.back().mass = through.back().rate = 0;
+  }
   // What left at the very beginning of a window counts in the one before.
   const double since = world.time() - window, over = std::min(window, world.time());
   const auto k = static_cast<int>(axis.front() - 'x');
   for (const Departure& gone : world.departures()) {
     const double recent = gone.time > since && over > 0 ? gone.mass / over : 0;
-    values[0].front() += gone.mass, values[1].front() += 1, values[3].front() += recent;
-    std::size_t channel = 4;
+    mass += gone.mass, ++bodies, rate += recent;
+    auto own = through.begin();
     for (const auto& [name, outlet] : outlets) {
-      if (gone.position[k] >= outlet.low && gone.position[k] < outlet.high)
-        values[channel].front() += gone.mass, values[channel + 1].front() += recent;
-      channel += 2;
+      if (gone.position[k] >= outlet.low && gone.position[k] < outlet.high) own->mass += gone.mass, own->rate += recent;
+      ++own;
     }
   }
-  values[2].front() = mass_of(world);
-  if (pattern) sample_pattern(world, values[3].front() > 0, values.subspan(4 + 2 * outlets.size()));
+  values["discharged_mass"] = mass;
+  values["discharged_bodies"] = bodies;
+  values["remaining_mass"] = mass_of(world);
+  values["discharge_rate"] = rate;
+  if (pattern) sample_pattern(world, rate > 0, values);
 }
 
-void FlowProbe::sample_pattern(const World& world, bool flows, std::span<const std::span<double>> values) const {
+void FlowProbe::sample_pattern(const World& world, bool flows, ChannelValues& values) const {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const Region box = pattern->region(specimen_box(world));
   const int up = pattern->along[0] - 'x', side = axis[0] - 'x';
-  const double low = box.low[up], height = box.high[up] - low, rim = pattern->rim * world.mean_diameter();
+  const double low = box.low[up], height = box.high[up] - low, rim = pattern->wall_zone * world.mean_diameter();
   struct Sum {
     double volume = 0, sunk = 0;  // m³, m⁴/s
     double speed() const { return sunk / volume; }
@@ -126,7 +143,7 @@ void FlowProbe::sample_pattern(const World& world, bool flows, std::span<const s
     std::array<Sum, 2> walls;
   };
   std::vector<Slice> slices(static_cast<std::size_t>(pattern->slices));
-  const auto shares = world.volume_shares();
+  const auto shares = world.volume_fractions();
   for (std::size_t i = 0; i < world.positions().size(); ++i) {
     const Vec3 centre = xyz(world.positions()[i]);
     const double part = (centre[up] - low) / height;
@@ -139,20 +156,22 @@ void FlowProbe::sample_pattern(const World& world, bool flows, std::span<const s
     if (centre[side] < box.low[side] + rim) count(slice.walls[0]);
     if (centre[side] > box.high[side] - rim) count(slice.walls[1]);
   }
-  pattern->fill_places(box, values[0]);
+  pattern->fill_places(box, values);
+  const auto speed = values.list("speed");
+  const auto wall_speed = values.list("wall_speed_ratio");
   double transition = unknown;
   bool all_the_way = flows;
   for (std::size_t s = slices.size(); s-- > 0;) {
     const auto& [all, walls] = slices[s];
     const bool tells = walls[0].volume > 0 && walls[1].volume > 0;
-    values[1][s] = all.volume > 0 ? all.speed() : unknown;
-    values[2][s] = tells && all.sunk > 0 ? std::min(walls[0].speed(), walls[1].speed()) / all.speed() : unknown;
+    speed[s] = all.volume > 0 ? all.speed() : unknown;
+    wall_speed[s] = tells && all.sunk > 0 ? std::min(walls[0].speed(), walls[1].speed()) / all.speed() : unknown;
     if (!tells) continue;  // above the surface
-    all_the_way = all_the_way && values[2][s] > pattern->moving;
+    all_the_way = all_the_way && wall_speed[s] > pattern->moving_fraction;
     if (all_the_way) transition = low + height * static_cast<double>(s) / static_cast<double>(slices.size());
   }
-  values[3].front() = transition;
-  values[4].front() = !flows ? 0 : std::isnan(transition) ? 1 : !all_the_way ? 2 : 3;
+  values["transition_height"] = transition;
+  values["flow_type"] = !flows ? 0 : std::isnan(transition) ? 1 : !all_the_way ? 2 : 3;
 }
 
 std::vector<Field> FlowProbe::fields(const World& world) {

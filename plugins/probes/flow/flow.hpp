@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,8 @@ namespace grit {
 
 /// How what is still there flows, seen across the axis of the outlets.
 struct FlowPattern : Averaging {
-  double rim = 2;       ///< mean diameters
-  double moving = 0.1;  ///< of the mean speed of a slice
+  double wall_zone = 2;       ///< mean diameters
+  double moving_fraction = 0.1;  ///< of the mean speed of a slice
   void declare(Parameters& parameters);
 };
 
@@ -33,11 +32,11 @@ class FlowProbe : public Probe {
 
   void declare(Parameters& parameters) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
 
  private:
-  void sample_pattern(const World& world, bool flows, std::span<const std::span<double>> values) const;
+  void sample_pattern(const World& world, bool flows, ChannelValues& values) const;
 };
 
 }  // namespace grit

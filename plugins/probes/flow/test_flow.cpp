@@ -42,40 +42,40 @@ std::vector<std::string> problems_of(const Description& keys) {
 TEST(Flow, AddsUpWhatHasLeftAndWhatIsThere) {
   const FakeWorld world = emptying();
   FlowProbe probe;
-  EXPECT_EQ(channel_value(probe, world, "mass"), 7);
-  EXPECT_EQ(channel_value(probe, world, "bodies"), 3);
+  EXPECT_EQ(channel_value(probe, world, "discharged_mass"), 7);
+  EXPECT_EQ(channel_value(probe, world, "discharged_bodies"), 3);
   double there = 0;
   for (const Row& row : world.velocity) there += 1 / row.w;
-  EXPECT_DOUBLE_EQ(channel_value(probe, world, "mass_left"), there);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "remaining_mass"), there);
 }
 
 TEST(Flow, GivesTheRateOfTheWindow) {
   FakeWorld world = emptying();
   FlowProbe probe;
-  EXPECT_DOUBLE_EQ(channel_value(probe, world, "rate"), 6 / 0.05);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "discharge_rate"), 6 / 0.05);
   probe.window = 0.02;
-  EXPECT_DOUBLE_EQ(channel_value(probe, world, "rate"), 4 / 0.02);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "discharge_rate"), 4 / 0.02);
   probe.window = 2;  // longer than the run so far
-  EXPECT_DOUBLE_EQ(channel_value(probe, world, "rate"), 7);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "discharge_rate"), 7);
   world.now = 5, probe.window = 1;
-  EXPECT_EQ(channel_value(probe, world, "rate"), 0);
+  EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 0);
   world.departure = {{.id = 0, .material = 0, .time = 4, .mass = 3, .position = Vec3::Zero()}};
-  EXPECT_EQ(channel_value(probe, world, "rate"), 0) << "what left as the window began counts in the one before";
+  EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 0) << "what left as the window began counts in the one before";
   world.now = 4;
-  EXPECT_EQ(channel_value(probe, world, "rate"), 3);
+  EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 3);
 }
 
 TEST(Flow, TellsOutletsApart) {
   const FakeWorld world = emptying();
   FlowProbe probe = two_outlets();
-  EXPECT_EQ(channel_value(probe, world, "left_mass"), 1);
-  EXPECT_EQ(channel_value(probe, world, "right_mass"), 6) << "an outlet begins at its low end";
-  EXPECT_EQ(channel_value(probe, world, "left_rate"), 0);
-  EXPECT_DOUBLE_EQ(channel_value(probe, world, "right_rate"), 6 / 0.05);
+  EXPECT_EQ(channel_value(probe, world, "left_discharged_mass"), 1);
+  EXPECT_EQ(channel_value(probe, world, "right_discharged_mass"), 6) << "an outlet begins at its low end";
+  EXPECT_EQ(channel_value(probe, world, "left_discharge_rate"), 0);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "right_discharge_rate"), 6 / 0.05);
   probe.axis = "y";  // where the last body alone is in neither
-  EXPECT_EQ(channel_value(probe, world, "left_mass"), 3);
-  EXPECT_EQ(channel_value(probe, world, "right_mass"), 0);
-  EXPECT_EQ(channel_value(probe, world, "mass"), 7);
+  EXPECT_EQ(channel_value(probe, world, "left_discharged_mass"), 3);
+  EXPECT_EQ(channel_value(probe, world, "right_discharged_mass"), 0);
+  EXPECT_EQ(channel_value(probe, world, "discharged_mass"), 7);
 }
 
 TEST(Flow, RefusesOutletsThatOverlapOrAreNone) {
@@ -118,9 +118,9 @@ TEST(FlowPattern, IsMassFlowWhereAllSinks) {
   EXPECT_EQ(channel_value(probe, world, "transition_height"), 0);
   // 2 + 2 columns of 20 at half the speed of the others.
   for (const double speed : channel_values(probe, world, "speed")) EXPECT_NEAR(speed, 0.18, 1e-15);
-  for (const double share : channel_values(probe, world, "wall_speed_share")) EXPECT_NEAR(share, 0.1 / 0.18, 1e-14);
-  EXPECT_NEAR(channel_values(probe, world, "place").back(), 19.5e-3, 1e-17);
-  probe.pattern->moving = 0.6;
+  for (const double share : channel_values(probe, world, "wall_speed_ratio")) EXPECT_NEAR(share, 0.1 / 0.18, 1e-14);
+  EXPECT_NEAR(channel_values(probe, world, "position").back(), 19.5e-3, 1e-17);
+  probe.pattern->moving_fraction = 0.6;
   EXPECT_EQ(channel_value(probe, world, "flow_type"), 1);
 }
 

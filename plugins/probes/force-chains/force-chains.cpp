@@ -60,7 +60,7 @@ void ForceChainsProbe::declare(Parameters& parameters) {
   parameters.add("plane", plane)
       .one_of({"xy", "yx", "xz", "zx", "yz", "zy"})
       .doc("plane of the directions; angles count from its first axis towards its second");
-  parameters.add("with_walls", with_walls).doc("whether touches of walls count beside contacts between grains");
+  parameters.add("include_walls", include_walls).doc("whether wall contacts count beside contacts between grains");
   parameters.add("angle", angle)
       .unit("rad")
       .symbol("alpha")
@@ -72,7 +72,7 @@ void ForceChainsProbe::declare(Parameters& parameters) {
 std::vector<Channel> ForceChainsProbe::channels() const {
   return {
       {"mean_normal_force", "N", "mean normal force of a contact, positive in compression; 0 without contacts", {}},
-      {"share_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
+      {"fraction_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
       {"direction", "degree", "middle of each 10 degrees, from the plane's first axis towards its second", {bins}},
       {"force_by_direction",
        "N",
@@ -115,11 +115,11 @@ std::vector<const Contact*> ForceChainsProbe::counted(const World& world) const 
   std::vector<const Contact*> contacts;
   contacts.reserve(world.contacts().size());
   for (const auto& contact : world.contacts())
-    if (with_walls || !contact.with_wall) contacts.push_back(&contact);
+    if (include_walls || !contact.with_wall) contacts.push_back(&contact);
   return contacts;
 }
 
-void ForceChainsProbe::sample(const World& world, std::span<const std::span<double>> values) {
+void ForceChainsProbe::sample(const World& world, ChannelValues& values) {
   const auto contacts = counted(world);
   const double mean = mean_normal_force(contacts);
   const int first = plane[0] - 'x', second = plane[1] - 'x';
@@ -143,35 +143,42 @@ void ForceChainsProbe::sample(const World& world, std::span<const std::span<doub
   for (std::size_t i = 0; i < bins; ++i)
     if (count[i] > 0) force[i] /= count[i];
 
-  values[0][0] = mean;
-  values[1][0] = contacts.empty() ? 0 : above / static_cast<double>(contacts.size());
-  for (std::size_t i = 0; i < bins; ++i) values[2][i] = (static_cast<double>(i) + 0.5) * 360 / bins;
-  std::copy(force.begin(), force.end(), values[3].begin());
-  std::copy(count.begin(), count.end(), values[4].begin());
-  values[5][0] = directed > 0 ? 2 * std::hypot(cosines, sines) / directed : 0;
-  values[6][0] = axis_degrees(sines, cosines);
+  values["mean_normal_force"] = mean;
+  values["fraction_above_mean"] = contacts.empty() ? 0 : above / static_cast<double>(contacts.size());
+  const auto direction = values.list("direction");
+  for (std::size_t i = 0; i < bins; ++i) direction[i] = (static_cast<double>(i) + 0.5) * 360 / bins;
+  std::ranges::copy(force, values.list("force_by_direction").begin());
+  std::ranges::copy(count, values.list("contacts_by_direction").begin());
+  values["anisotropy"] = directed > 0 ? 2 * std::hypot(cosines, sines) / directed : 0;
+  values["anisotropy_direction"] = axis_degrees(sines, cosines);
 
   const Eigen::Vector3d f_n = normal.factors();
   const Eigen::Vector2d f_t = tangential.factors();
   const double f_0 = f_n[0] > 0 ? f_n[0] : std::numeric_limits<double>::quiet_NaN();
-  values[7][0] = std::hypot(f_n[1], f_n[2]) / f_0, values[8][0] = axis_degrees(f_n[2], f_n[1]);
-  values[9][0] = f_t.norm() / f_0, values[10][0] = axis_degrees(f_t[0], -f_t[1]);
-  sample_chains(world, values.subspan(11));
+  values["normal_force_anisotropy"] = std::hypot(f_n[1], f_n[2]) / f_0;
+  values["normal_force_direction"] = axis_degrees(f_n[2], f_n[1]);
+  values["tangential_force_anisotropy"] = f_t.norm() / f_0;
+  values["tangential_force_direction"] = axis_degrees(f_t[0], -f_t[1]);
+  sample_chains(world, values);
 }
 
-void ForceChainsProbe::sample_chains(const World& world, std::span<const std::span<double>> values) {
+void ForceChainsProbe::sample_chains(const World& world, ChannelValues& values) {
   if (now_ && world.step() != step_) before_ = std::move(now_);
   now_ = linear_chains(world, angle), step_ = world.step();
   std::size_t grains = 0, longest = 0;
   for (const auto& chain : now_->grains) grains += chain.size(), longest = std::max(longest, chain.size());
   const auto count = static_cast<double>(now_->grains.size());
-  values[0][0] = now_->mean_major_stress;
-  values[1][0] = count, values[2][0] = static_cast<double>(grains);
-  values[3][0] = count > 0 ? static_cast<double>(grains) / count : 0, values[4][0] = static_cast<double>(longest);
-  values[5][0] = values[6][0] = std::numeric_limits<double>::quiet_NaN();
+  values["mean_major_stress"] = now_->mean_major_stress;
+  values["chains"] = count;
+  values["chain_grains"] = static_cast<double>(grains);
+  values["mean_chain_length"] = count > 0 ? static_cast<double>(grains) / count : 0;
+  values["longest_chain"] = static_cast<double>(longest);
+  double& born = values["chains_born"];
+  double& died = values["chains_died"];
+  born = died = std::numeric_limits<double>::quiet_NaN();
   if (!before_) return;
   const Turnover change = turnover(*before_, *now_);
-  values[5][0] = static_cast<double>(change.born), values[6][0] = static_cast<double>(change.died);
+  born = static_cast<double>(change.born), died = static_cast<double>(change.died);
 }
 
 std::vector<Field> ForceChainsProbe::fields(const World& world) {

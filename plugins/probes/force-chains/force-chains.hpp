@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,20 +17,20 @@ class ForceChainsProbe : public Probe {
   static constexpr std::size_t bins = 36;
 
   std::string plane = "xz";
-  bool with_walls = false;
+  bool include_walls = false;
   double angle = std::numbers::pi / 4;  ///< rad, between the line to the next grain of a chain and the major stress
 
   void declare(Parameters& parameters) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   /// Both ends, normal force, class and chain of every contact.
   std::vector<Field> fields(const World& world) override;
-  void remember(Memory& memory) override { memory(before_, now_, step_); }
+  void serialize(Archive& archive) override { archive(before_, now_, step_); }
 
  private:
   /// The contacts that count.
   std::vector<const Contact*> counted(const World& world) const;
-  void sample_chains(const World& world, std::span<const std::span<double>> values);
+  void sample_chains(const World& world, ChannelValues& values);
 
   // Chains live from sample to sample; one that is taken again at its instant is compared with the same one before.
   std::optional<LinearChains> before_, now_;

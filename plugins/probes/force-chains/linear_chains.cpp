@@ -30,7 +30,7 @@ struct Grain {
 std::vector<Grain> bearing_grains(const World& world, const std::vector<std::uint32_t>& of_body, std::size_t count) {
   std::vector<Grain> grains(count);
   const auto positions = world.positions();
-  const auto shares = world.volume_shares();
+  const auto shares = world.volume_fractions();
   const auto arms = world.arms();
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Grain& grain = grains[of_body[i]];
@@ -75,7 +75,7 @@ LinearChains linear_chains(const World& world, double angle) {
   for (std::uint32_t k = 0; k < contacts.size() && !contacts[k].with_wall; ++k) {
     const std::uint32_t a = places.of_body[contacts[k].a], b = places.of_body[contacts[k].b];
     if (!(grains[a].major > chains.mean_major_stress && grains[b].major > chains.mean_major_stress)) continue;
-    const Vec3 line = branch_of(world, contacts[k]).way.normalized();
+    const Vec3 line = branch_of(world, contacts[k]).vector.normalized();
     const double at_a = line.dot(grains[a].direction), at_b = -line.dot(grains[b].direction);
     if (!(std::min(std::abs(at_a), std::abs(at_b)) >= std::cos(angle))) continue;
     links.push_back({k, a, b, at_a > 0 ? 1 : 0, at_b > 0 ? 1 : 0, contacts[k].normal_force});

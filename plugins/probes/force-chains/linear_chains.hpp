@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -18,7 +18,7 @@ struct LinearChains {
   std::vector<std::uint32_t> of_contact;
   double mean_major_stress = 0;  ///< of all grains, positive in compression [Pa]; 0 without grains
 
-  void remember(Memory& memory) { memory(grains, of_contact, mean_major_stress); }
+  void serialize(Archive& archive) { archive(grains, of_contact, mean_major_stress); }
 };
 
 /// `angle` [rad]: largest one between the line of two centres and the direction of either grain's major stress.

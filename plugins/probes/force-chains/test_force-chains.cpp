@@ -20,7 +20,7 @@ FakeWorld world_of(const std::vector<std::pair<double, double>>& contacts) {
   world.add({0, 0, 0}, 1), world.add({0, 0, 2}, 1);
   for (const auto& [angle, force] : contacts) {
     const Vec3 normal(std::cos(angle * degree), 0, std::sin(angle * degree));
-    world.touch(0, 1, 2 * normal, force * normal);
+    world.add_contact(0, 1, 2 * normal, force * normal);
   }
   return world;
 }
@@ -29,7 +29,7 @@ TEST(ForceChains, TellsStrongContactsFromWeakOnes) {
   const FakeWorld world = world_of({{5, 1}, {15, 2}, {25, 3}, {35, 10}});
   ForceChainsProbe probe;
   EXPECT_DOUBLE_EQ(channel_value(probe, world, "mean_normal_force"), 4);
-  EXPECT_DOUBLE_EQ(channel_value(probe, world, "share_above_mean"), 0.25);
+  EXPECT_DOUBLE_EQ(channel_value(probe, world, "fraction_above_mean"), 0.25);
   EXPECT_THAT(probe.fields(world)[3].values, ElementsAre(0, 0, 0, 1));
 }
 
@@ -57,7 +57,7 @@ TEST(ForceChains, TakesDirectionsInThePlane) {
   FakeWorld world;
   world.add({0, 0, 0}, 1), world.add({0, 0, 2}, 1);
   const Vec3 normal = Vec3(std::cos(25 * degree), std::sin(25 * degree), 0);
-  world.touch(0, 1, 2 * normal, 5 * normal);
+  world.add_contact(0, 1, 2 * normal, 5 * normal);
   for (const auto& [plane, bin] :
        std::vector<std::pair<std::string, int>>{{"xy", 2}, {"yx", 6}, {"xz", 0}, {"zy", 9}}) {
     ForceChainsProbe probe;
@@ -70,7 +70,7 @@ TEST(ForceChains, TakesDirectionsInThePlane) {
 
 TEST(ForceChains, LeavesOutContactsAtRightAnglesToThePlane) {
   FakeWorld world = world_of({{25, 2}});
-  world.touch(0, 1, Vec3(0, 2, 0), Vec3(0, 8, 0));
+  world.add_contact(0, 1, Vec3(0, 2, 0), Vec3(0, 8, 0));
   ForceChainsProbe probe;
   const auto counted = channel_values(probe, world, "contacts_by_direction");
   EXPECT_EQ(std::accumulate(counted.begin(), counted.end(), 0.0), 2);
@@ -116,11 +116,11 @@ TEST(ForceChains, FindsTheAmplitudeOfADistribution) {
 TEST(ForceChains, TakesWallsOnlyIfAsked) {
   FakeWorld world = world_of({{25, 2}});
   world.wall.push_back(still_wall("floor"));
-  world.touch_wall(0, 0, Vec3(0, 0, -1), Vec3(0, 0, -8));
+  world.add_wall_contact(0, 0, Vec3(0, 0, -1), Vec3(0, 0, -8));
   ForceChainsProbe probe;
   EXPECT_NEAR(channel_value(probe, world, "mean_normal_force"), 2, 1e-12);
   EXPECT_EQ(probe.fields(world)[0].values.size(), 3u);
-  probe.with_walls = true;
+  probe.include_walls = true;
   EXPECT_NEAR(channel_value(probe, world, "mean_normal_force"), 5, 1e-12);
   EXPECT_EQ(channel_values(probe, world, "contacts_by_direction")[27], 1);
   const auto fields = probe.fields(world);
@@ -130,7 +130,7 @@ TEST(ForceChains, TakesWallsOnlyIfAsked) {
 TEST(ForceChains, ReachesFromCentreToCentre) {
   FakeWorld world;
   world.add({1, 2, 3}, 1), world.add({9, 2, 3}, 1);
-  world.touch(0, 1, Vec3(-2, 0, 0), Vec3(-7, 1, 0));  // across a periodic side
+  world.add_contact(0, 1, Vec3(-2, 0, 0), Vec3(-7, 1, 0));  // across a periodic side
   const auto fields = ForceChainsProbe().fields(world);
   EXPECT_THAT(fields[0].values, ElementsAre(1, 2, 3));
   EXPECT_THAT(fields[1].values, ElementsAre(-1, 2, 3));
@@ -153,7 +153,7 @@ FakeWorld distributed(double a, double a_n, double a_t, double theta_0, int coun
     const double normal = 5 * (1 + a_n * std::cos(2 * (low - theta_0))),
                  along = -5 * a_t * std::sin(2 * (low - theta_0));
     const Vec3 n(std::cos(low), 0, std::sin(low)), t(-std::sin(low), 0, std::cos(low));
-    world.touch(0, 1, 2 * n, normal * n + along * t);
+    world.add_contact(0, 1, 2 * n, normal * n + along * t);
   }
   return world;
 }
@@ -200,7 +200,7 @@ FakeWorld packed(const std::vector<Vec3>& places, const std::vector<Load>& loads
   for (const Vec3& place : places) world.add(2 * place, 1);
   for (const auto& [a, b, force] : loads) {
     const Vec3 branch = 2 * (places[b] - places[a]);
-    world.touch(a, b, branch, force * branch.normalized());
+    world.add_contact(a, b, branch, force * branch.normalized());
   }
   return world;
 }
@@ -238,11 +238,11 @@ TEST(LinearChains, AreColumnsAndRowsOfGrainsThatBear) {
   held.wall.push_back(still_wall("walls"));
   for (const auto& [body, out] :
        std::vector<std::pair<std::uint32_t, Vec3>>{{0, {0, 0, -1}}, {4, {0, 0, 1}}, {5, {-1, 0, 0}}, {7, {1, 0, 0}}})
-    held.touch_wall(body, 0, out, 10 * out);
+    held.add_wall_contact(body, 0, out, 10 * out);
   EXPECT_THAT(chains_of(held), ElementsAre(2, 8, 4, 5));
   const auto fields = probe.fields(held);
   EXPECT_THAT(fields[4].values, ElementsAre(1, 1, 1, 1, 2, 2));
-  probe.with_walls = true;
+  probe.include_walls = true;
   EXPECT_THAT(probe.fields(held)[4].values, ElementsAre(1, 1, 1, 1, 2, 2, 0, 0, 0, 0));
 }
 
@@ -286,7 +286,7 @@ TEST(LinearChains, TakeTheStrongerBranch) {
 TEST(LinearChains, MayCloseUponThemselves) {
   FakeWorld world = packed({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {0, 0, 5}}, {{0, 1, 5}, {1, 2, 5}, {2, 3, 5}});
   world.make_periodic({-1, -1, -1}, {7, 9, 19});
-  world.touch(3, 0, Vec3(2, 0, 0), Vec3(5, 0, 0));
+  world.add_contact(3, 0, Vec3(2, 0, 0), Vec3(5, 0, 0));
   EXPECT_THAT(chains_of(world), ElementsAre(1, 4, 4, 4));
   EXPECT_THAT(ForceChainsProbe().fields(world)[4].values, ElementsAre(1, 1, 1, 1));
 }
@@ -339,7 +339,7 @@ INSTANTIATE_TEST_SUITE_P(ForceChains, ProbeContract,
                                          ProbeCase{"walls_in_zy",
                                                    [] {
                                                      auto probe = std::make_shared<ForceChainsProbe>();
-                                                     probe->with_walls = true, probe->plane = "zy";
+                                                     probe->include_walls = true, probe->plane = "zy";
                                                      return probe;
                                                    }}),
                          probe_case_name);

@@ -46,8 +46,8 @@ std::deque<Variable> variables_of(const World& world) {
   const auto add = [&](std::string name, std::function<double(const World&)> read) {
     const auto same = [&](const Variable& other) { return other.name == name; };
     if (std::any_of(variables.begin(), variables.end(), same))
-      throw Error("probe formula: two walls would both give the variable \"" + name +
-                  "\"; walls are: " + listed(wall_names(world)) + "; rename one of them");
+      throw ParameterError({{"", "two walls that both give the variable \"" + name + '"',
+                             "a variable of one wall; rename one of the walls " + listed(wall_names(world))}});
     variables.push_back({std::move(name), std::move(read)});
   };
   add("time", [](const World& w) { return w.time(); });
@@ -152,17 +152,19 @@ void FormulaProbe::prepare(const World& world) {
   for (const auto& variable : variables) names.push_back(variable.name);
   for (const auto& constant : constants) {
     if (std::find(names.begin(), names.end(), constant.first) != names.end())
-      throw Error("probe formula, /constants/" + constant.first + ": a variable has this name; choose another");
+      throw ParameterError({{"constants/" + constant.first, "the name of a variable", "a name that no variable has"}});
     names.push_back(constant.first);
   }
 
   for (const auto& [name, curve] : curves) {
-    const auto fail = [&, &name = name, &curve = curve](std::size_t position, const std::string& message) {
-      throw Error("probe formula, /curves/" + name + "/formula: \"" + curve.formula + "\": " + message +
-                  " at character " + std::to_string(position + 1));
+    const auto fail = [&, &name = name, &curve = curve](std::size_t position, const std::string& why,
+                                                        const std::string& allowed) {
+      throw ParameterError(
+          {{"curves/" + name + "/formula",
+            '"' + curve.formula + "\": " + why + " at character " + std::to_string(position + 1), allowed}});
     };
     if (const auto at = assignment(curve.formula); at != std::string::npos)
-      fail(at, "a formula only reads, \"==\" compares: found \"=\"");
+      fail(at, "\"=\"", "an expression without assignments; \"==\" compares");
     auto& parser = evaluation->parsers.emplace_back();
     try {
       for (auto& variable : variables) parser.DefineVar(variable.name, &variable.value);
@@ -175,12 +177,12 @@ void FormulaProbe::prepare(const World& world) {
       // muParser reads one blank past the end.
       const auto position = std::min(static_cast<std::size_t>(std::max(error.GetPos(), 0)), curve.formula.size());
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken()))
-        fail(position, "there is no \"" + error.GetToken() + "\" (the nearest name is \"" +
-                           nearest_name(error.GetToken(), names) + "\"; names are: " + known_names(world, constants) +
-                           ")");
-      fail(position, plain_message(error));
+        fail(position, "the unknown name \"" + error.GetToken() + '"',
+             "one of the names " + known_names(world, constants) + "; the nearest is \"" +
+                 nearest_name(error.GetToken(), names) + '"');
+      fail(position, plain_message(error), "an expression in muParser's syntax");
     }
-    if (parser.GetNumResults() != 1) fail(curve.formula.rfind(','), "a formula has one result: found \",\"");
+    if (parser.GetNumResults() != 1) fail(curve.formula.rfind(','), "\",\"", "an expression with one result");
   }
   evaluation_ = std::move(evaluation);
 }
@@ -192,11 +194,11 @@ std::vector<Channel> FormulaProbe::channels() const {
   return channels;
 }
 
-void FormulaProbe::sample(const World& world, std::span<const std::span<double>> values) {
+void FormulaProbe::sample(const World& world, ChannelValues& values) {
   for (auto& variable : evaluation_->variables)
     if (variable.used) variable.value = variable.read(world);
-  auto value = values.begin();
-  for (auto& parser : evaluation_->parsers) value++->front() = parser.Eval();
+  auto parser = evaluation_->parsers.begin();
+  for (const auto& curve : curves) values[curve.first] = (parser++)->Eval();
 }
 
 }  // namespace grit

@@ -3,7 +3,6 @@
 
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -28,10 +27,11 @@ class FormulaProbe : public Probe {
   FormulaProbe();
   ~FormulaProbe() override;
   void declare(Parameters& parameters) override;
-  /// Throws Error for a formula that cannot be read, and for two walls or a constant that give the same variable.
+  /// Throws ParameterError for a formula that cannot be read, and for two walls or a constant that give the same
+  /// variable.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 
  private:
   struct Evaluation;

@@ -138,41 +138,52 @@ TEST(Formula, DescribesItsCurves) {
 TEST(Formula, NamesTheNearestVariable) {
   EXPECT_EQ(
       error_of("2 * top_presure"),
-      "probe formula, /curves/curve/formula: \"2 * top_presure\": there is no \"top_presure\" (the nearest name is "
-      "\"top_pressure\"; names are: time, step, mean_diameter, void_ratio, mass, departed_mass, "
-      "centre_x/_y/_z, length; of each wall (upper_left, top): "
-      "<wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, <wall>_velocity_x/_y/_z, "
-      "<wall>_pressure, <wall>_area) at character 5");
+      "curves/curve/formula: found \"2 * top_presure\": the unknown name \"top_presure\" at character 5; allowed is "
+      "one of "
+      "the names time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z, length; of each wall "
+      "(upper_left, top): <wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, "
+      "<wall>_velocity_x/_y/_z, <wall>_pressure, <wall>_area; the nearest is \"top_pressure\"");
 }
 
 TEST(Formula, SaysWhereItCannotBeRead) {
-  EXPECT_EQ(error_of("2 + "),
-            "probe formula, /curves/curve/formula: \"2 + \": unexpected end of expression at character 5");
-  EXPECT_EQ(error_of("(time + 1"),
-            "probe formula, /curves/curve/formula: \"(time + 1\": missing parenthesis at character 10");
+  EXPECT_EQ(
+      error_of("2 + "),
+      "curves/curve/formula: found \"2 + \": unexpected end of expression at character 5; allowed is an expression in "
+      "muParser's syntax");
+  EXPECT_EQ(
+      error_of("(time + 1"),
+      "curves/curve/formula: found \"(time + 1\": missing parenthesis at character 10; allowed is an expression in "
+      "muParser's syntax");
   EXPECT_THAT(error_of("time time"), HasSubstr("at character 6"));
   EXPECT_THAT(error_of("time $ 2"), HasSubstr("at character 6"));
-  EXPECT_THAT(error_of(""), HasSubstr("/curves/curve/formula: \"\": "));
-  EXPECT_THAT(error_of("sinn(2)"), HasSubstr("there is no \"sinn\""));
+  EXPECT_THAT(error_of(""), HasSubstr("curves/curve/formula: found \"\": "));
+  EXPECT_THAT(error_of("sinn(2)"), HasSubstr("the unknown name \"sinn\""));
 }
 
 TEST(Formula, NeitherAssignsNorLists) {
-  EXPECT_THAT(error_of("time = 3"), HasSubstr("found \"=\" at character 6"));
-  EXPECT_THAT(error_of("time, step"), HasSubstr("a formula has one result: found \",\" at character 5"));
+  EXPECT_THAT(
+      error_of("time = 3"),
+      HasSubstr(
+          "found \"time = 3\": \"=\" at character 6; allowed is an expression without assignments; \"==\" compares"));
+  EXPECT_THAT(error_of("time, step"),
+              HasSubstr("found \"time, step\": \",\" at character 5; allowed is an expression with one result"));
 }
 
 TEST(Formula, RefusesNamesThatMeanTwoThings) {
   WatchedWorld world = shear_box();
   world.wall.push_back(world.wall[0]);
   world.wall.back().name = "upper_left";
-  EXPECT_THAT(error_of("time", world), HasSubstr("two walls would both give the variable \"upper_left_force_x\""));
+  EXPECT_EQ(
+      error_of("time", world),
+      "found two walls that both give the variable \"upper_left_force_x\"; allowed is a variable of one wall; rename "
+      "one of the walls upper-left, top, upper_left");
 
   FormulaProbe probe;
   probe.curves["curve"].formula = "time";
   probe.constants["step"].value = 1;
-  EXPECT_THAT(
-      [&] { probe.prepare(shear_box()); },
-      testing::ThrowsMessage<Error>("probe formula, /constants/step: a variable has this name; choose another"));
+  EXPECT_THAT([&] { probe.prepare(shear_box()); },
+              testing::ThrowsMessage<ParameterError>(
+                  "constants/step: found the name of a variable; allowed is a name that no variable has"));
 }
 
 TEST(Formula, ChecksNames) {

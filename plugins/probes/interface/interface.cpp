@@ -49,7 +49,7 @@ double Interface::rotation(const World& world, const Vec3& about) const {
   return bodies > 0 ? sum / bodies : 0;
 }
 
-void Interface::sample(const World& world, std::span<const std::span<double>> values) {
+void Interface::sample(const World& world, ChannelValues& values) {
   const WallView& wall = layer.surface(world);
   const Vec3 normal = wall.normal, about = normal.cross(Vec3::Unit(layer.along()));
   const WallLayer::Slip slip = layer.slip(world);
@@ -66,12 +66,15 @@ void Interface::sample(const World& world, std::span<const std::span<double>> va
     couple += contact.moment.dot(about) + (point - face) * normal[across] * contact.force[along];
   }
 
-  values[0][0] = slip.mean, values[1][0] = turned, values[2][0] = slip.bodies;
   const double area = covered_area(wall, world, across);
-  values[3][0] = ratio(force, area), values[4][0] = ratio(couple, area);
-  values[5][0] = ratio(turned * d50, slip.mean);
-  values[6][0] = ratio(slip.mean, layer.driven(world));
-  values[7][0] = ratio(force * d50, couple);
+  values["slip"] = slip.mean;
+  values["rotation"] = turned;
+  values["bodies"] = slip.bodies;
+  values["shear_traction"] = ratio(force, area);
+  values["couple_traction"] = ratio(couple, area);
+  values["rotation_ratio"] = ratio(turned * d50, slip.mean);
+  values["slip_ratio"] = ratio(slip.mean, layer.driven(world));
+  values["traction_ratio"] = ratio(force * d50, couple);
 }
 
 }  // namespace grit

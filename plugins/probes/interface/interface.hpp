@@ -1,7 +1,6 @@
 // What a wall does to the bodies next to it, as boundary conditions of a micropolar continuum. See README.md.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -16,9 +15,9 @@ class Interface final : public Probe {
 
   void declare(Parameters& parameters) override { layer.declare(parameters); }
   StateRequest needs() const override { return BodyState::displacement | BodyState::rotation; }
-  void prepare(const World& world) override { layer.prepare(world, "probe interface"); }
+  void prepare(const World& world) override { layer.prepare(world); }
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 
  private:
   /// Mean of the layer in the stage [rad].

@@ -51,9 +51,9 @@ TEST(Interface, AddsUpWhatContactsExertOnTheWall) {
   FakeWorld world = rolling(0.3);
   // Forces of 3 and 5 N along x, the second in a groove 0.02 deep; rolling resistance turns the wall as the grains
   // turn.
-  world.touch_wall(0, 0, Vec3(0, 0, -0.1), Vec3(3, 0, -9));
-  world.touch_wall(1, 0, Vec3(0, 0, -0.12), Vec3(5, 1, -9));
-  world.touch_wall(3, 1, Vec3(0, 0, 0.1), Vec3(100, 0, 9));
+  world.add_wall_contact(0, 0, Vec3(0, 0, -0.1), Vec3(3, 0, -9));
+  world.add_wall_contact(1, 0, Vec3(0, 0, -0.12), Vec3(5, 1, -9));
+  world.add_wall_contact(3, 1, Vec3(0, 0, 0.1), Vec3(100, 0, 9));
   world.contact[0].moment = {9, 0.4, 9}, world.contact[1].moment = {9, 0.6, 9}, world.contact[2].moment = {9, 9, 9};
   Interface probe = made();
   probe.prepare(world);
@@ -74,7 +74,7 @@ TEST(Interface, AddsUpWhatContactsExertOnTheWall) {
 // Turned by half a turn about x and about z the same happens at a wall above, and along −x.
 TEST(Interface, IsTheSameAtAWallAboveAndTheOtherWayAround) {
   FakeWorld world = rolling(0.3);
-  world.touch_wall(0, 0, Vec3(0, 0, -0.12), Vec3(3, 0, -9));
+  world.add_wall_contact(0, 0, Vec3(0, 0, -0.12), Vec3(3, 0, -9));
   world.contact[0].moment = {0, 0.4, 0};
   Interface straight = made();
   straight.prepare(world);
@@ -110,7 +110,7 @@ TEST(Interface, RefusesAWallThatThereIsNot) {
     made("surfaces").prepare(rolling(0));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("probe interface, /wall: there is no wall \"surfaces\"; the nearest"));
+    EXPECT_THAT(error.what(), HasSubstr("wall: found \"surfaces\", which is not a wall; the nearest"));
   }
   Interface across = made();
   across.layer.axis = "z";
@@ -118,8 +118,9 @@ TEST(Interface, RefusesAWallThatThereIsNot) {
   FakeWorld elsewhere = rolling(0);
   elsewhere.whole.low.z() = -0.2;
   EXPECT_THAT([&] { made().prepare(elsewhere); },
-              testing::ThrowsMessage<Error>(
-                  "probe interface, /wall: the specimen does not end at wall \"surface\"; name it in /specimen"));
+              testing::ThrowsMessage<ParameterError>(
+                  "wall: found wall \"surface\", at which the specimen does not end; allowed is a wall that bounds the "
+                  "specimen; name it in /specimen"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Interface, ProbeContract,

@@ -16,32 +16,32 @@ namespace {
 
 /// Grains that touch grains.
 struct Coordination {
-  double number = 0, mechanical = 0, rattler_share = 0;
+  double number = 0, mechanical = 0, rattler_fraction = 0;
 };
 
 Coordination coordination(const World& world) {
-  struct Touches {
+  struct ContactCounts {
     unsigned grains = 0, walls = 0;
   };
   const Grains grains_here = grains_of(world);
-  std::vector<Touches> touches(grains_here.centre.size());
-  const auto of = [&](std::uint32_t body) -> Touches& { return touches[grains_here.of_body[body]]; };
+  std::vector<ContactCounts> contacts(grains_here.centre.size());
+  const auto of = [&](std::uint32_t body) -> ContactCounts& { return contacts[grains_here.of_body[body]]; };
   for (const auto& contact : world.contacts()) {
     if (contact.with_wall) ++of(contact.a).walls;
     else ++of(contact.a).grains, ++of(contact.b).grains;
   }
   double all = 0, held = 0, of_held = 0;
-  for (const auto& grain : touches) {
+  for (const auto& grain : contacts) {
     all += grain.grains;
     if (grain.grains + grain.walls >= 2) ++held, of_held += grain.grains;
   }
-  const auto grains = static_cast<double>(touches.size());
-  if (touches.empty()) return {};
+  const auto grains = static_cast<double>(contacts.size());
+  if (contacts.empty()) return {};
   return {all / grains, held > 0 ? of_held / held : 0, 1 - held / grains};
 }
 
 struct Figures {
-  double void_ratio, void_ratio_overall, coordination_number, coordination_number_mechanical, rattler_share,
+  double void_ratio, void_ratio_overall, coordination_number, coordination_number_mechanical, rattler_fraction,
       mean_stress, deviatoric_stress, kinetic_energy, unbalanced_force, mean_contact_force, inertial_number,
       largest_overlap;
 };
@@ -63,8 +63,8 @@ constexpr Figure figures[] = {
     {"coordination_number_mechanical", "1",
      "touching grains of a grain that is no rattler (Thornton 2000); 0 if all are",
      &Figures::coordination_number_mechanical},
-    {"rattler_share", "1", "share of the grains with fewer than two contacts, touches of walls included",
-     &Figures::rattler_share},
+    {"rattler_fraction", "1", "share of the grains with fewer than two contacts, wall contacts included",
+     &Figures::rattler_fraction},
     {"mean_stress", "Pa", "mean stress p of the interior, a third of the trace, positive in compression",
      &Figures::mean_stress},
     {"deviatoric_stress", "Pa", "deviatoric stress q = sqrt(3/2 s:s) of the interior, never negative",
@@ -108,7 +108,7 @@ void PackingProbe::declare(Parameters& parameters) {
 
 void PackingProbe::prepare(const World& world) {
   driving_wall_.reset();
-  if (!driven_by.empty()) driving_wall_ = wall_index(world, driven_by, "probe packing, /driven_by");
+  if (!driven_by.empty()) driving_wall_ = wall_index(world, driven_by, "driven_by");
 }
 
 std::vector<Channel> PackingProbe::channels() const {
@@ -131,12 +131,12 @@ double PackingProbe::shear_rate_of(const World& world) const {
   return height > 0 ? speed / height : 0;
 }
 
-void PackingProbe::sample(const World& world, std::span<const std::span<double>> values) {
+void PackingProbe::sample(const World& world, ChannelValues& values) {
   const Region interior = interior_box(world);
   const Mat3 stress = grit::mean_stress(world, interior);
   const double p = stress.trace() / 3;
   const auto [coordination_number, mechanical, rattlers] = coordination(world);
-  const Unrest rest = unrest(world);
+  const Equilibrium rest = equilibrium(world);
   double overlap = 0;
   for (const auto& contact : world.contacts()) overlap = std::max(overlap, contact.overlap);
 
@@ -145,7 +145,7 @@ void PackingProbe::sample(const World& world, std::span<const std::span<double>>
       .void_ratio_overall = void_ratio(world, specimen_box(world)),
       .coordination_number = coordination_number,
       .coordination_number_mechanical = mechanical,
-      .rattler_share = rattlers,
+      .rattler_fraction = rattlers,
       .mean_stress = p,
       .deviatoric_stress = grit::deviatoric_stress(stress),
       .kinetic_energy = rest.kinetic_energy,
@@ -155,9 +155,9 @@ void PackingProbe::sample(const World& world, std::span<const std::span<double>>
           p > 0 ? shear_rate_of(world) * world.mean_diameter() * std::sqrt(world.solid_density() / p) : 0,
       .largest_overlap = overlap,
   };
-  auto value = values.begin();
-  for (const auto& figure : figures) value++->front() = now.*figure.value;
-  for (int i = 0; i < 9; ++i) (*value)[i] = stress(i / 3, i % 3);
+  for (const auto& figure : figures) values[figure.name] = now.*figure.value;
+  const auto components = values.list("stress");
+  for (int i = 0; i < 9; ++i) components[static_cast<std::size_t>(i)] = stress(i / 3, i % 3);
 }
 
 std::vector<Field> PackingProbe::fields(const World& world) {

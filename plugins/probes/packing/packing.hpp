@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,10 +17,10 @@ class PackingProbe : public Probe {
   std::string depth_axis = "y";
 
   void declare(Parameters& parameters) override;
-  /// Throws Error if there is no wall `driven_by`.
+  /// Throws ParameterError if there is no wall `driven_by`.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   /// The averaging cells.
   std::vector<Field> fields(const World& world) override;
 

@@ -31,9 +31,9 @@ FakeWorld cubic(int n, double diameter, const Vec3& forces) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       for (int k = 0; k < n; ++k) {
-        world.touch(index(i, j, k), index(i + 1, j, k), Vec3(diameter, 0, 0), Vec3(forces.x(), 0, 0));
-        world.touch(index(i, j, k), index(i, j + 1, k), Vec3(0, diameter, 0), Vec3(0, forces.y(), 0));
-        world.touch(index(i, j, k), index(i, j, k + 1), Vec3(0, 0, diameter), Vec3(0, 0, forces.z()));
+        world.add_contact(index(i, j, k), index(i + 1, j, k), Vec3(diameter, 0, 0), Vec3(forces.x(), 0, 0));
+        world.add_contact(index(i, j, k), index(i, j + 1, k), Vec3(0, diameter, 0), Vec3(0, forces.y(), 0));
+        world.add_contact(index(i, j, k), index(i, j, k + 1), Vec3(0, 0, diameter), Vec3(0, 0, forces.z()));
       }
   world.make_periodic(Vec3::Zero(), Vec3::Constant(n * diameter));
   return world;
@@ -52,12 +52,12 @@ FakeWorld random_world(bool periodic_depth) {
       Vec3 branch = xyz(world.position[b]) - xyz(world.position[a]);
       if (periodic_depth) branch.y() -= size.y() * std::round(branch.y() / size.y());
       if (branch.norm() < world.position[a].w + world.position[b].w)
-        world.touch(a, b, branch, 10 * branch + Vec3(sign(random), sign(random), sign(random)));
+        world.add_contact(a, b, branch, 10 * branch + Vec3(sign(random), sign(random), sign(random)));
     }
   world.wall.push_back(still_wall("floor"));
   for (std::uint32_t a = 0; a < world.position.size(); ++a)
     if (world.position[a].z < world.position[a].w)
-      world.touch_wall(a, 0, Vec3(0, 0, -world.position[a].z), Vec3(sign(random), 0, -5));
+      world.add_wall_contact(a, 0, Vec3(0, 0, -world.position[a].z), Vec3(sign(random), 0, -5));
   world.whole = {Vec3::Zero(), size};
   if (periodic_depth) world.box = {{-1e300, 0, -1e300}, {1e300, size.y(), 1e300}, {false, true, false}};
   return world;
@@ -70,7 +70,7 @@ TEST(Packing, KnowsTheCubicLattice) {
   EXPECT_NEAR(value_of(world, "void_ratio_overall"), 1 / sixth - 1, 1e-11);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number"), 6);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number_mechanical"), 6);
-  EXPECT_DOUBLE_EQ(value_of(world, "rattler_share"), 0);
+  EXPECT_DOUBLE_EQ(value_of(world, "rattler_fraction"), 0);
   EXPECT_NEAR(value_of(world, "mean_stress"), 4 / (d * d), 1e-6);
   // s = (-1, 0, 1)/d², q = sqrt(3/2 · 2)/d²
   EXPECT_NEAR(value_of(world, "deviatoric_stress"), std::sqrt(3) / (d * d), 1e-6);
@@ -114,26 +114,26 @@ TEST(Packing, LeavesRattlersOutOfTheMechanicalCoordination) {
   FakeWorld world;
   for (int i = 0; i < 5; ++i) world.add({double(i), 0, 0}, 0.5);
   const Vec3 any(1, 0, 0);
-  world.touch(0, 1, any, any), world.touch(1, 2, any, any), world.touch(0, 2, any, any);  // three that hold each other
-  world.touch(2, 3, any, any);  // one more; the last touches none
+  world.add_contact(0, 1, any, any), world.add_contact(1, 2, any, any), world.add_contact(0, 2, any, any);  // three that hold each other
+  world.add_contact(2, 3, any, any);  // one more; the last touches none
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number"), 2 * 4 / 5.0);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number_mechanical"), (2 * 4 - 1) / (5 - 1 - 1.0));
-  EXPECT_DOUBLE_EQ(value_of(world, "rattler_share"), 0.4);
+  EXPECT_DOUBLE_EQ(value_of(world, "rattler_fraction"), 0.4);
 
   world.wall.push_back(still_wall("floor"));
-  world.touch_wall(3, 0, Vec3(0, 0, -0.5), Vec3(0, 0, -1));  // a grain between a grain and a wall is held
+  world.add_wall_contact(3, 0, Vec3(0, 0, -0.5), Vec3(0, 0, -1));  // a grain between a grain and a wall is held
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number"), 2 * 4 / 5.0);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number_mechanical"), 8 / 4.0);
-  EXPECT_DOUBLE_EQ(value_of(world, "rattler_share"), 0.2);
+  EXPECT_DOUBLE_EQ(value_of(world, "rattler_fraction"), 0.2);
 }
 
 TEST(Packing, FindsTheLargestOverlap) {
   FakeWorld world;
   world.add({0, 0, 0}, 1), world.add({1.9, 0, 0}, 1), world.add({0, 1.95, 0}, 1);
   world.wall.push_back(still_wall("floor"));
-  world.touch(0, 1, Vec3(1.9, 0, 0), Vec3(1, 0, 0)), world.touch(0, 2, Vec3(0, 1.95, 0), Vec3(0, 1, 0));
+  world.add_contact(0, 1, Vec3(1.9, 0, 0), Vec3(1, 0, 0)), world.add_contact(0, 2, Vec3(0, 1.95, 0), Vec3(0, 1, 0));
   EXPECT_NEAR(value_of(world, "largest_overlap"), 0.1, 1e-14);
-  world.touch_wall(0, 0, Vec3(0, 0, -0.8), Vec3(0, 0, -1));
+  world.add_wall_contact(0, 0, Vec3(0, 0, -0.8), Vec3(0, 0, -1));
   EXPECT_NEAR(value_of(world, "largest_overlap"), 0.2, 1e-14);
 }
 
@@ -142,7 +142,7 @@ TEST(Packing, ReportsUnrest) {
   world.add({0, 0, 0}, 1, {3, 0, 0}), world.add({2, 0, 0}, 1);
   const double mass = 2600 * 8 * sixth;
   EXPECT_NEAR(value_of(world, "kinetic_energy"), 0.5 * mass * 9, 1e-8);
-  world.touch(0, 1, Vec3(2, 0, 0), Vec3(10, 0, 0));
+  world.add_contact(0, 1, Vec3(2, 0, 0), Vec3(10, 0, 0));
   world.force[0] = {4, 0, 0, 0};
   EXPECT_DOUBLE_EQ(value_of(world, "mean_contact_force"), 10);
   EXPECT_DOUBLE_EQ(value_of(world, "unbalanced_force"), 0.2);
@@ -175,9 +175,11 @@ TEST(Packing, RefusesAWallThatIsNotThere) {
   world.wall = {still_wall("top"), still_wall("bottom")};
   PackingProbe probe;
   probe.driven_by = "tip";
-  EXPECT_THAT([&] { probe.prepare(world); },
-              testing::ThrowsMessage<Error>("probe packing, /driven_by: there is no wall \"tip\"; the nearest name is "
-                                            "\"top\"; walls are: top, bottom"));
+  EXPECT_THAT(
+      [&] { probe.prepare(world); },
+      testing::ThrowsMessage<ParameterError>(
+          "driven_by: found \"tip\", which is not a wall; the nearest name is \"top\"; allowed is one of the walls "
+          "top, bottom"));
   probe.shear_rate = 1;
   EXPECT_EQ(complaints(probe), "driven_by: found \"tip\" beside a shear_rate, allowed: one of the two\n");
 }
@@ -251,13 +253,13 @@ TEST_P(AveragingCellsOf, RandomGrainsAgreeWithAveragesOfEachBox) {
     EXPECT_NEAR(cell.void_ratio, void_ratio(world, region), 1e-9);
     const Mat3 stress = mean_stress(world, region);
     EXPECT_NEAR((cell.stress - stress).norm(), 0, 1e-9);
-    double grains = 0, touches = 0;
+    double grains = 0, contacts = 0;
     for (std::size_t i = 0; i < touching.size(); ++i) {
       const Vec3 centre = xyz(world.position[i]);
       if ((centre.array() >= region.low.array()).all() && (centre.array() < region.high.array()).all())
-        ++grains, touches += touching[i];
+        ++grains, contacts += touching[i];
     }
-    EXPECT_DOUBLE_EQ(cell.coordination_number, grains > 0 ? touches / grains : 0);
+    EXPECT_DOUBLE_EQ(cell.coordination_number, grains > 0 ? contacts / grains : 0);
   }
 }
 

@@ -18,12 +18,12 @@ void Rotations::declare(Parameters& p) {
 std::vector<Channel> Rotations::channels() const {
   const std::string sign =
       ", right-handed about " + about + (about == "y" ? ", clockwise where x is right and z up" : "");
-  const std::vector<std::size_t> each{static_cast<std::size_t>(profile.places)};
+  const std::vector<std::size_t> each{static_cast<std::size_t>(profile.points)};
   std::vector<Channel> channels{
-      {"place", "m", "of each value of the profile, along " + profile.across, each},
+      {"position", "m", "of each value of the profile, along " + profile.across, each},
       {"profile", "rad",
        "rotation in the stage at each place, by the line that fits the bodies around it" + sign + "; NaN without any",
-       each, "place"},
+       each, "position"},
       {"mean", "rad", "mean rotation of all bodies in the stage" + sign + "; 0 without any", {}},
       {"mean_magnitude",
        "rad",
@@ -33,18 +33,21 @@ std::vector<Channel> Rotations::channels() const {
   return channels;
 }
 
-void Rotations::sample(const World& world, std::span<const std::span<double>> values) {
+void Rotations::sample(const World& world, ChannelValues& values) {
   const int axis = about[0] - 'x';
   const auto turned = world.rotations();
   const auto nodes = profile.nodes(world);
   const auto lines = profile.fit(world, [&](std::size_t i) { return turned[i][axis]; });
-  for (std::size_t k = 0; k < lines.value.size(); ++k) values[0][k] = nodes.at(k), values[1][k] = lines.value[k];
+  const auto places = values.list("position");
+  for (std::size_t k = 0; k < places.size(); ++k) places[k] = nodes.at(k);
+  std::ranges::copy(lines.value, values.list("profile").begin());
   double sum = 0, magnitudes = 0;
   for (const Vec3& body : turned)
     if (const double one = body[axis]; std::isfinite(one)) sum += one, magnitudes += std::abs(one);
   const double count = std::max<double>(1, static_cast<double>(turned.size()));
-  values[2][0] = sum / count, values[3][0] = magnitudes / count;
-  fill_zone(shear_zone(nodes, lines.value), world, values.subspan(4));
+  values["mean"] = sum / count;
+  values["mean_magnitude"] = magnitudes / count;
+  fill_zone(shear_zone(nodes, lines.value), world, values);
 }
 
 }  // namespace grit

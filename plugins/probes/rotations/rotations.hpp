@@ -1,7 +1,6 @@
 // How far bodies have turned in a stage, and the shear zone that shows. See README.md.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -17,9 +16,9 @@ class Rotations final : public Probe {
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::rotation; }
-  void prepare(const World& world) override { profile.prepare(world, "probe rotations"); }
+  void prepare(const World& world) override { profile.prepare(world); }
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 };
 
 }  // namespace grit

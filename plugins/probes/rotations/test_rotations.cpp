@@ -31,9 +31,9 @@ double figure(Rotations& probe, const FakeWorld& world, const std::string& chann
 TEST(Rotations, ProfileOfALinearOneIsItself) {
   const FakeWorld world = column([](double z) { return 3 * z - 1; });
   Rotations probe;
-  probe.profile.places = 11;
+  probe.profile.points = 11;
   probe.prepare(world);
-  const auto place = channel_values(probe, world, "place"), profile = channel_values(probe, world, "profile");
+  const auto place = channel_values(probe, world, "position"), profile = channel_values(probe, world, "profile");
   for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(place[k], 0.1 * static_cast<double>(k), 1e-15);
   for (std::size_t k = 0; k < 11; ++k) EXPECT_NEAR(profile[k], 3 * place[k] - 1, 1e-12) << k;
   EXPECT_NEAR(figure(probe, world, "mean"), 0.5, 1e-12);
@@ -48,7 +48,7 @@ TEST(Rotations, ZoneLiesBetweenTheInflectionsOfABell) {
     const FakeWorld world =
         column([=](double z) { return sign * std::exp(-0.5 * (z - centre) * (z - centre) / (sigma * sigma)); });
     Rotations probe;
-    probe.profile.reach = 4, probe.profile.places = 101;
+    probe.profile.averaging_length = 4, probe.profile.points = 101;
     probe.prepare(world);
     const double widened = std::sqrt(sigma * sigma + reach * reach / 6);
     EXPECT_NEAR(figure(probe, world, "zone_low"), centre - widened, 3e-3 * widened);
@@ -64,7 +64,7 @@ TEST(Rotations, ZoneAtASideEndsThere) {
   const double sigma = 0.1;
   const FakeWorld world = column([=](double z) { return std::exp(-0.5 * z * z / (sigma * sigma)); });
   Rotations probe;
-  probe.profile.places = 101;
+  probe.profile.points = 101;
   probe.prepare(world);
   EXPECT_EQ(figure(probe, world, "zone_low"), 0);
   EXPECT_NEAR(figure(probe, world, "zone_high"), sigma, 1e-2 * sigma);
@@ -78,7 +78,7 @@ TEST(Rotations, ZoneThatFallsOffFastestAtItsSideHasNoThickness) {
     const FakeWorld world = column([=](double z) { return std::exp(-(at_low ? z : 1 - z) / length); });
     for (const int places : {21, 101}) {
       Rotations probe;
-      probe.profile.places = places;
+      probe.profile.points = places;
       probe.prepare(world);
       EXPECT_EQ(figure(probe, world, at_low ? "zone_low" : "zone_high"), at_low ? 0 : 1);
       for (const char* none : {at_low ? "zone_high" : "zone_low", "zone_thickness", "zone_diameters"})
@@ -103,7 +103,7 @@ TEST(Rotations, KnowsNothingWhereThereAreNoBodies) {
   FakeWorld world = column([](double z) { return std::exp(-0.5 * (z - 0.3) * (z - 0.3) / 0.01); });
   world.whole.high.z() = 2;  // half empty
   Rotations probe;
-  probe.profile.places = 101;
+  probe.profile.points = 101;
   probe.prepare(world);
   const auto profile = channel_values(probe, world, "profile");
   EXPECT_TRUE(std::isfinite(profile[49]));
@@ -116,7 +116,7 @@ TEST(Rotations, KnowsNothingWhereThereAreNoBodies) {
 TEST(Rotations, HaveNoZoneWhereNothingTurns) {
   const FakeWorld world = column([](double) { return 0.0; });
   Rotations probe;
-  probe.profile.places = 101;
+  probe.profile.points = 101;
   probe.prepare(world);
   for (const char* of_zone : {"zone_low", "zone_high", "zone_thickness", "zone_diameters", "zone_extent_diameters"})
     EXPECT_TRUE(std::isnan(figure(probe, world, of_zone))) << of_zone;
@@ -126,7 +126,7 @@ TEST(Rotations, OfAZoneIsNotDrawnAwayByOneFarPlace) {
   const FakeWorld world = column(
       [](double z) { return std::exp(-0.5 * (z - 0.3) * (z - 0.3) / 0.01) + (z > 0.9 && z < 0.92 ? -0.9 : 0.0); });
   Rotations probe;
-  probe.profile.places = 101, probe.profile.reach = 1;
+  probe.profile.points = 101, probe.profile.averaging_length = 1;
   probe.prepare(world);
   EXPECT_NEAR(figure(probe, world, "zone_high"), 0.4, 0.01);
 }
@@ -140,7 +140,7 @@ TEST(Rotations, RefusesAnAxisWithoutSides) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "probe rotations, /across: the domain is periodic along z, which has no sides; name another axis");
+                 "across: found z, along which the domain is periodic; allowed is an axis that is not periodic");
   }
 }
 

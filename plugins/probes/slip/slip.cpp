@@ -9,16 +9,16 @@ std::vector<Channel> Slip::channels() const {
            "m",
            "mean displacement along " + layer.axis + " of the layer at the wall, relative to it, since the stage began",
            {}},
-          {"share", "1", "the same over that of " + layer.driven_by + "; 0 before it moves", {}},
+          {"fraction", "1", "the same over that of " + layer.driven_by + "; 0 before it moves", {}},
           {"bodies", "1", "number of bodies in the layer", {}}};
 }
 
-void Slip::sample(const World& world, std::span<const std::span<double>> values) {
+void Slip::sample(const World& world, ChannelValues& values) {
   const WallLayer::Slip slip = layer.slip(world);
   const double driven = layer.driven(world);
-  values[0][0] = slip.mean;
-  values[1][0] = driven == 0 ? 0 : slip.mean / driven;
-  values[2][0] = slip.bodies;
+  values["displacement"] = slip.mean;
+  values["fraction"] = driven == 0 ? 0 : slip.mean / driven;
+  values["bodies"] = slip.bodies;
 }
 
 }  // namespace grit

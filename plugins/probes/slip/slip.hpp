@@ -1,7 +1,6 @@
 // Slip of a specimen along a wall. See README.md.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "grit/probe.hpp"
@@ -15,9 +14,9 @@ class Slip final : public Probe {
 
   void declare(Parameters& parameters) override { layer.declare(parameters); }
   StateRequest needs() const override { return BodyState::displacement; }
-  void prepare(const World& world) override { layer.prepare(world, "probe slip"); }
+  void prepare(const World& world) override { layer.prepare(world); }
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 };
 
 }  // namespace grit

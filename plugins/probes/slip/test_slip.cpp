@@ -38,7 +38,7 @@ TEST(Slip, IsTheMeanOfTheLayerThatLayAtTheWallWhenTheStageBegan) {
   Slip probe = made();
   probe.prepare(world);
   EXPECT_THAT(channel_values(probe, world, "displacement"), ElementsAre(testing::DoubleEq(0.05)));
-  EXPECT_THAT(channel_values(probe, world, "share"), ElementsAre(testing::DoubleEq(0.125)));
+  EXPECT_THAT(channel_values(probe, world, "fraction"), ElementsAre(testing::DoubleEq(0.125)));
   EXPECT_THAT(channel_values(probe, world, "bodies"), ElementsAre(2));
   probe.layer.thickness = 0.6;
   EXPECT_THAT(channel_values(probe, world, "bodies"), ElementsAre(3));
@@ -52,7 +52,7 @@ TEST(Slip, IsTheSameForASurfaceThatMovesAndForOneOnTop) {
   add(world, {0.5, 0, 0.05}, {-0.3, 0, -0.2});
   Slip below = made();
   below.prepare(world);
-  EXPECT_THAT(channel_values(below, world, "share"), ElementsAre(testing::DoubleEq(0.25)));
+  EXPECT_THAT(channel_values(below, world, "fraction"), ElementsAre(testing::DoubleEq(0.25)));
 
   FakeWorld turned = world_between();
   turned.wall[0].stage_position = {0.4, 0, 0};
@@ -60,7 +60,7 @@ TEST(Slip, IsTheSameForASurfaceThatMovesAndForOneOnTop) {
   add(turned, {0.5, 0, 0.05}, {0.3, 0, 0});
   Slip above = made("lid", "surface");
   above.prepare(turned);
-  EXPECT_THAT(channel_values(above, turned, "share"), ElementsAre(testing::DoubleEq(0.25)));
+  EXPECT_THAT(channel_values(above, turned, "fraction"), ElementsAre(testing::DoubleEq(0.25)));
 }
 
 TEST(Slip, IsNoneBeforeAnythingMovesAndWithoutALayer) {
@@ -68,7 +68,7 @@ TEST(Slip, IsNoneBeforeAnythingMovesAndWithoutALayer) {
   add(world, {0.5, 0, 0.05}, Vec3::Zero());
   Slip probe = made();
   probe.prepare(world);
-  EXPECT_THAT(channel_values(probe, world, "share"), ElementsAre(0));
+  EXPECT_THAT(channel_values(probe, world, "fraction"), ElementsAre(0));
   FakeWorld empty = world_between();
   empty.wall[1].stage_position = {0.4, 0, 0};
   EXPECT_THAT(channel_values(probe, empty, "displacement"), ElementsAre(0));
@@ -84,15 +84,17 @@ std::string refusal(Slip probe, FakeWorld world = world_between()) {
 }
 
 TEST(Slip, RefusesWallsThatThereAreNotOrThatFaceTheWrongWay) {
-  EXPECT_THAT(refusal(made("surfaces")), HasSubstr("probe slip, /wall: there is no wall \"surfaces\"; the nearest"));
-  EXPECT_THAT(refusal(made("surface", "led")), HasSubstr("/driven_by: there is no wall \"led\""));
+  EXPECT_THAT(refusal(made("surfaces")), HasSubstr("wall: found \"surfaces\", which is not a wall; the nearest"));
+  EXPECT_THAT(refusal(made("surface", "led")), HasSubstr("driven_by: found \"led\", which is not a wall"));
   Slip across = made();
   across.layer.axis = "z";
-  EXPECT_EQ(refusal(across),
-            "probe slip, /axis: wall \"surface\" is perpendicular to z; slip is along a wall, so name another axis");
+  EXPECT_EQ(
+      refusal(across),
+      "axis: found z, to which wall \"surface\" is perpendicular; allowed is an axis in the plane of the wall, along "
+      "which bodies slip");
   FakeWorld aslant = world_between();
   aslant.wall[0].normal = Vec3(0, 0.6, 0.8);
-  EXPECT_EQ(refusal(made(), aslant), "probe slip, /wall: wall \"surface\" is not perpendicular to x, y or z");
+  EXPECT_EQ(refusal(made(), aslant), "wall: found wall \"surface\"; allowed is a wall perpendicular to x, y or z");
 }
 
 TEST(Slip, RefusesAWallAtWhichTheSpecimenDoesNotEnd) {
@@ -101,7 +103,9 @@ TEST(Slip, RefusesAWallAtWhichTheSpecimenDoesNotEnd) {
   EXPECT_EQ(refusal(made(), world), "");
   EXPECT_EQ(refusal(made("lid", "surface"), world), "");
   const char* const not_there =
-      "probe slip, /wall: the specimen does not end at wall \"surface\"; name it in /specimen";
+      "wall: found wall \"surface\", at which the specimen does not end; allowed is a wall that bounds the specimen; "
+      "name "
+      "it in /specimen";
   for (const double way : {-0.11, 1e-3}) {  // off by more than half a diameter, or before the face
     FakeWorld elsewhere = world;
     elsewhere.surface[0] = flat_surface(Vec3(0, 0, way), Vec3::UnitZ());

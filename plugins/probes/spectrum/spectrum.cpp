@@ -10,6 +10,13 @@ namespace grit {
 
 namespace {
 
+/// Channels, in the order of signals.
+constexpr const char* densities[] = {
+    "acceleration_density_x",
+    "acceleration_density_y",
+    "acceleration_density_z",
+    "pressure_density",
+};
 constexpr double most_kept = 1e8;  // points of all windows: 1.6 GB of densities
 
 /// Whether a box holds a point or one of its periodic images. The box is no longer than a period.
@@ -86,14 +93,13 @@ void Spectrum::declare(Parameters& parameters) {
 }
 
 void Spectrum::prepare(const World& world) {
-  if (!wall.empty()) wall_ = wall_index(world, wall, "probe spectrum, /wall");
+  if (!wall.empty()) wall_ = wall_index(world, wall, "wall");
   const Cell& domain = world.cell();
   for (int k = 0; wall.empty() && k < 3; ++k)
     if (const double period = domain.high[k] - domain.low[k], length = (*region_high)[k] - (*region_low)[k];
         domain.periodic[static_cast<std::size_t>(k)] && length > (1 + 1e-9) * period)
-      throw Error(std::string("probe spectrum, /region_high: the box is ") + std::to_string(length) + " m long along " +
-                  "xyz"[k] + ", along which the domain repeats itself after " + std::to_string(period) +
-                  " m; make the box no longer than that, which has all grains");
+      throw ParameterError({{"region_high", "a box of " + std::to_string(length) + " m along " + "xyz"[k],
+                             "at most the period of the domain, " + std::to_string(period) + " m"}});
   last_.reset();
   begin_again();
 }
@@ -102,13 +108,13 @@ std::vector<Channel> Spectrum::channels() const {
   const auto bins = static_cast<std::size_t>(points / 2 + 1);
   const std::string unknown = "; NaN before the first window is full";
   std::vector<Channel> channels{{"frequency", "Hz", "of each value of the densities", {bins}}};
-  for (const std::string axis : {"x", "y", "z"})
-    channels.push_back({"acceleration_density_" + axis,
+  for (std::size_t k = 0; k < 3; ++k)
+    channels.push_back({densities[k],
                         "m2 s-4 Hz-1",
-                        "one-sided power spectral density of the acceleration along " + axis + unknown,
+                        std::string("one-sided power spectral density of the acceleration along ") + "xyz"[k] + unknown,
                         {bins},
                         "frequency"});
-  channels.push_back({"pressure_density", "Pa2 Hz-1", "the same of the pressure" + unknown, {bins}, "frequency"});
+  channels.push_back({densities[3], "Pa2 Hz-1", "the same of the pressure" + unknown, {bins}, "frequency"});
   channels.push_back({"windows", "1", "number of windows that the densities are the mean of", {}});
   return channels;
 }
@@ -142,12 +148,14 @@ void Spectrum::take(const World& world) {
   last_ = instant;
 }
 
-void Spectrum::sample(const World& world, std::span<const std::span<double>> values) {
+void Spectrum::sample(const World& world, ChannelValues& values) {
   take(world);
-  for (std::size_t k = 0; k < values[0].size(); ++k)
-    values[0][k] = static_cast<double>(k) / (static_cast<double>(points) * interval);
-  for (std::size_t i = 0; i < welch_.size(); ++i) std::ranges::copy(welch_[i].mean(), values[1 + i].begin());
-  values[5][0] = static_cast<double>(welch_.front().windows());
+  const auto frequency = values.list("frequency");
+  for (std::size_t k = 0; k < frequency.size(); ++k)
+    frequency[k] = static_cast<double>(k) / (static_cast<double>(points) * interval);
+  for (std::size_t i = 0; i < welch_.size(); ++i)
+    std::ranges::copy(welch_[i].mean(), values.list(densities[i]).begin());
+  values["windows"] = static_cast<double>(welch_.front().windows());
 }
 
 }  // namespace grit

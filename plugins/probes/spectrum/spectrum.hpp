@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -21,11 +20,11 @@ class Spectrum final : public Probe {
   std::int64_t points = 256, windows = 8;
 
   void declare(Parameters& parameters) override;
-  /// Throws Error for a wall that does not exist, and for a box that is longer than a period of the domain.
+  /// Throws ParameterError for a wall that does not exist, and for a box that is longer than a period of the domain.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
-  void remember(Memory& memory) override { memory(last_, first_time_, count_, welch_); }
+  void sample(const World& world, ChannelValues& values) override;
+  void serialize(Archive& archive) override { archive(last_, first_time_, count_, welch_); }
 
  private:
   using Signals = std::array<double, 4>;  ///< acceleration along x, y, z [m/s²], pressure [Pa]
@@ -33,7 +32,7 @@ class Spectrum final : public Probe {
     double time;    ///< s
     Vec3 velocity;  ///< of the wall [m/s]
     Signals signals;
-    void remember(Memory& memory) { memory(time, velocity, signals); }
+    void serialize(Archive& archive) { archive(time, velocity, signals); }
   };
   Signals look(const World& world) const;
   void take(const World& world);

@@ -106,9 +106,9 @@ TEST(Welch, ForgetsAllButTheLastWindows) {
 using At = std::function<FakeWorld(double time)>;
 
 /// Samples at these times; what the last one has.
-SampleRoom listened(Spectrum& probe, const At& world, const std::vector<double>& times) {
+ChannelValues listened(Spectrum& probe, const At& world, const std::vector<double>& times) {
   probe.prepare(world(times.front()));
-  SampleRoom last(probe.channels());
+  ChannelValues last("the probe", probe.channels());
   for (const double time : times) {
     FakeWorld now = world(time);
     now.now = time;
@@ -137,29 +137,33 @@ Spectrum at_wall() {
   probe.wall = "wall";
   return probe;
 }
-constexpr std::size_t of_acceleration = 1, of_pressure = 4, windows = 5;  // channels
-std::vector<double> along(const SampleRoom& room, std::size_t axis) {
-  const auto density = room[of_acceleration + axis];
-  return {density.begin(), density.end()};
+std::vector<double> listed(const ChannelValues& heard, const std::string& channel) {
+  const auto list = heard.list(channel);
+  return {list.begin(), list.end()};
 }
-std::vector<double> pressed(const SampleRoom& room) { return {room[of_pressure].begin(), room[of_pressure].end()}; }
+std::vector<double> along(const ChannelValues& heard, char axis) {
+  return listed(heard, std::string("acceleration_density_") + axis);
+}
+std::vector<double> pressed(const ChannelValues& heard) { return listed(heard, "pressure_density"); }
+/// Between two frequencies [Hz].
+double step_of(const ChannelValues& heard) { return heard.list("frequency")[1]; }
 
 TEST(Spectrum, FindsThePitchOfAWall) {
   Spectrum probe = at_wall();
-  const auto room = listened(probe, swinging, evenly(1e-4, 2000));
-  const double step = room[0][1];
+  const auto heard = listened(probe, swinging, evenly(1e-4, 2000));
+  const double step = step_of(heard);
   EXPECT_NEAR(step, 1 / 0.0256, 1e-12);
-  EXPECT_NEAR(room[0].back(), 5000, 1e-9);
-  const Tone pressure = loudest(pressed(room), step);
+  EXPECT_NEAR(heard.list("frequency").back(), 5000, 1e-9);
+  const Tone pressure = loudest(pressed(heard), step);
   EXPECT_NEAR(pressure.frequency, pitch, 0.05 * step);
   EXPECT_NEAR(pressure.amplitude, loudness, 0.01 * loudness);
   // A difference over h has sin(πfh) / πfh of the derivative.
-  const Tone acceleration = loudest(along(room, 2), step);
+  const Tone acceleration = loudest(along(heard, 'z'), step);
   const double less = std::sin(turn / 2 * pitch * 1e-4) / (turn / 2 * pitch * 1e-4);
   EXPECT_NEAR(acceleration.frequency, pitch, 0.05 * step);
   EXPECT_NEAR(acceleration.amplitude, 0.1 * turn * pitch * less, 0.01 * 0.1 * turn * pitch);
-  for (const double density : along(room, 0)) EXPECT_EQ(density, 0);
-  EXPECT_EQ(room[windows][0], 8);
+  for (const double density : along(heard, 'x')) EXPECT_EQ(density, 0);
+  EXPECT_EQ(heard["windows"], 8);
 }
 
 TEST(Spectrum, BringsSamplesToEqualTimes) {
@@ -168,9 +172,9 @@ TEST(Spectrum, BringsSamplesToEqualTimes) {
   std::vector<double> times{0};
   while (times.back() < 0.2) times.push_back(times.back() + step(random));
   Spectrum probe = at_wall();
-  const auto room = listened(probe, swinging, times);
-  const Tone pressure = loudest(pressed(room), room[0][1]);
-  EXPECT_NEAR(pressure.frequency, pitch, 0.05 * room[0][1]);
+  const auto heard = listened(probe, swinging, times);
+  const Tone pressure = loudest(pressed(heard), step_of(heard));
+  EXPECT_NEAR(pressure.frequency, pitch, 0.05 * step_of(heard));
   EXPECT_NEAR(pressure.amplitude, loudness, 0.01 * loudness);
 }
 
@@ -182,32 +186,32 @@ TEST(Spectrum, ListensToTheGrainsInABox) {
       const auto body = world.add({x, 0.5, 0.5}, x == 0.2 ? 0.1 : 0.05);
       world.force[body] = {acceleration / world.velocity[body].w * (x < 1 ? 1 : 50), 0, 0, 0};
     }
-    world.touch(0, 1, Vec3(0.2, 0, 0), Vec3(10 + 3 * std::sin(turn * pitch * time), 0, 0));
+    world.add_contact(0, 1, Vec3(0.2, 0, 0), Vec3(10 + 3 * std::sin(turn * pitch * time), 0, 0));
     return world;
   };
   Spectrum probe;
   probe.region_low = Vec3(0, 0, 0), probe.region_high = Vec3(1, 1, 0.8);
-  const auto room = listened(probe, shaken, evenly(1e-4, 2000));
-  EXPECT_NEAR(loudest(along(room, 0), room[0][1]).amplitude, 7, 0.01 * 7);
-  EXPECT_NEAR(loudest(pressed(room), room[0][1]).amplitude, 3 * 0.2 / 0.8 / 3, 0.01 * 0.25);
-  for (const double density : along(room, 1)) EXPECT_EQ(density, 0);
+  const auto heard = listened(probe, shaken, evenly(1e-4, 2000));
+  EXPECT_NEAR(loudest(along(heard, 'x'), step_of(heard)).amplitude, 7, 0.01 * 7);
+  EXPECT_NEAR(loudest(pressed(heard), step_of(heard)).amplitude, 3 * 0.2 / 0.8 / 3, 0.01 * 0.25);
+  for (const double density : along(heard, 'y')) EXPECT_EQ(density, 0);
 }
 
 TEST(Spectrum, KnowsNothingBeforeTheFirstWindowIsFullAndAfterAGap) {
   Spectrum probe = at_wall();
   probe.points = 16;
   auto times = evenly(1e-4, 16);  // the first has no acceleration yet
-  auto room = listened(probe, swinging, times);
-  EXPECT_EQ(room[windows][0], 0);
-  EXPECT_TRUE(std::isnan(room[of_pressure][3]));
+  auto heard = listened(probe, swinging, times);
+  EXPECT_EQ(heard["windows"], 0);
+  EXPECT_TRUE(std::isnan(heard.list("pressure_density")[3]));
   times.push_back(16e-4);
-  room = listened(probe, swinging, times);
-  EXPECT_EQ(room[windows][0], 1);
-  EXPECT_TRUE(std::isfinite(room[of_pressure][3]));
+  heard = listened(probe, swinging, times);
+  EXPECT_EQ(heard["windows"], 1);
+  EXPECT_TRUE(std::isfinite(heard.list("pressure_density")[3]));
   for (int i = 0; i < 16; ++i) times.push_back(16e-4 + 1.5e-4 + 1e-4 * i);
-  EXPECT_EQ(listened(probe, swinging, times)[windows][0], 3) << "bridged by a line";
+  EXPECT_EQ(listened(probe, swinging, times)["windows"], 3) << "bridged by a line";
   for (int i = 17; i < 33; ++i) times[static_cast<std::size_t>(i)] += 1e-4;
-  EXPECT_EQ(listened(probe, swinging, times)[windows][0], 0) << "begun again";
+  EXPECT_EQ(listened(probe, swinging, times)["windows"], 0) << "begun again";
 }
 
 /// A grain just above the lower side and one just below the upper side of a period of 1 along x, that are pushed.
@@ -230,8 +234,8 @@ double heard(double low, double high) {
     for (Row& force : world.force) force.x *= std::sin(turn * pitch * time);
     return world;
   };
-  const auto room = listened(probe, shaken, evenly(1e-4, 300));
-  return loudest(along(room, 0), room[0][1]).amplitude;
+  const auto heard = listened(probe, shaken, evenly(1e-4, 300));
+  return loudest(along(heard, 'x'), step_of(heard)).amplitude;
 }
 
 TEST(Spectrum, ListensToPeriodicImagesToo) {
@@ -246,10 +250,11 @@ TEST(Spectrum, RefusesABoxLongerThanThePeriod) {
   probe.region_low = Vec3(0, -20, 0), probe.region_high = Vec3(1, 20, 1);
   EXPECT_NO_THROW(probe.prepare(across_a_side(0)));
   probe.region_high->x() = 1.25;
-  EXPECT_THAT([&] { probe.prepare(across_a_side(0)); },
-              testing::ThrowsMessage<Error>(
-                  HasSubstr("probe spectrum, /region_high: the box is 1.250000 m long along x, along which the domain "
-                            "repeats itself after 1.000000 m")));
+  EXPECT_THAT(
+      [&] { probe.prepare(across_a_side(0)); },
+      testing::ThrowsMessage<ParameterError>(
+          "region_high: found a box of 1.250000 m along x; allowed is at most the period of the domain, 1.000000 "
+          "m"));
 }
 
 /// A wall at rest that is at a bound in no time at `jump` [s], and then speeds up evenly.
@@ -267,9 +272,9 @@ TEST(Spectrum, DoesNotTakeTheFirstInstantNorAGapForAcceleration) {
   for (const auto& [from, jump] : std::vector<std::pair<std::ptrdiff_t, double>>{{0, 0.05}, {10, -1}}) {
     Spectrum probe = at_wall();
     probe.points = 16;
-    const auto room = listened(probe, kicked(jump), {times.begin() + from, times.end()});
-    EXPECT_EQ(room[windows][0], 8) << from;
-    for (const double density : along(room, 2)) EXPECT_NEAR(density, 0, 1e-12) << from;
+    const auto heard = listened(probe, kicked(jump), {times.begin() + from, times.end()});
+    EXPECT_EQ(heard["windows"], 8) << from;
+    for (const double density : along(heard, 'z')) EXPECT_NEAR(density, 0, 1e-12) << from;
   }
 }
 
@@ -307,8 +312,7 @@ TEST(Spectrum, RefusesWhatIsNeitherAWallNorABox) {
     nowhere.prepare(swinging(0));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("probe spectrum, /wall: there is no wall \"well\"; the nearest name is \"wall\""));
+    EXPECT_THAT(error.what(), HasSubstr("wall: found \"well\", which is not a wall; the nearest name is \"wall\""));
   }
 }
 

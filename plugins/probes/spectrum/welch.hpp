@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "grit/memory.hpp"
+#include "grit/archive.hpp"
 
 namespace grit {
 
@@ -31,7 +31,7 @@ class Welch {
   std::size_t windows() const { return densities_.size(); }
   /// points / 2 + 1 values; NaN before the first window is full.
   const std::vector<double>& mean() const { return mean_; }
-  void remember(Memory& memory) { memory(points_, windows_, interval_, values_, densities_, mean_); }
+  void serialize(Archive& archive) { archive(points_, windows_, interval_, values_, densities_, mean_); }
 
  private:
   std::size_t points_ = 0, windows_ = 0;

@@ -22,7 +22,7 @@ void Strain::declare(Parameters& p) {
 }
 
 void Strain::prepare(const World& world) {
-  if (sliding) sliding->prepare(world, plane()[0], plane()[1], "probe strain");
+  if (sliding) sliding->prepare(world, plane()[0], plane()[1], "sliding");
 }
 
 std::array<int, 2> Strain::plane() const {
@@ -96,21 +96,21 @@ std::vector<Strain::Subset> Strain::subsets(const World& world) const {
   return found;
 }
 
-void Strain::sample(const World& world, std::span<const std::span<double>> values) {
+void Strain::sample(const World& world, ChannelValues& values) {
   DisplacementFit whole;
   for (const Body& body : bodies(world)) whole.add(body.place, body.moved);
-  std::ranges::copy(whole.green(4, 1e-12), values[0].begin());
+  std::ranges::copy(whole.green(4, 1e-12), values.list("strain").begin());
   double largest = 0;
   for (const Subset& one : subsets(world))
     if (const double shear = std::abs(one.green[2]); shear > largest) largest = shear;
-  values[1][0] = largest;
+  values["largest_shear"] = largest;
   if (!sliding) return;
   std::vector<SlidingLengths::Point> points;
   for (std::size_t i = 0; i < world.displacements().size(); ++i)
     points.push_back({.along = xyz(world.positions()[i])[sliding->along()],
                       .across = xyz(world.positions()[i])[sliding->across()],
                       .moved = world.displacements()[i][sliding->along()]});
-  SlidingLengths::fill(sliding->of(world, points, {}), values.subspan(2));
+  SlidingLengths::fill(sliding->of(world, points, {}), values);
 }
 
 std::vector<Field> Strain::fields(const World& world) {

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -21,10 +20,10 @@ class Strain final : public Probe {
 
   void declare(Parameters& parameters) override;
   StateRequest needs() const override { return BodyState::displacement; }
-  /// Throws Error for a wall that cannot be slid along in the plane.
+  /// Throws ParameterError for a wall that cannot be slid along in the plane.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
 
  private:

@@ -198,7 +198,7 @@ TEST(Sliding, IsToldBySharesOfWhatTheWallWasDriven) {
     if (world.position[i].z < 1e-3) world.displacement[i].x() = -3e-3 * (1 - world.position[i].x / 0.06);
   Strain probe = told_along(world);
   EXPECT_NEAR(channel_value(probe, world, "contact_factor"), 0.5, 1e-14);
-  probe.sliding->share = 0.75;
+  probe.sliding->min_fraction = 0.75;
   EXPECT_NEAR(channel_value(probe, world, "contact_factor"), 0.25, 1e-14);
 }
 
@@ -225,9 +225,12 @@ TEST(Sliding, NeedsAWallInThePlane) {
     return "";
   };
   EXPECT_EQ(refusal("low"), "");
-  EXPECT_THAT(refusal("lower"), testing::HasSubstr("there is no wall \"lower\""));
+  EXPECT_THAT(refusal("lower"), testing::HasSubstr("sliding/wall: found \"lower\", which is not a wall"));
   world.wall[0].normal = Vec3::UnitY();
-  EXPECT_THAT(refusal("low"), testing::HasSubstr("/sliding/wall: wall \"low\" is not perpendicular"));
+  EXPECT_EQ(
+      refusal("low"),
+      "sliding/wall: found wall \"low\"; allowed is a wall perpendicular to x or z, the axes of the probe's plane; "
+      "name another wall, or another depth_axis");
 }
 
 INSTANTIATE_TEST_SUITE_P(Strain, ProbeContract,

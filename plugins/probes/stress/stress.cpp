@@ -2,9 +2,11 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "grit/plugin.hpp"
@@ -36,10 +38,10 @@ std::vector<Transmitted> transmitted(const World& world, const AveragingCells& c
   share_out_contacts(world, cells, [&](std::size_t part, const Piece& piece) {
     const auto& [contact, branch, from, to, load] = piece;
     // The moment is linear along the branch: its mean over a piece is that of the piece's middle.
-    Vec3 moment = contact.moment + (1 - 0.5 * (from + to)) * branch.way.cross(contact.force);
+    Vec3 moment = contact.moment + (1 - 0.5 * (from + to)) * branch.vector.cross(contact.force);
     if (!arms.empty() && !contact.with_wall) moment += arms[contact.b].cross(contact.force);
     parts[part].load += load;
-    parts[part].couple += (to - from) * moment * branch.way.transpose();
+    parts[part].couple += (to - from) * moment * branch.vector.transpose();
   });
   return cells.sum_up(parts);
 }
@@ -65,6 +67,9 @@ void copy(const Mat3& tensor, double* to) {
 }
 
 constexpr const char* component_names[] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+// How the names of channels begin that end with a component.
+const std::string stress_profile = "stress_profile_";
+const std::string couple_stress_profile = "couple_stress_profile_";
 
 }  // namespace
 
@@ -75,7 +80,7 @@ std::vector<Channel> Stress::channels() const {
   const std::string unknown = "; NaN where the region has no volume";
   const std::string tensor = "(force, branch), positive in compression" + unknown,
                     couple = "(moment, branch), of what the side before exerts on the side behind" + unknown;
-  const Channel place = averaging.place_channel();
+  const Channel place = averaging.position_channel();
   std::vector<Channel> channels{
       {"stress", "Pa", "of the region: Love-Weber, row by row " + tensor, {3, 3}},
       {"couple_stress", "N m-1", "of the region: row by row " + couple, {3, 3}},
@@ -87,36 +92,47 @@ std::vector<Channel> Stress::channels() const {
       {"deviatoric_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}, place.name},
       {"friction_angle_profile", "degree", "of each slice, " + angle_doc, {n}, place.name}};
   for (const std::string ij : component_names)
-    channels.push_back(
-        {"stress_profile_" + ij, "Pa", "of each slice: Love-Weber, " + ij + " " + tensor, {n}, place.name});
+    channels.push_back({stress_profile + ij, "Pa", "of each slice: Love-Weber, " + ij + " " + tensor, {n}, place.name});
   for (const std::string ij : component_names)
-    channels.push_back(
-        {"couple_stress_profile_" + ij, "N m-1", "of each slice: " + ij + " " + couple, {n}, place.name});
+    channels.push_back({couple_stress_profile + ij, "N m-1", "of each slice: " + ij + " " + couple, {n}, place.name});
   return channels;
 }
 
-void Stress::sample(const World& world, std::span<const std::span<double>> values) {
-  for (const auto& channel : values) std::ranges::fill(channel, std::numeric_limits<double>::quiet_NaN());
+void Stress::sample(const World& world, ChannelValues& values) {
+  // Without volume all but the places is unknown.
+  for (const Channel& channel : channels())
+    std::ranges::fill(values.list(channel.name), std::numeric_limits<double>::quiet_NaN());
   const Region box = closed_box(averaging.region(world.specimen()), world);
-  averaging.fill_places(box, values[5]);
+  averaging.fill_places(box, values);
   const AveragingCells slices = averaging.profile(world, box);
   if (slices.cells() == 0) return;
   Transmitted whole;
   const auto each = transmitted(world, slices);
   const double volume = box.volume(), slice_volume = volume / static_cast<double>(each.size());
+  const auto mean = values.list("mean_stress_profile");
+  const auto deviatoric = values.list("deviatoric_stress_profile");
+  const auto angle = values.list("friction_angle_profile");
+  std::array<std::span<double>, 9> stresses, couples;
+  for (std::size_t ij = 0; ij < 9; ++ij) {
+    stresses[ij] = values.list(stress_profile + component_names[ij]);
+    couples[ij] = values.list(couple_stress_profile + component_names[ij]);
+  }
   for (std::size_t s = 0; s < each.size(); ++s) {
     const Mat3 stress = each[s].load / slice_volume;
     const Invariants of = invariants(stress);
-    values[6][s] = of.mean, values[7][s] = of.deviatoric, values[8][s] = of.friction_angle;
+    mean[s] = of.mean, deviatoric[s] = of.deviatoric, angle[s] = of.friction_angle;
     for (std::size_t ij = 0; ij < 9; ++ij) {
       const auto i = static_cast<Eigen::Index>(ij / 3), j = static_cast<Eigen::Index>(ij % 3);
-      values[9 + ij][s] = stress(i, j), values[18 + ij][s] = each[s].couple(i, j) / slice_volume;
+      stresses[ij][s] = stress(i, j), couples[ij][s] = each[s].couple(i, j) / slice_volume;
     }
     whole += each[s];
   }
   const Invariants of = invariants(whole.load / volume);
-  copy(whole.load / volume, values[0].data()), copy(whole.couple / volume, values[1].data());
-  values[2][0] = of.mean, values[3][0] = of.deviatoric, values[4][0] = of.friction_angle;
+  copy(whole.load / volume, values.list("stress").data());
+  copy(whole.couple / volume, values.list("couple_stress").data());
+  values["mean_stress"] = of.mean;
+  values["deviatoric_stress"] = of.deviatoric;
+  values["friction_angle"] = of.friction_angle;
 }
 
 std::vector<Field> Stress::fields(const World& world) {

@@ -1,7 +1,6 @@
 // Stress and couple stress of averaging cells, of slices and of a region. See README.md.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "grit/probe.hpp"
@@ -15,7 +14,7 @@ class Stress final : public Probe {
 
   void declare(Parameters& parameters) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
 };
 

@@ -42,9 +42,9 @@ FakeWorld cubic(int n, const Vec3& forces) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
       for (int k = 0; k < n; ++k) {
-        world.touch(index(i, j, k), index(i + 1, j, k), Vec3::UnitX(), forces.x() * Vec3::UnitX());
-        world.touch(index(i, j, k), index(i, j + 1, k), Vec3::UnitY(), forces.y() * Vec3::UnitY());
-        world.touch(index(i, j, k), index(i, j, k + 1), Vec3::UnitZ(), forces.z() * Vec3::UnitZ());
+        world.add_contact(index(i, j, k), index(i + 1, j, k), Vec3::UnitX(), forces.x() * Vec3::UnitX());
+        world.add_contact(index(i, j, k), index(i, j + 1, k), Vec3::UnitY(), forces.y() * Vec3::UnitY());
+        world.add_contact(index(i, j, k), index(i, j, k + 1), Vec3::UnitZ(), forces.z() * Vec3::UnitZ());
       }
   world.make_periodic(Vec3::Zero(), Vec3::Constant(n));
   return world;
@@ -58,12 +58,12 @@ FakeWorld column(const Vec3& force, const Vec3& at_floor) {
   const auto moment = [&](double z) -> Vec3 { return at_floor - z * Vec3::UnitZ().cross(force); };
   for (int k = 0; k < 5; ++k) world.add({0.7, 1.1, 0.5 + k}, 0.5);
   for (std::uint32_t k = 0; k + 1 < 5; ++k) {
-    world.touch(k, k + 1, Vec3::UnitZ(), force);
+    world.add_contact(k, k + 1, Vec3::UnitZ(), force);
     world.contact.back().moment = moment(k + 1.5);
   }
-  world.touch_wall(4, 1, {0, 0, 0.5}, force);
+  world.add_wall_contact(4, 1, {0, 0, 0.5}, force);
   world.contact.back().moment = moment(5);
-  world.touch_wall(0, 0, {0, 0, -0.5}, -force);
+  world.add_wall_contact(0, 0, {0, 0, -0.5}, -force);
   world.contact.back().moment = -moment(0);
   world.whole = {Vec3::Zero(), {2, 3, 5}};
   return world;
@@ -82,13 +82,13 @@ FakeWorld random_world() {
       Vec3 branch = xyz(world.position[b]) - xyz(world.position[a]);
       branch.y() -= size.y() * std::round(branch.y() / size.y());
       if (branch.norm() >= world.position[a].w + world.position[b].w) continue;
-      world.touch(a, b, branch, 10 * branch + Vec3(sign(random), sign(random), sign(random)));
+      world.add_contact(a, b, branch, 10 * branch + Vec3(sign(random), sign(random), sign(random)));
       world.contact.back().moment = {sign(random), sign(random), sign(random)};
     }
   world.wall.push_back(still_wall("floor"));
   for (std::uint32_t a = 0; a < world.position.size(); ++a)
     if (world.position[a].z < world.position[a].w)
-      world.touch_wall(a, 0, Vec3(0, 0, -world.position[a].z), Vec3(sign(random), 0, -5));
+      world.add_wall_contact(a, 0, Vec3(0, 0, -world.position[a].z), Vec3(sign(random), 0, -5));
   world.whole = {Vec3::Zero(), size};
   world.box = {{-1e300, 0, -1e300}, {1e300, size.y(), 1e300}, {false, true, false}};
   return world;
@@ -119,7 +119,7 @@ TEST(Stress, OfAColumnIsTheWallsForceOverTheArea) {
   EXPECT_NEAR((channel_tensor(probe, world, "stress") - expected).norm(), 0, 1e-14);
   for (std::size_t s = 0; s < 7; ++s)
     EXPECT_NEAR((slice_tensor(probe, world, "stress_profile", s) - expected).norm(), 0, 1e-14) << s;
-  const auto places = channel_values(probe, world, "place");
+  const auto places = channel_values(probe, world, "position");
   for (std::size_t s = 0; s < 7; ++s) EXPECT_NEAR(places[s], (static_cast<double>(s) + 0.5) * 5 / 7, 1e-14);
 }
 
@@ -129,7 +129,7 @@ TEST(Stress, OfAColumnThatIsBentAndTwistedHasTheMomentOfEachSection) {
   Stress probe;
   probe.averaging.slices = 9;
   const auto expect_moments = [&] {
-    const auto places = channel_values(probe, world, "place");
+    const auto places = channel_values(probe, world, "position");
     for (std::size_t s = 0; s < 9; ++s) {
       Mat3 expected = Mat3::Zero();
       expected.col(2) = (at_floor - places[s] * Vec3::UnitZ().cross(force)) / 6;
@@ -213,8 +213,8 @@ TEST(Stress, SaysWhereEachNumberOfAListIs) {
   Stress probe;
   int lists = 0;
   for (const Channel& channel : probe.channels()) {
-    if (channel.shape != std::vector<std::size_t>{20} || channel.name == "place") continue;
-    EXPECT_EQ(channel.coordinate, "place") << channel.name;
+    if (channel.shape != std::vector<std::size_t>{20} || channel.name == "position") continue;
+    EXPECT_EQ(channel.coordinate, "position") << channel.name;
     ++lists;
   }
   EXPECT_EQ(lists, 3 + 9 + 9);

@@ -129,7 +129,7 @@ class Carver {
     if (cut.walls.empty()) {
       for_each(parts, [&](std::size_t part, const Box& own) { free_[part] = own.volume(); });
     } else if (longest < 0) {
-      for_each(parts, [&](std::size_t part, const Box&) { free_[part] = box.volume() * (1 - solid_share(box, cut)); });
+      for_each(parts, [&](std::size_t part, const Box&) { free_[part] = box.volume() * (1 - solid_fraction(box, cut)); });
     } else {
       Parts lower = parts, upper = parts;
       lower.end[index(longest)] = upper.begin[index(longest)] =
@@ -174,7 +174,7 @@ class Carver {
   }
 
   /// The share of a box that lies behind walls.
-  double solid_share(const Box& box, const Cut& cut) const {
+  double solid_fraction(const Box& box, const Cut& cut) const {
     if (cut.solid) return 1;
     if (cut.walls.empty()) return 0;
     if (each_along_an_axis(cut) && all_planes(box, cut)) return by_planes(box, cut);
@@ -193,7 +193,7 @@ class Carver {
                as_flat_walls = differ <= flattest * error_ && all_planes(box, cut);
     if (as_planes || as_flat_walls || side <= finest * error_) return by_halves;
     double sum = 0;
-    for (std::size_t i = 0; i < halves.size(); ++i) sum += solid_share(halves[i], cuts[i]);
+    for (std::size_t i = 0; i < halves.size(); ++i) sum += solid_fraction(halves[i], cuts[i]);
     return sum / count;
   }
 

@@ -311,7 +311,7 @@ TEST(VoidRatio, KnowsTheCubicLattice) {
   const auto cells = field_values(probe, world, "void_ratio");
   EXPECT_EQ(cells.size(), 64u);  // cubes of 5, moved by 1, in 8
   EXPECT_THAT(cells, testing::Each(near));
-  EXPECT_THAT(field_values(probe, world, "free_share"), testing::Each(testing::DoubleNear(1, 1e-12)));
+  EXPECT_THAT(field_values(probe, world, "free_volume_fraction"), testing::Each(testing::DoubleNear(1, 1e-12)));
 }
 
 TEST(VoidRatio, OfCellsAndSlicesAgreesWithThatOfEachBox) {
@@ -339,7 +339,7 @@ TEST(VoidRatio, OfCellsAndSlicesAgreesWithThatOfEachBox) {
   EXPECT_EQ(channel_value(probe, world, "largest"), *std::ranges::max_element(ratios));
   EXPECT_NEAR(channel_value(probe, world, "void_ratio"), void_ratio(world, region), 1e-10);
   const auto profile = channel_values(probe, world, "void_ratio_profile"),
-             places = channel_values(probe, world, "place");
+             places = channel_values(probe, world, "position");
   for (std::size_t s = 0; s < 4; ++s) {
     Region slice = region;
     slice.low.z() = 0.5 + 1.25 * static_cast<double>(s), slice.high.z() = slice.low.z() + 1.25;
@@ -360,7 +360,7 @@ TEST(VoidRatio, CountsGroovesOfWalls) {
   const auto profile = channel_values(probe, world, "void_ratio_profile");
   for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(profile[s], std::numeric_limits<double>::infinity());
   probe.averaging.cell_size = 3, probe.averaging.cell_step = 1;
-  const auto centre = field_values(probe, world, "centre"), share = field_values(probe, world, "free_share"),
+  const auto centre = field_values(probe, world, "centre"), share = field_values(probe, world, "free_volume_fraction"),
              ratio = field_values(probe, world, "void_ratio");
   int grooved = 0;
   for (std::size_t n = 0; n < share.size(); ++n) {
@@ -382,7 +382,7 @@ TEST(VoidRatio, LeavesCellsOutThatAreMostlyBehindWalls) {
     if (row.z < 3.2) row.z += 100;
   VoidRatio probe;
   probe.averaging.cell_size = 1;
-  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_share");
+  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_volume_fraction");
   ASSERT_EQ(ratios.size(), 216u);
   EXPECT_EQ(std::ranges::count_if(shares, [](double share) { return std::abs(share) < 1e-12; }), 3 * 36);
   EXPECT_EQ(std::ranges::count_if(shares, [](double share) { return std::abs(share - 0.8) < 1e-12; }), 36);
@@ -400,7 +400,7 @@ TEST(VoidRatio, IsNoneOfCellsThatAreMostlyBehindWallsOnMapsEither) {
   add_plane(world, {0, 0, 3.7}, {0, 0, 1});
   VoidRatio probe;
   probe.averaging.cell_size = 2 / world.mean_diameter(), probe.averaging.cell_step = 1 / world.mean_diameter();
-  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_share");
+  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_volume_fraction");
   ASSERT_EQ(ratios.size(), 125u);
   int rim = 0;
   for (std::size_t n = 0; n < ratios.size(); ++n) {
@@ -445,13 +445,13 @@ TEST(VoidRatio, IsNoneInsideOfAGrain) {
 TEST(VoidRatio, SaysWhereEachNumberOfItsProfileIs) {
   const auto channels = VoidRatio().channels();
   EXPECT_EQ(channels.back().name, "void_ratio_profile");
-  EXPECT_EQ(channels.back().coordinate, "place");
+  EXPECT_EQ(channels.back().coordinate, "position");
 }
 
 TEST(VoidRatio, CountsTheUnionOfClumpsOnce) {
   FakeWorld world;
   world.add({1, 1, 1}, 0.5), world.add({1, 1, 1}, 0.5);
-  world.share = {0.5, 0.5};
+  world.volume_fraction = {0.5, 0.5};
   world.whole = {Vec3::Zero(), Vec3::Constant(2)};
   VoidRatio probe;
   EXPECT_NEAR(channel_value(probe, world, "void_ratio"), 8 / sixth - 1, 1e-11);

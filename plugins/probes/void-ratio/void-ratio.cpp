@@ -72,7 +72,7 @@ void VoidRatio::declare(Parameters& p) {
 std::vector<Channel> VoidRatio::channels() const {
   const std::string which = "of the cells that have solids and half of their volume before the walls; NaN without any";
   const std::string without = "infinite without solids, NaN behind walls";
-  const Channel place = averaging.place_channel();
+  const Channel place = averaging.position_channel();
   return {{"void_ratio", "1", "of the region, up to the surface of walls; " + without, {}},
           {"smallest", "1", which, {}},
           {"largest", "1", which, {}},
@@ -82,7 +82,7 @@ std::vector<Channel> VoidRatio::channels() const {
           {"void_ratio_profile", "1", "of each slice; " + without, place.shape, place.name}};
 }
 
-void VoidRatio::sample(const World& world, std::span<const std::span<double>> values) {
+void VoidRatio::sample(const World& world, ChannelValues& values) {
   const Region box = closed_box(averaging.region(world.envelope()), world);
   const AveragingCells cells = averaging.cells(world, box);
   std::vector<double> ratios;
@@ -91,17 +91,20 @@ void VoidRatio::sample(const World& world, std::span<const std::span<double>> va
     if (const double ratio = void_ratio_of_cell(of_cells[n], cells.cell(n)); std::isfinite(ratio))
       ratios.push_back(ratio);
   const Spread of = spread(ratios);
-  values[1][0] = of.smallest, values[2][0] = of.largest, values[3][0] = of.mean;
-  values[4][0] = of.standard_deviation;
+  values["smallest"] = of.smallest;
+  values["largest"] = of.largest;
+  values["mean"] = of.mean;
+  values["standard_deviation"] = of.standard_deviation;
 
-  averaging.fill_places(box, values[5]);
-  std::ranges::fill(values[6], std::numeric_limits<double>::infinity());
+  averaging.fill_places(box, values);
+  const auto profile = values.list("void_ratio_profile");
+  std::ranges::fill(profile, std::numeric_limits<double>::infinity());
   Volumes whole;
   const AveragingCells slices = averaging.profile(world, box);
   const auto of_slices = volumes(world, slices);
   for (std::size_t s = 0; s < of_slices.size(); ++s)
-    values[6][s] = void_ratio(of_slices[s], slices.cell(s)), whole += of_slices[s];
-  values[0][0] = of_slices.empty() ? std::numeric_limits<double>::infinity() : void_ratio(whole, box);
+    profile[s] = void_ratio(of_slices[s], slices.cell(s)), whole += of_slices[s];
+  values["void_ratio"] = of_slices.empty() ? std::numeric_limits<double>::infinity() : void_ratio(whole, box);
 }
 
 std::vector<Field> VoidRatio::fields(const World& world) {
@@ -113,7 +116,7 @@ std::vector<Field> VoidRatio::fields(const World& world) {
       "up to the surface of walls; infinite without solids, NaN where less than half of the cell is before them",
       1,
       {}};
-  Field share{"free_share", "1", "of the cell's volume, what lies on the bodies' side of all walls", 1, {}};
+  Field share{"free_volume_fraction", "1", "of the cell's volume, what lies on the bodies' side of all walls", 1, {}};
   const auto each = volumes(world, cells);
   for (std::size_t n = 0; n < each.size(); ++n) {
     ratio.values.push_back(void_ratio_of_cell(each[n], cells.cell(n)));

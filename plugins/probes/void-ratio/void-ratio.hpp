@@ -1,7 +1,6 @@
 // Void ratio of averaging cells and slices, up to the very surface of walls. See README.md.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "grit/probe.hpp"
@@ -15,7 +14,7 @@ class VoidRatio final : public Probe {
 
   void declare(Parameters& parameters) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
   std::vector<Field> fields(const World& world) override;
 };
 

@@ -25,10 +25,10 @@ FakeWorld silo() {
   return world;
 }
 /// A grain at a height touches left (0) or right (1), presses into it and hangs on to it.
-void touch(FakeWorld& world, std::uint32_t side, double z, double presses, double hangs) {
+void contact(FakeWorld& world, std::uint32_t side, double z, double presses, double hangs) {
   const double out = side == 0 ? -1 : 1;
   const auto body = world.add({side == 0 ? 0.1 : 0.9, 0.25, z}, 0.1);
-  world.touch_wall(body, side, {0.1 * out, 0, 0}, {presses * out, 0, -hangs});
+  world.add_wall_contact(body, side, {0.1 * out, 0, 0}, {presses * out, 0, -hangs});
 }
 
 WallProfile made(std::int64_t strips) {
@@ -39,14 +39,14 @@ WallProfile made(std::int64_t strips) {
 
 TEST(WallProfile, IsForceOverAreaStripByStrip) {
   FakeWorld world = silo();
-  touch(world, 0, 0.1, 3, 1), touch(world, 1, 1.9, 7, -1);
+  contact(world, 0, 0.1, 3, 1), contact(world, 1, 1.9, 7, -1);
   // On the flank of a groove, below its centre.
-  world.touch_wall(world.add({0.9, 0.25, 0.55}, 0.1), 1, {0.06, 0, -0.08}, {5, 0, -2});
-  world.touch_wall(world.add({0.5, 0.25, 0.1}, 0.1), 2, {0, 0, -0.1}, {0, 0, -100});
+  world.add_wall_contact(world.add({0.9, 0.25, 0.55}, 0.1), 1, {0.06, 0, -0.08}, {5, 0, -2});
+  world.add_wall_contact(world.add({0.5, 0.25, 0.1}, 0.1), 2, {0, 0, -0.1}, {0, 0, -100});
   WallProfile probe = made(4);
   probe.width = 2;
   probe.prepare(world);
-  EXPECT_THAT(channel_values(probe, world, "place"), ElementsAre(0.25, 0.75, 1.25, 1.75));
+  EXPECT_THAT(channel_values(probe, world, "position"), ElementsAre(0.25, 0.75, 1.25, 1.75));
   EXPECT_THAT(channel_values(probe, world, "normal_stress"), ElementsAre(8, 0, 0, 7));
   EXPECT_THAT(channel_values(probe, world, "shear_stress"), ElementsAre(3, 0, 0, -1));
   EXPECT_THAT(channel_values(probe, world, "normal_force"), ElementsAre(15));
@@ -61,7 +61,7 @@ TEST(WallProfile, OfSandThatPressesWithItsDepthIsALine) {
   const auto stress = [](double z) { return 1e3 * (2 - z); };
   for (int k = 0; k < grains; ++k) {
     const double z = (k + 0.5) * 2 / grains;
-    touch(world, static_cast<std::uint32_t>(k % 2), z, stress(z) * 2 / grains, 0.3 * stress(z) * 2 / grains);
+    contact(world, static_cast<std::uint32_t>(k % 2), z, stress(z) * 2 / grains, 0.3 * stress(z) * 2 / grains);
   }
   WallProfile probe = made(20);
   probe.prepare(world);
@@ -78,7 +78,7 @@ TEST(WallProfile, OfSandThatPressesWithItsDepthIsALine) {
 
 TEST(WallProfile, CountsTouchesBeyondItsEndsInTheResultantsAlone) {
   FakeWorld world = silo();
-  touch(world, 0, 0.3, 3, 1), touch(world, 0, 1.5, 5, 1);
+  contact(world, 0, 0.3, 3, 1), contact(world, 0, 1.5, 5, 1);
   WallProfile probe = made(1);
   probe.low = 1, probe.high = 2;
   probe.prepare(world);
@@ -98,12 +98,12 @@ FakeWorld column(double gravity, double hangs, double presses, double support) {
     on.push_back(support * (on[k] + weight - hangs));
     world.force[body] = {0, 0, hangs + on[k + 1] - on[k] - weight, 0};
   }
-  for (std::uint32_t k = 0; k + 1 < grains; ++k) world.touch(k, k + 1, {0, 0, -0.2}, {0, 0, -on[k + 1]});
+  for (std::uint32_t k = 0; k + 1 < grains; ++k) world.add_contact(k, k + 1, {0, 0, -0.2}, {0, 0, -on[k + 1]});
   for (std::uint32_t k = 0; k < grains; ++k) {
     const double out = k % 2 == 0 ? -1 : 1;
-    world.touch_wall(k, k % 2, {0.1 * out, 0, 0}, {presses * out, 0, -hangs});
+    world.add_wall_contact(k, k % 2, {0.1 * out, 0, 0}, {presses * out, 0, -hangs});
   }
-  world.touch_wall(grains - 1, 2, {0, 0, -0.1}, {0, 0, -on[grains]});
+  world.add_wall_contact(grains - 1, 2, {0, 0, -0.1}, {0, 0, -on[grains]});
   return world;
 }
 
@@ -116,10 +116,10 @@ TEST(WallProfile, TellsWhatWallsAndBottomBearOfTheWeight) {
   const auto value = [&](const char* name) { return channel_value(probe, world, name); };
   EXPECT_DOUBLE_EQ(value("weight"), weight);
   EXPECT_DOUBLE_EQ(value("bottom_force"), weight - 5 * 30);
-  EXPECT_DOUBLE_EQ(value("bottom_share"), 1 - 5 * 30 / weight);
-  EXPECT_DOUBLE_EQ(value("shear_share"), 5 * 30 / weight);
-  EXPECT_DOUBLE_EQ(value("normal_share"), 5 * 40 / weight);
-  EXPECT_DOUBLE_EQ(value("bottom_share") + value("shear_share"), 1);
+  EXPECT_DOUBLE_EQ(value("bottom_fraction"), 1 - 5 * 30 / weight);
+  EXPECT_DOUBLE_EQ(value("shear_fraction"), 5 * 30 / weight);
+  EXPECT_DOUBLE_EQ(value("normal_fraction"), 5 * 40 / weight);
+  EXPECT_DOUBLE_EQ(value("bottom_fraction") + value("shear_fraction"), 1);
 }
 
 TEST(WallProfile, TakesTheWeightOfWhatFallsToo) {
@@ -129,7 +129,7 @@ TEST(WallProfile, TakesTheWeightOfWhatFallsToo) {
   probe.bottom = {"floor"};
   probe.prepare(world);
   EXPECT_DOUBLE_EQ(channel_value(probe, world, "weight"), weight);
-  EXPECT_LT(channel_value(probe, world, "bottom_share") + channel_value(probe, world, "shear_share"), 0.5);
+  EXPECT_LT(channel_value(probe, world, "bottom_fraction") + channel_value(probe, world, "shear_fraction"), 0.5);
 }
 
 // Net forces on bodies of a clump are those of contacts alone; its own has the weight.
@@ -143,7 +143,7 @@ TEST(WallProfile, TakesTheWeightOfClumps) {
   static_cast<FakeWorld&>(world) = silo();
   for (const double z : {0.1, 0.5, 0.6}) world.add({0.5, 0.25, z}, 0.1);
   world.of = {no_clump, 0, 0};
-  world.touch(0, 1, {0, 0, 0.2}, {0, 0, 4}), world.touch_wall(0, 2, {0, 0, -0.1}, {0, 0, -7});
+  world.add_contact(0, 1, {0, 0, 0.2}, {0, 0, 4}), world.add_wall_contact(0, 2, {0, 0, -0.1}, {0, 0, -7});
   world.force[0] = {0, 0, 7 - 4 - 2, 0}, world.force[1] = {0, 0, 4, 0};
   world.clump[0].force = {0, 0, 4 - 5};
   WallProfile probe = made(4);
@@ -158,7 +158,7 @@ TEST(WallProfile, HasNoSharesWithoutWeight) {
   const FakeWorld weightless = column(0, -1.0 / 3, 40, 1), nobody = silo(), upwards = column(-10, -30, 40, 1);
   for (const FakeWorld* world : {&weightless, &nobody, &upwards}) {
     probe.prepare(*world);
-    for (const char* name : {"weight", "bottom_share", "shear_share", "normal_share"})
+    for (const char* name : {"weight", "bottom_fraction", "shear_fraction", "normal_fraction"})
       EXPECT_TRUE(std::isnan(channel_value(probe, *world, name))) << name;
   }
   probe.prepare(weightless);
@@ -183,19 +183,22 @@ std::string refusal(WallProfile probe, const FakeWorld& world) {
 TEST(WallProfile, RefusesWallsThatDoNotStand) {
   WallProfile probe = made(4);
   probe.walls = {"left", "flor"};
-  EXPECT_THAT(refusal(probe, silo()), HasSubstr("probe wall-profile, /walls: there is no wall \"flor\"; the nearest"));
+  EXPECT_THAT(refusal(probe, silo()), HasSubstr("walls: found \"flor\", which is not a wall; the nearest"));
   WallProfile bottomless = made(4);
   bottomless.bottom = {"flor"};
-  EXPECT_THAT(refusal(bottomless, silo()), HasSubstr("wall-profile, /bottom: there is no wall \"flor\"; the nearest"));
+  EXPECT_THAT(refusal(bottomless, silo()), HasSubstr("bottom: found \"flor\", which is not a wall; the nearest"));
   bottomless.bottom = {"floor", "right"};
   EXPECT_EQ(complaints(bottomless),
             "bottom: found \"right\", which is one of walls, allowed: walls that are not among walls\n");
   probe.walls = {"floor"};
-  EXPECT_EQ(refusal(probe, silo()),
-            "probe wall-profile, /walls: wall \"floor\" does not stand along z; name another, or another axis");
+  EXPECT_EQ(
+      refusal(probe, silo()),
+      "walls: found wall \"floor\", which is not parallel to z; allowed is walls parallel to z, or another axis for "
+      "`along`");
   FakeWorld round = silo();
   round.wall[0].normal = Vec3::Zero();
-  EXPECT_THAT(refusal(made(4), round), HasSubstr("wall \"left\" has no normal of its own"));
+  EXPECT_EQ(refusal(made(4), round),
+            "walls: found wall \"left\", which has no normal of its own; allowed is flat or grooved walls");
 }
 
 INSTANTIATE_TEST_SUITE_P(WallProfile, ProbeContract,
@@ -208,7 +211,7 @@ INSTANTIATE_TEST_SUITE_P(WallProfile, ProbeContract,
                                                    [] {
                                                      FakeWorld world = silo();
                                                      for (int k = 0; k < 30; ++k)
-                                                       touch(world, static_cast<std::uint32_t>(k % 2), 0.06 * k + 0.1,
+                                                       contact(world, static_cast<std::uint32_t>(k % 2), 0.06 * k + 0.1,
                                                              1 + 0.1 * k, 0.5);
                                                      return world;
                                                    }}),

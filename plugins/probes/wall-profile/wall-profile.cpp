@@ -41,37 +41,38 @@ void WallProfile::declare(Parameters& p) {
 }
 
 void WallProfile::prepare(const World& world) {
-  const std::string who = "probe wall-profile, /walls";
   chosen_.assign(world.walls().size(), false), below_ = chosen_;
   for (const auto& name : walls) {
-    const std::size_t index = wall_index(world, name, who);
+    const std::size_t index = wall_index(world, name, "walls");
     const Vec3& normal = world.walls()[index].normal;
     if (!(normal.norm() > 0.5))
-      throw Error(who + ": wall \"" + name + "\" has no normal of its own; name flat or grooved walls");
+      throw ParameterError(
+          {{"walls", "wall \"" + name + "\", which has no normal of its own", "flat or grooved walls"}});
     if (!(std::abs(normal[axis()]) < 1e-6))
-      throw Error(who + ": wall \"" + name + "\" does not stand along " + along + "; name another, or another axis");
+      throw ParameterError({{"walls", "wall \"" + name + "\", which is not parallel to " + along,
+                             "walls parallel to " + along + ", or another axis for `along`"}});
     chosen_[index] = true;
   }
-  for (const auto& name : bottom) below_[wall_index(world, name, "probe wall-profile, /bottom")] = true;
+  for (const auto& name : bottom) below_[wall_index(world, name, "bottom")] = true;
 }
 
 std::vector<Channel> WallProfile::channels() const {
   const std::vector<std::size_t> each{static_cast<std::size_t>(strips)};
   const std::string share = " over weight, of all walls together; NaN without weight";
   std::vector<Channel> all{
-      {"place", "m", "middle of each strip, along " + along, each},
-      {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each, "place"},
+      {"position", "m", "middle of each strip, along " + along, each},
+      {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each, "position"},
       {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on", each,
-       "place"},
+       "position"},
       {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
       {"shear_force", "N", "against " + along + ", of all touches", {}},
       {"friction_angle", "degree", "mobilised: atan of shear_force over normal_force; 0 without touches", {}},
       {"weight", "N", "G of all bodies that are there, against " + along + "; NaN without any", {}},
-      {"shear_share", "1", "T/G: shear_force" + share, {}},
-      {"normal_share", "1", "N/G: normal_force" + share, {}}};
+      {"shear_fraction", "1", "T/G: shear_force" + share, {}},
+      {"normal_fraction", "1", "N/G: normal_force" + share, {}}};
   if (bottom.empty()) return all;
   all.push_back({"bottom_force", "N", "P on the bottom, positive against " + along, {}});
-  all.push_back({"bottom_share", "1", "P/G: bottom_force over weight; NaN without weight", {}});
+  all.push_back({"bottom_fraction", "1", "P/G: bottom_force over weight; NaN without weight", {}});
   return all;
 }
 
@@ -94,11 +95,14 @@ double WallProfile::weight(const World& world) const {
   return down > rounding ? down : std::numeric_limits<double>::quiet_NaN();
 }
 
-void WallProfile::sample(const World& world, std::span<const std::span<double>> values) {
+void WallProfile::sample(const World& world, ChannelValues& values) {
   const Ends end = ends(world);
   const double height = (end.high - end.low) / static_cast<double>(strips);
+  const auto places = values.list("position");
+  const auto normal_stress = values.list("normal_stress");
+  const auto shear_stress = values.list("shear_stress");
   for (std::size_t s = 0; s < static_cast<std::size_t>(strips); ++s)
-    values[0][s] = end.low + (static_cast<double>(s) + 0.5) * height, values[1][s] = values[2][s] = 0;
+    places[s] = end.low + (static_cast<double>(s) + 0.5) * height, normal_stress[s] = shear_stress[s] = 0;
   double normal = 0, shear = 0, borne = 0;
   for (const Contact& contact : world.contacts_with_walls()) {
     const double hanging = -contact.force[axis()];
@@ -110,13 +114,18 @@ void WallProfile::sample(const World& world, std::span<const std::span<double>> 
     if (!(place >= end.low && place < end.high)) continue;
     const auto strip =
         static_cast<std::size_t>(std::min(std::floor((place - end.low) / height), static_cast<double>(strips - 1)));
-    values[1][strip] += pressing / (width * height), values[2][strip] += hanging / (width * height);
+    normal_stress[strip] += pressing / (width * height), shear_stress[strip] += hanging / (width * height);
   }
-  values[3][0] = normal, values[4][0] = shear;
-  values[5][0] = normal == 0 && shear == 0 ? 0 : std::atan2(shear, normal) * 180 / std::numbers::pi;
+  values["normal_force"] = normal;
+  values["shear_force"] = shear;
+  values["friction_angle"] = normal == 0 && shear == 0 ? 0 : std::atan2(shear, normal) * 180 / std::numbers::pi;
   const double whole = weight(world);
-  values[6][0] = whole, values[7][0] = shear / whole, values[8][0] = normal / whole;
-  if (!bottom.empty()) values[9][0] = borne, values[10][0] = borne / whole;
+  values["weight"] = whole;
+  values["shear_fraction"] = shear / whole;
+  values["normal_fraction"] = normal / whole;
+  if (bottom.empty()) return;
+  values["bottom_force"] = borne;
+  values["bottom_fraction"] = borne / whole;
 }
 
 }  // namespace grit

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -19,11 +18,11 @@ class WallProfile final : public Probe {
   std::int64_t strips = 20;
 
   void declare(Parameters& parameters) override;
-  /// Throws Error for a wall that does not exist, or one of `walls` that has no normal of its own or one with a part
-  /// along the height.
+  /// Throws ParameterError for a wall that does not exist, or one of `walls` that has no normal of its own or one with
+  /// a part along the height.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 
  private:
   struct Ends {

@@ -14,7 +14,7 @@ WallView wall_named(const std::string& name) {
   WallView wall = still_wall(name);
   wall.position = {1, 2, 3}, wall.stage_position = {-1, -2, -3}, wall.velocity = {4, 5, 6};
   wall.force = {7, 8, 9}, wall.moment = {10, 11, 12};
-  wall.area = 0.5, wall.pressure = 18, wall.touches = 42;
+  wall.area = 0.5, wall.pressure = 18, wall.contacts = 42;
   return wall;
 }
 
@@ -44,13 +44,13 @@ TEST(WallsProbe, ReportsWhatTheWallSays) {
   WallsProbe probe;
   probe.prepare(world);
   EXPECT_THAT(names_of(probe),
-              ElementsAre("top_position", "top_velocity", "top_force", "top_moment", "top_pressure", "top_touches"));
+              ElementsAre("top_position", "top_velocity", "top_force", "top_moment", "top_pressure", "top_contacts"));
   EXPECT_THAT(channel_values(probe, world, "top_position"), ElementsAre(1, 2, 3));
   EXPECT_THAT(channel_values(probe, world, "top_velocity"), ElementsAre(4, 5, 6));
   EXPECT_THAT(channel_values(probe, world, "top_force"), ElementsAre(7, 8, 9));
   EXPECT_THAT(channel_values(probe, world, "top_moment"), ElementsAre(10, 11, 12));
   EXPECT_THAT(channel_values(probe, world, "top_pressure"), ElementsAre(18));
-  EXPECT_THAT(channel_values(probe, world, "top_touches"), ElementsAre(42));
+  EXPECT_THAT(channel_values(probe, world, "top_contacts"), ElementsAre(42));
 }
 
 TEST(WallsProbe, ReportsAllWallsOrTheNamedOnesInTheirOrder) {
@@ -75,15 +75,20 @@ TEST(WallsProbe, ReportsAllWallsOrTheNamedOnesInTheirOrder) {
 TEST(WallsProbe, RefusesAWallThatIsNotThere) {
   WallsProbe probe;
   probe.walls = {"botom"};
-  EXPECT_EQ(error_of(probe, world_with({"top", "bottom"})),
-            "probe walls, /walls: there is no wall \"botom\"; the nearest name is \"bottom\"; walls are: top, bottom");
-  EXPECT_THAT(error_of(probe, world_with({})), HasSubstr("the scene has no walls"));
+  EXPECT_EQ(
+      error_of(probe, world_with({"top", "bottom"})),
+      "walls: found \"botom\", which is not a wall; the nearest name is \"bottom\"; allowed is one of the walls top, "
+      "bottom");
+  EXPECT_EQ(error_of(probe, world_with({})),
+            "walls: found \"botom\", which is not a wall; allowed is none, as the description has no walls");
 }
 
 TEST(WallsProbe, RefusesWallsWithTheSameChannels) {
   WallsProbe probe;
-  EXPECT_THAT(error_of(probe, world_with({"a-b", "a_b"})),
-              HasSubstr("walls \"a-b\" and \"a_b\" would both be reported as \"a_b_"));
+  EXPECT_EQ(
+      error_of(probe, world_with({"a-b", "a_b"})),
+      "walls: found walls \"a-b\" and \"a_b\", whose channels would both be \"a_b_…\"; allowed is one of the two; "
+      "leave one out, or rename it");
   probe.walls = {"a-b"};
   EXPECT_EQ(error_of(probe, world_with({"a-b", "a_b"})), "no error");
 }

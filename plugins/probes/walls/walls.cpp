@@ -1,6 +1,10 @@
 // Six channels a wall. See README.md.
 #include "walls.hpp"
 
+#include <algorithm>
+#include <span>
+#include <utility>
+
 #include "grit/plugin.hpp"
 #include "grit/toolkit/wall_names.hpp"
 
@@ -12,12 +16,12 @@ namespace {
 struct Quantity {
   const char *suffix, *unit, *doc;
   std::size_t size;  ///< 1: a number, 3: a vector
-  void (*fill)(const WallView&, double*);
+  void (*fill)(const WallView&, std::span<double>);
 };
 
 template <Vec3 WallView::*member>
-void fill_vector(const WallView& wall, double* value) {
-  for (int k = 0; k < 3; ++k) value[k] = (wall.*member)[k];
+void fill_vector(const WallView& wall, std::span<double> value) {
+  std::ranges::copy(wall.*member, value.begin());
 }
 
 constexpr Quantity quantities[] = {
@@ -27,9 +31,9 @@ constexpr Quantity quantities[] = {
     {"_moment", "N m", "moment of that force about the wall's reference point, right-handed about x, y, z", 3,
      fill_vector<&WallView::moment>},
     {"_pressure", "Pa", "normal force over area, positive in compression; 0 where the geometry has no area", 1,
-     [](const WallView& wall, double* value) { *value = wall.pressure; }},
-    {"_touches", "1", "number of touching points between bodies and the wall", 1,
-     [](const WallView& wall, double* value) { *value = wall.touches; }},
+     [](const WallView& wall, std::span<double> value) { value.front() = wall.pressure; }},
+    {"_contacts", "1", "number of touching points between bodies and the wall", 1,
+     [](const WallView& wall, std::span<double> value) { value.front() = wall.contacts; }},
 };
 
 }  // namespace
@@ -41,28 +45,31 @@ void WallsProbe::declare(Parameters& parameters) {
 void WallsProbe::prepare(const World& world) {
   reported_.clear();
   for (const auto& name : walls.empty() ? wall_names(world) : walls) {
-    const Reported wall{wall_stem(name), wall_index(world, name, "probe walls, /walls")};
+    Reported wall{wall_stem(name), wall_index(world, name, "walls"), {}};
     for (const auto& other : reported_)
       if (other.stem == wall.stem)
-        throw Error("probe walls, /walls: walls \"" + world.walls()[other.index].name + "\" and \"" + name +
-                    "\" would both be reported as \"" + wall.stem + "_…\"; report one of them, or rename it");
-    reported_.push_back(wall);
+        throw ParameterError({{"walls",
+                               "walls \"" + world.walls()[other.index].name + "\" and \"" + name +
+                                   "\", whose channels would both be \"" + wall.stem + "_…\"",
+                               "one of the two; leave one out, or rename it"}});
+    for (const auto& quantity : quantities) wall.channels.push_back(wall.stem + quantity.suffix);
+    reported_.push_back(std::move(wall));
   }
 }
 
 std::vector<Channel> WallsProbe::channels() const {
   std::vector<Channel> channels;
   for (const auto& wall : reported_)
-    for (const auto& quantity : quantities)
-      channels.push_back({wall.stem + quantity.suffix, quantity.unit, quantity.doc,
+    for (std::size_t i = 0; const auto& quantity : quantities)
+      channels.push_back({wall.channels[i++], quantity.unit, quantity.doc,
                           quantity.size == 1 ? std::vector<std::size_t>{} : std::vector{quantity.size}});
   return channels;
 }
 
-void WallsProbe::sample(const World& world, std::span<const std::span<double>> values) {
-  auto value = values.begin();
+void WallsProbe::sample(const World& world, ChannelValues& values) {
   for (const auto& wall : reported_)
-    for (const auto& quantity : quantities) quantity.fill(world.walls()[wall.index], (value++)->data());
+    for (std::size_t i = 0; const auto& quantity : quantities)
+      quantity.fill(world.walls()[wall.index], values.list(wall.channels[i++]));
 }
 
 }  // namespace grit
@@ -71,7 +78,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "probe",
                                      .name = "walls",
                                      .version = "1.0.0",
-                                     .doc = "displacement, velocity, force, moment, pressure and touches of walls",
+                                     .doc = "displacement, velocity, force, moment, pressure and wall contacts",
                                      .make_probe = []() -> grit::Probe* { return new grit::WallsProbe; }};
   return &info;
 }

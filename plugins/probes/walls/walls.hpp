@@ -1,7 +1,6 @@
 // What walls do and bear: displacement, velocity, force, moment, pressure, touches.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,15 +14,16 @@ class WallsProbe : public Probe {
   std::vector<std::string> walls;
 
   void declare(Parameters& parameters) override;
-  /// Throws Error for a wall that does not exist, or for two that would get the same channels.
+  /// Throws ParameterError for a wall that does not exist, or for two that would get the same channels.
   void prepare(const World& world) override;
   std::vector<Channel> channels() const override;
-  void sample(const World& world, std::span<const std::span<double>> values) override;
+  void sample(const World& world, ChannelValues& values) override;
 
  private:
   struct Reported {
     std::string stem;
-    std::size_t index;  ///< in World::walls()
+    std::size_t index;                  ///< in World::walls()
+    std::vector<std::string> channels;  ///< names, one a quantity
   };
   std::vector<Reported> reported_;
 };

@@ -8,16 +8,16 @@
 namespace grit {
 namespace {
 
-// Shear starts from rest over this share of its duration.
-constexpr double start_share = 0.02;
+// Fraction of the duration of shear in which it accelerates from rest.
+constexpr double start_fraction = 0.02;
 constexpr int curve_samples = 400, frames_in_shear = 10;
 
 }  // namespace
 
 void DirectShear::declare(Parameters& p) {
-  p.add("width", width_).unit("m").above(0).doc("inner length of the box, along the shear");
-  p.add("height", height_).unit("m").above(0).doc("height of the specimen at the wanted void ratio");
-  p.add("depth", depth_).unit("m").above(0).doc("inner depth of the box, across the shear");
+  p.add("width", width_).unit("m").above(0).doc("inner length of the box, in the direction of shear");
+  p.add("height", height_).unit("m").above(0).doc("height of the specimen at the target void ratio");
+  p.add("depth", depth_).unit("m").above(0).doc("inner depth of the box, across the direction of shear");
   p.add("depth_boundary", depth_boundary_)
       .one_of({"walls", "periodic"})
       .doc("front and back of the box: smooth walls, or a periodic boundary");
@@ -26,17 +26,25 @@ void DirectShear::declare(Parameters& p) {
       .unit("rad")
       .at_least(0)
       .below(std::numbers::pi / 2)
-      .doc("between grains and frames, bottom and platen; front and back are smooth");
-  p.add("local_damping", local_damping_).symbol("lambda").at_least(0).below(1).doc("during shear");
-  p.add("normal_stress", normal_stress_).unit("Pa").symbol("sigma_n").above(0).doc("on the platen, kept by a servo");
+      .doc("friction angle between grains and frames, bottom and platen; front and back are smooth");
+  p.add("local_damping", local_damping_).symbol("lambda").at_least(0).below(1).doc("local damping during shear");
+  p.add("normal_stress", normal_stress_)
+      .unit("Pa")
+      .symbol("sigma_n")
+      .above(0)
+      .doc("normal stress on the platen, kept by a servo");
   preparation_.declare_void_ratio(p);
-  p.add("shear_displacement", shear_displacement_).unit("m").symbol("u").above(0).doc("of the upper frame");
+  p.add("shear_displacement", shear_displacement_)
+      .unit("m")
+      .symbol("u")
+      .above(0)
+      .doc("displacement of the upper frame during shear");
   p.add("inertial_number", inertial_number_)
       .symbol("I")
       .above(0)
       .at_most(0.1)
-      .doc("during shear, with the rate velocity over height; sets the velocity");
-  p.add("velocity", velocity_).unit("m/s").at_least(0).doc("of the upper frame; 0: as the inertial number says");
+      .doc("inertial number during shear, for the rate velocity over height; sets the velocity");
+  p.add("velocity", velocity_).unit("m/s").at_least(0).doc("velocity of the upper frame; 0: from the inertial number");
   preparation_.declare_course(p);
   preparation_.check_box(p, {{"width", &width_}, {"height", &height_}, {"depth", &depth_}});
 }
@@ -51,23 +59,23 @@ double DirectShear::shear_velocity() const {
 }
 
 Description DirectShear::expand() const {
-  preparation_.refuse_out_of(reachable(), normal_stress_);
+  preparation_.require_reachable(reachable(), normal_stress_);
 
   const double grain = preparation_.largest_diameter, gap = grain, middle = 0.5 * height_;
   const double cloud_height = preparation_.in_cloud(height_);
   const double top = cloud_height + 2 * grain;
   const double thickness = shear_displacement_ + 2 * grain;
-  const double velocity = shear_velocity(), duration = shear_displacement_ / velocity / (1 - 0.5 * start_share);
+  const double velocity = shear_velocity(), duration = shear_displacement_ / velocity / (1 - 0.5 * start_fraction);
   const double area = width_ * depth_;
   const double preparation_speed = preparation_.closing_speed(height_, normal_stress_);
   const double closing = (cloud_height - height_) / preparation_speed;
   const double over = std::max(0.2 * height_, 4 * grain);
-  // The aprons stand so far behind the faces of the frames that a grain pressed against a face does not feel them.
+  // Aprons are far enough behind the faces of the frames not to touch grains pressed against a face.
   const double behind = 0.1 * preparation_.smallest_diameter;
   const bool periodic = depth_boundary_ == "periodic";
 
   Description d;
-  d["title"] = "direct shear, " + preparation_.words(normal_stress_);
+  d["title"] = "direct shear, " + preparation_.conditions(normal_stress_);
   d["seed"] = preparation_.seed;
   d["contacts"] = {{"type", "linear-rolling"}};
   d["materials"]["sand"] = preparation_.sand();
@@ -108,18 +116,18 @@ Description DirectShear::expand() const {
                    {"high", {"lower-right", periodic ? "" : "back", "platen"}}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
-  // Aprons keep the gap between the frames closed, so that no sand is lost.
+  // Aprons close the gap between the frames, so that no sand is lost.
   auto stages = preparation_.stages(d["walls"], {"platen"}, normal_stress_, closing, compacted_in_a_box);
   Description shear;
   shear["name"] = "shear";
   shear["change"]["engines"]["damping"]["coefficient"] = local_damping_;
-  const Description drive = {{"velocity", vector(velocity, 0, 0)}, {"ramp_time", start_share * duration}};
+  const Description drive = {{"velocity", vector(velocity, 0, 0)}, {"ramp_time", start_fraction * duration}};
   for (const char* wall : {"upper-left", "upper-right", "upper-apron", "platen"}) {
     auto& motion = shear["change"]["walls"][wall]["motion"];
     motion = drive;
     if (std::string(wall) != "platen") motion["follow"] = {{"wall", "platen"}, {"axes", "z"}};
   }
-  Preparation::let_keep_up(shear, "platen", preparation_speed, velocity);
+  Preparation::raise_servo_limit(shear, "platen", preparation_speed, velocity);
   shear["until"] = {{"type", "displacement"}, {"wall", "platen"}, {"axis", "x"}, {"value", shear_displacement_}};
   shear["limit"] = 1.1 * duration;
   stages.push_back(shear);
@@ -129,20 +137,22 @@ Description DirectShear::expand() const {
   auto& test = d["probes"]["test"];
   test = {{"type", "formula"}, {"stages", {"shear"}}, {"every_time", duration / curve_samples}};
   test["constants"] = {
-      {"area", {{"value", area}, {"doc", "of the box, seen from above [m2]"}}},
-      {"start_height", {{"value", cloud_height}, {"doc", "of the platen at the start of the run [m]"}}}};
+      {"area", {{"value", area}, {"doc", "area of the box in plan [m2]"}}},
+      {"start_height", {{"value", cloud_height}, {"doc", "height of the platen at the start of the run [m]"}}}};
   test["curves"]["shear_displacement"] = {
       {"formula", "platen_stage_travel_x"}, {"unit", "m"}, {"doc", "displacement of the upper frame"}};
   test["curves"]["shear_stress"] = {
-      {"formula", tau}, {"unit", "Pa"}, {"doc", "horizontal force of the upper frame and platen over the box's area"}};
+      {"formula", tau},
+      {"unit", "Pa"},
+      {"doc", "horizontal force on upper frame, apron and platen over the area of the box"}};
   test["curves"]["normal_stress"] = {
-      {"formula", "platen_pressure"}, {"unit", "Pa"}, {"doc", "on the platen, compression positive"}};
+      {"formula", "platen_pressure"}, {"unit", "Pa"}, {"doc", "pressure on the platen, compression positive"}};
   test["curves"]["stress_ratio"] = {
       {"formula", tau + " / platen_pressure"}, {"unit", "1"}, {"doc", "shear stress over normal stress"}};
   test["curves"]["volumetric_strain"] = {
       {"formula", "platen_stage_travel_z / (start_height + platen_travel_z - platen_stage_travel_z)"},
       {"unit", "1"},
-      {"doc", "rise of the platen over the specimen's height, dilation positive"}};
+      {"doc", "rise of the platen over the height of the specimen, dilation positive"}};
   d["probes"]["walls"] = {{"type", "walls"}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {
       {"type", "packing"}, {"driven_by", "platen"}, {"driven_axis", "x"}, {"every_time", duration / 100}};
@@ -155,7 +165,7 @@ Description DirectShear::expand() const {
                    {"y", {"test/stress_ratio", "test/volumetric_strain"}},
                    {"color", "rotation"}}},
                  {"summary", {"test/stress_ratio", "test/volumetric_strain"}}};
-  look_how_even_it_is(d, "y");
+  add_homogeneity_probes(d, "y");
   return d;
 }
 

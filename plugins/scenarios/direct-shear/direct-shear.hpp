@@ -1,4 +1,4 @@
-// Direct shear test: sand between two frames, the upper one driven sideways under a constant normal stress.
+// Direct shear test: sand between two frames; the upper one moves horizontally under a constant normal stress.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ class DirectShear final : public Scenario {
   void declare(Parameters& parameters) override;
   Description expand() const override;
 
-  /// What preparation can reach; the figures were measured, see README.md.
+  /// Void ratios that can be prepared; measured, see plugins/scenarios/README.md.
   VoidRatioRange reachable() const;
-  /// Of the upper frame while it shears [m/s].
+  /// Velocity of the upper frame during shear [m/s].
   double shear_velocity() const;
 
  private:

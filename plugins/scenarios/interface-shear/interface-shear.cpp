@@ -3,80 +3,89 @@
 #include <algorithm>
 
 #include "grit/plugin.hpp"
-#include "grit/toolkit/closed_forms.hpp"
+#include "grit/toolkit/analytical_solutions.hpp"
 #include "grit/toolkit/homogeneity.hpp"
 #include "grit/toolkit/lengths.hpp"
 
 namespace grit {
 namespace {
 
-// Shear starts from rest over this share of its duration.
-constexpr double start_share = 0.02;
+// Fraction of the duration of shear in which it accelerates from rest.
+constexpr double start_fraction = 0.02;
 constexpr int curve_samples = 400, frames_in_shear = 10;
-// For the wall contact factor, where the description does not say.
+// Default for the wall contact factor.
 constexpr double usual_internal_friction = 44 * degree;
 
 }  // namespace
 
 void InterfaceShear::declare(Parameters& p) {
-  p.add("width", width_).unit("m").above(0).doc("inner length of the box, along the shear");
-  p.add("height", height_).unit("m").above(0).doc("of the specimen above the surface's tips, at the wanted void ratio");
-  p.add("depth", depth_).unit("m").above(0).doc("inner depth of the box, across the shear");
+  p.add("width", width_).unit("m").above(0).doc("inner length of the box, in the direction of shear");
+  p.add("height", height_)
+      .unit("m")
+      .above(0)
+      .doc("height of the specimen above the tips of the surface, at the target void ratio");
+  p.add("depth", depth_).unit("m").above(0).doc("inner depth of the box, across the direction of shear");
   p.add("depth_boundary", depth_boundary_)
       .one_of({"walls", "periodic"})
       .doc("front and back of the box: smooth walls, or a periodic boundary");
-  p.add("surface", surface_).one_of({"flat", "saw-tooth", "sinusoidal"}).doc("what the sand is sheared on");
+  p.add("surface", surface_).one_of({"flat", "saw-tooth", "sinusoidal"}).doc("shape of the surface");
   p.add("roughness", roughness_)
       .symbol("R_n")
       .above(0)
-      .doc("of a saw-tooth surface: depth of the grooves over the mean diameter");
+      .doc("of a saw-tooth surface: groove depth over the mean diameter");
   p.add("groove_inclination", groove_inclination_)
       .unit("rad")
       .above(0)
       .below(std::numbers::pi / 2)
       .doc(
-          "of the flanks of a saw-tooth surface: left out, 45 deg, or what puts the grooves side by side where "
-          "groove_spacing is given");
+          "angle of the flanks of a saw-tooth surface; default: 45 deg, or with groove_spacing the angle for grooves "
+          "side by side");
   p.add("groove_spacing", groove_spacing_)
       .unit("m")
       .above(0)
       .doc(
-          "from groove to groove of a saw-tooth surface: left out, side by side; with flats between the grooves where "
-          "they are narrower by groove_inclination");
+          "period of the grooves of a saw-tooth surface; default: grooves side by side; flats remain where grooves are "
+          "narrower by groove_inclination");
   p.add("depth_over_wavelength", depth_over_wavelength_)
       .symbol("d/l")
       .at_least(0)
-      .doc("of a sinusoidal surface: from crests to troughs over the wavelength");
-  p.add("wavelength", wavelength_).unit("m").symbol("l").above(0).doc("of a sinusoidal surface");
+      .doc("of a sinusoidal surface: depth from crest to trough over the wavelength");
+  p.add("wavelength", wavelength_).unit("m").symbol("l").above(0).doc("wavelength of a sinusoidal surface");
   p.add("surface_friction_angle", surface_friction_angle_)
       .unit("rad")
       .at_least(0)
       .below(std::numbers::pi / 2)
-      .doc("between grains and surface; box and lid are smooth");
+      .doc("friction angle between grains and surface; box and lid are smooth");
   p.add("gap", gap_)
       .unit("m")
       .at_least(0)
-      .doc(
-          "between the box and the surface's tips during shear; 0: the largest "
-          "diameter");
+      .doc("distance of the box from the tips of the surface during shear; 0: the largest diameter");
   preparation_.declare_sand(p);
-  p.add("local_damping", local_damping_).symbol("lambda").at_least(0).below(1).doc("during shear");
-  p.add("normal_stress", normal_stress_).unit("Pa").symbol("sigma_n").above(0).doc("on the lid, kept by a servo");
+  p.add("local_damping", local_damping_).symbol("lambda").at_least(0).below(1).doc("local damping during shear");
+  p.add("normal_stress", normal_stress_)
+      .unit("Pa")
+      .symbol("sigma_n")
+      .above(0)
+      .doc("normal stress on the lid, kept by a servo");
   preparation_.declare_void_ratio(p);
-  p.add("shear_displacement", shear_displacement_).unit("m").symbol("u").above(0).doc("of the box");
+  p.add("shear_displacement", shear_displacement_)
+      .unit("m")
+      .symbol("u")
+      .above(0)
+      .doc("displacement of the box during shear");
   p.add("inertial_number", inertial_number_)
       .symbol("I")
       .above(0)
       .at_most(0.1)
-      .doc("during shear, with the rate velocity over height; sets the velocity");
+      .doc("inertial number during shear, for the rate velocity over height; sets the velocity");
   p.add("internal_friction_angle", internal_friction_angle_)
       .unit("rad")
       .symbol("phi_i")
       .above(0)
       .below(std::numbers::pi / 2)
       .doc(
-          "of the sand as it shears in itself, for the wall contact factor alone: left out, 44 deg; given, EN 1991-4's "
-          "friction of the surface is drawn beside the curves");
+          "internal friction angle of the sand, for the wall contact factor only; default: 44 deg; "
+          "if given, wall friction by EN 1991-4 is drawn as a reference");
   preparation_.declare_course(p);
   preparation_.check_box(p, {{"width", &width_}, {"height", &height_}, {"depth", &depth_}});
   p.check(
@@ -92,7 +101,7 @@ void InterfaceShear::declare(Parameters& p) {
         if (surface_friction_angle_ > of_the_sand)
           complain("surface_friction_angle", quantity(surface_friction_angle_ / degree, "deg"),
                    "at most friction_angle, " + quantity(of_the_sand / degree, "deg") +
-                       ": a contact has the smaller of both, unless /interfaces/sand+surface says otherwise");
+                       ": contacts have the smaller of both; or set /interfaces/sand+surface");
       },
       {"surface_friction_angle", "friction_angle"});
   p.check(
@@ -131,7 +140,7 @@ double InterfaceShear::groove_volume() const {
 }
 
 Description InterfaceShear::surface(double reach) const {
-  // Whole grooves before the box, so that it starts at a tip.
+  // Whole grooves before the box: it starts at a tip.
   const double before = surface_ == "flat" ? reach : std::ceil(reach / groove_spacing()) * groove_spacing();
   Description d =
       rectangle(vector(-before, -depth_, 0), vector(2 * before + width_, 0, 0), vector(0, 3 * depth_, 0), "surface");
@@ -149,20 +158,20 @@ Description InterfaceShear::surface(double reach) const {
 }
 
 Description InterfaceShear::expand() const {
-  preparation_.refuse_out_of(reachable(), normal_stress_);
+  preparation_.require_reachable(reachable(), normal_stress_);
 
   const double grain = preparation_.largest_diameter, gap = gap_ > 0 ? gap_ : grain;
   const double area = width_ * depth_;
-  const double filled = height_ + groove_volume();  // the grooves are filled with sand as well
+  const double filled = height_ + groove_volume();  // with the sand in the grooves
   const double cloud_height = preparation_.in_cloud(filled);
   const double top = cloud_height + 2 * grain + gap, thickness = shear_displacement_ + 2 * grain;
-  const double velocity = shear_velocity(), duration = shear_displacement_ / velocity / (1 - 0.5 * start_share);
+  const double velocity = shear_velocity(), duration = shear_displacement_ / velocity / (1 - 0.5 * start_fraction);
   const double preparation_speed = preparation_.closing_speed(height_, normal_stress_);
   const double closing = (cloud_height - height_) / preparation_speed;
   const bool periodic = depth_boundary_ == "periodic";
 
   Description d;
-  d["title"] = "interface shear on a " + surface_ + " surface, " + preparation_.words(normal_stress_);
+  d["title"] = "interface shear on a " + surface_ + " surface, " + preparation_.conditions(normal_stress_);
   d["seed"] = preparation_.seed;
   d["contacts"] = {{"type", "linear-rolling"}};
   d["materials"]["sand"] = preparation_.sand();
@@ -190,7 +199,7 @@ Description InterfaceShear::expand() const {
                    {"high", {"right", periodic ? "" : "back", "lid"}}};
   d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", Preparation::local_damping}};
 
-  // The box stands on the tips while the sand is prepared, so that none is lost, and is lifted before shear.
+  // During preparation the box stands on the tips, so that no sand is lost. It is lifted before shear.
   auto stages = preparation_.stages(d["walls"], {"lid"}, normal_stress_, closing, compacted_in_a_box);
   Description lift, shear;
   lift["name"] = "lift";
@@ -202,8 +211,8 @@ Description InterfaceShear::expand() const {
   shear["change"]["engines"]["damping"]["coefficient"] = local_damping_;
   for (const char* wall : {"left", "right", "lid"})
     shear["change"]["walls"][wall]["motion"] = {{"velocity", vector(velocity, 0, 0)},
-                                                {"ramp_time", start_share * duration}};
-  Preparation::let_keep_up(shear, "lid", preparation_speed, velocity);
+                                                {"ramp_time", start_fraction * duration}};
+  Preparation::raise_servo_limit(shear, "lid", preparation_speed, velocity);
   shear["until"] = {{"type", "displacement"}, {"wall", "lid"}, {"axis", "x"}, {"value", shear_displacement_}};
   shear["limit"] = 1.1 * duration;
   stages.push_back(lift), stages.push_back(shear);
@@ -218,20 +227,20 @@ Description InterfaceShear::expand() const {
   const auto curve = [&](const char* name, const std::string& formula, const char* unit, const char* doc) {
     test["curves"][name] = {{"formula", formula}, {"unit", unit}, {"doc", doc}};
   };
-  constant("area", area, "of the box, seen from above [m2]");
-  constant("start_height", cloud_height, "of the lid over the tips at the start of the run [m]");
+  constant("area", area, "area of the box in plan [m2]");
+  constant("start_height", cloud_height, "height of the lid above the tips at the start of the run [m]");
   constant("tan_phi_i", std::tan(internal_friction_angle_.value_or(usual_internal_friction)),
-           "internal friction of the sand");
-  constant("mu_w", std::tan(surface_friction_angle_), "friction of the surface where it is flat");
-  curve("shear_displacement", "lid_stage_travel_x", "m", "of the box");
+           "internal friction coefficient of the sand");
+  constant("mu_w", std::tan(surface_friction_angle_), "friction coefficient of a flat surface");
+  curve("shear_displacement", "lid_stage_travel_x", "m", "displacement of the box");
   curve("shear_stress", "surface_force_x / area", "Pa", "horizontal force on the surface over the area of the box");
-  curve("normal_stress", "lid_pressure", "Pa", "on the lid, compression positive");
+  curve("normal_stress", "lid_pressure", "Pa", "pressure on the lid, compression positive");
   curve("stress_ratio", mu, "1", "mu_eff: horizontal force on the surface over the force on the lid");
   curve("friction_angle", "180 / _pi * atan(" + mu + ")", "degree", "phi_s of the interface, from the stress ratio");
   curve("volumetric_strain", "lid_stage_travel_z / (start_height + lid_travel_z - lid_stage_travel_z)", "1",
-        "rise of the lid over the specimen's height above the tips, dilation positive");
+        "rise of the lid over the height of the specimen above the tips, dilation positive");
   curve("wall_contact_factor", "(" + mu + " - tan_phi_i) / (mu_w - tan_phi_i)", "1",
-        "a_w of EN 1991-4: 1 where the sand slides on the surface, 0 where it shears in itself");
+        "a_w of EN 1991-4: 1 if the sand slides on the surface, 0 if it shears internally");
   for (const char* type : {"slip", "interface"})
     d["probes"][type] = {{"type", type}, {"wall", "surface"},   {"driven_by", "lid"},
                          {"axis", "x"},  {"stages", {"shear"}}, {"every_time", duration / curve_samples}};
@@ -245,12 +254,12 @@ Description InterfaceShear::expand() const {
   d["output"] = {{"frames", {{"every_time", duration / frames_in_shear}}},
                  {"picture",
                   {{"x", "test/shear_displacement"},
-                   {"y", {"test/friction_angle", "test/volumetric_strain", "slip/share"}},
+                   {"y", {"test/friction_angle", "test/volumetric_strain", "slip/fraction"}},
                    {"color", "rotation"}}},
-                 {"summary", {"test/friction_angle", "test/volumetric_strain", "slip/share"}}};
-  look_how_even_it_is(d, "y");
+                 {"summary", {"test/friction_angle", "test/volumetric_strain", "slip/fraction"}}};
+  add_homogeneity_probes(d, "y");
   if (internal_friction_angle_) {
-    using namespace closed_forms;
+    using namespace analytical_solutions;
     const double factor = usual_wall_contact_factor(groove_depth(), preparation_.mean_diameter());
     const double friction =
         effective_wall_friction(factor, std::tan(surface_friction_angle_), *internal_friction_angle_);

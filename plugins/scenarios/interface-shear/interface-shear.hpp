@@ -1,4 +1,5 @@
-// Interface shear test: a box of sand is driven over a flat, grooved or wavy surface under a constant normal stress.
+// Interface shear test: a box of sand moves over a flat, saw-tooth or sinusoidal surface under a constant normal
+// stress.
 #pragma once
 
 #include <optional>
@@ -13,19 +14,19 @@ class InterfaceShear final : public Scenario {
   void declare(Parameters& parameters) override;
   Description expand() const override;
 
-  /// What preparation can reach; the figures were measured, see README.md.
+  /// Void ratios that can be prepared; measured, see plugins/scenarios/README.md.
   VoidRatioRange reachable() const;
-  /// Of the box while it shears [m/s].
+  /// Velocity of the box during shear [m/s].
   double shear_velocity() const;
 
  private:
-  /// From tips to valleys [m]; 0 where the surface is flat.
+  /// From tips to valleys [m]; 0 if the surface is flat.
   double groove_depth() const;
-  /// Of the flanks of a saw-tooth surface [rad].
+  /// Angle of the flanks of a saw-tooth surface [rad].
   double groove_inclination() const;
-  /// From groove to groove [m].
+  /// Period of the grooves [m].
   double groove_spacing() const;
-  /// Volume below the tips, per area of the surface [m].
+  /// Volume below the tips per area of the surface [m].
   double groove_volume() const;
   Description surface(double reach) const;
 

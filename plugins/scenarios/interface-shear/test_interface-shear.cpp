@@ -19,11 +19,11 @@ std::unique_ptr<InterfaceShear> made(const Description& keys = Description::obje
   return made_scenario<InterfaceShear>(keys);
 }
 Description surface(const Description& keys) { return made(keys)->expand()["walls"]["surface"]; }
-double count(const Description& keys) { return made(keys)->expand()["bodies"]["sand"]["grains"]["count"]; }
+double count(const Description& keys) { return made(keys)->expand()["bodies"]["sand"]["source"]["count"]; }
 
 TEST(InterfaceShear, ExpandsToTheGoldenDescription) { expect_golden(made()->expand(), "interface-shear"); }
 
-TEST(InterfaceShear, CutsGroovesAsDeepAsTheRoughnessSays) {
+TEST(InterfaceShear, HasGroovesOfTheDepthGivenByTheRoughness) {
   const Description d = surface({{"roughness", 0.25}});
   EXPECT_EQ(d["type"], "saw-tooth");
   EXPECT_DOUBLE_EQ(d["depth"], 0.25 * 0.5e-3);
@@ -31,7 +31,7 @@ TEST(InterfaceShear, CutsGroovesAsDeepAsTheRoughnessSays) {
   EXPECT_DOUBLE_EQ(d["inclination"], 45 * degree);
 }
 
-TEST(InterfaceShear, PutsGroovesOfAGivenSpacingSideBySideOrLeavesFlatsBetweenSteeperOnes) {
+TEST(InterfaceShear, FitsGroovesToTheirSpacingOrLeavesFlatsBetweenSteeperOnes) {
   const Description beside = surface({{"roughness", 0.25}, {"groove_spacing", "1 mm"}});
   EXPECT_NEAR(beside["inclination"], std::atan(0.25), 1e-15);
   EXPECT_FALSE(beside.contains("spacing"));
@@ -41,26 +41,26 @@ TEST(InterfaceShear, PutsGroovesOfAGivenSpacingSideBySideOrLeavesFlatsBetweenSte
   EXPECT_DOUBLE_EQ(apart["spacing"], 2e-3);
 }
 
-TEST(InterfaceShear, MakesWavesAsDeepAsTheirLengthSays) {
+TEST(InterfaceShear, HasWavesOfTheDepthGivenByTheirLength) {
   const Description d = surface({{"surface", "sinusoidal"}, {"depth_over_wavelength", 0.147}, {"wavelength", "15 mm"}});
   EXPECT_EQ(d["type"], "sinusoidal");
   EXPECT_DOUBLE_EQ(d["depth"], 0.147 * 15e-3);
   EXPECT_DOUBLE_EQ(d["wavelength"], 15e-3);
 }
 
-TEST(InterfaceShear, TakesWavesWithoutDepth) {
+TEST(InterfaceShear, AcceptsWavesWithoutDepth) {
   const Description flat = {{"surface", "sinusoidal"}, {"depth_over_wavelength", 0}};
   EXPECT_EQ(surface(flat)["depth"], 0.0);
   EXPECT_EQ(count(flat), count({{"surface", "flat"}}));
 }
 
-TEST(InterfaceShear, TakesARectangleWhereTheSurfaceIsFlat) {
+TEST(InterfaceShear, UsesARectangleForAFlatSurface) {
   const Description d = surface({{"surface", "flat"}});
   EXPECT_EQ(d["type"], "rectangle");
   EXPECT_FALSE(d.contains("depth"));
 }
 
-TEST(InterfaceShear, StartsTheBoxAtATipAndReachesBeyondWhereItGoes) {
+TEST(InterfaceShear, StartsTheBoxAtATipOfALongEnoughSurface) {
   for (const char* form : {"flat", "saw-tooth", "sinusoidal"}) {
     const Description d = made({{"surface", form}, {"wavelength", "15 mm"}})->expand();
     const Description& s = d["walls"]["surface"];
@@ -73,17 +73,17 @@ TEST(InterfaceShear, StartsTheBoxAtATipAndReachesBeyondWhereItGoes) {
 }
 
 TEST(InterfaceShear, FillsTheGroovesToo) {
-  // Half of a sheet with grooves side by side is groove, down to their depth; waves alike.
+  // Grooves side by side take half of the volume down to their depth; so do waves.
   const double flat = count({{"surface", "flat"}}), height = 20e-3;
   EXPECT_NEAR(count({{"roughness", 2}}) / flat, (height + 0.5 * 1e-3) / height, 1e-4);
   EXPECT_NEAR(count({{"surface", "sinusoidal"}, {"depth_over_wavelength", 0.4}}) / flat, (height + 3e-3) / height,
               1e-4);
-  // A groove of 45 degrees, 1 mm deep, in every 4 mm.
+  // One groove of 45 degrees, 1 mm deep, per 4 mm.
   EXPECT_NEAR(count({{"roughness", 2}, {"groove_spacing", "4 mm"}, {"groove_inclination", "45 deg"}}) / flat,
               (height + 0.25e-3) / height, 1e-4);
 }
 
-TEST(InterfaceShear, StandsOnTheTipsWhileItIsFilledAndIsLiftedByTheLargestGrain) {
+TEST(InterfaceShear, StandsOnTheTipsDuringPreparationAndIsLiftedByTheLargestGrain) {
   const Description d = made()->expand();
   for (const char* side : {"left", "right"}) EXPECT_EQ(d["walls"][side]["low"][2], 0.0);
   const Description& lift = d["stages"][3];
@@ -102,7 +102,7 @@ TEST(InterfaceShear, DrivesTheBoxAsOneAtTheInertialNumber) {
     EXPECT_DOUBLE_EQ(wall["motion"]["velocity"][0], scenario->shear_velocity()) << name;
 }
 
-TEST(InterfaceShear, LetsTheLidKeepUpWithABoxThatIsDrivenFast) {
+TEST(InterfaceShear, RaisesTheSpeedLimitOfTheLidForFastShear) {
   const auto fastest = [](double inertial_number) {
     const auto scenario = made({{"inertial_number", inertial_number}, {"preparation_inertial_number", 1e-3}});
     const Description d = scenario->expand();
@@ -111,10 +111,10 @@ TEST(InterfaceShear, LetsTheLidKeepUpWithABoxThatIsDrivenFast) {
     return servo["max_velocity"].get<double>() / scenario->shear_velocity();
   };
   EXPECT_NEAR(fastest(1e-2), 2, 1e-12);
-  EXPECT_NEAR(fastest(1e-4), 10, 1e-12) << "as fast as it closed";
+  EXPECT_NEAR(fastest(1e-4), 10, 1e-12) << "its speed during compaction";
 }
 
-TEST(InterfaceShear, PutsTheFrictionOfEN1991BesideTheCurves) {
+TEST(InterfaceShear, AddsWallFrictionOfEN1991AsReference) {
   EXPECT_FALSE(made()->expand()["output"].contains("references"));
   const auto value = [](const Description& keys, const char* name, const char* of) -> double {
     Description all = {{"internal_friction_angle", "44 deg"}, {"surface_friction_angle", "16 deg"}};
@@ -133,21 +133,22 @@ TEST(InterfaceShear, PutsTheFrictionOfEN1991BesideTheCurves) {
   EXPECT_EQ(value(even, "EN_1991-4_wall_contact_factor", "test/wall_contact_factor"), 1);
 }
 
-TEST(InterfaceShear, SaysWhatIsWrong) {
+TEST(InterfaceShear, ReportsInvalidParameters) {
   const auto problem = problems_of<InterfaceShear>;
   const auto spaced = [](const char* spacing, const char* form = "saw-tooth") {
     return Description{{"groove_spacing", spacing}, {"groove_inclination", "45 deg"}, {"surface", form}};
   };
   EXPECT_THAT(problem(spaced("0.9 mm")), HasSubstr("/groove_spacing"));
-  EXPECT_EQ(problem(spaced("1 mm")), "") << "as wide as the groove, whatever the tangent's last digit";
+  EXPECT_EQ(problem(spaced("1 mm")), "") << "as wide as the groove, within rounding";
   const std::string narrow = problem(spaced("0.9999999 mm"));
   EXPECT_THAT(narrow, HasSubstr("0.0009999999 m"));
   EXPECT_THAT(narrow, HasSubstr("at least the width of a groove, 0.001 m"));
   EXPECT_EQ(problem(spaced("0.9 mm", "sinusoidal")), "");
   EXPECT_THAT(problem({{"groove_spacing", 0}}), HasSubstr("/groove_spacing"));
   EXPECT_THAT(problem({{"roughness", 0}}), HasSubstr("/roughness"));
-  EXPECT_THAT(problem(spaced("0.11 m")),
-              HasSubstr("/groove_spacing found grooves 0.11 m apart; allowed is at least one on the wall, of 0.1 m"));
+  EXPECT_THAT(
+      problem(spaced("0.11 m")),
+      HasSubstr("/groove_spacing found grooves 0.11 m apart; allowed is at most the length of the wall, 0.1 m"));
   EXPECT_THAT(problem({{"roughness", 101}}), HasSubstr("/roughness found grooves 0.101 m apart"));
   EXPECT_EQ(problem({{"roughness", 100}, {"groove_spacing", "100 mm"}}), "");
   EXPECT_EQ(problem({{"roughness", 101}, {"surface", "flat"}}), "");
@@ -156,9 +157,9 @@ TEST(InterfaceShear, SaysWhatIsWrong) {
   EXPECT_EQ(problem({{"surface_friction_angle", "19 deg"}, {"friction_angle", "19 deg"}}), "");
   EXPECT_THAT(problem({{"gap", "20 mm"}}), HasSubstr("/gap found 0.02 m"));
   EXPECT_EQ(problem({{"gap", "19 mm"}}), "");
-  EXPECT_THAT(problem({{"void_ratio", 0.1}, {"grain", "clump"}}), HasSubstr("/void_ratio"));
+  EXPECT_THAT(problem({{"void_ratio", 0.1}, {"grain_shape", "clump"}}), HasSubstr("/void_ratio"));
   EXPECT_THAT(problem({{"surface", "sawtooth"}}), HasSubstr("saw-tooth"));
-  EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("/scenario/void_ratio: found 0.9"));
+  EXPECT_THAT(refusal<InterfaceShear>({{"void_ratio", 0.9}}), HasSubstr("void_ratio: found 0.9; allowed is between "));
   EXPECT_THAT(problem({{"depth", "2.9 mm"}}), HasSubstr("/depth found 0.0029 m; allowed is at least 4 of the largest"));
 }
 

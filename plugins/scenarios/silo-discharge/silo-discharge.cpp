@@ -12,14 +12,14 @@ namespace grit {
 namespace {
 
 constexpr int curve_samples = 400, frames_while_discharged = 10;
-// An outlet of fewer largest grains is sure to be closed by an arch.
+// In largest grains; arches block narrower outlets.
 constexpr double least_outlet = 3;
-/// How many times as long as Beverloo's law says sand that resists rolling takes, once it flows.
+/// Measured time of discharge over that of Beverloo's law, for sand with rolling resistance; for estimates.
 constexpr double slower = 1.7;
 
-/// Of the stage that ends when so much has left: "discharge-10" for a tenth, "discharge-0.5" for less.
-std::string discharge(double share) {
-  return "discharge-" + (std::ostringstream() << 100 * share).str();  // six digits, so that 29 % is no 28.999…
+/// Name of the stage that ends at this fraction: "discharge-10" for a tenth.
+std::string discharge(double fraction) {
+  return "discharge-" + (std::ostringstream() << 100 * fraction).str();  // six digits: 29, not 28.999…
 }
 
 }  // namespace
@@ -29,28 +29,33 @@ void SiloDischarge::declare(Parameters& p) {
   p.add("outlet_positions", outlet_positions_)
       .unit("m")
       .doc(
-          "of the middle of each outlet, from the left wall, by which channels number them; empty: one in the middle "
-          "of the bottom");
-  p.add("outlet_widths", outlet_widths_).unit("m").above(0).entries(1).doc("of each outlet; as deep as the silo");
-  p.add("shares", shares_)
+          "distance of the middle of each outlet from the left wall; empty: one in the middle of the bottom; channels "
+          "number outlets from left to right");
+  p.add("outlet_widths", outlet_widths_)
+      .unit("m")
+      .above(0)
+      .entries(1)
+      .doc("width of each outlet; outlets extend over the depth of the silo");
+  p.add("discharged_fractions", discharged_fractions_)
       .above(0)
       .at_most(1)
       .entries(1)
-      .doc("of the mass, rising: a stage ends, and a frame is written, when so much has left; the last ends the run");
+      .doc("ascending fractions of the mass; a stage ends, and a frame is written, at each; the last ends the run");
   p.check(
       [this](const Complain& complain) {
-        if (!std::ranges::is_sorted(shares_, std::less_equal<>()))
-          complain("shares", "a share that is not above the one before", "shares that rise");
-        else if (std::ranges::adjacent_find(shares_, {}, discharge) != shares_.end())
-          complain("shares", "two shares whose first six digits are the same", "shares whose stages have names");
+        if (!std::ranges::is_sorted(discharged_fractions_, std::less_equal<>()))
+          complain("discharged_fractions", "a fraction that is not above the one before", "ascending fractions");
+        else if (std::ranges::adjacent_find(discharged_fractions_, {}, discharge) != discharged_fractions_.end())
+          complain("discharged_fractions", "two fractions with the same first six digits",
+                   "fractions that differ in six digits");
       },
-      {"shares"});
+      {"discharged_fractions"});
   p.check(
       [this](const Complain& complain) {
         const std::size_t positions = outlet_positions_.empty() ? 1 : outlet_positions_.size();
         if (positions != outlet_widths_.size()) {
           complain("outlet_widths", std::to_string(outlet_widths_.size()) + " widths",
-                   "as many as there are outlet_positions, " + std::to_string(positions));
+                   "as many as outlet_positions, " + std::to_string(positions));
           return;
         }
         const auto slots = outlets();
@@ -60,14 +65,14 @@ void SiloDischarge::declare(Parameters& p) {
           const std::string from_to = "an outlet from " + metres(low) + " to " + metres(high);
           if (high - low < least_outlet * silo_.largest_diameter - rounding)
             complain("outlet_widths", metres(high - low),
-                     "at least three of the largest grains, which arch over anything narrower: " +
+                     "at least three of the largest grains, which block narrower ones: " +
                          metres(least_outlet * silo_.largest_diameter));
           if (low < -rounding || high > silo_.width + rounding)
             complain("outlet_widths", from_to, "outlets inside the bottom, 0 to " + metres(silo_.width));
           if (i > 0 && low < slots[i - 1].high + rounding)
             complain("outlet_positions",
-                     from_to + ", which overlaps or touches its neighbour, to " + metres(slots[i - 1].high),
-                     "outlets with a piece of bottom in between");
+                     from_to + ", which overlaps or touches its neighbour, up to " + metres(slots[i - 1].high),
+                     "outlets with some bottom in between");
         }
       },
       {"outlet_positions", "outlet_widths", "width", "largest_diameter"});
@@ -76,10 +81,11 @@ void SiloDischarge::declare(Parameters& p) {
         for (const auto& [name, form] :
              {std::pair("drescher", silo_.forms.drescher), {"en_1991_4", silo_.forms.en_1991_4}})
           if (form)
-            complain(std::string("closed_forms/") + name, "a closed form of the force on a bottom without outlets",
-                     "the others of closed_forms; silo-quasistatic draws it");
+            complain(std::string("analytical_solutions/") + name,
+                     "a solution for the force on a bottom without outlets",
+                     "the other analytical_solutions; use silo-quasistatic for this one");
       },
-      {"closed_forms"});
+      {"analytical_solutions"});
 }
 
 std::vector<SiloDischarge::Slot> SiloDischarge::outlets() const {
@@ -94,21 +100,21 @@ std::vector<SiloDischarge::Slot> SiloDischarge::outlets() const {
 double SiloDischarge::expected_rate() const {
   double rate = 0;
   for (const auto& [low, high] : outlets())
-    rate += closed_forms::beverloo_slot(silo_.bulk_density(), silo_.depth, high - low, silo_.mean_diameter());
+    rate += analytical_solutions::beverloo_slot(silo_.bulk_density(), silo_.depth, high - low, silo_.mean_diameter());
   return rate;
 }
 
 Description SiloDischarge::expand() const {
   const auto slots = outlets();
   const double mass = silo_.bulk_density() * silo_.area() * silo_.height;
-  const double duration = shares_.back() * mass / expected_rate();
+  const double duration = discharged_fractions_.back() * mass / expected_rate();
   const double beyond = silo_.overhang(), drop = 4 * silo_.largest_diameter;
 
   Description d = silo_.description("discharge of a silo, " + silo_.wall_surface + " walls", 0);
   d["domain"]["low"][2] = -drop;
   d["domain"]["open_sides"] = {"-z"};
 
-  // Bottom and gates side by side; at the ends they reach into the grooves of the walls.
+  // Bottom and gates side by side; the outer ones extend into the grooves of the walls.
   std::vector<std::string> bottoms, gates;
   double end = -beyond;
   const auto bottom_to = [&](double low) {
@@ -126,14 +132,14 @@ Description SiloDischarge::expand() const {
     end = high;
   }
   bottom_to(silo_.width + beyond);
-  d["specimen"] = {{"low", {silo_.piece("left", 1), "front", bottoms.empty() ? "" : bottoms.front()}},
-                   {"high", {silo_.piece("right", 1), "back", ""}}};
+  d["specimen"] = {{"low", {silo_.segment("left", 1), "front", bottoms.empty() ? "" : bottoms.front()}},
+                   {"high", {silo_.segment("right", 1), "back", ""}}};
 
-  // A gate opens at once: it is below the domain from one step to the next.
+  // Gates open in one step: they move below the domain.
   auto stages = silo_.filling_stages();
-  for (std::size_t i = 0; i < shares_.size(); ++i) {
+  for (std::size_t i = 0; i < discharged_fractions_.size(); ++i) {
     Description stage;
-    stage["name"] = discharge(shares_[i]);
+    stage["name"] = discharge(discharged_fractions_[i]);
     if (i == 0) {
       stage["change"]["engines"]["damping"]["coefficient"] = silo_.local_damping;
       for (const std::string& gate : gates) {
@@ -142,15 +148,16 @@ Description SiloDischarge::expand() const {
         stage["change"]["walls"][gate]["corner"] = corner;
       }
     }
-    const double expected = duration * (shares_[i] - (i > 0 ? shares_[i - 1] : 0)) / shares_.back();
-    const Description left = {{"type", "left"}, {"share", shares_[i]}};
+    const double expected = duration * (discharged_fractions_[i] - (i > 0 ? discharged_fractions_[i - 1] : 0)) /
+                            discharged_fractions_.back();
+    const Description discharged = {{"type", "discharged"}, {"fraction", discharged_fractions_[i]}};
     const Description rests = {
         {"type", "all"},
         {"of", {{{"type", "time"}, {"value", 0.5 * expected}}, {{"type", "unbalanced-force"}, {"below", 1e-3}}}}};
-    stage["until"] = {{"type", "any"}, {"of", {left, rests}}};
-    // What is left may have to come to rest first, however little should still leave.
+    stage["until"] = {{"type", "any"}, {"of", {discharged, rests}}};
+    // Includes time for the remaining sand to come to rest.
     stage["limit"] = 10 * expected + 20 * silo_.falling_time();
-    stage["usual_time"] = slower * expected;
+    stage["typical_time"] = slower * expected;
     stages.push_back(stage);
   }
   d["stages"] = stages;
@@ -160,40 +167,43 @@ Description SiloDischarge::expand() const {
   auto& test = d["probes"]["test"];
   test = silo_.curves(floor, "0", false);
   test["every_time"] = duration / curve_samples;
-  Description looked_at = Description::array();
+  Description sampled = Description::array();
   for (const Description& stage : stages)
-    if (!stage["name"].get_ref<const std::string&>().starts_with("fill")) looked_at.push_back(stage["name"]);
-  test["stages"] = looked_at;
+    if (!stage["name"].get_ref<const std::string&>().starts_with("fill")) sampled.push_back(stage["name"]);
+  test["stages"] = sampled;
   test["curves"]["discharged_mass"] = {
-      {"formula", "departed_mass"}, {"unit", "kg"}, {"doc", "that has left through the outlets"}};
-  test["curves"]["discharged_share"] = {
-      {"formula", "departed_mass / (departed_mass + mass)"}, {"unit", "1"}, {"doc", "of the mass at the start"}};
+      {"formula", "departed_mass"}, {"unit", "kg"}, {"doc", "mass discharged through the outlets"}};
+  test["curves"]["discharged_fraction"] = {{"formula", "departed_mass / (departed_mass + mass)"},
+                                           {"unit", "1"},
+                                           {"doc", "discharged mass over the mass at the start"}};
   auto& flow = d["probes"]["flow"];
   flow = {{"type", "flow"},
-          {"stages", looked_at},
+          {"stages", sampled},
           {"every_time", duration / curve_samples},
           {"window", duration / 20},
           {"pattern", {{"depth_axis", "y"}}}};
   for (std::size_t i = 0; i < slots.size() && slots.size() > 1; ++i) {
-    // What falls spreads: an outlet's grains are those nearer to it than to others.
+    // Falling grains spread: they belong to the nearest outlet.
     const double reach = silo_.width + beyond;
     flow["outlets"]["outlet_" + std::to_string(i + 1)] = {
         {"low", i == 0 ? -reach : 0.5 * (slots[i - 1].high + slots[i].low)},
         {"high", i + 1 == slots.size() ? silo_.width + reach : 0.5 * (slots[i].high + slots[i + 1].low)}};
   }
-  d["probes"]["walls"] = {{"type", "walls"}, {"stages", looked_at}, {"every_time", duration / curve_samples}};
-  d["probes"]["packing"] = {{"type", "packing"}, {"stages", looked_at}, {"every_time", duration / 100}};
+  d["probes"]["walls"] = {{"type", "walls"}, {"stages", sampled}, {"every_time", duration / curve_samples}};
+  d["probes"]["packing"] = {{"type", "packing"}, {"stages", sampled}, {"every_time", duration / 100}};
   auto& profile = d["probes"]["wall-profile"] = silo_.wall_profile();
-  profile["stages"] = looked_at, profile["every_time"] = duration / 100;
+  profile["stages"] = sampled, profile["every_time"] = duration / 100;
   d["output"] = {{"frames", {{"every_time", duration / frames_while_discharged}}},
                  {"picture",
-                  {{"x", "test/discharged_share"},
-                   {"y", {"flow/rate", "test/bottom_share", "test/wall_shear_share"}},
+                  {{"x", "test/discharged_fraction"},
+                   {"y", {"flow/discharge_rate", "test/bottom_fraction", "test/wall_shear_fraction"}},
                    {"color", "speed"}}},
-                 {"summary", {"flow/mass", "flow/rate", "test/bottom_share", "test/wall_shear_share", "test/balance"}}};
-  look_how_even_it_is(d, "y");
+                 {"summary",
+                  {"flow/discharged_mass", "flow/discharge_rate", "test/bottom_fraction", "test/wall_shear_fraction",
+                   "test/balance"}}};
+  add_homogeneity_probes(d, "y");
   auto& references = d["output"]["references"] = silo_.references();
-  references["Beverloo"] = {{"of", "flow/rate"}, {"value", expected_rate()}};
+  references["Beverloo"] = {{"of", "flow/discharge_rate"}, {"value", expected_rate()}};
   return d;
 }
 
@@ -203,7 +213,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "scenario",
                                      .name = "silo-discharge",
                                      .version = "1.0.0",
-                                     .doc = "plane silo, filled and emptied through slots in its bottom",
+                                     .doc = "plane silo that is filled and discharges through slots in its bottom",
                                      .make_scenario = []() -> grit::Scenario* { return new grit::SiloDischarge; }};
   return &info;
 }

@@ -1,4 +1,4 @@
-// Silo emptied through slots in its bottom.
+// Silo that discharges through slots in its bottom.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ class SiloDischarge final : public Scenario {
   void declare(Parameters& parameters) override;
   Description expand() const override;
 
-  /// Through all outlets, by Beverloo's law for slots [kg/s]; see README.md.
+  /// Discharge rate of all outlets by Beverloo's law for slots [kg/s].
   double expected_rate() const;
 
  private:
@@ -23,7 +23,7 @@ class SiloDischarge final : public Scenario {
   std::vector<Slot> outlets() const;
 
   Silo silo_;
-  std::vector<double> outlet_positions_, outlet_widths_{30e-3}, shares_{0.1, 0.25, 0.5};
+  std::vector<double> outlet_positions_, outlet_widths_{30e-3}, discharged_fractions_{0.1, 0.25, 0.5};
 };
 
 }  // namespace grit

@@ -22,7 +22,7 @@ std::string problem(const Description& keys) { return problems_of<SiloDischarge>
 
 using Reach = std::pair<long, long>;
 
-/// From where to where each wall whose name begins so reaches along x, within the silo's 200 mm; in mm.
+/// Range along x, within the silo's 200 mm, of each wall with this prefix; in mm.
 std::vector<Reach> reach(const Description& walls, const std::string& begin) {
   std::vector<Reach> all;
   for (const auto& [name, wall] : walls.items())
@@ -45,7 +45,7 @@ TEST(SiloDischarge, ClosesEachOutletWithAGate) {
   EXPECT_THAT(reach(walls, "bottom"), ElementsAre(Reach(0, 20), Reach(60, 95), Reach(105, 150), Reach(170, 200)));
 }
 
-TEST(SiloDischarge, LetsAnOutletReachToAWall) {
+TEST(SiloDischarge, LetsAnOutletExtendToAWall) {
   const Description walls = expanded({{"outlet_positions", {"185 mm"}}, {"outlet_widths", {"30 mm"}}})["walls"];
   EXPECT_THAT(reach(walls, "gate"), ElementsAre(Reach(170, 200)));
   EXPECT_THAT(reach(walls, "bottom"), ElementsAre(Reach(0, 170)));
@@ -65,46 +65,47 @@ TEST(SiloDischarge, OpensGatesBelowTheDomain) {
   }
 }
 
-TEST(SiloDischarge, HasAStageForEachShare) {
-  const Description stages = expanded({{"shares", {0.2, 0.6}}})["stages"];
+TEST(SiloDischarge, HasAStageForEachFraction) {
+  const Description stages = expanded({{"discharged_fractions", {0.2, 0.6}}})["stages"];
   ASSERT_EQ(stages.size(), 4u);
   EXPECT_EQ(stages[2]["name"], "discharge-20");
   EXPECT_EQ(stages[3]["name"], "discharge-60");
-  EXPECT_EQ(stages[3]["until"]["of"][0]["share"], 0.6);
+  EXPECT_EQ(stages[3]["until"]["of"][0]["fraction"], 0.6);
   EXPECT_FALSE(stages[3].contains("change"));
 }
 
-TEST(SiloDischarge, TellsSmallSharesApart) {
-  const auto names = [](const Description& shares) {
+TEST(SiloDischarge, DistinguishesSmallFractions) {
+  const auto names = [](const Description& fractions) {
     std::vector<std::string> all;
-    const Description stages = expanded({{"shares", shares}})["stages"];
+    const Description stages = expanded({{"discharged_fractions", fractions}})["stages"];
     for (std::size_t i = 2; i < stages.size(); ++i) all.push_back(stages[i]["name"]);
     return all;
   };
   EXPECT_THAT(names({0.001, 0.002}), ElementsAre("discharge-0.1", "discharge-0.2"));
   EXPECT_THAT(names({0.101, 0.104, 0.29}), ElementsAre("discharge-10.1", "discharge-10.4", "discharge-29"));
-  EXPECT_THAT(problem({{"shares", {0.5, 0.50000001}}}), HasSubstr("two shares whose first six digits are the same"));
+  EXPECT_THAT(problem({{"discharged_fractions", {0.5, 0.50000001}}}),
+              HasSubstr("two fractions with the same first six digits"));
 }
 
-TEST(SiloDischarge, GivesSandTheTimeToComeToRestHoweverLittleLeaves) {
-  for (const Description& shares : {Description({0.1, 0.101}), Description({0.2, 0.9, 1})}) {
-    const Description stages = expanded({{"shares", shares}})["stages"];
-    EXPECT_GE(stages.back()["limit"].get<double>(), stages[1]["limit"].get<double>()) << "as it has to settle";
+TEST(SiloDischarge, LimitsIncludeTheTimeToComeToRest) {
+  for (const Description& fractions : {Description({0.1, 0.101}), Description({0.2, 0.9, 1})}) {
+    const Description stages = expanded({{"discharged_fractions", fractions}})["stages"];
+    EXPECT_GE(stages.back()["limit"].get<double>(), stages[1]["limit"].get<double>()) << "the limit of settle";
   }
 }
 
-TEST(SiloDischarge, PutsClosedFormsBesideTheCurves) {
+TEST(SiloDischarge, AddsAnalyticalSolutionsAsReferences) {
   const Description d = expanded({{"outlet_positions", {0.05, 0.15}}, {"outlet_widths", {0.03, 0.03}}});
   const Description references = d["output"]["references"];
-  EXPECT_EQ(references["Beverloo"]["of"], "flow/rate");
+  EXPECT_EQ(references["Beverloo"]["of"], "flow/discharge_rate");
   EXPECT_NEAR(references["Beverloo"]["value"].get<double>(),
               2 * 1.03 * 1625 * std::sqrt(9.81) * 7.5e-3 * std::pow(30e-3 - 1.4 * 1.5e-3, 1.5), 1e-12);
-  EXPECT_EQ(references["Janssen_P_over_G"]["of"], "test/bottom_share");
+  EXPECT_EQ(references["Janssen_P_over_G"]["of"], "test/bottom_fraction");
   EXPECT_TRUE(d["probes"].contains("flow"));
 }
 
-TEST(SiloDischarge, OpensOnceTheLastLayerRests) {
-  const Description d = expanded({{"layers", 2}, {"filling", "layers"}, {"shares", {0.5}}});
+TEST(SiloDischarge, OpensWhenTheLastLayerIsAtRest) {
+  const Description d = expanded({{"layers", 2}, {"filling", "layers"}, {"discharged_fractions", {0.5}}});
   std::vector<std::string> names;
   for (const Description& stage : d["stages"]) names.push_back(stage["name"]);
   EXPECT_THAT(names, ElementsAre("fill-1", "fill-2", "settle", "discharge-50"));
@@ -112,7 +113,7 @@ TEST(SiloDischarge, OpensOnceTheLastLayerRests) {
   EXPECT_EQ(d["probes"]["test"]["stages"], Description({"settle", "discharge-50"}));
 }
 
-TEST(SiloDischarge, ExpectsTheRateOfBeverlooThroughSlots) {
+TEST(SiloDischarge, ExpectsTheRateOfBeverlooForSlots) {
   const double d50 = 1.5e-3, width = 30e-3, depth = 7.5e-3, bulk = 2600 / 1.6;
   const double one = 1.03 * bulk * std::sqrt(9.81) * depth * std::pow(width - 1.4 * d50, 1.5);
   EXPECT_NEAR(made_scenario<SiloDischarge>()->expected_rate(), one, 1e-12);
@@ -121,7 +122,7 @@ TEST(SiloDischarge, ExpectsTheRateOfBeverlooThroughSlots) {
               2 * one, 1e-12);
 }
 
-TEST(SiloDischarge, TellsTheOutletsApart) {
+TEST(SiloDischarge, AssignsGrainsToOutlets) {
   EXPECT_FALSE(expanded()["probes"]["flow"].contains("outlets"));
   const Description flow =
       expanded({{"outlet_positions", {0.05, 0.15}}, {"outlet_widths", {0.02, 0.04}}})["probes"]["flow"]["outlets"];
@@ -131,7 +132,7 @@ TEST(SiloDischarge, TellsTheOutletsApart) {
   EXPECT_GT(flow["outlet_2"]["high"], 0.2);
 }
 
-TEST(SiloDischarge, SaysWhatIsWrong) {
+TEST(SiloDischarge, ReportsInvalidParameters) {
   EXPECT_THAT(problem({{"outlet_widths", {"210 mm"}}}), HasSubstr("outlets inside the bottom, 0 to 0.2"));
   EXPECT_THAT(problem({{"outlet_positions", {"10 mm"}}}), HasSubstr("an outlet from -0.005"));
   EXPECT_THAT(problem({{"outlet_widths", {"7 mm"}}}), HasSubstr("three of the largest grains"));
@@ -139,14 +140,15 @@ TEST(SiloDischarge, SaysWhatIsWrong) {
   EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.07}}, {"outlet_widths", {0.03, 0.03}}}),
               HasSubstr("overlaps or touches"));
   EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.08}}, {"outlet_widths", {0.03, 0.03}}}),
-              HasSubstr("a piece of bottom in between"));
-  EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.1}}}), HasSubstr("as many as there are outlet_positions, 2"));
-  EXPECT_THAT(problem({{"shares", {0.5, 0.2}}}), HasSubstr("shares that rise"));
-  EXPECT_THAT(problem({{"shares", {1.2}}}), HasSubstr("/shares"));
+              HasSubstr("some bottom in between"));
+  EXPECT_THAT(problem({{"outlet_positions", {0.05, 0.1}}}), HasSubstr("as many as outlet_positions, 2"));
+  EXPECT_THAT(problem({{"discharged_fractions", {0.5, 0.2}}}), HasSubstr("ascending fractions"));
+  EXPECT_THAT(problem({{"discharged_fractions", {1.2}}}), HasSubstr("/discharged_fractions"));
   EXPECT_THAT(problem({{"roughness", -1}}), HasSubstr("/roughness"));
   for (const std::string form : {"drescher", "en_1991_4"})
-    EXPECT_THAT(problem({{"closed_forms", {{form, Description::object()}}}}),
-                HasSubstr("/closed_forms/" + form + " found a closed form of the force on a bottom without outlets"));
+    EXPECT_THAT(
+        problem({{"analytical_solutions", {{form, Description::object()}}}}),
+        HasSubstr("/analytical_solutions/" + form + " found a solution for the force on a bottom without outlets"));
 }
 
 }  // namespace

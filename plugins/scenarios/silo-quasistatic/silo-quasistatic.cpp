@@ -7,16 +7,16 @@
 namespace grit {
 namespace {
 
-// The bottom starts from rest over this share of its way's duration.
-constexpr double start_share = 0.02;
+// Fraction of the duration of lowering in which the bottom accelerates from rest.
+constexpr double start_fraction = 0.02;
 constexpr int curve_samples = 400, frames_while_lowered = 10;
 
 }  // namespace
 
 void SiloQuasistatic::declare(Parameters& p) {
   silo_.declare(p);
-  p.add("settlement", settlement_).unit("m").above(0).doc("by which the bottom is lowered");
-  p.add("velocity", velocity_).unit("m/s").above(0).doc("of the bottom");
+  p.add("settlement", settlement_).unit("m").above(0).doc("displacement by which the bottom is lowered");
+  p.add("velocity", velocity_).unit("m/s").above(0).doc("velocity of the bottom");
   p.check(
       [this](const Complain& complain) {
         if (settlement_ >= silo_.height)
@@ -26,19 +26,19 @@ void SiloQuasistatic::declare(Parameters& p) {
 }
 
 Description SiloQuasistatic::expand() const {
-  const double duration = settlement_ / velocity_ / (1 - 0.5 * start_share), beyond = silo_.overhang();
+  const double duration = settlement_ / velocity_ / (1 - 0.5 * start_fraction), beyond = silo_.overhang();
   const double below = settlement_ + 2 * silo_.largest_diameter;
   Description d = silo_.description("silo with a lowered bottom, " + silo_.wall_surface + " walls", below);
   d["walls"]["bottom"] = silo_.bottom(-beyond, silo_.width + beyond);
-  d["specimen"] = {{"low", {silo_.piece("left", 1), "front", "bottom"}},
-                   {"high", {silo_.piece("right", 1), "back", ""}}};
+  d["specimen"] = {{"low", {silo_.segment("left", 1), "front", "bottom"}},
+                   {"high", {silo_.segment("right", 1), "back", ""}}};
 
   auto stages = silo_.filling_stages();
   Description lower;
   lower["name"] = "lower";
   lower["change"]["engines"]["damping"]["coefficient"] = silo_.local_damping;
   lower["change"]["walls"]["bottom"]["motion"] = {{"velocity", vector(0, 0, -velocity_)},
-                                                  {"ramp_time", start_share * duration}};
+                                                  {"ramp_time", start_fraction * duration}};
   lower["until"] = {{"type", "displacement"}, {"wall", "bottom"}, {"axis", "z"}, {"value", -settlement_}};
   lower["limit"] = 1.1 * duration;
   stages.push_back(lower);
@@ -49,7 +49,7 @@ Description SiloQuasistatic::expand() const {
   test["stages"] = {"settle", "lower"};
   test["every_time"] = duration / curve_samples;
   test["curves"]["settlement"] = {
-      {"formula", "-bottom_travel_z"}, {"unit", "m"}, {"doc", "of the bottom, downwards positive"}};
+      {"formula", "-bottom_travel_z"}, {"unit", "m"}, {"doc", "displacement of the bottom, downwards positive"}};
   d["probes"]["walls"] = {{"type", "walls"}, {"stages", {"settle", "lower"}}, {"every_time", duration / curve_samples}};
   d["probes"]["packing"] = {{"type", "packing"}, {"every_time", duration / 100}, {"stages", {"settle", "lower"}}};
   auto& profile = d["probes"]["wall-profile"] = silo_.wall_profile();
@@ -57,21 +57,21 @@ Description SiloQuasistatic::expand() const {
   d["output"] = {{"frames", {{"every_time", duration / frames_while_lowered}}},
                  {"picture",
                   {{"x", "test/settlement"},
-                   {"y", {"test/bottom_share", "test/wall_shear_share", "test/wall_friction_angle"}},
+                   {"y", {"test/bottom_fraction", "test/wall_shear_fraction", "test/wall_friction_angle"}},
                    {"color", "rotation"}}},
                  {"summary",
-                  {"test/bottom_share", "test/wall_shear_share", "test/wall_normal_share", "test/wall_friction_angle",
-                   "test/balance", "test/void_ratio"}}};
-  look_how_even_it_is(d, "y");
+                  {"test/bottom_fraction", "test/wall_shear_fraction", "test/wall_normal_fraction",
+                   "test/wall_friction_angle", "test/balance", "test/void_ratio"}}};
+  add_homogeneity_probes(d, "y");
   auto& references = d["output"]["references"] = silo_.references();
-  const auto on_the_bottom = [&](const char* name, const std::optional<SiloForm>& form, double rubbing_walls) {
+  const auto add_bottom_force = [&](const char* name, const std::optional<SiloForm>& form, double walls_with_friction) {
     if (!form) return;
-    closed_forms::PlaneSilo balance = silo_.balance(*form);
-    balance.rubbing_walls = rubbing_walls;
+    analytical_solutions::PlaneSilo balance = silo_.balance(*form);
+    balance.walls_with_friction = walls_with_friction;
     references[name] = {{"of", "test/bottom_force"}, {"value", balance.bottom_force()}};
   };
-  on_the_bottom("Drescher", silo_.forms.drescher, 1);
-  on_the_bottom("EN_1991-4", silo_.forms.en_1991_4, 2);
+  add_bottom_force("Drescher", silo_.forms.drescher, 1);
+  add_bottom_force("EN_1991-4", silo_.forms.en_1991_4, 2);
   return d;
 }
 
@@ -81,7 +81,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "scenario",
                                      .name = "silo-quasistatic",
                                      .version = "1.0.0",
-                                     .doc = "plane silo, filled, whose bottom is lowered",
+                                     .doc = "plane silo that is filled and whose bottom is lowered",
                                      .make_scenario = []() -> grit::Scenario* { return new grit::SiloQuasistatic; }};
   return &info;
 }

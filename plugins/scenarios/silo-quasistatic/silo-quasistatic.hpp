@@ -1,4 +1,4 @@
-// Silo whose bottom is lowered: forces on bottom and walls at rest and while wall friction is mobilised.
+// Silo with a lowered bottom: forces on bottom and walls at rest and during mobilisation of wall friction.
 #pragma once
 
 #include "grit/toolkit/silo.hpp"

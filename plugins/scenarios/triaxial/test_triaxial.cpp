@@ -19,25 +19,25 @@ std::unique_ptr<Triaxial> made(const Description& keys = Description::object()) 
   return made_scenario<Triaxial>(keys);
 }
 
-/// What is wrong with these parameters, one line.
+/// Problems of these parameters, in one line.
 std::string problem(const Description& keys) { return problems_of<Triaxial>(keys); }
 
 TEST(Triaxial, ExpandsToTheGoldenDescription) { expect_golden(made()->expand(), "triaxial"); }
 
-TEST(Triaxial, PressesEquallyFromSixSidesOnTheSpecimenAsItIs) {
+TEST(Triaxial, CompressesIsotropicallyOnThePresentCrossSection) {
   const Description walls = made({{"confining_stress", "50 kPa"}})->expand()["walls"];
   ASSERT_EQ(walls.size(), 6u);
   for (const auto& [name, wall] : walls.items()) {
     EXPECT_EQ(wall["motion"]["servo"]["pressure"], 50e3) << name;
     EXPECT_EQ(wall["motion"]["servo"]["area"], "specimen") << name;
-    for (int axis = 0; axis < 3; ++axis) {  // each looks at the middle
+    for (int axis = 0; axis < 3; ++axis) {  // each faces the centre
       const double point = wall["point"][axis], normal = wall["normal"][axis];
       EXPECT_EQ(normal, point > 0 ? -1 : point < 0 ? 1 : 0) << name;
     }
   }
 }
 
-TEST(Triaxial, ClosesTopAndBottomAlikeAtTheInertialNumber) {
+TEST(Triaxial, ClosesTopAndBottomEquallyAtTheInertialNumber) {
   const auto scenario = made({{"inertial_number", 5e-4}, {"size", {"50 mm", "60 mm", "80 mm"}}});
   // I = (d eps_1 / dt) d50 sqrt(rho / sigma_c)
   EXPECT_NEAR(scenario->strain_rate() * 5e-3 * std::sqrt(2600 / 200e3), 5e-4, 1e-15);
@@ -45,10 +45,10 @@ TEST(Triaxial, ClosesTopAndBottomAlikeAtTheInertialNumber) {
   const Description& walls = stages.back()["change"]["walls"];
   EXPECT_DOUBLE_EQ(walls["top"]["motion"]["velocity"][2], -0.5 * scenario->strain_rate() * 80e-3);
   EXPECT_DOUBLE_EQ(walls["bottom"]["motion"]["velocity"][2], 0.5 * scenario->strain_rate() * 80e-3);
-  EXPECT_EQ(walls.size(), 2u) << "the sides keep their stress";
+  EXPECT_EQ(walls.size(), 2u) << "lateral walls keep their stress";
 }
 
-TEST(Triaxial, PutsRankinesStrengthBesideTheCurves) {
+TEST(Triaxial, AddsRankinesStrengthAsReference) {
   EXPECT_FALSE(made()->expand()["output"].contains("references"));
   const Description references =
       made({{"internal_friction_angle", "30 deg"}, {"confining_stress", "50 kPa"}})->expand()["output"]["references"];
@@ -63,7 +63,7 @@ TEST(Triaxial, HoldsFrontAndBackInPlaneStrain) {
   for (const char* wall : {"front", "back"}) EXPECT_TRUE(stages.back()["change"]["walls"][wall]["motion"].is_null());
 }
 
-TEST(Triaxial, BringsTheIntermediateStressOnBeforeCompression) {
+TEST(Triaxial, AppliesTheIntermediateStressBeforeCompression) {
   const Description stages =
       made({{"front_and_back", "intermediate-stress"}, {"intermediate_stress", "300 kPa"}})->expand()["stages"];
   ASSERT_EQ(stages.size(), 5u);
@@ -71,11 +71,11 @@ TEST(Triaxial, BringsTheIntermediateStressOnBeforeCompression) {
   EXPECT_EQ(load["ramps"][0]["pointer"], "/walls/back/motion/servo/pressure");
   EXPECT_EQ(load["ramps"][0]["from"], 200e3);
   EXPECT_EQ(load["ramps"][0]["to"], 300e3);
-  EXPECT_TRUE(load["change"]["walls"]["front"]["motion"].is_null()) << "it bears what the back presses";
+  EXPECT_TRUE(load["change"]["walls"]["front"]["motion"].is_null()) << "it carries the load of the back";
   EXPECT_LE(load["ramps"][0]["duration"].get<double>(), load["until"]["value"].get<double>());
 }
 
-TEST(Triaxial, LetsServosKeepUpWithASpecimenThatWidens) {
+TEST(Triaxial, RaisesTheSpeedLimitOfServosForASpecimenThatWidens) {
   const auto faster = [](Description keys) {
     keys["inertial_number"] = 1e-3, keys["preparation_inertial_number"] = 1e-3;
     const Description d = made(keys)->expand();
@@ -97,10 +97,10 @@ TEST(Triaxial, LetsServosKeepUpWithASpecimenThatWidens) {
   EXPECT_THAT(
       faster({{"axial_strain", 0.5}, {"front_and_back", "intermediate-stress"}, {"intermediate_stress", "300 kPa"}}),
       UnorderedElementsAre(Pair("left", times(8)), Pair("right", times(8)), Pair("back", times(16))))
-      << "the front stands";
+      << "the front is held";
 }
 
-TEST(Triaxial, LeavesRoomForASpecimenThatWidens) {
+TEST(Triaxial, HasADomainForASpecimenThatWidens) {
   const auto high = [](double strain) {
     return made({{"axial_strain", strain}})->expand()["domain"]["high"][0].get<double>();
   };
@@ -108,39 +108,38 @@ TEST(Triaxial, LeavesRoomForASpecimenThatWidens) {
   EXPECT_GT(high(0.8), 0.5 * 100e-3 / (1 - 0.8));
 }
 
-TEST(Triaxial, SaysWhatIsWrong) {
+TEST(Triaxial, ReportsInvalidParameters) {
   EXPECT_THAT(problem({{"front_and_back", "intermediate-stress"}}), HasSubstr("/intermediate_stress"));
   EXPECT_THAT(problem({{"intermediate_stress", "300 kPa"}}),
-              HasSubstr("with front_and_back \"intermediate-stress\" alone"));
+              HasSubstr("a stress with front_and_back \"intermediate-stress\" only"));
   const Description between = {{"front_and_back", "intermediate-stress"}, {"intermediate_stress", "199 kPa"}};
   EXPECT_THAT(problem(between),
               HasSubstr("/intermediate_stress found 199000 Pa; allowed is at least confining_stress, 200000 Pa"));
   EXPECT_THAT(problem({{"axial_strain", 1}}), HasSubstr("/axial_strain"));
   EXPECT_THAT(problem({{"front_and_back", "free"}}), HasSubstr("confining-stress"));
-  EXPECT_THAT(refusal<Triaxial>({{"void_ratio", 0.5}}),
-              HasSubstr("/scenario/void_ratio: found 0.5; in a specimen of this size this grading"));
+  EXPECT_THAT(refusal<Triaxial>({{"void_ratio", 0.5}}), HasSubstr("void_ratio: found 0.5; allowed is between "));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.5}, {"compaction_friction_angle", "0 deg"}}), "")
-      << "who says how to compact knows what comes of it";
+      << "no range is checked for a given friction of compaction";
   EXPECT_THAT(problem({{"size", {"100 mm", "29 mm", "100 mm"}}}),
               HasSubstr("/size/1 found 0.029 m; allowed is at least 4 of the largest grains, 0.03 m"));
 }
 
-// Growth, as every scenario with a preparation has it.
+// Growth, common to all scenarios with a preparation.
 
-TEST(GrowthOfGrains, FillsTheBoxOfTheVoidRatioAboveTheWantedOne) {
+TEST(GrowthOfGrains, FillsTheBoxOfAVoidRatioAboveTheTarget) {
   const Description keys = {{"preparation", "growth"}, {"void_ratio", 0.65}};
-  const Description d = made(keys)->expand(), sand = d["bodies"]["sand"]["grains"];
-  // Radii that have grown to what is wanted are at a void ratio of 0.68 in the box, whose walls stand.
+  const Description d = made(keys)->expand(), sand = d["bodies"]["sand"]["source"];
+  // At their final radii grains have a void ratio of 0.68 between the fixed walls.
   const double box = std::cbrt(1.68 / 1.65) * 100e-3;
   EXPECT_NEAR(sand["high"][0].get<double>() - sand["low"][0].get<double>(), box, 1e-12);
-  EXPECT_EQ(sand["count"], made({{"void_ratio", 0.65}})->expand()["bodies"]["sand"]["grains"]["count"]);
+  EXPECT_EQ(sand["count"], made({{"void_ratio", 0.65}})->expand()["bodies"]["sand"]["source"]["count"]);
   const double size = std::cbrt(0.3 * 1.68);
   EXPECT_NEAR(sand["sizes"]["smallest"].get<double>(), size * 2.5e-3, 1e-12);
   EXPECT_NEAR(sand["sizes"]["largest"].get<double>(), size * 7.5e-3, 1e-12);
   for (const auto& [name, wall] : d["walls"].items()) EXPECT_FALSE(wall.contains("motion")) << name;
 }
 
-TEST(GrowthOfGrains, ComesBeforeServosAndSettling) {
+TEST(GrowthOfGrains, PrecedesServosAndSettling) {
   const Description stages = made({{"preparation", "growth"}})->expand()["stages"];
   ASSERT_EQ(stages.size(), 5u);
   for (std::size_t i = 0; const char* name : {"grow", "press", "densify", "settle", "shear"})
@@ -155,27 +154,28 @@ TEST(GrowthOfGrains, ComesBeforeServosAndSettling) {
     EXPECT_EQ(wall["motion"]["servo"]["pressure"], 200e3) << name;
 }
 
-TEST(GrowthOfGrains, HasARangeOfItsOwn) {
+TEST(GrowthOfGrains, HasItsOwnRange) {
   EXPECT_THAT(refusal<Triaxial>({{"preparation", "growth"}, {"void_ratio", 0.79}}),
-              HasSubstr("can be prepared between 0.537 (without friction) and 0.76 ("));
+              HasSubstr("between 0.537 (prepared without friction) and 0.76 ("));
   EXPECT_EQ(refusal<Triaxial>({{"void_ratio", 0.79}}), "");
 }
 
-TEST(GrowthOfGrains, BeginsWithSmallerSievesToo) {
+TEST(GrowthOfGrains, AlsoScalesSieves) {
   const Description d = made({{"sieve_diameters", {"2.5 mm", "7.5 mm"}},
                               {"sieve_passing", {0, 1}},
                               {"preparation", "growth"},
                               {"void_ratio", 0.67}})
                             ->expand();
-  const Description diameters = d["bodies"]["sand"]["grains"]["sizes"]["diameters"];
+  const Description diameters = d["bodies"]["sand"]["source"]["sizes"]["diameters"];
   EXPECT_NEAR(diameters[0].get<double>(), std::cbrt(0.3 * 1.70) * 2.5e-3, 1e-12);
   EXPECT_NEAR(diameters[1].get<double>(), std::cbrt(0.3 * 1.70) * 7.5e-3, 1e-12);
 }
 
-// Sieves, as every scenario with a preparation has them.
+// Sieves, common to all scenarios with a preparation.
 
 TEST(Sieves, FillTheSpecimenByTheMeanVolumeOfTheirGrains) {
-  // 10 % of the mass between 0.25 and 0.5 mm, 90 % between 0.5 and 1 mm, even by mass in between: grains by sums.
+  // 10 % of the mass between 0.25 and 0.5 mm, 90 % between 0.5 and 1 mm, uniform by mass in between: number of grains
+  // by summation.
   double grains = 0, diameters = 0;  // per volume of solids
   const int parts = 100000;
   for (int i = 0; i < parts; ++i)
@@ -190,14 +190,14 @@ TEST(Sieves, FillTheSpecimenByTheMeanVolumeOfTheirGrains) {
                               {"sieve_passing", {0, 0.1, 1}},
                               {"void_ratio", 0.65}};
   const auto scenario = made(sieved);
-  const Description d = scenario->expand(), sand = d["bodies"]["sand"]["grains"];
+  const Description d = scenario->expand(), sand = d["bodies"]["sand"]["source"];
   EXPECT_NEAR(sand["count"].get<double>(), 1e-3 / 1.65 * grains, 1);
   EXPECT_EQ(sand["sizes"]["type"], "sieve");
   EXPECT_EQ(sand["sizes"]["passing"], Description({0.0, 0.1, 1.0}));
   EXPECT_NEAR(scenario->strain_rate() * diameters / grains * std::sqrt(2600 / 200e3), 1e-4, 1e-12);
 }
 
-TEST(Sieves, AreRefusedWhereTheyAreNoCurve) {
+TEST(Sieves, AreRefusedUnlessTheyFormACurve) {
   const auto sieves = [](const Description& diameters, const Description& passing) {
     return problem({{"sieve_diameters", diameters}, {"sieve_passing", passing}});
   };

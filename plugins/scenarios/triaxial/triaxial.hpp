@@ -1,4 +1,4 @@
-// Triaxial test: six smooth walls press a specimen equally from all sides, then top and bottom close on it.
+// Triaxial test: six smooth walls compress a specimen isotropically; then top and bottom close.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ class Triaxial final : public Scenario {
   void declare(Parameters& parameters) override;
   Description expand() const override;
 
-  /// What preparation can reach; the figures were measured, see README.md.
+  /// Void ratios that can be prepared; measured, see plugins/scenarios/README.md.
   VoidRatioRange reachable() const;
   /// Rate of axial strain during compression [1/s].
   double strain_rate() const;

@@ -1,4 +1,4 @@
-// What passes between the kernel and a contact law: plain arrays, one virtual call a batch.
+// Interface between the kernel and a contact law: plain arrays, one virtual call per batch.
 #pragma once
 
 #include <cstddef>
@@ -8,95 +8,96 @@
 
 namespace grit {
 
-/// Candidate pairs are stored in blocks of this many, whatever the width of the machine's registers.
+/// Number of candidate pairs in a block, for any register width.
 inline constexpr std::size_t block_size = 8;
 
-/// What one contact does, 64 bytes: force on b [N] and its normal part (> 0 in compression), moment on b about b's
-/// centre [N m] and the overlap [m]. Zero where the pair does not touch. Of a wall: see WallBatch.
+/// Result of one contact, 64 bytes: force on b [N] and its normal component (> 0 in compression), moment on b about b's
+/// centre [N m] and overlap [m]. Zero if the pair is not in contact. For walls see WallBatch.
 struct alignas(64) ContactRow {
   Row force;   // w: normal force
   Row moment;  // w: overlap
 };
 
-/// Force [N] and moment [N m] gathered for one body.
+/// Sums of force [N] and moment [N m] on one body.
 struct alignas(64) BodySum {
   Row force, moment;
 };
 
-/// What crossing a periodic boundary adds to the position [m] and velocity [m/s] of b. A cell has 27 of them.
+/// Added to the position [m] and velocity [m/s] of b across a periodic boundary. A cell has 27 of them.
 struct ImageShift {
   Row position, velocity;
 };
 
-/// What contacts have dissipated in the step that led here [J].
+/// Energy dissipated by contacts in the last step [J].
 struct Losses {
   double friction = 0;
-  double rolling = 0;  ///< with twisting
+  double rolling = 0;  ///< includes twisting
   double viscosity = 0;
 };
 
-/// Candidate pairs of one chunk of bodies. All a's belong to it, and all b's or none, so no two threads write one sum.
+/// Candidate pairs of one chunk of bodies. All a's belong to the chunk, and either all or none of the b's, so that no two
+/// threads write to the same sum.
 struct PairBatch {
-  // bodies, by index: centre [m] and radius [m]; velocity [m/s] and 1/mass [1/kg]; spin [rad/s] and 1/inertia
+  // Bodies by index: centre [m] and radius [m]; velocity [m/s] and 1/mass [1/kg]; spin [rad/s] and 1/inertia.
   const Row* position;
   const Row* velocity;
   const Row* spin;
-  // candidates, by index, a multiple of block_size
+  // Candidate pairs by index; their number is a multiple of block_size.
   const std::uint32_t* a;
   const std::uint32_t* b;
   const std::uint8_t* image;     ///< index into shifts; null without periodic boundaries
-  const std::uint8_t* material;  ///< of each body; null when all are of one material
+  const std::uint8_t* material;  ///< of each body; null if there is only one
   const ImageShift* shifts;
   std::size_t first_block, last_block;
-  std::size_t last_near;    ///< from this block on pairs were apart when they were filed: most are asleep
+  std::size_t last_near;    ///< pairs from this block on were separate at the last neighbour search; most are skipped
   std::uint32_t last_body;  ///< of the chunk
-  std::uint32_t nobody;     ///< index of a body that is far away from all others; padding has it as b
-  // bodies that will be wanted next, for the processor to fetch meanwhile
-  const std::uint32_t* next;             ///< their indices; null where they lie one behind the other
-  std::uint32_t next_first, next_count;  ///< where they do: from which on; how many in either case
+  std::uint32_t dummy_body;     ///< index of a dummy body far away from all others: b of padding pairs
+  // Bodies needed next, to prefetch.
+  const std::uint32_t* next;             ///< indices; null if they are contiguous
+  std::uint32_t next_first, next_count;  ///< first index if contiguous; number in both cases
   double dt;                             ///< s
-  bool again;                            ///< the step is in the memory already: forces alone are wanted
-  double closing;                        ///< by how much two bodies can have come closer at most, a sum over steps [m]
-  // memory and results
+  bool again;                            ///< the contact history already includes this step; compute forces only
+  double closing;                        ///< upper bound of the approach of any two bodies, summed over steps [m]
+  // Contact history and results.
   double* state;           ///< [block][field][block_size]
-  std::uint8_t* touching;  ///< [block], a bit a lane
-  float* asleep_until;     ///< [block]: where none touches, none will before `closing` is as large; null: look at all
-  ContactRow* row;         ///< [candidate, from the first of first_block]: what it does to b; null where b is of the
-                           ///< chunk too, and has its sum as a has
-  BodySum* sum;            ///< [body]; null where nobody asks for sums
+  std::uint8_t* touching;  ///< [block], one bit per pair in contact
+  float* asleep_until;     ///< [block]: a block without contacts is skipped until `closing` reaches this; null: skip none
+  ContactRow* row;         ///< [candidate, from the first of first_block]: result for b; null if b belongs to the chunk
+                           ///< too and is summed like a
+  BodySum* sum;            ///< [body]; null if sums are not requested
   double largest_overlap;  ///< out: largest overlap over the smaller radius
-  Losses* losses;          ///< added to; null where nobody asks
+  Losses* losses;          ///< added to; null if not requested
 };
 
-/// One point where a body touches a wall.
-struct WallTouch {
+/// One contact of a body with a wall.
+struct WallContact {
   Vec3 normal;         ///< unit, from the body into the wall
-  Vec3 normal_before;  ///< the same one step ago; equal to normal when the touch is new
+  Vec3 normal_before;  ///< the same one step ago; equal to normal when the contact is new
   Vec3 velocity;       ///< of the wall's surface at the point [m/s]
   Vec3 spin;           ///< of the wall [rad/s]
   double overlap;      ///< m, > 0
   std::uint32_t body;  ///< index
   std::uint32_t wall;
-  std::uint32_t feature;   ///< stable id of what is touched
+  std::uint32_t feature;   ///< SurfaceContact::feature
   std::uint32_t material;  ///< of the wall's surface
 };
 
-/// Touches of one chunk of bodies, in the order of their bodies.
+/// Wall contacts of one chunk of bodies, in the order of the bodies.
 struct WallBatch {
   const Row* position;
   const Row* velocity;
   const Row* spin;
-  const std::uint8_t* material;  ///< of each body; null when all are of one material
+  const std::uint8_t* material;  ///< of each body; null if there is only one
   std::size_t count;
-  const WallTouch* touch;
+  const WallContact* contact;
   double dt;
-  double* state;    ///< [touch][field]
-  ContactRow* row;  ///< [touch]: force on the wall and moment about the point of contact, which lies on the wall. Shear
-                    ///< acts at the sphere's surface, the overlap behind it: normal force alone has no moment there,
-                    ///< shear has overlap · normal × shear beside what the law says
+  double* state;    ///< [contact][field]
+  ContactRow* row;  ///< [contact]: force on the wall and moment about the contact point, which lies on the wall. Shear
+                    ///< acts at the sphere's surface, one overlap behind that point; so the moment is that of the law
+                    ///< plus overlap · normal × shear
   BodySum* sum;     ///< [body]
   double largest_overlap;
-  Losses* losses;  ///< added to; null where nobody asks
+  Losses* losses;  ///< added to; null if not requested
 };
 
 }  // namespace grit

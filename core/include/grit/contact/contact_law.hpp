@@ -1,4 +1,4 @@
-// The kernel's side of a contact law. A law's author does not derive from this: see grit/contact/law.hpp.
+// Contact laws as the kernel calls them. To write a law, do not derive from this; see grit/contact/law.hpp.
 #pragma once
 
 #include <span>
@@ -10,83 +10,83 @@
 
 namespace grit {
 
-/// Stiffnesses of one contact, for the time step, and its viscous damping as a fraction of critical.
+/// Stiffnesses and damping ratios of one contact, for the critical time step.
 struct Stiffness {
   double normal = 0;               ///< N/m
   double shear = 0;                ///< N/m
   double rolling = 0;              ///< N m/rad, about axes in the contact plane
   double twisting = 0;             ///< N m/rad, about the normal
-  double damping_ratio = 0;        ///< of the normal dashpot: over what is critical for the pair
-  double shear_damping_ratio = 0;  ///< of a dashpot beside the shear spring; critical is 2 √(k_s m* / 3.5)
+  double damping_ratio = 0;        ///< of the normal dashpot, over critical damping of the pair
+  double shear_damping_ratio = 0;  ///< of a dashpot parallel to the shear spring; critical is 2 √(k_s m* / 3.5)
 };
 
-/// The pair whose stiffness is asked for. A wall has radius_b = radius_a and inverse_mass_b = 0; a body that only
-/// happens to have both says `wall = false`.
+/// Size and mass of a pair. A wall has radius_b = radius_a and inverse_mass_b = 0; for a body with these values, set
+/// `wall = false`.
 struct PairSize {
   double radius_a, radius_b;              ///< m
   double inverse_mass_a, inverse_mass_b;  ///< 1/kg
-  double overlap;                         ///< m; the largest that is expected, never below zero
+  double overlap;                         ///< largest expected overlap ≥ 0 [m]
   bool wall = inverse_mass_b == 0 && radius_b == radius_a;
 
-  /// What shear does to the bodies on a path along which laws stretch its spring, over what the spring takes up on it:
-  /// paths are told with the radii as arms, and the arms of forces add up to the branch.
-  double work_share() const { return wall ? 1 : 1 - overlap / (radius_a + radius_b); }
+  /// Work of the shear force on the bodies over the work on its spring. They differ because laws compute slip with the
+  /// radii as arms, whereas the arms of the force add up to the branch.
+  double work_fraction() const { return wall ? 1 : 1 - overlap / (radius_a + radius_b); }
 };
 
-/// What is stored in one contact [J].
+/// Elastic energy of one contact [J].
 struct ElasticEnergy {
   double normal = 0, shear = 0;
-  double rolling = 0;  ///< with twisting
+  double rolling = 0;  ///< includes twisting
   double total() const { return normal + shear + rolling; }
   ElasticEnergy operator+(const ElasticEnergy& other) const {
     return {normal + other.normal, shear + other.shear, rolling + other.rolling};
   }
 };
 
-/// One number that a contact remembers.
+/// One number of the contact history.
 struct StateField {
   std::string name, unit, doc;
-  double swap;  ///< +1 or −1: what the number is multiplied with when a and b change places
+  double swap;  ///< +1 or −1: factor of the number when a and b are exchanged
 };
 
-/// The loop that evaluates a law's pairs.
+/// Properties of the loop that evaluates the pairs of a law.
 struct LawLoop {
-  std::size_t lanes = 1;              ///< pairs at once
-  std::string precision = "double";   ///< of the arithmetic, or single
-  std::vector<std::string> parts;     ///< of the law, compiled in
-  std::vector<std::string> left_out;  ///< those that nothing here needs
+  std::size_t lanes = 1;              ///< pairs evaluated at once
+  std::string precision = "double";   ///< of the arithmetic: double or single
+  std::vector<std::string> parts;     ///< active features of the law
+  std::vector<std::string> inactive;  ///< features that no material pair needs
 };
 
-/// All calls come from the thread that owns the simulation, but evaluate_*, which are called from several at once on
-/// disjoint chunks.
+/// evaluate_* is called from several threads at once on disjoint chunks; all other calls come from the thread that owns
+/// the simulation.
 class ContactLaw {
  public:
   virtual ~ContactLaw() = default;
 
   /// Settings of the law as a whole.
   virtual void declare(Parameters& parameters) = 0;
-  /// Forgets all materials and interfaces.
+  /// Removes all materials and interfaces.
   virtual void clear_materials() = 0;
-  /// Declares the parameters of a material; adds it, with defaults, if it is new.
+  /// Declares the parameters of a material; adds it with defaults if it is new.
   virtual void declare_material(const std::string& name, Parameters& parameters) = 0;
-  /// Declares what may be overridden where materials `a` and `b` meet, in either order.
+  /// Declares the parameters that override those of materials `a` and `b`, in either order, at their interface.
   virtual void declare_interface(const std::string& a, const std::string& b, Parameters& parameters) = 0;
-  /// Mixes all pairs of the materials, given in the order of their indices. The first `of_bodies` are those that bodies
-  /// are of: two others never meet. Call again after any change.
+  /// Combines the parameters of all pairs of materials, given in the order of their indices. The first `of_bodies` are
+  /// materials of bodies; the others are materials of walls, which never meet each other. Call after every change.
   virtual void mix(std::span<const std::string> materials, std::size_t of_bodies) = 0;
 
-  /// What a contact remembers with the present parameters; parts that a zero parameter switches off are left out.
-  /// Always the first so many of the law's fields.
+  /// Fields of the contact history with the present parameters, without those of inactive features; in the order of the
+  /// law's fields.
   virtual std::vector<StateField> state() const = 0;
   virtual LawLoop loop() const = 0;
   virtual void evaluate_pairs(PairBatch& batch) const noexcept = 0;
   virtual void evaluate_walls(WallBatch& batch) const noexcept = 0;
-  /// The same by plain scalars, for tests.
+  /// The same with scalars instead of SIMD lanes, for tests.
   virtual void evaluate_pairs_reference(PairBatch& batch) const noexcept = 0;
   virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
-  /// All numbers that materials and interfaces come to where a body of the first meets one, or a wall, of the second.
+  /// All combined parameters of a body of the first material and a body, or wall, of the second.
   virtual std::vector<double> mixed(std::size_t material_a, std::size_t material_b, bool wall) const = 0;
-  /// Stored in one contact with the given memory (as many numbers as state()).
+  /// Elastic energy of one contact with the given history, one number per field of state().
   virtual ElasticEnergy energy(const PairSize& pair, std::size_t material_a, std::size_t material_b,
                                std::span<const double> state) const = 0;
 };

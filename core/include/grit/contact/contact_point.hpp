@@ -1,4 +1,4 @@
-// What a contact law sees of a contact, and what it returns.
+// Input and output of a contact law for one contact.
 #pragma once
 
 #include "grit/contact/lanes.hpp"
@@ -6,8 +6,8 @@
 
 namespace grit {
 
-/// Rotates a vector of the contact history with the contact: with the change of its normal, and about the normal with
-/// the mean spin of the two bodies. Lengths are kept to round-off. A tangential vector stays tangential.
+/// Rotates a vector of the contact history with the contact: by the change of its normal, and about the normal by the
+/// mean spin of the two bodies. Lengths are preserved to round-off. A tangential vector stays tangential.
 template <class L>
 struct Turn {
   Vec<L> normal;    ///< now
@@ -21,17 +21,17 @@ struct Turn {
   }
 };
 
-/// A contact of bodies a and b, or of body a and a wall b. Velocities are those of the middle of the last step.
+/// A contact of bodies a and b, or of body a and wall b. Velocities are those at the middle of the last step.
 template <class L>
 struct ContactPoint {
   Vec<L> normal;                     ///< unit, from a to b
   L overlap;                         ///< m, > 0 in contact
   L radius_a, radius_b;              ///< m; for a wall radius_b = radius_a
   L inverse_mass_a, inverse_mass_b;  ///< 1/kg; 0 for a wall
-  Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms [m/s]: zero while the
-                                     ///< two rotate as one rigid body; its integral over a closed path is zero
+  Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms [m/s]; zero while both
+                                     ///< rotate as one rigid body; its integral over a closed path is zero
   Vec<L> spin;                       ///< of b relative to a [rad/s]
-  L dt;                              ///< s
+  L dt;                              ///< time step [s]
   Turn<L> turn;                      ///< rotates vectors of the contact history to the present instant
 
   [[gnu::always_inline]] Vec<L> tangential(const Vec<L>& v) const { return v - dot(v, normal) * normal; }
@@ -40,12 +40,12 @@ struct ContactPoint {
 /// Force and moment of a contact.
 template <class L>
 struct Response {
-  L normal_force{};  ///< N, > 0 pushes the two apart
+  L normal_force{};  ///< N, > 0 in compression
   Vec<L> shear{};    ///< N, on b, in the contact plane
   Vec<L> moment{};   ///< N m, on b; the opposite acts on a
 };
 
-/// What one contact has dissipated in the last step [J], over the path of ContactPoint::velocity.
+/// Energy dissipated by one contact in the last step [J], with ContactPoint::velocity as the rate of slip.
 template <class L>
 struct Loss {
   L friction{}, rolling{}, viscosity{};

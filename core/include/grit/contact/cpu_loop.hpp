@@ -1,5 +1,5 @@
-// The loops over pairs and wall contacts that call a law, for CPUs. They are templates of the law, so that they are
-// compiled inside its plugin, with evaluate() inlined.
+// The loops over pairs and wall contacts that call a law, for CPUs. They are templates of the law, so that its plugin
+// compiles them with evaluate() inlined.
 #pragma once
 
 #include <algorithm>
@@ -36,15 +36,15 @@ template <class L>
   return {of_product * b, of_product * a};
 }
 
-/// With `turns` = 0 the change of normal is left out; else it is 1.
+/// `turns` is 1, or 0 to omit the change of normal.
 template <class L>
 [[gnu::always_inline]] inline Turn<L> make_turn(const Vec<L>& normal, const Vec<L>& before, const Vec<L>& spin_a,
                                                 const Vec<L>& spin_b, double dt, const L& turns) {
   Turn<L> turn;
   turn.normal = normal;
   turn.bisector = normal + before;
-  // Opposite normals, half a turn within a step, have no bisector; the guard against fast bodies stops the run before
-  // that.
+  // Opposite normals (half a turn in one step) have no bisector; the guard on the displacement per step stops the run
+  // before that.
   turn.over = turns / max(dot(turn.bisector, normal), L(1e-6));
   const L half = L(0.25 * dt) * dot(spin_a + spin_b, normal);  // tan(angle / 2), Cayley's form of a rotation
   const L scale = L(1.0) / (L(1.0) + half * half);
@@ -53,7 +53,7 @@ template <class L>
   return turn;
 }
 
-/// `left`: minus what the lanes have dissipated.
+/// `left`: minus the dissipation of each lane.
 template <class L>
 inline void add_losses(const Loss<L>& left, Losses& losses) {
   losses.friction -= total(left.friction), losses.rolling -= total(left.rolling);
@@ -82,7 +82,7 @@ inline constexpr auto places_of_bits = [] {
 template <class Law, unsigned Features>
 inline constexpr auto kept_fields = places_of_bits<fields_used<Law>(Features)>;
 
-/// Parameters of contacts, one a lane.
+/// Parameters of contacts, one contact per lane.
 template <class Law, class L, class Index>
 [[gnu::always_inline]] inline auto load_pair(const typename Law::template Pair<double>* table, Index index) {
   typename Law::template Pair<L> pair;
@@ -102,7 +102,7 @@ template <class Law, class L>
   return pair;
 }
 
-/// Prefetches bodies and contact histories: the latency of memory is that of several contacts, and the processor cannot
+/// Prefetches bodies and contact histories: memory latency is as long as several contacts, and the processor cannot
 /// predict the order of the bodies.
 class Ahead {
  public:
@@ -113,7 +113,7 @@ class Ahead {
     step_ = batch.next == nullptr ? 64 / sizeof(Row) : 1;
     share_ = (share_ + step_ - 1) / step_ * step_;
   }
-  /// Prefetches a share of the bodies, and the contact history of the block after next, if it has contacts.
+  /// Prefetches some of the bodies, and the contact history of the block after next if it has contacts.
   [[gnu::always_inline]] void operator()(std::size_t block) const {
     const double* const state = batch_.state + (block + 2) * fields_ * block_size;
     if (block + 2 < batch_.last_block && batch_.touching[block + 2] != 0)
@@ -132,8 +132,8 @@ class Ahead {
   std::size_t fields_, share_, step_;
 };
 
-/// Contacts from registers with few of them, collected to be evaluated together. In flowing material most candidates
-/// are not in contact, and those that are change all the time.
+/// Collects contacts of registers with few of them, to evaluate them together. In flowing material most candidate pairs
+/// are not in contact, and those in contact change all the time.
 template <std::size_t Fields>
 class Waiting {
  public:
@@ -146,9 +146,9 @@ class Waiting {
     const std::size_t blocks = (count_ + block_size - 1) / block_size;
     for (std::size_t k = 0; k < blocks * block_size; ++k) {
       const bool used = k < count_;
-      a_[k] = from.a[place_[used ? k : 0]], b_[k] = used ? from.b[place_[k]] : from.nobody;
+      a_[k] = from.a[place_[used ? k : 0]], b_[k] = used ? from.b[place_[k]] : from.dummy_body;
       image_[k] = used && from.image != nullptr ? from.image[place_[k]] : 0;
-      for (std::size_t f = 0; f < Fields; ++f) memory(state_, k, f) = used ? memory(from.state, place_[k], f) : 0;
+      for (std::size_t f = 0; f < Fields; ++f) history(state_, k, f) = used ? history(from.state, place_[k], f) : 0;
     }
     std::fill_n(touching_, blocks, std::uint8_t{0});  // no contact opens here
     PairBatch own = from;
@@ -158,10 +158,10 @@ class Waiting {
     own.row = from.row != nullptr ? row_ : nullptr;
     return own;
   }
-  /// Writes their histories and rows back to their places, and empties the collection.
+  /// Writes their histories and rows back, and empties the collection.
   void put_back(const PairBatch& to) {
     for (std::size_t k = 0; k < count_; ++k) {
-      for (std::size_t f = 0; f < Fields; ++f) memory(to.state, place_[k], f) = memory(state_, k, f);
+      for (std::size_t f = 0; f < Fields; ++f) history(to.state, place_[k], f) = history(state_, k, f);
       if (to.row != nullptr) to.row[place_[k] - to.first_block * block_size] = row_[k];
     }
     count_ = 0;
@@ -169,7 +169,7 @@ class Waiting {
 
  private:
   static constexpr std::size_t most = 64;
-  static double& memory(double* state, std::size_t place, std::size_t f) {
+  static double& history(double* state, std::size_t place, std::size_t f) {
     return state[(place / block_size * Fields + f) * block_size + place % block_size];
   }
 
@@ -181,7 +181,7 @@ class Waiting {
   ContactRow row_[most];
 };
 
-/// Contacts that have opened, with their histories. They are rare, and so are evaluated outside of the loop.
+/// Collects opened contacts with their histories. They are rare and evaluated outside the loop.
 template <std::size_t Fields>
 class Parted {
  public:
@@ -205,10 +205,10 @@ class Parted {
   double state_[most * Fields + 1];
 };
 
-/// The elastic energy of the springs of an opened contact is dissipated.
+/// Books the elastic energy of the springs of an opened contact as dissipated.
 template <class Law, unsigned Features>
 void lose_springs(const PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials,
-                  std::size_t place, std::span<const double> remembered) {
+                  std::size_t place, std::span<const double> history) {
   const std::uint32_t a = batch.a[place], b = batch.b[place];
   Vec3 between = xyz(batch.position[b]) - xyz(batch.position[a]),
        apart = xyz(batch.velocity[b]) - xyz(batch.velocity[a]);
@@ -220,8 +220,8 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
   // When they were last in contact.
   const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
   typename Law::template State<double> state{};
-  for (std::size_t f = 0; f < remembered.size(); ++f)
-    member<double>(state, kept_fields<Law, Features>[f]) = remembered[f];
+  for (std::size_t f = 0; f < history.size(); ++f)
+    member<double>(state, kept_fields<Law, Features>[f]) = history[f];
   const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
   const PairSize size{.radius_a = radius_a,
                       .radius_b = radius_b,
@@ -230,15 +230,14 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
                       .overlap = std::max(0.0, overlap),
                       .wall = false};
   const ElasticEnergy held = Law::energy(size, table[kind], state);
-  batch.losses->friction += held.shear * size.work_share(), batch.losses->rolling += held.rolling;
+  batch.losses->friction += held.shear * size.work_fraction(), batch.losses->rolling += held.rolling;
 }
 
-/// The loop over candidate pairs. L is Lane or SingleLane, or a plain number for the scalar reference. Flattened: a
-/// call in it would pass lanes through memory, which was measured to double its time. Not inlined, so that
-/// tests/vectorisation finds it. Starts with block `from` and stops when `waiting` or `parted` is full, if they are
-/// given; returns the next block. The arithmetic is the same for all pairs, so that a pair has the same bits at every
-/// place.
-template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
+/// The loop over candidate pairs. L is Lane or SingleLane, or a number for the scalar reference. It starts with block
+/// `from` and stops when `waiting` or `parted`, if given, is full; returns the next block. Flattened: a call in it would
+/// pass lanes through memory, which was measured to double the time. Not inlined, so that tests/vectorisation finds it.
+/// The arithmetic is the same for all pairs, so that the result of a pair does not depend on its position in the list.
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool EnergyTerms>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
                                                       Waiting<kept_fields<Law, Features>.size()>* waiting,
@@ -249,7 +248,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   const PairBatch batch = out;  // a copy, which sums cannot alias
   using W = Wide<L>;
   const L dt(batch.dt), per_dt(batch.dt > 0 ? 1 / batch.dt : 0.0);
-  const double remembered_dt = batch.again ? 0 : batch.dt;
+  const double history_dt = batch.again ? 0 : batch.dt;
   const L turns(batch.again ? 0.0 : 1.0);
   L largest(0.0);
   // Losses are subtracted: of a law without losses the compiler removes x − 0, but not x + 0.
@@ -258,18 +257,18 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
   const std::size_t first_row = batch.first_block * block_size;
   const std::uint32_t last_body = batch.last_body;
   const Ahead ahead(batch, fields);
-  // Contacts of a register with fewer of them are collected. Measured: 55 ns a collected contact, nearly half of it for
-  // copying, and 125 ns a register.
+  // Registers with fewer contacts than this are collected. Measured: 55 ns per collected contact, nearly half of it for
+  // copying, and 125 ns per register.
   constexpr int few = width * 3 / 4;
 
   std::size_t block = from;
   for (; block < batch.last_block; ++block) {
     if (waiting != nullptr && !waiting->has_room_for_a_block()) break;
-    if (Ledger && parted != nullptr && !parted->has_room_for_a_block()) break;
+    if (EnergyTerms && parted != nullptr && !parted->has_room_for_a_block()) break;
     ahead(block);
     const std::uint32_t before = batch.touching[block];
     if (before == 0 && batch.asleep_until != nullptr && batch.closing < batch.asleep_until[block]) continue;
-    std::uint32_t touching_now = 0;
+    std::uint32_t contacts_now = 0;
     L gap(std::numeric_limits<float>::max());
     for (std::size_t sub = 0; sub < block_size; sub += width) {
       const std::size_t first = block * block_size + sub;
@@ -290,15 +289,15 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         if (shifted) between = between + load_rows<W>(&batch.shifts->position, shift).xyz();
       }
       const W square = dot(between, between), radii = pa.w + pb.w;
-      const auto touches = mask_in_precision<L>(square < radii * radii);
-      const std::uint32_t now = bits(touches);
+      const auto contacts = mask_in_precision<L>(square < radii * radii);
+      const std::uint32_t now = bits(contacts);
       const L reach = in_precision<L>(radii);
       const auto length = [&] { return sqrt(in_precision<L>(square)); };
       double* const state_at = batch.state + block * fields * block_size + sub;
-      touching_now |= now << sub;
+      contacts_now |= now << sub;
       constexpr std::uint32_t all = (1u << width) - 1u;
       const std::uint32_t gone_now = before >> sub & all & ~now;
-      if constexpr (Ledger && fields > 0)
+      if constexpr (EnergyTerms && fields > 0)
         for (std::uint32_t gone = gone_now; gone != 0; gone &= gone - 1) {
           const auto k = static_cast<std::size_t>(std::countr_zero(gone));
           parted->add(first + k, state_at + k);
@@ -331,7 +330,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       L overlap, overlap_before;
       Vec<L> normal_before, change_of_normal;
       if constexpr (is_single<L>) {
-        // Small differences are computed before rounding, from the difference of the squares.
+        // Small differences are computed in double precision, from the difference of the squares.
         const L longer = dot(way, branch + branch_before) / (distance + distance_before);
         overlap = in_precision<L>(radii * radii - square) / (reach + distance), overlap_before = overlap + longer;
         change_of_normal = (L(1.0) / distance_before) * (way - longer * normal);
@@ -345,17 +344,17 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       ContactPoint<L> at;
       at.normal = normal;
       at.overlap = max(overlap, L(0.0));
-      const L work_share = L(1.0) - at.overlap * per_reach;  // see PairSize
+      const L work_fraction = L(1.0) - at.overlap * per_reach;  // see PairSize
       at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
       at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
       at.turn =
-          make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), remembered_dt, turns);
-      // The last term stretches the branch to the sum of the radii; without it a pair that rotates as one body slips.
-      // The spins act on the normal of the middle of the step, as the velocities do.
+          make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), history_dt, turns);
+      // The last term extends the branch to the sum of the radii; without it a pair that rotates as one body would slip.
+      // The spins act on the normal at the middle of the step, the instant of the velocities.
       at.velocity = velocity - cross(in_precision<L>(pa.w * wa.xyz() + pb.w * wb.xyz()), L(0.5) * at.turn.bisector) +
                     (overlap_before * per_dt) * change_of_normal;
       at.spin = in_precision<L>(wb.xyz() - wa.xyz());
-      at.dt = L(remembered_dt);
+      at.dt = L(history_dt);
       largest = max(largest, at.overlap / max(min(at.radius_a, at.radius_b), L(tiny<L>)));
 
       State state{};
@@ -372,29 +371,29 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       }
       const Response<L> response = Law::template evaluate<Features>(at, pair, state);
       const L zero(0.0);
-      if constexpr (Ledger) {
+      if constexpr (EnergyTerms) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
-        left.friction = left.friction - widened(select(touches, own.friction * work_share, zero));
-        left.rolling = left.rolling - widened(select(touches, own.rolling, zero));
-        left.viscosity = left.viscosity - widened(select(touches, own.viscosity, zero));
+        left.friction = left.friction - widened(select(contacts, own.friction * work_fraction, zero));
+        left.rolling = left.rolling - widened(select(contacts, own.rolling, zero));
+        left.viscosity = left.viscosity - widened(select(contacts, own.viscosity, zero));
       }
       for (std::size_t f = 0; f < fields; ++f)
-        store_lanes(select(touches, member<L>(state, kept[f]), zero), state_at + f * block_size);
+        store_lanes(select(contacts, member<L>(state, kept[f]), zero), state_at + f * block_size);
 
-      // The arms add up to the branch, so that no angular momentum is made, and are as the radii, so that shear does
-      // the same share of its work in all motions: laws measure slip with the radii as arms.
+      // The arms add up to the branch, so that angular momentum is conserved. They are proportional to the radii, so that
+      // the work of shear is the same fraction of that on its spring in all motions: laws use the radii as arms.
       const Vec<L> none{zero, zero, zero};
-      const Vec<L> force = select(touches, response.normal_force * normal + response.shear, none);
-      const Vec<L> lever = cross(normal, select(touches, response.shear, none));
-      const Vec<L> moment = select(touches, response.moment, none);
-      const Vec<L> moment_a = -moment - (work_share * at.radius_a) * lever;
-      const Vec<L> moment_b = moment - (work_share * at.radius_b) * lever;
-      const L normal_force = select(touches, response.normal_force, zero);
-      const L shown_overlap = select(touches, at.overlap, zero);
+      const Vec<L> force = select(contacts, response.normal_force * normal + response.shear, none);
+      const Vec<L> lever = cross(normal, select(contacts, response.shear, none));
+      const Vec<L> moment = select(contacts, response.moment, none);
+      const Vec<L> moment_a = -moment - (work_fraction * at.radius_a) * lever;
+      const Vec<L> moment_b = moment - (work_fraction * at.radius_b) * lever;
+      const L normal_force = select(contacts, response.normal_force, zero);
+      const L shown_overlap = select(contacts, at.overlap, zero);
 
       BodySum* const sum = batch.sum;
       if (batch.row == nullptr) {
-        // Padding, which belongs to no chunk, adds its zero to the last body.
+        // Padding adds zeros to the last body of the chunk.
         const auto own_b = [=](std::size_t k) { return std::min(ib[k], last_body); };
         store_rows(widened(force.x), widened(force.y), widened(force.z), W(0.0), [=](std::size_t k, const Quad& force) {
           sum[ia[k]].force -= force;
@@ -416,31 +415,31 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         store_rows(widened(moment_a.x), widened(moment_a.y), widened(moment_a.z), W(0.0),
                    [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
-    batch.touching[block] = static_cast<std::uint8_t>(touching_now);
-    // Reduced by far more than the rounding of the sum and its parts.
-    if (touching_now == 0 && batch.asleep_until != nullptr)
+    batch.touching[block] = static_cast<std::uint8_t>(contacts_now);
+    // The reduction exceeds the rounding error of the sum and its terms by far.
+    if (contacts_now == 0 && batch.asleep_until != nullptr)
       batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));
   }
   out.largest_overlap = detail::largest(largest);
-  if constexpr (Ledger) add_losses(left, *out.losses);
+  if constexpr (EnergyTerms) add_losses(left, *out.losses);
   return block;
 }
 
 /// All pairs of a batch.
-template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool Ledger>
+template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool EnergyTerms>
 void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials) {
-  constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind, Ledger>;
+  constexpr auto loop = pair_loop<Law, Features, L, Periodic, OneKind, EnergyTerms>;
   Waiting<kept_fields<Law, Features>.size()> waiting;
   Parted<kept_fields<Law, Features>.size()> parted;
   double largest = 0;
   for (std::size_t next = batch.first_block; next < batch.last_block;) {
     next = loop(batch, table, materials, next, &waiting, &parted);
-    if constexpr (Ledger)
+    if constexpr (EnergyTerms)
       parted.take([&](std::size_t place, std::span<const double> state) {
         lose_springs<Law, Features>(batch, table, materials, place, state);
       });
     largest = std::max(largest, batch.largest_overlap);
-    // Where only `parted` was full, the collected contacts stay: the energy balance must not change the order of sums.
+    // If only `parted` was full, the collected contacts stay: the energy balance must not change the order of sums.
     if (waiting.none() || (next < batch.last_block && waiting.has_room_for_a_block())) continue;
     PairBatch together = waiting.take(batch);
     loop(together, table, materials, 0, nullptr, nullptr);
@@ -450,17 +449,16 @@ void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>*
   batch.largest_overlap = largest;
 }
 
-/// Calls use(f) for groups of four numbers from f on that cover all of `count`; the last group may overlap the one
-/// before. None if there are fewer than four.
+/// Calls use(f) for groups of four numbers, starting at f, that cover `count` numbers; the last group may overlap the one
+/// before. No calls if count < 4.
 template <std::size_t count, class Use>
 [[gnu::always_inline]] inline void for_fours(Use use) {
   for (std::size_t f = 0; f + 4 <= count; f += 4) use(f);
   if constexpr (count > 4 && count % 4 != 0) use(count - 4);
 }
 
-/// The loop over wall contacts. They are few, so that histories are stored contact by contact. Not inlined, as
-/// pair_loop.
-template <class Law, unsigned Features, class L, bool Ledger>
+/// The loop over wall contacts. They are few, so histories are stored contact by contact. Not inlined, as pair_loop.
+template <class Law, unsigned Features, class L, bool EnergyTerms>
 [[gnu::flatten, gnu::noinline]] void wall_loop(WallBatch& batch, const typename Law::template Pair<double>* table,
                                                std::size_t materials) {
   constexpr auto& kept = kept_fields<Law, Features>;
@@ -473,18 +471,18 @@ template <class Law, unsigned Features, class L, bool Ledger>
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
     // Lanes past the end repeat the last contact and are not stored.
-    const auto touch = [&](std::size_t k) -> const WallTouch& { return batch.touch[first + std::min(k, used - 1)]; };
-    const auto body = [&](std::size_t k) { return touch(k).body; };
+    const auto contact = [&](std::size_t k) -> const WallContact& { return batch.contact[first + std::min(k, used - 1)]; };
+    const auto body = [&](std::size_t k) { return contact(k).body; };
     const RowLanes<L> pa = load_rows<L>(batch.position, body), va = load_rows<L>(batch.velocity, body),
                       wa = load_rows<L>(batch.spin, body);
     // The members are contiguous: the fourth number of a row belongs to the next member.
-    const auto rows = [&](Vec3 WallTouch::*member) {
-      return load_fours<L>([&](std::size_t k) { return (touch(k).*member).data(); });
+    const auto rows = [&](Vec3 WallContact::*member) {
+      return load_fours<L>([&](std::size_t k) { return (contact(k).*member).data(); });
     };
-    static_assert(offsetof(WallTouch, overlap) == offsetof(WallTouch, spin) + sizeof(Vec3));
-    const Vec<L> normal = rows(&WallTouch::normal).xyz(), normal_before = rows(&WallTouch::normal_before).xyz(),
-                 wall_velocity = rows(&WallTouch::velocity).xyz();
-    const RowLanes<L> spin_and_overlap = rows(&WallTouch::spin);
+    static_assert(offsetof(WallContact, overlap) == offsetof(WallContact, spin) + sizeof(Vec3));
+    const Vec<L> normal = rows(&WallContact::normal).xyz(), normal_before = rows(&WallContact::normal_before).xyz(),
+                 wall_velocity = rows(&WallContact::velocity).xyz();
+    const RowLanes<L> spin_and_overlap = rows(&WallContact::spin);
     const Vec<L> wall_spin = spin_and_overlap.xyz();
 
     ContactPoint<L> at;
@@ -493,32 +491,32 @@ template <class Law, unsigned Features, class L, bool Ledger>
     at.radius_a = at.radius_b = pa.w;
     at.inverse_mass_a = va.w, at.inverse_mass_b = L(0.0);
     at.turn = make_turn(normal, normal_before, wa.xyz(), wall_spin, batch.dt, L(1.0));
-    // The last term moves the wall's velocity to the sphere's surface: a sphere that is carried along by a rotating
-    // wall, or pivots about an edge, does not slip.
+    // The last term moves the wall's velocity to the sphere's surface: a sphere that a rotating wall carries along, or
+    // that pivots about an edge, does not slip.
     at.velocity = wall_velocity - va.xyz() - cross(pa.w * wa.xyz(), L(0.5) * at.turn.bisector) +
                   (at.overlap * per_dt) * (normal - normal_before);
     at.spin = wall_spin - wa.xyz();
     at.dt = L(batch.dt);
 
-    const auto memory = [&](std::size_t k) { return batch.state + (first + std::min(k, used - 1)) * fields; };
+    const auto history = [&](std::size_t k) { return batch.state + (first + std::min(k, used - 1)) * fields; };
     State state{};
     for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
-      const RowLanes<L> row = load_fours<L>([&](std::size_t k) { return memory(k) + f; });
+      const RowLanes<L> row = load_fours<L>([&](std::size_t k) { return history(k) + f; });
       member<L>(state, kept[f]) = row.x, member<L>(state, kept[f + 1]) = row.y;
       member<L>(state, kept[f + 2]) = row.z, member<L>(state, kept[f + 3]) = row.w;
     });
     for (std::size_t f = 0; fields < 4 && f < fields; ++f)
-      member<L>(state, kept[f]) = gather_lanes<L>([&](std::size_t k) { return memory(k)[f]; });
+      member<L>(state, kept[f]) = gather_lanes<L>([&](std::size_t k) { return history(k)[f]; });
     const auto kind = [&](std::size_t k) {
-      const std::size_t own = batch.material != nullptr ? batch.material[touch(k).body] : 0;
-      return own * materials + touch(k).material;
+      const std::size_t own = batch.material != nullptr ? batch.material[contact(k).body] : 0;
+      return own * materials + contact(k).material;
     };
     bool alike = true;
     for (std::size_t k = 1; k < width; ++k) alike = alike & (kind(k) == kind(0));
     const auto pair = alike ? broadcast_pair<Law, L>(table[kind(0)]) : load_pair<Law, L>(table, kind);
     [[maybe_unused]] const State before_step = state;
     const Response<L> response = Law::template evaluate<Features>(at, pair, state);
-    if constexpr (Ledger) {
+    if constexpr (EnergyTerms) {
       const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
       const auto counts = place < L(static_cast<double>(used));
       left.friction = left.friction - select(counts, own.friction, L(0.0));
@@ -526,32 +524,32 @@ template <class Law, unsigned Features, class L, bool Ledger>
       left.viscosity = left.viscosity - select(counts, own.viscosity, L(0.0));
     }
 
-    // Shear acts where slip is measured, at the sphere's surface, which is behind the wall's by the overlap.
+    // Shear acts where slip is computed: at the sphere's surface, one overlap behind the surface of the wall.
     const Vec<L> force = response.normal_force * normal + response.shear, lever = cross(normal, response.shear);
     const Vec<L> moment_a = -response.moment - pa.w * lever, moment_wall = response.moment + at.overlap * lever;
     for_fours<fields>([&](std::size_t f) __attribute__((always_inline)) {
       store_rows(member<L>(state, kept[f]), member<L>(state, kept[f + 1]), member<L>(state, kept[f + 2]),
                  member<L>(state, kept[f + 3]), [&](std::size_t k, const Quad& numbers) {
-                   if (k < used) std::memcpy(memory(k) + f, &numbers, sizeof numbers);
+                   if (k < used) std::memcpy(history(k) + f, &numbers, sizeof numbers);
                  });
     });
     for (std::size_t k = 0; fields < 4 && k < used; ++k)
-      for (std::size_t f = 0; f < fields; ++f) memory(k)[f] = lane(member<L>(state, kept[f]), k);
+      for (std::size_t f = 0; f < fields; ++f) history(k)[f] = lane(member<L>(state, kept[f]), k);
     store_rows(force.x, force.y, force.z, response.normal_force, [&](std::size_t k, const Quad& on_wall) {
       if (k >= used) return;
       store(on_wall, batch.row[first + k].force);
-      batch.sum[touch(k).body].force -= on_wall;
+      batch.sum[contact(k).body].force -= on_wall;
     });
     store_rows(moment_wall.x, moment_wall.y, moment_wall.z, at.overlap, [&](std::size_t k, const Quad& on_wall) {
       if (k < used) store(on_wall, batch.row[first + k].moment);
     });
     store_rows(moment_a.x, moment_a.y, moment_a.z, L(0.0), [&](std::size_t k, const Quad& on_body) {
-      if (k < used) batch.sum[touch(k).body].moment += on_body;
+      if (k < used) batch.sum[contact(k).body].moment += on_body;
     });
     most = max(most, at.overlap / pa.w);
   }
   batch.largest_overlap = largest(most);
-  if constexpr (Ledger) add_losses(left, *batch.losses);
+  if constexpr (EnergyTerms) add_losses(left, *batch.losses);
 }
 
 }  // namespace detail

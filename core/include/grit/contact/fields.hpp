@@ -1,4 +1,4 @@
-// What contacts remember, as it changes with the parts of a law that are needed.
+// Fields of the contact history. They change when other features of a law become necessary.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace grit {
 
-/// Which number of before goes to which of now, for fields that both have.
+/// A field that exists before and after a change: its index before, `from`, and its index now, `to`.
 struct FieldMove {
   std::size_t from, to;
 };

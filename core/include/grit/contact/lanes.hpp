@@ -1,7 +1,7 @@
-// Lanes: what a contact law computes with. A plain number in the reference twin, a register full of them in the loop;
-// doubles, or floats where single precision is asked for.
-// Lanes have to stay in registers, so that all functions on them are inlined by force: compilers were seen to leave
-// calls in a loop as large as a law, which pass lanes through memory and cost a factor of three.
+// Lanes: the numbers that a contact law computes with. A lane is one number in the scalar reference and a SIMD register
+// in the contact loop; doubles, or floats in single precision.
+// Lanes must stay in registers. Therefore all functions on them are always_inline: compilers otherwise left calls in the
+// loop of a law, which pass lanes through memory; this was measured to cost a factor of three.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +26,8 @@ struct Register {
 };
 }  // namespace detail
 
-/// N numbers that are worked on together, a power of two. The compiler's own vector type inside: wrapped any deeper, as
-/// std::experimental::simd has it, it was seen to be copied through memory.
+/// A register of N numbers, N a power of two. It holds the vector type of the compiler directly: wrapped any deeper, as in
+/// std::experimental::simd, the compiler copied it through memory.
 template <std::size_t N, class Real = double>
 struct Pack {
   using Numbers = typename detail::Register<Real, N * sizeof(Real)>::type;
@@ -46,7 +46,7 @@ struct Pack {
 
   Pack() = default;
   [[gnu::always_inline]] Pack(double all)
-      : numbers(static_cast<Real>(all) - Numbers{}) {}  // x - 0 is x, and folds away
+      : numbers(static_cast<Real>(all) - Numbers{}) {}  // x - 0 broadcasts x and is optimised away
   [[gnu::always_inline]] explicit Pack(Numbers all) : numbers(all) {}
   /// Lane k is number(k).
   template <class Number>
@@ -78,7 +78,7 @@ using Lane = Pack<4>;
 #else
 using Lane = Pack<2>;
 #endif
-/// The same in single precision, but no more than a block has.
+/// The same in single precision, but at most block_size.
 #if defined(__AVX__)
 using SingleLane = Pack<8, float>;
 #else
@@ -104,22 +104,22 @@ struct LaneTraits<Real> {
 };
 template <class L>
 inline constexpr std::size_t lane_width = LaneTraits<L>::width;
-/// As many lanes in double precision.
+/// The same number of lanes in double precision.
 template <class L>
 using Wide = typename LaneTraits<L>::Wide;
 template <class L>
 inline constexpr bool is_single = std::is_same_v<typename LaneTraits<L>::Number, float>;
 
-/// What to divide by instead of zero: smaller than any force, length, stiffness or inverse mass of a scene.
+/// Lower limit of divisors, in place of zero: smaller than any force, length, stiffness or inverse mass of a run.
 template <class L>
 inline constexpr double tiny = is_single<L> ? 1e-30 : 1e-300;
-/// A share well above the rounding of some tens of operations.
+/// Relative difference well above the rounding error of some tens of operations.
 template <class L>
 inline constexpr double beyond_rounding = is_single<L> ? 1e-5 : 1e-12;
 
 static_assert(block_size % lane_width<Lane> == 0 && block_size % lane_width<SingleLane> == 0);
 
-// The branch of a law. Both sides are evaluated.
+// Branch of a law, lane by lane. Both sides are evaluated.
 [[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 [[gnu::always_inline]] inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
 template <std::size_t N, class Real>
@@ -198,8 +198,7 @@ template <std::size_t N, class Real>
   return P(a.numbers < b.numbers ? b.numbers : a.numbers);
 }
 
-/// a b + c, rounded once where the machine can: for what is booked alone, as sums of products elsewhere are rounded
-/// term by term.
+/// a b + c, fused where the processor can. Use it only for energies: sums of products in forces are rounded term by term.
 [[gnu::always_inline]] inline double multiply_add(double a, double b, double c) { return a * b + c; }
 [[gnu::always_inline]] inline float multiply_add(float a, float b, float c) { return a * b + c; }
 template <std::size_t N, class Real>
@@ -208,7 +207,7 @@ template <std::size_t N, class Real>
   return Pack<N, Real>(a.numbers * b.numbers + c.numbers);
 }
 
-/// The same lanes in the precision of L, rounded to nearest if that is less.
+/// The same lanes in the precision of L, rounded to nearest if that is lower.
 template <class L>
 [[gnu::always_inline]] inline L in_precision(const Wide<L>& lanes) {
   if constexpr (std::is_same_v<L, Wide<L>>) return lanes;
@@ -262,7 +261,7 @@ template <class Mask>
   c = __builtin_shufflevector(ab0, cd0, 2, 3, 6, 7), d = __builtin_shufflevector(ab1, cd1, 2, 3, 6, 7);
 }
 
-/// Lanes in the precision of L from doubles in memory, and back.
+/// Loads lanes in the precision of L from doubles in memory, and stores them.
 template <class L>
 [[gnu::always_inline]] inline L load_lanes(const double* from) {
   if constexpr (lane_width<L> == 1) return static_cast<L>(*from);
@@ -317,14 +316,14 @@ template <class L>
 
 }  // namespace detail
 
-/// Four lanes, one a component.
+/// Four lanes, one per component of a Row.
 template <class L>
 struct RowLanes {
   L x, y, z, w;
   [[gnu::always_inline]] Vec<L> xyz() const { return {x, y, z}; }
 };
 
-/// Loads four numbers from `address(k)`, k = 0 … width − 1, one row a lane.
+/// Loads four numbers from each `address(k)`, k = 0 … width − 1, one row per lane.
 template <class L, class Address>
 [[gnu::always_inline]] inline RowLanes<L> load_fours(Address address) {
   constexpr std::size_t width = lane_width<L>;
@@ -364,7 +363,7 @@ template <class L, class Index>
   return load_fours<L>([&](std::size_t k) { return &base[index(k)].x; });
 }
 
-/// The reverse of load_rows: hands the numbers of row k to `store(k, quad)`.
+/// The inverse of load_rows: calls `store(k, quad)` with the numbers of row k.
 template <class L, class Store>
 [[gnu::always_inline]] inline void store_rows(const L& x, const L& y, const L& z, const L& w, Store store) {
   constexpr std::size_t width = lane_width<L>;

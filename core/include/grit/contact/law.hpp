@@ -1,19 +1,19 @@
-// How a contact law is written: a struct with the physics of one contact. The loop over all contacts is the SDK's
-// (cpu_loop.hpp), and grit_plugin() returns contact_law_plugin<MyLaw>(…) of law_plugin.hpp.
+// How to write a contact law: a struct with the physics of one contact. The SDK provides the loop over all contacts
+// (cpu_loop.hpp). grit_plugin() returns contact_law_plugin<MyLaw>(…) of law_plugin.hpp.
 //
 //   struct MyLaw : grit::LawBase {
 //     struct Material { double modulus = 1e8; void declare(Parameters&); };
-//     struct Interface { std::optional<double> friction; void declare(Parameters&); };  // overrides for two materials
+//     struct Interface { std::optional<double> friction; void declare(Parameters&); };  // overrides of a material pair
 //     using Settings = NoParameters;                               // of the law as a whole
 //     template <class L> struct Pair { L modulus, friction; };     // members are L or Vec<L>
 //     static Pair<double> mix(const Settings&, const Material& a, const Material& b, const Interface&, bool wall);
 //
 //     static constexpr LawTraits traits{.single_precision = true, .losses = true, .features = {"shear"}};
 //     static constexpr unsigned with_shear = 1;                    // bits of the features, in their order
-//     static unsigned features(const Pair<double>&);               // those that this pair needs
+//     static unsigned features(const Pair<double>&);               // bits of the features that this pair needs
 //
-//     template <class L> struct State { Vec<L> shear; };           // the contact history; members as in Pair, or none
-//     static constexpr LawField fields[] = {                       // one a member of State, in their order
+//     template <class L> struct State { Vec<L> shear; };           // contact history; members as in Pair, or none
+//     static constexpr LawField fields[] = {                       // one entry per member, in order
 //         {.name = "shear", .unit = "N", .doc = "shear force on b", .width = 3, .swap = -1, .needed_by = with_shear}};
 //
 //     template <unsigned Features, class L> [[gnu::always_inline]]
@@ -25,17 +25,17 @@
 //     static ElasticEnergy energy(const PairSize&, const Pair<double>&, const State<double>&);
 //   };
 //
-// mix() with `wall`: b is the material of a wall's surface.
-// L is a lane: a register of doubles or floats, or one double. So evaluate() and losses() have no branches but `if
-// constexpr ((Features & with_shear) != 0)`; they use select(), min(), max(), sqrt(), abs().
-// They are also called for lanes that do not touch. Their results are discarded; they must not trap.
-// Fields that no feature needs are not kept, and are 0 in State.
-// In single precision a divisor is kept above L(tiny<L>), equality is a difference below beyond_rounding<L>, and each
-// number of State is rounded to 24 bits at every step.
-// evaluate() may be called again at the same instant, with the history that it left, dt = 0 and a turn that is the
-// identity. It then returns the same force.
-// The normal force may be negative: the law attracts. It does so only where bodies overlap; there is no force at a
-// distance. Limits of friction must then be kept from becoming negative.
+// mix() combines two materials; with `wall`, b is the material of a wall.
+// L is a lane: a register of doubles or floats, or one double. Therefore the only branches in evaluate() and losses() are
+// `if constexpr ((Features & with_shear) != 0)`; otherwise use select(), min(), max(), sqrt() and abs().
+// Both are also called for lanes that are not in contact. Their results are discarded, but they must not trap.
+// Fields that no active feature needs are not kept; they are 0 in State.
+// In single precision, keep divisors above L(tiny<L>) and test equality by a difference below beyond_rounding<L>. Each
+// number of State is then rounded to 24 bits in every step.
+// evaluate() may be called again at the same instant, with the updated history, dt = 0 and the identity as turn. It must
+// then return the same force.
+// The normal force may be negative (attraction), but only while bodies overlap; there is no force at a distance. The law
+// must then keep friction limits from becoming negative.
 #pragma once
 
 #include "grit/contact/contact_law.hpp"

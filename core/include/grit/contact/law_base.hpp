@@ -1,4 +1,4 @@
-// The names that a contact law is written with, for laws in any namespace.
+// The names that a contact law uses, for laws in any namespace.
 #pragma once
 
 #include "grit/contact/contact_law.hpp"
@@ -12,14 +12,14 @@
 
 namespace grit {
 
-/// Settings or Interface of a law that has no such parameters.
+/// Settings or Interface of a law without such parameters.
 struct NoParameters {
   void declare(Parameters&) {}
 };
 
-/// A law derives from it, and so needs no `grit::` in its code. The functions are members because argument-dependent
-/// lookup finds nothing for plain doubles, which are lanes as well. Functions that take a Vec or a ContactPoint, as
-/// dot() and stretched(), are found without it.
+/// Base class of laws, so that their code needs no `grit::`. The functions are members because argument-dependent lookup
+/// finds nothing for plain doubles, which are lanes too. Functions that take a Vec or a ContactPoint, such as dot() and
+/// stretched(), are found without it.
 struct LawBase {
   template <class L>
   using ContactPoint = grit::ContactPoint<L>;

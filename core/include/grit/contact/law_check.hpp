@@ -1,4 +1,5 @@
-// Whether a struct is a contact law, and what is missing if it is not. The manual is in law.hpp.
+// Checks at compile time whether a struct is a contact law, with a message for each missing part. How to write a law is
+// explained in law.hpp.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +30,7 @@ concept material = declares<typename Law::Material>;
 template <class Law>
 concept interface = declares<typename Law::Interface>;
 
-/// Nothing but lanes: a struct of floats has half the size of one of doubles.
+/// A struct of lanes only: with floats it has half the size that it has with doubles.
 template <class Double, class Float>
 concept lanes = std::is_trivially_copyable_v<Double> &&
     (std::is_empty_v<Double> || (sizeof(Double) % sizeof(double) == 0 && sizeof(Double) / 2 == sizeof(Float)));
@@ -106,7 +107,7 @@ template <class Law>
 concept forces =
     state<Law> && evaluates<Law, double> && evaluates<Law, Lane> && stiffness<Law> && energy<Law> && traits<Law>;
 
-/// Whether what is announced is there, and what is there is announced.
+/// Whether the optional parts are those that the traits announce.
 template <class Law>
 consteval bool agrees_with_its_traits() {
   if constexpr (has_fields<Law> == stateless<Law>) return false;
@@ -122,11 +123,11 @@ consteval bool agrees_with_its_traits() {
 
 }  // namespace law_part
 
-/// What contact_law_plugin() takes. check_law() has the same conditions one by one, each with a message.
+/// Requirement of contact_law_plugin(). check_law() has the same conditions one by one, each with a message.
 template <class Law>
 concept LawDefinition = law_part::parameters<Law> && law_part::forces<Law> && law_part::agrees_with_its_traits<Law>();
 
-/// Compiles if Law is a LawDefinition; else says what is missing.
+/// Compiles if Law is a LawDefinition; otherwise the error names the missing part.
 template <class Law>
 consteval bool check_law() {
   static_assert(

@@ -1,5 +1,5 @@
-// Parameters that several laws share, declared once. `T` is double for a material, std::optional<double> for an
-// interface, where a value given overrides what the two materials would be mixed to.
+// Parameters that several laws share. `T` is double for a material and std::optional<double> for an interface, where a
+// value overrides the one mixed from the two materials.
 #pragma once
 
 #include <numbers>
@@ -12,23 +12,23 @@ namespace grit {
 inline constexpr double degree = std::numbers::pi / 180;
 
 inline void declare_contact_modulus(Parameters& p, double& value) {
-  p.add("contact_modulus", value).unit("Pa").symbol("E_c").above(0).doc("modulus of the normal spring");
+  p.add("contact_modulus", value).unit("Pa").symbol("E_c").above(0).doc("contact modulus; normal stiffness grows with it and with the radii");
 }
 inline void declare_shear_to_normal_stiffness(Parameters& p, double& value) {
   p.add("shear_to_normal_stiffness", value)
       .symbol("nu_c")
       .at_least(0)
       .at_most(10)
-      .doc("shear over normal stiffness; the mean of two materials counts");
+      .doc("shear over normal stiffness; two materials: their mean");
 }
 template <class T>
 void declare_friction_angle(Parameters& p, T& value) {
   p.add("friction_angle", value)
       .unit("rad")
-      .symbol("mu")
+      .symbol("phi")
       .at_least(0)
       .below(std::numbers::pi / 2)
-      .doc("angle of friction; the smaller of two materials counts");
+      .doc("friction angle, tan(phi) is the coefficient; two materials: the smaller value");
 }
 template <class T>
 void declare_restitution(Parameters& p, T& value) {
@@ -36,14 +36,14 @@ void declare_restitution(Parameters& p, T& value) {
       .symbol("e")
       .at_least(least_restitution)
       .at_most(1)
-      .doc("speed after over speed before a head-on collision; the smaller of two materials counts; 1: no dashpot");
+      .doc("speed after over speed before a head-on collision; two materials: the smaller value; 1: no dashpot");
 }
 inline void declare_rolling_stiffness(Parameters& p, double& value) {
   p.add("rolling_stiffness", value)
       .symbol("beta")
       .at_least(0)
       .at_most(100)
-      .doc("rolling stiffness over k_s R_a R_b; the mean of two materials counts");
+      .doc("rolling stiffness over k_s R_a R_b; two materials: their mean");
 }
 template <class T>
 void declare_rolling_limit(Parameters& p, T& value) {
@@ -51,7 +51,7 @@ void declare_rolling_limit(Parameters& p, T& value) {
       .symbol("eta")
       .at_least(0)
       .at_most(100)
-      .doc("limit moment over normal force and radius; the smaller of two materials counts");
+      .doc("limit of the rolling moment over normal force times radius; two materials: the smaller value");
 }
 
 }  // namespace grit

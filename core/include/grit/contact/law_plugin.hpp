@@ -1,4 +1,4 @@
-// Makes a plugin of a contact law: the kernel's ContactLaw from the struct that the law's author wrote.
+// Makes a plugin from the struct of a contact law.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace grit {
 
-/// The kernel's contact law, made from the struct that the author wrote.
+/// The ContactLaw that the kernel calls, made from the struct of a law.
 template <class Law>
 class LawPlugin final : public ContactLaw {
   using Pair = typename Law::template Pair<double>;
@@ -25,7 +25,7 @@ class LawPlugin final : public ContactLaw {
     if constexpr (has_single)
       parameters.add("precision", precision_)
           .one_of({"double", "single"})
-          .doc("of the arithmetic of a contact between bodies; places, overlaps, walls and sums stay double");
+          .doc("precision of contacts between bodies; positions, overlaps, wall contacts and sums stay double");
   }
   void clear_materials() override { materials_.clear(), interfaces_.clear(); }
   void declare_material(const std::string& name, Parameters& parameters) override {
@@ -60,9 +60,9 @@ class LawPlugin final : public ContactLaw {
     LawLoop loop{.lanes = single() ? lane_width<SingleLane> : lane_width<Lane>,
                  .precision = precision_,
                  .parts = {},
-                 .left_out = {}};
+                 .inactive = {}};
     for (unsigned bit = 0; bit < detail::feature_count<Law>; ++bit)
-      ((features_ >> bit & 1) != 0 ? loop.parts : loop.left_out).push_back(Law::traits.features[bit]);
+      ((features_ >> bit & 1) != 0 ? loop.parts : loop.inactive).push_back(Law::traits.features[bit]);
     return loop;
   }
   void evaluate_pairs(PairBatch& batch) const noexcept override {
@@ -97,7 +97,7 @@ class LawPlugin final : public ContactLaw {
   }
 
  private:
-  /// Calls `run.operator()<F>()` with the active features as a constant.
+  /// Calls `run.operator()<F>()` with the active features as a compile-time constant.
   template <unsigned F = 0, class Run>
   void with_features(Run run) const {
     if constexpr (F < (1u << detail::feature_count<Law>)) {
@@ -110,15 +110,15 @@ class LawPlugin final : public ContactLaw {
     with_features([&]<unsigned F>() {
       // The scalar reference and several materials take the general loop. Others have loops of their own; in single
       // precision one serves periodic domains and all others.
-      const bool general = lane_width<L> == 1 || batch.material != nullptr, ledger = batch.losses != nullptr;
-      if (general && ledger) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
+      const bool general = lane_width<L> == 1 || batch.material != nullptr, energies = batch.losses != nullptr;
+      if (general && energies) detail::evaluate_pairs<Law, F, L, true, false, true>(batch, table_.data(), count_);
       else if (general) detail::evaluate_pairs<Law, F, L, true, false, false>(batch, table_.data(), count_);
       else if constexpr (lane_width<L> > 1) {
         if (is_single<L> || batch.image != nullptr) {
-          if (ledger) detail::evaluate_pairs<Law, F, L, true, true, true>(batch, table_.data(), count_);
+          if (energies) detail::evaluate_pairs<Law, F, L, true, true, true>(batch, table_.data(), count_);
           else detail::evaluate_pairs<Law, F, L, true, true, false>(batch, table_.data(), count_);
         } else if constexpr (!is_single<L>) {
-          if (ledger) detail::evaluate_pairs<Law, F, L, false, true, true>(batch, table_.data(), count_);
+          if (energies) detail::evaluate_pairs<Law, F, L, false, true, true>(batch, table_.data(), count_);
           else detail::evaluate_pairs<Law, F, L, false, true, false>(batch, table_.data(), count_);
         }
       }
@@ -143,7 +143,7 @@ class LawPlugin final : public ContactLaw {
   unsigned features_ = 0;
 };
 
-/// What grit_plugin() of a law returns.
+/// The PluginInfo that grit_plugin() of a law returns. `doc` is one line.
 template <class Law>
 PluginInfo contact_law_plugin(const char* name, const char* version, const char* doc,
                               const BuildTag& tag = build_tag()) {

@@ -1,4 +1,4 @@
-// What a contact law says about itself: its optional parts, and the fields of its contact history.
+// Traits of a contact law: its optional parts and the fields of its contact history.
 #pragma once
 
 #include <algorithm>
@@ -13,28 +13,28 @@
 
 namespace grit {
 
-/// The optional parts of a law. The law announces here which it has: a part that is announced and missing, or there and
-/// not announced, is an error, as is a misspelt name.
+/// Announces the optional parts of a law. An announced part that is missing, or a part that is not announced, is an
+/// error at compile time; a misspelt name is thus found.
 struct LawTraits {
-  /// The law may be evaluated in single precision: a parameter `precision` offers it.
+  /// The law can be evaluated in single precision; users choose it by the parameter `precision`.
   bool single_precision = false;
-  /// The law has losses(): the energy balance includes what its contacts dissipate. Else that is in the closure error.
+  /// The law has losses(), so that the energy balance includes its dissipation; else it is part of the closure error.
   bool losses = false;
-  /// Names of parts that can be switched off, in the order of their bits; then the law has features(). The loop is
-  /// compiled once for each combination.
+  /// Names of features that are evaluated only where needed, in the order of their bits; the law then has features().
+  /// The loop is compiled once for each combination.
   const char* features[4] = {};
 };
 
-/// Of LawField::needed_by: whatever the features are.
+/// LawField::needed_by of a field that every combination of features needs.
 inline constexpr unsigned always = ~0u;
 
 /// One member of a law's State, in the order of the members.
 struct LawField {
-  const char* name;             ///< that of the member, snake_case; the numbers of a vector have _x, _y, _z behind it
+  const char* name;             ///< name of the member, snake_case; components of a vector get the suffixes _x, _y, _z
   const char* unit;             ///< UDUNITS spelling
   const char* doc;              ///< one line
   std::size_t width = 1;        ///< 1 for a number, 3 for a vector
-  double swap = 1;              ///< −1 if the member changes its sign where a and b are exchanged
+  double swap = 1;              ///< −1 if the sign changes when a and b are exchanged
   unsigned needed_by = always;  ///< bits of the features that need it; contacts keep it while one of them is on
 };
 
@@ -44,7 +44,7 @@ template <class Law>
 inline constexpr unsigned feature_count = static_cast<unsigned>(
     std::ranges::count_if(Law::traits.features, [](const char* name) { return name != nullptr; }));
 
-/// The members of State that `features` need, a bit for each of their numbers.
+/// The members of State that `features` need, one bit per number.
 template <class Law>
 constexpr unsigned fields_used(unsigned features) {
   unsigned used = 0;
@@ -57,7 +57,7 @@ constexpr unsigned fields_used(unsigned features) {
   return used;
 }
 
-/// One entry for each number of State.
+/// One entry per number of State.
 template <class Law>
 std::vector<StateField> state_fields() {
   std::vector<StateField> all;

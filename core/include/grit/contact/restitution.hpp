@@ -1,12 +1,13 @@
-// Dashpots from a coefficient of restitution, for contacts that push but never pull: a collision ends when the force of
-// spring and dashpot together falls to zero, before the overlap does. Called when materials are mixed, not in the loop.
+// Damping ratio of a dashpot from a coefficient of restitution, for contacts without tension: a collision ends when the
+// total force of spring and dashpot falls to zero, before the overlap does. Called when materials are mixed, not in the
+// contact loop.
 #pragma once
 
 #include <cmath>
 
 namespace grit {
 
-/// The least restitution that may be asked for. Without attraction, none at all would need a dashpot without bounds.
+/// Minimum coefficient of restitution. Without tension, 0 would need infinite damping.
 inline constexpr double least_restitution = 0.01;
 
 /// Restitution of a linear spring and dashpot, ζ = `ratio` ≥ 0 of critical, in closed form:
@@ -23,10 +24,10 @@ inline double restitution_of_damping(double ratio) {
   return std::exp(-2 * ratio * angle / std::sqrt(std::abs(rest)));
 }
 
-/// The inverse, by halving: the ratio of critical damping that gives `restitution` in [least_restitution, 1].
+/// The inverse, by bisection: the ratio of critical damping that gives `restitution` in [least_restitution, 1].
 inline double damping_of_restitution(double restitution) {
   if (restitution >= 1) return 0;
-  double low = 0, high = 8;  // a restitution of 0.004
+  double low = 0, high = 8;  // restitution 1 and 0.004
   for (int halving = 0; halving < 60; ++halving) {
     const double middle = 0.5 * (low + high);
     (restitution_of_damping(middle) > restitution ? low : high) = middle;

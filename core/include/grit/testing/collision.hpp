@@ -1,4 +1,4 @@
-// Two spheres, or a sphere and a plane, that meet head-on, integrated by leap-frog.
+// Head-on collisions of two spheres, or of a sphere and a plane, by leap-frog integration.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,12 @@
 namespace grit::test {
 
 struct Collision {
-  double restitution, duration, overlap, force;  ///< speed after over before; s; the largest [m], [N]
+  double restitution;     ///< speed after over speed before
+  double duration;        ///< s
+  double overlap, force;  ///< maxima [m], [N]
 };
 
-/// Spheres of radius_a, mass_a and radius_b, mass_b at the given relative speed.
+/// Two spheres at rest and in motion with the given relative speed [m/s]; positions and velocities of a and b are ignored.
 inline Collision collide(const ContactLaw& law, const Ball& a, const Ball& b, double speed, double dt) {
   Pairs pairs(law, dt);
   Ball still = a, coming = b;
@@ -20,7 +22,7 @@ inline Collision collide(const ContactLaw& law, const Ball& a, const Ball& b, do
   coming.velocity = {0, 0, -speed};
   pairs.add(still), pairs.add(coming), pairs.pair(0, 1);
   Collision result{0, 0, 0, 0};
-  // The first step ends inside; the speed at touch is that of free flight.
+  // The spheres just touch at the start; the first step ends with an overlap.
   do {
     pairs.step();
     pairs.kick();
@@ -32,21 +34,21 @@ inline Collision collide(const ContactLaw& law, const Ball& a, const Ball& b, do
   return result;
 }
 
-/// The same with a wall of the given material.
+/// The same with a wall of the material of this index.
 inline Collision collide_with_wall(const ContactLaw& law, Ball ball, double speed, double dt,
                                    std::uint32_t material = 0) {
   ball.position = {0, 0, ball.radius}, ball.velocity = {0, 0, -speed};
   WallPair pair(law, ball, dt);
-  pair.touch.material = material;
+  pair.contact.material = material;
   Collision result{0, 0, 0, 0};
   do {
     pair.position.z += dt * pair.velocity.z;
-    pair.touch.overlap = ball.radius - pair.position.z;
-    if (pair.touch.overlap <= 0) break;
+    pair.contact.overlap = ball.radius - pair.position.z;
+    if (pair.contact.overlap <= 0) break;
     pair.evaluate();
     pair.velocity.z += dt * pair.velocity.w * pair.sum.force.z;
     result.duration += dt;
-    result.overlap = std::max(result.overlap, pair.touch.overlap);
+    result.overlap = std::max(result.overlap, pair.contact.overlap);
     result.force = std::max(result.force, pair.row.force.w);
   } while (pair.row.force.w > 0);
   result.restitution = pair.velocity.z / speed;

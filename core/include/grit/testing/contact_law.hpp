@@ -1,9 +1,9 @@
-// What every contact law promises. A plugin's test includes this file once and says
+// Tests that every contact law must pass. A plugin's test includes this file once and writes
 //   INSTANTIATE_TEST_SUITE_P(MyLaw, ContactLawContract, testing::ValuesIn(setups()), setup_name);
-// with at least one setup for each combination of the law's features. Radii are about 1 m, masses 1 kg; stiffnesses
-// should be 1e5 … 1e7 N/m, so that a step of 1e-5 s is a small one.
-// A law without single precision is not tested for it. For a law that attracts, or whose limits are not those of the
-// parameters friction_angle, rolling_limit and twisting_limit, its setups say so.
+// with at least one setup for each combination of the law's features. Radii are about 1 m and masses 1 kg; stiffnesses
+// should be 1e5 … 1e7 N/m, so that a step of 1e-5 s is small.
+// A law without single precision is not tested for it. Set LawSetup::attracts for a law with attraction, and clear
+// LawSetup::usual_limits for a law whose limits are not those of friction_angle, rolling_limit and twisting_limit.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -23,19 +23,19 @@ namespace grit::test {
 
 struct LawSetup {
   std::string name;        ///< letters and digits
-  LawValues values;        ///< three materials or more
-  std::size_t state_size;  ///< how many numbers a contact remembers
-  /// Radius, over the grain's, of the sphere that a plane wall is like: 1 for a law whose walls take the grain's.
+  LawValues values;        ///< at least three materials
+  std::size_t state_size;  ///< numbers in the contact history
+  /// A wall is evaluated as a sphere of this radius, over that of the body; 1 for laws with radius_b = radius_a.
   double wall_sphere = 1;
   bool attracts = false;  ///< its normal force may be negative
-  /// Its shear force, rolling and twisting moments have the limits tan(friction_angle) F_n, rolling_limit R F_n and
-  /// twisting_limit R F_n, R the mean radius. A law without such a force has no such parameter.
+  /// Whether shear force, rolling and twisting moment have the limits tan(friction_angle) F_n, rolling_limit R F_n and
+  /// twisting_limit R F_n, with the mean radius R. A law without one of them does not have its parameter.
   bool usual_limits = true;
 };
 inline std::ostream& operator<<(std::ostream& out, const LawSetup& setup) { return out << setup.name; }
 inline std::string setup_name(const testing::TestParamInfo<LawSetup>& info) { return info.param.name; }
 
-/// The same with a parameter that is nothing, of all materials or of the first alone.
+/// `values` with the parameter `name` set to 0, for all materials or only for the first.
 inline LawValues without(LawValues values, const std::string& name, bool everywhere = true) {
   for (std::size_t m = 0; m < (everywhere ? values.materials.size() : 1); ++m) values.materials[m][name] = 0.0;
   for (auto& [pair, overrides] : values.interfaces)
@@ -65,8 +65,8 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     return GetParam().values.materials[a].contains(name) ? std::min(value(a, name), value(b, name)) : 0;
   }
 
-  /// Pairs that touch, nearly touch, part and meet, every seventh place padding, with a history of some steps.
-  /// `lonely`: each in a block of its own.
+  /// Pairs in contact, nearly in contact, opening and closing, with a history of some steps; every seventh is padding.
+  /// `lonely`: each pair has its own block.
   Pairs scene(bool periodic, bool materials, bool lonely = false) {
     Pairs pairs(*law_, dt_);
     pairs.one_material = !materials;
@@ -93,12 +93,12 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     Vec3 d = vec(pairs.position(pairs.b(c))) - vec(pairs.position(pairs.a(c)));
     return pairs.shifts.empty() ? d : d + vec(pairs.shifts[pairs.image(c)].position);
   }
-  /// Round-off of what follows from the overlap, which is a small difference of large numbers.
+  /// Relative round-off of values that follow from the overlap, a small difference of large numbers.
   double round_off(Pairs& pairs, std::size_t c) {
     const double reach = pairs.position(pairs.a(c)).w + pairs.position(pairs.b(c)).w;
     return 1e-14 * (1 + 0.1 * (reach + branch(pairs, c).cwiseAbs().maxCoeff()) / std::max(pairs.overlap(c), 1e-9));
   }
-  /// Size of the numbers in a field of this unit.
+  /// Order of magnitude of a field with this unit.
   double scale(Pairs& pairs, std::size_t c, const std::string& unit) {
     const double force = vec(pairs.row(c).force).norm(), radius = pairs.position(pairs.a(c)).w;
     return unit == "N" ? force : unit == "N m" ? force * radius : radius;
@@ -112,7 +112,7 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
                         .overlap = pairs.overlap(c)};
     return law_->stiffness(size, pairs.material(a), pairs.material(b)).normal * size.overlap;
   }
-  /// The moment that the law itself gives to b, without the arm of the shear force.
+  /// The moment of the law on b, without that of the shear force.
   Vec3 law_moment(Pairs& pairs, std::size_t c) {
     const Vec3 n = branch(pairs, c).normalized(), force = vec(pairs.row(c).force);
     const double radius_a = pairs.position(pairs.a(c)).w, radius_b = pairs.position(pairs.b(c)).w;
@@ -124,7 +124,7 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     return force - force.dot(n) * n;
   }
 
-  /// Two spheres of radius 1 and 0.7, in touch along z, with the given overlap.
+  /// Two spheres of radius 1 and 0.7 in contact along z, with the given overlap.
   Pairs two(double overlap, double dt = dt_) {
     Pairs pairs(*law_, dt);
     pairs.add({.position = Vec3::Zero(), .radius = 1});
@@ -139,7 +139,7 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
             .inverse_mass_b = pairs.velocity(1).w,
             .overlap = overlap};
   }
-  /// Slips by `distance` along x in one step, then stands still for one: springs keep, dashpots do not.
+  /// Slips by `distance` along x in one step, then rests for one step: springs keep their force, dashpots do not.
   static void slip(Pairs& pairs, double distance) {
     const double spin = -distance / pairs.dt / (pairs.position(0).w + pairs.position(1).w);
     set(pairs.spin(0), {0, spin, 0}), set(pairs.spin(1), {0, spin, 0});
@@ -184,7 +184,7 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
     pairs.closing = until;
     pairs.evaluate();
     EXPECT_TRUE(pairs.touching(first));
-    // It is awake as long as one touches, and sleeps again after.
+    // A block is evaluated as long as it has a contact, and may be skipped again afterwards.
     pairs.closing = 0;
     pairs.position(pairs.b(first)).x += 0.51;
     pairs.evaluate();
@@ -202,7 +202,7 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
   }
 };
 
-/// Links the tests with a program that includes this file.
+/// Links the tests into a program that includes this file.
 int contact_law_contract();
 inline const int contact_law_contract_is_linked = contact_law_contract();
 

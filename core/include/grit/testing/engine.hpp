@@ -1,4 +1,4 @@
-// What every engine must do. A test names its cases:
+// Tests that every engine must pass. A plugin's test lists its cases:
 //   INSTANTIATE_TEST_SUITE_P(Mine, EngineContract, testing::Values(…), engine_case_name);
 #pragma once
 
@@ -26,7 +26,7 @@ struct EngineCase {
 inline void PrintTo(const EngineCase& one, std::ostream* out) { *out << one.name; }
 inline std::string engine_case_name(const testing::TestParamInfo<EngineCase>& info) { return info.param.name; }
 
-/// What an engine does at an instant: settings as numbers, or force and moment of each body.
+/// The effect of an engine at one instant: its settings as numbers, or the force and moment on each body.
 inline std::vector<double> acted(const Engine& engine, const World& world) {
   std::vector<double> all;
   if (engine.phase() == Phase::settings) {
@@ -53,7 +53,7 @@ class EngineContract : public testing::TestWithParam<EngineCase> {
   std::shared_ptr<Engine> engine_ = GetParam().make();
 };
 
-/// Links the tests with a program that includes this file.
+/// Links the tests into a program that includes this file.
 int engine_contract();
 inline const int engine_contract_is_linked = engine_contract();
 

@@ -1,4 +1,4 @@
-// A world made by hand, for whatever looks at one: fill the public members.
+// A World whose state a test sets: fill the public members.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace grit {
 
-/// Of a wall that is solid behind a plane, whose unit normal looks at the bodies.
+/// Clearance from a plane wall that is solid behind; `normal` is its unit normal, towards the bodies.
 inline std::function<std::optional<Clearance>(const Vec3&)> flat_surface(const Vec3& point, const Vec3& normal) {
   return [=](const Vec3& x) { return Clearance{normal.dot(x - point), -normal}; };
 }
@@ -32,12 +32,12 @@ struct FakeWorld : World {
   Cell box{Vec3::Constant(-std::numeric_limits<double>::infinity()),
            Vec3::Constant(std::numeric_limits<double>::infinity())};
   Region whole{Vec3::Zero(), Vec3::Ones()};                                   ///< the specimen
-  std::optional<Region> with_grooves;                                         ///< its envelope, if that is another box
-  std::vector<std::function<std::optional<Clearance>(const Vec3&)>> surface;  ///< of walls; those without have none
-  std::vector<double> share;                                                  ///< of bodies' volumes
-  std::vector<Vec3> arm;                                                      ///< of bodies of clumps
+  std::optional<Region> with_grooves;                                         ///< the envelope, if it differs from the specimen
+  std::vector<std::function<std::optional<Clearance>(const Vec3&)>> surface;  ///< of walls, by index; may be shorter
+  std::vector<double> volume_fraction;                                                  ///< of bodies in clumps; empty: all 1
+  std::vector<Vec3> arm;                                                      ///< of bodies in clumps
 
-  /// A sphere of `density`; its index.
+  /// Adds a sphere of `density`; returns its index.
   std::uint32_t add(const Vec3& centre, double radius, const Vec3& speed = Vec3::Zero(),
                     const Vec3& turn = Vec3::Zero()) {
     const double mass = density * 4 / 3 * std::numbers::pi * radius * radius * radius;
@@ -51,15 +51,15 @@ struct FakeWorld : World {
     material.push_back(0);
     return index;
   }
-  /// A contact of two bodies with this force on b; the branch may cross a periodic side.
-  void touch(std::uint32_t a, std::uint32_t b, const Vec3& branch, const Vec3& force_on_b) {
+  /// Adds a contact of two bodies with this force on b [N]; the branch may cross a periodic side.
+  void add_contact(std::uint32_t a, std::uint32_t b, const Vec3& branch, const Vec3& force_on_b) {
     Contact pair;
     pair.a = a, pair.b = b;
     pair.overlap = position[a].w + position[b].w - branch.norm();
     fill(pair, branch, force_on_b);
   }
-  /// A touch of a wall, `branch` reaching from the body's centre to the touching point.
-  void touch_wall(std::uint32_t body, std::uint32_t wall_index, const Vec3& branch, const Vec3& force_on_wall) {
+  /// Adds a contact with a wall; `branch` reaches from the body's centre to the contact point [m].
+  void add_wall_contact(std::uint32_t body, std::uint32_t wall_index, const Vec3& branch, const Vec3& force_on_wall) {
     Contact touching;
     touching.a = body, touching.b = wall_index, touching.with_wall = true;
     touching.overlap = position[body].w - branch.norm();
@@ -87,7 +87,7 @@ struct FakeWorld : World {
     return found && found->distance < reach ? found : std::nullopt;
   }
   std::span<const Vec3> arms() const override { return arm; }
-  std::span<const double> volume_shares() const override { return share; }
+  std::span<const double> volume_fractions() const override { return volume_fraction; }
   std::span<const Departure> departures() const override { return departure; }
   const Cell& cell() const override { return box; }
   Region specimen() const override { return whole; }

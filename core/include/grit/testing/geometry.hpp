@@ -1,4 +1,4 @@
-// What every geometry must do. A plugin's test names its cases:
+// Tests that every geometry must pass. A plugin's test lists its cases:
 //   INSTANTIATE_TEST_SUITE_P(Plane, GeometryContract, testing::Values(…), case_name);
 #pragma once
 
@@ -25,8 +25,8 @@ namespace grit {
 
 using Setting = std::variant<double, bool, Vec3, std::string, std::vector<std::string>>;
 
-/// A geometry as a description makes it: declared, set, checked, prepared. Throws grit::Error with what the checks have
-/// to complain about.
+/// Makes a geometry as from a description: declares, sets, checks and prepares it. Throws grit::Error with the
+/// complaints of its checks.
 template <class G>
 std::shared_ptr<G> made(const std::vector<std::pair<std::string, Setting>>& settings) {
   auto geometry = std::make_shared<G>();
@@ -54,38 +54,38 @@ std::shared_ptr<G> made(const std::vector<std::pair<std::string, Setting>>& sett
   return geometry;
 }
 
-/// A straight way of a sphere's centre.
-struct Way {
+/// A straight path of a sphere's centre [m].
+struct Path {
   Vec3 from, to;
 };
 
-/// One geometry with what the contract needs to know of it.
+/// A geometry with the properties that the tests need.
 struct GeometryCase {
   std::string name;
   std::shared_ptr<const Geometry> geometry;
-  Bounds where;                  ///< centres are drawn from here
-  double radius;                 ///< of the largest sphere; the smallest has half of it
-  std::vector<Way> flanks = {};  ///< ways with exactly one touch, always of the same feature
-  std::vector<Way> across = {};  ///< ways along which forces must not jump
-  double facet_error = 0;        ///< how far the surface lies off its triangles [m]
-  /// Whether a touch may go on as one of another feature, with nearly the same normal: the kernel hands its memory on.
+  Bounds where;                  ///< random centres of spheres lie in this box [m]
+  double radius;                 ///< of the largest sphere [m]; the smallest has half of it
+  std::vector<Path> flanks = {};  ///< paths with exactly one contact, always of the same feature
+  std::vector<Path> across = {};  ///< paths along which forces must be continuous
+  double facet_error = 0;        ///< maximum distance of the surface from its triangles [m]
+  /// Whether a contact may continue on another feature with nearly the same normal; the kernel then keeps its history.
   bool hands_on = false;
-  /// Of curvature where the surface is hollow, the least [m].
+  /// Smallest radius of concave curvature [m].
   double hollow_radius = std::numeric_limits<double>::infinity();
-  /// Whether a centre is where a body's may be, not behind a face that is solid behind.
+  /// Whether a body may have its centre here; false behind a one-sided face.
   std::function<bool(const Vec3&)> in_front = [](const Vec3&) { return true; };
 };
 
 inline void PrintTo(const GeometryCase& one, std::ostream* out) { *out << one.name; }
 inline std::string case_name(const testing::TestParamInfo<GeometryCase>& info) { return info.param.name; }
 
-/// The touches of one sphere.
-inline std::vector<Touch> touches_of(const Geometry& geometry, const Vec3& centre, double radius,
+/// The contacts of one sphere.
+inline std::vector<SurfaceContact> contacts_of(const Geometry& geometry, const Vec3& centre, double radius,
                                      const Pose& pose = {}) {
   const Sphere sphere{centre, radius, 0};
-  std::vector<Touch> touches;
-  geometry.touch(pose, {&sphere, 1}, touches);
-  return touches;
+  std::vector<SurfaceContact> contacts;
+  geometry.find_contacts(pose, {&sphere, 1}, contacts);
+  return contacts;
 }
 
 /// The point of a triangle that is closest to p: Ericson, Real-Time Collision Detection (2005), 5.1.5.
@@ -134,7 +134,7 @@ class GeometryContract : public testing::TestWithParam<GeometryCase> {
   }
   void SetUp() override {
     triangles_ = shape().triangles();
-    ASSERT_FALSE(triangles_.empty()) << "give the geometry an extent that holds all of `where`";
+    ASSERT_FALSE(triangles_.empty()) << "give the geometry an extent that contains the box `where`";
   }
 
   static constexpr int samples = 4000;
@@ -142,7 +142,7 @@ class GeometryContract : public testing::TestWithParam<GeometryCase> {
   std::vector<Vec3> triangles_;
 };
 
-/// Links the tests with a program that includes this file.
+/// Links the tests into a program that includes this file.
 int geometry_contract();
 inline const int geometry_contract_is_linked = geometry_contract();
 

@@ -1,4 +1,4 @@
-// A world for the contracts of what looks at one, and how it goes on.
+// A world for the tests of probes and engines, and its state at later instants.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace grit {
 
-/// A wall at rest that bears nothing.
+/// A wall at rest without load.
 inline WallView still_wall(std::string name) {
   WallView wall;
   wall.name = std::move(name);
@@ -19,9 +19,9 @@ inline WallView still_wall(std::string name) {
   return wall;
 }
 
-/// A box of nx × ny × nz grains on a lattice, each pressed into its neighbours by a hundredth of its size, at (0, 0, 0)
-/// and up; forces, speeds and sizes differ from grain to grain. Walls "bottom" and "top-wall" bear the lowest and
-/// highest layer.
+/// A box of nx × ny × nz grains on a cubic lattice with its low corner at (0, 0, 0). The spacing is 0.99 diameters;
+/// forces, velocities and sizes differ from grain to grain. Walls "bottom" and "top-wall" carry the lowest and highest
+/// layer. `diameter` in m.
 inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3) {
   FakeWorld world;
   const double spacing = 0.99 * diameter;
@@ -43,21 +43,21 @@ inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3)
     for (int j = 0; j < ny; ++j)
       for (int k = 0; k < nz; ++k) {
         const int count = static_cast<int>(world.contact.size());
-        const auto touch = [&](int di, int dj, int dk, double pressure) {
+        const auto contact = [&](int di, int dj, int dk, double pressure) {
           if (i + di < nx && j + dj < ny && k + dk < nz)
-            world.touch(index(i, j, k), index(i + di, j + dj, k + dk), spacing * Vec3(di, dj, dk),
+            world.add_contact(index(i, j, k), index(i + di, j + dj, k + dk), spacing * Vec3(di, dj, dk),
                         volume * pressure * vary(count, 9) * Vec3(di + 0.1, dj, dk));
         };
-        touch(1, 0, 0, 50e3), touch(0, 1, 0, 60e3), touch(0, 0, 1, 100e3);
+        contact(1, 0, 0, 50e3), contact(0, 1, 0, 60e3), contact(0, 0, 1, 100e3);
       }
   for (int i = 0; i < nx; ++i)
     for (int j = 0; j < ny; ++j)
       for (const int side : {0, 1}) {
         const Vec3 out = side == 0 ? Vec3(0, 0, -1) : Vec3(0, 0, 1);
         auto& wall = world.wall[static_cast<std::size_t>(side)];
-        world.touch_wall(index(i, j, side == 0 ? 0 : nz - 1), static_cast<std::uint32_t>(side), 0.5 * spacing * out,
+        world.add_wall_contact(index(i, j, side == 0 ? 0 : nz - 1), static_cast<std::uint32_t>(side), 0.5 * spacing * out,
                          volume * 100e3 * out);
-        wall.force += volume * 100e3 * out, ++wall.touches;
+        wall.force += volume * 100e3 * out, ++wall.contacts;
       }
   for (auto& wall : world.wall) wall.area = nx * ny * volume, wall.pressure = std::abs(wall.force.z()) / wall.area;
   world.whole = {Vec3::Zero(), spacing * Vec3(nx, ny, nz)};
@@ -66,11 +66,11 @@ inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3)
   return world;
 }
 
-/// The same some looks later, 0.1 ms each: bodies have moved and turned, walls have gone on, forces have shifted from
-/// contact to contact, as nothing before them tells.
-inline FakeWorld later(FakeWorld world, int looks) {
-  const auto vary = [=](std::size_t i) { return std::sin(1.7 * looks * static_cast<double>(i % 13 + 1)); };
-  world.now += 1e-4 * looks, world.steps += 100u * static_cast<unsigned>(looks);
+/// The world some samples later, 0.1 ms each: bodies have moved and rotated, walls have moved, and contact forces have
+/// changed in ways that do not follow from the earlier state.
+inline FakeWorld later(FakeWorld world, int samples) {
+  const auto vary = [=](std::size_t i) { return std::sin(1.7 * samples * static_cast<double>(i % 13 + 1)); };
+  world.now += 1e-4 * samples, world.steps += 100u * static_cast<unsigned>(samples);
   const double diameter = world.mean_diameter();
   for (std::size_t i = 0; i < world.position.size(); ++i) {
     const double moved = 0.02 * diameter * vary(i);
@@ -80,11 +80,11 @@ inline FakeWorld later(FakeWorld world, int looks) {
     if (!world.displacement.empty()) world.displacement[i] += Vec3(moved, 0, 0.5 * moved);
   }
   for (std::size_t c = 0; c < world.contact.size(); ++c) {
-    const double share = 1 + 0.95 * vary(c);
-    world.contact[c].force *= share, world.contact[c].normal_force *= share;
+    const double factor = 1 + 0.95 * vary(c);
+    world.contact[c].force *= factor, world.contact[c].normal_force *= factor;
   }
   for (auto& wall : world.wall) {
-    wall.position.x() += 1e-6 * looks, wall.stage_position.x() += 1e-6 * looks;
+    wall.position.x() += 1e-6 * samples, wall.stage_position.x() += 1e-6 * samples;
     wall.velocity.x() += 1e-3 * vary(5), wall.pressure *= 1 + 0.5 * vary(2);
   }
   return world;

@@ -1,4 +1,4 @@
-// Contact laws for tests: made and given parameters without a description.
+// Creates contact laws for tests, with parameters set without a description.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ namespace grit::test {
 using Value = std::variant<double, bool, std::string>;
 using Values = std::map<std::string, Value>;
 
-/// Sets declared parameters by name; an unknown name, a wrong kind or a value out of range throws.
+/// Sets declared parameters by name. Throws std::invalid_argument for an unknown name, a wrong type or a value out of range.
 inline void assign(Parameters& parameters, const Values& values) {
   for (const auto& [name, value] : values) {
     const auto fail = [&, &key = name](const char* what) { throw std::invalid_argument(key + what); };
@@ -38,14 +38,14 @@ inline void assign(Parameters& parameters, const Values& values) {
   }
 }
 
-/// Parameters of a law, and those of its materials in the order of their indices.
+/// Parameters of a law, of its materials by index, and of interfaces by pairs of indices.
 struct LawValues {
   Values settings;
   std::vector<Values> materials;
   std::map<std::pair<std::size_t, std::size_t>, Values> interfaces;
 };
 
-/// The law of the plugin that this test is linked with; materials are called "m0", "m1", ….
+/// Creates the law of the plugin that the test is linked with; materials have the names "m0", "m1", ….
 inline std::unique_ptr<ContactLaw> make_law(const LawValues& values) {
   std::unique_ptr<ContactLaw> law(grit_plugin()->make_contact());
   Parameters settings;

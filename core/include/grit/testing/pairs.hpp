@@ -1,4 +1,4 @@
-// Spheres, and pairs of them in the blocks that a contact law is called with.
+// Spheres, and their pairs in the blocks that a contact law evaluates.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,12 @@ struct Ball {
   Vec3 position = Vec3::Zero();
   double radius = 1;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
-  double mass = 1;  ///< infinite: cannot be moved
+  double mass = 1;  ///< kg; infinite: fixed
   std::uint8_t material = 0;
 };
 
-/// As the kernel lays them out: padding pairs a body with one that is far away, whose index is the number of bodies.
+/// Pairs in the memory layout of the kernel. Padding pairs a body with a dummy body far away, whose index is the number
+/// of bodies.
 class Pairs {
  public:
   explicit Pairs(const ContactLaw& law, double dt) : law_(&law), fields_(law.state()), dt(dt) { close(); }
@@ -34,7 +35,7 @@ class Pairs {
     close();
     return static_cast<std::uint32_t>(count() - 1);
   }
-  /// Pairs a with b, in the next place; returns the place.
+  /// Pairs a with b at the next position; returns the position.
   std::size_t pair(std::uint32_t a, std::uint32_t b, std::uint8_t image = 0) {
     if (used_ == a_.size()) {
       a_.resize(used_ + block_size, 0), b_.resize(used_ + block_size, pad_), image_.resize(used_ + block_size, 0);
@@ -44,7 +45,7 @@ class Pairs {
     a_[used_] = a, b_[used_] = b, image_[used_] = image;
     return used_++;
   }
-  /// Goes on with another law; they remember the fields that it has too.
+  /// Changes to another law; fields of the history that both have are kept.
   void change(const ContactLaw& law) {
     const std::vector<StateField> before = std::exchange(fields_, law.state());
     law_ = &law;
@@ -55,7 +56,7 @@ class Pairs {
         std::copy_n(all.begin() + static_cast<std::ptrdiff_t>((block * before.size() + from) * block_size), block_size,
                     state_.begin() + static_cast<std::ptrdiff_t>((block * fields_.size() + to) * block_size));
   }
-  /// Leaves the next place to padding.
+  /// Makes the next pair a padding pair.
   void skip() { pair(0, pad_); }
 
   std::size_t count() const { return position_.size() - 1; }
@@ -76,9 +77,9 @@ class Pairs {
     for (std::size_t f = 0; f < fields_.size(); ++f) numbers.push_back(state(place, f));
     return numbers;
   }
-  void mark_touching(std::size_t place) { touching_[place / block_size] |= 1u << (place % block_size); }
+  void mark_contacts(std::size_t place) { touching_[place / block_size] |= 1u << (place % block_size); }
   bool touching(std::size_t place) const { return (touching_[place / block_size] >> (place % block_size) & 1) != 0; }
-  /// What the law answered; `row` acts on b, `sum` is all that a's were given.
+  /// Results of the law: `row` acts on b, `sum` is the total of a body as `a` of its pairs.
   const ContactRow& row(std::size_t place) const { return row_[place]; }
   const BodySum& sum(std::size_t body) const { return sum_[body]; }
   double overlap(std::size_t place) const { return row_[place].moment.w; }
@@ -86,9 +87,9 @@ class Pairs {
 
   void evaluate() { run(&ContactLaw::evaluate_pairs); }
   void evaluate_reference() { run(&ContactLaw::evaluate_pairs_reference); }
-  /// As a chunk that has all bodies: sums of both, no rows.
+  /// As a chunk with all bodies: sums of both bodies, no rows.
   void evaluate_within() { run(&ContactLaw::evaluate_pairs, true); }
-  /// Once more at the same instant.
+  /// Evaluates again at the same instant.
   void evaluate_again() { run(&ContactLaw::evaluate_pairs, false, true); }
   /// Moves all bodies through one step, then evaluates.
   void step() {
@@ -136,7 +137,7 @@ class Pairs {
                     .last_block = a_.size() / block_size,
                     .last_near = a_.size() / block_size,
                     .last_body = static_cast<std::uint32_t>(count() - 1),
-                    .nobody = pad_,
+                    .dummy_body = pad_,
                     .next = nullptr,
                     .next_first = 0,
                     .next_count = 0,
@@ -170,14 +171,14 @@ class Pairs {
   double dt;
   bool one_material = true;
   double closing = 0;
-  std::vector<float> asleep_until;  ///< by block; empty: none sleeps
-  std::vector<ImageShift> shifts;   ///< the first must be none
+  std::vector<float> asleep_until;  ///< by block; empty: none is skipped
+  std::vector<ImageShift> shifts;   ///< the first must be zero
 };
 
 inline Vec3 vec(const Row& row) { return xyz(row); }
 inline void set(Row& row, const Vec3& v) { row = {v.x(), v.y(), v.z(), row.w}; }
 
-/// One sphere on a wall at rest or in motion: the wall's outer normal as seen from the sphere, and where it is.
+/// A sphere in contact with a wall at rest or in motion.
 class WallPair {
  public:
   WallPair(const ContactLaw& law, const Ball& ball, double dt) : law_(&law), dt_(dt), state_(law.state().size()) {
@@ -185,16 +186,16 @@ class WallPair {
     velocity = {ball.velocity.x(), ball.velocity.y(), ball.velocity.z(), 1 / ball.mass};
     spin = {ball.spin.x(), ball.spin.y(), ball.spin.z(), 1 / (0.4 * ball.mass * ball.radius * ball.radius)};
   }
-  /// The touch must be filled in by the caller before.
+  /// Evaluates `contact`, which the caller must have set.
   void evaluate() {
     sum = {};
-    touch.body = 0;
+    contact.body = 0;
     WallBatch batch{.position = &position,
                     .velocity = &velocity,
                     .spin = &spin,
                     .material = nullptr,
                     .count = 1,
-                    .touch = &touch,
+                    .contact = &contact,
                     .dt = dt_,
                     .state = state_.data(),
                     .row = &row,
@@ -203,7 +204,7 @@ class WallPair {
                     .losses = nullptr};
     law_->evaluate_walls(batch);
   }
-  /// Goes on with another law; it remembers the fields that it has too.
+  /// Changes to another law; fields of the history that both have are kept.
   void change(const ContactLaw& law) {
     const std::vector<StateField> before = law_->state(), now = law.state();
     const std::vector<double> all = std::exchange(state_, std::vector<double>(now.size(), 0.0));
@@ -212,11 +213,11 @@ class WallPair {
   }
   void clear() { state_.assign(state_.size(), 0.0); }
   std::vector<double>& state() { return state_; }
-  /// The moment that the law itself gives to the wall, without the lever of the shear force.
-  Vec3 law_moment() const { return vec(row.moment) - touch.overlap * touch.normal.cross(vec(row.force)); }
+  /// The moment of the law on the wall, without that of the shear force.
+  Vec3 law_moment() const { return vec(row.moment) - contact.overlap * contact.normal.cross(vec(row.force)); }
 
   Row position, velocity, spin;
-  WallTouch touch{.normal = -Vec3::UnitZ(),
+  WallContact contact{.normal = -Vec3::UnitZ(),
                   .normal_before = -Vec3::UnitZ(),
                   .velocity = Vec3::Zero(),
                   .spin = Vec3::Zero(),

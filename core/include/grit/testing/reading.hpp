@@ -1,4 +1,4 @@
-// What contracts need of the kernel: reading keys into parameters, and units.
+// Functions of grit that the tests of plugins need: reading keys into parameters, and units.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace grit {
 
-/// Reads keys, as an object of a description has them, into declared parameters, and runs their checks. Returns every
-/// problem; parameters with a problem keep their defaults.
+/// Reads an object of a description into declared parameters and runs their checks. Returns all problems; parameters with
+/// a problem keep their defaults.
 std::vector<Problem> read_parameters(const Description& keys, Parameters& parameters);
 
-/// Whether UDUNITS-2 knows the unit; "1" is one, "" is none.
+/// Whether UDUNITS-2 knows the unit; true for "1", false for "".
 bool is_unit(const std::string& text);
 
 }  // namespace grit

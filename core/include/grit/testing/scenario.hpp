@@ -1,7 +1,7 @@
-// What every scenario must do, and how its test reads it. A plugin's test names its cases:
+// Tests that every scenario must pass, and functions to read one in a test. A plugin's test lists its cases:
 //   INSTANTIATE_TEST_SUITE_P(Heap, ScenarioContract, testing::Values(ScenarioCase{"defaults", make_scenario<Heap>}),
 //   scenario_case_name);
-// expect_golden() compares with expansion.json in the folder where the test runs: for a plugin its own folder.
+// expect_golden() compares with expansion.json in the working directory of the test: for a plugin, its own folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ std::unique_ptr<S> made_scenario(const Description& keys = Description::object()
   return std::move(result.scenario);
 }
 
-/// "POINTER MESSAGE" of each problem that reading finds, "" if none.
+/// "POINTER MESSAGE" of each problem found on reading; "" if there is none.
 template <class S>
 std::string problems_of(const Description& keys) {
   std::string all;
@@ -52,7 +52,7 @@ std::string problems_of(const Description& keys) {
   return all;
 }
 
-/// What expand() says against the wish, "" if nothing.
+/// The message of the error that expand() throws; "" if it throws none.
 template <class S>
 std::string refusal(const Description& keys) {
   try {
@@ -63,12 +63,12 @@ std::string refusal(const Description& keys) {
   return "";
 }
 
-/// Compares the expansion of all defaults with expansion.json, so that a change of it is seen for what it is. After a
-/// wanted change, replace the file by what this has written.
+/// Compares the expansion `now` of all defaults with expansion.json, so that changes are noticed. After an intended
+/// change, replace expansion.json by the file that this function writes.
 inline void expect_golden(const Description& now, const std::string& name) {
   const auto written = std::filesystem::temp_directory_path() / (name + "-expansion.json");
   std::ofstream(written) << now.dump(2) << '\n';
-  const std::string advice = "what the expansion is now: " + written.string();
+  const std::string advice = "the present expansion is in " + written.string();
   std::ifstream file("expansion.json");
   ASSERT_TRUE(file) << "there is no expansion.json; " << advice;
   const Description flat_now = now.flatten(), flat_golden = Description::parse(file).flatten();
@@ -84,17 +84,17 @@ inline void expect_golden(const Description& now, const std::string& name) {
   }
 }
 
-/// A scenario whose defaults, and `keys`, expand to a description.
+/// A scenario with keys that expand to a description.
 struct ScenarioCase {
   std::string name;
   std::function<std::unique_ptr<Scenario>()> make;
-  Description keys = Description::object();  ///< what has no default, or more
+  Description keys = Description::object();  ///< keys that differ from their defaults or have none
 };
 
 inline void PrintTo(const ScenarioCase& one, std::ostream* out) { *out << one.name; }
 inline std::string scenario_case_name(const testing::TestParamInfo<ScenarioCase>& info) { return info.param.name; }
 
-/// What makes a case's scenario.
+/// Function that creates the scenario of a case.
 template <class S>
 std::unique_ptr<Scenario> make_scenario() {
   return std::make_unique<S>();
@@ -113,7 +113,7 @@ class ScenarioContract : public testing::TestWithParam<ScenarioCase> {
   }
 };
 
-/// Links the tests with a program that includes this file.
+/// Links the tests into a program that includes this file.
 int scenario_contract();
 inline const int scenario_contract_is_linked = scenario_contract();
 

@@ -1,5 +1,5 @@
-// Averages over cells that overlap. The edges of all cells cut a region into parts; each body and each contact is
-// shared out among the few parts that it meets, once, and a cell sums up its parts.
+// Averages over overlapping cells. The edges of all cells divide a region into parts. Each body and each contact is
+// distributed once over the few parts that it intersects; a cell is the sum of its parts.
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 
 namespace grit {
 
-/// Overlapping cells along one axis, and the strips between any two neighbouring edges of cells.
+/// Overlapping cells along one axis, and the strips between neighbouring cell edges.
 class CellAxis {
  public:
-  /// Cells of `size`, each moved by `step` from the one before, as many as fit between `low` and `high`, in the middle;
-  /// one cell from `low` to `high` where they lie nearer than `size`. All in m.
+  /// As many cells of `size` at a spacing of `step` as fit between `low` and `high`, centred; one cell from `low` to `high`
+  /// if that is shorter than `size`. All in m.
   CellAxis(double low, double high, double size, double step) {
-    constexpr double slack = 1e-9;  // of a step: what counts as the same edge
+    constexpr double slack = 1e-9;  // of a step: edges this close count as one
     const double length = high - low;
     size = std::min(size, length), step = std::min(step, length);
     const auto more = static_cast<std::size_t>(std::floor((length - size) / step + slack));
@@ -46,21 +46,21 @@ class CellAxis {
 
   struct Cell {
     double low, high;        ///< m
-    std::size_t begin, end;  ///< its strips
+    std::size_t begin, end;  ///< its strips, end excluded
   };
   const std::vector<Cell>& cells() const { return cells_; }
   std::size_t strips() const { return edges_.size() - 1; }
   /// Edges of the strips [m], ascending; strip i lies between edge i and edge i + 1.
   const std::vector<double>& edges() const { return edges_; }
-  /// What a cell does not share with the next one, all of it where there is no other [m].
+  /// Length of a cell that does not overlap the next one; all of it if there is only one cell [m].
   double own() const { return own_; }
-  /// The strip that holds x, low edge included; the nearest one for x outside.
+  /// The strip that contains x, low edge included; the nearest strip for x outside.
   std::size_t strip(double x) const {
     const auto above = std::upper_bound(edges_.begin(), edges_.end(), x) - edges_.begin();
     return static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(above - 1, 0, static_cast<std::ptrdiff_t>(strips()) - 1));
   }
-  /// The same where it is strip `from` or one of the few behind it.
+  /// The same, searched upwards from strip `from`.
   std::size_t strip(double x, std::size_t from) const {
     while (from + 1 < strips() && edges_[from + 1] <= x) ++from;
     return from;
@@ -72,19 +72,19 @@ class CellAxis {
   double own_ = 0;
 };
 
-/// Cells of a region along all three axes, numbered with z running fastest, and the parts that their edges cut the
-/// region into, numbered alike.
+/// Cells of a region along all three axes, and the parts into which their edges divide it. Both are numbered with z
+/// running fastest.
 class AveragingCells {
  public:
   static constexpr double most_parts = 8e6;
 
-  /// Cells of `size` moved by `step` [m, along x, y, z], as long as the region where they are infinite. None where the
-  /// region has no volume or a size is not above 0 (the mean diameter of no bodies), or where there would be more than
-  /// `most_parts`. Periodic images count as `domain` has them.
+  /// Cells of `size` at a spacing of `step` along x, y, z [m]; an infinite size is that of the region. No cells if the
+  /// region has no volume, if a size is not above 0 (without bodies the mean diameter is 0), or if there would be more than
+  /// `most_parts` parts. Periodic images are those of `domain`.
   AveragingCells(const Cell& domain, const Region& region, const Vec3& size, const Vec3& step) : domain_(domain) {
     if (!(region.volume() > 0) || !std::isfinite(region.volume())) return;
     if (!(size.minCoeff() > 0 && step.minCoeff() > 0)) return;
-    double parts = 1;  // at most: each cell has two edges
+    double parts = 1;  // upper bound: each cell has two edges
     for (int k = 0; k < 3; ++k) {
       const double length = region.high[k] - region.low[k];
       parts *= 1 + 2 * std::max(0.0, (length - std::min(size[k], length)) / step[k]);
@@ -103,7 +103,7 @@ class AveragingCells {
   }
   const CellAxis& along(int k) const { return axes_[axis(k)]; }
   std::size_t part(std::size_t i, std::size_t j, std::size_t k) const { return (i * strips(1) + j) * strips(2) + k; }
-  /// Where cell n is.
+  /// The box of cell n.
   Region cell(std::size_t n) const {
     Region box;
     for (int k = 2; k >= 0; --k) {
@@ -113,11 +113,11 @@ class AveragingCells {
     }
     return box;
   }
-  /// What a cell does not share with the next ones [m]: what to fill on a map.
+  /// Size of a cell that does not overlap the next ones [m]: the size to draw on a map.
   Vec3 own() const { return {axes_[0].own(), axes_[1].own(), axes_[2].own()}; }
 
-  /// Calls visit(part, volume) for each part that a sphere may reach into, with the volume [m³] that lies there, to
-  /// 1e-12 of the sphere's.
+  /// Calls visit(part, volume) for each part that a sphere may intersect, with the volume [m³] of the intersection; error
+  /// below 1e-12 of the sphere's volume.
   template <class Visit>
   void share_out_sphere(const Vec3& centre, double radius, const Visit& visit) const {
     const Vec3 reach = Vec3::Constant(radius);
@@ -127,13 +127,13 @@ class AveragingCells {
         first[axis(k)] = along(k).strip(place[k] - radius),
         count[axis(k)] = along(k).strip(place[k] + radius, first[axis(k)]) - first[axis(k)] + 1;
       const auto [x, y, z] = first;
-      // What lies in all parts up to one: most of these are cut by fewer planes than the parts are.
+      // Cumulative volumes over all parts up to one: fewer planes cut them than the parts.
       Volumes volumes;
       for (std::size_t i = 1; i <= count[0]; ++i)
         for (std::size_t j = 1; j <= count[1]; ++j)
           for (std::size_t k = 1; k <= count[2]; ++k)
             volumes.push_back(sphere_box_volume(place, radius, corner(x, y, z), corner(x + i, y + j, z + k)));
-      // Differences along one axis after the other, from the end on, leave each part its own.
+      // Differences along one axis after the other, from the end, give the volume of each part.
       std::size_t apart = 1;
       for (int axis_of = 2; axis_of >= 0; --axis_of) {
         const std::size_t line = apart * count[axis(axis_of)];
@@ -141,7 +141,7 @@ class AveragingCells {
           for (std::size_t n = start + line; n-- > start + apart;) volumes[n] -= volumes[n - apart];
         apart = line;
       }
-      const double rounding = 1e-14 * radius * radius * radius;  // is nothing where there was nothing
+      const double rounding = 1e-14 * radius * radius * radius;  // volumes below this are 0
       std::size_t n = 0;
       for (std::size_t i = 0; i < count[0]; ++i)
         for (std::size_t j = 0; j < count[1]; ++j)
@@ -150,32 +150,32 @@ class AveragingCells {
     });
   }
 
-  /// Calls visit(part, from, to) for each piece of a branch that lies in one part, from 0 at its start to 1 at its end.
+  /// Calls visit(part, from, to) for the piece of a branch in each part; from and to are 0 at its start, 1 at its end.
   template <class Visit>
   void share_out_branch(const Branch& branch, const Visit& visit) const {
     const Vec3 zero = Vec3::Zero();
     Cuts cuts;
-    each_image(branch.start, branch.way.cwiseMin(zero), branch.way.cwiseMax(zero), [&](const Vec3& start) {
+    each_image(branch.start, branch.vector.cwiseMin(zero), branch.vector.cwiseMax(zero), [&](const Vec3& start) {
       double from = 0, to = 1;
       for (int k = 0; k < 3; ++k) {
-        if (branch.way[k] == 0) {
+        if (branch.vector[k] == 0) {
           if (!(start[k] >= inner_.low[k] && start[k] < inner_.high[k])) return;
           continue;
         }
-        const double low = (inner_.low[k] - start[k]) / branch.way[k],
-                     high = (inner_.high[k] - start[k]) / branch.way[k];
+        const double low = (inner_.low[k] - start[k]) / branch.vector[k],
+                     high = (inner_.high[k] - start[k]) / branch.vector[k];
         from = std::max(from, std::min(low, high)), to = std::min(to, std::max(low, high));
       }
       if (!(to > from)) return;
       cuts.assign({from, to});
-      for (int k = 0; k < 3; ++k) cut(along(k), start[k], branch.way[k], from, to, cuts);
+      for (int k = 0; k < 3; ++k) cut(along(k), start[k], branch.vector[k], from, to, cuts);
       std::sort(cuts.begin(), cuts.end());
       for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-        visit(part_at(start + 0.5 * (cuts[i] + cuts[i + 1]) * branch.way), cuts[i], cuts[i + 1]);
+        visit(part_at(start + 0.5 * (cuts[i] + cuts[i + 1]) * branch.vector), cuts[i], cuts[i + 1]);
     });
   }
 
-  /// Calls visit(part) for the part that a point lies in, if it lies in any.
+  /// Calls visit(part) for the part that contains a point, if there is one.
   template <class Visit>
   void place(const Vec3& point, const Visit& visit) const {
     const Vec3 zero = Vec3::Zero();
@@ -185,10 +185,10 @@ class AveragingCells {
     });
   }
 
-  /// The sum of each cell's parts. Sums are zero when they are made, and can be added up by +=.
+  /// The sum of the parts of each cell. `Sums` is zero on construction and has +=.
   template <class Sums>
   std::vector<Sums> sum_up(const std::vector<Sums>& of_parts) const {
-    // One axis after the other costs a cell the sum of its strips along them, not their product.
+    // One axis after the other: the cost per cell is the sum of the numbers of strips, not their product.
     std::vector<Sums> sums = of_parts;
     std::size_t slower = 1, faster = of_parts.size();
     for (const CellAxis& axis : axes_) {
@@ -215,8 +215,8 @@ class AveragingCells {
     return part(along(0).strip(point[0]), along(1).strip(point[1]), along(2).strip(point[2]));
   }
 
-  /// Calls visit(place) for each periodic image of `place` for which place + low … place + high may reach into the
-  /// cells. What is not finite, in a run that has failed, is nowhere.
+  /// Calls visit(image) for each periodic image of `place` for which image + low … image + high may intersect the cells.
+  /// None for positions that are not finite, as in a failed run.
   template <class Visit>
   void each_image(const Vec3& place, const Vec3& low, const Vec3& high, const Visit& visit) const {
     if (axes_.empty() || !(place + low).allFinite() || !(place + high).allFinite()) return;
@@ -239,7 +239,7 @@ class AveragingCells {
 
   using Volumes = boost::container::small_vector<double, 27>;
   using Cuts = boost::container::small_vector<double, 16>;
-  /// Notes where between `from` and `to` a branch crosses edges of strips.
+  /// Appends the points between `from` and `to` where a branch crosses edges of strips.
   static void cut(const CellAxis& axis, double start, double way, double from, double to, Cuts& cuts) {
     if (way == 0) return;
     const double one = start + from * way, other = start + to * way, high = std::max(one, other);
@@ -249,11 +249,11 @@ class AveragingCells {
   }
 
   Cell domain_;
-  Region inner_{Vec3::Zero(), Vec3::Zero()};  // all cells; they may leave a rim of the region free
+  Region inner_{Vec3::Zero(), Vec3::Zero()};  // box of all cells; may be smaller than the region
   std::vector<CellAxis> axes_;                // three, or none
 };
 
-/// Which cells a probe averages over, and the slices of its profile.
+/// Parameters of a probe that averages over cells and over the slices of a profile.
 class Averaging {
  public:
   std::optional<Vec3> region_low, region_high;  ///< m
@@ -262,17 +262,17 @@ class Averaging {
   std::string along = "z";
   std::int64_t slices = 20;
 
-  /// `sides` says where the region ends that is not given.
+  /// `sides`: default of the region's sides, for the documentation.
   void declare(Parameters& p, const std::string& sides) {
-    p.add("region_low", region_low).unit("m").doc("lower corner of the region that is looked at; left out: " + sides);
-    p.add("region_high", region_high).unit("m").doc("its upper corner; left out: " + sides);
+    p.add("region_low", region_low).unit("m").doc("lower corner of the averaged region; default: " + sides);
+    p.add("region_high", region_high).unit("m").doc("upper corner of the averaged region; default: " + sides);
     p.add("cell_size", cell_size).at_least(0.1).doc("side of an averaging cell over the mean diameter");
-    p.add("cell_step", cell_step).at_least(0.1).doc("distance between neighbouring cells over the mean diameter");
+    p.add("cell_step", cell_step).at_least(0.1).doc("spacing of averaging cells over the mean diameter");
     p.add("depth_axis", depth_axis)
         .one_of({"", "x", "y", "z"})
-        .doc("axis along which a cell is as deep as the region; empty: cells are cubes");
+        .doc("axis along which a cell extends through the whole region; empty: cells are cubes");
     p.add("along", along).one_of({"x", "y", "z"}).doc("axis of the profile");
-    p.add("slices", slices).at_least(1).at_most(10000).doc("of the profile, of equal thickness, across the region");
+    p.add("slices", slices).at_least(1).at_most(10000).doc("number of slices of equal thickness of the profile across the region");
     p.check(
         [this](const Complain& complain) {
           if (!region_low || !region_high) return;
@@ -284,7 +284,7 @@ class Averaging {
         {"region_low", "region_high"});
   }
 
-  /// `box` where the description gives no corner.
+  /// The region; `box` for a corner that is not given.
   Region region(Region box) const {
     box.low = region_low.value_or(box.low), box.high = region_high.value_or(box.high);
     return box;
@@ -292,7 +292,7 @@ class Averaging {
   AveragingCells cells(const World& world, const Region& box) const {
     const double diameter = world.mean_diameter();
     Vec3 size = Vec3::Constant(cell_size * diameter);
-    // Without bodies there is no size: not along the depth either.
+    // Without bodies there are no cells, not even along the depth.
     if (!depth_axis.empty() && diameter > 0) size[depth_axis[0] - 'x'] = std::numeric_limits<double>::infinity();
     return {world.cell(), box, size, Vec3::Constant(cell_step * diameter)};
   }
@@ -301,25 +301,27 @@ class Averaging {
     size[profile_axis()] = (box.high - box.low)[profile_axis()] / static_cast<double>(slices);
     return {world.cell(), box, size, size};
   }
-  /// The middles of slices [m].
-  void fill_places(const Region& box, std::span<double> places) const {
+  /// Writes the middles of slices [m] to position_channel().
+  void fill_places(const Region& box, ChannelValues& values) const {
     const double low = box.low[profile_axis()], height = box.high[profile_axis()] - low;
+    const auto places = values.list(place_name);
     for (std::size_t s = 0; s < places.size(); ++s)
       places[s] = low + (static_cast<double>(s) + 0.5) / static_cast<double>(slices) * height;
   }
-  Channel place_channel() const {
-    return {"place", "m", "middle of each slice of the profile, along " + along, {static_cast<std::size_t>(slices)}};
+  Channel position_channel() const {
+    return {place_name, "m", "middle of each slice of the profile along " + along, {static_cast<std::size_t>(slices)}};
   }
 
  private:
+  static constexpr const char* place_name = "position";
   int profile_axis() const { return along[0] - 'x'; }
 };
 
-/// Where cells are, as a map is drawn of them: the first two fields of a probe's frames.
+/// Centre and size of cells, to draw a map: the first two fields of a probe's frames.
 inline std::vector<Field> map_of(const AveragingCells& cells) {
   std::vector<Field> fields{
-      {"centre", "m", "of each averaging cell", 3, {}},
-      {"size", "m", "what a cell does not share with the next one: what to fill on a map", 3, {}}};
+      {"centre", "m", "centre of each averaging cell", 3, {}},
+      {"size", "m", "size of a cell that does not overlap the next one: the size to draw on a map", 3, {}}};
   for (std::size_t n = 0; n < cells.cells(); ++n) {
     const Region box = cells.cell(n);
     const Vec3 centre = 0.5 * (box.low + box.high), own = cells.own();

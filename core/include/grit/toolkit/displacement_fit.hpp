@@ -1,4 +1,4 @@
-// Strain of places in a plane that have moved.
+// Strain in a plane from the displacements of points.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,23 +9,23 @@
 
 namespace grit {
 
-/// The best linear displacement field of some places, u = ū + H (X − X̄), by least squares.
+/// Linear displacement field of points, u = ū + H (X − X̄), by least squares.
 class DisplacementFit {
  public:
   void add(const Eigen::Vector2d& place, const Eigen::Vector2d& moved) {
     places_.push_back(place), moves_.push_back(moved);
   }
-  /// Forgets them, and keeps their room.
+  /// Removes all points; keeps their memory.
   void clear() { places_.clear(), moves_.clear(); }
   int points() const { return static_cast<int>(places_.size()); }
-  /// How far they have gone, in the mean; 0 without any.
+  /// Mean displacement; 0 without points.
   Eigen::Vector2d moved() const {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (const Eigen::Vector2d& one : moves_) sum += one;
     return moves_.empty() ? sum : Eigen::Vector2d(sum / static_cast<double>(moves_.size()));
   }
-  /// Green and Lagrange's strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` places, or where
-  /// they lie so nearly on one line that their spread along and across it has a ratio of less than `flat`.
+  /// Green–Lagrange strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` points, or if they lie nearly
+  /// on a line: the determinant of their scatter matrix over the square of its trace is at most `flat`.
   std::array<double, 3> green(std::size_t least, double flat) const {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     if (places_.size() < least) return {unknown, unknown, unknown};

@@ -16,12 +16,12 @@ double over_masses(const World& world, Of of) {
   return sum;
 }
 
-/// Of all grains that are there [kg].
+/// Mass of all grains in the domain [kg].
 inline double mass_of(const World& world) {
   return over_masses(world, [](const Vec3&) { return 1.0; });
 }
 
-/// Of all that have left through open sides [kg].
+/// Mass of all bodies that left through open sides [kg].
 inline double departed_mass_of(const World& world) {
   double sum = 0;
   for (const Departure& gone : world.departures()) sum += gone.mass;

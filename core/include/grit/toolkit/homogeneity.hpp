@@ -1,4 +1,4 @@
-// How even a specimen is before its test.
+// Probes of the homogeneity of a prepared specimen.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace grit {
 
-/// Adds probes that look as the stage `settle` begins and as it ends: `prepared-cells`, the void ratio of averaging
-/// cells, as deep as the specimen along `depth_axis`, or cubes where that is empty, and `prepared-chains`, fabric,
-/// forces by direction and linear chains. How much cells differ and the anisotropy are told at the end of a run. Needs
-/// the stages and the output.
-inline void look_how_even_it_is(Description& description, const std::string& depth_axis) {
+/// Adds two probes that are sampled at the start and end of the stage `settle`: `prepared-cells`, void ratios of
+/// averaging cells that extend through the specimen along `depth_axis` (cubes if that is empty), and `prepared-chains`:
+/// fabric, forces by direction and linear force chains. The scatter of the cells and the anisotropy are added to the
+/// summary of a run. The description must already contain its stages and output.
+inline void add_homogeneity_probes(Description& description, const std::string& depth_axis) {
   for (const Description& stage : description.at("stages")) {
     if (stage.at("name") != "settle") continue;
     const Description twice = {{"stages", {"settle"}}, {"every_time", stage.at("limit")}, {"frames", false}};

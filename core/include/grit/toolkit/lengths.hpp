@@ -1,4 +1,4 @@
-// Lengths that scenarios refuse, and values as they tell them.
+// Checks of lengths in scenarios, and values for their messages.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace grit {
 
-/// A value with so many digits that values which are not the same are told apart.
+/// A value with enough digits that different values look different.
 inline std::string quantity(double value, const std::string& unit) {
   std::ostringstream text;
   text.precision(12);
@@ -18,7 +18,8 @@ inline std::string quantity(double value, const std::string& unit) {
 }
 inline std::string metres(double length) { return quantity(length, "m"); }
 
-/// Complains of the side `key` of a specimen or silo [m] that is shorter than so many of the largest grains.
+/// Complains about the side `key` [m] of a specimen or silo that is shorter than `grains` diameters of the largest
+/// grains.
 inline void check_side(const Complain& complain, const std::string& key, double side, int grains,
                        double largest_diameter) {
   if (side >= grains * largest_diameter) return;
@@ -26,15 +27,15 @@ inline void check_side(const Complain& complain, const std::string& key, double 
            "at least " + std::to_string(grains) + " of the largest grains, " + metres(grains * largest_diameter));
 }
 
-/// Complains of grooves that follow one another closer than they are wide [m]; a spacing of 0 is as close as they can.
-/// Geometry saw-tooth takes as much for the same length. And of those of which a wall of some `length` [m] has none.
+/// Complains about grooves with a spacing below their width [m] (a spacing of 0 stands for the width), and about a wall
+/// too short for one groove. The tolerance is that of the geometry saw-tooth.
 inline void check_groove_spacing(const Complain& complain, double spacing, double width, double length) {
   constexpr double same_length = 1e-9;
   if (spacing > 0 && spacing < (1 - same_length) * width)
-    complain("groove_spacing", metres(spacing), "at least the width of a groove, " + metres(width) + "; or left out");
-  if (const double from_groove_to_groove = std::max(spacing, width); from_groove_to_groove > (1 + same_length) * length)
-    complain(spacing > width ? "groove_spacing" : "roughness", "grooves " + metres(from_groove_to_groove) + " apart",
-             "at least one on the wall, of " + metres(length));
+    complain("groove_spacing", metres(spacing), "at least the width of a groove, " + metres(width) + "; or omit it");
+  if (const double period = std::max(spacing, width); period > (1 + same_length) * length)
+    complain(spacing > width ? "groove_spacing" : "roughness", "grooves " + metres(period) + " apart",
+             "at most the length of the wall, " + metres(length));
 }
 
 }  // namespace grit

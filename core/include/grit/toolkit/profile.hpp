@@ -1,4 +1,4 @@
-// Profiles across a specimen, and the shear zone in one.
+// Profiles of quantities across a specimen, and the shear zone in a profile.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -16,27 +15,27 @@
 
 namespace grit {
 
-/// What bodies have, at places from one side of the specimen to the other.
+/// Profile of a quantity of bodies at points from one side of the specimen to the other.
 class Profile {
  public:
   std::string across = "z";
-  std::int64_t places = 40;
-  double reach = 2;  ///< over which bodies count, less and less, mean diameters
+  std::int64_t points = 40;
+  double averaging_length = 2;  ///< half width of the weight function, mean diameters
 
   void declare(Parameters& p) {
     p.add("across", across)
         .one_of({"x", "y", "z"})
-        .doc("axis of the profile, from one side of the specimen to the other; not a periodic one");
-    p.add("places", places).at_least(3).at_most(100000).doc("of the profile, evenly spaced, the sides included");
-    p.add("reach", reach)
+        .doc("axis of the profile, from one side of the specimen to the other; not periodic");
+    p.add("points", points).at_least(3).at_most(100000).doc("number of points of the profile, evenly spaced, both sides included");
+    p.add("averaging_length", averaging_length)
         .at_least(0.1)
-        .doc("over which a body counts, less and less with its distance from a place, over the mean diameter");
+        .doc("distance at which the weight of a body, 1 at a point, falls to 0, over the mean diameter");
   }
-  /// Throws Error, beginning with `who`, where there are no sides.
-  void prepare(const World& world, const std::string& who) const {
+  /// Throws ParameterError if the axis is periodic.
+  void prepare(const World& world) const {
     if (world.cell().periodic[static_cast<std::size_t>(axis())])
-      throw Error(who + ", /across: the domain is periodic along " + across +
-                  ", which has no sides; name another axis");
+      throw ParameterError(
+          {{"across", across + ", along which the domain is periodic", "an axis that is not periodic"}});
   }
 
   struct Nodes {
@@ -45,10 +44,10 @@ class Profile {
   };
   Nodes nodes(const World& world) const {
     const Region box = specimen_box(world);
-    return {box.low[axis()], (box.high[axis()] - box.low[axis()]) / static_cast<double>(places - 1)};
+    return {box.low[axis()], (box.high[axis()] - box.low[axis()]) / static_cast<double>(points - 1)};
   }
-  /// Of each place: the line value + slope · (x − place) that fits value(body) best, bodies weighted by 1 − distance /
-  /// reach. NaN where no body counts, or too few to tell a slope.
+  /// Least-squares fit of value(body) by value + slope · (x − point) at each point, with weights 1 − distance /
+  /// averaging_length. NaN without bodies; slope NaN with too few.
   struct Lines {
     std::vector<double> value, slope;
   };
@@ -57,13 +56,13 @@ class Profile {
     struct Sums {
       double weight = 0, x = 0, xx = 0, f = 0, xf = 0;
     };
-    std::vector<Sums> sums(static_cast<std::size_t>(places));
+    std::vector<Sums> sums(static_cast<std::size_t>(points));
     const Nodes node = nodes(world);
-    const double width = reach * world.mean_diameter(), last_place = static_cast<double>(places - 1);
+    const double width = averaging_length * world.mean_diameter(), last_place = static_cast<double>(points - 1);
     const bool has_places = std::isfinite(node.first) && std::isfinite(node.step) && node.step > 0 && width > 0;
     for (std::size_t i = 0; i < world.positions().size() && has_places; ++i) {
       const double x = xyz(world.positions()[i])[axis()], f = value(i);
-      if (!std::isfinite(x) || !std::isfinite(f)) continue;  // a run that has failed
+      if (!std::isfinite(x) || !std::isfinite(f)) continue;  // failed run
       const double from = std::ceil((x - width - node.first) / node.step),
                    to = std::floor((x + width - node.first) / node.step);
       if (to < 0 || from > last_place) continue;
@@ -90,16 +89,16 @@ class Profile {
   int axis() const { return across[0] - 'x'; }
 };
 
-/// Where a profile that is largest in a shear zone falls off the fastest on either side: its inflection points [m], not
-/// further out than where it has fallen to a quarter. A zone that is largest at a side of the specimen ends there; if
-/// it falls off fastest there as well, it has no inflection point, and the other end is NaN.
+/// Shear zone in a profile: its ends are the inflection points on both sides of the peak [m], where the profile falls
+/// fastest, at most as far as it falls to a quarter of the peak. A zone with its peak at a side of the specimen ends there;
+/// if it also falls fastest there, it has no inflection point, and the other end is NaN.
 struct ShearZone {
   double low, high;
-  double extent;  ///< around its peak, of where it exceeds a twentieth of that [m]
+  double extent;  ///< width of the range around the peak that exceeds a twentieth of it [m]
   double thickness() const { return high - low; }
 };
 
-/// Of the places that tell; NaN where fewer than three do, or all say 0.
+/// From the finite points of a profile; NaN if there are fewer than three, or if all are 0.
 inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double>& profile) {
   std::vector<double> place, size;
   for (std::size_t k = 0; k < profile.size(); ++k)
@@ -112,7 +111,7 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
   if (size[static_cast<std::size_t>(peak)] < 0)
     for (double& one : size) one = -one;
   const auto at = [&](std::ptrdiff_t k) { return static_cast<std::size_t>(k); };
-  // From the peak outwards: the steepest fall between two places, refined by a parabola through it and its neighbours.
+  // From the peak outwards: the steepest slope between two points, refined by a parabola through it and its neighbours.
   const auto end = [&](std::ptrdiff_t way) {
     const auto last = way < 0 ? std::ptrdiff_t{0} : static_cast<std::ptrdiff_t>(size.size()) - 1;
     if (peak == last) return place[at(last)];
@@ -144,23 +143,26 @@ inline ShearZone shear_zone(const Profile::Nodes& node, const std::vector<double
   return {.low = end(-1), .high = end(1), .extent = faint(1) - faint(-1)};
 }
 
-/// The channels that tell of a shear zone in `what`.
+/// Channels of the shear zone in the profile of `what`.
 inline std::vector<Channel> zone_channels(const std::string& what) {
-  const std::string unknown = "; NaN where fewer than three places have bodies, or none does it",
-                    no_inflection = unknown + ", or it has its peak and falls off the fastest at a side";
-  return {{"zone_low", "m", "where the " + what + " rises to its peak the fastest" + no_inflection, {}},
-          {"zone_high", "m", "where it falls off the fastest" + no_inflection, {}},
-          {"zone_thickness", "m", "distance between the two, the thickness of the shear zone" + no_inflection, {}},
-          {"zone_diameters", "1", "the same over the mean diameter" + no_inflection, {}},
+  const std::string unknown = "; NaN if fewer than three points have bodies or all values are 0",
+                    no_inflection = unknown + ", or if peak and steepest fall are at a side";
+  return {{"zone_low", "m", "lower inflection point of the profile of " + what + no_inflection, {}},
+          {"zone_high", "m", "upper inflection point" + no_inflection, {}},
+          {"zone_thickness", "m", "thickness of the shear zone, between the inflection points" + no_inflection, {}},
+          {"zone_diameters", "1", "thickness of the shear zone over the mean diameter" + no_inflection, {}},
           {"zone_extent_diameters",
            "1",
-           "how wide the " + what + " exceeds a twentieth of its peak, over the mean diameter" + unknown,
+           "width over which " + what + " exceeds a twentieth of its peak, over the mean diameter" + unknown,
            {}}};
 }
-inline constexpr std::size_t zone_channel_count = 5;
-inline void fill_zone(const ShearZone& zone, const World& world, std::span<const std::span<double>> values) {
-  values[0][0] = zone.low, values[1][0] = zone.high, values[2][0] = zone.thickness();
-  values[3][0] = zone.thickness() / world.mean_diameter(), values[4][0] = zone.extent / world.mean_diameter();
+/// Writes zone_channels().
+inline void fill_zone(const ShearZone& zone, const World& world, ChannelValues& values) {
+  values["zone_low"] = zone.low;
+  values["zone_high"] = zone.high;
+  values["zone_thickness"] = zone.thickness();
+  values["zone_diameters"] = zone.thickness() / world.mean_diameter();
+  values["zone_extent_diameters"] = zone.extent / world.mean_diameter();
 }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// A rectangle in space that shapes are made on.
+// The base rectangle of flat and rough walls.
 #pragma once
 
 #include <cmath>
@@ -8,14 +8,14 @@
 
 namespace grit {
 
-/// A corner and two perpendicular edges; a × b points to the bodies.
+/// A corner and two perpendicular edges [m]; a × b points towards the bodies.
 struct Sheet {
-  /// Where the sheet has moved to: its corner, and unit columns along a, along b and towards the bodies.
+  /// Current position: the corner, and unit columns along a, along b and towards the bodies.
   struct Frame {
     Vec3 corner;
     Mat3 axes;
-    /// From the corner, along the columns.
-    Vec3 place(const Vec3& centre) const { return axes.transpose() * (centre - corner); }
+    /// Coordinates from the corner along the columns.
+    Vec3 local(const Vec3& centre) const { return axes.transpose() * (centre - corner); }
   };
 
   Vec3 corner = Vec3::Zero(), edge_a = Vec3::UnitX(), edge_b = Vec3::UnitY();
@@ -23,12 +23,12 @@ struct Sheet {
   Mat3 axes = Mat3::Identity();       ///< as in a Frame, after prepare()
 
   void declare(Parameters& p) {
-    p.add("corner", corner).unit("m").required().doc("the corner where both edges start");
+    p.add("corner", corner).unit("m").required().doc("corner at which both edges start");
     p.add("edge_a", edge_a).unit("m").required().doc("first edge, from the corner");
     p.add("edge_b", edge_b)
         .unit("m")
         .required()
-        .doc("second edge, perpendicular to the first; a × b points to the bodies");
+        .doc("second edge, perpendicular to the first; a × b points towards the bodies");
     p.check([this](const Complain& complain) { check(complain); });
   }
 
@@ -48,12 +48,12 @@ struct Sheet {
   }
 
  private:
-  static constexpr double square_enough = 1e-6;  // cosine between the edges: room for decimals written by hand
+  static constexpr double square_enough = 1e-6;  // cosine between the edges; allows for rounded decimals
 
   void check(const Complain& complain) const {
     const double a = edge_a.norm(), b = edge_b.norm();
-    if (!(a > 0)) complain("edge_a", "a vector of length 0", "a vector that has a direction");
-    if (!(b > 0)) complain("edge_b", "a vector of length 0", "a vector that has a direction");
+    if (!(a > 0)) complain("edge_a", "a vector of length 0", "a vector of non-zero length");
+    if (!(b > 0)) complain("edge_b", "a vector of length 0", "a vector of non-zero length");
     if (!(a > 0 && b > 0)) return;
     const double cosine = edge_a.dot(edge_b) / (a * b);
     if (std::abs(cosine) > square_enough)

@@ -1,4 +1,4 @@
-// A plane silo between two smooth panes and how it is filled, as the silo scenarios share it. See silo.md.
+// A plane silo between two smooth panes, and its filling, for the silo scenarios. See silo.md.
 #pragma once
 
 #include <algorithm>
@@ -11,33 +11,36 @@
 
 #include "grit/error.hpp"
 #include "grit/scenario.hpp"
-#include "grit/toolkit/closed_forms.hpp"
+#include "grit/toolkit/analytical_solutions.hpp"
 #include "grit/toolkit/lengths.hpp"
 #include "grit/toolkit/wall_descriptions.hpp"
 
 namespace grit {
 
-/// What a closed form is worked out with where it differs from the others.
+/// Parameters of one analytical solution that override those of SiloForms.
 struct SiloForm {
   std::optional<double> stress_ratio, wall_friction_angle, unit_weight;
 
   void declare(Parameters& p) {
-    p.add("stress_ratio", stress_ratio).symbol("K").above(0).doc("left out: that of closed_forms");
+    p.add("stress_ratio", stress_ratio)
+        .symbol("K")
+        .above(0)
+        .doc("horizontal over vertical stress; default: that of analytical_solutions");
     p.add("wall_friction_angle", wall_friction_angle)
         .unit("rad")
         .symbol("phi_w")
         .above(0)
         .below(std::numbers::pi / 2)
-        .doc("left out: that of closed_forms");
+        .doc("wall friction angle; default: that of analytical_solutions");
     p.add("unit_weight", unit_weight)
         .unit("N/m^3")
         .symbol("gamma")
         .above(0)
-        .doc("of the bulk; left out: at the void ratio that the filling is expected to come to");
+        .doc("unit weight of the bulk; default: that at the expected void ratio of the filling");
   }
 };
 
-/// What the run is put beside; none of it acts on the grains.
+/// Parameters of analytical solutions to compare with; they do not act on the grains.
 struct SiloForms {
   double internal_friction_angle = 36 * std::numbers::pi / 180;
   std::optional<double> stress_ratio, wall_friction_angle;
@@ -49,125 +52,135 @@ struct SiloForms {
         .symbol("phi_i")
         .above(0)
         .below(std::numbers::pi / 2)
-        .doc("of the sand as it shears in itself; the default is that of sand in EN 1991-4");
+        .doc("internal friction angle of the sand; the default is that of sand in EN 1991-4");
     p.add("stress_ratio", stress_ratio)
         .symbol("K")
         .above(0)
-        .doc("horizontal over vertical stress; left out: 1.1 (1 - sin phi_i) of EN 1991-4");
+        .doc("horizontal over vertical stress; default: 1.1 (1 - sin phi_i) of EN 1991-4");
     p.add("wall_friction_angle", wall_friction_angle)
         .unit("rad")
         .symbol("phi_w")
         .above(0)
         .below(std::numbers::pi / 2)
-        .doc("between sand and wall; left out: EN 1991-4's, that of the surface where it is flat or nearly so");
-    p.add("drescher", drescher).doc("P after Drescher, with one wall's friction, on the bottom of a silo-quasistatic");
-    p.add("en_1991_4", en_1991_4).doc("P by EN 1991-4 with values of its own, on the bottom of a silo-quasistatic");
+        .doc("wall friction angle; default: by EN 1991-4; for a flat or nearly flat wall that of its surface");
+    p.add("drescher", drescher).doc("bottom force P after Drescher, with friction on one wall; silo-quasistatic only");
+    p.add("en_1991_4", en_1991_4).doc("bottom force P by EN 1991-4 with its own parameters; silo-quasistatic only");
   }
 };
 
 struct Silo {
-  static constexpr double degree = std::numbers::pi / 180, gravity = closed_forms::gravity;
-  /// Of the cloud that falls into the silo.
+  static constexpr double degree = std::numbers::pi / 180, gravity = analytical_solutions::gravity;
+  /// Solid fraction of the cloud that falls into the silo.
   static constexpr double cloud_solid_fraction = 0.35;
-  /// Largest way in a step, over the radius, unless a guard says otherwise.
+  /// Default limit of the displacement per step over the radius.
   static constexpr double usual_travel = 0.05;
-  /// In which sand came to rest once it had fallen, from 60 mm as from 0.5 m [s]: for estimates.
+  /// Time in which fallen sand came to rest, from heights of 60 mm to 0.5 m [s]; for estimates.
   static constexpr double usual_rest = 0.25;
-  /// Small grains are thrown up by large ones that fall on them: speeds to allow for, over that of the fall.
-  static constexpr double thrown = 5;
+  /// Maximum speed over the speed of fall: large grains that fall on small ones throw them up.
+  static constexpr double throw_factor = 5;
 
   double width = 200e-3, height = 500e-3, depth = 7.5e-3;
   std::string wall_surface = "saw-tooth";
   double roughness = 1, groove_spacing = 0, groove_inclination = 45 * degree, wall_friction_angle = 18 * degree;
   double depth_over_wavelength = 0.24, wavelength = 15e-3;
-  std::int64_t wall_pieces = 10;
+  std::int64_t wall_segments = 10;
   double smallest_diameter = 0.5e-3, largest_diameter = 2.5e-3, density = 2600, friction_angle = 25 * degree;
   double contact_modulus = 10e6, shear_to_normal_stiffness = 0.3, rolling_stiffness = 0.2, rolling_limit = 0.4;
   double local_damping = 0.01, filling_damping = 0.3;
   double void_ratio = 0.6;
   std::string filling = "cloud";
   std::optional<double> filling_friction_angle;
-  double relieved_gravity = 1.0 / 6;
+  double reduced_gravity = 1.0 / 6;
   std::int64_t layers = 6, seed = 1;
   SiloForms forms;
 
   void declare(Parameters& p) {
     const double right_angle = std::numbers::pi / 2;
-    p.add("width", width).unit("m").symbol("b").above(0).doc("between the walls, along x");
-    p.add("height", height).unit("m").symbol("h").above(0).doc("to which the silo is filled, at the void ratio");
-    p.add("depth", depth).unit("m").above(0).doc("between the panes, along y, which are smooth");
-    p.add("wall_surface", wall_surface).one_of({"flat", "saw-tooth", "sinusoidal"}).doc("of the two walls");
-    p.add("roughness", roughness)
-        .symbol("R_n")
-        .above(0)
-        .doc("of saw-tooth walls: depth of a groove over the mean diameter");
+    p.add("width", width).unit("m").symbol("b").above(0).doc("distance of the walls, along x");
+    p.add("height", height).unit("m").symbol("h").above(0).doc("height of the filling at the given void ratio");
+    p.add("depth", depth).unit("m").above(0).doc("distance of the smooth panes, along y");
+    p.add("wall_surface", wall_surface).one_of({"flat", "saw-tooth", "sinusoidal"}).doc("surface of the two walls");
+    p.add("roughness", roughness).symbol("R_n").above(0).doc("of saw-tooth walls: groove depth over the mean diameter");
     p.add("groove_spacing", groove_spacing)
         .unit("m")
         .at_least(0)
-        .doc("from groove to groove of saw-tooth walls; 0: four times their depth");
+        .doc("spacing of the grooves of saw-tooth walls; 0: four times their depth");
     p.add("groove_inclination", groove_inclination)
         .unit("rad")
         .above(0)
         .below(right_angle)
-        .doc("of a groove's flanks against a saw-tooth wall");
+        .doc("angle of the flanks of a groove to a saw-tooth wall");
     p.add("depth_over_wavelength", depth_over_wavelength)
         .symbol("d/l")
         .at_least(0)
-        .doc("of sinusoidal walls: from crests to troughs over the wavelength");
-    p.add("wavelength", wavelength).unit("m").symbol("l").above(0).doc("of sinusoidal walls");
+        .doc("of sinusoidal walls: depth from crest to trough over the wavelength");
+    p.add("wavelength", wavelength).unit("m").symbol("l").above(0).doc("wavelength of sinusoidal walls");
     p.add("wall_friction_angle", wall_friction_angle)
         .unit("rad")
         .at_least(0)
         .below(right_angle)
-        .doc("between grains and the surface of walls and bottom");
-    p.add("wall_pieces", wall_pieces)
+        .doc("friction angle between grains and the surfaces of walls and bottom");
+    p.add("wall_segments", wall_segments)
         .at_least(1)
-        .at_most(100)  // formulas add up the forces of all, and take no longer ones than of some hundred
-        .doc("of equal height into which each wall is cut, for stresses by height");
-    p.add("smallest_diameter", smallest_diameter).unit("m").symbol("d_min").above(0).doc("of the grains");
+        .at_most(100)  // formulas sum the forces of all; their length is limited
+        .doc("number of segments of equal height of each wall, for stresses over the height");
+    p.add("smallest_diameter", smallest_diameter)
+        .unit("m")
+        .symbol("d_min")
+        .above(0)
+        .doc("smallest diameter of the grains");
     p.add("largest_diameter", largest_diameter)
         .unit("m")
         .symbol("d_max")
         .above(0)
-        .doc("of the grains; diameters are uniform by number in between");
-    p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("of the grains");
+        .doc("largest diameter of the grains; diameters are uniform by number in between");
+    p.add("density", density).unit("kg/m^3").symbol("rho").above(0).doc("density of the grains");
     p.add("friction_angle", friction_angle)
         .unit("rad")
-        .symbol("mu")
+        .symbol("phi")
         .at_least(0)
         .below(right_angle)
-        .doc("between grains, once the silo is filled");
-    p.add("contact_modulus", contact_modulus).unit("Pa").symbol("E_c").above(0).doc("of the grains");
-    p.add("shear_to_normal_stiffness", shear_to_normal_stiffness).symbol("nu_c").at_least(0).doc("of the grains");
-    p.add("rolling_stiffness", rolling_stiffness).symbol("beta").at_least(0).doc("of the grains");
-    p.add("rolling_limit", rolling_limit).symbol("eta").at_least(0).doc("of the grains");
-    p.add("local_damping", local_damping).symbol("lambda").at_least(0).below(1).doc("once the silo is filled");
-    p.add("filling_damping", filling_damping).at_least(0).below(1).doc("local damping until the filling rests");
+        .doc("friction angle between grains after filling");
+    p.add("contact_modulus", contact_modulus).unit("Pa").symbol("E_c").above(0).doc("contact modulus of the grains");
+    p.add("shear_to_normal_stiffness", shear_to_normal_stiffness)
+        .symbol("nu_c")
+        .at_least(0)
+        .doc("shear over normal stiffness of the grains");
+    p.add("rolling_stiffness", rolling_stiffness)
+        .symbol("beta")
+        .at_least(0)
+        .doc("rolling stiffness of the grains over k_s R_a R_b");
+    p.add("rolling_limit", rolling_limit)
+        .symbol("eta")
+        .at_least(0)
+        .doc("limit of the rolling moment of the grains over normal force times radius");
+    p.add("local_damping", local_damping).symbol("lambda").at_least(0).below(1).doc("local damping after filling");
+    p.add("filling_damping", filling_damping).at_least(0).below(1).doc("local damping during filling");
     p.add("void_ratio", void_ratio)
         .symbol("e")
         .at_least(0.4)
         .at_most(2)
-        .doc("that the filling is expected to come to: with the height it says how many grains there are");
+        .doc("expected void ratio of the filling; with the height it determines the number of grains");
     p.add("filling_friction_angle", filling_friction_angle)
         .unit("rad")
         .at_least(0)
         .below(right_angle)
-        .doc("between grains while they fall; low: dense, high: loose; left out: their own");
-    p.add("relieved_gravity", relieved_gravity)
+        .doc("friction angle between grains during filling; low: dense, high: loose; default: friction_angle");
+    p.add("reduced_gravity", reduced_gravity)
         .above(0)
         .at_most(1)
         .doc(
-            "share of gravity that is left while friction becomes the grains' own; it rises again afterwards; "
-            "without effect unless there is a filling_friction_angle");
+            "fraction of gravity to which it is reduced before friction changes to friction_angle; it rises again "
+            "afterwards; only with a filling_friction_angle");
     p.add("filling", filling)
         .one_of({"cloud", "layers"})
-        .doc("cloud: all grains fall at once; layers: one layer after the other, each once all before it rest");
+        .doc("cloud: all grains fall at once; layers: one layer after another, each when those below are at rest");
     p.add("layers", layers)
         .at_least(1)
         .at_most(100)
-        .doc("of equal mass, turn by turn of the materials sand and dyed, which differ in name alone");
-    p.add("seed", seed).at_least(0).doc("of the grains' sizes and places");
-    p.add("closed_forms", forms).doc("what the curves are drawn beside; without effect on the grains");
+        .doc("number of layers of equal mass, alternately of the materials sand and dyed, which differ only in name");
+    p.add("seed", seed).at_least(0).doc("seed of the random sizes and positions of the grains");
+    p.add("analytical_solutions", forms).doc("parameters of reference values; without effect on the grains");
     p.check(
         [this](const Complain& complain) {
           if (!(smallest_diameter <= largest_diameter))
@@ -198,7 +211,7 @@ struct Silo {
     if (wall_surface == "sinusoidal") return wavelength;
     return groove_spacing > 0 ? groove_spacing : 4 * groove_depth();
   }
-  /// Seen from above, with the grooves of both walls [m²].
+  /// Area in plan, with the grooves of both walls [m²].
   double area() const {
     const double groove = wall_surface == "sinusoidal" ? 0.5 * groove_depth() * wavelength
                                                        : groove_depth() * groove_depth() / std::tan(groove_inclination);
@@ -209,37 +222,39 @@ struct Silo {
     const double a = smallest_diameter, b = largest_diameter, cube = 0.25 * (a + b) * (a * a + b * b);
     return std::llround(solids() / (std::numbers::pi / 6 * cube));
   }
-  double solids() const { return area() * height / (1 + void_ratio); }  ///< m³
+  double solids() const { return area() * height / (1 + void_ratio); }  ///< volume [m³]
   double bulk_density() const { return density / (1 + void_ratio); }    ///< kg/m³
   double cloud_height() const { return std::max(height, solids() / (width * depth) / cloud_solid_fraction); }
-  /// In which the top of the cloud falls to where it stays [s].
+  /// Time in which the top of the cloud falls to its final height [s].
   double falling_time() const {
     return std::sqrt(2 * std::max(cloud_height() - height, height) / gravity / (1 - filling_damping));
   }
-  /// The same of the first layers, whose share of the silo is filled.
+  /// The same for the first layers, which fill a part of the silo.
   double falling_time(std::int64_t first_layers) const {
     return falling_time() * std::sqrt(static_cast<double>(first_layers) / static_cast<double>(layers));
   }
-  /// What the guard on ways has to let through while grains fall.
+  /// Limit of the guard on the displacement per step that falling grains need.
   double travel() const {
-    const double speed = thrown * (1 - filling_damping) * gravity * falling_time(),
+    const double speed = throw_factor * (1 - filling_damping) * gravity * falling_time(),
                  mass = density * std::numbers::pi / 6 * std::pow(smallest_diameter, 3),
                  radius = 0.5 * smallest_diameter,
                  impact = std::numbers::pi * std::sqrt(mass / (2 * contact_modulus * radius)), steps_per_impact = 7;
     return std::max(usual_travel, speed * impact / steps_per_impact / radius);
   }
-  /// Whether gravity is taken off and put on again once the silo is filled.
-  bool relieved() const { return filling_friction_angle && relieved_gravity < 1; }
-  /// In which gravity changes: that of twenty waves from top to bottom at sqrt(E_c/rho), which pressure in the sand
-  /// does not reach, so that nothing bounces [s].
+  /// Whether gravity is reduced and restored after filling.
+  bool relieved() const { return filling_friction_angle && reduced_gravity < 1; }
+  /// Time in which gravity changes [s]: twenty times that of a wave from top to bottom at √(E_c/ρ), an upper bound of
+  /// the wave speed in the sand, so that no oscillations arise.
   double relief_time() const { return 20 * height / std::sqrt(contact_modulus / density); }
-  /// By which walls and bottom reach beyond each other, so that no grain comes between them [m].
+  /// Length by which walls and bottom extend beyond each other, so that no grain passes between them [m].
   double overhang() const { return groove_depth() + largest_diameter; }
 
-  /// "left-1" is the lowest piece.
-  std::string piece(const std::string& side, std::int64_t number) const { return side + '-' + std::to_string(number); }
+  /// Name of a segment of a wall; "left-1" is the lowest.
+  std::string segment(const std::string& side, std::int64_t number) const {
+    return side + '-' + std::to_string(number);
+  }
 
-  /// All but the bottom, stages and probes. The walls reach `below` under z = 0 [m].
+  /// The description without bottom, stages and probes. The walls extend to z = −below [m].
   Description description(const std::string& title, double below) const {
     Description d;
     d["title"] = title;
@@ -253,7 +268,7 @@ struct Silo {
                               {"friction_angle", filling_friction_angle.value_or(friction_angle)},
                               {"rolling_stiffness", rolling_stiffness},
                               {"rolling_limit", rolling_limit}};
-      // Said for the pair, as low friction between grains while they fall would lower it.
+      // Set for the interface: the low friction of grains during filling would reduce it.
       d["interfaces"][std::string(name) + "+wall"] = {{"friction_angle", wall_friction_angle}};
     }
     d["materials"]["wall"] = {{"rolling_limit", rolling_limit}};
@@ -262,19 +277,21 @@ struct Silo {
     const double reach = overhang() + width;
     d["domain"] = {{"low", vector(-reach, -depth, -below - height)}};
     for (std::int64_t layer = 0; layer < layers; ++layer) {
-      const auto share = [&](double of) { return of * static_cast<double>(layer) / static_cast<double>(layers); };
-      const auto next = [&](double of) { return of * static_cast<double>(layer + 1) / static_cast<double>(layers); };
+      const auto below_layer = [&](double of) { return of * static_cast<double>(layer) / static_cast<double>(layers); };
+      const auto with_layer = [&](double of) {
+        return of * static_cast<double>(layer + 1) / static_cast<double>(layers);
+      };
       const auto all = static_cast<double>(grains());
       d["bodies"]["layer-" + std::to_string(layer + 1)] = {
           {"type", "sphere"},
           {"material", layer % 2 == 0 ? "sand" : dyed},
-          {"grains",
+          {"source",
            {{"type", "cloud"},
-            {"low", vector(0, 0, share(cloud_height()))},
-            {"high", vector(width, depth, next(cloud_height()))},
-            {"count", std::llround(next(all)) - std::llround(share(all))},
+            {"low", vector(0, 0, below_layer(cloud_height()))},
+            {"high", vector(width, depth, with_layer(cloud_height()))},
+            {"count", std::llround(with_layer(all)) - std::llround(below_layer(all))},
             {"sizes", {{"type", "uniform"}, {"smallest", smallest_diameter}, {"largest", largest_diameter}}}}}};
-      // Where it would hang in the cloud is above all that has fallen.
+      // Its part of the cloud is above the layers that have fallen.
       if (filling == "layers" && layer > 0)
         d["bodies"]["layer-" + std::to_string(layer + 1)]["stage"] = fill(layer + 1);
     }
@@ -282,9 +299,9 @@ struct Silo {
     auto& walls = d["walls"];
     for (const char* side : {"left", "right"}) {
       if (below > 0) walls[std::string(side) + "-below"] = wall(side, -below, 0);
-      for (std::int64_t i = 0; i < wall_pieces; ++i) {
-        const double one = height / static_cast<double>(wall_pieces);
-        walls[piece(side, i + 1)] = wall(side, static_cast<double>(i) * one, static_cast<double>(i + 1) * one);
+      for (std::int64_t i = 0; i < wall_segments; ++i) {
+        const double one = height / static_cast<double>(wall_segments);
+        walls[segment(side, i + 1)] = wall(side, static_cast<double>(i) * one, static_cast<double>(i + 1) * one);
       }
       walls[std::string(side) + "-above"] = wall(side, height, cloud_height() + 4 * largest_diameter);
     }
@@ -296,14 +313,15 @@ struct Silo {
     return d;
   }
 
-  /// A piece of bottom between two places along x [m].
+  /// A part of the bottom between two coordinates x [m].
   Description bottom(double low, double high) const {
     return rectangle(vector(low, 0, 0), vector(high - low, 0, 0), vector(0, depth, 0), "wall");
   }
 
-  /// "fill": the cloud falls and comes to rest; or "fill-1" and so on: a layer does. "settle": friction is the grains'
-  /// own. Where it was another one gravity goes down before, in "relieve", and rises while they settle: stress that
-  /// came about with little friction is nearly as high sideways as downwards, and more friction leaves it so.
+  /// Stages of filling. "fill" (or "fill-1" and so on for layers): grains fall and come to rest. "settle": friction
+  /// becomes friction_angle. If it was different, "relieve" reduces gravity first and "settle" restores it: with little
+  /// friction the horizontal stress becomes nearly as high as the vertical stress, and would stay so at higher
+  /// friction.
   std::vector<Description> filling_stages() const {
     const auto stage = [&](const std::string& name, double after, double unbalanced, double usual) -> Description {
       return {{"name", name},
@@ -311,7 +329,7 @@ struct Silo {
                {{"type", "all"},
                 {"of", {{{"type", "time"}, {"value", after}}, {{"type", "unbalanced-force"}, {"below", unbalanced}}}}}},
               {"limit", 20 * falling_time()},
-              {"usual_time", usual}};
+              {"typical_time", usual}};
     };
     const auto gravity_goes = [&](double from, double to) {
       return Description::array({{{"pointer", "/engines/gravity/acceleration/2"},
@@ -330,9 +348,9 @@ struct Silo {
     for (const char* name : {"sand", "dyed"})
       if (name != dyed || layers > 1) settle["change"]["materials"][name]["friction_angle"] = friction_angle;
     if (relieved()) {
-      settle["ramps"] = gravity_goes(relieved_gravity, 1);
+      settle["ramps"] = gravity_goes(reduced_gravity, 1);
       stages.push_back({{"name", "relieve"},
-                        {"ramps", gravity_goes(1, relieved_gravity)},
+                        {"ramps", gravity_goes(1, reduced_gravity)},
                         {"until", {{"type", "time"}, {"value", relief_time()}}},
                         {"limit", 2 * relief_time()}});
     }
@@ -340,8 +358,8 @@ struct Silo {
     return stages;
   }
 
-  /// Curves of the forces in the silo, for a probe "formula"; `floor` are the walls that bear the sand from below, and
-  /// `level` is where the bottom is, as a formula.
+  /// A probe "formula" with the curves of the forces in the silo. `floor`: walls that carry the sand from below;
+  /// `level`: formula of the height of the bottom.
   Description curves(const std::vector<std::string>& floor, const std::string& level, bool below) const {
     const auto sum = [](const std::vector<std::string>& walls, const std::string& component) {
       std::string text;
@@ -351,16 +369,16 @@ struct Silo {
       }
       return "(" + text + ")";
     };
-    const auto pieces = [&](const std::string& side) {
+    const auto segments = [&](const std::string& side) {
       std::vector<std::string> names;
       if (below) names.push_back(side + "-below");
-      for (std::int64_t i = 1; i <= wall_pieces; ++i) names.push_back(piece(side, i));
+      for (std::int64_t i = 1; i <= wall_segments; ++i) names.push_back(segment(side, i));
       names.push_back(side + "-above");
       return names;
     };
     const std::string p = "-" + sum(floor, "z");
-    const std::string t = "-0.5 * (" + sum(pieces("left"), "z") + " + " + sum(pieces("right"), "z") + ")";
-    const std::string n = "0.5 * (" + sum(pieces("right"), "x") + " - " + sum(pieces("left"), "x") + ")";
+    const std::string t = "-0.5 * (" + sum(segments("left"), "z") + " + " + sum(segments("right"), "z") + ")";
+    const std::string n = "0.5 * (" + sum(segments("right"), "x") + " - " + sum(segments("left"), "x") + ")";
     const std::string g = "(mass * g)";
     Description test = {{"type", "formula"}};
     const auto constant = [&](const char* name, double value, const char* doc) {
@@ -370,38 +388,39 @@ struct Silo {
       test["curves"][name] = {{"formula", formula}, {"unit", unit}, {"doc", doc}};
     };
     constant("g", gravity, "acceleration of gravity [m s-2]");
-    constant("area", area(), "of the silo, seen from above, with its grooves [m2]");
-    constant("width", width, "between the walls [m]");
-    constant("height", height, "to which the silo is filled [m]");
-    constant("piece_height", height / static_cast<double>(wall_pieces), "of a piece of a wall [m]");
-    constant("density", density, "of the grains [kg m-3]");
-    curve("weight", "mass * g", "N", "G, of the sand in the silo");
-    curve("bottom_force", p, "N", "P, on the bottom, downwards positive");
-    curve("wall_shear_force", t, "N", "T, on one wall, mean of both, downwards positive");
-    curve("wall_normal_force", n, "N", "N, on one wall, mean of both, outwards positive");
-    curve("bottom_share", p + " / " + g, "1", "P/G");
-    curve("wall_shear_share", "(" + t + ") / " + g, "1", "T/G of one wall");
-    curve("wall_normal_share", "(" + n + ") / " + g, "1", "N/G of one wall");
-    curve("wall_friction_angle", "180 / _pi * atan2(" + t + ", " + n + ")", "degree", "phi_w = atan(T/N), mobilised");
-    // Over the whole height: what lies above each level, less what the walls bear of it, is on the bottom of the level.
-    std::string borne;
-    const auto bears = [&](const std::string& piece, const std::string& place) {
-      borne += " + " + sum({"left" + piece, "right" + piece}, "z") + " * (" + place + ")";
+    constant("area", area(), "area of the silo in plan, with grooves [m2]");
+    constant("width", width, "distance of the walls [m]");
+    constant("height", height, "height of the filling [m]");
+    constant("piece_height", height / static_cast<double>(wall_segments), "height of a wall segment [m]");
+    constant("density", density, "density of the grains [kg m-3]");
+    curve("weight", "mass * g", "N", "G, weight of the sand in the silo");
+    curve("bottom_force", p, "N", "P, force on the bottom, downwards positive");
+    curve("wall_shear_force", t, "N", "T, vertical force on one wall, mean of both, downwards positive");
+    curve("wall_normal_force", n, "N", "N, horizontal force on one wall, mean of both, outwards positive");
+    curve("bottom_fraction", p + " / " + g, "1", "P/G");
+    curve("wall_shear_fraction", "(" + t + ") / " + g, "1", "T/G of one wall");
+    curve("wall_normal_fraction", "(" + n + ") / " + g, "1", "N/G of one wall");
+    curve("wall_friction_angle", "180 / _pi * atan2(" + t + ", " + n + ")", "degree",
+          "phi_w = atan(T/N), mobilised wall friction angle");
+    // Over the whole height: the vertical force at a level is the weight above it less the wall friction above it.
+    std::string carried;
+    const auto add_friction = [&](const std::string& segment, const std::string& lever) {
+      carried += " + " + sum({"left" + segment, "right" + segment}, "z") + " * (" + lever + ")";
     };
-    if (below) bears("-below", "-0.5 * " + level);
-    for (std::int64_t i = 1; i <= wall_pieces; ++i)
-      bears('-' + std::to_string(i), std::to_string(i) + " * piece_height - 0.5 * piece_height - " + level);
-    bears("-above", "height - " + level);
-    curve("lateral_stress_ratio", n + " * width / (" + g + " * (centre_z - " + level + ")" + borne + ")", "1",
-          "K: horizontal stress on the walls over the vertical one, each the mean over the height; from the balance");
+    if (below) add_friction("-below", "-0.5 * " + level);
+    for (std::int64_t i = 1; i <= wall_segments; ++i)
+      add_friction('-' + std::to_string(i), std::to_string(i) + " * piece_height - 0.5 * piece_height - " + level);
+    add_friction("-above", "height - " + level);
+    curve("lateral_stress_ratio", n + " * width / (" + g + " * (centre_z - " + level + ")" + carried + ")", "1",
+          "K, mean horizontal over mean vertical stress over the height, from equilibrium");
     curve("balance", "(" + p + " + 2 * (" + t + ")) / " + g, "1", "P/G + 2 T/G: 1 at rest");
     curve("void_ratio", "2 * (centre_z - " + level + ") * area * density / mass - 1", "1",
-          "overall, of a filling that is even and level; from the height of its centre of mass");
+          "overall void ratio of a uniform, level filling, from the height of its centre of mass");
     return test;
   }
 
-  /// Janssen's balance, or another's, of the filling as it is expected.
-  closed_forms::PlaneSilo balance(const SiloForm& form = {}) const {
+  /// Janssen's formula for the expected filling; `form` overrides parameters.
+  analytical_solutions::PlaneSilo balance(const SiloForm& form = {}) const {
     return {.width = width,
             .height = height,
             .depth = depth,
@@ -410,31 +429,33 @@ struct Silo {
             .wall_friction = std::tan(form.wall_friction_angle.value_or(wall_friction()))};
   }
 
-  /// What the curves of the full silo are drawn beside. Descriptions add their own by other names.
+  /// Reference values of the curves of the full silo. Descriptions can add their own under other names.
   Description references() const {
     Description all;
     const auto beside = [&](const char* name, const char* curve, double value) {
       all[name] = {{"of", std::string("test/") + curve}, {"value", value}};
     };
-    const closed_forms::PlaneSilo janssen = balance();
-    beside("Janssen_P_over_G", "bottom_share", janssen.bottom_share());
-    beside("Janssen_T_over_G", "wall_shear_share", janssen.wall_shear_share());
-    beside("Janssen_N_over_G", "wall_normal_share", janssen.wall_normal_share());
+    const analytical_solutions::PlaneSilo janssen = balance();
+    beside("Janssen_P_over_G", "bottom_fraction", janssen.bottom_fraction());
+    beside("Janssen_T_over_G", "wall_shear_fraction", janssen.wall_shear_fraction());
+    beside("Janssen_N_over_G", "wall_normal_fraction", janssen.wall_normal_fraction());
     beside("Janssen_K", "lateral_stress_ratio", janssen.stress_ratio);
     beside("Janssen_wall_friction", "wall_friction_angle", wall_friction() / degree);
-    beside("Rankine_active", "lateral_stress_ratio", closed_forms::rankine_active(forms.internal_friction_angle));
-    beside("Rankine_passive", "lateral_stress_ratio", closed_forms::rankine_passive(forms.internal_friction_angle));
+    beside("Rankine_active", "lateral_stress_ratio",
+           analytical_solutions::rankine_active(forms.internal_friction_angle));
+    beside("Rankine_passive", "lateral_stress_ratio",
+           analytical_solutions::rankine_passive(forms.internal_friction_angle));
     return all;
   }
 
-  /// Stresses on both walls together, by height.
+  /// A probe "wall-profile": stresses on both walls together over the height.
   Description wall_profile() const {
     Description walls = Description::array();
     for (const char* side : {"left", "right"})
-      for (std::int64_t i = 1; i <= wall_pieces; ++i) walls.push_back(piece(side, i));
+      for (std::int64_t i = 1; i <= wall_segments; ++i) walls.push_back(segment(side, i));
     Description profile{{"type", "wall-profile"}, {"walls", walls}, {"width", 2 * depth}, {"low", 0}, {"high", height}};
     if (groove_depth() > 0) {
-      // Whole grooves in each: a strip of flanks alone, or of lands, would have the stress of those.
+      // Each strip contains whole grooves: the stress on flanks differs from that on the lands between grooves.
       constexpr double about = 20;
       const double strip = std::max(1.0, std::round(height / (about * spacing()))) * spacing();
       const double strips = std::ceil(height / strip - 1e-9);
@@ -446,22 +467,22 @@ struct Silo {
  private:
   static constexpr const char* dyed = "dyed";
 
-  /// K of the closed forms.
+  /// K of the analytical solutions.
   double stress_ratio() const {
-    return forms.stress_ratio.value_or(closed_forms::stored_stress_ratio(forms.internal_friction_angle));
+    return forms.stress_ratio.value_or(analytical_solutions::stored_stress_ratio(forms.internal_friction_angle));
   }
-  /// φ_w of the closed forms [rad].
+  /// φ_w of the analytical solutions [rad].
   double wall_friction() const {
     if (forms.wall_friction_angle) return *forms.wall_friction_angle;
-    const double factor = closed_forms::usual_wall_contact_factor(groove_depth(), mean_diameter());
-    return std::atan(
-        closed_forms::effective_wall_friction(factor, std::tan(wall_friction_angle), forms.internal_friction_angle));
+    const double factor = analytical_solutions::usual_wall_contact_factor(groove_depth(), mean_diameter());
+    return std::atan(analytical_solutions::effective_wall_friction(factor, std::tan(wall_friction_angle),
+                                                                   forms.internal_friction_angle));
   }
 
-  /// The stage in which a layer falls, from 1.
+  /// Name of the stage in which a layer (from 1) falls.
   static std::string fill(std::int64_t layer) { return "fill-" + std::to_string(layer); }
 
-  /// A side's wall between two heights [m]; grooves go on from piece to piece.
+  /// The wall of a side between two heights [m]; grooves continue from segment to segment.
   Description wall(const std::string& side, double low, double high) const {
     const bool left = side == "left";
     Description d = rectangle(vector(left ? 0 : width, left ? depth : 0, low), vector(0, 0, high - low),

@@ -1,4 +1,4 @@
-// The boxes over which specimen figures are taken.
+// The boxes over which properties of the specimen are averaged.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// The box with its open sides moved to where the bodies end.
+/// The box with its open (infinite) sides moved to the outermost bodies.
 inline Region closed_box(Region region, const World& world) {
   if (region.low.allFinite() && region.high.allFinite()) return region;
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
@@ -28,7 +28,7 @@ inline Region closed_box(Region region, const World& world) {
 /// The whole specimen.
 inline Region specimen_box(const World& world) { return closed_box(world.specimen(), world); }
 
-/// The specimen less one mean diameter at each wall.
+/// The specimen without one mean diameter along each wall.
 inline Region interior_box(const World& world) { return closed_box(world.interior(world.mean_diameter()), world); }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Of a stress, what does not depend on the axes.
+// Invariants of stress.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@ namespace grit {
 
 inline Mat3 symmetric_part(const Mat3& stress) { return 0.5 * (stress + stress.transpose()); }
 
-/// q = sqrt(3/2 s : s), s the deviator of the symmetric part, in the stress's unit; never negative.
+/// q = √(3/2 s : s) ≥ 0 with the deviator s of the symmetric part; same unit as the stress.
 inline double deviatoric_stress(const Mat3& stress) {
   const Mat3 symmetric = symmetric_part(stress);
   const Mat3 deviator = symmetric - symmetric.trace() / 3 * Mat3::Identity();

@@ -13,14 +13,14 @@ inline Description plane(const Description& point, const Description& normal, co
   return {{"type", "plane"}, {"point", point}, {"normal", normal}, {"material", material}};
 }
 
-/// One-sided: bodies are where edge_a × edge_b points.
+/// One-sided: bodies are on the side to which edge_a × edge_b points.
 inline Description rectangle(const Description& corner, const Description& edge_a, const Description& edge_b,
                              const std::string& material) {
   return {{"type", "rectangle"}, {"corner", corner},   {"edge_a", edge_a},
           {"edge_b", edge_b},    {"two_sided", false}, {"material", material}};
 }
 
-/// A solid block: bodies are outside.
+/// A solid block with bodies outside.
 inline Description block(const Description& low, const Description& high, const std::string& material) {
   return {{"type", "box"}, {"low", low}, {"high", high}, {"inside", false}, {"material", material}};
 }

@@ -1,4 +1,4 @@
-// The bodies that lay at a wall when the stage began, and how far they slip along it.
+// The layer of bodies that was next to a wall at the start of the stage, and its slip along the wall.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace grit {
 
-/// A layer of bodies by their centres, from within `thickness` of the specimen's face and behind it. Needs
+/// The bodies whose centres were within `thickness` of the specimen's face, or behind it, at the start of the stage. Needs
 /// BodyState::displacement.
 class WallLayer {
  public:
@@ -20,41 +20,42 @@ class WallLayer {
   double thickness = 0.5;  ///< mean diameters
 
   void declare(Parameters& p) {
-    p.add("wall", wall).required().doc("along which bodies slip");
-    p.add("driven_by", driven_by).required().doc("wall whose displacement relative to that one is all of it");
-    p.add("axis", axis).one_of({"x", "y", "z"}).doc("of the slip");
+    p.add("wall", wall).required().doc("wall along which bodies slip");
+    p.add("driven_by", driven_by).required().doc("moving wall, whose displacement relative to `wall` is the whole displacement");
+    p.add("axis", axis).one_of({"x", "y", "z"}).doc("axis of the slip");
     p.add("thickness", thickness)
         .above(0)
         .doc(
-            "of the layer at the wall, over the mean diameter: bodies count whose centres were in it, or behind it, "
-            "when the stage began");
+            "thickness of the layer over the mean diameter; it contains bodies whose centres were in it, or behind it, "
+            "at the start of the stage");
   }
-  /// Throws Error, beginning with `who`, for a wall that does not exist, that is not perpendicular to an axis, along
-  /// whose normal the slip would be, or at which the specimen does not end.
-  void prepare(const World& world, const std::string& who) {
-    wall_ = wall_index(world, wall, who + ", /wall");
-    driver_ = wall_index(world, driven_by, who + ", /driven_by");
+  /// Throws ParameterError for a wall that does not exist, is not perpendicular to an axis, is perpendicular to the axis of
+  /// the slip, or does not bound the specimen.
+  void prepare(const World& world) {
+    wall_ = wall_index(world, wall, "wall");
+    driver_ = wall_index(world, driven_by, "driven_by");
     along_ = axis.front() - 'x';
     const Vec3& normal = world.walls()[wall_].normal;
     if (!(normal.cwiseAbs().maxCoeff(&across_) > 1 - 1e-9))
-      throw Error(who + ", /wall: wall \"" + wall + "\" is not perpendicular to x, y or z");
+      throw ParameterError({{"wall", "wall \"" + wall + '"', "a wall perpendicular to x, y or z"}});
     if (across_ == along_)
-      throw Error(who + ", /axis: wall \"" + wall + "\" is perpendicular to " + axis +
-                  "; slip is along a wall, so name another axis");
+      throw ParameterError({{"axis", axis + ", to which wall \"" + wall + "\" is perpendicular",
+                             "an axis in the plane of the wall, along which bodies slip"}});
     if (!bounds_specimen(world))
-      throw Error(who + ", /wall: the specimen does not end at wall \"" + wall + "\"; name it in /specimen");
+      throw ParameterError({{"wall", "wall \"" + wall + "\", at which the specimen does not end",
+                             "a wall that bounds the specimen; name it in /specimen"}});
   }
 
   std::size_t index() const { return wall_; }  ///< of the wall, in World::walls()
   int along() const { return along_; }         ///< 0, 1, 2: x, y, z
   int across() const { return across_; }
   const WallView& surface(const World& world) const { return world.walls()[wall_]; }
-  /// Where the specimen begins at the wall, now [m]; of a grooved or wavy wall at its tips.
+  /// Present position of the specimen's face at the wall [m]; for a grooved or sinusoidal wall, at its crests.
   double face(const World& world) const {
     const Region specimen = specimen_box(world);
     return (surface(world).normal[across_] > 0 ? specimen.low : specimen.high)[across_];
   }
-  /// How far the other wall has gone, relative to the wall, since the stage began [m].
+  /// Displacement of the moving wall relative to the wall since the start of the stage [m].
   double driven(const World& world) const {
     return world.walls()[driver_].stage_position[along_] - surface(world).stage_position[along_];
   }
@@ -71,9 +72,9 @@ class WallLayer {
   }
 
   struct Slip {
-    double mean = 0, bodies = 0;  ///< m; how many
+    double mean = 0, bodies = 0;  ///< mean [m]; number of bodies
   };
-  /// Mean displacement of the layer relative to the wall since the stage began; 0 without bodies.
+  /// Mean displacement of the layer relative to the wall since the start of the stage; 0 without bodies.
   Slip slip(const World& world) const {
     Slip layer;
     for_bodies(world, [&](std::size_t i) { layer.mean += world.displacements()[i][along_], ++layer.bodies; });
@@ -82,8 +83,8 @@ class WallLayer {
   }
 
  private:
-  /// Whether the wall is where the face is, as far as can be told from the middle of the face: there the surface may
-  /// lie behind, in a groove, but not before. Without bodies it cannot be told.
+  /// Whether the wall is at the face, tested at the middle of the face: the surface there may be behind the face, in a
+  /// groove, but not in front of it. True without bodies.
   bool bounds_specimen(const World& world) const {
     const double diameter = world.mean_diameter();
     if (!(diameter > 0)) return true;

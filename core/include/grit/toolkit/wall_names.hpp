@@ -1,4 +1,4 @@
-// Names of walls as probes turn them into names of channels and variables, and as they look them up.
+// Names of walls: look-up, and conversion to names of channels and variables.
 #pragma once
 
 #include <algorithm>
@@ -14,15 +14,15 @@
 
 namespace grit {
 
-/// How a wall's name begins the names of its channels and variables: '-' becomes '_', and a name that begins with a
-/// digit gets "wall_" in front.
+/// Prefix of the channels and variables of a wall: '-' becomes '_', and a name that begins with a digit gets "wall_" in
+/// front.
 inline std::string wall_stem(std::string name) {
   std::replace(name.begin(), name.end(), '-', '_');
   const bool digit = !name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) != 0;
   return digit ? "wall_" + name : name;
 }
 
-/// Whether it can be a channel's name, or begin one.
+/// Whether a text can be the name of a channel, or its prefix.
 inline bool is_snake_case(const std::string& text) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto fits = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
@@ -61,14 +61,15 @@ inline std::vector<std::string> wall_names(const World& world) {
   return names;
 }
 
-/// Place of a wall in World::walls(). Throws Error, beginning with `who`, if there is no such wall.
-inline std::size_t wall_index(const World& world, const std::string& name, const std::string& who) {
+/// Index of a wall in World::walls(). Throws ParameterError for the parameter `key` if there is no such wall.
+inline std::size_t wall_index(const World& world, const std::string& name, const std::string& key) {
   const auto names = wall_names(world);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  if (names.empty()) throw Error(who + ": there is no wall \"" + name + "\": the scene has no walls");
-  throw Error(who + ": there is no wall \"" + name + "\"; the nearest name is \"" + nearest_name(name, names) +
-              "\"; walls are: " + listed(names));
+  const std::string unknown = '"' + name + "\", which is not a wall";
+  if (names.empty()) throw ParameterError({{key, unknown, "none, as the description has no walls"}});
+  throw ParameterError({{key, unknown + "; the nearest name is \"" + nearest_name(name, names) + '"',
+                         "one of the walls " + listed(names)}});
 }
 
 }  // namespace grit

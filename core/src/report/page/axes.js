@@ -1,4 +1,4 @@
-// Axes: where their ticks are and what stands there, for charts and for maps.
+// Axes: ticks and their labels, for charts and maps.
 "use strict";
 
 /** 1, 2 or 5 times a power of ten, at most `most`. */
@@ -6,36 +6,36 @@ function niceBelow(most) {
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].map((lead) => lead * power).find((one) => one <= most * 1.0001) ?? power;
 }
-/** Multiples of a step that lie within a range. */
+/** Multiples of a step within a range. */
 function multiples(step, low, high) {
   const all = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) all.push(k * step || 0);
   return all;
 }
-/** A number at an axis whose ticks are `step` apart. */
+/** The label of a tick at an axis with tick spacing `step`. */
 function atTick(value, step) {
   if (step >= 1e5 || step < 1e-5) return readable(value);
   return value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))).replace("-", "−");
 }
 
 const mostTicks = 8;
-/** As many ticks as have room [px]. */
+/** The number of ticks that fit into a length, `each` px wide. */
 const ticksWithin = (length, each) => Math.max(2, Math.min(mostTicks, Math.floor(length / each)));
 const ticksAcross = (width) => ticksWithin(width, 40);
 const ticksUp = (height) => ticksWithin(height, 22);
 
-/** From fine to coarse: of a range, so that the first is too fine for so many ticks, and the last coarse enough. */
+/** Tick spacings for at most `most` ticks in a range, from too fine to coarse enough. */
 function tickSteps(low, high, most) {
   const power = 10 ** Math.floor(Math.log10((high - low) / most));
   return [1, 2, 5, 10, 20].map((lead) => lead * power);
 }
-/** The finest step that has at most so many ticks within a range; from 4 of them on, but for few ranges that have 3. */
+/** The finest spacing with at most `most` ticks in a range; it gives 4 or more, in few ranges 3. */
 function tickStep(low, high, most = mostTicks) {
   return tickSteps(low, high, most).find((step) => multiples(step, low, high).length <= most);
 }
 
 const raised = (power) => String(power).replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
-/** Powers of ten within a range, as few as about `count`; where it has less than three, 2 and 5 times those too. */
+/** Powers of ten within a range, about `count` of them; if there are fewer than three, also their 2- and 5-fold. */
 function powersWithin([low, high], count) {
   const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9), every = Math.max(1, Math.ceil((last - first + 1) / count));
   if (last - first < 2)
@@ -50,7 +50,7 @@ function atPower(value) {
   return `${lead === 1 ? "" : `${lead}·`}10${raised(power)}`;
 }
 
-/** Ticks, numbers and titles below and to the left of a frame [px] through which one looks along an axis. */
+/** Ticks, labels and titles below and to the left of a frame [px], in a view along an axis. */
 function drawAxes(pen, look, layout, view, { left, top, right, bottom }) {
   const largest = Math.max(...[left, right].map((x) => Math.abs(layout.metresAcross(x))), ...[top, bottom].map((y) => Math.abs(layout.metresUp(y))));
   const [factor, unit] = prefixed("m", largest);

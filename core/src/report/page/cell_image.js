@@ -1,11 +1,11 @@
-// Cells as one image: each pixel has the colour of the cell that is nearest, so that nothing shows between two.
+// Cells as one image: each pixel has the colour of the nearest cell, so that there are no gaps between neighbours.
 "use strict";
 
-const gapClosed = 0.75; // of a cell's width: what is wider between two is no gap, but a place without cells
+const gapClosed = 0.75; // of a cell's width: a wider gap is a region without cells
 
-/** By pixel of a width × height image the place of its cell, -1 of none. Cells: lists of centres and half sizes [px]. */
+/** For each pixel of a width × height image the index of its cell, -1 for none. Cells: lists of centres and half sizes [px]. */
 function cellsByPixel({ x, y, w, h }, width, height) {
-  // In its own measure a cell is from -1 to 1; it is asked for half a gap more on each side, by whole pixels, and for what that needs about the image.
+  // In units of its half size a cell extends from -1 to 1. It is dilated by half a gap on each side, in whole pixels; the image gets a margin for this.
   const beyond = (half) => Math.round(gapClosed * half), margin = beyond([...w, ...h].reduce((a, b) => Math.max(a, b), 0));
   const wide = width + 2 * margin, tall = height + 2 * margin;
   const nearest = new Int32Array(wide * tall).fill(-1), distance = new Float32Array(wide * tall).fill(Infinity);
@@ -20,8 +20,8 @@ function cellsByPixel({ x, y, w, h }, width, height) {
       }
     }
   }
-  // Then what has grown is taken back ("closing" of image analysis): beyond its edge a cell keeps what has cells all about it.
-  const before = new Int32Array((wide + 1) * (tall + 1)), line = wide + 1; // pixels of cells above and to the left
+  // Then it is eroded by the same amount ("closing" of image analysis): outside its edge a cell keeps pixels that are surrounded by cells.
+  const before = new Int32Array((wide + 1) * (tall + 1)), line = wide + 1; // number of pixels with a cell above and to the left
   for (let row = 0, p = 0; row < tall; ++row)
     for (let column = 0, along = 0; column < wide; ++column, ++p) before[(row + 1) * line + column + 1] = before[row * line + column + 1] + (along += nearest[p] >= 0 ? 1 : 0);
   const owner = new Int32Array(width * height);
@@ -36,7 +36,7 @@ function cellsByPixel({ x, y, w, h }, width, height) {
   return owner;
 }
 
-/** A canvas of cells' colours [r, g, b]; nothing where there is no cell. */
+/** A canvas with the colours [r, g, b] of cells; transparent without a cell. */
 function imageOfCells(owner, width, height, colourOf) {
   const image = new ImageData(width, height), pixels = new Uint32Array(image.data.buffer), colours = new Map();
   for (let p = 0; p < owner.length; ++p) {

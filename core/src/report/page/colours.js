@@ -1,4 +1,4 @@
-// Colours of the page as the reader's light or dark paper has them, and scales from numbers to colours.
+// Colours of the page in light or dark mode, and colour scales.
 "use strict";
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
@@ -8,13 +8,13 @@ function lookOf(style) {
 }
 let printing = false;
 const theme = () => (printing ? filesLook() : lookOf(getComputedStyle(document.documentElement)));
-/** Files and prints go on paper, which is white, whatever the page is read in. */
+/** Files and prints have a white background, independent of the mode of the page. */
 const filesLook = () => lookOf([...document.styleSheets[0].cssRules].find(({ selectorText }) => selectorText === ":root").style);
 
 for (const [event, now] of [["beforeprint", true], ["afterprint", false]])
   addEventListener(event, () => {
     printing = now;
-    if (dark.matches) dark.dispatchEvent(new Event("change")); // who listens draws anew
+    if (dark.matches) dark.dispatchEvent(new Event("change")); // listeners redraw
   });
 
 const seriesColour = (place) => report.colours.series[place % report.colours.series.length];

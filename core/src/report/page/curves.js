@@ -1,13 +1,13 @@
-// Curves: a chart for each channel of each probe, runs over each other, values under the pointer.
+// Curves: a chart for each channel of each probe, with all runs, and values at the pointer.
 "use strict";
 
 const componentNames = ({ width, components }) =>
   components.length === width ? components : width === 3 ? ["x", "y", "z"] : width === 9 ? ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] : Array.from({ length: width }, (_, i) => String(i + 1));
 
-// Pixels about the lines, the same for all charts, so that their axes stand below each other.
+// Margins in pixels, the same for all charts, so that their axes are aligned.
 const around = { left: 58, right: 20, top: 34, bottom: 44 }, plotHeight = 180;
-const mostPowers = 10; // of ten, along an axis
-const widestForLines = 9; // numbers a sample; more are a list, of which some samples are drawn
+const mostPowers = 10; // powers of ten along an axis
+const widestForLines = 9; // numbers per sample; more are a list, of which some samples are drawn
 
 /** Smallest and largest finite number. */
 function rangeOf(lists) {
@@ -21,7 +21,7 @@ function rangeOf(lists) {
   return low <= high ? [low, high] : [0, 1];
 }
 
-/** {ends, step} of an axis upwards: zero is shown where it is near, and nothing has no height. */
+/** {ends, step} of a vertical axis: includes zero if it is near, and has a minimum height. */
 function settled([low, high]) {
   if (low > 0 && low < 0.5 * high) low = 0;
   if (high < 0 && high > 0.5 * low) high = 0;
@@ -29,27 +29,27 @@ function settled([low, high]) {
     const room = low === 0 ? 1 : 0.5 * Math.abs(low);
     return { ends: [low - room, high + room], step: tickStep(low - room, high + room, 5) };
   }
-  // From tick to tick, and no tick more for noise about one.
+  // From tick to tick, without an extra tick for noise about one.
   const room = 0.03 * (high - low), most = ticksUp(plotHeight);
   const reaches = (step) => [Math.floor((low + room) / step + 1e-9), Math.ceil((high - room) / step - 1e-9)];
   const step = tickSteps(low, high, most).find((one) => reaches(one)[1] - reaches(one)[0] < most);
-  return { ends: reaches(step).map((tick) => +(tick * step).toPrecision(12)), step }; // else the first tick may lie below
+  return { ends: reaches(step).map((tick) => +(tick * step).toPrecision(12)), step }; // rounded: else the first tick may lie below
 }
-/** Whole powers of ten about the numbers above zero, at most so many. */
+/** Powers of ten that enclose the positive numbers, at most `most`. */
 function settledPowers(lists, most) {
   const [low, high] = rangeOf(lists.map((list) => list.filter((value) => value > 0)));
   const last = Math.ceil(Math.log10(high) - 1e-9), first = Math.max(last - most, Math.min(last - 1, Math.floor(Math.log10(low) + 1e-9)));
   return low > 0 ? [+`1e${first}`, +`1e${last}`] : [0.1, 1];
 }
 
-/** Places of the points that a line of `pixels` needs: of each piece its lowest and highest. */
+/** Indices of the points needed for a line of `pixels`: lowest and highest of each piece. */
 function pointsToDraw(y, pixels) {
   const pieces = 2 * pixels;
   if (y.length <= 2 * pieces) return y.keys();
   const places = [0];
   for (let piece = 0; piece < pieces; ++piece) {
     const first = Math.floor((piece * y.length) / pieces), end = Math.floor(((piece + 1) * y.length) / pieces);
-    let low = first, high = first, gap = -1; // a gap stays one
+    let low = first, high = first, gap = -1; // a gap is kept
     for (let i = first; i < end; ++i) {
       if (!Number.isFinite(y[i])) gap = i;
       else {
@@ -66,12 +66,12 @@ function pointsToDraw(y, pixels) {
 const whenIdle = (act) => (window.requestIdleCallback ?? ((run) => setTimeout(run, 100)))(act);
 
 /** A value with its unit. */
-const told = (value, { shown_unit }) => readable(value) + (Number.isFinite(value) ? ofUnit(shown_unit) : "");
-/** Vega draws nothing where there is no number, and would draw an infinite one. */
+const valueWithUnit = (value, { shown_unit }) => readable(value) + (Number.isFinite(value) ? ofUnit(shown_unit) : "");
+/** Vega leaves a gap for null, but would draw an infinite number. */
 const drawable = (value) => (Number.isFinite(value) ? value : null);
 const pageFont = () => getComputedStyle(document.body).fontFamily;
 
-/** One channel of one probe over an abscissa, of all runs that have it. */
+/** One channel of one probe over an abscissa, for all runs that have it. */
 class Chart {
   constructor(group, name) {
     this.group = group;
@@ -84,7 +84,7 @@ class Chart {
     this.figure = make("figure", { className: "chart", tabIndex: 0 }, this.plot,
       make("figcaption", {}, this.values, this.about,
         make("span", { className: "tools" }, tool("SVG", "Save as SVG", this.saveSvg), tool("PNG", "Save as PNG", this.savePng),
-          tool("CSV", "Save the numbers, in SI", this.saveCsv))));
+          tool("CSV", "Save the values, in SI", this.saveCsv))));
     this.figure.chart = this;
     this.figure.setAttribute("role", "group");
     this.figure.setAttribute("aria-label", `${this.channel.label}; arrow keys show values`);
@@ -101,7 +101,7 @@ class Chart {
     }, { rootMargin: "400px" }).observe(this.figure);
   }
 
-  /** Unseen as well, so that a printed page has it; but not of a run that goes on, where all that is drawn is drawn again and again. */
+  /** Also if out of view, so that a printed page contains it; but not during a run, where every drawn chart is redrawn at each update. */
   drawSoon() {
     if (report.live || this.view) return;
     whenIdle(() => !this.drawing && this.figure.isConnected && !this.figure.hidden && this.draw());
@@ -110,12 +110,12 @@ class Chart {
   get abscissa() {
     return this.group.abscissaOf(this.name);
   }
-  /** Whether its axes go by powers of ten. */
+  /** Whether its axes are logarithmic. */
   get byPowers() {
     return false;
   }
 
-  /** [{run, label, x, y, colour, dashed}], x and y as in series.h5, of each run that has both, in the same units; `without` names the others. */
+  /** [{run, label, x, y, colour, dashed}], x and y as in series.h5, for each run that has both, in the same units; `without` names the other runs. */
   async load() {
     const series = [], { abscissa } = this, without = [];
     for (const { run, place, channel, probe } of this.group.channelsNamed(this.name)) {
@@ -136,7 +136,7 @@ class Chart {
     }
     return Object.assign([...series, ...(await this.references(series))], { without });
   }
-  /** What the descriptions have this channel compared with: curves over this abscissa, and values all along it. */
+  /** The references of the descriptions for this channel: curves over this abscissa, and constant values. */
   async references(series) {
     const full = `${this.group.name}/${this.name}`, found = new Map();
     for (const run of report.runs) for (const one of run.references) {
@@ -165,12 +165,12 @@ class Chart {
     this.view?.finalize();
     this.view = new vega.View(vega.parse(this.spec(this.width, theme())), { renderer: "svg", container: this.plot, hover: false });
     this.view.run();
-    this.plot.setAttribute("role", "img"); // the library has given it another one
+    this.plot.setAttribute("role", "img"); // Vega sets another one
     this.plot.setAttribute("aria-label", this.inWords());
     this.figure.dataset.drawn = "yes";
   }
 
-  /** What the axes reach. */
+  /** Sets the ranges of the axes. */
   settle() {
     if (this.byPowers) {
       const [low, high] = rangeOf(this.series.map((one) => one.shownX.filter((value) => value > 0)));
@@ -183,23 +183,23 @@ class Chart {
     const { ends, step } = settled(rangeOf(this.series.map((one) => one.shownY)));
     this.yDomain = ends, this.yStep = step;
   }
-  /** What a reader who does not see the chart wants to know of it. */
+  /** The chart as text, for screen readers. */
   inWords() {
-    const between = (list, of) => rangeOf([list]).map((value) => told(value, of)).join(" to ");
+    const between = (list, of) => rangeOf([list]).map((value) => valueWithUnit(value, of)).join(" to ");
     const each = this.series.map(({ label, shownX, shownY }) => `${label} ${between(shownY, this.channel)} over ${between(shownX, this.abscissa)}`);
     return `${this.channel.label} against ${this.abscissa.label}: ${each.join("; ")}`;
   }
-  /** Where a point of a series is drawn; what is null there, is not. */
+  /** The coordinates of a point of a series; null is not drawn. */
   pointOf({ shownX, shownY }, i) {
     const there = (value) => (this.byPowers && !(value > 0) ? null : drawable(value));
     return { x: there(shownX[i]), y: there(shownY[i]) };
   }
-  /** How far along an axis a value is, from 0 to 1. */
+  /** Position of a value along an axis, from 0 to 1. */
   along(value, [low, high]) {
     return this.byPowers ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
   }
 
-  /** With what its group has read anew. */
+  /** Redraws with the new data of its group. */
   async refresh() {
     this.channel = this.group.channelsNamed(this.name)[0].channel;
     if (!this.view) return;
@@ -208,7 +208,7 @@ class Chart {
     this.show(places?.length === this.series.length ? places : null);
   }
 
-  /** For Vega, of so many pixels between its axes. */
+  /** The Vega specification, `width` pixels between the axes. */
   spec(width, look) {
     const values = [], font = pageFont();
     for (const one of this.series) for (const i of pointsToDraw(one.shownY, 800)) values.push({ ...this.pointOf(one, i), s: one.s });
@@ -249,14 +249,14 @@ class Chart {
       ],
     };
   }
-  /** Of an axis: at most so many, or about so many powers of ten. */
+  /** Ticks of an axis: at most `count`, or about `count` powers of ten. */
   ticks(domain, count, step) {
     if (!this.byPowers) return { tickCount: (domain[1] - domain[0]) / (step ?? tickStep(...domain, count)) };
     const values = powersWithin(domain, count), words = Object.fromEntries(values.map((value) => [value, atPower(value)]));
     return { values, encode: { labels: { update: { text: { signal: `(${JSON.stringify(words)})[datum.value]` } } } } };
   }
 
-  /** Where colours come again, and for what is measured, lines are broken. */
+  /** Lines are dashed when colours repeat, and for references. */
   dash({ colour, reference }) {
     return reference ? [[2, 4], [8, 3, 2, 3]][colour % 2] : colour < report.colours.series.length ? [1, 0] : [7, 4];
   }
@@ -266,12 +266,12 @@ class Chart {
   get width() {
     return Math.max(160, this.plot.clientWidth - around.left - around.right);
   }
-  /** A legend may need more rows then: the chart is drawn anew. */
+  /** Redraws the chart after a change of width, as the legend may need more rows. */
   fit() {
     if (this.view && Math.abs(this.view.width() - this.width) >= 2) this.draw();
   }
 
-  /** The screen's rectangle between the axes. */
+  /** The rectangle between the axes on the screen. */
   area() {
     return this.plot.querySelector(".role-frame.root .background").getBoundingClientRect();
   }
@@ -284,7 +284,7 @@ class Chart {
     this.show(this.series.map((one) => this.nearest(one, x, y, area)));
   }
 
-  /** The point nearest to a place in the area; across counts ten times as much as up and down. */
+  /** The point nearest to a position in the area; the horizontal distance has ten times the weight of the vertical. */
   nearest({ shownX, shownY }, x, y, area) {
     let best = -1, least = Infinity;
     for (let i = 0; i < shownX.length; ++i) {
@@ -295,17 +295,17 @@ class Chart {
     return best;
   }
 
-  /** Marks a point of each series, and writes its values; null: none. */
+  /** Marks a point of each series and shows its values; null: none. */
   show(places) {
     this.places = places;
     const points = (places ?? []).flatMap((i, k) => (i < 0 ? [] : [{ ...this.pointOf(this.series[k], i), s: this.series[k].s, k, i }]));
     this.view?.data("near", points.filter(({ x, y }) => x !== null && y !== null)).runAsync();
-    this.values.replaceChildren(...(points.length === 0 ? [] : [`${this.abscissa.label} ${told(this.series[points[0].k].shownX[points[0].i], this.abscissa)}`]),
+    this.values.replaceChildren(...(points.length === 0 ? [] : [`${this.abscissa.label} ${valueWithUnit(this.series[points[0].k].shownX[points[0].i], this.abscissa)}`]),
       ...points.map(({ k, i }) => make("span", {}, make("span", { className: "key", style: `background:${this.colour(this.series[k])}` }),
-        `${this.series[k].label} ${told(this.series[k].shownY[i], this.channel)}`)));
+        `${this.series[k].label} ${valueWithUnit(this.series[k].shownY[i], this.channel)}`)));
   }
 
-  /** The sample whose abscissa is nearest; of those that are as near, the one as far along. */
+  /** The sample with the nearest abscissa; among equals, the one at the most similar index. */
   nearestX(list, wanted, along) {
     let best = -1, least = Infinity, off = Infinity;
     for (let i = 0; i < list.length; ++i) {
@@ -319,10 +319,10 @@ class Chart {
     const steps = { ArrowLeft: -1, ArrowRight: 1, Home: -Infinity, End: Infinity };
     if (event.target !== this.figure || !this.series) return;
     if (event.key === "Escape") return this.show(null);
-    if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in steps)) return; // those are the browser's
+    if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in steps)) return; // keys of the browser
     event.preventDefault();
     const far = event.shiftKey ? 20 : 1;
-    // The longest series goes from sample to sample, and the others to where it is then.
+    // The longest series steps by samples, and the others follow its abscissa.
     const leader = this.series.reduce((best, { x }, k) => (x.length > this.series[best].x.length ? k : best), 0), { x } = this.series[leader];
     const i = Math.min(x.length - 1, Math.max(0, (this.places?.[leader] ?? -1) + far * steps[event.key]));
     this.show(this.series.map((one) => (one.x[i] === x[i] ? i : this.nearestX(one.x, x[i], i / x.length))));
@@ -332,7 +332,7 @@ class Chart {
     const names = report.runs.map((run) => run.name), named = names.length > 3 ? [names[0], `and-${names.length - 1}-more`] : names; // file systems take 255 bytes
     return [...named, this.group.name, this.name].join("-");
   }
-  /** What goes into files. */
+  /** The view written to files. */
   fileView() {
     return new vega.View(vega.parse(this.spec(fileSize.width - around.left - around.right, filesLook())), { renderer: "none" });
   }
@@ -353,14 +353,14 @@ class Chart {
   }
 }
 
-/** All channels of a probe, of all runs that have it, over one abscissa. */
+/** All channels of a probe over one abscissa, for all runs that have it. */
 class ProbeCharts {
   constructor(name) {
     this.name = name;
     this.read();
     this.against = this.abscissas.find((one) => this.scalars().includes(one)) ?? "time";
   }
-  /** What the report has of this probe now. */
+  /** Reads the present data of this probe. */
   read() {
     const { name } = this;
     this.probes = report.runs.map((run, place) => ({ run, place, probe: run.probes.find((one) => one.name === name) })).filter(({ probe }) => probe);
@@ -375,17 +375,17 @@ class ProbeCharts {
     this.ordered = seen.filter((one) => !this.zero.includes(one));
     this.choice?.read(this.channelsNamed("time"));
   }
-  /** Whether it is 0 throughout, and no description asks for its curve. */
+  /** Whether it is 0 throughout, and no description names its curve. */
   isZero(name) {
     const full = `${this.name}/${name}`, asked = this.shown.includes(name) || report.runs.some(({ references }) => references.some(({ of }) => of === full));
     return !asked && this.channelsNamed(name).every(({ channel }) => channel.zero || !channel.filled);
   }
-  /** The channel that says where each number of a list is; "place" does so in results of older programs too. */
+  /** The channel with the coordinate of each number of a list; results of older versions always use "position". */
   coordinateOf({ name, coordinate, width }) {
-    const wanted = coordinate || (width > widestForLines && name !== "place" ? "place" : "");
+    const wanted = coordinate || (width > widestForLines && name !== "position" ? "position" : "");
     return this.channelsNamed(wanted).find(({ channel }) => channel.width === width)?.channel;
   }
-  /** Whether a channel only says where numbers of others are. */
+  /** Whether a channel is only the coordinate of others. */
   isCoordinate(name) {
     return this.names.some((other) => this.coordinateOf(this.channelsNamed(other)[0].channel)?.name === name);
   }
@@ -404,7 +404,7 @@ class ProbeCharts {
   scalars() {
     return this.names.filter((name) => this.channelsNamed(name).every(({ channel }) => channel.width === 1));
   }
-  /** Of a channel's chart: the one that is chosen, where a run has both; else what a description's picture has, or time. */
+  /** Abscissa of a channel: the chosen one if a run has both; otherwise that of the picture in a description, or time. */
   abscissaOf(name) {
     const runs = this.channelsNamed(name).map(({ probe }) => probe.channels), named = (wanted) => runs.map((channels) => channels.find((one) => one.name === wanted && one.filled)).find(Boolean);
     return [this.against, ...this.abscissas, "time"].filter((one) => one !== name).map(named).find(Boolean) ?? { name: "sample", label: "sample", unit: "1", shown_unit: "1", factor: 1 };
@@ -426,7 +426,7 @@ class ProbeCharts {
     if (this.zero.length > 0) parent.append(make("p", { className: "zero" }, `0 throughout: ${this.zero.map((one) => this.channelsNamed(one)[0].channel.label).join(", ")}`));
     this.turn(this.against);
   }
-  /** What the description's picture names is seen at once; many others when they are asked for. */
+  /** Channels named by the picture of the description are shown at once; many others on request. */
   unfold(unfolded) {
     this.unfolded = unfolded;
     const rest = [...this.grid.children].filter(({ chart }) => !this.shown.includes(chart.name)), many = rest.length > 2 && rest.length < this.grid.children.length;
@@ -457,7 +457,7 @@ function showCurves(section) {
     const { name } = charts;
     const count = charts.ordered.length + charts.zero.length;
     if (count === 0) {
-      section.append(make("p", { className: "probe" }, make("b", {}, name), make("small", {}, " no sample")));
+      section.append(make("p", { className: "probe" }, make("b", {}, name), make("small", {}, " no samples")));
       continue;
     }
     const part = make("details", { className: "probe" }, make("summary", {}, name, make("small", {}, ` ${count} channel${count === 1 ? "" : "s"}`)));

@@ -1,4 +1,4 @@
-// What the page carries: one JSON, and numbers deflated and in base64.
+// Data of the page: one JSON, and numbers deflated and in base64.
 "use strict";
 const report = JSON.parse(document.getElementById("report").textContent);
 
@@ -18,13 +18,13 @@ function inflated(number) {
 }
 
 const doubles = new Map();
-/** The float64 numbers of a data element; asked for twice, inflated once. */
+/** The float64 numbers of a data element; inflated once. */
 function numbersOf(number) {
   if (!doubles.has(number)) doubles.set(number, inflated(number).then((buffer) => new Float64Array(buffer)));
   return doubles.get(number);
 }
 
-/** 16-bit numbers whose low bytes come first, all together. */
+/** 16-bit numbers from byte planes: all low bytes, then all high bytes. */
 async function planesOf(number) {
   const bytes = new Uint8Array(await inflated(number));
   const count = bytes.length / 2;
@@ -33,7 +33,7 @@ async function planesOf(number) {
   return numbers;
 }
 
-/** An element with attributes (those of the DOM where they are functions) and children. */
+/** An element with attributes (or DOM properties) and children. */
 function make(tag, attributes = {}, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes))
@@ -43,13 +43,13 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
-/** The entries [value, label] of a choice; where it has them already it is left alone, as a reader may have it open. */
+/** Sets the entries [value, label] of a choice; unchanged if it has them already, as it may be open. */
 function offer(choice, entries) {
   const now = Array.from(choice.options, (one) => [one.value, one.label]);
   if (JSON.stringify(now) !== JSON.stringify(entries)) choice.replaceChildren(...entries.map(([value, label]) => make("option", { value }, label)));
 }
 
-/** Hands a file to the reader. Tests look at the last one. */
+/** Saves a file on the user's machine. Tests inspect the last one. */
 function save(name, content, type) {
   const blob = content instanceof Blob ? content : new Blob([content], { type });
   save.last = { name, blob };
@@ -58,7 +58,7 @@ function save(name, content, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);
 }
 
-/** Four digits that people read: 0.0123, 12.35, 1.2e+7. */
+/** A number with four digits: 0.0123, 12.35, 1.2e+7. */
 function readable(value) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
@@ -66,14 +66,14 @@ function readable(value) {
   return text.replace("-", "−");
 }
 
-/** Seconds with the prefix that reads best for times up to `largest`. */
+/** Seconds with the best prefix for times up to `largest`. */
 function writtenTime(seconds, largest = seconds) {
   const size = Math.abs(largest), [factor, unit] = size >= 1 || size === 0 ? [1, "s"] : size >= 1e-3 ? [1e3, "ms"] : [1e6, "µs"];
   return `${readable(seconds * factor)} ${unit}`;
 }
 
-/** Behind a number; units that are shown come as people write them. */
+/** A unit after a number. */
 const ofUnit = (unit) => (unit === "1" || unit === "" ? "" : unit === "°" ? "°" : ` ${unit}`);
 
-/** A label with its unit, of an axis as it is shown, of a column as it is in files. */
+/** A label with its unit. */
 const withUnit = (label, unit) => (unit === "1" || unit === "" ? label : `${label} [${unit}]`);

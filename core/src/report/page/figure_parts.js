@@ -1,32 +1,32 @@
-// What figures in metres share: ways to look, units that read well, a bar of length, a scale of colours, the size of files.
+// Shared parts of figures in metres: views, readable units, scale bar, colour scale, size of files.
 "use strict";
 
-// Axis to the right, upwards, along the line of sight with its sign away from the reader; as in picture.svg.
+// Axes to the right, upwards, and along the line of sight with its sign away from the viewer; as in picture.svg.
 const views = {
   xz: { label: "front (x, z)", right: 0, up: 2, depth: 1, away: 1 },
   yz: { label: "side (y, z)", right: 1, up: 2, depth: 0, away: -1 },
-  xy: { label: "above (x, y)", right: 0, up: 1, depth: 2, away: -1 },
+  xy: { label: "top (x, y)", right: 0, up: 1, depth: 2, away: -1 },
 };
 const letter = (axis) => "xyz"[axis];
 
 const prefixes = [[1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
-/** A unit with the prefix that reads best for numbers up to `largest`. */
+/** The unit with the best prefix for numbers up to `largest`. */
 function prefixed(unit, largest) {
   if (unit !== "m" && unit !== "m/s") return [1, unit];
   const [size, prefix] = prefixes.find(([one]) => largest >= one) ?? prefixes.at(-1);
   return [1 / size, prefix + unit];
 }
 
-// Files are as large whatever the screen is: as wide as a column of text, in pixels that are enough to print it.
-const fileSize = { width: 600, tallest: 700 }, filePixels = 3; // CSS pixels, and pixels of a PNG for each of them
+// The size of files does not depend on the screen: the width of a text column, at a resolution for print.
+const fileSize = { width: 600, tallest: 700 }, filePixels = 3; // CSS pixels, and PNG pixels per CSS pixel
 
-/** The room that figures have on the screen. */
+/** The space for a figure on the screen. */
 const sizeOf = (stage) => ({ width: stage.clientWidth, tallest: Math.min(900, Math.max(300, 0.78 * innerHeight)) });
 function fitStage(stage, { height }) {
   if (stage.style.height !== `${height}px`) stage.style.height = `${height}px`;
 }
 
-/** A canvas of a file, `draw`n with the pen of one pixel a CSS pixel. */
+/** The canvas of a file; `draw` gets a pen in CSS pixels. */
 function fileCanvas({ width, height }, draw) {
   const canvas = make("canvas", { width: filePixels * width, height: filePixels * height }), context = canvas.getContext("2d");
   context.fillStyle = filesLook().paper;
@@ -36,7 +36,7 @@ function fileCanvas({ width, height }, draw) {
   return canvas;
 }
 
-/** Where metres go on a stage, so that a box fills it; `zoom` and `pan` [m] go closer. */
+/** Maps metres to pixels of a stage, so that a box fills it, modified by `zoom` and `pan` [m]. */
 class Layout {
   constructor({ width, tallest }, margin, view, low, high, zoom = 1, pan = [0, 0]) {
     Object.assign(this, { width, margin });
@@ -62,14 +62,14 @@ class Layout {
   metresUp(pixels) {
     return this.centre[1] - (pixels - this.height / 2) * this.metresPerPixel;
   }
-  /** Metres to the right and upwards at a place on the screen. */
+  /** Metres to the right and upwards at a point of the screen. */
   metresAt(stage, { clientX, clientY }) {
     const { left, top } = stage.getBoundingClientRect();
     return [this.metresAcross(clientX - left), this.metresUp(clientY - top)];
   }
 }
 
-/** Where the plane at a depth cuts triangles: from and to, to the right and upwards [m]. */
+/** Sections of triangles with the plane at a depth: from and to, to the right and upwards [m]. */
 function cutBy(view, corners, depth) {
   const lines = [];
   for (let t = 0; t + 8 < corners.length; t += 9) {
@@ -78,7 +78,7 @@ function cutBy(view, corners, depth) {
       const a = t + 3 * k, b = t + 3 * ((k + 1) % 3);
       const before = corners[a + view.depth] - depth, after = corners[b + view.depth] - depth;
       if (before < 0 === after < 0) continue;
-      const share = before / (before - after), between = (axis) => corners[a + axis] + share * (corners[b + axis] - corners[a + axis]);
+      const fraction = before / (before - after), between = (axis) => corners[a + axis] + fraction * (corners[b + axis] - corners[a + axis]);
       points.push([between(view.right), between(view.up)]);
     }
     if (points.length === 2) lines.push(points);
@@ -86,10 +86,10 @@ function cutBy(view, corners, depth) {
   return lines;
 }
 
-/** Where grains are drawn: left of what colours mean. */
+/** The box of the grains: left of the colour scale. */
 const panel = ({ width, height, margin }) => [0, 0, Math.max(0, width - margin.right + 8), height];
 
-/** A bar that says how long things are, at the lower left. */
+/** The scale bar, at the lower left. */
 function drawLengthBar(pen, look, { width, height, metresPerPixel, margin }) {
   const long = niceBelow(0.3 * Math.min(width, 480) * metresPerPixel), [factor, unit] = prefixed("m", long), y = height - 16;
   pen.box(margin.left - 6, y - 11, long / metresPerPixel + 70, 22, look.paper);
@@ -97,7 +97,7 @@ function drawLengthBar(pen, look, { width, height, metresPerPixel, margin }) {
   pen.text(margin.left + long / metresPerPixel + 8, y + 4, `${+(long * factor).toPrecision(3)} ${unit}`, look.ink);
 }
 
-/** What colours mean: a bar with its upper end at `left`, `top`; numbers are times `factor`. */
+/** A colour bar with its upper end at `left`, `top`; numbers are multiplied by `factor`. */
 function drawColourBar(pen, look, { left, top, tall, low, high, table, factor }) {
   const bar = make("canvas", { width: 1, height: table.length }), context = bar.getContext("2d");
   table.forEach((colour, i) => ((context.fillStyle = rgb(colour)), context.fillRect(0, table.length - 1 - i, 1, 1)));
@@ -109,7 +109,7 @@ function drawColourBar(pen, look, { left, top, tall, low, high, table, factor })
     pen.text(left + 20, at + 4, atTick(value, step), look.ink, "start", 11.5);
   }
 }
-/** The same at the upper right, with what it is of. */
+/** The same at the upper right, with its title. */
 function drawColourScale(pen, look, { width, height, label, unit, note, ...scale }) {
   const tall = Math.min(240, height - 110), top = 46;
   pen.text(width - 2, 20, label, look.ink, "end", 12.5);

@@ -1,7 +1,7 @@
-// Draws discs and segments: by WebGL2, one point or quad each; and lines, circles and words by a pen, on a canvas or into SVG.
+// Draws discs and segments by WebGL2, one point or quad each; and lines, circles and text by a pen, on a canvas or as SVG.
 "use strict";
 
-// Points are drawn many times faster than quads by software, but vanish with their centres at the edge, and have a largest size.
+// Software draws points many times faster than quads, but points vanish when their centre leaves the image, and have a maximum size.
 const largestPoint = 64; // px
 
 const discVertex = (points) => `#version 300 es
@@ -72,7 +72,7 @@ class GlPainter {
     if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(program));
     return { program, uniform: (name) => gl.getUniformLocation(program, name) };
   }
-  /** Fills a buffer with one entry an instance. */
+  /** Fills a buffer with one entry per instance. */
   attribute(array, name, location, list, size, type, normalised) {
     const { gl } = this;
     gl.bindVertexArray(array);
@@ -145,7 +145,7 @@ class GlPainter {
   }
 }
 
-/** Lines, circles and words on a canvas. Lengths in CSS pixels. */
+/** Lines, circles and text on a canvas. Lengths in CSS pixels. */
 class CanvasPen {
   constructor(context) {
     this.context = context;
@@ -174,12 +174,12 @@ class CanvasPen {
     c.fillText(words, 0, 0);
     c.restore();
   }
-  /** A canvas, each of its pixels as it is. */
+  /** A canvas, without smoothing. */
   image(canvas, x, y, width, height) {
     this.context.imageSmoothingEnabled = false;
     this.context.drawImage(canvas, x, y, width, height);
   }
-  /** What `draw` does is seen within a box alone. */
+  /** Clips what `draw` draws to a box. */
   within(box, draw) {
     const c = this.context;
     c.save(), c.beginPath(), c.rect(...box), c.clip();
@@ -210,12 +210,12 @@ class SvgPen {
     const safe = words.replaceAll("&", "&amp;").replaceAll("<", "&lt;"), at = `${SvgPen.number(x)} ${SvgPen.number(y)}`;
     this.parts.push(`<text transform="translate(${at})${upwards ? " rotate(-90)" : ""}" fill="${colour}" text-anchor="${anchor}" font-size="${size}" font-weight="${weight}">${safe}</text>`);
   }
-  /** A canvas, each of its pixels as it is. */
+  /** A canvas, without smoothing. */
   image(canvas, x, y, width, height) {
     const n = SvgPen.number;
     this.parts.push(`<image x="${n(x)}" y="${n(y)}" width="${n(width)}" height="${n(height)}" preserveAspectRatio="none" style="image-rendering:pixelated" href="${canvas.toDataURL()}"/>`);
   }
-  /** What `draw` does is seen within a box alone. */
+  /** Clips what `draw` draws to a box. */
   within([x, y, width, height], draw) {
     this.parts.push(`<clipPath id="panel"><rect x="${x}" y="${y}" width="${width}" height="${height}"/></clipPath><g clip-path="url(#panel)">`);
     draw();

@@ -1,7 +1,7 @@
-// The frames of a run, taken apart when they are looked at.
+// The frames of a run, decoded when shown.
 "use strict";
 
-const kept = 6; // frames in memory: those around the one that is shown
+const kept = 6; // frames in memory, around the one shown
 
 class GrainFrames {
   constructor(json) {
@@ -14,7 +14,7 @@ class GrainFrames {
   get count() {
     return this.json.frames.length;
   }
-  /** Corners of the box in which the grains of a stage are, but for those far from all others; a cloud that falls is taller than what it becomes. */
+  /** Corners of the box of the grains of a stage, without those far from all others. By stage, as a falling cloud is taller than the packing. */
   extent(stage) {
     const same = this.json.frames.filter((frame) => frame.stage === stage && frame.low);
     if (same.length === 0) return null;
@@ -38,7 +38,7 @@ class GrainFrames {
     return this.sets.get(number);
   }
 
-  /** Positions of a frame that others are less of; x of all bodies, y, z. */
+  /** Positions of a base frame, relative to which others are stored; x of all bodies, y, z. */
   base(number) {
     if (!this.absolute.has(number)) {
       const { set, data } = this.json.frames[number];
@@ -47,7 +47,7 @@ class GrainFrames {
     return this.absolute.get(number);
   }
 
-  /** {time, step, stage, count, radius, id, clump, x, y, z, speed, rotation, displacement}; 16-bit lists but the first ones. */
+  /** {time, step, stage, count, radius, id, clump, x, y, z, speed, rotation, displacement}; 16-bit lists from x on. */
   frame(number) {
     if (!this.frames.has(number)) {
       this.frames.set(number, this.read(number));
@@ -68,7 +68,7 @@ class GrainFrames {
     return { number, time, step, stage, count, ...bodies, x: list(), y: list(), z: list(), speed: list(), rotation: vector("rotation"), displacement: vector("displacement") };
   }
 
-  /** The contacts shown of a frame, or the links of its linear chains: {count, body, branch [m] of all x, y, z, force [N]}. */
+  /** The contacts of a frame to show, or the links of its linear chains: {count, body, branch [m] of all x, y, z, force [N]}. */
   async chains(number, linear = false) {
     const frame = this.json.frames[number], { strongest } = frame, contacts = (linear ? frame.linear_contacts : frame.contacts) ?? 0;
     const all = contacts > 0 ? await planesOf(linear ? frame.linear_chains : frame.chains) : new Uint16Array();
@@ -79,7 +79,7 @@ class GrainFrames {
       force: Float32Array.from(force, (q) => (q / 65535) * strongest) };
   }
 
-  /** Triangles of the walls of a frame, where they are then: corners of three numbers [m]. */
+  /** Triangles of the walls at a frame: corners of three numbers [m]. */
   async walls(number) {
     const placed = [];
     for (const [wall, ...moved] of this.json.frames[number].walls) {
@@ -98,7 +98,7 @@ class GrainFrames {
 }
 
 const framesKnown = new WeakMap();
-/** Grains and maps look at the same ones. */
+/** Grains and maps share them. */
 function framesOf(grains) {
   if (!framesKnown.has(grains)) framesKnown.set(grains, new GrainFrames(grains));
   return framesKnown.get(grains);

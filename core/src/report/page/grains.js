@@ -1,7 +1,7 @@
-// The grains: a slider over the frames, a way to look, what colours say, force chains, walls.
+// The grains: slider over the frames, view, colours, force chains, walls.
 "use strict";
 
-// How a colour gets a number in its unit from a frame `of` a stage, and which scale it uses.
+// The quantities that colours show: value in its unit from a frame `of` a stage, and colour table.
 const colourings = {
   rotation: { label: "rotation", unit: "°", table: "diverging", note: "clockwise +", needs: "rotation",
     limit: (of, view) => (of.limits.rotation[view.depth] * 180) / Math.PI,
@@ -12,7 +12,7 @@ const colourings = {
   speed: { label: "speed", unit: "m/s", table: "sequential", limit: (of) => of.limits.speed,
     value: (of, view, frame) => (i) => (frame.speed[i] / 65535) * of.ranges.speed },
   radius: { label: "radius", unit: "m", table: "sequential", between: true, value: (of, view, frame) => (i) => frame.radius[i] },
-  layers: { label: "layer", unit: "1", table: "sequential", note: (view, seen) => `by ${letter(view.up)} when ${seen.json.layers.stage} began`,
+  layers: { label: "layer", unit: "1", table: "sequential", note: (view, seen) => `by ${letter(view.up)} at the start of ${seen.json.layers.stage}`,
     value: (of, view, frame, seen) => (i) => seen.layers.get(frame.id[i]) ?? -1 },
   clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (of, view, frame) => (i) => frame.clump?.[i] ?? -1 },
 };
@@ -29,7 +29,7 @@ class GrainView {
     new ResizeObserver(() => this.redraw()).observe(this.stage);
     dark.addEventListener("change", () => this.redraw());
   }
-  /** More frames of the same runs; one of them is turned to then. */
+  /** Takes more frames of the same runs; turn() follows. */
   refresh(runs) {
     this.runs = runs.map((run) => ({ name: run.name, frames: framesOf(run.grains), leftOut: run.grains.left_out, picture: run.picture ?? {} }));
     this.now = this.layersOf = this.shownOf = null;
@@ -56,11 +56,11 @@ class GrainView {
     this.runChoice = choice("run", this.runs.map((run, i) => [i, run.name]), (value) => this.player.takeRun(+value));
     this.viewChoice = choice("view", Object.entries(views).map(([name, one]) => [name, one.label]), (value) => ((this.viewChosen = true), this.change({ view: value, zoom: 1, pan: [0, 0] })));
     this.colourPlace = make("span");
-    this.cut = make("input", { type: "range", name: "cut", min: 0, max: 100, value: 0, title: "how much is cut away in front", oninput: () => this.change({ cut: this.cut.value / 100 }) });
+    this.cut = make("input", { type: "range", name: "cut", min: 0, max: 100, value: 0, title: "fraction cut away in front", oninput: () => this.change({ cut: this.cut.value / 100 }) });
     const showChains = () => this.change({ chains: this.chains.checked || this.linear.checked, linear: this.linear.checked });
     this.chains = make("input", { type: "checkbox", name: "chains", onchange: showChains });
     this.linear = make("input", { type: "checkbox", name: "linear", onchange: showChains });
-    this.linearLabel = make("label", { title: "grains in line that bear more than the mean; instead of all contacts above the mean" }, this.linear, " linear chains");
+    this.linearLabel = make("label", { title: "linear chains of grains that carry more than the mean force, instead of all contacts above the mean force" }, this.linear, " linear chains");
     this.walls = make("input", { type: "checkbox", name: "walls", checked: true, onchange: () => this.change({ walls: this.walls.checked }) });
     this.canvas = make("canvas", {});
     this.overlay = make("canvas", { className: "overlay" });
@@ -69,11 +69,11 @@ class GrainView {
     this.under = make("output", { className: "values" });
     this.about = make("span", { className: "about" });
     section.append(make("h2", {}, "Grains"),
-      make("div", { className: "controls" }, ...(this.runs.length > 1 ? [labelled("run", this.runChoice)] : []), labelled("seen from", this.viewChoice),
+      make("div", { className: "controls" }, ...(this.runs.length > 1 ? [labelled("run", this.runChoice)] : []), labelled("view", this.viewChoice),
         labelled("colour", this.colourPlace), labelled("cut away", this.cut), make("label", {}, this.chains, " force chains"), this.linearLabel, make("label", {}, this.walls, " walls")),
       make("figure", { className: "grains" }, this.stage, this.player.strip(),
-        make("figcaption", {}, this.under, this.about, make("span", { className: "tools" }, tool("−", "Smaller", () => this.scale(1 / 1.4)), tool("+", "Larger", () => this.scale(1.4)),
-          tool("fit", "All of it", () => this.change({ zoom: 1, pan: [0, 0] })), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
+        make("figcaption", {}, this.under, this.about, make("span", { className: "tools" }, tool("−", "Zoom out", () => this.scale(1 / 1.4)), tool("+", "Zoom in", () => this.scale(1.4)),
+          tool("fit", "Fit to view", () => this.change({ zoom: 1, pan: [0, 0] })), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
     section.querySelector("figure").grains = this;
     this.painter = painterFor(this.canvas);
     this.listen();
@@ -84,7 +84,7 @@ class GrainView {
     let spread = 0;
     stage.addEventListener("keydown", (event) => {
       const acts = { ...this.player.keys(), "+": () => this.scale(1.4), "-": () => this.scale(1 / 1.4), 0: () => this.change({ zoom: 1, pan: [0, 0] }) };
-      if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in acts)) return; // those are the browser's
+      if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in acts)) return; // keys of the browser
       event.preventDefault();
       acts[event.key]();
     });
@@ -96,7 +96,7 @@ class GrainView {
     stage.addEventListener("pointerdown", (event) => {
       stage.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, event);
-      this.pick(event); // a finger points only by touching
+      this.pick(event); // a touch sends no move before
     });
     stage.addEventListener("pointermove", (event) => {
       const before = fingers.get(event.pointerId);
@@ -122,7 +122,7 @@ class GrainView {
     this.now = null;
     const { json } = this;
     const there = Object.entries(colourings).filter(([, one]) => !one.needs || (one.needs === "clumps" ? json.clumps : this.frames.has(one.needs)));
-    const { color, view } = this.runs[run].picture; // of its description, until the reader has chosen
+    const { color, view } = this.runs[run].picture; // from its description, until the user has chosen
     if (!this.chosen) this.state.colour = color ?? "rotation";
     if (!this.viewChosen) this.state.view = view in views ? view : "xz";
     this.viewChoice.value = this.state.view;
@@ -131,13 +131,13 @@ class GrainView {
       ...there.map(([name, one]) => make("option", { value: name, selected: name === this.state.colour }, one.label)));
     this.colourPlace.replaceChildren(this.colourChoice);
     this.linearLabel.hidden = !json.frames.some((frame) => frame.linear_contacts > 0);
-    // Through the middle of what is deep enough to have one: fronts are along walls.
+    // Cut a deep specimen near its middle: in front there are walls.
     const { low, high } = json.frames.at(-1).low ? json.frames.at(-1) : json, deep = high[this.view.depth] - low[this.view.depth] > 3 * json.mean_diameter;
     this.cut.value = deep ? 33 : 0;
     this.state.cut = this.cut.value / 100;
   }
 
-  /** Shows a frame, unless another is asked for meanwhile. */
+  /** Shows a frame, unless another one is requested meanwhile. */
   async turn(number) {
     this.state.frame = number;
     const { frames } = this, frame = await frames.frame(number);
@@ -146,7 +146,7 @@ class GrainView {
     if (number + 1 < this.frames.count) this.frames.frame(number + 1);
   }
 
-  // ---- what is seen
+  // ---- drawing
 
   change(part) {
     Object.assign(this.state, part);
@@ -163,11 +163,11 @@ class GrainView {
     return this.change({ zoom, pan });
   }
 
-  /** Corners of the box of the centres that are not far from all others, in the frames of this stage. */
+  /** Corners of the box of the centres in the frames of this stage, without those far from all others. */
   extent() {
     return this.frames.extent(this.now.stage) ?? this.json;
   }
-  /** Where metres are on a stage of this size. */
+  /** The layout on a stage of this size. */
   arranged(size) {
     const { json, view } = this, radius = 0.75 * json.mean_diameter, extent = this.extent();
     const low = extent.low.map((v) => v - radius), high = extent.high.map((v) => v + radius);
@@ -178,7 +178,7 @@ class GrainView {
     return Object.assign(layout, { near: ends[0], far: ends[1], cut: Math.max(cut, ends[0] - 1e-9 - (ends[1] - ends[0])) });
   }
 
-  /** What colours mean: {low, high} of the value, and the table. */
+  /** The colour scale: {low, high} of the value, and the table. */
   scaleOfColours(frame) {
     const { json, view, colouring } = this;
     const table = colourTables[colouring.table];
@@ -208,20 +208,20 @@ class GrainView {
     return this.colouring.value(this.json.stages[frame.stage], this.view, frame, this);
   }
 
-  /** By its id the layer of each grain, from 1: of equal height, along the view's upward axis. */
+  /** The layer of each grain by id, from 1: of equal height, along the upward axis of the view. */
   async findLayers() {
     const { frame: number } = this.json.layers, { up } = this.view, key = `${this.state.run} ${number} ${up}`;
     if (this.layersOf === key) return;
     const start = await this.frames.frame(number), list = [start.x, start.y, start.z][up], layers = new Map();
-    const box = this.json.frames[number], [low, high] = box.low ? [box.low[up], box.high[up]] : [0, 1]; // of those that are not far from all others
+    const box = this.json.frames[number], [low, high] = box.low ? [box.low[up], box.high[up]] : [0, 1]; // without grains far from all others
     for (let i = 0; i < start.count; ++i) {
-      const share = (this.frames.metres(up, list[i]) - low) / (high - low || 1);
-      layers.set(start.id[i], 1 + Math.max(0, Math.min(layerCount - 1, Math.floor(layerCount * share))));
+      const fraction = (this.frames.metres(up, list[i]) - low) / (high - low || 1);
+      layers.set(start.id[i], 1 + Math.max(0, Math.min(layerCount - 1, Math.floor(layerCount * fraction))));
     }
     this.layers = layers, this.layersOf = key;
   }
 
-  /** Chains and walls as segments in the plane of the view; their widths in pixels, of which CSS has one for `ratio`. */
+  /** Chains and walls as segments in the plane of the view; widths in pixels, `ratio` of them per CSS pixel. */
   async segments(frame, layout, ratio) {
     const { view, state, json } = this, { cut, near, far } = layout;
     const from = [], to = [], width = [], alpha = [];
@@ -248,7 +248,7 @@ class GrainView {
 
   async show(frame) {
     this.now = frame;
-    if (this.stage.clientWidth === 0) return; // it is out of the page, or the page has no width
+    if (this.stage.clientWidth === 0) return; // removed from the page, or no width
     if (this.state.colour === "layers") {
       await this.findLayers();
       if (this.now !== frame) return;
@@ -258,7 +258,7 @@ class GrainView {
     const segments = await this.segments(frame, this.layout, devicePixelRatio);
     if (this.now !== frame) return;
     const { state } = this, key = `${state.run} ${frame.number} ${state.colour} ${state.view}`;
-    if (this.shownOf !== key) { // else looked at from nearer or farther
+    if (this.shownOf !== key) { // else only zoomed or moved
       this.colours = this.scaleOfColours(frame);
       this.shownPlaces = this.places(frame);
       this.painter.setBodies(frame);
@@ -272,9 +272,9 @@ class GrainView {
     this.stage.setAttribute("aria-label", `${frame.count} grains at ${writtenTime(frame.time)}, coloured by ${this.colouring.label}`);
     this.stage.dataset.frame = frame.number;
     const { leftOut } = this.runs[this.state.run], { unplaced, strays } = this.json.frames[frame.number];
-    this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, so that the page stays light` : "",
-      strays > 0 ? `far from all others, and out of sight at first: ${strays}` : "",
-      unplaced > 0 ? `bodies that are nowhere, or still farther, are left out: ${unplaced}` : ""].filter(Boolean).join("; ");
+    this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, to limit the size of the page` : "",
+      strays > 0 ? `far from all others and initially out of view: ${strays}` : "",
+      unplaced > 0 ? `bodies omitted, without a finite position or too far away: ${unplaced}` : ""].filter(Boolean).join("; ");
     this.painted = frame;
   }
   redraw() {
@@ -291,7 +291,7 @@ class GrainView {
       panelWidth: Math.round(panel(layout)[2] * ratio),
     };
   }
-  /** What takes long to draw is drawn fine only when it is left alone, or must be. */
+  /** A slow drawing is refined only when nothing moves, or on request. */
   paint(fine = printing) {
     const { layout } = this, look = theme();
     for (const canvas of [this.canvas, this.overlay]) {
@@ -308,7 +308,7 @@ class GrainView {
     this.annotate(new CanvasPen(context), look, layout);
   }
 
-  /** Indices of the grains that are seen, the farthest first. */
+  /** Indices of the visible grains, the farthest first. */
   seen(layout = this.layout) {
     const { view, now } = this, list = [now.x, now.y, now.z][view.depth];
     const depth = (i) => view.away * this.frames.metres(view.depth, list[i]);
@@ -330,7 +330,7 @@ class GrainView {
       pen.line(layout.across(from[2 * i]), layout.down(from[2 * i + 1]), layout.across(to[2 * i]), layout.down(to[2 * i + 1]), look.ink, 2 * width[i], alpha[i]);
   }
 
-  /** Scale bar, axes, and what colours mean. */
+  /** Scale bar, axes and colour scale. */
   annotate(pen, look, layout) {
     const { view, colours, colouring } = this, { width, height, margin } = layout;
     drawLengthBar(pen, look, layout);
@@ -342,7 +342,7 @@ class GrainView {
       note: typeof colouring.note === "function" ? colouring.note(view, this) : colouring.note });
   }
 
-  /** Says what is under the pointer. */
+  /** Shows the values of the grain under the pointer. */
   pick(event) {
     if (!this.now || !this.layout) return;
     const { view, now, layout } = this, lists = [now.x, now.y, now.z], [right, up] = layout.metresAt(this.stage, event);
@@ -397,7 +397,7 @@ function runsWithGrains() {
   return report.runs.filter((run) => run.grains && run.grains.frames.length > 0);
 }
 
-/** Grains, and maps of cells below them, which turn by the same slider. */
+/** Grains, and maps of cells below them, with the same slider. */
 function showFrames(grains, maps) {
   const runs = runsWithGrains();
   if (runs.length === 0) return;

@@ -1,9 +1,9 @@
-// What lines of a chart are, below it: entries side by side, as many in a row as have room.
+// The legend below a chart: entries side by side, as many in a row as fit.
 "use strict";
 
 const legendRow = 17, sampleLength = 16, besideSample = 6, betweenEntries = 18, legendSize = 11.5; // px
 
-/** A name of at most so many pixels: of a longer one its middle is left out, as ends tell names apart. */
+/** A name of at most `most` pixels; a longer one is shortened in the middle, as names differ at their ends. */
 function shortened(name, most, widthOf) {
   if (widthOf(name) <= most) return name;
   let kept = name.length - 1;
@@ -28,7 +28,7 @@ function legendPlaces(entries, width) {
 }
 const legendHeight = (places) => (places.length === 0 ? 0 : 8 + legendRow * (1 + places.at(-1).row));
 
-/** Data and marks of a legend that begins so many pixels below the axes. */
+/** Data and marks of a legend that begins `below` pixels below the axes. */
 function legendParts(places, below, look, font) {
   const y = { signal: `height + ${below} + ${legendRow} * datum.row` }, from = { data: "legend" };
   return {

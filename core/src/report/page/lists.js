@@ -1,7 +1,7 @@
-// Lists that have a place or a direction for each number: profiles and polar plots, of some instants over each other.
+// Lists with a position or a direction for each number: profiles and polar plots at several instants.
 "use strict";
 
-/** The place of the last of rising numbers that is not above `most`; of the first where all are. */
+/** The index of the last of ascending numbers that is not above `most`; 0 if all are above. */
 function lastUpTo(rising, most) {
   let low = 0, high = rising.length;
   while (low < high) {
@@ -12,26 +12,26 @@ function lastUpTo(rising, most) {
   return Math.max(0, low - 1);
 }
 
-/** Which samples of a probe's lists are shown: the one of a slider, and those that were kept; until then those at a third and two. */
+/** The samples of a probe's lists to show: that of the slider, and those kept; by default those at one and two thirds. */
 class TimeChoice {
   constructor(changed) {
     this.changed = changed;
     this.kept = null;
-    this.chosen = null; // s; null: the end, wherever that is
+    this.chosen = null; // s; null: the end
     this.slider = make("input", { type: "range", name: "sample", min: 0, max: 1000, value: 1000, oninput: () => this.choose(this.slider.value / 1000) });
     this.slider.setAttribute("aria-label", "time of profiles and directions");
     this.shown = make("output", { className: "clock" });
     const button = (text, title, act) => make("button", { type: "button", title, onclick: act }, text);
     this.controls = make("div", { className: "controls times" }, make("label", {}, "profiles and directions at ", this.slider), this.shown,
-      button("keep", "Keep this time beside others", () => this.keep(this.times)), button("alone", "Keep no other time", () => this.keep([])));
+      button("keep", "Keep this time in the charts", () => this.keep(this.times)), button("only this", "Show only this time", () => this.keep([])));
   }
-  /** What there is to choose from, of the channels of time: whoever is at the end goes along with it. */
+  /** Reads the available times from the channels of time: a slider at the end stays at the end. */
   read(channels) {
     this.known = Promise.all(channels.map(({ channel }) => numbersOf(channel.data))).then((lists) => {
       this.span = rangeOf(lists);
       const [low, high] = this.span;
       this.slider.value = this.chosen === null || high === low ? 1000 : (1000 * (this.chosen - low)) / (high - low);
-      this.tell();
+      this.showTime();
     });
   }
   at(part) {
@@ -40,21 +40,21 @@ class TimeChoice {
   get now() {
     return this.chosen ?? this.span[1];
   }
-  /** Seconds, the one of the slider last. */
+  /** Times in seconds; that of the slider is the last. */
   get times() {
     return [...(this.kept ?? [1 / 3, 2 / 3].map((part) => this.at(part))), this.now];
   }
   inWords(seconds) {
     return writtenTime(seconds, Math.max(...this.span.map(Math.abs)));
   }
-  tell() {
+  showTime() {
     this.shown.textContent = this.inWords(this.now);
     this.slider.setAttribute("aria-valuetext", this.shown.textContent);
   }
   choose(part) {
     if (!this.span) return;
     this.chosen = part < 1 ? this.at(part) : null;
-    this.tell();
+    this.showTime();
     this.changed();
   }
   keep(times) {
@@ -64,13 +64,13 @@ class TimeChoice {
   }
 }
 
-/** What a description's picture has curves over, at an instant: ": settlement 3.2 mm"; nothing where that is time. */
+/** The value at an instant of the abscissa in the description's picture: ": settlement 3.2 mm"; empty for time. */
 async function abscissaAt({ picture, probes }, seconds) {
   const [probe, name] = (picture?.x ?? "").split("/"), channels = probes.find((one) => one.name === probe)?.channels ?? [];
   const x = channels.find((one) => one.name === name && one.width === 1), time = channels.find((one) => one.name === "time");
   if (!x || !time || x === time) return "";
   const times = await numbersOf(time.data), i = lastUpTo(times, seconds), value = (await numbersOf(x.data))[i];
-  return times[i] <= seconds && Number.isFinite(value) ? `: ${x.label} ${told(value * x.factor, x)}` : "";
+  return times[i] <= seconds && Number.isFinite(value) ? `: ${x.label} ${valueWithUnit(value * x.factor, x)}` : "";
 }
 
 class ListChart extends Chart {
@@ -97,25 +97,25 @@ class ListChart extends Chart {
   }
 }
 
-/** A list by frequency: powers of ten along both axes, as what is there spans many. */
+/** A list over frequency: logarithmic axes, as spectra span many powers of ten. */
 class SpectrumChart extends ListChart {
   get byPowers() {
     return true;
   }
 }
 
-/** A list by direction, round a middle that is zero. */
+/** A list over direction, as a polar plot. */
 class PolarChart extends ListChart {
   settle() {
     const [, most] = rangeOf(this.series.map(({ shownY }) => shownY)), high = most > 0 ? most : 1;
     this.step = niceBelow(high / 2);
     this.reach = Math.max(Math.ceil((high / this.step) * (1 - 1e-9)), 1) * this.step;
   }
-  /** Rings stand for them. */
+  /** Rings replace them. */
   ticks() {
     return {};
   }
-  /** Half a turn, in the unit of the directions. */
+  /** 180°, in the unit of the directions. */
   get half() {
     return this.abscissa.shown_unit.startsWith("rad") ? Math.PI : 180;
   }
@@ -125,7 +125,7 @@ class PolarChart extends ListChart {
   pointOf({ shownX, shownY }, i) {
     return Number.isFinite(shownY[i]) ? this.at(shownX[i], Math.max(0, shownY[i])) : { x: null, y: null };
   }
-  /** Steps round the middle: each number stands for the directions about it. */
+  /** A stepped outline around the centre: each number covers the directions around it. */
   outline({ shownX, shownY, s }) {
     const wide = shownX.length > 1 ? Math.abs(shownX[1] - shownX[0]) / 2 : this.half, points = [];
     shownX.forEach((angle, i) => [-1, -0.5, 0, 0.5, 1].forEach((part) =>
@@ -154,7 +154,7 @@ class PolarChart extends ListChart {
         lines("curves", "s", { stroke: { scale: "colour", field: "s" }, strokeDash: { scale: "dash", field: "s" }, strokeWidth: { value: 2 } }),
         words("radii", look.soft), near, ...legend.marks] };
   }
-  /** A circle stays one, whatever the width. */
+  /** Equal scales along both axes, whatever the width. */
   domain(axis, width) {
     const half = 1.2 * this.reach * (axis === "x" ? width / this.size(width) : 1);
     return [-half, half];

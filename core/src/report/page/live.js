@@ -1,9 +1,9 @@
-// A page that is served while its run goes: asks for what is new, and shows it where the reader is.
+// A page served during a run: requests new data, and updates the page without moving it.
 "use strict";
 
 /**
- * Asks for news one after the other, in a thread of its own: the last state is given for a few seconds alone, and the page may take longer to draw what came before.
- * Hands over what has come in, put together, whenever the page says that it is ready; `silent`: the last question had no answer.
+ * Requests updates one after the other, in its own thread: the server keeps the last state only for a few seconds, and the page may take longer to draw.
+ * Sends the merged updates whenever the page is ready; `silent`: the last request had no response.
  */
 function askAhead(address, page, run, since) {
   let held = null, ready = false;
@@ -53,19 +53,19 @@ class Follower {
   inPage() {
     return new Set(Array.from(document.querySelectorAll("[id^=data-]"), (element) => element.id.slice(5)));
   }
-  say(words) {
+  show(words) {
     this.line.textContent = words;
   }
 
-  /** Until another run is served from here. */
+  /** Until the server shows another run. */
   async follow() {
     for (;;) {
       const news = await this.news();
       if ((news.run ?? this.run) !== this.run) return location.reload();
       if (news.report) await this.take(news);
       this.ended = news.ended ?? this.ended;
-      if (!news.silent) this.say(news.progress);
-      else this.say(this.ended ? "The run has ended, and this page is served no longer: 'grit report' makes one that stays." : "No answer: the run has stopped, or cannot be reached.");
+      if (!news.silent) this.show(news.progress);
+      else this.show(this.ended ? "The run has ended and this page is no longer updated; 'grit report' writes a permanent one." : "No response: the run has stopped or cannot be reached.");
     }
   }
   news() {
@@ -78,7 +78,7 @@ class Follower {
   async take({ head, report: now, elements, used }) {
     for (const [number, text] of Object.entries(elements))
       document.body.append(make("script", { type: "application/octet-stream", id: `data-${number}`, textContent: text }));
-    // What was used until now may still be being drawn.
+    // Data used so far may still be in use by a drawing.
     const needed = new Set([...this.used, ...used.map(String)]);
     for (const number of this.inPage()) if (!needed.has(number)) this.forget(number);
     this.used = new Set(used.map(String));
@@ -113,7 +113,7 @@ class Follower {
   async showFrames(grains, maps) {
     const player = grains.querySelector("figure.grains")?.grains.player, runs = runsWithGrains();
     if (player && runs.length > 0) return player.refresh(runs);
-    grains.replaceChildren(), maps.replaceChildren(); // a run that goes on may have taken its frames back
+    grains.replaceChildren(), maps.replaceChildren(); // a resumed run may have removed frames
     return showFrames(grains, maps);
   }
 }

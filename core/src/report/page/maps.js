@@ -1,7 +1,7 @@
-// Maps: what probes say of cells, a colour each, for the frame that is shown.
+// Maps: values of cells from probes, as colours, for the frame shown.
 "use strict";
 
-const mapMargin = { left: 62, right: 78, top: 46, bottom: 46 }; // px, about the frame
+const mapMargin = { left: 62, right: 78, top: 46, bottom: 46 }; // px, around the frame
 
 class MapView {
   constructor(section, runs, player) {
@@ -18,7 +18,7 @@ class MapView {
   readRuns(runs) {
     this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames, grains: framesOf(run.grains) }));
   }
-  /** More frames of the same runs, and maybe more maps; a frame is turned to then. */
+  /** Takes more frames, and possibly more maps, of the same runs; turn() follows. */
   refresh(runs) {
     this.readRuns(runs);
     this.takeRun(this.shownRun);
@@ -42,13 +42,13 @@ class MapView {
     this.figure = make("figure", { className: "map" }, this.stage, this.player.strip(), make("figcaption", {}, this.under, this.about,
       make("span", { className: "tools" }, tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the cells of this frame, in SI", () => this.saveCsv()))));
     this.figure.map = this;
-    this.section.append(make("h2", {}, "Maps"), make("div", { className: "controls" }, labelled("of", this.fieldChoice), this.componentLabel, labelled("seen from", this.viewChoice), this.sliceLabel), this.figure);
+    this.section.append(make("h2", {}, "Maps"), make("div", { className: "controls" }, labelled("field", this.fieldChoice), this.componentLabel, labelled("view", this.viewChoice), this.sliceLabel), this.figure);
     this.stage.addEventListener("pointermove", (event) => this.pick(event));
     this.stage.addEventListener("pointerdown", (event) => this.pick(event));
     this.stage.addEventListener("pointerleave", () => this.under.replaceChildren());
     this.stage.addEventListener("keydown", (event) => {
       const acts = this.player.keys();
-      if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in acts)) return; // those are the browser's
+      if (event.ctrlKey || event.metaKey || event.altKey || !(event.key in acts)) return; // keys of the browser
       event.preventDefault();
       acts[event.key]();
     });
@@ -70,16 +70,16 @@ class MapView {
   takeField(name) {
     if (this.componentOf !== name) this.state.component = -1;
     this.fieldChoice.value = this.state.field = this.componentOf = name;
-    this.now = null; // of another probe, maybe
+    this.now = null; // possibly of another probe
     const { components, unit } = this.field;
-    // Of strains the shear is looked at first.
+    // The default component of a strain is shear.
     const shear = unit === "1" ? components.findIndex((one) => one.length === 2 && one[0] !== one[1]) : -1;
     if (this.state.component < 0 || this.state.component >= Math.max(1, components.length)) this.state.component = Math.max(0, shear);
     this.componentLabel.hidden = components.length < 2;
     offer(this.componentChoice, components.map((label, place) => [String(place), label]));
     this.componentChoice.value = this.state.component;
     const { left_out } = this.map;
-    this.about.textContent = `${this.field.about}; 98 of 100 cells lie within the colours of their stage` + (left_out > 0 ? `; ${left_out} frames have no map, so that the page stays light` : "");
+    this.about.textContent = `${this.field.about}; the colour scale covers 98 % of the cells of each stage` + (left_out > 0 ? `; ${left_out} frames have no map, to limit the size of the page` : "");
     if (this.number !== undefined) this.turn(this.number);
   }
   get frames() {
@@ -93,13 +93,13 @@ class MapView {
     const name = this.state.field.slice(this.state.field.lastIndexOf("/") + 1);
     return this.map.fields.find((one) => one.name === name);
   }
-  /** "E xz", with the component where there are several. */
+  /** "E xz", with the component if there are several. */
   get label() {
     const { label, components } = this.field;
     return components.length > 1 ? `${label} ${components[this.state.component]}` : label;
   }
 
-  /** {count, centre and size of three lists [m], values: a list a component of each field}. */
+  /** {count, centre and size as three lists each [m], values: one list per component of each field}. */
   read({ cells, data }) {
     if (!this.cells.has(data)) {
       if (this.cells.size > kept) this.cells.delete(this.cells.keys().next().value);
@@ -110,7 +110,7 @@ class MapView {
     }
     return this.cells.get(data);
   }
-  /** The place of a component's list. */
+  /** The index of a component's list. */
   place(field, component) {
     let place = 0;
     for (const one of this.map.fields) {
@@ -119,7 +119,7 @@ class MapView {
     }
   }
 
-  /** The map of a frame, or of the last one before it that has one. */
+  /** Shows the map of a frame, or of the last one before it that has one. */
   async turn(number) {
     this.number = number;
     if (this.section.hidden) return;
@@ -130,12 +130,12 @@ class MapView {
     this.draw();
   }
 
-  /** Layers of cells along an axis. */
+  /** Number of layers of cells along an axis. */
   layers(axis) {
     const { centre, size } = this.now.cells, [low, high] = rangeOf([centre[axis]]), [, thick] = rangeOf([size[axis]]);
     return thick > 0 ? Math.round((high - low) / thick) + 1 : 1;
   }
-  /** Cells that the slice cuts, by their places: it goes through the middle of some, so that it is never between two. */
+  /** Indices of the cells that the slice cuts: it passes through centres of cells, so that it is never between two. */
   seen(view) {
     const { count, centre, size } = this.now.cells, at = centre[view.depth], thick = size[view.depth];
     const [low, high] = rangeOf([at]), wanted = low + this.state.slice * (high - low), all = [];
@@ -144,7 +144,7 @@ class MapView {
     return all;
   }
 
-  /** Fixed over a stage; about zero where that parts what the field is of, whatever its values are. */
+  /** The colour scale, fixed over a stage; symmetric about zero for signed quantities, whatever the values. */
   scale() {
     const { field, state } = this, [low, high] = field.ranges[this.now.stage]?.[state.component] ?? [0, 1];
     if (field.signed[state.component]) {
@@ -154,7 +154,7 @@ class MapView {
     return high > low ? { low, high, table: colourTables.sequential } : { low: low - 0.5 * (Math.abs(low) || 1), high: low + 0.5 * (Math.abs(low) || 1), table: colourTables.sequential };
   }
 
-  /** Where metres are on a stage of this size: all cells, and the grains about them as far as half their box is wide. */
+  /** The layout on a stage of this size: all cells, and grains around them up to half the width of their box. */
   arranged(size, view) {
     const { stage } = this.now, { boxes } = this.map, cells = boxes[stage] ?? Object.values(boxes)[0], grains = this.frames.extent(stage) ?? cells;
     const radius = 0.75 * this.frames.json.mean_diameter, most = cells.low.map((low, axis) => (cells.high[axis] - low) / 2);
@@ -174,7 +174,7 @@ class MapView {
       context.clearRect(0, 0, this.canvas.width, this.canvas.height);
       return;
     }
-    if (!this.state.view) { // along the axis that has the fewest layers
+    if (!this.state.view) { // along the axis with the fewest layers
       const layers = (name) => this.layers(views[name].depth);
       this.state.view = Object.keys(views).reduce((best, name) => (layers(name) < layers(best) ? name : best));
     }
@@ -192,11 +192,11 @@ class MapView {
     this.byPixel = this.paint(new CanvasPen(context), theme(), this.layout, devicePixelRatio);
     const { label, field, now } = this, values = now.cells.list(this.place(field, this.state.component));
     const [low, high] = rangeOf([values]);
-    const [from, to] = [low, high].map((value) => told(value * field.factor, field));
+    const [from, to] = [low, high].map((value) => valueWithUnit(value * field.factor, field));
     this.stage.setAttribute("aria-label", `${label} of ${values.length} cells of ${this.map.probe} at ${writtenTime(now.time)}, from ${from} to ${to}`);
     this.stage.dataset.frame = now.number;
   }
-  /** Returns {owner, width, height}: which of the cells shown has which pixel of the frame, of which CSS has one for `ratio`. */
+  /** Returns {owner, width, height}: for each pixel of the frame the index of its cell; `ratio` pixels per CSS pixel. */
   paint(pen, look, layout, ratio) {
     const { field, state, colours, shown, now } = this, { cells } = now, view = views[state.view], { left, right, top, bottom } = layout.frame;
     const values = cells.list(this.place(field, state.component)), list = (of) => Float64Array.from(shown, of), size = (axis, i) => Math.max(0.5, (0.5 * cells.size[axis][i] * ratio) / layout.metresPerPixel);
@@ -217,7 +217,7 @@ class MapView {
     pen.text(left, top - 26, withUnit(this.label, field.shown_unit), look.ink, "start", 13.5, false, 600);
     pen.text(left, top - 9, `${writtenTime(now.time)}${slice}`, look.soft, "start", 11.5);
     drawColourBar(pen, look, { left: right + 16, top, tall: Math.min(320, bottom - top), ...colours, factor: field.factor });
-    if (shown.some((i) => !Number.isFinite(values[i]))) pen.text(right + 16, Math.min(top + 320, bottom) + 17, "grey: none", look.soft, "start", 11);
+    if (shown.some((i) => !Number.isFinite(values[i]))) pen.text(right + 16, Math.min(top + 320, bottom) + 17, "grey: no value", look.soft, "start", 11);
     return { owner, width, height };
   }
 
@@ -229,7 +229,7 @@ class MapView {
     const i = column >= 0 && column < width && row >= 0 && row < height ? this.shown[owner[row * width + column]] : undefined;
     if (i === undefined) return this.under.replaceChildren();
     const value = cells.list(this.place(field, state.component))[i], [size, unit] = prefixed("m", Math.max(...axes.map((axis) => Math.abs(cells.centre[axis][i]))));
-    this.under.replaceChildren(make("span", {}, `${this.label} ${told(value * field.factor, field)}`),
+    this.under.replaceChildren(make("span", {}, `${this.label} ${valueWithUnit(value * field.factor, field)}`),
       ...axes.map((axis) => make("span", {}, `${letter(axis)} ${readable(cells.centre[axis][i] * size)} ${unit}`)));
   }
 

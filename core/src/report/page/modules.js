@@ -1,4 +1,4 @@
-// Vega comes as modules that ask for each other by name: this lets them.
+// Module loader for Vega, whose modules require each other by name.
 "use strict";
 const modules = new Map();
 function define(name, body) {
@@ -6,7 +6,7 @@ function define(name, body) {
 }
 function moduleNamed(name) {
   const found = modules.get(name === "vega-selections" ? "vega-selection" : name);
-  if (!found) throw Error(`the page lacks the module ${name}`);
+  if (!found) throw Error(`module ${name} is missing in the page`);
   if (!found.exports) {
     found.exports = {};
     found.body(found.exports, { exports: found.exports }, moduleNamed);

@@ -1,8 +1,8 @@
-// Time: which frame of which run is shown, by sliders that go together.
+// Time: the frame and run to show, set by synchronised sliders.
 "use strict";
 
 class Player {
-  /** What has takeRun(run), turn(number) and refresh(runs) may be put among the viewers. */
+  /** Viewers need takeRun(run), turn(number) and refresh(runs). */
   constructor(runs) {
     this.read(runs);
     this.viewers = [];
@@ -11,7 +11,7 @@ class Player {
   read(runs) {
     this.runs = runs.map((run) => run.grains.frames);
   }
-  /** Those of the run that is shown: [{time [s], step, stage}]. */
+  /** Frames of the run shown: [{time [s], step, stage}]. */
   get frames() {
     return this.runs[this.run];
   }
@@ -29,19 +29,19 @@ class Player {
     this.strips.push({ play, slider, clock });
     return make("div", { className: "player" }, play, slider, clock);
   }
-  /** What keys do. */
+  /** Actions of keys. */
   keys() {
     return { " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), Home: () => this.step(-Infinity), End: () => this.step(Infinity) };
   }
 
-  /** Goes to the last frame of a run. */
+  /** Shows the last frame of a run. */
   takeRun(run) {
     this.stop();
     this.run = run;
     for (const viewer of this.viewers) viewer.takeRun(run);
     return this.takeFrames(this.count - 1);
   }
-  /** With more frames of the same runs: goes along with the last one, and stays at any other. */
+  /** Takes more frames of the same runs: follows the last one, and stays at any other. */
   refresh(runs) {
     const last = this.number === this.count - 1, { step } = this.frames[this.number];
     this.read(runs);
@@ -80,10 +80,10 @@ class Player {
   }
   async start() {
     if (this.count < 2) return;
-    const playing = (this.playing = {}); // another one, when it is stopped and started meanwhile
+    const playing = (this.playing = {}); // replaced if it is stopped and started meanwhile
     for (const { play } of this.strips) play.textContent = "❚❚";
     if (this.number === this.count - 1) await this.go(0);
-    const pace = Math.min(200, Math.max(40, 6000 / this.count)); // ms: a run lasts some seconds
+    const pace = Math.min(200, Math.max(40, 6000 / this.count)); // ms: playing a run takes some seconds
     while (this.playing === playing && this.number < this.count - 1) {
       const next = performance.now() + pace;
       await this.go(this.number + 1);

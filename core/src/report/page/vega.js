@@ -1,4 +1,4 @@
-// Of Vega: what draws curves, with the transforms that axes, legends and labels are made of.
+// The parts of Vega that draw curves, with the transforms of axes, legends and labels.
 const vega = (() => {
   const { transforms } = moduleNamed("vega-dataflow");
   for (const name of ["vega-transforms", "vega-view-transforms", "vega-encode"]) Object.assign(transforms, moduleNamed(name));

@@ -1,0 +1,173 @@
+// Saves the state that a component keeps between steps to a checkpoint, and restores it. Members are named once for
+// both.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "grit/error.hpp"
+#include "grit/vec.hpp"
+
+namespace grit {
+
+/// Whether a type can be saved byte by byte. For a struct of numbers, without pointers, strings or containers, specialise
+/// it: `template <> inline constexpr bool grit::plain_numbers<Mine> = true;`
+template <class T>
+inline constexpr bool plain_numbers = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <>
+inline constexpr bool plain_numbers<Row> = true;
+template <class S, int Rows, int Columns, int Options, int MostRows, int MostColumns>
+inline constexpr bool plain_numbers<Eigen::Matrix<S, Rows, Columns, Options, MostRows, MostColumns>> =
+    Rows != Eigen::Dynamic&& Columns != Eigen::Dynamic;
+template <class S, int Options>
+inline constexpr bool plain_numbers<Eigen::Quaternion<S, Options>> = true;
+template <class T, std::size_t N>
+inline constexpr bool plain_numbers<std::array<T, N>> = plain_numbers<T>;
+
+/// Saves or restores the members passed to it. One function of a component serves both:
+///
+///     void serialize(Archive& archive) override { archive(last_, count_, windows_); }
+///
+/// Members can be numbers, enums, vectors of grit/vec.hpp, strings, `std::optional`, `vector`, `deque`, `array`, `map`
+/// and `unordered_map` of these, and any type with its own `serialize(Archive&)`. Members that follow from others need
+/// not be saved: recompute them if restoring().
+class Archive {
+ public:
+  /// An empty archive, to save into.
+  Archive() = default;
+  /// An archive to restore from; `saved` are the bytes() of an earlier one.
+  explicit Archive(std::vector<std::byte> saved) : bytes_(std::move(saved)), restoring_(true) {}
+
+  bool restoring() const { return restoring_; }
+  /// Saves or restores the members in this order. Throws Error if the archive has too few bytes to restore them.
+  template <class... Members>
+  void operator()(Members&... members) {
+    (one(members), ...);
+  }
+
+  /// The saved bytes.
+  const std::vector<std::byte>& bytes() const { return bytes_; }
+  /// Whether all bytes have been restored.
+  bool at_end() const { return next_ == bytes_.size(); }
+
+ private:
+  template <class T>
+  void one(T& member) {
+    static_assert(!std::is_const_v<T>, "a member that is restored cannot be const");
+    if constexpr (plain_numbers<T>) {
+      raw(&member, 1);
+    } else {
+      static_assert(
+          requires(Archive & archive) { member.serialize(archive); },
+          "give the type a function serialize(Archive&), or specialise plain_numbers for it");
+      member.serialize(*this);
+    }
+  }
+  template <class T, class Allocator>
+  void one(std::vector<T, Allocator>& list) {
+    list.resize(length<T>(list.size()));
+    if constexpr (plain_numbers<T>) raw(list.data(), list.size());
+    else
+      for (T& entry : list) one(entry);
+  }
+  template <class T>
+  void one(std::deque<T>& list) {
+    list.resize(length<T>(list.size()));
+    for (T& entry : list) one(entry);
+  }
+  void one(std::string& text) {
+    text.resize(length<char>(text.size()));
+    raw(text.data(), text.size());
+  }
+  template <class T>
+  void one(std::optional<T>& value) {
+    bool there = value.has_value();
+    one(there);
+    if (!there) value.reset();
+    else if (!value) value = T{};
+    if (there) one(*value);
+  }
+  template <class Key, class T>
+  void one(std::map<Key, T>& map) {
+    entries(map, map);
+  }
+  /// In ascending order of keys, so that the bytes do not depend on the order of insertion.
+  template <class Key, class T>
+  void one(std::unordered_map<Key, T>& map) {
+    std::map<Key, T> sorted(map.begin(), map.end());
+    entries(sorted, map);
+  }
+  template <class From, class To>
+  void entries(From& from, To& to) {
+    const std::size_t count = length<typename From::key_type>(from.size());
+    if (!restoring_) {
+      for (auto& [key, value] : from) {
+        auto copy = key;
+        one(copy), one(value);
+      }
+      return;
+    }
+    to.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      typename From::key_type key{};
+      one(key);
+      one(to[key]);
+    }
+  }
+
+  /// Saves or restores the length of a list. Every entry takes at least one byte.
+  template <class T>
+  std::size_t length(std::size_t now) {
+    std::uint64_t count = now;
+    one(count);
+    if (restoring_) need(plain_numbers<T> ? sizeof(T) : 1, count);
+    return count;
+  }
+  template <class T>
+  void raw(T* values, std::size_t count) {
+    if (count == 0) return;
+    if (!restoring_) {
+      const auto* const from = reinterpret_cast<const std::byte*>(values);
+      bytes_.insert(bytes_.end(), from, from + count * sizeof(T));
+      return;
+    }
+    need(sizeof(T), count);
+    std::memcpy(static_cast<void*>(values), bytes_.data() + next_, count * sizeof(T));
+    next_ += count * sizeof(T);
+  }
+  void need(std::size_t size, std::size_t count) const {
+    if (count > (bytes_.size() - next_) / size) throw Error("the saved state is too short: it belongs to another component or version");
+  }
+
+  std::vector<std::byte> bytes_;
+  std::size_t next_ = 0;
+  bool restoring_ = false;
+};
+
+/// The present state of a component.
+template <class Component>
+std::vector<std::byte> saved_state(Component& component) {
+  Archive archive;
+  component.serialize(archive);
+  return archive.bytes();
+}
+
+/// Restores a component from the saved state of one of the same kind. Throws Error if the sizes differ.
+template <class Component>
+void restore_state(Component& component, std::vector<std::byte> saved) {
+  Archive archive(std::move(saved));
+  component.serialize(archive);
+  if (!archive.at_end()) throw Error("the saved state is too long: it belongs to another component or version");
+}
+
+}  // namespace grit

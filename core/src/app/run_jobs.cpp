@@ -1,0 +1,64 @@
+#include "app/run_jobs.hpp"
+
+#include "app/command.hpp"
+#include "grit/error.hpp"
+#include "input/scene.hpp"
+#include "output/folder_lock.hpp"
+
+namespace grit {
+namespace {
+
+/// A description's file, or with --resume the folder of a run, which has its description.
+RunJob job_of(const std::string& word, const Options& options) {
+  RunJob job;
+  if (options.has("resume") ? std::filesystem::is_directory(word)
+                            : std::filesystem::exists(std::filesystem::path(word) / "run.json")) {
+    if (!options.has("resume"))
+      throw UsageError(word + " is a folder; give a description, or go on with its run: --resume");
+    if (options.has("out")) throw UsageError(word + " is a folder, where its run goes on; leave out --out");
+    job.folder = std::filesystem::path(word).lexically_normal();
+    if (job.folder.filename().empty()) job.folder = job.folder.parent_path();
+    job.file = (job.folder / "description.json").string();
+    return job;
+  }
+  job.file = word;
+  job.folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
+  if (!options.has("out") || options.words().size() > 1) job.folder /= std::filesystem::path(word).stem();
+  return job;
+}
+
+}  // namespace
+
+std::vector<RunJob> jobs_of(const Options& options) {
+  const auto& files = options.words();
+  std::vector<RunJob> jobs;
+  for (const std::string& file : files) {
+    RunJob job = job_of(file, options);
+    for (const RunJob& other : jobs)
+      if (job.folder == other.folder)
+        throw UsageError(other.file + " and " + file + " would both write to " + job.folder.string() +
+                         "; run them one by one, each with its own --out");
+    if (!FolderLock(job.folder).held()) refuse_busy(job.folder);  // now, not once grains are made
+    if (options.has("overwrite")) job.existing = Existing::overwrite;
+    else if (options.has("resume")) job.existing = Existing::resume;
+    else if (std::filesystem::exists(job.folder / "run.json"))
+      throw FileError(job.folder.string() +
+                      " holds the results of a run; choose another folder (--out DIR), go on with it (--resume) or "
+                      "replace them (--overwrite)");
+    jobs.push_back(std::move(job));
+  }
+  return jobs;
+}
+
+void open_all(std::vector<RunJob>& jobs, const Options& options) {
+  const std::shared_ptr<const Registry> registry = options.registry();
+  std::vector<Problem> problems;
+  for (RunJob& job : jobs) try {
+      job.opened = std::make_shared<OpenedScene>(registry, load_scene(job.file, options.list("set"), *registry));
+    } catch (const DescriptionError& error) {
+      for (const Problem& problem : error.problems()) problems.push_back(problem);
+    }
+  if (!problems.empty()) throw DescriptionError(std::move(problems));
+}
+
+}  // namespace grit

@@ -1,0 +1,19 @@
+#include "simulation/opened_scene.hpp"
+
+#include <utility>
+
+#include "bodies/make_bodies.hpp"
+#include "simulation/first_instant.hpp"
+
+namespace grit {
+
+OpenedScene::OpenedScene(std::shared_ptr<const Registry> plugins, Scene read)
+    : registry(std::move(plugins)), scene(std::move(read)), live(scene) {}
+
+Bodies OpenedScene::make_bodies(StateRequest more) const {
+  return at_first_instant(scene.document, [&] {
+    return grit::make_bodies(live.now(), live.components(), requested_state(live.components(), more));
+  });
+}
+
+}  // namespace grit

@@ -1,0 +1,25 @@
+// A description that was read, with its components, before its bodies are made.
+#pragma once
+
+#include <memory>
+
+#include "bodies/bodies.hpp"
+#include "input/scene.hpp"
+#include "simulation/live_scene.hpp"
+
+namespace grit {
+
+/// Members are made in this order; later ones refer to earlier ones.
+struct OpenedScene {
+  /// Makes the components of a scene that was read with this registry. Throws DescriptionError with every fault;
+  /// PluginError.
+  OpenedScene(std::shared_ptr<const Registry> plugins, Scene read);
+  /// The bodies at the start, with the state requested by components and by `more`. Throws DescriptionError, FileError.
+  Bodies make_bodies(StateRequest more = {}) const;
+
+  std::shared_ptr<const Registry> registry;
+  Scene scene;
+  LiveScene live;
+};
+
+}  // namespace grit

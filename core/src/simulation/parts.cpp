@@ -1,0 +1,68 @@
+#include "simulation/parts.hpp"
+
+#include <utility>
+
+#include "grit/error.hpp"
+#include "simulation/first_instant.hpp"
+
+namespace grit {
+namespace {
+
+/// A recorder that writes nothing.
+class NoRecorder final : public Recorder {
+ public:
+  void begin(const World&, std::span<const ProbeGroup>) override {}
+  void sample(std::size_t, const World&, std::span<const std::span<const double>>) override {}
+  void frame(const World&, std::span<const FieldGroup>) override {}
+  void stage_ended(const World&, const std::string&) override {}
+  void finish(const World&, const RunSummary&) override {}
+};
+
+Recorder& no_recorder() {
+  static NoRecorder none;
+  return none;
+}
+
+}  // namespace
+
+Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Bodies bodies, unsigned threads, Recorder* record)
+    : opened(std::move(scene)),
+      recorder(record != nullptr ? *record : no_recorder()),
+      kernel(at_first_instant(opened->scene.document,
+                              [&] {
+                                const LiveScene& live = opened->live;
+                                return Kernel(live.now(), live.components(), std::move(bodies), threads);
+                              })),
+      runner(opened->scene, opened->live, kernel, recorder),
+      progress(runner, kernel.world(), opened->scene.stages.size()) {
+  placed([this] { runner.prepare(); });
+}
+
+void Simulation::Parts::start() {
+  if (started) return;
+  at_first_instant(opened->scene.document, [this] { runner.start(); });
+  started = true;
+  progress.enter_stage(), checkpoints.restart();
+}
+
+void Simulation::Parts::resume(const Checkpoint& checkpoint) {
+  if (started) throw Error("a simulation that has begun cannot resume from a checkpoint; open the description again");
+  started = true;
+  placed([&] { runner.resume(checkpoint); });
+  progress.enter_stage(), checkpoints.restart();
+}
+
+StageRunner::Event Simulation::Parts::next(bool stop) {
+  // Saved before the step, so that the checkpoint is the state at which the simulation stops.
+  if (checkpoints.is_due(stop)) checkpoints.save([this] { return runner.save(); });
+  const StageRunner::Event event = placed([&] { return runner.next(stop); });
+  if (event == StageRunner::Event::stage_ended) progress.enter_stage();
+  else if (event == StageRunner::Event::stepped) progress.step();
+  return event;
+}
+
+void Simulation::Parts::show_instant() {
+  placed([this] { runner.show_instant(); });
+}
+
+}  // namespace grit
