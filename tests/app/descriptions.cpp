@@ -62,8 +62,8 @@ TEST(Descriptions, AStudyIsDistinguishedFromADescription) {
   for (const char* command : {"run", "check", "expand"}) {
     const auto outcome = grit_in(folder.path(), {command, "study.json"});
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study, of which this is the scene; allowed is a "
-                                       "description. 'grit study study.json' runs a study"));
+    EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study; allowed is a description. "
+                                       "'grit study study.json' runs a study"));
   }
 }
 
