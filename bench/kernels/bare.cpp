@@ -124,8 +124,8 @@ class Bare {
     return touching;
   }
 
-  /// The same for blocks of pairs that fit into the first cache, in stages: find contacts, gather their data, evaluate the
-  /// law (packed code), add up. The loops are short and have no branches.
+  /// The same for blocks of pairs that fit into the first cache, in stages: find contacts, gather their data, evaluate
+  /// the law (packed code), add up. The loops are short and have no branches.
   std::size_t in_stages() {
     constexpr std::size_t portion = 128;
     unsigned contact[portion], apart[portion];

@@ -63,7 +63,7 @@ TEST(Descriptions, AStudyIsDistinguishedFromADescription) {
     const auto outcome = grit_in(folder.path(), {command, "study.json"});
     EXPECT_EQ(outcome.status, 2);
     EXPECT_THAT(outcome.err, HasSubstr("study.json:2: /scene: found a study; allowed is a description. "
-                                       "'grit study study.json' runs a study"));
+                                       "'grit study study.json' runs a study; with --dry-run it lists the runs\n"));
   }
 }
 

@@ -204,8 +204,9 @@ TEST_P(Interrupted, RunsAreSaved) {
   program.interrupt(GetParam());
   const auto outcome = program.finish();
   EXPECT_EQ(outcome.status, 130);
-  EXPECT_THAT(outcome.err, HasSubstr("interrupted; what was reached is saved in results/two of them; 'grit run "
-                                     "--resume \"results/two of them\"' goes on"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("interrupted; the results are saved in results/two of them; continue with 'grit run "
+                        "--resume \"results/two of them\"'"));
   EXPECT_THAT(outcome.out, HasSubstr("results: results/two of them"));
   const auto run = run_json("results/two of them");
   EXPECT_EQ(run.at("status"), "interrupted");

@@ -59,9 +59,12 @@ TEST(Planar, RefusesClumps) {
 
 TEST(Planar, CloudLiesInTheMiddle) {
   Description d = description("linear-rolling", stuff, {{{0, 0, 0}, 1e-3}});
-  d["bodies"]["grains"]["source"] = {
-      {"type", "cloud"}, {"low", {0, 0, 0}}, {"high", {0.02, 0.002, 0.02}},
-      {"count", 50},     {"plane_normal", "y"},      {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 2e-3}}}};
+  d["bodies"]["grains"]["source"] = {{"type", "cloud"},
+                                     {"low", {0, 0, 0}},
+                                     {"high", {0.02, 0.002, 0.02}},
+                                     {"count", 50},
+                                     {"plane_normal", "y"},
+                                     {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 2e-3}}}};
   d["engines"]["planar"] = {{"type", "planar"}};
   const Trial trial(d);
   ASSERT_EQ(trial.world().ids().size(), 50u);

@@ -123,9 +123,9 @@ TEST(SeriesBeingWritten, IsMarkedWheneverItIsInconsistent) {
   }
   EXPECT_EQ(rests, 7u) << "number of flushes";
   // As readers used to meet them.
-  EXPECT_THAT(faults,
-              AllOf(Contains(HasSubstr("truncated file")), Contains(HasSubstr("addr overflow")),
-                    Contains("numbers that were never written"), Contains("as many samples as a flush of another channel")));
+  EXPECT_THAT(faults, AllOf(Contains(HasSubstr("truncated file")), Contains(HasSubstr("addr overflow")),
+                            Contains("numbers that were never written"),
+                            Contains("as many samples as a flush of another channel")));
 }
 
 TEST(SeriesBeingWritten, IsWaitedFor) {

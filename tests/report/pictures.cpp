@@ -266,8 +266,8 @@ TEST(ForceChainPictures, HaveTheContactsAboveTheMean) {
   const auto picture = force_chains_picture(run);
   ASSERT_TRUE(picture.has_value());
   EXPECT_THAT(elements(parsed(*picture), "line", "link"), SizeIs(1)) << "forces of 4, 2 and 2 N";
-  EXPECT_THAT(*picture,
-              HasSubstr("contacts above the mean of 2.67 N, width"));
+  EXPECT_THAT(*picture, AllOf(HasSubstr("contacts above the mean of 2.67 N, width<"),
+                              HasSubstr(">proportional to normal force, at most 4 N<")));
 }
 
 TEST(LinearChainPictures, AreOnThePage) {

@@ -135,7 +135,7 @@ class Served(unittest.TestCase):
         write_scene(self.folder, "none", SCENE)
         for words, said in ((["--watch", "--port", "65536"], 'grit: --port takes a number from 1 to 65535, not "65536"\n'),
                             (["--watch", "--port", "http"], 'grit: --port takes a number from 1 to 65535, not "http"\n'),
-                            (["--port", "8000"], "grit: --port is where the page of --watch is served: give both\n")):
+                            (["--port", "8000"], "grit: --port needs --watch; give both\n")):
             ended = subprocess.run([GRIT, "run", "none.json", *words], cwd=self.folder, capture_output=True, text=True)
             self.assertEqual((ended.returncode, ended.stderr), (1, said))
 

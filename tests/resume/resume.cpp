@@ -70,7 +70,7 @@ class Resume : public testing::Test {
     program.interrupt();
     const auto outcome = program.finish();
     ASSERT_EQ(outcome.status, 130) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("'grit run --resume " + out + "' goes on"));
+    EXPECT_THAT(outcome.err, HasSubstr("'grit run --resume " + out + "'"));
   }
   /// Kills a run after it has written a new checkpoint.
   void kill(const std::string& out, std::vector<std::string> more = {}) const {
@@ -138,14 +138,14 @@ TEST_F(Resume, GivesTheSameAsARunThatWasNeverStopped) {
   EXPECT_TRUE(std::filesystem::exists(folder / "part/checkpoint.h5"));
   const auto rest = grit({"run", "part", "--resume", "--no-report", "--threads", "2"});
   ASSERT_EQ(rest.status, 0) << rest.err;
-  EXPECT_THAT(rest.err, AllOf(HasSubstr("goes on from step "), HasSubstr("stage \"fall\"")));
+  EXPECT_THAT(rest.err, AllOf(HasSubstr("continues from step "), HasSubstr("stage \"fall\"")));
   EXPECT_THAT(rest.out, HasSubstr(whole.out.substr(0, whole.out.find('\n')))) << "largest value of all";
   EXPECT_EQ(run_json("part").at("resumed"), 1);
   expect_same_results("whole", "part");
 
   const auto again = grit(run("part", {"--resume"}));
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_EQ(again.out, "part: done already\n");
+  EXPECT_EQ(again.out, "part: already complete\n");
 }
 
 TEST_F(Resume, ContinuesAKilledRun) {
@@ -164,7 +164,7 @@ TEST_F(Resume, StartsFromTheBeginningWithoutACheckpoint) {
   const auto outcome =
       grit(run("new", {"--resume", "--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("no checkpoint in new: the run begins at the beginning"));
+  EXPECT_THAT(outcome.err, HasSubstr("no checkpoint in new: the run starts from the beginning"));
   EXPECT_EQ(run_json("new").at("resumed"), 0);
 }
 
@@ -198,10 +198,11 @@ TEST_F(Resume, RefusesAnotherRun) {
 TEST_F(Resume, ReportsInvalidRequests) {
   const auto both = grit(run("part", {"--resume", "--overwrite"}));
   EXPECT_EQ(both.status, 1);
-  EXPECT_THAT(both.err, HasSubstr("--resume goes on with results, --overwrite replaces them"));
+  EXPECT_THAT(both.err, HasSubstr("--resume continues results, --overwrite replaces them"));
   std::filesystem::create_directory(folder / "empty");
   std::ofstream(folder / "empty/run.json") << "{}";
-  EXPECT_THAT(grit({"run", "empty"}).err, HasSubstr("empty is a folder; give a description, or go on with its run"));
+  EXPECT_THAT(grit({"run", "empty"}).err,
+              HasSubstr("empty is a folder of results; give a description, or continue its run"));
   EXPECT_EQ(grit({"run", "empty"}).status, 1);
   EXPECT_EQ(grit({"run", "empty", "--resume", "--out", "x"}).status, 1);
   EXPECT_EQ(grit({"run", "empty", "--resume"}).status, 5);
@@ -214,8 +215,9 @@ TEST_F(Resume, KeepsTheCheckpointIfAGuardTrips) {
   EXPECT_TRUE(std::filesystem::exists(folder / "failed/checkpoint.h5"));
   const auto again = grit({"run", "failed", "--resume", "--no-report"});
   EXPECT_EQ(again.status, 4);
-  EXPECT_THAT(again.err, AllOf(HasSubstr("/guards/travel"),
-                               HasSubstr("its last checkpoint is kept: with another /guards/travel --resume")));
+  EXPECT_THAT(again.err,
+              AllOf(HasSubstr("/guards/travel"),
+                    HasSubstr("the last checkpoint is kept: change /guards/travel and continue with --resume")));
 }
 
 TEST_F(Resume, ContinuesWithOtherGuards) {
@@ -227,7 +229,7 @@ TEST_F(Resume, ContinuesWithOtherGuards) {
   EXPECT_EQ(whole("stopped", "{\"travel\": 1e-3}", false).status, 4);
   const auto on = whole("stopped", "{\"travel\": 0.05}", true);
   EXPECT_EQ(on.status, 0) << on.err;
-  EXPECT_THAT(on.err, HasSubstr("goes on from step"));
+  EXPECT_THAT(on.err, HasSubstr("continues from step"));
   EXPECT_EQ(whole("never", "{\"travel\": 0.05}", false).status, 0);
   expect_same_results("stopped", "never");
   // The guard of overlap sets the time step of springs that stiffen.

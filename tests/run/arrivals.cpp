@@ -289,9 +289,8 @@ TEST(Arrivals, WithoutRoomOrOutsideAreRefused) {
                                          HasSubstr("bodies of other groups take space, too")));
   d = first_and_late({{Vec3::Zero(), radius}}, {{{0, 0, 6e-3}, radius}});
   d["domain"] = {{"low", {-5e-3, -5e-3, -5e-3}}, {"high", {5e-3, 5e-3, 5e-3}}};
-  EXPECT_THAT(refusal(d),
-              testing::EndsWith("group \"late\": a body at (0.000000, 0.000000, 0.006000) m is outside the "
-                                "domain; enlarge /domain or move the body"));
+  EXPECT_THAT(refusal(d), testing::EndsWith("group \"late\": a body at (0.000000, 0.000000, 0.006000) m is outside the "
+                                            "domain; enlarge /domain or move the body"));
 }
 
 /// Two grains, of which one leaves, then two more; three are gone in the end.

@@ -386,7 +386,7 @@ TEST(Servo, GuardStopsALidThatGoesTooFarInAStep) {
       ADD_FAILURE() << "no guard trips";
     } catch (const NumericsError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("wall \"lid\" moves 0.0505 of the smallest radius in one step"));
-      EXPECT_THAT(error.what(), testing::HasSubstr("make it slower"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("reduce its velocity"));
     }
     // If the displacement may exceed the skin, it searches neighbours.
     Description far = closing({}, 10 * travel, start);

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "motion/builtin.hpp"
-#include "input/scene.hpp"
-#include "kernel/kernel.hpp"
 #include "bodies/clump_body.hpp"
 #include "bodies/make_bodies.hpp"
 #include "bodies/sphere_body.hpp"
+#include "input/scene.hpp"
+#include "kernel/kernel.hpp"
+#include "motion/builtin.hpp"
 #include "simulation/live_scene.hpp"
 
 namespace grit::test {

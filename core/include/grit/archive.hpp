@@ -20,8 +20,8 @@
 
 namespace grit {
 
-/// Whether a type can be saved byte by byte. For a struct of numbers, without pointers, strings or containers, specialise
-/// it: `template <> inline constexpr bool grit::plain_numbers<Mine> = true;`
+/// Whether a type can be saved byte by byte. For a struct of numbers, without pointers, strings or containers,
+/// specialise it: `template <> inline constexpr bool grit::plain_numbers<Mine> = true;`
 template <class T>
 inline constexpr bool plain_numbers = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 template <>
@@ -146,7 +146,8 @@ class Archive {
     next_ += count * sizeof(T);
   }
   void need(std::size_t size, std::size_t count) const {
-    if (count > (bytes_.size() - next_) / size) throw Error("the saved state is too short: it belongs to another component or version");
+    if (count > (bytes_.size() - next_) / size)
+      throw Error("the saved state is too short: it belongs to another component or version");
   }
 
   std::vector<std::byte> bytes_;

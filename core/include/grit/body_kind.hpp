@@ -19,13 +19,13 @@ struct ShapeErrors {
 /// enclosing sphere. The origin is the centre of mass of their union at uniform density; the axes are its principal
 /// axes.
 struct ClumpShape {
-  std::vector<Row> spheres;      ///< centre, w: radius
-  std::vector<double> volume_fractions;    ///< fraction of each sphere's volume that counts; overlaps are divided equally
-  Vec3 middle = Vec3::Zero();    ///< centre of the enclosing sphere
-  Mat3 axes = Mat3::Identity();  ///< columns: the principal axes in the frame in which the spheres were given
-  double volume = 0;             ///< of the union
-  Vec3 inertia = Vec3::Zero();   ///< principal moments of inertia for a mass of 1
-  ShapeErrors errors = {};       ///< of volume, centre of mass and inertia
+  std::vector<Row> spheres;              ///< centre, w: radius
+  std::vector<double> volume_fractions;  ///< fraction of each sphere's volume that counts; overlaps are divided equally
+  Vec3 middle = Vec3::Zero();            ///< centre of the enclosing sphere
+  Mat3 axes = Mat3::Identity();          ///< columns: the principal axes in the frame in which the spheres were given
+  double volume = 0;                     ///< of the union
+  Vec3 inertia = Vec3::Zero();           ///< principal moments of inertia for a mass of 1
+  ShapeErrors errors = {};               ///< of volume, centre of mass and inertia
 };
 
 /// Base class of plugins of kind "body".

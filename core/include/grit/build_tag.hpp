@@ -30,8 +30,8 @@ struct BuildTag {
   char reserved[256];
 };
 
-// Internal linkage, also for every function that build_tag() calls: the dynamic linker merges inline functions of shared
-// libraries whose symbols are visible. A merged build_tag() would give every plugin the tag of grit itself.
+// Internal linkage, also for every function that build_tag() calls: the dynamic linker merges inline functions of
+// shared libraries whose symbols are visible. A merged build_tag() would give every plugin the tag of grit itself.
 namespace {
 namespace tag_text {
 

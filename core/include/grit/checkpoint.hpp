@@ -9,8 +9,8 @@
 namespace grit {
 
 struct Checkpoint {
-  std::string stage;  ///< name of the stage that was running
-  double time = 0;  ///< simulated [s]
+  std::string stage;             ///< name of the stage that was running
+  double time = 0;               ///< simulated [s]
   std::uint64_t step = 0;        ///< since the start of the run
   std::vector<std::byte> state;  ///< of all bodies, contacts, walls and components
 };

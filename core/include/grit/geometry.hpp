@@ -63,11 +63,12 @@ class Geometry {
   /// body.
   virtual bool flat() const { return false; }
   /// Appends the contacts of each sphere, in the order of the spheres and, for one sphere, in ascending order of
-  /// features. A convex edge or corner gives one contact, with the normal from the sphere's centre to the closest point.
-  /// In a concave edge each face nearer than one radius gives its own contact: two in an edge, three in a corner. Forces
-  /// are then continuous as the sphere moves in. Normal and overlap must also be continuous as the sphere moves from a
-  /// face over a convex edge.
-  virtual void find_contacts(const Pose& pose, std::span<const Sphere> spheres, std::vector<SurfaceContact>& contacts) const = 0;
+  /// features. A convex edge or corner gives one contact, with the normal from the sphere's centre to the closest
+  /// point. In a concave edge each face nearer than one radius gives its own contact: two in an edge, three in a
+  /// corner. Forces are then continuous as the sphere moves in. Normal and overlap must also be continuous as the
+  /// sphere moves from a face over a convex edge.
+  virtual void find_contacts(const Pose& pose, std::span<const Sphere> spheres,
+                             std::vector<SurfaceContact>& contacts) const = 0;
   /// Whether a sphere of radius `reach` [m] may touch the shape; used by the neighbour search. It may return true for a
   /// sphere that does not touch. It must return true for every sphere that touches, and for every sphere that contains
   /// one for which it returns true.

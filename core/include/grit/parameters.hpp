@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@
 #include "grit/vec.hpp"
 
 namespace grit {
+
+/// One degree [rad].
+inline constexpr double degree = std::numbers::pi / 180;
 
 /// A description as JSON; see grit/description.hpp.
 using Description = nlohmann::ordered_json;
@@ -102,8 +106,8 @@ class Parameter {
   Parameter& below(double bound) { return high_ = bound, high_open_ = true, *this; }
   /// Allowed strings.
   Parameter& one_of(std::vector<std::string> choices) { return choices_ = std::move(choices), *this; }
-  /// The string is the path of a file to read. A relative path starts in the folder of the description that contains it;
-  /// reading makes it absolute.
+  /// The string is the path of a file to read. A relative path starts in the folder of the description that contains
+  /// it; reading makes it absolute.
   Parameter& file() { return file_ = true, *this; }
   /// Minimum number of entries of a list.
   Parameter& entries(std::size_t least) { return least_entries_ = least, *this; }
@@ -137,8 +141,8 @@ class Parameter {
   std::size_t least_entries_ = 0;
 };
 
-/// Reports a problem of one or several parameters: the key at fault ("" for the whole object, "wall/motion" for a nested
-/// one), the value found and the allowed values. The message reads "found …; allowed: …".
+/// Reports a problem of one or several parameters: the key at fault ("" for the whole object, "wall/motion" for a
+/// nested one), the value found and the allowed values. The message reads "found …; allowed: …".
 using Complain = std::function<void(std::string_view key, std::string_view found, std::string_view allowed)>;
 
 /// A condition on several parameters of one object.
@@ -151,8 +155,8 @@ struct Check {
 /// The declarations of one object, in the order in which they are read.
 class Parameters {
  public:
-  /// Declares a number, flag, string, vector or list held in `member`. Its present value is the default. The member must
-  /// outlive this object.
+  /// Declares a number, flag, string, vector or list held in `member`. Its present value is the default. The member
+  /// must outlive this object.
   template <class T>
   requires(!Declarable<T> && !std::derived_from<T, Choice>) Parameter& add(std::string name, T& member) {
     return entries_.emplace_back(std::move(name), Target(&member));
@@ -214,8 +218,8 @@ class Parameters {
   void check(std::function<void(const Complain&)> check, std::vector<std::string> about = {}) {
     checks_.push_back({std::move(check), std::move(about)});
   }
-  /// Adds a check of names that refer to other objects. It always runs, so it must tolerate parameters that could not be
-  /// read; its complaints about those are dropped.
+  /// Adds a check of names that refer to other objects. It always runs, so it must tolerate parameters that could not
+  /// be read; its complaints about those are dropped.
   void check_names(std::function<void(const Complain&)> check) { checks_.push_back({std::move(check), {}, true}); }
 
   /// Adds a function that is called after the object was read and checked without a problem.

@@ -54,8 +54,8 @@ class Simulation {
   /// Reads a description and those that it extends, and creates its bodies, walls and components. Throws
   /// DescriptionError with all problems, each with file, line and pointer; FileError; PluginError.
   static Simulation open(const std::filesystem::path& file, const SimulationOptions& options = {});
-  /// The same for the text of a description. Relative paths in it start in the working directory; messages use `name` as
-  /// the file name.
+  /// The same for the text of a description. Relative paths in it start in the working directory; messages use `name`
+  /// as the file name.
   static Simulation from_text(const std::string& text, const SimulationOptions& options = {},
                               const std::string& name = "description");
   /// The same for a description made by a program.
@@ -64,9 +64,9 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Computes the forces of the initial state and returns the size and time step of the run. Throws DescriptionError for
-  /// problems that only show there: bodies that overlap too much, a time step above the critical one, an unknown channel
-  /// of a probe.
+  /// Computes the forces of the initial state and returns the size and time step of the run. Throws DescriptionError
+  /// for problems that only show there: bodies that overlap too much, a time step above the critical one, an unknown
+  /// channel of a probe.
   Forecast check();
 
   /// Runs the present stage to its end, then begins the next one, if any. Returns false if it was interrupted between

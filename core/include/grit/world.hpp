@@ -124,8 +124,8 @@ struct Energies {
   double gravitational = 0;                                           ///< relative to the first instant
   double walls = 0;                                                   ///< work done by walls
   double cell = 0;                                                    ///< work done by the straining of a periodic cell
-  double engines = 0;                                                 ///< work done by engines: added forces, held bodies
-  double settings = 0;                                                ///< added by changes of the description
+  double engines = 0;   ///< work done by engines: added forces, held bodies
+  double settings = 0;  ///< added by changes of the description
   double friction = 0, rolling = 0, viscosity = 0, local_damping = 0;  ///< dissipated
   /// Stored and dissipated energy less the initial energy and the work done. Its sources are errors of the time
   /// integration and of the contact law.
@@ -177,11 +177,13 @@ class World {
   virtual std::span<const WallView> walls() const = 0;
   /// Clearance of a point [m] from wall `index` of walls(); none if the surface is `reach` [m] or more away. Behind a
   /// face with edges the distance may be too small, never too large. Periodic images of the point are not considered.
-  virtual std::optional<Clearance> clearance(std::size_t /*index*/, const Vec3& /*point*/, double /*reach*/) const { return {}; }
+  virtual std::optional<Clearance> clearance(std::size_t /*index*/, const Vec3& /*point*/, double /*reach*/) const {
+    return {};
+  }
   virtual const Cell& cell() const = 0;
 
-  /// The box of the specimen, bounded by walls or the periodic cell as defined by "specimen" in the description. Infinite
-  /// along open sides.
+  /// The box of the specimen, bounded by walls or the periodic cell as defined by "specimen" in the description.
+  /// Infinite along open sides.
   virtual Region specimen() const = 0;
   /// The specimen extended to the far sides of its walls' surfaces, so that it includes their grooves.
   virtual Region envelope() const { return specimen(); }
@@ -211,8 +213,8 @@ struct Grains {
 };
 Grains grains_of(const World& world);
 
-/// Branch vector of a contact [m]: from the centre of the grain (sphere or clump) of body a to that of body b, or to the
-/// contact point on a wall.
+/// Branch vector of a contact [m]: from the centre of the grain (sphere or clump) of body a to that of body b, or to
+/// the contact point on a wall.
 struct Branch {
   Vec3 start;
   Vec3 vector;
@@ -224,8 +226,8 @@ Branch branch_of(const World& world, const Contact& contact);
 /// Infinite without solids.
 double void_ratio(const World& world, const Region& region);
 
-/// Mean stress in a box [Pa] by the Love–Weber formula, compression positive. Each contact is weighted by the fraction of
-/// its branch inside the box.
+/// Mean stress in a box [Pa] by the Love–Weber formula, compression positive. Each contact is weighted by the fraction
+/// of its branch inside the box.
 Mat3 mean_stress(const World& world, const Region& region);
 
 /// Volume [m³] of the intersection of a sphere and a box; error below 1e-12 of the sphere's volume.

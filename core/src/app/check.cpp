@@ -81,7 +81,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const std::size_t bodies = kernel.world().positions().size();
 
   std::cout << "\nbody state besides position, velocity and spin\n";
-  for (const std::string& line : who_asked(description, components)) std::cout << "  " << line << '\n';
+  for (const std::string& line : state_by_component(description, components)) std::cout << "  " << line << '\n';
   std::cout << "\norder of a step\n  neighbour search if due, contacts of pairs, wall contacts";
   for (const auto& [name, engine] : components.engines)
     if (engine->phase() == Phase::forces) std::cout << ", " << name;
@@ -196,7 +196,7 @@ ExitStatus check_command(const std::vector<std::string>& words) {
   options.add_threads("threads assumed in the estimate of the run time");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
-  if (options.words().empty()) throw UsageError("no description was given; see 'grit check --help'");
+  if (options.words().empty()) throw UsageError("no description given; see 'grit check --help'");
   options.threads();
   const auto registry = options.registry();
   for (const std::string& file : options.words()) {

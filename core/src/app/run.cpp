@@ -25,7 +25,7 @@
 namespace grit {
 namespace {
 
-/// The page beside the results. The run is whole without it: what keeps it from being made is only said.
+/// Writes the page of the results. The run does not depend on it: an error is only reported.
 void make_report(const std::filesystem::path& folder) {
   const auto out = folder / "report.html";
   try {
@@ -38,10 +38,10 @@ void make_report(const std::filesystem::path& folder) {
   }
 }
 
-/// Where the page is served while runs go on; nothing where it is not asked for.
+/// Where --watch serves the page; none without it.
 std::optional<Listener> listener_of(const Options& options) {
   if (!options.has("watch")) {
-    if (options.has("port")) throw UsageError("--port is where the page of --watch is served: give both");
+    if (options.has("port")) throw UsageError("--port needs --watch; give both");
     return std::nullopt;
   }
   std::uint16_t port = 0;
@@ -54,15 +54,15 @@ std::optional<Listener> listener_of(const Options& options) {
   return std::optional<Listener>(std::in_place, port);
 }
 
-/// What a run goes on from; nothing where it begins at the beginning, which is said.
+/// The checkpoint from which a run continues. Without one the run starts from the beginning, which is reported.
 std::optional<Checkpoint> resumed(const std::filesystem::path& folder, const RunFacts& facts) {
   const auto path = folder / "checkpoint.h5";
   if (std::filesystem::exists(path)) return read_checkpoint(path, facts);
-  std::cerr << "no checkpoint in " << folder.string() << ": the run begins at the beginning" << std::endl;
+  std::cerr << "no checkpoint in " << folder.string() << ": the run starts from the beginning" << std::endl;
   return std::nullopt;
 }
 
-/// Whether the folder has all of this run already. Throws Error where it has another one.
+/// Whether the folder holds this run complete. Throws Error if it holds another run.
 bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
   const auto run = read_run_json(folder);
   if (!run) return false;
@@ -71,17 +71,17 @@ bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
   const auto other = done ? differences(facts.description, then) : differences_on_the_way(facts.description, then);
   if (!other.empty())
     throw Error(folder.string() + ": holds a run of another description:" + other +
-                "\n  go on with the description that it began with ('grit run --resume " + shell_word(folder.string()) +
+                "\n  continue with its own description ('grit run --resume " + shell_word(folder.string()) +
                 "'), choose another folder (--out DIR) or replace it (--overwrite)");
   return done;
 }
 
-/// What may be done where a guard has stopped a run that changes nothing but where a run ends.
-std::string way_on(Guard guard, const std::filesystem::path& folder) {
+/// Advice after a guard that only decides where a run ends: it can be changed before resuming.
+std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
   if (guard != Guard::travel && guard != Guard::energy) return "";
   if (!std::filesystem::exists(folder / "checkpoint.h5")) return "";
-  return std::string("\n  its last checkpoint is kept: with another /guards/") +
-         (guard == Guard::travel ? "travel" : "energy") + " --resume goes on from there";
+  return std::string("\n  the last checkpoint is kept: change /guards/") +
+         (guard == Guard::travel ? "travel" : "energy") + " and continue with --resume";
 }
 
 RunFacts facts_of(const OpenedScene& opened, unsigned threads) {
@@ -130,13 +130,13 @@ ExitStatus run_one(RunJob job, const Options& options, const std::optional<Liste
   };
 
   for (const auto& [name, reference] : description.output.references)
-    if (reference.curve) read_reference(*reference.curve);  // a slip in it shows now
+    if (reference.curve) read_reference(*reference.curve);  // a fault in it is reported now
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
   RunFacts facts = facts_of(*job.opened, threads);
   std::optional<Checkpoint> checkpoint;
   if (job.existing == Existing::resume) {
     if (is_done(folder, facts)) {
-      std::cout << folder.string() << ": done already\n";
+      std::cout << folder.string() << ": already complete\n";
       return ExitStatus::done;
     }
     checkpoint = resumed(folder, facts);
@@ -165,7 +165,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::optional<Liste
       if (watch) watch->say(progress_text(now));
     });
   if (checkpoint) {
-    say("goes on from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
+    say("continues from step " + std::to_string(checkpoint->step) + ", stage \"" + checkpoint->stage + "\"");
     simulation.resume(*checkpoint);
   }
   const RunSummary summary = run_recorded(simulation);
@@ -175,13 +175,13 @@ ExitStatus run_one(RunJob job, const Options& options, const std::optional<Liste
   print_speed(summary);
   std::cout << "results: " << folder.string() << '\n';
   if (description.output.picture) std::cout << "picture: " << (folder / "picture.svg").string() << '\n';
-  // Said before the page is made, which takes time with many grains: who cannot wait presses Ctrl-C again.
+  // Before the page, which takes time with many bodies: a second Ctrl-C skips it.
   if (summary.status == "interrupted")
-    std::cerr << "interrupted; what was reached is saved in " << folder.string() << "; 'grit run --resume "
-              << shell_word(folder.string()) << "' goes on" << std::endl;
+    std::cerr << "interrupted; the results are saved in " << folder.string() << "; continue with 'grit run --resume "
+              << shell_word(folder.string()) << "'" << std::endl;
   if (!options.has("no-report")) make_report(folder);
   if (summary.status == "interrupted") return ExitStatus::interrupted;
-  if (summary.status == "failed") throw NumericsError(summary.message + way_on(summary.guard, folder));
+  if (summary.status == "failed") throw NumericsError(summary.message + resume_advice(summary.guard, folder));
   return ExitStatus::done;
 }
 
@@ -192,23 +192,23 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   Options options(command("run"));
   options.add()("out", po::value<std::string>()->value_name("DIR"),
                 "folder of the results; for several descriptions, a folder in it for each; default: results/NAME")(
-      "overwrite", "replace results that are there")(
+      "overwrite", "replace existing results")(
       "resume",
-      "go on from the last checkpoint to the same bits as if never stopped; also with a folder of results for FILE")(
-      "no-report", "do not make the page report.html")("quiet,q", "no progress, only what came of it")(
-      "watch", "serve the page of the run while it goes, for browsers on this machine")(
-      "port", po::value<std::string>()->value_name("N"), "where --watch serves it; default: one that is free");
-  options.add_threads("threads; results are the same bits for any number");
+      "continue from the last checkpoint, with the same bits as an uninterrupted run; FILE may be a folder of results")(
+      "no-report", "do not write the page report.html")("quiet,q", "no progress, only the summary")(
+      "watch", "serve the page of the run while it runs, for browsers on this machine")(
+      "port", po::value<std::string>()->value_name("N"), "port of --watch; default: a free one");
+  options.add_threads("number of threads; the results have the same bits for any number");
   options.add_set();
   if (!options.read(words)) return ExitStatus::done;
-  if (options.words().empty()) throw UsageError("no description was given; see 'grit run --help'");
+  if (options.words().empty()) throw UsageError("no description given; see 'grit run --help'");
   options.threads();
   if (options.has("resume") && options.has("overwrite"))
-    throw UsageError("--resume goes on with results, --overwrite replaces them: give one of them");
+    throw UsageError("--resume continues results, --overwrite replaces them; give one of them");
   auto jobs = jobs_of(options);
   open_all(jobs, options);
   const auto listener = listener_of(options);
-  if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ while the run goes" << std::endl;
+  if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ during the run" << std::endl;
   const auto& interrupted = catch_interrupts();
   ExitStatus status = ExitStatus::done;
   for (const RunJob& job : jobs) {
@@ -220,7 +220,7 @@ ExitStatus run_command(const std::vector<std::string>& words) {
       }
     });
     if (status == ExitStatus::done) status = one;
-    // What went wrong with the numerics of one scene says nothing of the next.
+    // A numerical failure of one scene does not affect the next.
     if (one != ExitStatus::done && one != ExitStatus::numerics) break;
   }
   return status;

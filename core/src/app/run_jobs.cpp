@@ -8,14 +8,15 @@
 namespace grit {
 namespace {
 
-/// A description's file, or with --resume the folder of a run, which has its description.
+/// The file of a description or, with --resume, the folder of a run, which holds its description.
 RunJob job_of(const std::string& word, const Options& options) {
   RunJob job;
   if (options.has("resume") ? std::filesystem::is_directory(word)
                             : std::filesystem::exists(std::filesystem::path(word) / "run.json")) {
     if (!options.has("resume"))
-      throw UsageError(word + " is a folder; give a description, or go on with its run: --resume");
-    if (options.has("out")) throw UsageError(word + " is a folder, where its run goes on; leave out --out");
+      throw UsageError(word + " is a folder of results; give a description, or continue its run with --resume");
+    if (options.has("out"))
+      throw UsageError(word + " is a folder of results, in which its run continues; remove --out");
     job.folder = std::filesystem::path(word).lexically_normal();
     if (job.folder.filename().empty()) job.folder = job.folder.parent_path();
     job.file = (job.folder / "description.json").string();
@@ -38,12 +39,12 @@ std::vector<RunJob> jobs_of(const Options& options) {
       if (job.folder == other.folder)
         throw UsageError(other.file + " and " + file + " would both write to " + job.folder.string() +
                          "; run them one by one, each with its own --out");
-    if (!FolderLock(job.folder).held()) refuse_busy(job.folder);  // now, not once grains are made
+    if (!FolderLock(job.folder).held()) refuse_busy(job.folder);  // before the bodies are made
     if (options.has("overwrite")) job.existing = Existing::overwrite;
     else if (options.has("resume")) job.existing = Existing::resume;
     else if (std::filesystem::exists(job.folder / "run.json"))
       throw FileError(job.folder.string() +
-                      " holds the results of a run; choose another folder (--out DIR), go on with it (--resume) or "
+                      " holds the results of a run; choose another folder (--out DIR), continue it (--resume) or "
                       "replace them (--overwrite)");
     jobs.push_back(std::move(job));
   }

@@ -1,4 +1,4 @@
-// What `grit run` is to do: descriptions, and where their results go.
+// The runs of `grit run`: descriptions, and the folders of their results.
 #pragma once
 
 #include <filesystem>
@@ -19,12 +19,12 @@ struct RunJob {
   std::shared_ptr<OpenedScene> opened = nullptr;
 };
 
-/// One for each word of the command line: a description's file, or with --resume the folder of a run, which has its
-/// description. Throws UsageError; FileError for a folder that is in use, or holds results that are to stay.
+/// One for each word of the command line: the file of a description or, with --resume, the folder of a run, which holds
+/// its description. Throws UsageError; FileError for a folder that is in use or holds results.
 std::vector<RunJob> jobs_of(const Options& options);
 
-/// Opens all of them before the first is run, so that a slip in the last shows at once. Throws DescriptionError with
-/// the problems of all; FileError; PluginError.
+/// Opens all of them before the first is run, so that a fault in the last is reported at once. Throws DescriptionError
+/// with the problems of all; FileError; PluginError.
 void open_all(std::vector<RunJob>& jobs, const Options& options);
 
 }  // namespace grit

@@ -39,7 +39,7 @@ StateRequest run_state(const SceneDescription& scene, const Components& componen
   return requested_state(components, picture_state(scene));
 }
 
-std::vector<std::string> who_asked(const SceneDescription& scene, const Components& components) {
+std::vector<std::string> state_by_component(const SceneDescription& scene, const Components& components) {
   std::vector<std::string> lines;
   for (const auto& [state, name, bytes] : {std::tuple(BodyState::rotation, "rotation", sizeof(Vec3)),
                                            std::tuple(BodyState::displacement, "displacement", sizeof(Vec3)),

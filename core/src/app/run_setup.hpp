@@ -1,4 +1,4 @@
-// What several commands need to know before a run.
+// Facts about a run, for several commands.
 #pragma once
 
 #include <map>
@@ -15,16 +15,16 @@ namespace grit {
 /// Every component of the scene, once, by kind and name.
 std::vector<PluginUsed> plugins_used(const SceneDescription& scene, const Registry& registry);
 
-/// Of each group of clumps.
+/// Spheres and errors of each group of clumps.
 std::map<std::string, ClumpFacts> clumps_of(const Components& components);
 
-/// State of bodies that the scene's picture asks for.
+/// State of bodies that the picture needs.
 StateRequest picture_state(const SceneDescription& scene);
 
-/// The same, with what the scene's components ask for.
+/// State of bodies that the picture and the components need.
 StateRequest run_state(const SceneDescription& scene, const Components& components);
 
-/// The same, with who asked: "rotation: picture".
-std::vector<std::string> who_asked(const SceneDescription& scene, const Components& components);
+/// The same as text, with the components that need it: "rotation: picture".
+std::vector<std::string> state_by_component(const SceneDescription& scene, const Components& components);
 
 }  // namespace grit

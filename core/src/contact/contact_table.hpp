@@ -24,13 +24,13 @@ struct alignas(64) StateLine {
 template <>
 inline constexpr bool plain_numbers<StateLine> = true;
 
-/// Pairs are sorted by the chunk of their lower body, the nearest first. Blocks are then full of contacts, and the others
-/// are skipped until their bodies may have come close. Pairs within a chunk add to the sums of both bodies; only pairs
-/// across chunks write a row for b. Contact histories are kept when the table is rebuilt.
+/// Pairs are sorted by the chunk of their lower body, the nearest first. Blocks are then full of contacts, and the
+/// others are skipped until their bodies may have come close. Pairs within a chunk add to the sums of both bodies; only
+/// pairs across chunks write a row for b. Contact histories are kept when the table is rebuilt.
 class ContactTable {
  public:
-  /// `order[i]` is the old index of the body that now has index i; empty if indices have not changed. Bodies that are not
-  /// in it have left.
+  /// `order[i]` is the old index of the body that now has index i; empty if indices have not changed. Bodies that are
+  /// not in it have left.
   void rebuild(const Bodies& bodies, const NeighbourSearch& search, bool periodic, std::span<const StateField> fields,
                std::span<const std::uint32_t> order, Team& team);
   /// Changes the fields of the contact history; those in both sets are kept.
@@ -80,8 +80,8 @@ class ContactTable {
         use(c, std::span<const double>(history));
       });
   }
-  /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces touch or
-  /// are nearer than `near` [m].
+  /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces
+  /// touch or are nearer than `near` [m].
   template <class Use>
   void each_near(std::size_t chunk, const Bodies& bodies, const ImageShift* shifts, const Skins& skins, double near,
                  Use use) const {
@@ -155,8 +155,8 @@ class ContactTable {
     bool touching() const { return gap == 0; }
   };
   static_assert(chunk_bodies <= 256);
-  /// Upper bound of the approach of two bodies of a chunk, or of one of it and one of another, since the neighbour search,
-  /// summed over steps [m].
+  /// Upper bound of the approach of two bodies of a chunk, or of one of it and one of another, since the neighbour
+  /// search, summed over steps [m].
   static double closing_within(std::size_t chunk, const Skins& skins) { return 2 * skins.walked(chunk); }
   double closing_across(std::size_t chunk, const Skins& skins) const {
     double furthest = 0;

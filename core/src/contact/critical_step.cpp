@@ -55,8 +55,8 @@ Rates rates(const Stiffness& k, double inverse_mass) {
           2 * k.shear_damping_ratio * std::sqrt(k.shear * inverse_mass / slide)};
 }
 
-/// Upper bound of the largest eigenvalue of a matrix of two diagonal blocks, for a body's velocity and for its spin times
-/// √(I/m), and an off-diagonal block whose squared norm is `both`.
+/// Upper bound of the largest eigenvalue of a matrix of two diagonal blocks, for a body's velocity and for its spin
+/// times √(I/m), and an off-diagonal block whose squared norm is `both`.
 double joined(double velocity, double spin, double both) {
   return 0.5 * (velocity + spin) + std::sqrt(0.25 * (velocity - spin) * (velocity - spin) + both);
 }
@@ -84,8 +84,8 @@ class Dashpots {
     across_ += rates.across;
     both_ += rates.across * normal;
   }
-  /// Upper bound of largest(), and far cheaper: the eigenvalues less their mean are the roots of x³ − 3 p² x = 2 q, which
-  /// are at most 2 p.
+  /// Upper bound of largest(), and far cheaper: the eigenvalues less their mean are the roots of x³ − 3 p² x = 2 q,
+  /// which are at most 2 p.
   double at_most() const {
     const auto bound = [](const Six& m) {
       const double mean = m.head<3>().mean();

@@ -11,10 +11,11 @@ namespace grit {
 /// Upper bounds for the critical time step: Q of springs [1/s²] and D of dashpots [1/s].
 struct Demand {
   double spring = 0, dashpot = 0;
-  double impact = 0;  ///< (π / duration)² of the shortest impact of two isolated bodies [1/s²]; 0 if they separate softly
+  double impact =
+      0;  ///< (π / duration)² of the shortest impact of two isolated bodies [1/s²]; 0 if they separate softly
 
-  /// Critical time step of the leap-frog scheme, whose dashpots use the velocities of half a step ago [s]: the solution of
-  /// 2 dt D + dt² Q = 4. Infinite without contacts.
+  /// Critical time step of the leap-frog scheme, whose dashpots use the velocities of half a step ago [s]: the solution
+  /// of 2 dt D + dt² Q = 4. Infinite without contacts.
   double critical_time_step() const { return 4 / (dashpot + std::sqrt(dashpot * dashpot + 4 * spring)); }
   /// Step [s] at which the shortest impact takes `steps` steps. Infinite if there is none.
   double step_of_impact(double steps) const { return std::numbers::pi / (steps * std::sqrt(impact)); }

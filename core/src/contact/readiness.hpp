@@ -9,8 +9,8 @@
 
 namespace grit {
 
-/// The bodies of a chunk may move as soon as it and all chunks that read its bodies are evaluated. Evaluated in ascending
-/// order, each may move at once, as chunks only read higher ones.
+/// The bodies of a chunk may move as soon as it and all chunks that read its bodies are evaluated. Evaluated in
+/// ascending order, each may move at once, as chunks only read higher ones.
 class Readiness {
  public:
   /// `reached[c]`: chunks above c whose bodies the evaluation of c reads.
@@ -33,7 +33,7 @@ class Readiness {
 
  private:
   std::vector<std::vector<std::uint32_t>> reached_;
-  std::vector<std::uint32_t> dependents_;                   // by chunk: number of chunks that read it
+  std::vector<std::uint32_t> dependents_;                // by chunk: number of chunks that read it
   std::unique_ptr<std::atomic<std::uint32_t>[]> waits_;  // number of these not evaluated yet
 };
 

@@ -12,8 +12,8 @@
 namespace grit {
 
 /// Each chunk has its own skin; walls share one. Two surfaces are candidates if their gap is less than the sum of both
-/// skins, so that no contact is missed while no displacement exceeds its skin. Fast bodies have wide skins and slow ones
-/// thin ones, so that all are used up at about the same time.
+/// skins, so that no contact is missed while no displacement exceeds its skin. Fast bodies have wide skins and slow
+/// ones thin ones, so that all are used up at about the same time.
 class Skins {
  public:
   /// Before a search: sets the skins for the expected motion, `body` by chunk and `wall` [m], and zero displacements.

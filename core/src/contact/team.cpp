@@ -17,7 +17,8 @@ std::uint32_t generation_of(std::uint64_t ticket) { return static_cast<std::uint
 std::uint64_t end_of(std::uint64_t ticket) { return ticket >> index_bits & index_mask; }
 std::uint64_t next_of(std::uint64_t ticket) { return ticket & index_mask; }
 
-// A pass takes some 100 µs; waking a sleeping thread some 5 µs. Spinning for about 10 µs bridges the gap between passes.
+// A pass takes some 100 µs; waking a sleeping thread some 5 µs. Spinning for about 10 µs bridges the gap between
+// passes.
 constexpr int spins = 400;
 void pause() {
 #if defined(__x86_64__)

@@ -12,8 +12,8 @@
 namespace grit {
 
 /// A few threads that sleep without work and never wait for a thread that has no chunk, so that another process on one
-/// core does not delay the others. Each starts with its own range of chunks, the same in every pass, so that neighbouring
-/// chunks share the cache of a core; a thread that is done takes chunks of others.
+/// core does not delay the others. Each starts with its own range of chunks, the same in every pass, so that
+/// neighbouring chunks share the cache of a core; a thread that is done takes chunks of others.
 class Team {
  public:
   /// Total number of threads, including the caller; at least 1.

@@ -25,13 +25,14 @@ constexpr double tilted_by_rounding = 4 * no_gap;
 constexpr double goes_on = 0.9;
 
 /// A law interprets a change of the normal as a rotation of the surface, as of a sphere that pivots about an edge or is
-/// carried along, and adds the surface velocity (overlap / dt) (normal − normal_before). When a body moves across a valley
-/// its contact continues on a face with another normal, although neither face rotates relative to the wall. This
+/// carried along, and adds the surface velocity (overlap / dt) (normal − normal_before). When a body moves across a
+/// valley its contact continues on a face with another normal, although neither face rotates relative to the wall. This
 /// subtracts the term in advance; it would act as an impulse.
 void stand_still_in_valley(WallContact& contact, const Row& body, const Row& body_velocity, double dt) {
   // Both relative to the wall at the body's centre.
   const Vec3 turned = contact.normal - contact.normal_before - dt * contact.spin.cross(contact.normal);
-  const Vec3 passes = xyz(body_velocity) - contact.velocity + contact.spin.cross((body.w - contact.overlap) * contact.normal);
+  const Vec3 passes =
+      xyz(body_velocity) - contact.velocity + contact.spin.cross((body.w - contact.overlap) * contact.normal);
   if (dt > 0 && turned.dot(passes) > 0) contact.velocity -= contact.overlap / dt * turned;
 }
 
@@ -47,8 +48,8 @@ PairSize at_wall(const Bodies& bodies, std::uint32_t body, double overlap) {
           .wall = true};
 }
 
-/// Of two contacts with equal overlaps, rounding decides which is deeper. Next to the joint of two faces it may be an edge,
-/// whose normal, however little tilted, would push the sphere aside. This takes the face.
+/// Of two contacts with equal overlaps, rounding decides which is deeper. Next to the joint of two faces it may be an
+/// edge, whose normal, however little tilted, would push the sphere aside. This takes the face.
 void straighten(WallContact& contact, std::span<const WallSurface> walls) {
   const WallSurface& wall = walls[contact.wall];
   if (!wall.geometry->flat()) return;
@@ -80,7 +81,8 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
     std::vector<std::size_t> place(contact.size());
     std::iota(place.begin(), place.end(), std::size_t{0});
     std::erase_if(place, [&](std::size_t p) { return contact[p].body == gone; });
-    std::sort(place.begin(), place.end(), [&](std::size_t p, std::size_t q) { return key(contact[p]) < key(contact[q]); });
+    std::sort(place.begin(), place.end(),
+              [&](std::size_t p, std::size_t q) { return key(contact[p]) < key(contact[q]); });
     for (const std::size_t p : place) {
       Chunk& chunk = chunks_[contact[p].body / chunk_bodies];
       chunk.contact.push_back(contact[p]);

@@ -9,9 +9,9 @@
 #include "bodies/bodies.hpp"
 #include "contact/chunks.hpp"
 #include "contact/skins.hpp"
+#include "grit/archive.hpp"
 #include "grit/contact/contact_law.hpp"
 #include "grit/geometry.hpp"
-#include "grit/archive.hpp"
 
 namespace grit {
 
@@ -59,9 +59,9 @@ class WallContacts {
   void grow(const Bodies& bodies, double factor);
   /// Loads on all walls, summed chunk by chunk.
   void loads(std::span<WallLoad> loads) const;
-  /// Estimate of the normal force on a wall [N] at the pose `there` with `velocity` [m/s] and bodies as they are now: of
-  /// springs, linear with their present stiffness, and of dashpots. Considers `all` bodies, or only those that it may come
-  /// into contact with before the next search.
+  /// Estimate of the normal force on a wall [N] at the pose `there` with `velocity` [m/s] and bodies as they are now:
+  /// of springs, linear with their present stiffness, and of dashpots. Considers `all` bodies, or only those that it
+  /// may come into contact with before the next search.
   double force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
                      const ContactLaw& law, const Bodies& bodies, bool all) const;
 
@@ -130,8 +130,8 @@ class WallContacts {
     std::vector<std::uint32_t> same_body_before, fresh, gone;  // indices of contacts
     std::vector<bool> hide;
   };
-  /// Removes contacts at edges where the surface continues on another wall that the body touches: edges where coplanar faces
-  /// meet, and shared edges, count once. Across a gap each face counts, so that the force is continuous there.
+  /// Removes contacts at edges where the surface continues on another wall that the body touches: edges where coplanar
+  /// faces meet, and shared edges, count once. Across a gap each face counts, so that the force is continuous there.
   static void leave_out_hidden(Chunk& chunk, Workspace& work, const Bodies& bodies, std::span<const WallSurface> walls);
   /// Whether the wall of the deeper contact also covers the point of the other one.
   static bool hidden(const WallContact& lesser, const WallContact& deeper, const Row& body,

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "grit/contact/batch.hpp"
 #include "grit/archive.hpp"
+#include "grit/contact/batch.hpp"
 #include "grit/world.hpp"
 
 namespace grit {

@@ -24,7 +24,7 @@ struct PopulationStatistics {
 
   void serialize(Archive& archive) {
     archive(particles, mass, diameters, solids, mean_diameter, solid_density, largest_radius, smallest_radius, heaviest,
-           one_material);
+            one_material);
   }
 };
 

@@ -76,7 +76,8 @@ class Planner {
  private:
   /// The set of walls is fixed: probes and the history of wall contacts refer to the walls at the start of the run.
   void same_walls(const std::string& changed) {
-    if (merged_.json().contains("walls") && !merged_.json().at("walls").is_object()) return;  // reported when it is read
+    if (merged_.json().contains("walls") && !merged_.json().at("walls").is_object())
+      return;  // reported when it is read
     const Description none = Description::object();
     const auto walls = [&](const Document& document) -> const Description& {
       const auto found = document.json().find("walls");

@@ -246,8 +246,8 @@ Energies EnergyBalance::terms() {
 }
 
 void EnergyBalance::serialize(Archive& archive) {
-  archive(flows_.begun, flows_.at_start, flows_.lost.friction, flows_.lost.rolling, flows_.lost.viscosity, flows_.damped,
-         flows_.fallen, flows_.walls, flows_.cell, flows_.engines, flows_.settings, flows_.grown);
+  archive(flows_.begun, flows_.at_start, flows_.lost.friction, flows_.lost.rolling, flows_.lost.viscosity,
+          flows_.damped, flows_.fallen, flows_.walls, flows_.cell, flows_.engines, flows_.settings, flows_.grown);
 }
 
 }  // namespace grit

@@ -52,8 +52,8 @@ class EnergyBalance {
   /// Before bodies grow by the factor exp(grown) in this step.
   void before_growth(double grown);
   bool has_growth() const { return flows_.grown > 0; }
-  /// Work of engines and of the cell in a step: half by the forces at its start, half by those at its end. Call before and
-  /// after bodies move.
+  /// Work of engines and of the cell in a step: half by the forces at its start, half by those at its end. Call before
+  /// and after bodies move.
   void before_motion(const MotionStep& step);
   void after_motion(const MotionStep& step);
   /// After walls were driven: `work` of the walls in the step, and the energies of the motion by chunks.

@@ -55,8 +55,8 @@ void EnergyGuard::check(const State& state, EnergyBalance& balance) {
   if (gained > allowed * scale)
     fail(state, Guard::energy, {"guards", "energy"},
          "energy was created: " + number(gained) + " J more than the work done, " + number(gained / scale) +
-             " of the largest energy so far" + (by_balance ? " plus dissipation" : "") +
-             "; /guards/energy allows " + number(allowed),
+             " of the largest energy so far" + (by_balance ? " plus dissipation" : "") + "; /guards/energy allows " +
+             number(allowed),
          "the time step may be too large for the stiffest contact; try a smaller /time_step/safety" +
              std::string(state.walls.any_servo() && balance.dissipated_by_dashpots() > 0
                              ? ", or a lower max_velocity of a servo that closes on grains with dashpots"

@@ -7,8 +7,8 @@
 
 namespace grit {
 
-/// Only gains trip the guard. It uses the energy balance if there is one, otherwise the stored energy, where dissipation
-/// hides gains. Without a balance it does not check if work is done that is not summed up in each step.
+/// Only gains trip the guard. It uses the energy balance if there is one, otherwise the stored energy, where
+/// dissipation hides gains. Without a balance it does not check if work is done that is not summed up in each step.
 class EnergyGuard {
  public:
   /// Restarts with the next forces, after a change of settings.

@@ -34,7 +34,7 @@ void check_periods(const State& state) {
     if (const double period = state.cell.lengths()[k]; state.cell.cell().periodic[k] && period < shortest)
       fail(state, Guard::period, {"domain"},
            "/domain has a period of " + number(period) + " m along " + "xyz"[k] + ", below the minimum of " +
-           number(shortest) + " m, twice the reach of the largest body",
+               number(shortest) + " m, twice the reach of the largest body",
            "make the domain longer along this axis, use walls instead, or compress it less");
 }
 

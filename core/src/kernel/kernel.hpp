@@ -19,9 +19,9 @@ class Kernel {
   /// Starts with the bodies of the scene and the state that its components request.
   Kernel(const SceneDescription& scene, const Components& components, Bodies bodies, unsigned threads);
 
-  /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first. Inserts the
-  /// bodies of this stage. Throws NumericsError if there is no room for them, or if they overlap others or walls by more
-  /// than allowed; they are then not inserted.
+  /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first. Inserts
+  /// the bodies of this stage. Throws NumericsError if there is no room for them, or if they overlap others or walls by
+  /// more than allowed; they are then not inserted.
   void begin_stage(const std::string& name, const SceneDescription& scene, const Components& components);
   /// Checks the guards that are not checked in each step. Throws NumericsError if one trips.
   void end_stage() { guard_.check(state_, balance_); }

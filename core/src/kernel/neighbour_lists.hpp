@@ -22,16 +22,16 @@ class NeighbourLists {
   double strain_travel() const { return strain_travel_; }
 
   void request_rebuild() { requested_ = true; }
-  /// Whether a body or wall may have used up its skin. If the sum of maximum speeds does not exclude it, displacements since
-  /// the last rebuild are measured.
+  /// Whether a body or wall may have used up its skin. If the sum of maximum speeds does not exclude it, displacements
+  /// since the last rebuild are measured.
   bool due(const Bodies& bodies, const DeformingCell& cell);
   /// Whether this rebuild should also sort bodies in space.
   bool sorts() const { return rebuilds_ % sort_every == 0; }
   /// Searches neighbours. Skins follow from speeds only, so that a run is identical on every machine.
   void rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
                double wall_speed, Passes& passes);
-  /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m]. Returns an
-  /// upper bound of the displacement of bodies since the last rebuild [m].
+  /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m].
+  /// Returns an upper bound of the displacement of bodies since the last rebuild [m].
   double advance(double dt, double strained, const Passes& passes);
   void advance_walls(double distance) { skins_.advance_walls(distance); }
 

@@ -204,8 +204,8 @@ void Stepper::advance() {
   and_show_forces([this] { end_step(); });
 }
 
-/// Whether bodies may move before the forces on others are known: neither time step nor engines depend on all forces, and
-/// the energy balance does not need the power of forces before and after the motion.
+/// Whether bodies may move before the forces on others are known: neither time step nor engines depend on all forces,
+/// and the energy balance does not need the power of forces before and after the motion.
 bool Stepper::can_move_at_once() const {
   const Settings& settings = state_.settings;
   const bool free_walls = std::ranges::any_of(state_.surfaces, &WallSurface::free);
@@ -229,8 +229,8 @@ void Stepper::step_on() {
     move(chunk, sum, step);
   };
   passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
-    // Sums of a chunk that moves at once stay in the cache. The pointer is offset so that it is indexed by body: its start
-    // lies before the array, but only valid elements are accessed.
+    // Sums of a chunk that moves at once stay in the cache. The pointer is offset so that it is indexed by body: its
+    // start lies before the array, but only valid elements are accessed.
     alignas(64) thread_local std::array<BodySum, chunk_bodies> here;
     const ChunkRange range(chunk, state_.bodies.count());
     const std::uintptr_t of_body_0 = reinterpret_cast<std::uintptr_t>(here.data()) - range.first * sizeof(BodySum);

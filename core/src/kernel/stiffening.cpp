@@ -11,12 +11,12 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The time step is set again when the largest overlap has grown by this factor, or when an impact at the present speeds
 // would reach as much.
 constexpr double overlap_growth = 1.2, shallowest = 1e-6;
-// Fraction of the overlap that an impact would reach to which a packing with many contacts per body may be compressed at
-// the step set for a pair: 20 k_s/m for a cubic packing with friction, 7 k_s/m for a pair. At 0.8 of the step of the pair
-// it starts to oscillate at (7 / 20 / 0.8²)² = 0.3 of that overlap, that is from a fraction of 0.3 / 1.2 = 0.25 on. Where
-// dashpots shorten the step the limit is higher: the packing of tests/stability is stable at 0.4 and unstable at 0.5.
-// Not covered by any fraction: a packing with smaller overlaps than some contact had before. A face-centred packing has
-// 40 k_s/m and then oscillates at 0.8 of the step.
+// Fraction of the overlap that an impact would reach to which a packing with many contacts per body may be compressed
+// at the step set for a pair: 20 k_s/m for a cubic packing with friction, 7 k_s/m for a pair. At 0.8 of the step of the
+// pair it starts to oscillate at (7 / 20 / 0.8²)² = 0.3 of that overlap, that is from a fraction of 0.3 / 1.2 = 0.25
+// on. Where dashpots shorten the step the limit is higher: the packing of tests/stability is stable at 0.4 and unstable
+// at 0.5. Not covered by any fraction: a packing with smaller overlaps than some contact had before. A face-centred
+// packing has 40 k_s/m and then oscillates at 0.8 of the step.
 constexpr double packing_fraction = 0.15;
 
 /// Normal stiffness of two bodies of the smallest radius, or of one and a wall, at this overlap over a radius [N/m].

@@ -13,11 +13,11 @@ class Stiffening {
   void update(const State& state);
   /// Whether stiffness grows with overlap at all.
   bool is_there() const;
-  /// Whether contacts at this overlap (over a radius), or impacts at the present speeds, are so much stiffer than expected
-  /// that the time step must be set again.
+  /// Whether contacts at this overlap (over a radius), or impacts at the present speeds, are so much stiffer than
+  /// expected that the time step must be set again.
   bool exceeds(double overlap, const State& state, const DisplacementBounds& bounds) const;
-  /// The same for the overlap that the next evaluation may find. Called before every evaluation, so that the time step does
-  /// not depend on the reason of the evaluation.
+  /// The same for the overlap that the next evaluation may find. Called before every evaluation, so that the time step
+  /// does not depend on the reason of the evaluation.
   bool may_exceed(const State& state, const DisplacementBounds& bounds) const;
   /// Sets the expected overlap.
   void expect(const State& state, const DisplacementBounds& bounds);

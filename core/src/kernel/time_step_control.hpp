@@ -17,21 +17,23 @@ class TimeStepControl {
   void request() { requested_ = true; }
   /// After settings or bodies have changed.
   void update_stiffening(const State& state) { stiffening_.update(state); }
-  /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error if
-  /// nothing limits it.
+  /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error
+  /// if nothing limits it.
   void set(State& state, const DisplacementBounds& bounds, Team& team);
-  /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new contacts where
-  /// bodies have moved far enough.
+  /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new contacts
+  /// where bodies have moved far enough.
   void follow(State& state, const DisplacementBounds& bounds, Team& team);
   /// Whether the next evaluation may find stiffer springs.
   bool may_stiffen(const State& state, const DisplacementBounds& bounds) const {
     return stiffening_.may_exceed(state, bounds);
   }
-  /// After an evaluation: sets the time step again if springs have stiffened (if `may_stiffen` was true before), or if free
-  /// walls have stiffer contacts.
+  /// After an evaluation: sets the time step again if springs have stiffened (if `may_stiffen` was true before), or if
+  /// free walls have stiffer contacts.
   void react(bool may_have_stiffened, State& state, const DisplacementBounds& bounds, Team& team);
 
-  void serialize(Archive& archive) { archive(critical_, contacts_, walls_, critical_time_step_, requested_, stiffening_); }
+  void serialize(Archive& archive) {
+    archive(critical_, contacts_, walls_, critical_time_step_, requested_, stiffening_);
+  }
 
  private:
   CriticalStep::Instant near_contacts(const State& state) const;

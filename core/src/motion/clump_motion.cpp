@@ -12,8 +12,8 @@ Vec3 damped(const Vec3& push, const Vec3& velocity, double coefficient) {
       velocity, [=](double p, double v) { return p - coefficient * (v != 0 ? std::copysign(std::abs(p), v) : 0.0); });
 }
 
-// Rotations in a step are small. Up to this angle a few terms of the series are exact to rounding and take a tenth of the
-// time of the functions.
+// Rotations in a step are small. Up to this angle a few terms of the series are exact to rounding and take a tenth of
+// the time of the functions.
 constexpr double little = 0.02;
 
 /// Sine and cosine to rounding.
@@ -35,8 +35,8 @@ double arc_over_sine(double square) {
   return 1 + square * (1.0 / 6 + square * (3.0 / 40 + square * (5.0 / 112 + square * (35.0 / 1152))));
 }
 
-/// Rotates about one principal axis with the angular velocity of the momentum along this axis; `time` is divided by twice
-/// the moment of inertia.
+/// Rotates about one principal axis with the angular velocity of the momentum along this axis; `time` is divided by
+/// twice the moment of inertia.
 template <int axis>
 [[gnu::always_inline]] inline void turn_about(double time, Eigen::Quaterniond& orientation, Vec3& momentum) {
   constexpr int next = (axis + 1) % 3, last = (axis + 2) % 3;

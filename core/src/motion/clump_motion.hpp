@@ -15,9 +15,9 @@ struct ClumpLoad {
 ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum);
 
 /// Moves clumps first … last − 1 under the forces `sum`, by body index, and their spheres with them: the velocity of a
-/// sphere is its displacement in the step over the step. Angular momentum is stored in the global frame. The free rotation
-/// is split into rotations about the principal axes, one after the other and back; this is symplectic and of second
-/// order: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) 5840, doi:10.1063/1.474310.
+/// sphere is its displacement in the step over the step. Angular momentum is stored in the global frame. The free
+/// rotation is split into rotations about the principal axes, one after the other and back; this is symplectic and of
+/// second order: A. Dullweber, B. Leimkuhler, R. McLachlan, J. Chem. Phys. 107 (1997) 5840, doi:10.1063/1.474310.
 Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step);
 
 }  // namespace grit

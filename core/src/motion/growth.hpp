@@ -7,8 +7,8 @@
 
 namespace grit {
 
-/// Multiplies all lengths of the bodies of one chunk by `factor`, masses by its cube and moments of inertia by its fifth
-/// power. Velocities and spins stay. The arms of spheres of clumps grow by the same factor.
+/// Multiplies all lengths of the bodies of one chunk by `factor`, masses by its cube and moments of inertia by its
+/// fifth power. Velocities and spins stay. The arms of spheres of clumps grow by the same factor.
 void grow_bodies(std::size_t chunk, Bodies& bodies, double factor);
 
 /// The same for the properties of clumps as a whole.

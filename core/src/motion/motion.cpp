@@ -33,8 +33,8 @@ void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Which energies are summed up. Compile-time constants: otherwise the compiler divides for every body even if the result
-/// is not needed, and these divisions are the main cost of an energy balance.
+/// Which energies are summed up. Compile-time constants: otherwise the compiler divides for every body even if the
+/// result is not needed, and these divisions are the main cost of an energy balance.
 enum class EnergyTerms { none, without_weight, with_weight, with_flow };
 
 /// Not inlined: with all variants in one function, their constants would be in memory.
@@ -43,7 +43,8 @@ template <EnergyTerms energies, bool Clumps>
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
-  // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's sides.
+  // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's
+  // sides.
   const Quad growth = rate * step.flowed;
   // The fourth number of a row (radius, 1/mass, 1/inertia) is unchanged.
   const Quad free = quad(step.free_translation());

@@ -17,11 +17,12 @@ namespace grit {
 
 namespace {
 
-/// Averaging time of a servo's velocity in steps, times the gain; longer than a stack of some dozens of grains responds.
+/// Averaging time of a servo's velocity in steps, times the gain; longer than a stack of some dozens of grains
+/// responds.
 constexpr double habit_steps = 30;
-/// Factor by which a servo weights the dashpots of its contacts. Their forces follow a change of its velocity immediately,
-/// but the servo reads them one step late. With a factor of 1, a gain of 1 oscillates on dashpots that are stable in
-/// isolation; with 3, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
+/// Factor by which a servo weights the dashpots of its contacts. Their forces follow a change of its velocity
+/// immediately, but the servo reads them one step late. With a factor of 1, a gain of 1 oscillates on dashpots that are
+/// stable in isolation; with 3, no gain does at 0.8 of the critical step (eigenvalues in tests/stability/servo.cpp).
 constexpr double dashpots_counted = 3;
 /// Relative error of the force of a servo above which it is reported.
 constexpr double most_behind = 0.05;
@@ -29,8 +30,8 @@ constexpr double most_behind = 0.05;
 constexpr double always_added = 0.25;
 /// Number of halvings after which the displacement in a step is practically zero.
 constexpr int most_halvings = 50;
-/// Minimum number of steps per period of an oscillation: there the mean velocity of a step differs from that at its middle
-/// by (ω dt)²/24 = 0.4 %.
+/// Minimum number of steps per period of an oscillation: there the mean velocity of a step differs from that at its
+/// middle by (ω dt)²/24 = 0.4 %.
 constexpr double steps_to_a_period = 20;
 
 /// `key`: the key of the motion at fault.
@@ -91,7 +92,8 @@ double swing(const MotionDescription& motion, double time, double lead) {
   return ramp * (std::sin(angle) - std::sin(how.phase));
 }
 
-/// Updates an oscillation after a change of motion: it continues from its present phase at the new frequency, or starts.
+/// Updates an oscillation after a change of motion: it continues from its present phase at the new frequency, or
+/// starts.
 void swing_on(const MotionDescription& motion, WallState& state) {
   const OscillationDescription how = motion.oscillation.value_or(OscillationDescription{});
   if (state.swing_frequency > 0 && how.frequency > 0 && state.swing_phase == how.phase)
@@ -108,9 +110,9 @@ double facing(const WallSetup& setup, const Pose& pose) {
   return normal[setup.motion.servo->axis.front() - 'x'];
 }
 
-/// A servo reads the effect of a step only afterwards: a stiff grain, or many grains of one height, could carry a multiple
-/// of the target force in the step in which they come into contact. Therefore a step moves the wall at most to where the
-/// estimated force reaches the target; `velocity` is the requested one.
+/// A servo reads the effect of a step only afterwards: a stiff grain, or many grains of one height, could carry a
+/// multiple of the target force in the step in which they come into contact. Therefore a step moves the wall at most to
+/// where the estimated force reaches the target; `velocity` is the requested one.
 double braked(double velocity, std::size_t wall, int axis, double wanted, const WallState& state, double dt,
               const Walls::Ahead& ahead) {
   if (ahead == nullptr || !(velocity * wanted > 0)) return velocity;
@@ -319,9 +321,9 @@ std::string Walls::fallen_behind() const {
     if (std::abs(state.velocity[axis]) < (1 - 1e-9) * servo.max_velocity ||
         std::abs(pressed - kept) <= most_behind * std::abs(kept))
       continue;
-    words += fmt::format(
-        "{}servo of wall \"{}\" is limited by its max_velocity of {:g} m/s: {:.4g} {}, target {:.4g}",
-        words.empty() ? "" : "; ", name(wall), servo.max_velocity, pressed, servo.force ? "N" : "Pa", kept);
+    words +=
+        fmt::format("{}servo of wall \"{}\" is limited by its max_velocity of {:g} m/s: {:.4g} {}, target {:.4g}",
+                    words.empty() ? "" : "; ", name(wall), servo.max_velocity, pressed, servo.force ? "N" : "Pa", kept);
   }
   return words;
 }

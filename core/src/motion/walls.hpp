@@ -12,8 +12,8 @@
 #include "contact/wall_contacts.hpp"
 #include "description/components.hpp"
 #include "description/description.hpp"
-#include "grit/geometry.hpp"
 #include "grit/archive.hpp"
+#include "grit/geometry.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -49,15 +49,15 @@ struct WallState {
 template <>
 inline constexpr bool plain_numbers<WallState> = true;
 
-/// Owns the moving walls. A step is: clear_forces(), add() for all contacts, drive(dt), move(dt). Velocities are those at
-/// the middle of the step, as for bodies. The velocity of an oscillation is the mean over the step, so that its
+/// Owns the moving walls. A step is: clear_forces(), add() for all contacts, drive(dt), move(dt). Velocities are those
+/// at the middle of the step, as for bodies. The velocity of an oscillation is the mean over the step, so that its
 /// displacement is exactly sinusoidal at every step. Used by one thread.
 class Walls {
  public:
-  /// Begins a stage: walls get their new geometries and motions and keep poses and velocities by name; new walls start at
-  /// their position in the description. Throws grit::Error, naming the wall, for motions that are not possible: two on one
-  /// axis, a wall that does not exist or follows itself, a servo for pressure on a wall without area or along its face, no
-  /// mass. An oscillation continues from the previous stage unless it is new or its phase has changed.
+  /// Begins a stage: walls get their new geometries and motions and keep poses and velocities by name; new walls start
+  /// at their position in the description. Throws grit::Error, naming the wall, for motions that are not possible: two
+  /// on one axis, a wall that does not exist or follows itself, a servo for pressure on a wall without area or along
+  /// its face, no mass. An oscillation continues from the previous stage unless it is new or its phase has changed.
   void apply(const SceneDescription& scene, const Components& components) { apply(wall_setups(scene, components)); }
   void apply(std::vector<WallSetup> setups);
   /// The same within a stage, e.g. for one increment of a ramp: time and start of the stage stay, and an oscillation
@@ -82,23 +82,23 @@ class Walls {
   bool any_servo() const;
   /// Sets the present lengths of the specimen [m].
   void set_specimen(const Vec3& lengths) { specimen_ = lengths; }
-  /// Estimated normal force of the bodies, at their present positions, on a wall [N] after this displacement [m] and at this
-  /// velocity [m/s].
+  /// Estimated normal force of the bodies, at their present positions, on a wall [N] after this displacement [m] and at
+  /// this velocity [m/s].
   using Ahead = std::function<double(std::size_t wall, const Pose& there, const Vec3& velocity, double way)>;
   /// Throws PlacedError, naming the wall, for an oscillation that steps of dt [s] cannot follow.
   void check_oscillations(double dt) const;
-  /// Sets the velocities of the next step of dt [s] from the forces, leaders before walls that follow them. With `ahead`,
-  /// servos slow down before contacts that would exceed the target force within a step.
+  /// Sets the velocities of the next step of dt [s] from the forces, leaders before walls that follow them. With
+  /// `ahead`, servos slow down before contacts that would exceed the target force within a step.
   void drive(double dt, const Ahead& ahead = nullptr);
-  /// Demands of the present contacts on free walls, bodies held: the largest k/m and c/m. Added to the demands on bodies,
-  /// walls held, this bounds those on all together: the largest eigenvalue of a positive semidefinite matrix is at most the
-  /// sum of those of its two diagonal blocks.
+  /// Demands of the present contacts on free walls, bodies held: the largest k/m and c/m. Added to the demands on
+  /// bodies, walls held, this bounds those on all together: the largest eigenvalue of a positive semidefinite matrix is
+  /// at most the sum of those of its two diagonal blocks.
   Demand demand() const;
   /// Moves and rotates the walls by one step of dt [s].
   void move(double dt);
 
-  /// Message for each servo whose wall has contacts and misses its target by more than a twentieth at its maximum velocity;
-  /// empty if there is none. Uses the present forces and the velocities of the last step.
+  /// Message for each servo whose wall has contacts and misses its target by more than a twentieth at its maximum
+  /// velocity; empty if there is none. Uses the present forces and the velocities of the last step.
   std::string fallen_behind() const;
 
   /// The walls as probes see them. Entries of `views` are reused.

@@ -193,7 +193,8 @@ Checkpoint StageRunner::save() {
 
 void StageRunner::serialize(Archive& archive) {
   archive(instant_.is_decided, instant_.may_end);
-  archive(start_.time, start_.step, start_.discharged_fraction, frames_, last_frame_, contact_samples_, contact_sum_, stepping_);
+  archive(start_.time, start_.step, start_.discharged_fraction, frames_, last_frame_, contact_samples_, contact_sum_,
+          stepping_);
   for (PhaseTime& phase : phases_) archive(phase.seconds);
   for (Observer& observer : observers_) observer.serialize(archive);
   recorder_.serialize(archive);
@@ -268,7 +269,7 @@ std::string StageRunner::reached() const {
   if (std::ranges::any_of(scene_.description->bodies, appears_later))
     text = std::to_string(world_.positions().size()) + " bodies, " + text;
   if (const double fraction = kernel_.state().discharged_fraction(); fraction > 0)
-    text += ", " + number(100 * fraction) + " % of the mass has left";
+    text += ", " + number(100 * fraction) + " % of the mass discharged";
   return text + ", time " + number(world_.time() - start_.time) + " s";
 }
 

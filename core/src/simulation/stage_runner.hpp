@@ -27,7 +27,7 @@ class StageRunner {
   void prepare();
   /// Finds the first forces, begins the first stage, then the recording; after prepare().
   void start();
-  /// Instead of both: goes on at a checkpoint. Throws Error if it is of another scene.
+  /// Instead of both: continues from a checkpoint. Throws Error if it is of another scene.
   void resume(const Checkpoint& checkpoint);
 
   enum class Event { stepped, stage_ended, stopped };

@@ -14,9 +14,9 @@ std::shared_ptr<Rectangle> floor(bool two_sided) {
 
 const std::vector<Path> flanks{{{0.5, 0.5, 0.07}, {1.5, 0.2, 0.05}}, {{1, 0.5, 0.05}, {2.04, 0.5, 0.05}}};
 const std::vector<Path> across{{{-0.3, 0.5, 0.05}, {2.3, 0.6, 0.05}},      // edge, face, edge
-                              {{-0.2, -0.2, 0.02}, {1, 1, 0.06}},         // over a corner
-                              {{-0.01, 0.5, 0.15}, {-0.01, 0.5, -0.15}},  // down past an edge
-                              {{1, 0.5, 0.2}, {1, 0.5, 0.01}}};
+                               {{-0.2, -0.2, 0.02}, {1, 1, 0.06}},         // over a corner
+                               {{-0.01, 0.5, 0.15}, {-0.01, 0.5, -0.15}},  // down past an edge
+                               {{1, 0.5, 0.2}, {1, 0.5, 0.01}}};
 const Bounds around{{-0.3, -0.3, -0.2}, {2.3, 1.3, 0.2}};
 
 GeometryCase oblique() {

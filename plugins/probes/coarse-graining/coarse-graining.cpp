@@ -21,34 +21,34 @@ void CoarseGraining::declare(Parameters& parameters) {
   parameters.add("cutoff", cutoff)
       .symbol("c")
       .at_least(0.1)
-      .doc("of the kernel, where it has fallen to nothing, over the mean diameter");
+      .doc("radius at which the kernel is 0, over the mean diameter");
   parameters.add("spacing", spacing)
       .at_least(0.05)
-      .doc("of the points, over the mean diameter; as many as fit are spread evenly");
+      .doc("spacing of the points, over the mean diameter; as many as fit are spread evenly");
   parameters.add("slice", slice)
       .one_of({"none", "x", "y", "z"})
-      .doc("axis along which there is one point alone, in the middle");
-  parameters.add("region_low", region_low)
+      .doc("axis along which there is a single layer of points, in the middle");
+  parameters.add("region_low", region_low).unit("m").doc("lower corner of the box of points; default: of the specimen");
+  parameters.add("region_high", region_high)
       .unit("m")
-      .doc("lower corner of the box of points; left out: of the specimen");
-  parameters.add("region_high", region_high).unit("m").doc("its upper corner; left out: of the specimen");
+      .doc("upper corner of the box of points; default: of the specimen");
   parameters.check(
       [this](const Complain& complain) {
         if (region_low && region_high && !(region_low->array() < region_high->array()).all())
-          complain("region_high", "a corner that is not above region_low", "more than region_low along x, y and z");
+          complain("region_high", "a corner not above region_low", "more than region_low along x, y and z");
       },
       {"region_low", "region_high"});
 }
 
 std::vector<Channel> CoarseGraining::channels() const {
   const std::string unknown = "; NaN without points";
-  return {{"density", "kg m-3", "mass over space, mean of the points" + unknown, {}},
+  return {{"density", "kg m-3", "mass per volume, mean of the points" + unknown, {}},
           {"mean_stress",
            "Pa",
            "a third of the trace of the stress, positive in compression, mean of the points" + unknown,
            {}},
-          {"kinetic_stress", "Pa", "the part of it that fluctuations of velocities have" + unknown, {}},
-          {"points", "1", "number of points; 0 without grains, or where they would be too many", {}}};
+          {"kinetic_stress", "Pa", "part of the stress due to velocity fluctuations" + unknown, {}},
+          {"points", "1", "number of points; 0 without bodies, or if there would be too many", {}}};
 }
 
 Region CoarseGraining::box(const World& world) const {
@@ -111,18 +111,18 @@ void CoarseGraining::sample(const World& world, ChannelValues& values) {
 
 std::vector<Field> CoarseGraining::fields(const World& world) {
   std::vector<Field> fields{
-      {"centre", "m", "the point", 3, {}},
-      {"size", "m", "of the cell around it; cells fill the box", 3, {}},
-      {"density", "kg m-3", "mass over space", 1, {}},
-      {"momentum", "kg m-2 s-1", "momentum over space, half a step before", 3, {}},
-      {"velocity", "m s-1", "momentum over density; 0 without any", 3, {}},
+      {"centre", "m", "position of the point", 3, {}},
+      {"size", "m", "size of the cell around the point; the cells fill the box", 3, {}},
+      {"density", "kg m-3", "mass per volume", 1, {}},
+      {"momentum", "kg m-2 s-1", "momentum per volume, half a step earlier", 3, {}},
+      {"velocity", "m s-1", "momentum over density; 0 where the density is 0", 3, {}},
       {"stress",
        "Pa",
-       "of contacts and fluctuations, row by row, the first index the force's; compression positive",
+       "stress of contacts and fluctuations, row by row, first index that of the force; compression positive",
        9,
        {}},
-      {"kinetic_stress", "Pa", "the part that fluctuations of velocities have", 9, {}},
-      {"wall_force", "N m-3", "force that walls exert on the grains, over space", 3, {}}};
+      {"kinetic_stress", "Pa", "part of the stress due to velocity fluctuations", 9, {}},
+      {"wall_force", "N m-3", "force of walls on bodies per volume", 3, {}}};
   const auto grid = this->grid(world);
   if (!grid) return fields;
   const PointGrid& points = *grid;

@@ -61,7 +61,8 @@ FakeWorld moving() {
   world.density = 2;
   world.add({0, 0, 0}, 1, {0.5, -0.25, 1}), world.add({1.5, 0.5, 1}, 0.8, {-1, 0.5, 0}), world.add({3, 0, 0.5}, 0.9);
   world.wall.push_back(still_wall("wall"));
-  world.add_contact(0, 1, Vec3(1.5, 0.5, 1), Vec3(4, 1, -2)), world.add_contact(1, 2, Vec3(1.5, -0.5, -0.5), Vec3(1, 3, 2));
+  world.add_contact(0, 1, Vec3(1.5, 0.5, 1), Vec3(4, 1, -2)),
+      world.add_contact(1, 2, Vec3(1.5, -0.5, -0.5), Vec3(1, 3, 2));
   world.add_wall_contact(0, 0, Vec3(-0.9, 0, -0.2), Vec3(-5, 2, 1));
   return world;
 }
@@ -124,7 +125,8 @@ TEST(CoarseFields, HoldAPackingAtRestInBalance) {
   world.add(left, 1), world.add(right, 1), world.add(top, 1);
   for (const auto* name : {"floor", "left", "right"}) world.wall.push_back(still_wall(name));
   const double weight = 10 * mass(world, 0), thrust = weight / 1.6;
-  world.add_contact(2, 0, left - top, thrust * (left - top) / 2), world.add_contact(2, 1, right - top, thrust * (right - top) / 2);
+  world.add_contact(2, 0, left - top, thrust * (left - top) / 2),
+      world.add_contact(2, 1, right - top, thrust * (right - top) / 2);
   world.add_wall_contact(0, 0, Vec3(0, 0, -1), Vec3(0, 0, -1.5 * weight));
   world.add_wall_contact(1, 0, Vec3(0, 0, -1), Vec3(0, 0, -1.5 * weight));
   world.add_wall_contact(0, 1, Vec3(-1, 0, 0), Vec3(-0.6 * thrust, 0, 0));
@@ -275,9 +277,8 @@ TEST(CoarseGraining, RefusesGridsThatAreNoneOrTooLarge) {
                 HasSubstr(" points; allowed is at most 5000000 points; use a larger spacing, a slice, or a smaller "));
   }
   probe.region_low = Vec3(0, 0, 0), probe.region_high = Vec3(1, 1, 0);
-  EXPECT_EQ(
-      complaints(probe),
-      "region_high: found a corner that is not above region_low, allowed: more than region_low along x, y and z\n");
+  EXPECT_EQ(complaints(probe),
+            "region_high: found a corner not above region_low, allowed: more than region_low along x, y and z\n");
 }
 
 TEST(CoarseGraining, HasNoPointsOnceTheyWouldBeTooMany) {

@@ -18,17 +18,17 @@ std::string strip_channel(std::int64_t strip) { return "gradient_strip_" + std::
 }  // namespace
 
 void Displacements::declare(Parameters& p) {
-  p.add("along", along).one_of({"x", "y", "z"}).doc("component whose profile is taken");
+  p.add("along", along).one_of({"x", "y", "z"}).doc("component of the displacement");
   profile.declare(p);
   p.add("strips", strips)
       .at_least(0)
       .at_most(1000)
-      .doc("of equal width, side by side, that have a profile of the gradient each; 0: none");
-  p.add("strips_along", strips_along).one_of({"x", "y", "z"}).doc("axis along which strips are side by side");
+      .doc("number of strips of equal width, each with its own profile of the gradient; 0: none");
+  p.add("strips_along", strips_along).one_of({"x", "y", "z"}).doc("axis along which the strips follow each other");
   p.check(
       [this](const Complain& complain) {
         if (strips > 0 && strips_along == profile.across)
-          complain("strips_along", strips_along, "another axis than across, along which the profiles go");
+          complain("strips_along", strips_along, "an axis other than across, the axis of the profiles");
       },
       {"strips", "strips_along", "across"});
 }
@@ -36,23 +36,22 @@ void Displacements::declare(Parameters& p) {
 std::vector<Channel> Displacements::channels() const {
   const std::vector<std::size_t> each{static_cast<std::size_t>(profile.points)};
   std::vector<Channel> channels{
-      {"position", "m", "of each value of the profiles, along " + profile.across, each},
+      {"position", "m", "position of each value of the profiles, along " + profile.across, each},
       {"profile", "m",
        "displacement along " + along +
-           " at each place, by the line that fits the bodies around it, since the stage began; " + "NaN without any",
+           " since the start of the stage, at each point, by a linear fit to the bodies around it; NaN without any",
        each, "position"},
-      {"gradient", "1", "slope of that line, along " + profile.across + "; NaN where bodies are too few", each,
-       "position"},
+      {"gradient", "1", "slope of that fit, along " + profile.across + "; NaN with too few bodies", each, "position"},
       {"fluctuation", "m",
-       "root of the mean square of the bodies' displacements less the profiles of all three components, around each "
+       "root mean square of the displacements of bodies less the profiles of all three components, around each "
        "place; " +
            std::string("NaN without any"),
        each, "position"}};
   std::ranges::copy(zone_channels("gradient"), std::back_inserter(channels));
   for (std::int64_t strip = 1; strip <= strips; ++strip)
     channels.push_back({strip_channel(strip), "1",
-                        "the same as gradient, of the bodies in strip " + std::to_string(strip) + " of " +
-                            std::to_string(strips) + " along " + strips_along + "; NaN where bodies are too few",
+                        "as gradient, for the bodies in strip " + std::to_string(strip) + " of " +
+                            std::to_string(strips) + " along " + strips_along + "; NaN with too few bodies",
                         each, "position"});
   return channels;
 }
@@ -121,12 +120,12 @@ void Displacements::sample(const World& world, ChannelValues& values) {
 
 std::vector<Field> Displacements::fields(const World& world) {
   const auto left = fluctuations(world, profiles(world));
-  std::vector<Field> fields{{"id", "1", "of each body", 1, {}},
-                            {"centre", "m", "of each body, where it is now", 3, {}},
-                            {"size", "m", "its diameter, along all axes", 3, {}},
+  std::vector<Field> fields{{"id", "1", "id of each body", 1, {}},
+                            {"centre", "m", "present centre of each body", 3, {}},
+                            {"size", "m", "diameter of each body, along all axes", 3, {}},
                             {"fluctuation",
                              "m",
-                             "its displacement less the profile, positive along the axis; NaN where that is unknown",
+                             "displacement less the profile, positive along the axis; NaN where the profile is unknown",
                              3,
                              {}}};
   for (std::size_t i = 0; i < left.size(); ++i) {

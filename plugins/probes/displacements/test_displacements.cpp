@@ -115,8 +115,7 @@ TEST(Displacements, StripsHaveBodiesThatArePastAPeriodicSide) {
 TEST(Displacements, StripsLieAcrossTheirProfiles) {
   Displacements probe;
   probe.strips = 4, probe.strips_along = "z";
-  EXPECT_EQ(complaints(probe),
-            "strips_along: found z, allowed: another axis than across, along which the profiles go\n");
+  EXPECT_EQ(complaints(probe), "strips_along: found z, allowed: an axis other than across, the axis of the profiles\n");
   probe.strips = 0;
   EXPECT_EQ(complaints(probe), "");
 }

@@ -38,10 +38,11 @@ TEST(EnergyProbe, SaysEveryEntryOfTheLedger) {
                   .local_damping = 11,
                   .closure_error = -1};
   const std::map<std::string, double> expected{
-      {"kinetic", 1},        {"elastic_normal", 2}, {"elastic_shear", 3},    {"elastic_rolling", 4},
-      {"gravitational", -5}, {"work_of_walls", 6},  {"work_of_cell", -12},   {"work_of_engines", 22},
-      {"settings", -7},      {"friction", 8},       {"rolling", 9},          {"viscosity", 10},
-      {"local_damping", 11}, {"closure_error", -1}, {"closure_fraction", -0.01}};
+      {"kinetic", 1},         {"elastic_normal", 2},   {"elastic_shear", 3},
+      {"elastic_rolling", 4}, {"gravitational", -5},   {"work_of_walls", 6},
+      {"work_of_cell", -12},  {"work_of_engines", 22}, {"settings", -7},
+      {"friction", 8},        {"rolling", 9},          {"viscosity", 10},
+      {"local_damping", 11},  {"closure_error", -1},   {"closure_fraction", -0.01}};
   EXPECT_EQ(sampled(world), expected);
 }
 

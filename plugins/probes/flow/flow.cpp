@@ -20,8 +20,8 @@ std::string rate_channel(const std::string& outlet) { return outlet + "_discharg
 }  // namespace
 
 void FlowProbe::Outlet::declare(Parameters& parameters) {
-  parameters.add("low", low).unit("m").required().doc("where it begins, along the axis");
-  parameters.add("high", high).unit("m").required().doc("where it ends");
+  parameters.add("low", low).unit("m").required().doc("lower end of the range along the axis");
+  parameters.add("high", high).unit("m").required().doc("upper end of the range along the axis");
   parameters.check(
       [this](const Complain& complain) {
         if (!(low < high)) complain("high", std::to_string(high) + " m", "above low");
@@ -31,31 +31,32 @@ void FlowProbe::Outlet::declare(Parameters& parameters) {
 
 void FlowPattern::declare(Parameters& parameters) {
   Averaging::declare(parameters, "of the specimen");
-  parameters.add("wall_zone", wall_zone).above(0).doc("width of what counts as being at the walls, over the mean diameter");
+  parameters.add("wall_zone", wall_zone).above(0).doc("width of the zones next to the walls, over the mean diameter");
   parameters.add("moving_fraction", moving_fraction)
       .above(0)
       .below(1)
-      .doc("share of the mean speed of a slice above which what is at the walls counts as moving");
+      .doc("fraction of the mean speed of a slice above which a zone next to a wall counts as moving");
 }
 
 void FlowProbe::declare(Parameters& parameters) {
-  parameters.add("axis", axis).one_of({"x", "y", "z"}).doc("along which outlets lie");
+  parameters.add("axis", axis).one_of({"x", "y", "z"}).doc("axis along which the outlets lie");
   parameters.add("outlets", outlets)
       .doc(
-          "ranges along the axis by name (snake_case), with channels of their own; what leaves elsewhere counts in the "
-          "sums alone");
-  parameters.add("window", window).unit("s").above(0).doc("rates are means over so much time before the sample");
+          "ranges along the axis by name (snake_case), each with its own channels; discharge elsewhere counts in the "
+          "totals only");
+  parameters.add("window", window).unit("s").above(0).doc("time before a sample over which rates are averaged");
   parameters.add("pattern", pattern)
-      .doc("how what is there flows: a profile along the height, the type of flow, a map of velocities; left out: not");
+      .doc("flow pattern in the silo: profile along the height, type of flow, map of velocities; default: none");
   parameters.check(
       [this](const Complain& complain) {
         for (const auto& [name, outlet] : outlets) {
           if (!is_snake_case(name))
-            complain("outlets", "the name \"" + name + "\"", "small letters, digits and _, a letter first");
+            complain("outlets", "the name \"" + name + "\"",
+                     "lower-case letters, digits and _, starting with a letter");
           for (const auto& [other, range] : outlets)
             if (name < other && outlet.low < range.high && range.low < outlet.high)
               complain("outlets", "\"" + name + "\" and \"" + other + "\", which overlap",
-                       "ranges that have at most an end in common");
+                       "ranges that share at most an end");
         }
       },
       {"outlets"});
@@ -69,33 +70,38 @@ void FlowProbe::declare(Parameters& parameters) {
 
 std::vector<Channel> FlowProbe::channels() const {
   std::vector<Channel> channels{
-      {"discharged_mass", "kg", "since the start of the run", {}},
+      {"discharged_mass", "kg", "mass discharged since the start of the run", {}},
       {"discharged_bodies", "1", "number of spheres and clumps discharged", {}},
-      {"remaining_mass", "kg", "of the bodies in the domain", {}},
+      {"remaining_mass", "kg", "mass of the bodies in the domain", {}},
       {"discharge_rate", "kg s-1", "mass discharged in the window before the sample, over its length", {}}};
   for (const auto& [name, outlet] : outlets) {
-    channels.push_back({mass_channel(name), "kg", "that has left through this outlet", {}});
-    channels.push_back({rate_channel(name), "kg s-1", "through this outlet, as rate", {}});
+    channels.push_back(
+        {mass_channel(name), "kg", "mass discharged through this outlet since the start of the run", {}});
+    channels.push_back({rate_channel(name), "kg s-1", "discharge rate through this outlet", {}});
   }
   if (pattern) {
     const auto slices = static_cast<std::size_t>(pattern->slices);
     channels.push_back(pattern->position_channel());
-    channels.push_back({"speed", "m s-1", "mean speed downwards of each slice; NaN without bodies", {slices}, "position"});
-    channels.push_back({"wall_speed_ratio",
-                        "1",
-                        "that of what is at the walls over that of the slice; NaN without bodies at both walls, or "
-                        "where the slice does not sink",
-                        {slices},
-                        "position"});
-    channels.push_back({"transition_height",
-                        "m",
-                        "above which all that is at the walls moves: the effective transition; NaN where nothing "
-                        "flows, or where what is uppermost does not move at the walls",
-                        {}});
-    channels.push_back({"flow_type",
-                        "1",
-                        "of EN 1991-4: 0 nothing has left in the window, 1 pipe flow, 2 mixed flow, 3 mass flow",
-                        {}});
+    channels.push_back(
+        {"speed", "m s-1", "mean speed downwards of each slice; NaN without bodies", {slices}, "position"});
+    channels.push_back(
+        {"wall_speed_ratio",
+         "1",
+         "lower mean speed of the two zones next to the walls over that of the slice; NaN without bodies in "
+         "both zones, or if the slice does not sink",
+         {slices},
+         "position"});
+    channels.push_back(
+        {"transition_height",
+         "m",
+         "height above which the zones next to the walls move: effective transition; NaN without flow, or "
+         "if the uppermost slice does not move at the walls",
+         {}});
+    channels.push_back(
+        {"flow_type",
+         "1",
+         "type of flow of EN 1991-4: 0 no discharge in the window, 1 pipe flow, 2 mixed flow, 3 mass flow",
+         {}});
   }
   return channels;
 }
@@ -188,8 +194,12 @@ std::vector<Field> FlowProbe::fields(const World& world) {
     parts[part].volume += volume, parts[part].flux += volume * xyz(world.velocities()[body]);
   });
   std::vector<Field> fields = map_of(cells);
-  fields.push_back(
-      {"velocity", "m s-1", "mean of the grains in it by volume; NaN without any", 3, {}, {"x", "y", "z"}});
+  fields.push_back({"velocity",
+                    "m s-1",
+                    "mean velocity of the grains in the cell, by volume; NaN without any",
+                    3,
+                    {},
+                    {"x", "y", "z"}});
   for (const Sums& sums : cells.sum_up(parts)) {
     const Vec3 velocity = sums.flux / sums.volume;  // 0 / 0 without any
     fields.back().values.insert(fields.back().values.end(), velocity.begin(), velocity.end());
@@ -203,7 +213,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "probe",
                                      .name = "flow",
                                      .version = "1.0.0",
-                                     .doc = "what leaves through open sides, by outlet, and how the rest flows",
+                                     .doc = "discharge through open sides, by outlet, and the flow pattern",
                                      .make_probe = []() -> grit::Probe* { return new grit::FlowProbe; }};
   return &info;
 }

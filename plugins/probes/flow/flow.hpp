@@ -13,7 +13,7 @@ namespace grit {
 
 /// How what is still there flows, seen across the axis of the outlets.
 struct FlowPattern : Averaging {
-  double wall_zone = 2;       ///< mean diameters
+  double wall_zone = 2;          ///< mean diameters
   double moving_fraction = 0.1;  ///< of the mean speed of a slice
   void declare(Parameters& parameters);
 };

@@ -60,7 +60,8 @@ TEST(Flow, GivesTheRateOfTheWindow) {
   world.now = 5, probe.window = 1;
   EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 0);
   world.departure = {{.id = 0, .material = 0, .time = 4, .mass = 3, .position = Vec3::Zero()}};
-  EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 0) << "what left as the window began counts in the one before";
+  EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 0)
+      << "what left as the window began counts in the one before";
   world.now = 4;
   EXPECT_EQ(channel_value(probe, world, "discharge_rate"), 3);
 }

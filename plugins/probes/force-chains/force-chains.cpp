@@ -59,42 +59,44 @@ class Fit {
 void ForceChainsProbe::declare(Parameters& parameters) {
   parameters.add("plane", plane)
       .one_of({"xy", "yx", "xz", "zx", "yz", "zy"})
-      .doc("plane of the directions; angles count from its first axis towards its second");
-  parameters.add("include_walls", include_walls).doc("whether wall contacts count beside contacts between grains");
+      .doc("plane of the directions; angles are measured from its first axis towards its second");
+  parameters.add("include_walls", include_walls).doc("whether wall contacts are included");
   parameters.add("angle", angle)
       .unit("rad")
       .symbol("alpha")
       .above(0)
       .at_most(std::numbers::pi / 2)
-      .doc("of a chain: largest one between the line of two centres and the major stress of either grain");
+      .doc("maximum angle in a chain between the line of two centres and the major principal stress of either grain");
 }
 
 std::vector<Channel> ForceChainsProbe::channels() const {
   return {
       {"mean_normal_force", "N", "mean normal force of a contact, positive in compression; 0 without contacts", {}},
-      {"fraction_above_mean", "1", "share of the contacts whose normal force is above the mean", {}},
-      {"direction", "degree", "middle of each 10 degrees, from the plane's first axis towards its second", {bins}},
+      {"fraction_above_mean", "1", "fraction of the contacts with a normal force above the mean", {}},
+      {"direction",
+       "degree",
+       "middle of each bin of 10 degrees, from the first axis of the plane towards the second",
+       {bins}},
       {"force_by_direction",
        "N",
-       "mean normal force of the contacts in each 10 degrees of direction in the plane, the first from 0 to 10 "
-       "degrees, positive in compression; 0 where there are none",
+       "mean normal force of the contacts in each bin of 10 degrees in the plane, the first from 0 to 10 "
+       "degrees, positive in compression; 0 in empty bins",
        {bins},
        "direction"},
       {"contacts_by_direction",
        "1",
-       "number of contacts in each 10 degrees of direction in the plane; a contact counts in both of its "
+       "number of contacts in each bin of 10 degrees in the plane; a contact counts in both of its "
        "directions",
        {bins},
        "direction"},
       {"anisotropy", "1", "amplitude a of E = (1 + a cos 2(theta - theta_a)) / 2 pi, fitted to the directions", {}},
       {"anisotropy_direction",
        "degree",
-       "direction theta_a that most contacts prefer, from the first axis of the plane towards the second, -90 to 90",
+       "preferred contact direction theta_a, from the first axis of the plane towards the second, -90 to 90",
        {}},
       {"normal_force_anisotropy",
        "1",
-       "a_n of f_n = f_0 (1 + a_n cos 2(theta - theta_n)), fitted to normal forces; NaN where directions or forces "
-       "do not tell",
+       "a_n of f_n = f_0 (1 + a_n cos 2(theta - theta_n)), fitted to normal forces; NaN if undetermined",
        {}},
       {"normal_force_direction", "degree", "theta_n, as anisotropy_direction; NaN as above", {}},
       {"tangential_force_anisotropy",
@@ -102,13 +104,13 @@ std::vector<Channel> ForceChainsProbe::channels() const {
        "a_t of f_t = -f_0 a_t sin 2(theta - theta_t), fitted to forces along the contacts in the plane; NaN as above",
        {}},
       {"tangential_force_direction", "degree", "theta_t, as anisotropy_direction; NaN as above", {}},
-      {"mean_major_stress", "Pa", "mean over the grains of their major stress, positive in compression", {}},
-      {"chains", "1", "number of linear force chains, of three grains or more", {}},
+      {"mean_major_stress", "Pa", "mean major principal stress of the grains, positive in compression", {}},
+      {"chains", "1", "number of linear force chains of three or more grains", {}},
       {"chain_grains", "1", "number of grains in chains", {}},
-      {"mean_chain_length", "1", "grains of a chain, mean; 0 without chains", {}},
-      {"longest_chain", "1", "grains of the longest chain", {}},
-      {"chains_born", "1", "chains in which none of the sample before lives on; NaN at the first", {}},
-      {"chains_died", "1", "chains of the sample before that live on in none; NaN at the first", {}}};
+      {"mean_chain_length", "1", "mean number of grains in a chain; 0 without chains", {}},
+      {"longest_chain", "1", "number of grains in the longest chain", {}},
+      {"chains_born", "1", "chains that continue no chain of the previous sample; NaN at the first sample", {}},
+      {"chains_died", "1", "chains of the previous sample that continue in no chain; NaN at the first sample", {}}};
 }
 
 std::vector<const Contact*> ForceChainsProbe::counted(const World& world) const {
@@ -188,12 +190,12 @@ std::vector<Field> ForceChainsProbe::fields(const World& world) {
       {"start", "m", "centre of the first body", 3, {}},
       {"end",
        "m",
-       "centre of the second body, or the touching point of the wall; across a periodic side, its image",
+       "centre of the second body (its image across a periodic side), or the contact point of the wall",
        3,
        {}},
       {"normal_force", "N", "normal force, positive in compression", 1, {}},
       {"above_mean", "1", "1 where the normal force is above the mean, 0 elsewhere", 1, {}},
-      {"chain", "1", "number of the linear force chain that it is a link of, from 1; 0 of none", 1, {}}};
+      {"chain", "1", "number of the linear force chain that contains the contact, from 1; 0 for none", 1, {}}};
   const auto chain_of = linear_chains(world, angle).of_contact;
   for (auto& field : fields) field.values.reserve(field.width * contacts.size());
   for (const auto* contact : contacts) {

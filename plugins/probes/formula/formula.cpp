@@ -46,7 +46,7 @@ std::deque<Variable> variables_of(const World& world) {
   const auto add = [&](std::string name, std::function<double(const World&)> read) {
     const auto same = [&](const Variable& other) { return other.name == name; };
     if (std::any_of(variables.begin(), variables.end(), same))
-      throw ParameterError({{"", "two walls that both give the variable \"" + name + '"',
+      throw ParameterError({{"", "two walls that both define the variable \"" + name + '"',
                              "a variable of one wall; rename one of the walls " + listed(wall_names(world))}});
     variables.push_back({std::move(name), std::move(read)});
   };
@@ -121,27 +121,29 @@ FormulaProbe::~FormulaProbe() = default;
 void FormulaProbe::Curve::declare(Parameters& parameters) {
   parameters.add("formula", formula)
       .required()
-      .doc("expression in muParser's syntax, of SI numbers; see the README for the names");
+      .doc("expression in the syntax of muParser, in SI units; names: see the README");
   parameters.add("unit", unit).doc("unit of the result, UDUNITS spelling; \"1\" is dimensionless");
-  parameters.add("doc", doc).doc("one line on the curve, with its sign convention; empty: the formula");
+  parameters.add("doc", doc).doc("one line that describes the curve, with its sign convention; default: the formula");
 }
 
 void FormulaProbe::Constant::declare(Parameters& parameters) {
-  parameters.add("value", value).required().doc("the number, SI");
-  parameters.add("doc", doc).doc("what it is");
+  parameters.add("value", value).required().doc("value in SI units");
+  parameters.add("doc", doc).doc("meaning and unit");
 }
 
 void FormulaProbe::declare(Parameters& parameters) {
   parameters.add("curves", curves).required().doc("curves by name (snake_case); each becomes a channel");
-  parameters.add("constants", constants).doc("numbers that formulas may name");
+  parameters.add("constants", constants).doc("constants for use in formulas");
   parameters.check([this](const Complain& complain) {
     if (curves.empty()) complain("curves", "no curve", "at least one");
     for (const auto& curve : curves)
       if (!is_snake_case(curve.first))
-        complain("curves", "the name \"" + curve.first + "\"", "small letters, digits and _, a letter first");
+        complain("curves", "the name \"" + curve.first + "\"",
+                 "lower-case letters, digits and _, starting with a letter");
     for (const auto& constant : constants)
       if (!is_name(constant.first))
-        complain("constants", "the name \"" + constant.first + "\"", "letters, digits and _, no digit first");
+        complain("constants", "the name \"" + constant.first + "\"",
+                 "letters, digits and _, not starting with a digit");
   });
 }
 
@@ -152,7 +154,8 @@ void FormulaProbe::prepare(const World& world) {
   for (const auto& variable : variables) names.push_back(variable.name);
   for (const auto& constant : constants) {
     if (std::find(names.begin(), names.end(), constant.first) != names.end())
-      throw ParameterError({{"constants/" + constant.first, "the name of a variable", "a name that no variable has"}});
+      throw ParameterError(
+          {{"constants/" + constant.first, "the name of a variable", "a name that is not a variable"}});
     names.push_back(constant.first);
   }
 
@@ -204,10 +207,11 @@ void FormulaProbe::sample(const World& world, ChannelValues& values) {
 }  // namespace grit
 
 const grit::PluginInfo* grit_plugin() {
-  static const grit::PluginInfo info{.kind = "probe",
-                                     .name = "formula",
-                                     .version = "1.0.0",
-                                     .doc = "curves written as formulas of wall forces, ways, void ratio and time",
-                                     .make_probe = []() -> grit::Probe* { return new grit::FormulaProbe; }};
+  static const grit::PluginInfo info{
+      .kind = "probe",
+      .name = "formula",
+      .version = "1.0.0",
+      .doc = "curves given as formulas of wall forces, displacements, void ratio and time",
+      .make_probe = []() -> grit::Probe* { return new grit::FormulaProbe; }};
   return &info;
 }

@@ -1,4 +1,4 @@
-// Curves that the user writes as formulas of the walls' forces and ways, the void ratio and time.
+// Curves given as formulas of wall forces, displacements, void ratio and time.
 #pragma once
 
 #include <map>

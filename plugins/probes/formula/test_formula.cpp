@@ -175,7 +175,7 @@ TEST(Formula, RefusesNamesThatMeanTwoThings) {
   world.wall.back().name = "upper_left";
   EXPECT_EQ(
       error_of("time", world),
-      "found two walls that both give the variable \"upper_left_force_x\"; allowed is a variable of one wall; rename "
+      "found two walls that both define the variable \"upper_left_force_x\"; allowed is a variable of one wall; rename "
       "one of the walls upper-left, top, upper_left");
 
   FormulaProbe probe;
@@ -183,7 +183,7 @@ TEST(Formula, RefusesNamesThatMeanTwoThings) {
   probe.constants["step"].value = 1;
   EXPECT_THAT([&] { probe.prepare(shear_box()); },
               testing::ThrowsMessage<ParameterError>(
-                  "constants/step: found the name of a variable; allowed is a name that no variable has"));
+                  "constants/step: found the name of a variable; allowed is a name that is not a variable"));
 }
 
 TEST(Formula, ChecksNames) {
@@ -191,9 +191,10 @@ TEST(Formula, ChecksNames) {
   EXPECT_EQ(complaints(probe), "curves: found no curve, allowed: at least one\n");
   probe.curves["Stress Ratio"].formula = "time";
   probe.constants["1st"].value = 1;
-  EXPECT_EQ(complaints(probe),
-            "curves: found the name \"Stress Ratio\", allowed: small letters, digits and _, a letter first\n"
-            "constants: found the name \"1st\", allowed: letters, digits and _, no digit first\n");
+  EXPECT_EQ(
+      complaints(probe),
+      "curves: found the name \"Stress Ratio\", allowed: lower-case letters, digits and _, starting with a letter\n"
+      "constants: found the name \"1st\", allowed: letters, digits and _, not starting with a digit\n");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -20,24 +20,27 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 void ImageCorrelation::declare(Parameters& p) {
-  p.add("depth_axis", depth_axis).one_of({"x", "y", "z"}).doc("perpendicular to the picture; not a periodic one");
-  p.add("pixels_per_diameter", pixels_per_diameter).at_least(8).at_most(200).doc("pixels along a mean diameter");
+  p.add("depth_axis", depth_axis).one_of({"x", "y", "z"}).doc("axis perpendicular to the picture; not periodic");
+  p.add("pixels_per_diameter", pixels_per_diameter)
+      .at_least(8)
+      .at_most(200)
+      .doc("number of pixels along a mean diameter");
   p.add("subset", subset).at_least(0.2).at_most(20).doc("side of a subset of pixels, over the mean diameter");
   p.add("step", step).at_least(0.02).doc("distance between neighbouring subsets, over the mean diameter");
   p.add("window", window)
       .above(0)
-      .doc("side of the square whose subsets a strain is fitted to, over the mean diameter; at least two steps");
+      .doc("side of the square window for a strain, over the mean diameter; at least two steps");
   p.add("search_range", search_range)
       .at_least(0.2)
       .at_most(40)
-      .doc("how far something is looked for along each axis, over the mean diameter");
+      .doc("search distance along each axis, over the mean diameter");
   p.add("min_correlation", min_correlation)
       .at_least(0.5)
       .below(1)
-      .doc("zero-mean normalised correlation from which on a subset counts as found");
-  p.add("seed", seed).at_least(0).doc("of the speckles on the grains");
+      .doc("minimum zero-mean normalised correlation of a subset that counts as found");
+  p.add("seed", seed).at_least(0).doc("seed of the speckles on the grains");
   p.add("sliding", sliding)
-      .doc("tells where the specimen slides on a wall and where it shears in itself; left out: not told");
+      .doc("lengths over which the specimen slides on a wall and shears internally; default: not evaluated");
   p.check(
       [this](const Complain& complain) {
         if (window < 2 * step)
@@ -77,14 +80,14 @@ double ImageCorrelation::pixels(const World& world) const {
 
 void ImageCorrelation::prepare(const World& world) {
   if (world.cell().periodic[static_cast<std::size_t>(axes().depth)])
-    throw ParameterError({{"depth_axis", depth_axis + ", along which the domain is periodic and has no face to see",
+    throw ParameterError({{"depth_axis", depth_axis + ", along which the domain is periodic and has no face",
                            "an axis that is not periodic"}});
   if (const double count = pixels(world); count > most_pixels)
     throw ParameterError({{"pixels_per_diameter",
                            std::to_string(pixels_per_diameter) + ", with which a picture of the specimen has " +
                                std::to_string(count * 1e-6) + " million pixels",
                            "at most " + std::to_string(most_pixels * 1e-6) +
-                               " million pixels; use fewer a diameter, or a smaller search_range"}});
+                               " million pixels; use fewer per diameter, or a smaller search_range"}});
   if (sliding) sliding->prepare(world, axes().right, axes().up, "sliding");
   camera_.emplace(static_cast<std::uint64_t>(seed), pixels_per_diameter);
   began_ = false;
@@ -232,14 +235,15 @@ std::vector<Channel> ImageCorrelation::channels() const {
       {"strain",
        "1",
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
-           " of all subsets that were found, Green-Lagrange since the first look of the stage, positive in extension; "
+           " of all subsets that were found, Green-Lagrange since the first sample of the stage, positive in "
+           "extension; "
            "NaN with fewer than four",
        {3},
        {},
        {a + a, b + b, a + b}},
       {"largest_shear", "1", "largest magnitude of E_" + a + b + " of a window; 0 without any", {}},
-      {"found", "1", "share of the subsets that were found; NaN without any", {}},
-      {"correlation", "1", "mean of the subsets that were found; NaN without any", {}}};
+      {"found", "1", "fraction of the subsets that were found; NaN without any", {}},
+      {"correlation", "1", "mean correlation of the subsets that were found; NaN without any", {}}};
   if (sliding) std::ranges::move(SlidingLengths::channels(), std::back_inserter(channels));
   return channels;
 }
@@ -274,13 +278,13 @@ std::vector<Field> ImageCorrelation::fields(const World& world) {
   std::vector<Field> fields{
       {"centre",
        "m",
-       "of each subset where it is now, one that was lost where it was; half a diameter behind the face",
+       "present centre of each subset, the initial one if it was lost; half a diameter behind the face",
        3,
        {}},
-      {"size", "m", "a step by a step, a mean diameter deep", 3, {}},
+      {"size", "m", "one step by one step, one mean diameter deep", 3, {}},
       {"displacement",
        "m",
-       "along " + a + " and " + b + " since the first look of the stage; NaN where it was lost",
+       "along " + a + " and " + b + " since the first sample of the stage; NaN where it was lost",
        2,
        {},
        {a, b}},
@@ -292,7 +296,7 @@ std::vector<Field> ImageCorrelation::fields(const World& world) {
        3,
        {},
        {a + a, b + b, a + b}},
-      {"correlation", "1", "zero-mean normalised; NaN where it was lost", 1, {}}};
+      {"correlation", "1", "zero-mean normalised correlation; NaN where the subset was lost", 1, {}}};
   for (const Subset& one : subsets_) {
     const Vec2 now = one.moved.allFinite() ? Vec2(one.start + one.moved) : one.start;
     Vec3 centre = Vec3::Constant(view_->face + 0.5 * look.away * view_->diameter),

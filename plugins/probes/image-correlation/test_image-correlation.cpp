@@ -580,20 +580,17 @@ TEST(ImageCorrelation, RefusesWhatHasNoFaceOrIsTooLarge) {
   FakeWorld world = packing();
   ImageCorrelation probe;
   world.box = {Vec3::Zero(), {16e-3, 3e-3, 12e-3}, {false, true, false}};
-  EXPECT_EQ(
-      refusal(probe, world),
-      "depth_axis: found y, along which the domain is periodic and has no face to see; allowed is an axis that is "
-      "not periodic");
+  EXPECT_EQ(refusal(probe, world),
+            "depth_axis: found y, along which the domain is periodic and has no face; allowed is an axis that is "
+            "not periodic");
   world.box.periodic = {true, false, true};
   EXPECT_EQ(refusal(probe, world), "");
   world.whole.high = {16, 3e-3, 12};
   EXPECT_THAT(refusal(probe, world),
               HasSubstr("pixels_per_diameter: found 25.000000, with which a picture of the specimen "
                         "has "));
-  EXPECT_THAT(
-      refusal(probe, world),
-      HasSubstr(
-          " million pixels; allowed is at most 67.108864 million pixels; use fewer a diameter, or a smaller search"));
+  EXPECT_THAT(refusal(probe, world), HasSubstr(" million pixels; allowed is at most 67.108864 million pixels; use "
+                                               "fewer per diameter, or a smaller search_range"));
 }
 
 TEST(ImageCorrelation, RefusesWindowsWithoutNeighboursAndSubsetsOfFewPixels) {

@@ -25,12 +25,9 @@ double covered_area(const WallView& wall, const World& world, int across) {
 }  // namespace
 
 std::vector<Channel> Interface::channels() const {
-  const std::string forward = ", positive as of a wheel that rolls along the wall towards +" + layer.axis;
+  const std::string forward = ", positive like that of a wheel rolling along the wall towards +" + layer.axis;
   return {
-      {"slip",
-       "m",
-       "u: mean displacement along " + layer.axis + " of the layer, relative to the wall, in the stage",
-       {}},
+      {"slip", "m", "u: mean displacement along " + layer.axis + " of the layer relative to the wall in the stage", {}},
       {"rotation", "rad", "omega: mean rotation of the layer in the stage" + forward, {}},
       {"bodies", "1", "number of bodies in the layer", {}},
       {"shear_traction",
@@ -39,7 +36,7 @@ std::vector<Channel> Interface::channels() const {
        {}},
       {"couple_traction", "N m-1", "m: couple on the wall about the specimen's face, over the same area" + forward, {}},
       {"rotation_ratio", "1", "A = omega d50 / u; NaN before the layer slips", {}},
-      {"slip_ratio", "1", "B = u over the displacement of " + layer.driven_by + "; NaN before that moves", {}},
+      {"slip_ratio", "1", "B = u over the displacement of " + layer.driven_by + "; NaN before it moves", {}},
       {"traction_ratio", "1", "C = t d50 / m; NaN without a couple", {}}};
 }
 

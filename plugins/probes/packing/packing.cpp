@@ -54,28 +54,28 @@ struct Figure {
 
 constexpr Figure figures[] = {
     {"void_ratio", "1",
-     "volume of voids over volume of solids one mean diameter or more off the walls; infinite without solids",
+     "volume of voids over volume of solids, at least one mean diameter from the walls; infinite without solids",
      &Figures::void_ratio},
-    {"void_ratio_overall", "1", "the same of the whole specimen, up to the walls; infinite without solids",
+    {"void_ratio_overall", "1", "void ratio of the whole specimen, up to the walls; infinite without solids",
      &Figures::void_ratio_overall},
-    {"coordination_number", "1", "touching grains of a grain: 2 contacts between grains / grains",
+    {"coordination_number", "1", "mean number of contacts per grain: 2 contacts between grains / grains",
      &Figures::coordination_number},
     {"coordination_number_mechanical", "1",
-     "touching grains of a grain that is no rattler (Thornton 2000); 0 if all are",
+     "mean number of contacts per grain without rattlers (Thornton 2000); 0 if all are rattlers",
      &Figures::coordination_number_mechanical},
-    {"rattler_fraction", "1", "share of the grains with fewer than two contacts, wall contacts included",
+    {"rattler_fraction", "1", "fraction of the grains with fewer than two contacts, wall contacts included",
      &Figures::rattler_fraction},
     {"mean_stress", "Pa", "mean stress p of the interior, a third of the trace, positive in compression",
      &Figures::mean_stress},
     {"deviatoric_stress", "Pa", "deviatoric stress q = sqrt(3/2 s:s) of the interior, never negative",
      &Figures::deviatoric_stress},
-    {"kinetic_energy", "J", "translation and rotation of all bodies", &Figures::kinetic_energy},
+    {"kinetic_energy", "J", "kinetic energy of translation and rotation of all bodies", &Figures::kinetic_energy},
     {"unbalanced_force", "1", "mean net force of a body over the mean contact force; 0 without contacts",
      &Figures::unbalanced_force},
     {"mean_contact_force", "N", "mean magnitude of the normal force of a contact, walls included",
      &Figures::mean_contact_force},
     {"inertial_number", "1",
-     "I = shear rate * d50 * sqrt(density / p), never negative; 0 where p <= 0 or nothing drives",
+     "I = shear rate * d50 * sqrt(density / p), never negative; 0 if p <= 0 or without a shear rate",
      &Figures::inertial_number},
     {"largest_overlap", "m", "largest overlap of a contact, walls included, positive in compression",
      &Figures::largest_overlap},
@@ -87,19 +87,21 @@ void PackingProbe::declare(Parameters& parameters) {
   parameters.add("shear_rate", shear_rate)
       .unit("s-1")
       .symbol("gamma_dot")
-      .doc("shear rate in the inertial number; left out: from driven_by");
+      .doc("shear rate of the inertial number; default: from driven_by");
   parameters.add("driven_by", driven_by)
-      .doc("wall whose speed over the specimen's height (z) is the shear rate, unless shear_rate is given; empty: 0");
+      .doc(
+          "wall whose speed over the height (z) of the specimen is the shear rate, unless shear_rate is given; empty: "
+          "0");
   parameters.add("driven_axis", driven_axis)
       .one_of({"", "x", "y", "z"})
-      .doc("component of that wall's velocity that drives; empty: its magnitude");
+      .doc("component of the velocity of that wall; empty: its magnitude");
   parameters.add("cell_size", cell_size).at_least(0.1).doc("side of an averaging cell over the mean diameter");
   parameters.add("cell_step", cell_step)
       .at_least(0.1)
       .doc("distance between neighbouring averaging cells over the mean diameter");
   parameters.add("depth_axis", depth_axis)
       .one_of({"x", "y", "z"})
-      .doc("axis along which an averaging cell is as deep as the specimen");
+      .doc("axis along which a cell extends through the whole specimen");
   parameters.check([this](const Complain& complain) {
     if (shear_rate && !driven_by.empty())
       complain("driven_by", "\"" + driven_by + "\" beside a shear_rate", "one of the two");
@@ -166,11 +168,8 @@ std::vector<Field> PackingProbe::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, specimen_box(world));
   std::vector<Field> fields = map_of(cells);
   Field ratio{"void_ratio", "1", "volume of voids over volume of solids in the cell; infinite without solids", 1, {}};
-  Field touching{"coordination_number",
-                 "1",
-                 "touching grains of a grain, over the grains centred in the cell; 0 without any",
-                 1,
-                 {}};
+  Field touching{
+      "coordination_number", "1", "mean number of contacts of the grains centred in the cell; 0 without any", 1, {}};
   Field stress{
       "stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}};
   for (const CellAverage& cell : cell_averages(world, cells)) {
@@ -188,7 +187,7 @@ const grit::PluginInfo* grit_plugin() {
       .kind = "probe",
       .name = "packing",
       .version = "1.0.0",
-      .doc = "void ratio, coordination, stress and unrest of the specimen, and averaging cells",
+      .doc = "void ratio, coordination, stress and unbalanced force of the specimen, and averaging cells",
       .make_probe = []() -> grit::Probe* { return new grit::PackingProbe; }};
   return &info;
 }

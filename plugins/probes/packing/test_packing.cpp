@@ -114,8 +114,9 @@ TEST(Packing, LeavesRattlersOutOfTheMechanicalCoordination) {
   FakeWorld world;
   for (int i = 0; i < 5; ++i) world.add({double(i), 0, 0}, 0.5);
   const Vec3 any(1, 0, 0);
-  world.add_contact(0, 1, any, any), world.add_contact(1, 2, any, any), world.add_contact(0, 2, any, any);  // three that hold each other
-  world.add_contact(2, 3, any, any);  // one more; the last touches none
+  world.add_contact(0, 1, any, any), world.add_contact(1, 2, any, any),
+      world.add_contact(0, 2, any, any);  // three that hold each other
+  world.add_contact(2, 3, any, any);      // one more; the last touches none
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number"), 2 * 4 / 5.0);
   EXPECT_DOUBLE_EQ(value_of(world, "coordination_number_mechanical"), (2 * 4 - 1) / (5 - 1 - 1.0));
   EXPECT_DOUBLE_EQ(value_of(world, "rattler_fraction"), 0.4);

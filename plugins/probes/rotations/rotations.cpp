@@ -20,15 +20,12 @@ std::vector<Channel> Rotations::channels() const {
       ", right-handed about " + about + (about == "y" ? ", clockwise where x is right and z up" : "");
   const std::vector<std::size_t> each{static_cast<std::size_t>(profile.points)};
   std::vector<Channel> channels{
-      {"position", "m", "of each value of the profile, along " + profile.across, each},
+      {"position", "m", "position of each value of the profile, along " + profile.across, each},
       {"profile", "rad",
-       "rotation in the stage at each place, by the line that fits the bodies around it" + sign + "; NaN without any",
+       "rotation in the stage at each point, by a linear fit to the bodies around it" + sign + "; NaN without any",
        each, "position"},
       {"mean", "rad", "mean rotation of all bodies in the stage" + sign + "; 0 without any", {}},
-      {"mean_magnitude",
-       "rad",
-       "mean magnitude of the bodies' rotations about " + about + " in the stage; 0 without any",
-       {}}};
+      {"mean_magnitude", "rad", "mean magnitude of the rotations about " + about + " in the stage; 0 without any", {}}};
   std::ranges::copy(zone_channels("profile"), std::back_inserter(channels));
   return channels;
 }

@@ -7,9 +7,10 @@ namespace grit {
 std::vector<Channel> Slip::channels() const {
   return {{"displacement",
            "m",
-           "mean displacement along " + layer.axis + " of the layer at the wall, relative to it, since the stage began",
+           "mean displacement along " + layer.axis +
+               " of the layer at the wall, relative to the wall, since the start of the stage",
            {}},
-          {"fraction", "1", "the same over that of " + layer.driven_by + "; 0 before it moves", {}},
+          {"fraction", "1", "displacement over that of " + layer.driven_by + "; 0 before it moves", {}},
           {"bodies", "1", "number of bodies in the layer", {}}};
 }
 

@@ -52,20 +52,22 @@ Vec3 mean_acceleration(const World& world, const Region& box) {
 }  // namespace
 
 void Spectrum::declare(Parameters& parameters) {
-  parameters.add("wall", wall).doc("what is listened to: a wall; leave it out for a box");
-  parameters.add("region_low", region_low).unit("m").doc("lower corner of a box whose grains are listened to");
+  parameters.add("wall", wall).doc("wall to record; omit it for a box");
+  parameters.add("region_low", region_low).unit("m").doc("lower corner of the recorded box");
   parameters.add("region_high", region_high)
       .unit("m")
-      .doc("its upper corner, at most a period from the lower one along periodic axes");
+      .doc("upper corner of the box, at most one period from the lower one along periodic axes");
   parameters.add("interval", interval)
       .unit("s")
       .above(0)
-      .doc("between the evenly spaced points to which samples are brought; half its inverse is the highest frequency");
-  parameters.add("points", points).at_least(8).at_most(1 << 20).doc("of a window, an even number");
+      .doc(
+          "interval of the evenly spaced points to which samples are interpolated; the highest frequency is half its "
+          "inverse");
+  parameters.add("points", points).at_least(8).at_most(1 << 20).doc("number of points of a window, even");
   parameters.add("windows", windows)
       .at_least(1)
       .at_most(10000)
-      .doc("over which the density is the mean, the last ones");
+      .doc("number of windows, the last ones, over which the density is averaged");
   parameters.check(
       [this](const Complain& complain) {
         const bool box = region_low && region_high;
@@ -75,7 +77,7 @@ void Spectrum::declare(Parameters& parameters) {
         else if (wall.empty() != box)
           complain("wall", box ? "a wall and a box" : "neither a wall nor a box", "one of them");
         else if (box && !(region_low->array() < region_high->array()).all())
-          complain("region_high", "a corner that is not above region_low", "more than region_low along x, y and z");
+          complain("region_high", "a corner not above region_low", "more than region_low along x, y and z");
       },
       {"wall", "region_low", "region_high"});
   parameters.check(
@@ -107,15 +109,16 @@ void Spectrum::prepare(const World& world) {
 std::vector<Channel> Spectrum::channels() const {
   const auto bins = static_cast<std::size_t>(points / 2 + 1);
   const std::string unknown = "; NaN before the first window is full";
-  std::vector<Channel> channels{{"frequency", "Hz", "of each value of the densities", {bins}}};
+  std::vector<Channel> channels{{"frequency", "Hz", "frequency of each value of the densities", {bins}}};
   for (std::size_t k = 0; k < 3; ++k)
     channels.push_back({densities[k],
                         "m2 s-4 Hz-1",
                         std::string("one-sided power spectral density of the acceleration along ") + "xyz"[k] + unknown,
                         {bins},
                         "frequency"});
-  channels.push_back({densities[3], "Pa2 Hz-1", "the same of the pressure" + unknown, {bins}, "frequency"});
-  channels.push_back({"windows", "1", "number of windows that the densities are the mean of", {}});
+  channels.push_back(
+      {densities[3], "Pa2 Hz-1", "one-sided power spectral density of the pressure" + unknown, {bins}, "frequency"});
+  channels.push_back({"windows", "1", "number of windows averaged so far", {}});
   return channels;
 }
 
@@ -164,7 +167,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "probe",
                                      .name = "spectrum",
                                      .version = "1.0.0",
-                                     .doc = "acceleration and pressure of a wall or a box by frequency",
+                                     .doc = "power spectra of acceleration and pressure of a wall or a box",
                                      .make_probe = []() -> grit::Probe* { return new grit::Spectrum; }};
   return &info;
 }

@@ -292,7 +292,7 @@ TEST(Spectrum, RefusesWhatIsNeitherAWallNorABox) {
       complaints(probe),
       HasSubstr("region_high: found one corner of a box, allowed: both region_low and region_high, or neither"));
   probe.region_high = Vec3(1, 0, 1);
-  EXPECT_THAT(complaints(probe), HasSubstr("region_high: found a corner that is not above region_low"));
+  EXPECT_THAT(complaints(probe), HasSubstr("region_high: found a corner not above region_low"));
   probe.region_high = Vec3(1, 1, 1);
   EXPECT_EQ(complaints(probe), "");
   probe.wall = "wall";

@@ -12,13 +12,13 @@
 namespace grit {
 
 void Strain::declare(Parameters& p) {
-  p.add("depth_axis", depth_axis).one_of({"x", "y", "z"}).doc("perpendicular to the plane of the strain");
+  p.add("depth_axis", depth_axis).one_of({"x", "y", "z"}).doc("axis perpendicular to the plane of the strain");
   p.add("subset", subset)
       .at_least(0.5)
       .doc("side of a subset of bodies, over the mean diameter; as deep as the specimen");
   p.add("step", step).at_least(0.1).doc("distance between neighbouring subsets, over the mean diameter");
   p.add("sliding", sliding)
-      .doc("tells where the specimen slides on a wall and where it shears in itself; left out: not told");
+      .doc("lengths over which the specimen slides on a wall and shears internally; default: not evaluated");
 }
 
 void Strain::prepare(const World& world) {
@@ -37,7 +37,8 @@ std::vector<Channel> Strain::channels() const {
   std::vector<Channel> channels{
       {"strain",
        "1",
-       which + " of all bodies, Green-Lagrange since the stage began, positive in extension; NaN with fewer than four",
+       which + " of all bodies, Green-Lagrange since the start of the stage, positive in extension; NaN with fewer "
+               "than four",
        {3},
        {},
        {a + a, b + b, a + b}},
@@ -117,10 +118,10 @@ std::vector<Field> Strain::fields(const World& world) {
   const auto [first, second] = plane();
   const std::string a{"xyz"[first]}, b{"xyz"[second]};
   std::vector<Field> fields{
-      {"centre", "m", "of each subset: it goes as its bodies do; across the plane, of the specimen", 3, {}},
-      {"size", "m", "from one subset to the next, and the specimen's depth", 3, {}},
-      {"began_at", "m", "centre along " + a + " and " + b + " when the stage began", 2, {}, {a, b}},
-      {"bodies", "1", "whose centres lay in it", 1, {}},
+      {"centre", "m", "centre of each subset, which moves with its bodies; across the plane, of the specimen", 3, {}},
+      {"size", "m", "distance of neighbouring subsets, and depth of the specimen", 3, {}},
+      {"began_at", "m", "centre along " + a + " and " + b + " at the start of the stage", 2, {}, {a, b}},
+      {"bodies", "1", "number of bodies whose centres were in the subset", 1, {}},
       {"strain",
        "1",
        "E_" + a + a + ", E_" + b + b + ", E_" + a + b +
@@ -151,7 +152,7 @@ const grit::PluginInfo* grit_plugin() {
       .kind = "probe",
       .name = "strain",
       .version = "1.0.0",
-      .doc = "strain in a plane from displacements of bodies, as image correlation has it",
+      .doc = "strain in a plane from displacements of bodies, by subsets as in image correlation",
       .make_probe = []() -> grit::Probe* { return new grit::Strain; }};
   return &info;
 }

@@ -17,7 +17,7 @@ namespace grit {
 namespace {
 
 const std::string angle_doc =
-    "mobilised: asin((s1 - s3) / (s1 + s3)) of the largest and least principal stress; NaN where one is below 0 or "
+    "mobilised: asin((s1 - s3) / (s1 + s3)) of the largest and smallest principal stress; NaN if one is below 0 or "
     "both are 0";
 
 /// What contacts transmit in a part of the region, or a cell.
@@ -77,24 +77,26 @@ void Stress::declare(Parameters& p) { averaging.declare(p, "the specimen's"); }
 
 std::vector<Channel> Stress::channels() const {
   const auto n = static_cast<std::size_t>(averaging.slices);
-  const std::string unknown = "; NaN where the region has no volume";
+  const std::string unknown = "; NaN if the region has no volume";
   const std::string tensor = "(force, branch), positive in compression" + unknown,
                     couple = "(moment, branch), of what the side before exerts on the side behind" + unknown;
   const Channel place = averaging.position_channel();
   std::vector<Channel> channels{
-      {"stress", "Pa", "of the region: Love-Weber, row by row " + tensor, {3, 3}},
-      {"couple_stress", "N m-1", "of the region: row by row " + couple, {3, 3}},
-      {"mean_stress", "Pa", "of the region, a third of the trace, positive in compression" + unknown, {}},
-      {"deviatoric_stress", "Pa", "of the region, q = sqrt(3/2 s:s), never negative" + unknown, {}},
-      {"friction_angle", "degree", "of the region, " + angle_doc, {}},
+      {"stress", "Pa", "Love-Weber stress of the region, row by row " + tensor, {3, 3}},
+      {"couple_stress", "N m-1", "couple stress of the region, row by row " + couple, {3, 3}},
+      {"mean_stress", "Pa", "mean stress of the region, a third of the trace, positive in compression" + unknown, {}},
+      {"deviatoric_stress", "Pa", "deviatoric stress of the region, q = sqrt(3/2 s:s), never negative" + unknown, {}},
+      {"friction_angle", "degree", "friction angle of the region, " + angle_doc, {}},
       place,
-      {"mean_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}, place.name},
-      {"deviatoric_stress_profile", "Pa", "of each slice, as of the region; NaN likewise", {n}, place.name},
-      {"friction_angle_profile", "degree", "of each slice, " + angle_doc, {n}, place.name}};
+      {"mean_stress_profile", "Pa", "mean stress of each slice; NaN if it has no volume", {n}, place.name},
+      {"deviatoric_stress_profile", "Pa", "deviatoric stress of each slice; NaN if it has no volume", {n}, place.name},
+      {"friction_angle_profile", "degree", "friction angle of each slice, " + angle_doc, {n}, place.name}};
   for (const std::string ij : component_names)
-    channels.push_back({stress_profile + ij, "Pa", "of each slice: Love-Weber, " + ij + " " + tensor, {n}, place.name});
+    channels.push_back(
+        {stress_profile + ij, "Pa", "Love-Weber stress of each slice, " + ij + " " + tensor, {n}, place.name});
   for (const std::string ij : component_names)
-    channels.push_back({couple_stress_profile + ij, "N m-1", "of each slice: " + ij + " " + couple, {n}, place.name});
+    channels.push_back(
+        {couple_stress_profile + ij, "N m-1", "couple stress of each slice, " + ij + " " + couple, {n}, place.name});
   return channels;
 }
 
@@ -138,14 +140,14 @@ void Stress::sample(const World& world, ChannelValues& values) {
 std::vector<Field> Stress::fields(const World& world) {
   const AveragingCells cells = averaging.cells(world, closed_box(averaging.region(world.specimen()), world));
   std::vector<Field> fields = map_of(cells);
-  Field stress{"stress", "Pa", "Love-Weber, row by row (force, branch), positive in compression", 9, {}};
+  Field stress{"stress", "Pa", "Love-Weber stress, row by row (force, branch), positive in compression", 9, {}};
   Field couple{"couple_stress",
                "N m-1",
-               "row by row (moment, branch), of what the side before exerts on the side behind",
+               "couple stress, row by row (moment, branch), of what the side before exerts on the side behind",
                9,
                {}};
-  Field mean{"mean_stress", "Pa", "a third of the trace, positive in compression", 1, {}};
-  Field deviatoric{"deviatoric_stress", "Pa", "q = sqrt(3/2 s:s), never negative", 1, {}};
+  Field mean{"mean_stress", "Pa", "mean stress, a third of the trace, positive in compression", 1, {}};
+  Field deviatoric{"deviatoric_stress", "Pa", "deviatoric stress q = sqrt(3/2 s:s), never negative", 1, {}};
   Field angle{"friction_angle", "degree", angle_doc, 1, {}};
   const auto each = transmitted(world, cells);
   for (std::size_t n = 0; n < each.size(); ++n) {

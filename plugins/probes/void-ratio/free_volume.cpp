@@ -129,7 +129,8 @@ class Carver {
     if (cut.walls.empty()) {
       for_each(parts, [&](std::size_t part, const Box& own) { free_[part] = own.volume(); });
     } else if (longest < 0) {
-      for_each(parts, [&](std::size_t part, const Box&) { free_[part] = box.volume() * (1 - solid_fraction(box, cut)); });
+      for_each(parts,
+               [&](std::size_t part, const Box&) { free_[part] = box.volume() * (1 - solid_fraction(box, cut)); });
     } else {
       Parts lower = parts, upper = parts;
       lower.end[index(longest)] = upper.begin[index(longest)] =

@@ -382,7 +382,8 @@ TEST(VoidRatio, LeavesCellsOutThatAreMostlyBehindWalls) {
     if (row.z < 3.2) row.z += 100;
   VoidRatio probe;
   probe.averaging.cell_size = 1;
-  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_volume_fraction");
+  const auto ratios = field_values(probe, world, "void_ratio"),
+             shares = field_values(probe, world, "free_volume_fraction");
   ASSERT_EQ(ratios.size(), 216u);
   EXPECT_EQ(std::ranges::count_if(shares, [](double share) { return std::abs(share) < 1e-12; }), 3 * 36);
   EXPECT_EQ(std::ranges::count_if(shares, [](double share) { return std::abs(share - 0.8) < 1e-12; }), 36);
@@ -400,7 +401,8 @@ TEST(VoidRatio, IsNoneOfCellsThatAreMostlyBehindWallsOnMapsEither) {
   add_plane(world, {0, 0, 3.7}, {0, 0, 1});
   VoidRatio probe;
   probe.averaging.cell_size = 2 / world.mean_diameter(), probe.averaging.cell_step = 1 / world.mean_diameter();
-  const auto ratios = field_values(probe, world, "void_ratio"), shares = field_values(probe, world, "free_volume_fraction");
+  const auto ratios = field_values(probe, world, "void_ratio"),
+             shares = field_values(probe, world, "free_volume_fraction");
   ASSERT_EQ(ratios.size(), 125u);
   int rim = 0;
   for (std::size_t n = 0; n < ratios.size(); ++n) {

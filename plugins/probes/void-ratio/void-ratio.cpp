@@ -66,20 +66,21 @@ Spread spread(const std::vector<double>& ratios) {
 }  // namespace
 
 void VoidRatio::declare(Parameters& p) {
-  averaging.declare(p, "the specimen's, out to the far side of its walls, be they blocks or grooved");
+  averaging.declare(p, "of the specimen, out to the far side of its walls, including blocks and grooves");
 }
 
 std::vector<Channel> VoidRatio::channels() const {
-  const std::string which = "of the cells that have solids and half of their volume before the walls; NaN without any";
+  const std::string which =
+      "of the cells that have solids and at least half of their volume in front of the walls; NaN without any";
   const std::string without = "infinite without solids, NaN behind walls";
   const Channel place = averaging.position_channel();
-  return {{"void_ratio", "1", "of the region, up to the surface of walls; " + without, {}},
+  return {{"void_ratio", "1", "void ratio of the region, up to the surface of walls; " + without, {}},
           {"smallest", "1", which, {}},
           {"largest", "1", which, {}},
           {"mean", "1", which, {}},
           {"standard_deviation", "1", which, {}},
           place,
-          {"void_ratio_profile", "1", "of each slice; " + without, place.shape, place.name}};
+          {"void_ratio_profile", "1", "void ratio of each slice; " + without, place.shape, place.name}};
 }
 
 void VoidRatio::sample(const World& world, ChannelValues& values) {
@@ -113,10 +114,10 @@ std::vector<Field> VoidRatio::fields(const World& world) {
   Field ratio{
       "void_ratio",
       "1",
-      "up to the surface of walls; infinite without solids, NaN where less than half of the cell is before them",
+      "up to the surface of walls; infinite without solids, NaN if less than half of the cell is in front of them",
       1,
       {}};
-  Field share{"free_volume_fraction", "1", "of the cell's volume, what lies on the bodies' side of all walls", 1, {}};
+  Field share{"free_volume_fraction", "1", "fraction of the volume of the cell in front of all walls", 1, {}};
   const auto each = volumes(world, cells);
   for (std::size_t n = 0; n < each.size(); ++n) {
     ratio.values.push_back(void_ratio_of_cell(each[n], cells.cell(n)));

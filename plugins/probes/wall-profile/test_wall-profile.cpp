@@ -189,7 +189,7 @@ TEST(WallProfile, RefusesWallsThatDoNotStand) {
   EXPECT_THAT(refusal(bottomless, silo()), HasSubstr("bottom: found \"flor\", which is not a wall; the nearest"));
   bottomless.bottom = {"floor", "right"};
   EXPECT_EQ(complaints(bottomless),
-            "bottom: found \"right\", which is one of walls, allowed: walls that are not among walls\n");
+            "bottom: found \"right\", which is in walls as well, allowed: names that are not in walls\n");
   probe.walls = {"floor"};
   EXPECT_EQ(
       refusal(probe, silo()),
@@ -212,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(WallProfile, ProbeContract,
                                                      FakeWorld world = silo();
                                                      for (int k = 0; k < 30; ++k)
                                                        contact(world, static_cast<std::uint32_t>(k % 2), 0.06 * k + 0.1,
-                                                             1 + 0.1 * k, 0.5);
+                                                               1 + 0.1 * k, 0.5);
                                                      return world;
                                                    }}),
                          probe_case_name);

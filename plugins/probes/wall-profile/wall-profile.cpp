@@ -18,13 +18,13 @@ constexpr double negligible = 1e-10;
 }  // namespace
 
 void WallProfile::declare(Parameters& p) {
-  p.add("walls", walls).required().entries(1).doc("names of walls that stand upright; their forces are added up");
-  p.add("bottom", bottom).doc("names of walls that bear the bodies from below; left out: no bottom_force");
-  p.add("along", along).one_of({"x", "y", "z"}).doc("axis of the height");
-  p.add("width", width).unit("m").required().above(0).doc("of all walls together, across their height");
-  p.add("low", low).unit("m").doc("where the profile begins; left out: at the specimen's lower side");
-  p.add("high", high).unit("m").doc("where it ends; left out: at the specimen's upper side");
-  p.add("strips", strips).at_least(1).at_most(10000).doc("of equal height, of the profile");
+  p.add("walls", walls).required().entries(1).doc("names of the vertical walls, whose forces are added");
+  p.add("bottom", bottom).doc("names of the walls below the bodies; default: no bottom_force");
+  p.add("along", along).one_of({"x", "y", "z"}).doc("vertical axis");
+  p.add("width", width).unit("m").required().above(0).doc("total width of all walls, across their height");
+  p.add("low", low).unit("m").doc("lower end of the profile; default: lower side of the specimen");
+  p.add("high", high).unit("m").doc("upper end of the profile; default: upper side of the specimen");
+  p.add("strips", strips).at_least(1).at_most(10000).doc("number of strips of equal height of the profile");
   p.check(
       [this](const Complain& complain) {
         if (low && high && !(*low < *high))
@@ -35,7 +35,7 @@ void WallProfile::declare(Parameters& p) {
       [this](const Complain& complain) {
         for (const auto& name : bottom)
           if (std::ranges::find(walls, name) != walls.end())
-            complain("bottom", '"' + name + "\", which is one of walls", "walls that are not among walls");
+            complain("bottom", '"' + name + "\", which is in walls as well", "names that are not in walls");
       },
       {"walls", "bottom"});
 }
@@ -61,17 +61,18 @@ std::vector<Channel> WallProfile::channels() const {
   const std::string share = " over weight, of all walls together; NaN without weight";
   std::vector<Channel> all{
       {"position", "m", "middle of each strip, along " + along, each},
-      {"normal_stress", "Pa", "force into the walls over the strip's area, positive in compression", each, "position"},
-      {"shear_stress", "Pa", "force against " + along + " over the strip's area, positive where sand hangs on", each,
+      {"normal_stress", "Pa", "normal force over the area of the strip, positive in compression", each, "position"},
+      {"shear_stress", "Pa",
+       "shear force against " + along + " over the area of the strip, positive if the walls carry sand", each,
        "position"},
-      {"normal_force", "N", "into the walls, of all touches, within the profile and beyond", {}},
-      {"shear_force", "N", "against " + along + ", of all touches", {}},
-      {"friction_angle", "degree", "mobilised: atan of shear_force over normal_force; 0 without touches", {}},
-      {"weight", "N", "G of all bodies that are there, against " + along + "; NaN without any", {}},
+      {"normal_force", "N", "normal force of all contacts, within the profile and beyond", {}},
+      {"shear_force", "N", "shear force of all contacts, against " + along, {}},
+      {"friction_angle", "degree", "mobilised: atan of shear_force over normal_force; 0 without contacts", {}},
+      {"weight", "N", "weight G of all bodies in the domain, against " + along + "; NaN without any", {}},
       {"shear_fraction", "1", "T/G: shear_force" + share, {}},
       {"normal_fraction", "1", "N/G: normal_force" + share, {}}};
   if (bottom.empty()) return all;
-  all.push_back({"bottom_force", "N", "P on the bottom, positive against " + along, {}});
+  all.push_back({"bottom_force", "N", "force P on the bottom, positive against " + along, {}});
   all.push_back({"bottom_fraction", "1", "P/G: bottom_force over weight; NaN without weight", {}});
   return all;
 }
@@ -134,7 +135,7 @@ const grit::PluginInfo* grit_plugin() {
   static const grit::PluginInfo info{.kind = "probe",
                                      .name = "wall-profile",
                                      .version = "1.0.0",
-                                     .doc = "normal and shear stress on walls by height",
+                                     .doc = "profile of normal and shear stress on vertical walls",
                                      .make_probe = []() -> grit::Probe* { return new grit::WallProfile; }};
   return &info;
 }

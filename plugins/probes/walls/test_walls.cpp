@@ -88,7 +88,7 @@ TEST(WallsProbe, RefusesWallsWithTheSameChannels) {
   EXPECT_EQ(
       error_of(probe, world_with({"a-b", "a_b"})),
       "walls: found walls \"a-b\" and \"a_b\", whose channels would both be \"a_b_…\"; allowed is one of the two; "
-      "leave one out, or rename it");
+      "remove one, or rename it");
   probe.walls = {"a-b"};
   EXPECT_EQ(error_of(probe, world_with({"a-b", "a_b"})), "no error");
 }

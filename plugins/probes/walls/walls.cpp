@@ -32,7 +32,7 @@ constexpr Quantity quantities[] = {
      fill_vector<&WallView::moment>},
     {"_pressure", "Pa", "normal force over area, positive in compression; 0 where the geometry has no area", 1,
      [](const WallView& wall, std::span<double> value) { value.front() = wall.pressure; }},
-    {"_contacts", "1", "number of touching points between bodies and the wall", 1,
+    {"_contacts", "1", "number of contacts between bodies and the wall", 1,
      [](const WallView& wall, std::span<double> value) { value.front() = wall.contacts; }},
 };
 
@@ -51,7 +51,7 @@ void WallsProbe::prepare(const World& world) {
         throw ParameterError({{"walls",
                                "walls \"" + world.walls()[other.index].name + "\" and \"" + name +
                                    "\", whose channels would both be \"" + wall.stem + "_…\"",
-                               "one of the two; leave one out, or rename it"}});
+                               "one of the two; remove one, or rename it"}});
     for (const auto& quantity : quantities) wall.channels.push_back(wall.stem + quantity.suffix);
     reported_.push_back(std::move(wall));
   }

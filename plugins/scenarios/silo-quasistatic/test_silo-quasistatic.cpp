@@ -111,7 +111,7 @@ TEST(SiloQuasistatic, FillsWithAnotherFriction) {
   const Description d = expanded({{"filling_friction_angle", 0.1}, {"friction_angle", 0.4}, {"local_damping", 0.02}});
   EXPECT_EQ(d["materials"]["sand"]["friction_angle"], 0.1);
   EXPECT_EQ(d["stages"][2]["change"]["materials"]["dyed"]["friction_angle"], 0.4);
-  EXPECT_DOUBLE_EQ(d["interfaces"]["sand+wall"]["friction_angle"], 18 * Silo::degree);
+  EXPECT_DOUBLE_EQ(d["interfaces"]["sand+wall"]["friction_angle"], 18 * degree);
   EXPECT_EQ(d["stages"][3]["change"]["engines"]["damping"]["coefficient"], 0.02);
 }
 
@@ -189,7 +189,7 @@ TEST(SiloQuasistatic, AddsAnalyticalSolutionsAsReferences) {
   EXPECT_NEAR(value(none, "Janssen_P_over_G"), p, 1e-7);
   EXPECT_NEAR(value(none, "Janssen_T_over_G"), (1 - p) / 2, 1e-7);
   EXPECT_NEAR(value(none, "Janssen_N_over_G"), (1 - p) / 2 / mu, 1e-7);
-  EXPECT_NEAR(value(none, "Janssen_wall_friction"), std::atan(mu) / Silo::degree, 1e-5);
+  EXPECT_NEAR(value(none, "Janssen_wall_friction"), std::atan(mu) / degree, 1e-5);
   EXPECT_NEAR(value(none, "Rankine_active"), 0.25961618, 1e-8);
   EXPECT_NEAR(value(none, "Rankine_passive"), 1 / 0.25961618, 1e-6);
   EXPECT_NEAR(value({{"wall_surface", "flat"}}, "Janssen_wall_friction"), 18, 1e-9);

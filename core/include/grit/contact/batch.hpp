@@ -35,8 +35,8 @@ struct Losses {
   double viscosity = 0;
 };
 
-/// Candidate pairs of one chunk of bodies. All a's belong to the chunk, and either all or none of the b's, so that no two
-/// threads write to the same sum.
+/// Candidate pairs of one chunk of bodies. All a's belong to the chunk, and either all or none of the b's, so that no
+/// two threads write to the same sum.
 struct PairBatch {
   // Bodies by index: centre [m] and radius [m]; velocity [m/s] and 1/mass [1/kg]; spin [rad/s] and 1/inertia.
   const Row* position;
@@ -49,9 +49,9 @@ struct PairBatch {
   const std::uint8_t* material;  ///< of each body; null if there is only one
   const ImageShift* shifts;
   std::size_t first_block, last_block;
-  std::size_t last_near;    ///< pairs from this block on were separate at the last neighbour search; most are skipped
-  std::uint32_t last_body;  ///< of the chunk
-  std::uint32_t dummy_body;     ///< index of a dummy body far away from all others: b of padding pairs
+  std::size_t last_near;     ///< pairs from this block on were separate at the last neighbour search; most are skipped
+  std::uint32_t last_body;   ///< of the chunk
+  std::uint32_t dummy_body;  ///< index of a dummy body far away from all others: b of padding pairs
   // Bodies needed next, to prefetch.
   const std::uint32_t* next;             ///< indices; null if they are contiguous
   std::uint32_t next_first, next_count;  ///< first index if contiguous; number in both cases
@@ -61,10 +61,10 @@ struct PairBatch {
   // Contact history and results.
   double* state;           ///< [block][field][block_size]
   std::uint8_t* touching;  ///< [block], one bit per pair in contact
-  float* asleep_until;     ///< [block]: a block without contacts is skipped until `closing` reaches this; null: skip none
-  ContactRow* row;         ///< [candidate, from the first of first_block]: result for b; null if b belongs to the chunk
-                           ///< too and is summed like a
-  BodySum* sum;            ///< [body]; null if sums are not requested
+  float* asleep_until;  ///< [block]: a block without contacts is skipped until `closing` reaches this; null: skip none
+  ContactRow* row;      ///< [candidate, from the first of first_block]: result for b; null if b belongs to the chunk
+                        ///< too and is summed like a
+  BodySum* sum;         ///< [body]; null if sums are not requested
   double largest_overlap;  ///< out: largest overlap over the smaller radius
   Losses* losses;          ///< added to; null if not requested
 };

@@ -220,8 +220,7 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
   // When they were last in contact.
   const double overlap = radius_a + radius_b - (between - batch.dt * apart).norm();
   typename Law::template State<double> state{};
-  for (std::size_t f = 0; f < history.size(); ++f)
-    member<double>(state, kept_fields<Law, Features>[f]) = history[f];
+  for (std::size_t f = 0; f < history.size(); ++f) member<double>(state, kept_fields<Law, Features>[f]) = history[f];
   const std::size_t kind = batch.material != nullptr ? batch.material[a] * materials + batch.material[b] : 0;
   const PairSize size{.radius_a = radius_a,
                       .radius_b = radius_b,
@@ -234,9 +233,10 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
 }
 
 /// The loop over candidate pairs. L is Lane or SingleLane, or a number for the scalar reference. It starts with block
-/// `from` and stops when `waiting` or `parted`, if given, is full; returns the next block. Flattened: a call in it would
-/// pass lanes through memory, which was measured to double the time. Not inlined, so that tests/vectorisation finds it.
-/// The arithmetic is the same for all pairs, so that the result of a pair does not depend on its position in the list.
+/// `from` and stops when `waiting` or `parted`, if given, is full; returns the next block. Flattened: a call in it
+/// would pass lanes through memory, which was measured to double the time. Not inlined, so that tests/vectorisation
+/// finds it. The arithmetic is the same for all pairs, so that the result of a pair does not depend on its position in
+/// the list.
 template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bool EnergyTerms>
 [[gnu::flatten, gnu::noinline]] std::size_t pair_loop(PairBatch& out, const typename Law::template Pair<double>* table,
                                                       std::size_t materials, std::size_t from,
@@ -349,8 +349,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
       at.turn =
           make_turn(normal, normal_before, in_precision<L>(wa.xyz()), in_precision<L>(wb.xyz()), history_dt, turns);
-      // The last term extends the branch to the sum of the radii; without it a pair that rotates as one body would slip.
-      // The spins act on the normal at the middle of the step, the instant of the velocities.
+      // The last term extends the branch to the sum of the radii; without it a pair that rotates as one body would
+      // slip. The spins act on the normal at the middle of the step, the instant of the velocities.
       at.velocity = velocity - cross(in_precision<L>(pa.w * wa.xyz() + pb.w * wb.xyz()), L(0.5) * at.turn.bisector) +
                     (overlap_before * per_dt) * change_of_normal;
       at.spin = in_precision<L>(wb.xyz() - wa.xyz());
@@ -380,8 +380,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       for (std::size_t f = 0; f < fields; ++f)
         store_lanes(select(contacts, member<L>(state, kept[f]), zero), state_at + f * block_size);
 
-      // The arms add up to the branch, so that angular momentum is conserved. They are proportional to the radii, so that
-      // the work of shear is the same fraction of that on its spring in all motions: laws use the radii as arms.
+      // The arms add up to the branch, so that angular momentum is conserved. They are proportional to the radii, so
+      // that the work of shear is the same fraction of that on its spring in all motions: laws use the radii as arms.
       const Vec<L> none{zero, zero, zero};
       const Vec<L> force = select(contacts, response.normal_force * normal + response.shear, none);
       const Vec<L> lever = cross(normal, select(contacts, response.shear, none));
@@ -449,8 +449,8 @@ void evaluate_pairs(PairBatch& batch, const typename Law::template Pair<double>*
   batch.largest_overlap = largest;
 }
 
-/// Calls use(f) for groups of four numbers, starting at f, that cover `count` numbers; the last group may overlap the one
-/// before. No calls if count < 4.
+/// Calls use(f) for groups of four numbers, starting at f, that cover `count` numbers; the last group may overlap the
+/// one before. No calls if count < 4.
 template <std::size_t count, class Use>
 [[gnu::always_inline]] inline void for_fours(Use use) {
   for (std::size_t f = 0; f + 4 <= count; f += 4) use(f);
@@ -471,7 +471,9 @@ template <class Law, unsigned Features, class L, bool EnergyTerms>
   for (std::size_t first = 0; first < batch.count; first += width) {
     const std::size_t used = std::min(width, batch.count - first);
     // Lanes past the end repeat the last contact and are not stored.
-    const auto contact = [&](std::size_t k) -> const WallContact& { return batch.contact[first + std::min(k, used - 1)]; };
+    const auto contact = [&](std::size_t k) -> const WallContact& {
+      return batch.contact[first + std::min(k, used - 1)];
+    };
     const auto body = [&](std::size_t k) { return contact(k).body; };
     const RowLanes<L> pa = load_rows<L>(batch.position, body), va = load_rows<L>(batch.velocity, body),
                       wa = load_rows<L>(batch.spin, body);

@@ -1,7 +1,7 @@
 // Lanes: the numbers that a contact law computes with. A lane is one number in the scalar reference and a SIMD register
 // in the contact loop; doubles, or floats in single precision.
-// Lanes must stay in registers. Therefore all functions on them are always_inline: compilers otherwise left calls in the
-// loop of a law, which pass lanes through memory; this was measured to cost a factor of three.
+// Lanes must stay in registers. Therefore all functions on them are always_inline: compilers otherwise left calls in
+// the loop of a law, which pass lanes through memory; this was measured to cost a factor of three.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +26,8 @@ struct Register {
 };
 }  // namespace detail
 
-/// A register of N numbers, N a power of two. It holds the vector type of the compiler directly: wrapped any deeper, as in
-/// std::experimental::simd, the compiler copied it through memory.
+/// A register of N numbers, N a power of two. It holds the vector type of the compiler directly: wrapped any deeper, as
+/// in std::experimental::simd, the compiler copied it through memory.
 template <std::size_t N, class Real = double>
 struct Pack {
   using Numbers = typename detail::Register<Real, N * sizeof(Real)>::type;
@@ -198,7 +198,8 @@ template <std::size_t N, class Real>
   return P(a.numbers < b.numbers ? b.numbers : a.numbers);
 }
 
-/// a b + c, fused where the processor can. Use it only for energies: sums of products in forces are rounded term by term.
+/// a b + c, fused where the processor can. Use it only for energies: sums of products in forces are rounded term by
+/// term.
 [[gnu::always_inline]] inline double multiply_add(double a, double b, double c) { return a * b + c; }
 [[gnu::always_inline]] inline float multiply_add(float a, float b, float c) { return a * b + c; }
 template <std::size_t N, class Real>

@@ -26,16 +26,14 @@
 //   };
 //
 // mix() combines two materials; with `wall`, b is the material of a wall.
-// L is a lane: a register of doubles or floats, or one double. Therefore the only branches in evaluate() and losses() are
-// `if constexpr ((Features & with_shear) != 0)`; otherwise use select(), min(), max(), sqrt() and abs().
-// Both are also called for lanes that are not in contact. Their results are discarded, but they must not trap.
-// Fields that no active feature needs are not kept; they are 0 in State.
-// In single precision, keep divisors above L(tiny<L>) and test equality by a difference below beyond_rounding<L>. Each
-// number of State is then rounded to 24 bits in every step.
-// evaluate() may be called again at the same instant, with the updated history, dt = 0 and the identity as turn. It must
-// then return the same force.
-// The normal force may be negative (attraction), but only while bodies overlap; there is no force at a distance. The law
-// must then keep friction limits from becoming negative.
+// L is a lane: a register of doubles or floats, or one double. Therefore the only branches in evaluate() and losses()
+// are `if constexpr ((Features & with_shear) != 0)`; otherwise use select(), min(), max(), sqrt() and abs(). Both are
+// also called for lanes that are not in contact. Their results are discarded, but they must not trap. Fields that no
+// active feature needs are not kept; they are 0 in State. In single precision, keep divisors above L(tiny<L>) and test
+// equality by a difference below beyond_rounding<L>. Each number of State is then rounded to 24 bits in every step.
+// evaluate() may be called again at the same instant, with the updated history, dt = 0 and the identity as turn. It
+// must then return the same force. The normal force may be negative (attraction), but only while bodies overlap; there
+// is no force at a distance. The law must then keep friction limits from becoming negative.
 #pragma once
 
 #include "grit/contact/contact_law.hpp"

@@ -17,9 +17,9 @@ struct NoParameters {
   void declare(Parameters&) {}
 };
 
-/// Base class of laws, so that their code needs no `grit::`. The functions are members because argument-dependent lookup
-/// finds nothing for plain doubles, which are lanes too. Functions that take a Vec or a ContactPoint, such as dot() and
-/// stretched(), are found without it.
+/// Base class of laws, so that their code needs no `grit::`. The functions are members because argument-dependent
+/// lookup finds nothing for plain doubles, which are lanes too. Functions that take a Vec or a ContactPoint, such as
+/// dot() and stretched(), are found without it.
 struct LawBase {
   template <class L>
   using ContactPoint = grit::ContactPoint<L>;

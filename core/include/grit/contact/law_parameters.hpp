@@ -9,10 +9,12 @@
 
 namespace grit {
 
-inline constexpr double degree = std::numbers::pi / 180;
-
 inline void declare_contact_modulus(Parameters& p, double& value) {
-  p.add("contact_modulus", value).unit("Pa").symbol("E_c").above(0).doc("contact modulus; normal stiffness grows with it and with the radii");
+  p.add("contact_modulus", value)
+      .unit("Pa")
+      .symbol("E_c")
+      .above(0)
+      .doc("contact modulus; normal stiffness grows with it and with the radii");
 }
 inline void declare_shear_to_normal_stiffness(Parameters& p, double& value) {
   p.add("shear_to_normal_stiffness", value)

@@ -12,8 +12,8 @@ template <class L>
 }
 
 /// A spring in the contact plane: a force [N] with rate = at.velocity and stiffness in N/m, or a moment [N m] with
-/// rate = at.spin and stiffness in N m/rad. `stored` rotates with the contact, then changes by the relative motion of the
-/// step, against that of b. Not limited yet.
+/// rate = at.spin and stiffness in N m/rad. `stored` rotates with the contact, then changes by the relative motion of
+/// the step, against that of b. Not limited yet.
 template <class L>
 [[gnu::always_inline]] inline Vec<L> stretched(const ContactPoint<L>& at, const Vec<L>& stored, const L& stiffness,
                                                const Vec<L>& rate) {
@@ -52,8 +52,8 @@ template <class L>
   return L(0.5) * dot(before + now, trial - now) / max(stiffness, L(tiny<L>));
 }
 
-/// Energy [J] dissipated by a dashpot parallel to a normal spring with the force `elastic` [N]: its force times the mean
-/// of the velocities before and after this instant, without other contacts.
+/// Energy [J] dissipated by a dashpot parallel to a normal spring with the force `elastic` [N]: its force times the
+/// mean of the velocities before and after this instant, without other contacts.
 template <class L>
 [[gnu::always_inline]] inline L dashpot_work(const ContactPoint<L>& at, const L& normal_force, const L& elastic) {
   const L after = dot(at.velocity, at.normal) + L(0.5) * at.dt * normal_force * (at.inverse_mass_a + at.inverse_mass_b);

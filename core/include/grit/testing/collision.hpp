@@ -14,7 +14,8 @@ struct Collision {
   double overlap, force;  ///< maxima [m], [N]
 };
 
-/// Two spheres at rest and in motion with the given relative speed [m/s]; positions and velocities of a and b are ignored.
+/// Two spheres at rest and in motion with the given relative speed [m/s]; positions and velocities of a and b are
+/// ignored.
 inline Collision collide(const ContactLaw& law, const Ball& a, const Ball& b, double speed, double dt) {
   Pairs pairs(law, dt);
   Ball still = a, coming = b;

@@ -31,10 +31,10 @@ struct FakeWorld : World {
   std::vector<Departure> departure;
   Cell box{Vec3::Constant(-std::numeric_limits<double>::infinity()),
            Vec3::Constant(std::numeric_limits<double>::infinity())};
-  Region whole{Vec3::Zero(), Vec3::Ones()};                                   ///< the specimen
-  std::optional<Region> with_grooves;                                         ///< the envelope, if it differs from the specimen
+  Region whole{Vec3::Zero(), Vec3::Ones()};  ///< the specimen
+  std::optional<Region> with_grooves;        ///< the envelope, if it differs from the specimen
   std::vector<std::function<std::optional<Clearance>(const Vec3&)>> surface;  ///< of walls, by index; may be shorter
-  std::vector<double> volume_fraction;                                                  ///< of bodies in clumps; empty: all 1
+  std::vector<double> volume_fraction;                                        ///< of bodies in clumps; empty: all 1
   std::vector<Vec3> arm;                                                      ///< of bodies in clumps
 
   /// Adds a sphere of `density`; returns its index.

@@ -63,11 +63,11 @@ struct Path {
 struct GeometryCase {
   std::string name;
   std::shared_ptr<const Geometry> geometry;
-  Bounds where;                  ///< random centres of spheres lie in this box [m]
-  double radius;                 ///< of the largest sphere [m]; the smallest has half of it
+  Bounds where;                   ///< random centres of spheres lie in this box [m]
+  double radius;                  ///< of the largest sphere [m]; the smallest has half of it
   std::vector<Path> flanks = {};  ///< paths with exactly one contact, always of the same feature
   std::vector<Path> across = {};  ///< paths along which forces must be continuous
-  double facet_error = 0;        ///< maximum distance of the surface from its triangles [m]
+  double facet_error = 0;         ///< maximum distance of the surface from its triangles [m]
   /// Whether a contact may continue on another feature with nearly the same normal; the kernel then keeps its history.
   bool hands_on = false;
   /// Smallest radius of concave curvature [m].
@@ -81,7 +81,7 @@ inline std::string case_name(const testing::TestParamInfo<GeometryCase>& info) {
 
 /// The contacts of one sphere.
 inline std::vector<SurfaceContact> contacts_of(const Geometry& geometry, const Vec3& centre, double radius,
-                                     const Pose& pose = {}) {
+                                               const Pose& pose = {}) {
   const Sphere sphere{centre, radius, 0};
   std::vector<SurfaceContact> contacts;
   geometry.find_contacts(pose, {&sphere, 1}, contacts);

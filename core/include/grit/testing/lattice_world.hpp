@@ -46,7 +46,7 @@ inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3)
         const auto contact = [&](int di, int dj, int dk, double pressure) {
           if (i + di < nx && j + dj < ny && k + dk < nz)
             world.add_contact(index(i, j, k), index(i + di, j + dj, k + dk), spacing * Vec3(di, dj, dk),
-                        volume * pressure * vary(count, 9) * Vec3(di + 0.1, dj, dk));
+                              volume * pressure * vary(count, 9) * Vec3(di + 0.1, dj, dk));
         };
         contact(1, 0, 0, 50e3), contact(0, 1, 0, 60e3), contact(0, 0, 1, 100e3);
       }
@@ -55,8 +55,8 @@ inline FakeWorld lattice_world(int nx, int ny, int nz, double diameter = 0.5e-3)
       for (const int side : {0, 1}) {
         const Vec3 out = side == 0 ? Vec3(0, 0, -1) : Vec3(0, 0, 1);
         auto& wall = world.wall[static_cast<std::size_t>(side)];
-        world.add_wall_contact(index(i, j, side == 0 ? 0 : nz - 1), static_cast<std::uint32_t>(side), 0.5 * spacing * out,
-                         volume * 100e3 * out);
+        world.add_wall_contact(index(i, j, side == 0 ? 0 : nz - 1), static_cast<std::uint32_t>(side),
+                               0.5 * spacing * out, volume * 100e3 * out);
         wall.force += volume * 100e3 * out, ++wall.contacts;
       }
   for (auto& wall : world.wall) wall.area = nx * ny * volume, wall.pressure = std::abs(wall.force.z()) / wall.area;

@@ -17,7 +17,8 @@ namespace grit::test {
 using Value = std::variant<double, bool, std::string>;
 using Values = std::map<std::string, Value>;
 
-/// Sets declared parameters by name. Throws std::invalid_argument for an unknown name, a wrong type or a value out of range.
+/// Sets declared parameters by name. Throws std::invalid_argument for an unknown name, a wrong type or a value out of
+/// range.
 inline void assign(Parameters& parameters, const Values& values) {
   for (const auto& [name, value] : values) {
     const auto fail = [&, &key = name](const char* what) { throw std::invalid_argument(key + what); };

@@ -218,14 +218,14 @@ class WallPair {
 
   Row position, velocity, spin;
   WallContact contact{.normal = -Vec3::UnitZ(),
-                  .normal_before = -Vec3::UnitZ(),
-                  .velocity = Vec3::Zero(),
-                  .spin = Vec3::Zero(),
-                  .overlap = 0,
-                  .body = 0,
-                  .wall = 0,
-                  .feature = 0,
-                  .material = 0};
+                      .normal_before = -Vec3::UnitZ(),
+                      .velocity = Vec3::Zero(),
+                      .spin = Vec3::Zero(),
+                      .overlap = 0,
+                      .body = 0,
+                      .wall = 0,
+                      .feature = 0,
+                      .material = 0};
   ContactRow row;
   BodySum sum;
 

@@ -10,8 +10,8 @@
 
 namespace grit {
 
-/// Reads an object of a description into declared parameters and runs their checks. Returns all problems; parameters with
-/// a problem keep their defaults.
+/// Reads an object of a description into declared parameters and runs their checks. Returns all problems; parameters
+/// with a problem keep their defaults.
 std::vector<Problem> read_parameters(const Description& keys, Parameters& parameters);
 
 /// Whether UDUNITS-2 knows the unit; true for "1", false for "".

@@ -20,8 +20,8 @@ namespace grit {
 /// Overlapping cells along one axis, and the strips between neighbouring cell edges.
 class CellAxis {
  public:
-  /// As many cells of `size` at a spacing of `step` as fit between `low` and `high`, centred; one cell from `low` to `high`
-  /// if that is shorter than `size`. All in m.
+  /// As many cells of `size` at a spacing of `step` as fit between `low` and `high`, centred; one cell from `low` to
+  /// `high` if that is shorter than `size`. All in m.
   CellAxis(double low, double high, double size, double step) {
     constexpr double slack = 1e-9;  // of a step: edges this close count as one
     const double length = high - low;
@@ -79,8 +79,8 @@ class AveragingCells {
   static constexpr double most_parts = 8e6;
 
   /// Cells of `size` at a spacing of `step` along x, y, z [m]; an infinite size is that of the region. No cells if the
-  /// region has no volume, if a size is not above 0 (without bodies the mean diameter is 0), or if there would be more than
-  /// `most_parts` parts. Periodic images are those of `domain`.
+  /// region has no volume, if a size is not above 0 (without bodies the mean diameter is 0), or if there would be more
+  /// than `most_parts` parts. Periodic images are those of `domain`.
   AveragingCells(const Cell& domain, const Region& region, const Vec3& size, const Vec3& step) : domain_(domain) {
     if (!(region.volume() > 0) || !std::isfinite(region.volume())) return;
     if (!(size.minCoeff() > 0 && step.minCoeff() > 0)) return;
@@ -116,8 +116,8 @@ class AveragingCells {
   /// Size of a cell that does not overlap the next ones [m]: the size to draw on a map.
   Vec3 own() const { return {axes_[0].own(), axes_[1].own(), axes_[2].own()}; }
 
-  /// Calls visit(part, volume) for each part that a sphere may intersect, with the volume [m³] of the intersection; error
-  /// below 1e-12 of the sphere's volume.
+  /// Calls visit(part, volume) for each part that a sphere may intersect, with the volume [m³] of the intersection;
+  /// error below 1e-12 of the sphere's volume.
   template <class Visit>
   void share_out_sphere(const Vec3& centre, double radius, const Visit& visit) const {
     const Vec3 reach = Vec3::Constant(radius);
@@ -215,8 +215,8 @@ class AveragingCells {
     return part(along(0).strip(point[0]), along(1).strip(point[1]), along(2).strip(point[2]));
   }
 
-  /// Calls visit(image) for each periodic image of `place` for which image + low … image + high may intersect the cells.
-  /// None for positions that are not finite, as in a failed run.
+  /// Calls visit(image) for each periodic image of `place` for which image + low … image + high may intersect the
+  /// cells. None for positions that are not finite, as in a failed run.
   template <class Visit>
   void each_image(const Vec3& place, const Vec3& low, const Vec3& high, const Visit& visit) const {
     if (axes_.empty() || !(place + low).allFinite() || !(place + high).allFinite()) return;
@@ -272,7 +272,10 @@ class Averaging {
         .one_of({"", "x", "y", "z"})
         .doc("axis along which a cell extends through the whole region; empty: cells are cubes");
     p.add("along", along).one_of({"x", "y", "z"}).doc("axis of the profile");
-    p.add("slices", slices).at_least(1).at_most(10000).doc("number of slices of equal thickness of the profile across the region");
+    p.add("slices", slices)
+        .at_least(1)
+        .at_most(10000)
+        .doc("number of slices of equal thickness of the profile across the region");
     p.check(
         [this](const Complain& complain) {
           if (!region_low || !region_high) return;

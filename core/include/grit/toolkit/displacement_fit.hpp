@@ -24,8 +24,8 @@ class DisplacementFit {
     for (const Eigen::Vector2d& one : moves_) sum += one;
     return moves_.empty() ? sum : Eigen::Vector2d(sum / static_cast<double>(moves_.size()));
   }
-  /// Green–Lagrange strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` points, or if they lie nearly
-  /// on a line: the determinant of their scatter matrix over the square of its trace is at most `flat`.
+  /// Green–Lagrange strain (H + Hᵀ + HᵀH) / 2: E_11, E_22, E_12. NaN with fewer than `least` points, or if they lie
+  /// nearly on a line: the determinant of their scatter matrix over the square of its trace is at most `flat`.
   std::array<double, 3> green(std::size_t least, double flat) const {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     if (places_.size() < least) return {unknown, unknown, unknown};

@@ -24,7 +24,7 @@
 
 namespace grit {
 
-inline constexpr double degree = std::numbers::pi / 180, infinity = std::numeric_limits<double>::infinity();
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Range of void ratios of the interior that can be prepared with a grading, pressure and stiffness.
 struct VoidRatioRange {

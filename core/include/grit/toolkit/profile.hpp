@@ -26,7 +26,10 @@ class Profile {
     p.add("across", across)
         .one_of({"x", "y", "z"})
         .doc("axis of the profile, from one side of the specimen to the other; not periodic");
-    p.add("points", points).at_least(3).at_most(100000).doc("number of points of the profile, evenly spaced, both sides included");
+    p.add("points", points)
+        .at_least(3)
+        .at_most(100000)
+        .doc("number of points of the profile, evenly spaced, both sides included");
     p.add("averaging_length", averaging_length)
         .at_least(0.1)
         .doc("distance at which the weight of a body, 1 at a point, falls to 0, over the mean diameter");
@@ -90,8 +93,8 @@ class Profile {
 };
 
 /// Shear zone in a profile: its ends are the inflection points on both sides of the peak [m], where the profile falls
-/// fastest, at most as far as it falls to a quarter of the peak. A zone with its peak at a side of the specimen ends there;
-/// if it also falls fastest there, it has no inflection point, and the other end is NaN.
+/// fastest, at most as far as it falls to a quarter of the peak. A zone with its peak at a side of the specimen ends
+/// there; if it also falls fastest there, it has no inflection point, and the other end is NaN.
 struct ShearZone {
   double low, high;
   double extent;  ///< width of the range around the peak that exceeds a twentieth of it [m]

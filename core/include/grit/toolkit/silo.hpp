@@ -69,7 +69,7 @@ struct SiloForms {
 };
 
 struct Silo {
-  static constexpr double degree = std::numbers::pi / 180, gravity = analytical_solutions::gravity;
+  static constexpr double gravity = analytical_solutions::gravity;
   /// Solid fraction of the cloud that falls into the silo.
   static constexpr double cloud_solid_fraction = 0.35;
   /// Default limit of the displacement per step over the radius.

@@ -26,13 +26,17 @@ class SlidingLengths {
 
   void declare(Parameters& p) {
     p.add("wall", wall).required().doc("wall along which the specimen may slide");
-    p.add("driven_by", driven_by).required().doc("moving wall, whose displacement relative to `wall` is the whole displacement");
+    p.add("driven_by", driven_by)
+        .required()
+        .doc("moving wall, whose displacement relative to `wall` is the whole displacement");
     p.add("strip", strip)
         .at_least(0.1)
         .doc("length of the strips into which the wall is divided, over the mean diameter");
     p.add("max_distance", max_distance)
         .above(0)
-        .doc("maximum distance of points from the specimen's face, over the mean diameter; points behind the face count");
+        .doc(
+            "maximum distance of points from the specimen's face, over the mean diameter; points behind the face "
+            "count");
     p.add("min_fraction", min_fraction)
         .above(0)
         .below(1)

@@ -12,8 +12,8 @@
 
 namespace grit {
 
-/// The bodies whose centres were within `thickness` of the specimen's face, or behind it, at the start of the stage. Needs
-/// BodyState::displacement.
+/// The bodies whose centres were within `thickness` of the specimen's face, or behind it, at the start of the stage.
+/// Needs BodyState::displacement.
 class WallLayer {
  public:
   std::string wall, driven_by, axis = "x";
@@ -21,7 +21,9 @@ class WallLayer {
 
   void declare(Parameters& p) {
     p.add("wall", wall).required().doc("wall along which bodies slip");
-    p.add("driven_by", driven_by).required().doc("moving wall, whose displacement relative to `wall` is the whole displacement");
+    p.add("driven_by", driven_by)
+        .required()
+        .doc("moving wall, whose displacement relative to `wall` is the whole displacement");
     p.add("axis", axis).one_of({"x", "y", "z"}).doc("axis of the slip");
     p.add("thickness", thickness)
         .above(0)
@@ -29,8 +31,8 @@ class WallLayer {
             "thickness of the layer over the mean diameter; it contains bodies whose centres were in it, or behind it, "
             "at the start of the stage");
   }
-  /// Throws ParameterError for a wall that does not exist, is not perpendicular to an axis, is perpendicular to the axis of
-  /// the slip, or does not bound the specimen.
+  /// Throws ParameterError for a wall that does not exist, is not perpendicular to an axis, is perpendicular to the
+  /// axis of the slip, or does not bound the specimen.
   void prepare(const World& world) {
     wall_ = wall_index(world, wall, "wall");
     driver_ = wall_index(world, driven_by, "driven_by");
