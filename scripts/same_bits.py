@@ -109,8 +109,10 @@ def main():
                 lines, compared = differences(renamed(old, renames), new, all(done))
             except (RuntimeError, OSError) as error:
                 lines, compared = [str(error)], 0
+        if not lines and not compared:
+            lines = ['no sample was compared; let the runs take longer with --seconds']
         failed += bool(lines)
-        print(f'{description}: ' + ('differs' if lines else f'same bits, {compared} samples'), flush=True)
+        print(f'{description}: ' + ('not the same' if lines else f'same bits, {compared} samples'), flush=True)
         for line in lines:
             print(f'  {line}')
     print(f'{len(descriptions) - failed} of {len(descriptions)} descriptions have the same bits')

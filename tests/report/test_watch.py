@@ -258,7 +258,7 @@ class InABrowser(unittest.TestCase):
 
     def test_maps_profiles_and_directions_are_updated(self):
         wait, evaluate = self.browser.wait, self.browser.evaluate
-        probes = {**SCENE["probes"], "forces": {"type": "force-chains", "every_steps": 200}, "moved": {"type": "displacements", "every_steps": 200}}
+        probes = {**SCENE["probes"], "forces": {"type": "force-chains", "every_steps": 2000}, "moved": {"type": "displacements", "every_steps": 2000}}
         found = "[...document.querySelectorAll('figure.chart')].find(({{chart}}) => chart.group.name === '{}' && chart.name === '{}').chart".format
         forces, moved = found("forces", "force_by_direction"), found("moved", "profile")
         with WatchedRun(self.folder, "lists", probes=probes) as run:
