@@ -30,11 +30,14 @@ CurrentScene::Step CurrentScene::advance_ramps(std::size_t increments) {
   return step;
 }
 
+bool CurrentScene::declare(const NumberPointer& place, ContactLaw* law, Parameters& parameters) {
+  return now_.has_unit(place.section, place.name) && now_.declare_unit(place.section, place.name, law, parameters);
+}
+
 void CurrentScene::bind(const RampPlan& ramp) {
   const auto number = NumberPointer::of(ramp.pointer);
   Parameters parameters;
-  if (number && now_.declare_unit(number->section, number->name, nullptr, parameters))
-    number_ = find_number(parameters, number->keys);
+  if (number && declare(*number, nullptr, parameters)) number_ = find_number(parameters, number->keys);
   if (!number_) throw Error("there is no number at " + ramp.pointer);
 }
 

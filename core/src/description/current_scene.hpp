@@ -37,6 +37,8 @@ class CurrentScene {
   /// Advances the ramps of the present stage until `increments` of all their increments are done; never back.
   Step advance_ramps(std::size_t increments);
   std::size_t increments_done() const { return done_; }
+  /// Declares the part that a number belongs to; `law` reads parameters of materials. False if there is no such part.
+  bool declare(const NumberPointer& number, ContactLaw* law, Parameters& parameters);
   /// Changes parts independently of the stages. The changes persist until a stage or a ramp overwrites them.
   void apply(const SettingsChange& change);
 

@@ -249,6 +249,17 @@ class Planner {
   std::set<std::string> refused_;  // names of walls that were reported
 };
 
+/// The outermost list that contains an existing value: a change replaces lists as a whole.
+std::optional<Description::json_pointer> list_around(const Description& all, const Description::json_pointer& value) {
+  std::optional<Description::json_pointer> list;
+  if (!all.contains(value)) return list;
+  for (auto around = value; !around.empty();) {
+    around.pop_back();
+    if (all.at(around).is_array()) list = around;
+  }
+  return list;
+}
+
 /// The plain description of a scenario, with the other keys of the document merged onto it.
 Document expanded(const Document& document, const Registry& registry) {
   Component<Scenario> scenario(registry);
@@ -330,7 +341,13 @@ SettingsChange change_of(const SceneDescription& now, const std::string& pointer
   for (auto& [name, group] : all.at("bodies").items()) group.erase("stage");
   Description patch = Description::object();
   try {
-    patch[Description::json_pointer(pointer)] = value;
+    const Description::json_pointer at(pointer);
+    patch[at] = value;
+    if (const auto list = list_around(all, at)) {
+      Description changed = all;
+      changed[at] = value;
+      patch = Description::object(), patch[*list] = changed.at(*list);
+    }
   } catch (const Description::exception&) {
     throw DescriptionError({{"set", 0, pointer, "found \"" + pointer + "\"; allowed is a JSON pointer"}});
   }

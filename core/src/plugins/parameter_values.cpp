@@ -112,8 +112,18 @@ void leave_out(const MapTarget& target) { target.clear(); }
 
 // ---- single numbers
 
-using Keys = std::span<const std::string>;
+/// The keys that are left to follow, and where to note what the number is declared with.
+struct Path {
+  std::span<const std::string> keys;
+  Declared* declared;
+
+  bool ends() const { return keys.empty(); }
+  const std::string& first() const { return keys.front(); }
+  Path rest() const { return {keys.subspan(1), declared}; }
+};
 using Found = std::optional<NumberPlace>;
+
+Found number_below(Parameters& parameters, Path path);
 
 std::optional<std::size_t> index_of(const std::string& key, std::size_t size) {
   std::size_t index = 0;
@@ -121,59 +131,80 @@ std::optional<std::size_t> index_of(const std::string& key, std::size_t size) {
   if (error != std::errc() || end != key.data() + key.size() || index >= size) return std::nullopt;
   return index;
 }
+/// The index that a path ends with.
+std::optional<std::size_t> last_index(Path path, std::size_t size) {
+  return path.keys.size() == 1 ? index_of(path.first(), size) : std::nullopt;
+}
 Found found(NumberPlace::Place place) { return NumberPlace(place); }
 
-Found number_in(Description& value, Keys keys) {
-  if (keys.empty()) return value.is_number() ? found(&value) : std::nullopt;
+Found number_in(Description& value, Path path) {
+  if (path.ends()) return value.is_number() ? found(&value) : std::nullopt;
   if (value.is_array())
-    if (const auto i = index_of(keys.front(), value.size())) return number_in(value[*i], keys.subspan(1));
-  if (!value.is_object() || !value.contains(keys.front())) return std::nullopt;
-  return number_in(value[keys.front()], keys.subspan(1));
+    if (const auto i = index_of(path.first(), value.size())) return number_in(value[*i], path.rest());
+  if (!value.is_object() || !value.contains(path.first())) return std::nullopt;
+  return number_in(value[path.first()], path.rest());
 }
 
 template <class T>
-Found number_in(T*, Keys) {
+Found number_in(T*, Path) {
   return std::nullopt;
 }
-Found number_in(double* value, Keys keys) { return keys.empty() ? found(value) : std::nullopt; }
-Found number_in(std::int64_t* value, Keys keys) { return keys.empty() ? found(value) : std::nullopt; }
-Found number_in(std::optional<double>* value, Keys keys) {
-  return keys.empty() && *value ? found(&**value) : std::nullopt;
+Found number_in(double* value, Path path) { return path.ends() ? found(value) : std::nullopt; }
+Found number_in(std::int64_t* value, Path path) { return path.ends() ? found(value) : std::nullopt; }
+Found number_in(std::optional<double>* value, Path path) {
+  return path.ends() && *value ? found(&**value) : std::nullopt;
 }
-Found number_in(Vec3* value, Keys keys) {
-  const auto i = keys.size() == 1 ? index_of(keys.front(), 3) : std::nullopt;
+Found number_in(Vec3* value, Path path) {
+  const auto i = last_index(path, 3);
   return i ? found(&(*value)[static_cast<int>(*i)]) : std::nullopt;
 }
-Found number_in(std::optional<Vec3>* value, Keys keys) { return *value ? number_in(&**value, keys) : std::nullopt; }
-Found number_in(std::vector<double>* value, Keys keys) {
-  const auto i = keys.size() == 1 ? index_of(keys.front(), value->size()) : std::nullopt;
+Found number_in(std::optional<Vec3>* value, Path path) { return *value ? number_in(&**value, path) : std::nullopt; }
+Found number_in(std::vector<double>* value, Path path) {
+  const auto i = last_index(path, value->size());
   return i ? found(&(*value)[*i]) : std::nullopt;
 }
-Found number_in(Description* value, Keys keys) { return number_in(*value, keys); }
-Found number_in(const ObjectTarget& target, Keys keys) {
+Found number_in(Description* value, Path path) { return number_in(*value, path); }
+Found number_in(const ObjectTarget& target, Path path) {
   Parameters inner;
   target.declare(inner);
-  return find_number(inner, keys);
+  return number_below(inner, path);
 }
-Found number_in(const OptionalTarget& target, Keys keys) {
+Found number_in(const OptionalTarget& target, Path path) {
   if (!target.present()) return std::nullopt;
   Parameters inner;
   target.declare(inner);
-  return find_number(inner, keys);
+  return number_below(inner, path);
 }
-Found number_in(const ListTarget& target, Keys keys) {
-  const auto i = keys.empty() ? std::nullopt : index_of(keys.front(), target.size());
+Found number_in(const ListTarget& target, Path path) {
+  const auto i = path.ends() ? std::nullopt : index_of(path.first(), target.size());
   if (!i) return std::nullopt;
   Parameters inner;
   target.declare(*i, inner);
-  return find_number(inner, keys.subspan(1));
+  return number_below(inner, path.rest());
 }
-Found number_in(const MapTarget& target, Keys keys) {
+Found number_in(const MapTarget& target, Path path) {
   const auto names = target.names();
-  if (keys.empty() || std::ranges::find(names, keys.front()) == names.end()) return std::nullopt;
+  if (path.ends() || std::ranges::find(names, path.first()) == names.end()) return std::nullopt;
   Parameters inner;
-  target.declare(keys.front(), inner);
-  return find_number(inner, keys.subspan(1));
+  target.declare(path.first(), inner);
+  return number_below(inner, path.rest());
+}
+
+Found number_below(Parameters& parameters, Path path) {
+  if (path.ends()) return std::nullopt;
+  if (Choice* const choice = parameters.choice(); choice != nullptr && !choice->type().empty())
+    choice->declare(parameters);
+  if (path.declared != nullptr) {
+    path.declared->parameter.reset();  // of the object around
+    for (const Check& check : parameters.checks()) path.declared->checks.push_back(check);
+  }
+  for (const auto& parameter : parameters.entries())
+    if (parameter.name() == path.first()) {
+      if (path.declared != nullptr) path.declared->parameter = parameter;
+      return std::visit([&](const auto& target) { return number_in(target, path.rest()); }, parameter.target());
+    }
+  if (Description* const values = parameters.values()) return number_in(*values, path);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -238,15 +269,8 @@ bool NumberPlace::is_integer() const {
   return std::holds_alternative<std::int64_t*>(place_);
 }
 
-std::optional<NumberPlace> find_number(Parameters& parameters, std::span<const std::string> keys) {
-  if (keys.empty()) return std::nullopt;
-  if (Choice* const choice = parameters.choice(); choice != nullptr && !choice->type().empty())
-    choice->declare(parameters);
-  for (const auto& parameter : parameters.entries())
-    if (parameter.name() == keys.front())
-      return std::visit([&](const auto& target) { return number_in(target, keys.subspan(1)); }, parameter.target());
-  if (Description* const values = parameters.values()) return number_in(*values, keys);
-  return std::nullopt;
+std::optional<NumberPlace> find_number(Parameters& parameters, std::span<const std::string> keys, Declared* declared) {
+  return number_below(parameters, {keys, declared});
 }
 
 }  // namespace grit

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "grit/description.hpp"
 #include "grit/parameters.hpp"
@@ -35,8 +36,15 @@ class NumberPlace {
   Place place_;
 };
 
+/// How a number is declared.
+struct Declared {
+  std::optional<Parameter> parameter;  ///< its range; of a list or a vector: that of each entry
+  std::vector<Check> checks;           ///< of all objects that contain it
+};
+
 /// The number at `keys` in a declaration; none if there is no number at present. It stays valid as long as the declared
-/// members, and the lists and maps in them, are not moved.
-std::optional<NumberPlace> find_number(Parameters& parameters, std::span<const std::string> keys);
+/// members, and the lists and maps in them, are not moved; so do the checks added to `declared`.
+std::optional<NumberPlace> find_number(Parameters& parameters, std::span<const std::string> keys,
+                                       Declared* declared = nullptr);
 
 }  // namespace grit

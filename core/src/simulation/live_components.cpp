@@ -63,7 +63,7 @@ std::optional<NumberPlace> LiveLaw::number(const NumberPointer& place) {
   } else {
     return std::nullopt;
   }
-  materials_.clear();  // values set from outside differ from the description
+  set_from_outside();
   return find_number(parameters, place.keys);
 }
 
@@ -82,12 +82,17 @@ void LiveEngines::follow(const SceneDescription& now) {
 }
 
 std::optional<NumberPlace> LiveEngines::number(const NumberPointer& place) {
-  const auto engine = place.section == "engines" ? engines_.find(place.name) : engines_.end();
-  if (engine == engines_.end()) return std::nullopt;
   Parameters parameters;
-  engine->second->declare(parameters);
-  set_from_outside_.insert(place.name);
+  if (place.section != "engines" || !declare(place.name, parameters)) return std::nullopt;
   return find_number(parameters, place.keys);
+}
+
+bool LiveEngines::declare(const std::string& name, Parameters& parameters) {
+  const auto engine = engines_.find(name);
+  if (engine == engines_.end()) return false;
+  engine->second->declare(parameters);
+  set_from_outside_.insert(name);
+  return true;
 }
 
 bool LiveGeometries::follow(const SceneDescription& now, const ReportFault& report) {

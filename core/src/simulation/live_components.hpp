@@ -31,6 +31,8 @@ class LiveLaw {
   const std::shared_ptr<ContactLaw>& get() const { return law_; }
   /// Binds a number of a material or an interface; empty if the law has no such parameter.
   std::optional<NumberPlace> number(const NumberPointer& place);
+  /// Says that a material or an interface is set from outside, so that it is not what was described.
+  void set_from_outside() { materials_.clear(); }
 
  private:
   std::shared_ptr<ContactLaw> law_;
@@ -45,6 +47,8 @@ class LiveEngines {
   const std::map<std::string, std::shared_ptr<Engine>>& all() const { return engines_; }
   /// Binds a number of an engine.
   std::optional<NumberPlace> number(const NumberPointer& place);
+  /// Declares an engine, which is set from outside from now on. False if there is none of this name.
+  bool declare(const std::string& name, Parameters& parameters);
 
  private:
   std::map<std::string, std::shared_ptr<Engine>> engines_;

@@ -1,5 +1,8 @@
 #include "simulation/live_scene.hpp"
 
+#include <string_view>
+
+#include "grit/error.hpp"
 #include "simulation/preflight.hpp"
 
 namespace grit {
@@ -40,10 +43,60 @@ bool LiveScene::advance_ramps(std::size_t increments) {
   return true;
 }
 
-void LiveScene::apply(const SettingsChange& change) {
-  current_.apply(change);
+bool LiveScene::set(const std::string& pointer, const Description& value) {
+  if (value.is_number() && known_.contains(pointer) && set_in_place(pointer, value.get<double>())) return true;
+  current_.apply(change_of(now(), pointer, value));
+  known_.insert(pointer);
   bound_ = nullptr;
   follow();
+  return false;
+}
+
+bool LiveScene::set_in_place(const std::string& pointer, double value) {
+  const Number* const number = bind(pointer);
+  if (number == nullptr) return false;
+  const double before = number->described.get();
+  if (!(number->live ? *number->live : number->described).set(value)) return false;
+  number->described.restore(value);
+  bool fits = true;
+  now().check_together([&](std::string_view, std::string_view, std::string_view) { fits = false; });
+  if (!fits) restore(pointer, before);
+  return fits;
+}
+
+void LiveScene::restore(const std::string& pointer, double value) {
+  known_.insert(pointer);
+  const Number* const number = bind(pointer);
+  if (number == nullptr) throw Error("there is no number at " + pointer);
+  number->described.restore(value);
+  if (number->live) number->live->restore(value);
+}
+
+const LiveScene::Number* LiveScene::bind(const std::string& pointer) {
+  auto known = numbers_.find(pointer);
+  if (known == numbers_.end()) {
+    const auto place = NumberPointer::of(pointer);
+    known = numbers_.emplace(pointer, place ? found(*place) : std::nullopt).first;
+  }
+  return known->second ? &*known->second : nullptr;
+}
+
+std::optional<LiveScene::Number> LiveScene::found(const NumberPointer& place) {
+  Parameters described, live;
+  if (!current_.declare(place, nullptr, described)) return std::nullopt;
+  const auto number = CheckedNumber::find(described, place.keys);
+  if (!number) return std::nullopt;
+  if (place.section == "materials" || place.section == "interfaces") {
+    current_.declare(place, &*law_, live);
+    law_.set_from_outside();
+  } else if (place.section != "engines") {
+    if (!number->is_declared()) return std::nullopt;  // of a geometry, which is made anew
+    return Number{*number, std::nullopt};
+  } else if (!engines_.declare(place.name, live)) {
+    return std::nullopt;
+  }
+  const auto in_instance = CheckedNumber::find(live, place.keys);
+  return in_instance ? std::optional(Number{*number, in_instance}) : std::nullopt;
 }
 
 void LiveScene::go_to(std::size_t stage, std::size_t increments) {
@@ -53,6 +106,7 @@ void LiveScene::go_to(std::size_t stage, std::size_t increments) {
 }
 
 void LiveScene::follow() {
+  numbers_.clear();
   law_.follow(now());
   engines_.follow(now());
   geometries_.follow(now());

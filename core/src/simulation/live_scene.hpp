@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "input/scene.hpp"
+#include "simulation/checked_number.hpp"
 #include "simulation/live_components.hpp"
 
 namespace grit {
@@ -27,13 +31,26 @@ class LiveScene {
   /// Advances the ramps of the present stage until `increments` of all their increments are done. False if nothing
   /// changed.
   bool advance_ramps(std::size_t increments);
-  /// Changes parts independently of the stages.
-  void apply(const SettingsChange& change);
+  /// Sets a value independently of the stages, as a stage's change would. A number that was set before is set in place,
+  /// without reading anything, unless other parts have to change with it. Returns whether it was set in place. Throws
+  /// DescriptionError.
+  bool set(const std::string& pointer, const Description& value);
+  /// Sets a number in place without checks, as set() did in the run that was saved.
+  void restore(const std::string& pointer, double value);
   /// Advances from the start to this stage, with `increments` done.
   void go_to(std::size_t stage, std::size_t increments);
 
  private:
+  /// A number as described and, of an engine or a law, in the live instance.
+  struct Number {
+    CheckedNumber described;
+    std::optional<CheckedNumber> live;
+  };
   void follow();
+  bool set_in_place(const std::string& pointer, double value);
+  /// Binds a number, once while parts stay where they are; null if it cannot be set in place.
+  const Number* bind(const std::string& pointer);
+  std::optional<Number> found(const NumberPointer& place);
 
   CurrentScene current_;
   LiveLaw law_;
@@ -42,6 +59,8 @@ class LiveScene {
   Components components_;
   const RampPlan* bound_ = nullptr;    // the active ramp, after it has begun
   std::optional<NumberPlace> number_;  // set by the ramp in a live law or engine
+  std::set<std::string> known_;        // pointers that set() has set
+  std::map<std::string, std::optional<Number>> numbers_;
 };
 
 }  // namespace grit

@@ -58,8 +58,10 @@ void StageRunner::resume(const Checkpoint& checkpoint) {
     throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
                 std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
   for (const Set& set : sets_) {
-    live_.go_to(set.stage, 0);
-    live_.apply(change_of(live_.now(), set.pointer, Description::parse(set.value)));
+    live_.go_to(set.stage, set.increments);
+    const auto value = Description::parse(set.value);
+    if (set.in_place) live_.restore(set.pointer, value.get<double>());
+    else live_.set(set.pointer, value);
   }
   live_.go_to(stage_, increments_);
   kernel_.restore(live_.now(), live_.components(), archive);
@@ -173,10 +175,20 @@ void StageRunner::call(const Cadence& cadence, std::function<void(const World&)>
 }
 
 void StageRunner::set(const std::string& pointer, const Description& value) {
-  live_.apply(change_of(live_.now(), pointer, value));
+  const bool in_place = live_.set(pointer, value);
   kernel_.change(live_.now(), live_.components());
   instant_.has_forces = false;
-  sets_.push_back({stage_, pointer, value.dump()});
+  note({stage_, increments_, pointer, value.dump(), in_place});
+}
+
+void StageRunner::note(Set set) {
+  // Numbers that are set where they are do not depend on each other. Other values may depend on all before them.
+  for (std::size_t i = sets_.size(); set.in_place && i > 0 && sets_[i - 1].in_place; --i)
+    if (sets_[i - 1].pointer == set.pointer) {
+      sets_.erase(sets_.begin() + static_cast<std::ptrdiff_t>(i - 1));
+      break;
+    }
+  sets_.push_back(std::move(set));
 }
 
 std::optional<double> StageRunner::progress() const { return grit::progress(description().until, kernel_, start_); }

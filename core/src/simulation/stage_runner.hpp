@@ -60,11 +60,12 @@ class StageRunner {
   double output_seconds() const { return phases_[1].seconds; }
 
  private:
-  /// A value that was set from outside.
+  /// A value that was set from outside, and where in the stages.
   struct Set {
-    std::size_t stage;
+    std::size_t stage, increments;
     std::string pointer, value;
-    void serialize(Archive& archive) { archive(stage, pointer, value); }
+    bool in_place;
+    void serialize(Archive& archive) { archive(stage, increments, pointer, value, in_place); }
   };
   struct Callback {
     Schedule schedule;
@@ -83,6 +84,8 @@ class StageRunner {
   void ramp();
   void decide();
   void find_forces();
+  /// Keeps a value that was set, and drops the one that it replaces.
+  void note(Set set);
   void serialize(Archive& archive);
   void refuse_without_a_step(const StageDescription& stage) const;
   [[noreturn]] void fail_late(const StageDescription& stage) const;
