@@ -30,6 +30,11 @@ struct MotionSettings {
 class Engine {
  public:
   virtual ~Engine() = default;
+  /// Declares the parameters, and does nothing else. It is called when a description is read, and again between two
+  /// steps on an engine in use: when a stage changes the engine, when a ramp of one of its numbers begins, and by
+  /// Simulation::set(). The values are then set where the members are. The increments of a ramp, and a number that
+  /// set() sets again, are set there without a call. So members must stay where they are, and what follows from them is
+  /// computed when it is needed.
   virtual void declare(Parameters& parameters) = 0;
   virtual Phase phase() const = 0;
   /// State that the kernel must keep for this engine.
