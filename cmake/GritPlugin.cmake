@@ -14,7 +14,10 @@ function(grit_testing)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
   add_library(grit_testing STATIC EXCLUDE_FROM_ALL ${sources})
-  target_compile_options(grit_testing PRIVATE -Wall -Wextra -O1)
+  target_compile_options(grit_testing PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
+  if(TARGET grit_precompiled_tests)  # within grit's own tree
+    target_precompile_headers(grit_testing REUSE_FROM grit_precompiled_tests)
+  endif()
   set_target_properties(grit_testing PROPERTIES UNITY_BUILD OFF)  # one object per contract, so that a program links only those it uses
   target_link_libraries(grit_testing PUBLIC grit::grit grit::sdk GTest::gtest)
   add_library(grit::testing ALIAS grit_testing)
@@ -47,9 +50,11 @@ function(grit_plugin folder name)
   if(TARGET GTest::gtest_main AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/test_${name}.cpp)
     grit_testing()
     add_executable(test_${target} test_${name}.cpp)
-    target_compile_options(test_${target} PRIVATE -Wall -Wextra -O1)  # only the plugin is fully optimised; its test builds faster
+    # Only the plugin is fully optimised; its test builds faster.
+    target_compile_options(test_${target} PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
     target_link_libraries(test_${target} PRIVATE ${target}_objects grit::testing GTest::gmock GTest::gtest_main)
-    if(TARGET grit_precompiled_hidden)
+    if(TARGET grit_precompiled_tests)
+      target_precompile_headers(test_${target} REUSE_FROM grit_precompiled_tests)
       target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     endif()
     gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST

@@ -18,7 +18,7 @@ struct NumberedWorld : FakeWorld {
 
   void add_wall(const std::string& name, const Vec3& moved) {
     const Vec3 zero = Vec3::Zero();
-    wall.push_back({name, moved, moved, zero, zero, zero, zero, 0, 0, zero, 0});
+    wall.push_back({name, moved, moved, zero, zero, zero, zero, 0, 0, zero, 0, false, {}});
   }
 };
 
