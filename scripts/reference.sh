@@ -15,12 +15,15 @@ unset GRIT_PLUGIN_PATH
 pages=$(mktemp -d)
 trap 'rm -rf "$pages"' EXIT
 
+listed=$("$grit" describe)
 # names HEADING: the names that `grit describe` lists under this heading.
-names() { "$grit" describe | sed -n "/^$1\$/,/^\$/{/^  /p}" | awk '{print $1}'; }
+names() { sed -n "/^$1\$/,/^\$/{/^  /p}" <<< "$listed" | awk '{print $1}'; }
 # tables NAME…: the program's description of each, under a heading.
 tables() {
+  local text
   for name in "$@"; do
-    printf '\n## %s\n```text\n%s\n```\n' "$name" "$("$grit" describe "$name")"
+    text=$("$grit" describe "$name")
+    printf '\n## %s\n```text\n%s\n```\n' "$name" "$text"
   done
 }
 page() { printf '# %s\nWritten by `scripts/reference.sh` from what `grit describe` says. Do not edit.\n' "$1"; }

@@ -630,7 +630,7 @@ TEST(Check, ReportsTheRun) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("two.json: two grains"), HasSubstr("linear-rolling"), HasSubstr("time step: "),
                     HasSubstr("critical"), HasSubstr("memory: "), HasSubstr("bodies: 2"),
-                    HasSubstr("touching pairs at the start: 1"), HasSubstr("estimated time on 1 thread ")));
+                    HasSubstr("contacts of pairs at the start: 1"), HasSubstr("estimated time on 1 thread ")));
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
 }
 
@@ -642,7 +642,7 @@ TEST(Check, ReportsBodiesInsertedLater) {
   folder.write("later.json", scene.dump());
   const auto outcome = grit_in(folder.path(), {"check", "later.json"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_THAT(outcome.out, HasSubstr("bodies: 2, touching pairs at the start: 1\n  2 more in the stage part\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("bodies: 2, contacts of pairs at the start: 1\n  2 more in the stage part\n"));
 }
 
 /// The output of `expand` for a file, run in this folder.

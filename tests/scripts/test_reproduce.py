@@ -146,9 +146,9 @@ class Reproduction(unittest.TestCase):
         self.assertIn('| shear/timed | 3.00 | 10.0 %, 5,000 steps by 222222222222 | 0.1 | 0.0 | 0 |\n', self.written()[1])
 
     def test_hours_have_what_limits_allow_beside_them(self):
-        self.checks_as('3.00 h (3 h), at most 9.04 h, by the limits')
+        self.checks_as('3.00 h (3 h 00 min), at most 9.04 h (9 h 02 min) if stages run to their limits')
         self.assertIn('| shear/never-run | 3.00 … 9.0 | | | | |\n', self.written()[1])
-        self.checks_as('0.00 h (0 s) plus stages that end by a condition, at most 9.04 h, by the limits')
+        self.checks_as('0.00 h (0 s), at most 9.04 h (9 h 02 min) if stages run to their limits')
         self.assertIn('| shear/never-run | 0.00 … 9.0 | | | | |\n', self.written()[1])
 
     def test_full_descriptions_without_figures_are_listed_too(self):

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <thread>
+#include <utility>
 
 #include "app/options.hpp"
 #include "app/progress_bar.hpp"
@@ -86,9 +87,10 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   for (const auto& [name, engine] : components.engines)
     if (engine->phase() == Phase::forces) std::cout << ", " << name;
   std::cout << ", probes, wall motion, integration";
+  const char* before = " with ";
   for (const auto& [name, engine] : components.engines)
-    if (engine->phase() == Phase::settings) std::cout << " with " << name;
-  std::cout << "\n\nbodies: " << bodies << ", touching pairs at the start: " << kernel.state().pairs.touching_count()
+    if (engine->phase() == Phase::settings) std::cout << std::exchange(before, ", ") << name;
+  std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.state().pairs.touching_count()
             << '\n';
   std::map<std::string, std::size_t> coming;  // by stage
   std::size_t all_bodies = bodies;
@@ -120,7 +122,6 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const double dt =
       cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_fraction * safe) : kernel.world().dt();
   double least = 0, most = 0;  // s times bodies
-  bool unknown = false;
   std::size_t present = bodies;
   std::vector<StageTime> times;
   through_stages(description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
@@ -139,7 +140,6 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     const StageTime& time = times[i];
     present += coming[stage.name];
     least += time.least * static_cast<double>(present), most += time.most * static_cast<double>(present);
-    unknown = unknown || (!time.known && !time.usual);
     const double shown = time.known || time.usual ? time.least : time.most;
     std::cout << "  " << std::setw(16) << stage.name
               << (time.known   ? ""
@@ -156,8 +156,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
             << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(least) / 3600
             << " h (" << duration_text(cost(least)) << ')';
   if (most > least)
-    std::cout << (unknown ? " plus stages that end by a condition" : "") << ", at most " << cost(most) / 3600
-              << " h, by the limits of stages that end by a condition";
+    std::cout << ", at most " << cost(most) / 3600 << " h (" << duration_text(cost(most))
+              << ") if stages run to their limits";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));

@@ -110,8 +110,9 @@ ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodie
 void print_speed(const RunSummary& summary) {
   double all = 1e-9;
   for (const PhaseTime& phase : summary.phases) all += phase.seconds;
-  std::cout << summary.steps << " steps of " << summary.bodies << " bodies in " << duration_text(summary.wall_seconds)
-            << ", " << std::round(1e-4 * summary.particle_steps_per_second) / 100 << " M particle-steps/s (";
+  std::cout << summary.steps << " steps of " << summary.bodies << (summary.bodies == 1 ? " body in " : " bodies in ")
+            << duration_text(summary.wall_seconds) << ", " << std::round(1e-4 * summary.particle_steps_per_second) / 100
+            << " M particle-steps/s (";
   for (std::size_t i = 0; i < summary.phases.size(); ++i)
     std::cout << (i > 0 ? ", " : "") << summary.phases[i].name << ' '
               << std::lround(100 * summary.phases[i].seconds / all) << " %";
@@ -154,7 +155,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::optional<Liste
   });
 
   Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(bodies), threads, &curves));
-  say(std::to_string(simulation.world().positions().size()) + " bodies, " + std::to_string(threads) +
+  const std::size_t count = simulation.world().positions().size();
+  say(std::to_string(count) + (count == 1 ? " body, " : " bodies, ") + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());
   simulation.interrupt_when([&] { return interrupted.load(); });
   simulation.on_checkpoint([&](const Checkpoint& now) { results.checkpoint(now); },

@@ -44,7 +44,9 @@ struct LinearRolling : LawBase {
           .symbol("eta_t")
           .at_least(0)
           .at_most(100)
-          .doc("limit of the twisting moment over normal force times radius; two materials: the smaller value");
+          .doc(
+              "limit of the twisting moment over normal force times radius; the smaller of two materials, unless an "
+              "interface gives it");
     }
   };
 

@@ -30,7 +30,7 @@ void declare_friction_angle(Parameters& p, T& value) {
       .symbol("phi")
       .at_least(0)
       .below(std::numbers::pi / 2)
-      .doc("friction angle, tan(phi) is the coefficient; two materials: the smaller value");
+      .doc("friction angle, tan(phi) is the coefficient; the smaller of two materials, unless an interface gives it");
 }
 template <class T>
 void declare_restitution(Parameters& p, T& value) {
@@ -38,7 +38,9 @@ void declare_restitution(Parameters& p, T& value) {
       .symbol("e")
       .at_least(least_restitution)
       .at_most(1)
-      .doc("speed after over speed before a head-on collision; two materials: the smaller value; 1: no dashpot");
+      .doc(
+          "normal relative speed after over before a collision; 1: no dashpot; the smaller of two materials, unless an "
+          "interface gives it");
 }
 inline void declare_rolling_stiffness(Parameters& p, double& value) {
   p.add("rolling_stiffness", value)
@@ -53,7 +55,9 @@ void declare_rolling_limit(Parameters& p, T& value) {
       .symbol("eta")
       .at_least(0)
       .at_most(100)
-      .doc("limit of the rolling moment over normal force times radius; two materials: the smaller value");
+      .doc(
+          "limit of the rolling moment over normal force times radius; the smaller of two materials, unless an "
+          "interface gives it");
 }
 
 }  // namespace grit
