@@ -15,9 +15,10 @@ function(grit_testing)
   file(GLOB sources CONFIGURE_DEPENDS ${grit_TESTING_SOURCES}/*.cpp)
   add_library(grit_testing STATIC EXCLUDE_FROM_ALL ${sources})
   target_compile_options(grit_testing PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
-  if(TARGET grit_precompiled_tests)  # within grit's own tree
-    target_precompile_headers(grit_testing REUSE_FROM grit_precompiled_tests)
-  endif()
+  # Nearly all of a test's compilation is its headers'.
+  target_precompile_headers(grit_testing PRIVATE
+    <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp> <functional> <map> <memory> <optional> <set> <sstream> <string>
+    <variant> <vector> <gtest/gtest.h> $<$<TARGET_EXISTS:GTest::gmock>:<gmock/gmock.h$<ANGLE-R>>)
   set_target_properties(grit_testing PROPERTIES UNITY_BUILD OFF)  # one object per contract, so that a program links only those it uses
   target_link_libraries(grit_testing PUBLIC grit::grit grit::sdk GTest::gtest)
   add_library(grit::testing ALIAS grit_testing)
@@ -53,8 +54,8 @@ function(grit_plugin folder name)
     # Only the plugin is fully optimised; its test builds faster.
     target_compile_options(test_${target} PRIVATE -Wall -Wextra $<$<NOT:$<CONFIG:Debug>>:-O1>)
     target_link_libraries(test_${target} PRIVATE ${target}_objects grit::testing GTest::gmock GTest::gtest_main)
-    if(TARGET grit_precompiled_tests)
-      target_precompile_headers(test_${target} REUSE_FROM grit_precompiled_tests)
+    if(TARGET grit_precompiled_hidden)
+      target_precompile_headers(test_${target} REUSE_FROM grit_testing)
       target_include_directories(test_${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
     endif()
     gtest_discover_tests(test_${target} TEST_PREFIX "${folder}/${name}: " DISCOVERY_MODE PRE_TEST

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs the dependencies of grit on Debian 12. Needs root or sudo only if something is missing; can be run again.
-#   install-deps.sh [--run | --viewers]
-#     --run      only what building and running grit needs: no libraries for tests and benchmarks
-#     --viewers  also Chromium and ParaView (1 GB), in which some tests open results as users do
+#   install-deps.sh [--run | --viewers | --sanitizers]
+#     --run         only what building and running grit needs: no libraries for tests and benchmarks
+#     --viewers     also Chromium and ParaView (1 GB), in which some tests open results as users do
+#     --sanitizers  also what the presets sanitize-address and sanitize-thread link, and what names functions in their reports
 set -euo pipefail
 
 packages=(
@@ -25,12 +26,14 @@ for_tests=(
   python3 python3-h5py               # tests of vector instructions and of the documentation
 )
 viewers=(chromium paraview python3-paraview xvfb)
+sanitizers=(libclang-rt-16-dev llvm-16)
 case ${1-} in
   --run) ;;
   '') packages+=("${for_tests[@]}") ;;
   --viewers) packages+=("${for_tests[@]}" "${viewers[@]}") ;;
+  --sanitizers) packages+=("${for_tests[@]}" "${sanitizers[@]}") ;;
   *)
-    echo "install-deps: unknown option '$1'; usage: install-deps.sh [--run | --viewers]" >&2
+    echo "install-deps: unknown option '$1'; usage: install-deps.sh [--run | --viewers | --sanitizers]" >&2
     exit 1
     ;;
 esac
