@@ -42,7 +42,7 @@ TEST(MapFields, AreOfferedTheMostInformativeFirst) {
 }
 
 TEST(MapFields, OmitCounters) {
-  for (const char* name : {"id", "bodies", "began_at"}) EXPECT_TRUE(is_bookkeeping(field(name, "1", ""))) << name;
+  for (const char* name : {"id", "bodies", "start_position"}) EXPECT_TRUE(is_bookkeeping(field(name, "1", ""))) << name;
   for (const char* name : {"void_ratio", "coordination_number", "my_own"})
     EXPECT_FALSE(is_bookkeeping(field(name, "1", ""))) << name;
 }

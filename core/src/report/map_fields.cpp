@@ -11,7 +11,7 @@ namespace {
 using std::string_view;
 
 constexpr std::array<string_view, 10> bookkeeping{"id",    "bodies", "grains", "contacts", "chain",
-                                                  "count", "number", "step",   "samples",  "began_at"};
+                                                  "count", "number", "step",   "samples",  "start_position"};
 
 constexpr std::array<string_view, 10> informative{
     "void_ratio", "strain",      "displacement",      "rotation",       "velocity",

@@ -120,7 +120,7 @@ std::vector<Field> Strain::fields(const World& world) {
   std::vector<Field> fields{
       {"centre", "m", "centre of each subset, which moves with its bodies; across the plane, of the specimen", 3, {}},
       {"size", "m", "distance of neighbouring subsets, and depth of the specimen", 3, {}},
-      {"began_at", "m", "centre along " + a + " and " + b + " at the start of the stage", 2, {}, {a, b}},
+      {"start_position", "m", "centre along " + a + " and " + b + " at the start of the stage", 2, {}, {a, b}},
       {"bodies", "1", "number of bodies whose centres were in the subset", 1, {}},
       {"strain",
        "1",

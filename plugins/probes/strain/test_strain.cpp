@@ -76,7 +76,7 @@ TEST(Strain, IsLocal) {
   probe.prepare(world);
   const auto fields = probe.fields(world);
   int below = 0, above = 0;
-  const auto &began = values_of(fields, "began_at"), &strain = values_of(fields, "strain");
+  const auto &began = values_of(fields, "start_position"), &strain = values_of(fields, "strain");
   for (std::size_t s = 0; s < strain.size() / 3; ++s) {
     const double z = began[2 * s + 1];
     const double shear = strain[3 * s + 2];
@@ -122,7 +122,7 @@ TEST(Strain, CountsBodiesThatCrossedAPeriodicSideWhereTheyBegan) {
   Strain probe;
   for (const double strain : channel_values(probe, world, "strain")) EXPECT_NEAR(strain, 0, 1e-12);
   const auto fields = probe.fields(world);
-  for (const double place : values_of(fields, "began_at")) EXPECT_LT(place, 0.06);
+  for (const double place : values_of(fields, "start_position")) EXPECT_LT(place, 0.06);
   const auto& centre = values_of(fields, "centre");
   double least = 1;
   for (std::size_t i = 0; i < centre.size(); i += 3) {
@@ -137,7 +137,7 @@ TEST(Strain, HasItsSubsetsGoAsTheirBodiesDo) {
   Strain probe;
   const auto fields = probe.fields(world);
   const auto &centre = values_of(fields, "centre"), &size = values_of(fields, "size"),
-             &began = values_of(fields, "began_at");
+             &began = values_of(fields, "start_position");
   ASSERT_EQ(centre.size() / 3, began.size() / 2);
   ASSERT_EQ(size.size(), centre.size());
   for (std::size_t s = 0; s < centre.size() / 3; ++s) {
