@@ -90,7 +90,7 @@ std::optional<LiveScene::Number> LiveScene::found(const NumberPointer& place) {
     current_.declare(place, &*law_, live);
     law_.set_from_outside();
   } else if (place.section != "engines") {
-    if (!number->is_declared()) return std::nullopt;  // of a geometry, which is made anew
+    if (!number->is_declared()) return std::nullopt;  // a geometry is constructed again instead
     return Number{*number, std::nullopt};
   } else if (!engines_.declare(place.name, live)) {
     return std::nullopt;
