@@ -41,7 +41,8 @@ TEST(Descriptions, AllProblemsAreReportedAtOnceWithTheirLocations) {
         outcome.err,
         AllOf(
             HasSubstr("bad.json:2: /contacts/type: unknown contact \"linear-roling\"; did you mean \"linear-rolling\"? "
-                      "allowed are hertz-mindlin, linear-frictional, linear-rolling"),
+                      "Allowed are hertz-mindlin, linear-frictional, linear-rolling; searched: " GRIT_PLUGIN_DIR
+                      "/contacts; --plugin-path DIR or GRIT_PLUGIN_PATH=DIR adds DIR/contacts\n"),
             HasSubstr("bad.json:3: /materials/sand/density: "), HasSubstr("kPa"), HasSubstr("kg/m^3"),
             HasSubstr("bad.json:4: /bodies/grains/materials: "), HasSubstr("\"material\""),
             HasSubstr("bad.json:5: /bodies/grains/source/bodies/0/radius: found -1 mm; allowed is above 0 mm"),
@@ -50,6 +51,77 @@ TEST(Descriptions, AllProblemsAreReportedAtOnceWithTheirLocations) {
             EndsWith("problems in the description\n")));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST(Descriptions, KeysOfAFileAreSuggestedAndListed) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto problems = [&](const std::string& text, std::vector<std::string> sets = {}) {
+    folder.write("bad.json", text);
+    std::vector<std::string> words{"check", "bad.json"};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 2);
+    return outcome.err;
+  };
+  const std::string all =
+      "? Allowed are title, seed, contacts, materials, interfaces, domain, bodies, walls, engines, specimen, "
+      "time_step, "
+      "guards, stages, probes, output, scenario, extends\ngrit: 1 problem in the description\n";
+  EXPECT_EQ(problems("{\n\"scenaro\": {\"type\": \"direct-shear\"},\n\"walls\": {\"platen\": {}}}"),
+            "bad.json:2: /scenaro: unknown key \"scenaro\"; did you mean \"scenario\"" + all)
+      << "what the scenario would give is not missing";
+  EXPECT_EQ(problems("{\"extend\": \"two.json\"}"),
+            "bad.json:1: /extend: unknown key \"extend\"; did you mean \"extends\"" + all);
+  EXPECT_THAT(problems("{\"extra\": 1}"), AllOf(HasSubstr("unknown key \"extra\""), HasSubstr("scenario, extends\n"),
+                                                HasSubstr("missing key \"stages\"")));
+  EXPECT_THAT(
+      problems(two_grains, {"/extends=two.json"}),
+      HasSubstr("--set: /extends: found \"extends\", which has an effect in a file only; write it in the file\n"));
+}
+
+TEST(Descriptions, NamesThatAreMeantAreSuggested) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto problem = [&](const std::string& set) {
+    const auto outcome =
+        grit_in(folder.path(), {"check", "two.json", "--set",
+                                R"(/walls={"bottom": {"type": "plane", "point": [0, 0, "-5 mm"], "material": "sand"}})",
+                                "--set", set});
+    EXPECT_EQ(outcome.status, 2) << set;
+    EXPECT_THAT(outcome.err, HasSubstr("1 problem")) << set;
+    return outcome.err;
+  };
+  EXPECT_THAT(problem("/bodies/grains/material=snad"),
+              HasSubstr("/bodies/grains/material: found the material \"snad\", which is not defined; did you mean "
+                        "\"sand\"? Allowed is one of sand\n"));
+  EXPECT_THAT(problem(R"(/stages/0/until={"type": "pressure", "wall": "botom", "value": 1})"),
+              HasSubstr("/stages/0/until/wall: found the wall \"botom\", which is not defined; did you mean "
+                        "\"bottom\"? Allowed is one of bottom\n"));
+  EXPECT_THAT(problem(R"(/probes/packing/stages=["prat"])"),
+              HasSubstr("/probes/packing/stages/0: found the stage \"prat\", which is not defined; did you mean "
+                        "\"part\"? Allowed is one of part\n"));
+  EXPECT_THAT(
+      problem(R"(/stages/0/change={"walls": {"botom": {"point": [0, 0, 0]}}})"),
+      HasSubstr("/stages/0/change/walls/botom: found a wall that does not exist at the start of the run; did you "
+                "mean \"bottom\"? Allowed are the walls of /walls: bottom. Define it there"));
+  EXPECT_THAT(problem(R"(/stages/0/change={"wals": {}})"),
+              HasSubstr("/stages/0/change/wals: found a change of \"wals\"; did you mean \"walls\"? Allowed is one of "
+                        "materials, "));
+  EXPECT_THAT(
+      problem(R"(/stages/0/ramps=[{"pointer": "/walls/botom/motion/velocity/2", "from": 0, "to": 1, "duration": 1}])"),
+      HasSubstr("/stages/0/ramps/0/pointer: found \"botom\", which is not defined in /walls; did you mean "
+                "\"bottom\"? Allowed is one of bottom\n"));
+  EXPECT_THAT(
+      problem(R"(/stages/0/ramps=[{"pointer": "/wals/bottom/motion/velocity/2", "from": 0, "to": 1, "duration": 1}])"),
+      HasSubstr("/stages/0/ramps/0/pointer: found \"/wals/bottom/motion/velocity/2\"; did you mean \"walls\"? "
+                "Allowed is a JSON pointer below one of materials, "));
+  EXPECT_THAT(problem(R"(/domain={"low": [0, 0, 0], "open_sides": ["-X"]})"),
+              HasSubstr("/domain/open_sides/0: found \"-X\"; did you mean \"-x\"? Allowed is one of -x, "));
+  EXPECT_THAT(
+      problem(R"(/output/summary=["packing/void_rato"])"),
+      HasSubstr("/output/summary/0: found \"packing/void_rato\", which is not a scalar channel of any probe; did "
+                "you mean \"packing/void_ratio\"? Allowed is one of packing/time, "));
 }
 
 TEST(Descriptions, AStudyIsDistinguishedFromADescription) {
@@ -313,13 +385,17 @@ TEST(Descriptions, AreRefusedForFaultsOfTheFirstInstant) {
     }
   };
   expect(start + middle + "-1" + end + "}",
-         "box.json:10: /walls/floor: body 0 at (0, 0, 0.02) m overlaps wall \"floor\" by 5 of its radius");
+         "box.json:10: /walls/floor: wall \"floor\" faces away from the bodies: 1 of 1 have their centres behind it");
   expect(start + R"(, {"position": [0, 0, 0.021], "radius": 0.005})" + middle + "1" + end + "}",
          "box.json:5: /bodies/sand: body 0 at (0, 0, 0.02) m overlaps body 1 by 1.8 of its radius");
   expect(start + middle + "1" + end + ",\n  \"time_step\": {\"value\": 1}}",
          "box.json:13: /time_step/value: the time step 1 s is above the critical one, ");
   expect(start + middle + "1" + end + ",\n  \"domain\": {\"low\": [-1, -1, 0], \"high\": [1, 1, 0.01]}}",
-         "box.json:5: /bodies/sand: a body at (0.000000, 0.000000, 0.020000) m is outside the domain");
+         "box.json:5: /bodies/sand: a body at (0, 0, 0.02) m is outside the domain");
+  expect(start + R"(, {"position": [0, 0, 0.05], "radius": 0.005})" + middle + "1" + end +
+             ",\n  \"domain\": {\"low\": [-1, -1, 0], \"high\": [1, 1, 0.01]}}",
+         "box.json:5: /bodies/sand: 2 bodies, the first at (0, 0, 0.02) m, are outside the domain; enlarge /domain or "
+         "move the bodies");
   expect(start + middle + "1" + end + ",\n  \"output\": {\"summary\": [\"packing/none\"]}}",
          "box.json:13: /output/summary/0: found \"packing/none\", which is not a scalar channel of any probe");
 }
@@ -374,11 +450,8 @@ TEST(Descriptions, ProbesAndWallsThatDoNotFitTheSceneAreLocated) {
     return outcome.err;
   };
   for (const std::string does : {"check", "run"}) {
-    EXPECT_THAT(
-        refusal(does, {curve}),
-        HasSubstr(
-            "two.json:8: /probes/force/walls: found \"plat\", which is not a wall; the nearest name is \"plate\"; "
-            "allowed is one of the walls plate\n"));
+    EXPECT_THAT(refusal(does, {curve}), HasSubstr("two.json:8: /probes/force/walls: found \"plat\", which is not a "
+                                                  "wall; did you mean \"plate\"? Allowed is one of the walls plate\n"));
     EXPECT_THAT(
         refusal(does, {plate}),
         HasSubstr("two.json:11: /probes/curve/curves/speed/formula: found \"2 * plate_sped\": the unknown name"));
@@ -467,6 +540,67 @@ TEST(Descriptions, CheckReportsWallsOutOfReach) {
       check({domain, lid("20 mm"), R"(/stages/0/change={"walls": {"lid": {"motion": {"velocity": [0, 0, -1]}}}})"}),
       testing::Not(told))
       << "it comes in a stage";
+}
+
+TEST(Descriptions, CheckReportsAGeometryThatAStageRepeats) {
+  const OwnFolder folder;
+  const auto check = [&](const std::string& change, const std::string& second = "{}") {
+    auto scene = json::parse(two_grains);
+    scene["walls"]["lid"] = {
+        {"type", "plane"}, {"material", "sand"}, {"point", {0, 0, -0.01}}, {"motion", {{"velocity", {0, 0, -0.1}}}}};
+    auto next = scene["stages"][0];
+    scene["stages"][0]["change"] = {{"walls", {{"lid", json::parse(change)}}}};
+    next["name"] = "next", next["change"] = {{"walls", {{"lid", json::parse(second)}}}};
+    scene["stages"].push_back(next);
+    folder.write("lid.json", scene.dump());
+    const auto outcome = grit_in(folder.path(), {"check", "lid.json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string why =
+      "/point: the wall has this value already; its motion so far is added, so that this does not put it back\n";
+  EXPECT_THAT(check(R"({"point": [0, 0, "-10 mm"], "motion": null})"),
+              HasSubstr("\nwithout effect\n  /stages/0/change/walls/lid" + why));
+  EXPECT_THAT(check(R"({"point": [0, 0, "-11 mm"]})"), testing::Not(HasSubstr("/change/walls/lid")));
+  EXPECT_THAT(check(R"({"point": [0, 0, "-11 mm"]})", R"({"point": [0, 0, -0.011], "material": "sand"})"),
+              AllOf(HasSubstr("  /stages/1/change/walls/lid" + why), testing::Not(HasSubstr("/stages/0/change"))));
+  EXPECT_THAT(check(R"({"point": [0, 0, "-11 mm"]})", R"({"point": [0, 0, -0.01]})"),
+              testing::Not(HasSubstr("/change/walls/lid")));
+}
+
+TEST(Descriptions, CheckWarnsWhereNothingMovesTheBodies) {
+  const OwnFolder folder;
+  auto cloud = json::parse(two_grains);
+  cloud["bodies"]["grains"]["source"] = {{"type", "cloud"},
+                                         {"low", {0, 0, 0}},
+                                         {"high", {0.02, 0.02, 0.02}},
+                                         {"count", 20},
+                                         {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 2e-3}}}};
+  cloud["walls"]["floor"] = {{"type", "plane"}, {"material", "sand"}, {"point", {0, 0, -0.01}}};
+  folder.write("cloud.json", cloud.dump());
+  folder.write("two.json", two_grains);
+  const auto check = [&](std::vector<std::string> sets, const std::string& file = "cloud.json") {
+    std::vector<std::string> words{"check", file};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string warning =
+      "\nwarning\n  /engines: nothing moves the bodies: they are at rest without contacts, no wall "
+      "moves, and there is neither gravity nor another force; add \"gravity\": ";
+  EXPECT_THAT(check({}), HasSubstr(warning));
+  EXPECT_THAT(check({R"(/engines={"damping": {"type": "local-damping"}})"}), HasSubstr(warning));
+  EXPECT_THAT(check({R"(/engines={"gravity": {"type": "gravity", "acceleration": [0, 0, 0]}})"}), HasSubstr(warning));
+  const auto none = testing::Not(HasSubstr("nothing moves the bodies"));
+  EXPECT_THAT(check({}, "two.json"), none) << "they push each other apart";
+  EXPECT_THAT(check({R"(/engines={"gravity": {"type": "gravity"}})"}), none);
+  EXPECT_THAT(check({R"(/stages/0/change={"engines": {"gravity": {"type": "gravity"}}})"}), none) << "in a stage";
+  EXPECT_THAT(check({R"(/bodies/grains/velocity=[0, 0, "-1 m/s"])"}), none);
+  EXPECT_THAT(check({R"(/walls/floor/motion={"velocity": [0, 0, "1 mm/s"]})"}), none);
+  EXPECT_THAT(check({R"(/walls/floor/motion={"servo": {"force": 1, "max_velocity": 1}})"}), none);
+  EXPECT_THAT(check({R"(/stages/0/change={"walls": {"floor": {"point": [0, 0, 0.001]}}})"}), none);
+  EXPECT_THAT(check({R"(/stages/0/growth={"rate": 1})"}), none);
 }
 
 TEST(Descriptions, CheckReportsADepthWithMoreContactsThanScatterJustifies) {
@@ -619,7 +753,7 @@ TEST(Descriptions, FilesThatCannotBeReadEndWithStatus5) {
   EXPECT_THAT(outcome.err, HasSubstr("missing.json: cannot be read: No such file or directory"));
   outcome = grit_in(folder.path(), {"run", "directory.json"});
   EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.err, HasSubstr("directory.json: cannot be read: it is a directory"));
+  EXPECT_THAT(outcome.err, HasSubstr("directory.json: cannot be read: Is a directory"));
 }
 
 TEST(Check, ReportsTheRun) {
@@ -717,6 +851,29 @@ TEST(Expand, AppliesSets) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(json::parse(outcome.out).at("seed"), 7);
   EXPECT_EQ(json::parse(outcome.out).at("title"), "other");
+}
+
+TEST(Expand, AnObjectThatIsSetReplacesThatOfAFileAndIsMergedOntoThatOfAScenario) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const auto expand = [&](const std::string& file, const std::string& set) {
+    const auto outcome = grit_in(folder.path(), {"expand", file, "--set", set});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  EXPECT_EQ(expand("two.json", R"(/materials/sand={"friction_angle": 0.1})").at("materials").at("sand"),
+            json({{"friction_angle", 0.1}}));
+  const auto platen = expand(GRIT_SOURCE_DIR "/sims/direct-shear/quick.json", R"(/walls/platen={"material": "sand"})")
+                          .at("walls")
+                          .at("platen");
+  EXPECT_EQ(platen.at("material"), "sand");
+  EXPECT_TRUE(platen.contains("type"));
+  for (const char* command : {"run", "check", "expand", "advise"}) {
+    std::string help = grit_in(folder.path(), {command, "--help"}).out;
+    help = std::regex_replace(help, std::regex("\\s+"), " ");
+    EXPECT_THAT(help, HasSubstr("an object replaces that of the file and is merged onto that of a scenario"))
+        << command;
+  }
 }
 
 TEST(Schema, IsAJsonSchema) {

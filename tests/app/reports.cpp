@@ -106,6 +106,32 @@ TEST_F(Reports, LayCurvesOfSeveralFoldersOverEachOther) {
   EXPECT_FALSE(exists("results/stiff/curves-overlaid.svg"));
 }
 
+TEST_F(Reports, ListWhatDiffersBetweenRuns) {
+  for (const char* modulus : {"100", "200"})
+    ASSERT_EQ(grit({"run", "two.json", "--no-report", "--out", std::string("results/") + modulus, "--set",
+                    std::string("/materials/sand/contact_modulus=") + modulus + " MPa"})
+                  .status,
+              0);
+  ASSERT_EQ(grit({"report", "results/100", "results/200", "--out", "both.html"}).status, 0);
+  EXPECT_THAT(text("both.html"), HasSubstr("<td class=\"name\">/materials/sand/contact_modulus</td>"
+                                           "<td>100000000</td><td>200000000</td></tr>"))
+      << "in SI, as a description without a scenario is compared with all defaults";
+
+  // A guard stops them in the first step.
+  folder.write("shear.json", R"({"extends": ")" GRIT_SOURCE_DIR R"(/sims/direct-shear/quick.json"})");
+  folder.write("soft.json", R"({"extends": "shear.json", "scenario": {"normal_stress": "50 kPa"}})");
+  for (const char* name : {"shear", "soft"})
+    ASSERT_EQ(
+        grit({"run", std::string(name) + ".json", "--no-report", "--set", "/guards/travel=1e-9", "--set", "/seed=3"})
+            .status,
+        4);
+  ASSERT_EQ(grit({"report", "results/shear", "results/soft", "--out", "both.html"}).status, 0);
+  const std::string html = text("both.html"), row = "<tr class=\"differs\">";
+  EXPECT_THAT(html, HasSubstr(row + "<td class=\"name\">/scenario/normal_stress</td><td>200 kPa</td>"
+                                    "<td>50 kPa</td></tr>"));
+  EXPECT_EQ(html.find(row), html.rfind(row)) << "what follows from the scenario is not listed";
+}
+
 TEST_F(Reports, DrawTheOthersWhereAFolderIsBad) {
   for (const std::string name : {"two", "three"})
     ASSERT_EQ(grit({"run", "two.json", "--no-report", "--out", "results/" + name}).status, 0);

@@ -95,6 +95,8 @@ TEST(Usage, WrongWordsAreNamed) {
            {{"schema", "two.json"}, "'grit schema' takes no arguments"},
            {{"plugins", "box", "plane"}, "'grit plugins' takes one name, not 2"},
            {{"run", "two.json", "--frobnicate"}, "unrecognised option '--frobnicate'; see 'grit run --help'"},
+           {{"run", "two.json", "--treads", "2"},
+            "unrecognised option '--treads'; did you mean \"--threads\"? See 'grit run --help'"},
            {{"run", "two.json", "--thr", "2"}, "unrecognised option '--thr'"},
            {{"run", "two.json", "--out"}, "the required argument for option '--out' is missing"},
            {{"run", "two.json", "--threads", "0"}, "--threads takes a number from 1 to 1024, not \"0\""},

@@ -50,6 +50,21 @@ TEST_F(PackingFile, ReadsLinesCommentsAndBlanks) {
   EXPECT_EQ(grains[1].w, 7);
 }
 
+TEST_F(PackingFile, IsReadWhateverItsLineEndsAndByteOrderMark) {
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    for (const std::string mark : {"", "\xef\xbb\xbf"}) {
+      write(mark + "+0.01 0 0 0.005" + end + "# the second" + end + "-0.01 +1e-400 -0 +5e-3" + end);
+      const auto grains = read_packing(path_);
+      ASSERT_EQ(grains.size(), 2u);
+      EXPECT_EQ(xyz(grains[0]), Vec3(0.01, 0, 0));
+      EXPECT_EQ(xyz(grains[1]), Vec3(-0.01, 0, 0));
+      EXPECT_EQ(grains[1].w, 0.005);
+      const auto found = problems(mark + "1 2 3 4" + end + end + "1 2 3" + end);
+      ASSERT_EQ(found.size(), 1u);
+      EXPECT_EQ(found[0].line, 3);
+    }
+}
+
 TEST_F(PackingFile, IsReadBackIdentically) {
   Random random(1);
   std::vector<Row> grains;
@@ -84,17 +99,28 @@ TEST_F(PackingFile, WritesSeventeenDigitsAndItsComment) {
 }
 
 TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
-  const auto found =
-      problems("# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -4\n1e999 2 3 4\n");
+  using namespace std::string_literals;
+  const std::string text =
+      "# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -1e-7\n1e400 2 3 4\n0,01 2 3 "
+      "4\n"
+      "0.01, 2, 3, 4\n1 2 3 1mm\n1\0\xff 2 3 4\n1 2 3 1e-400\n"s;
+  std::vector<Problem> found = problems(text.substr(0, text.find("0.01,")));
+  // More than ten problems are not listed.
+  for (const auto& one : problems(std::string(11, '\n') + text.substr(text.find("0.01,")))) found.push_back(one);
   const std::pair<int, const char*> wanted[] = {
       {3, "found 3 numbers; expected four: x y z radius"},
-      {4, "z is \"x3\", not a number"},
+      {4, "z is \"x3\": not a number"},
       {5, "found 5 numbers; expected four: x y z radius"},
-      {6, "y is \"nan\", not a finite number in double's range"},
-      {7, "radius is \"inf\", not a finite number in double's range"},
-      {8, "radius is 0.000000 m; it must be above 0"},
-      {9, "radius is -4.000000 m; it must be above 0"},
-      {10, "x is \"1e999\", not a finite number in double's range"},
+      {6, "y is \"nan\": not finite"},
+      {7, "radius is \"inf\": not finite"},
+      {8, "radius is 0 m; it must be above 0"},
+      {9, "radius is -1e-07 m; it must be above 0"},
+      {10, "x is \"1e400\": beyond the largest number, 1.8e308"},
+      {11, "x is \"0,01\": numbers use a point, not a comma"},
+      {12, "x is \"0.01,\": a comma follows the number; separate numbers by blanks"},
+      {13, "radius is \"1mm\": text follows the number"},
+      {14, "x is \"1\\x00\\xff\": text follows the number"},
+      {15, "radius is 0 m; it must be above 0"},
   };
   ASSERT_EQ(found.size(), std::size(wanted));
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -131,9 +157,10 @@ TEST_F(PackingFile, ReportsWhyAFileCannotBeReadOrWritten) {
     return "";
   };
   const auto missing = folder_ / "nowhere" / "grains.txt";
-  EXPECT_EQ(message([&] { read_packing(missing); }),
-            missing.string() + ": cannot read grains: No such file or directory");
-  EXPECT_EQ(message([&] { read_packing(folder_); }), folder_.string() + ": cannot read grains: Is a directory");
+  EXPECT_EQ(message([&] { read_packing(missing); }), missing.string() + ": cannot be read: No such file or directory");
+  EXPECT_EQ(message([&] { read_packing(folder_); }), folder_.string() + ": cannot be read: Is a directory");
+  write("\xff\xfe");
+  EXPECT_EQ(message([&] { read_packing(path_); }), path_.string() + ": the file is UTF-16 text; save it as UTF-8");
   EXPECT_EQ(message([&] { write_packing(missing, {}); }),
             missing.string() + ".part: cannot write grains: No such file or directory");
   EXPECT_THAT(message([&] { write_packing(folder_, {}); }), testing::HasSubstr("cannot write grains: "));

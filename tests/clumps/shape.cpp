@@ -254,7 +254,7 @@ TEST(ClumpShape, MayHaveASphereThatHardlyProtrudes) {
     const Ball large = smallest_enclosing(balls);
     for (const Ball& one : balls) EXPECT_LE((xyz(one) - xyz(large)).norm() + one.w, large.w * (1 + 1e-12));
     EXPECT_LE(large.w, 1.08);
-    EXPECT_FALSE(clump_defect(balls)) << r;
+    EXPECT_THAT(clump_defects(balls), testing::IsEmpty()) << r;
   }
   const std::vector<Ball> pair{{0, 0, 0, 1}, {1, 0, 0, 1e-6}};
   EXPECT_NEAR(smallest_enclosing(pair).w, 1 + 0.5e-6, 1e-9);
@@ -262,17 +262,22 @@ TEST(ClumpShape, MayHaveASphereThatHardlyProtrudes) {
 
 TEST(ClumpShape, IsRejectedIfItIsNotOneBody) {
   const auto found = [](const std::vector<Ball>& balls) {
-    const auto defect = clump_defect(balls);
-    return defect ? defect->found : "nothing";
+    std::string all;
+    for (const ClumpDefect& one : clump_defects(balls)) all += (all.empty() ? "" : "\n") + one.found;
+    return all;
   };
   EXPECT_EQ(found({}), "0 spheres");
   EXPECT_EQ(found(std::vector<Ball>(65, Ball{0, 0, 0, 1})), "65 spheres");
   EXPECT_EQ(found({{0, 0, 0, 1}, {2.1, 0, 0, 1}}), "sphere 2, which is not connected with sphere 1");
   EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}, {4, 0, 0, 1}, {5, 0, 0, 1}}),
-            "sphere 3, which is not connected with sphere 1");
+            "sphere 3, which is not connected with sphere 1\nsphere 4, which is not connected with sphere 1");
+  EXPECT_EQ(found({{9, 0, 0, 1}, {0, 0, 0, 1}, {1, 0, 0, 1}, {0.1, 0, 0, 0.2}, {8, 0, 0, 0.1}}),
+            "sphere 1, which is not connected with sphere 2\nsphere 4, which is inside sphere 2\n"
+            "sphere 5, which is not connected with sphere 2");
   EXPECT_EQ(found({{0.1, 0, 0, 0.2}, {0, 0, 0, 1}}), "sphere 1, which is inside sphere 2");
-  EXPECT_EQ(found({{0, 0, 0, 1}, {0, 0, 0, 1}}), "sphere 1, which is inside sphere 2");
-  EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}}), "nothing");
+  EXPECT_EQ(found({{0, 0, 0, 1}, {0, 0, 0, 1}}), "sphere 2, which is inside sphere 1")
+      << "one of two equal ones is enough";
+  EXPECT_EQ(found({{0, 0, 0, 1}, {1, 0, 0, 1}}), "");
   EXPECT_THROW(make_clump_shape(std::vector<Ball>{{0, 0, 0, 1}, {2.1, 0, 0, 1}}), Error);
 }
 

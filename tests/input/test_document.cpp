@@ -48,6 +48,46 @@ TEST(Document, EveryValueHasItsLine) {
   EXPECT_EQ(document.origin("/c/not/there").pointer, "/c/not/there");
 }
 
+TEST(Document, IsReadWhateverItsLineEndsAndByteOrderMark) {
+  const Folder folder;
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    for (const std::string mark : {"", "\xef\xbb\xbf"}) {
+      const std::string text = mark + "{" + end + "\"a\": 1" + end + ",\"b\": [" + end + end + "2]}" + end;
+      for (const Document& document : {Document::load(folder.write("a.json", text)), Document::parse(text, "text")}) {
+        EXPECT_EQ(document.json(), Description::parse(R"({"a": 1, "b": [2]})"));
+        EXPECT_EQ(document.origin("/a").line, 2);
+        EXPECT_EQ(document.origin("/b").line, 3);
+        EXPECT_EQ(document.origin("/b/0").line, 5);
+      }
+      EXPECT_THAT(problems_of(folder.write("b.json", mark + "{\"a\": 1," + end + "\"b\": }" + end)),
+                  HasSubstr("b.json:2: not JSON: syntax error"));
+    }
+}
+
+TEST(Document, ThatIsUtf16IsRefused) {
+  const Folder folder;
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"}) {
+    const auto path = folder.write("a.json", mark);
+    EXPECT_THAT([&] { Document::load(path); },
+                testing::ThrowsMessage<FileError>(path.string() + ": the file is UTF-16 text; save it as UTF-8"));
+    EXPECT_THAT([&] { Document::parse(mark, "text"); },
+                testing::ThrowsMessage<FileError>("text: the file is UTF-16 text; save it as UTF-8"));
+  }
+}
+
+TEST(Document, ProblemsShowControlCharacters) {
+  const Folder folder;
+  const auto document = Document::parse(R"({"a\u0000b": "x\u001b[1m\u0000y"})", "text");
+  const std::string key("/a\0b", 4);
+  EXPECT_EQ(describe_value(document.json().front()), "the text \"x\\x1b[1m\\x00y\"");
+  const Problem problem = document.problem(key, "unknown key " + key);
+  EXPECT_EQ(problem.pointer, "/a\\x00b");
+  EXPECT_EQ(problem.message, "unknown key /a\\x00b");
+  EXPECT_THAT(problems_of(folder.write("a.json", R"({"a\u0000b": 1, "a\u0000b": 2})")),
+              HasSubstr("a.json:1: /a\\x00b: the key \"a\\x00b\" appears twice, first in line 1"));
+  EXPECT_THAT(problems_of(folder.write("b.json", "{\"a\": \"\xff\"}")), HasSubstr("last read: '\"\\xff'"));
+}
+
 TEST(Document, CommentsAreDroppedWhateverTheyHold) {
   const Folder folder;
   const auto document = Document::load(folder.write(

@@ -13,12 +13,14 @@ namespace {
 
 struct Round {
   static constexpr const char* type_name = "round";
+  static constexpr const char* type_doc = "a ball";
   double radius = 0.5;
   void declare(Parameters& p) { p.add("radius", radius).unit("m").above(0).doc("of the thing"); }
 };
 struct Tree;
 struct Tall {
   static constexpr const char* type_name = "tall";
+  static constexpr const char* type_doc = "a stack of parts";
   std::vector<std::unique_ptr<Tree>> parts;
   void declare(Parameters& p);
 };
@@ -169,7 +171,7 @@ TEST(Reader, ReportsEveryProblemAtOnce) {
       "flag": 1, "word": "tow", "place": [1, 2], "lengths": [-1, 1], "names": ["a", 2], "rond": 1, "list": [],
       "by_name": {"a": {"radius": 0}, "b c": {}}, "tree": {"type": "tall", "parts": [{"type": "rund"}, {}]}})"));
   for (const char* line :
-       {"test: /rond: unknown key \"rond\"; did you mean \"round\"? allowed are modulus, share, limit",
+       {"test: /rond: unknown key \"rond\"; did you mean \"round\"? Allowed are modulus, share, limit",
         "test: /modulus: found the text \"2 m\"; allowed is a number of Pa, or a text with a number and one of Pa, kPa",
         "test: /share: found 2; allowed is from 0 to 1",
         "test: /limit: found the text \"5\", a number without a unit; allowed is a number of s",
@@ -179,7 +181,7 @@ TEST(Reader, ReportsEveryProblemAtOnce) {
         "test: /lengths/0: found -1 m; allowed is above 0 m", "test: /names/1: found the number 2; allowed is a text",
         "test: /list: found 0 entries; allowed are 1 or more",
         "test: /by_name/a/radius: found 0 m; allowed is above 0 m", "test: /by_name/b c: found the name \"b c\"",
-        "test: /tree/parts/0/type: unknown shape \"rund\"; did you mean \"round\"? allowed are round, tall",
+        "test: /tree/parts/0/type: unknown shape \"rund\"; did you mean \"round\"? Allowed are round, tall",
         "test: /tree/parts/1: missing key \"type\", the shape; allowed are round, tall"})
     EXPECT_THAT(text, HasSubstr(line));
   EXPECT_EQ(std::ranges::count(text, '\n'), 14) << text;
@@ -239,5 +241,6 @@ TEST(Reference, ListsEveryParameter) {
   EXPECT_EQ(line("place"), "place 3 × m 1 m, 2 m, 3 m any");
   EXPECT_EQ(line("  radius"), " radius m 0.5 m above 0 m of the thing");
   EXPECT_EQ(line("  type"), " type one of required round, tall shape");
+  EXPECT_EQ(line("    \"round\""), " \"round\" a ball");
   EXPECT_EQ(line("        type"), " type one of required round, tall shape, as above");
 }

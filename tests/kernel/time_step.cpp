@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernel/time_step_control.hpp"
+#include "kernel/world_view.hpp"
 #include "two_spheres.hpp"
 
 namespace grit::test::time_step_tests {
@@ -16,11 +17,12 @@ class TimeStep : public testing::Test {
     evaluate(state_);
   }
   double set() {
-    control_.set(state_, bounds_, passes_.team());
+    control_.set(state_, view_, bounds_, passes_);
     return state_.time.dt;
   }
   State state_;
   Passes passes_{1};
+  WorldView view_{state_, passes_};
   TimeStepControl control_;
   DisplacementBounds bounds_;
 };
@@ -57,6 +59,35 @@ TEST_F(TimeStep, PrescribedAboveTheCriticalOneIsRefused) {
   }
   state_.settings.time_step.allow_unstable = true;
   EXPECT_EQ(set(), 1);
+}
+
+TEST_F(TimeStep, IsStableWithTheRatesOfEngines) {
+  class Damper final : public Engine {
+   public:
+    void declare(Parameters&) override {}
+    Phase phase() const override { return Phase::forces; }
+    EngineRates rates(const World&) const override { return {.stiffness = 0, .damping = 1e9}; }
+  } damper;
+  state_.settings.time_step.steps_per_impact = 0;
+  const double without = set();
+  state_.settings.force_engines = {&damper};
+  EXPECT_LT(set(), without);
+  EXPECT_NEAR(control_.critical(), 2e-9, 1e-12) << "2 m/c for a dashpot alone";
+}
+
+TEST_F(TimeStep, WithoutBodiesIsThatOfTheGroups) {
+  set();
+  const double with_bodies = control_.critical();
+  State empty = two_spheres(1.99 * radius);
+  empty.settings.of_groups = demand_without_contacts(empty.bodies, *empty.settings.law);
+  empty.bodies = {};
+  Passes none(1);
+  TimeStepControl control;
+  control.update_stiffening(empty);
+  search(empty, none);
+  DisplacementBounds bounds;
+  control.set(empty, WorldView(empty, none), bounds, none);
+  EXPECT_NEAR(control.critical(), with_bodies, 1e-12 * with_bodies);
 }
 
 TEST_F(TimeStep, OfLinearSpringsDoesNotFollowOverlaps) {

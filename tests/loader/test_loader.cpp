@@ -10,10 +10,10 @@
 #include <ostream>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "plugins/build_facts.hpp"
 #include "plugins/component.hpp"
 #include "plugins/loader.hpp"
-#include "plugins/nearest.hpp"
 #include "plugins/registry.hpp"
 
 namespace grit {
@@ -100,19 +100,23 @@ TEST(Loader, SaysWhatThereIsForAnUnknownName) {
   directory.write_text("cylinder");
   const Registry registry({directory.path(), "/nowhere"});
   const auto error = error_of([&] { registry.make<BodyKind>("spehre"); });
-  EXPECT_THAT(error, HasSubstr("unknown body plugin \"spehre\", perhaps \"sphere\""));
+  EXPECT_THAT(error, HasSubstr("unknown body plugin \"spehre\"; did you mean \"sphere\"?\n"));
   EXPECT_THAT(error, HasSubstr("available: cylinder, sphere"));
   EXPECT_THAT(error,
-              HasSubstr("searched: " + directory.path().string() + "/bodies, /nowhere/bodies (no such directory)"));
-  EXPECT_THAT(error, HasSubstr("copy spehre.so there"));
-  EXPECT_THAT(error, HasSubstr("--plugin-path or GRIT_PLUGIN_PATH"));
+              HasSubstr("searched: " + directory.path().string() +
+                        "/bodies, /nowhere/bodies (no such directory); --plugin-path DIR or GRIT_PLUGIN_PATH=DIR adds "
+                        "DIR/bodies"));
+  EXPECT_EQ(registry.search_text(),
+            "searched: " + directory.path().string() +
+                ", /nowhere (no such directory); --plugin-path DIR or GRIT_PLUGIN_PATH=DIR adds "
+                "DIR");
 }
 
 TEST(Loader, GuessesNoNameThatIsFarOff) {
   const Directory directory;
   directory.write_text("sphere");
   const Registry registry({directory.path()});
-  EXPECT_THAT(error_of([&] { registry.info("body", "tetrahedron"); }), Not(HasSubstr("perhaps")));
+  EXPECT_THAT(error_of([&] { registry.info("body", "tetrahedron"); }), Not(HasSubstr("did you mean")));
 }
 
 TEST(Loader, SaysThatThereIsNothing) {
@@ -122,9 +126,10 @@ TEST(Loader, SaysThatThereIsNothing) {
 
 TEST(Loader, RefusesAKindThatIsNone) {
   const Registry registry({fixtures});
-  EXPECT_THAT(error_of([&] { registry.names("prob"); }),
-              "unknown kind of plugin \"prob\", perhaps \"probe\"; allowed are body, contact, engine, geometry, probe, "
-              "scenario");
+  EXPECT_THAT(
+      error_of([&] { registry.names("prob"); }),
+      "unknown kind of plugin \"prob\"; did you mean \"probe\"? Allowed are body, contact, engine, geometry, probe, "
+      "scenario");
   EXPECT_THAT(error_of([&] { registry.info("bodies", "good"); }), HasSubstr("unknown kind of plugin \"bodies\""));
 }
 
@@ -313,23 +318,35 @@ TEST(Registry, ListsFilesWithoutOpeningThem) {
   EXPECT_THAT(error_of([&] { registry.make<BodyKind>("text"); }), HasSubstr("cannot be opened"));
 }
 
-TEST(Registry, TakesTheFirstDirectoryOnThePath) {
+TEST(Registry, RefusesASecondFileOfTheSameName) {
   const Directory first, second;
-  first.copy_good("good"), second.copy_good("good");
-  const Registry forwards({first.path(), second.path()}), backwards({second.path(), first.path()}),
-      only({first.path()});
-  EXPECT_EQ(forwards.file("body", "good"), first.body("good"));
-  EXPECT_EQ(backwards.file("body", "good"), second.body("good"));
-  EXPECT_EQ(&forwards.info("body", "good"), &only.info("body", "good"));
-  EXPECT_NE(&forwards.info("body", "good"), &backwards.info("body", "good"));
-  EXPECT_THAT(forwards.names("body"), ElementsAre("good"));
+  first.copy_good("good"), second.write_text("good"), second.copy_good("other");
+  const Registry registry({first.path(), second.path()});
+  EXPECT_THAT(registry.names("body"), ElementsAre("good", "other"));
+  EXPECT_EQ(registry.file("body", "good"), first.body("good"));
+  for (int again = 0; again < 2; ++again)
+    EXPECT_EQ(error_of([&] { registry.info("body", "good"); }),
+              "body plugin \"good\" exists twice: " + first.body("good").string() + ", and " +
+                  second.body("good").string() +
+                  "\n  remove one from the folders that are searched, or rename the file and PluginInfo::name");
 }
 
-TEST(Registry, DoesNotStepOverABadFileOfTheFirstDirectory) {
-  const Directory first, second;
-  first.write_text("good"), second.copy_good("good");
-  const Registry registry({first.path(), second.path()});
-  EXPECT_THAT(error_of([&] { registry.make<BodyKind>("good"); }), HasSubstr(first.body("good").string()));
+TEST(Registry, TakesAFileThatIsFoundTwice) {
+  const Directory first;
+  first.copy_good("good");
+  const Registry registry({first.path(), first.path() / "bodies/..", first.path()});
+  EXPECT_STREQ(registry.info("body", "good").name, "good");
+}
+
+TEST(Registry, PrefersTheFolderOfTheInstructionSet) {
+  const Directory directory, another;
+  const fs::path own = directory.path() / build_facts().arch;
+  fs::create_directories(own / "bodies");
+  fs::copy_file(file_of("good"), own / "bodies/good.so");
+  directory.write_text("good");
+  const Registry registry(plugin_directories({directory.path().string() + '/'}, another.path()));
+  EXPECT_STREQ(registry.info("body", "good").name, "good");
+  EXPECT_EQ(registry.file("body", "good").lexically_normal(), own / "bodies/good.so");
 }
 
 struct Point : BodyKind {
@@ -338,15 +355,27 @@ struct Point : BodyKind {
   double inertia(double, double) const override { return 0; }
 };
 
-TEST(Registry, PrefersWhatIsBuiltIn) {
+TEST(Registry, HasWhatIsBuiltIn) {
+  PluginInfo info;
+  info.kind = "body", info.name = "point", info.make_body = []() -> BodyKind* { return new Point; };
+  Registry registry({fixtures});
+  registry.add(info);
+  EXPECT_EQ(&registry.info("body", "point"), &info);
+  EXPECT_EQ(registry.make<BodyKind>("point")->volume(1), 0);
+  EXPECT_EQ(registry.file("body", "point"), "");
+  EXPECT_EQ(registry.title("body", "point"), "body plugin \"point\" (built in)");
+  EXPECT_EQ(std::ranges::count(registry.names("body"), "point"), 1);
+}
+
+TEST(Registry, RefusesAFileWithTheNameOfWhatIsBuiltIn) {
   PluginInfo info;
   info.kind = "body", info.name = "good", info.make_body = []() -> BodyKind* { return new Point; };
   Registry registry({fixtures});
   registry.add(info);
-  EXPECT_EQ(&registry.info("body", "good"), &info);
-  EXPECT_EQ(registry.make<BodyKind>("good")->volume(1), 0);
-  EXPECT_EQ(registry.file("body", "good"), "");
-  EXPECT_EQ(registry.title("body", "good"), "body plugin \"good\" (built in)");
+  EXPECT_THAT(error_of([&] { registry.make<BodyKind>("good"); }),
+              AllOf(HasSubstr("body plugin \"good\" exists twice: built into " + library_file().string() + ", and " +
+                              file_of("good")),
+                    HasSubstr("rename the file")));
   EXPECT_EQ(std::ranges::count(registry.names("body"), "good"), 1);
 }
 
@@ -374,6 +403,25 @@ TEST(Nearest, CountsEdits) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
   EXPECT_EQ(edit_distance("spehre", "sphere"), 1u);
   EXPECT_EQ(edit_distance("linear-rolling", "linear-roling"), 1u);
+}
+
+TEST(Nearest, NeedsHalfOfTheNameWithoutACommonPath) {
+  const std::vector<std::string> names{"packing/time", "packing/step", "walls/time"};
+  EXPECT_EQ(nearest("packing/tmie", names), "packing/time");
+  EXPECT_EQ(nearest("paking/time", names), "packing/time");
+  EXPECT_EQ(nearest("packing/nope", names), std::nullopt);
+  EXPECT_EQ(nearest("time", names), std::nullopt);
+  EXPECT_EQ(nearest("x", {}), std::nullopt);
+}
+
+TEST(Nearest, IsAQuestion) {
+  const std::vector<std::string> names{"sand", "steel"};
+  EXPECT_EQ(did_you_mean("snad", names), "; did you mean \"sand\"?");
+  EXPECT_EQ(did_you_mean("water", names), "");
+  EXPECT_EQ(did_you_mean("snad", names, "allowed are sand, steel"), "; did you mean \"sand\"? Allowed are sand, steel");
+  EXPECT_EQ(did_you_mean("water", names, "allowed are sand, steel"), "; allowed are sand, steel");
+  EXPECT_EQ(fault_text("\"snad\"" + did_you_mean("snad", names), "sand"),
+            "found \"snad\"; did you mean \"sand\"? Allowed is sand");
 }
 
 }  // namespace

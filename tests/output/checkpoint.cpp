@@ -75,10 +75,10 @@ TEST_F(CheckpointFile, IsReplacedOnlyByACompleteOne) {
 TEST_F(CheckpointFile, OfAnotherDescriptionIsRefused) {
   facts_.description["walls"]["lid"]["pressure"] = 2e5;
   facts_.description["seed"] = 3;
-  EXPECT_THAT(refusal<Error>(),
-              AllOf(HasSubstr("checkpoint.h5: is of another description"),
-                    HasSubstr("\n  /walls/lid/pressure: found 200000.0, allowed 100000.0"),
-                    HasSubstr("\n  /seed: found 3, allowed nothing"), HasSubstr("start again (--overwrite)")));
+  EXPECT_THAT(refusal<Error>(), AllOf(HasSubstr("checkpoint.h5: is of another description"),
+                                      HasSubstr("\n  /walls/lid/pressure: found 200000.0, allowed 100000.0"),
+                                      HasSubstr("\n  /seed: found 3, which the run does not have"),
+                                      HasSubstr("start again (--overwrite)")));
 }
 
 TEST_F(CheckpointFile, OfAnotherBuildOfAPluginIsRefused) {
@@ -88,7 +88,7 @@ TEST_F(CheckpointFile, OfAnotherBuildOfAPluginIsRefused) {
   facts_.plugins[0].version = "1.1.0";
   EXPECT_THAT(refusal<PluginError>(), HasSubstr("/probe strain/version: found \"1.1.0\", allowed \"1.0.0\""));
   facts_.plugins.clear();
-  EXPECT_THAT(refusal<PluginError>(), HasSubstr("/probe strain: found nothing, allowed {"));
+  EXPECT_THAT(refusal<PluginError>(), HasSubstr("/probe strain: missing; the run has {"));
 }
 
 TEST_F(CheckpointFile, OfAnotherGritIsRefused) {

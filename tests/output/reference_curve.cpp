@@ -30,7 +30,38 @@ TEST(ReferenceCurves, AreTwoColumnsOfATable) {
   const auto elsewhere = folder.write("elsewhere.csv", "\xef\xbb\xbfx, y\r\n0, 1\r\n\r\n1, 2\r\n").string();
   EXPECT_THAT(read_reference({elsewhere, "x", "y"}).y, ElementsAre(1, 2)) << "as other systems write it";
   const auto bad = folder.write("bad.csv", "x,y\n0,1\n1,much\n").string();
-  EXPECT_THAT(error_of({bad, "x", "y"}), HasSubstr("bad.csv:3: no number in column \"y\": "));
+  EXPECT_THAT(error_of({bad, "x", "y"}), HasSubstr("bad.csv:3: column \"y\" is \"much\": not a number"));
+}
+
+TEST(ReferenceCurves, AreReadWhateverTheirLineEnds) {
+  const OwnFolder folder;
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const auto file = folder
+                          .write("a.csv", "\xef\xbb\xbfx,y" + end + "# source" + end + "0,+1" + end + ",," + end +
+                                              "\"1\", 1e-400 ," + end)
+                          .string();
+    const ReferencePoints curve = read_reference({file, "x", "y"});
+    EXPECT_THAT(curve.x, ElementsAre(0, 1));
+    EXPECT_THAT(curve.y, ElementsAre(1, 0));
+    const auto bad = folder.write("bad.csv", "x,y" + end + end + "0" + end).string();
+    EXPECT_EQ(error_of({bad, "x", "y"}), bad + ":3: column \"y\" is \"\": empty");
+  }
+}
+
+TEST(ReferenceCurves, RefuseCommasInNumbers) {
+  const OwnFolder folder;
+  const auto told = [&](const std::string& line) {
+    const auto file = folder.write("a.csv", "x,y\n0,1\n" + line + '\n').string();
+    const std::string error = error_of({file, "x", "y"});
+    EXPECT_THAT(error, testing::StartsWith(file + ":3: "));
+    return error.substr(std::min(error.size(), file.size() + 4));
+  };
+  EXPECT_EQ(told("0,5,1,5"), "found 4 cells in \"0,5,1,5\"; line 1 names 2 columns; numbers use a point, not a comma");
+  EXPECT_EQ(told("\"0,5\",\"1,5\""), "column \"x\" is \"0,5\": numbers use a point, not a comma");
+  EXPECT_EQ(told("1,2 mm"), "column \"y\" is \"2 mm\": text follows the number");
+  EXPECT_EQ(told("1,1e400"), "column \"y\" is \"1e400\": beyond the largest number, 1.8e308");
+  const auto utf16 = folder.write("b.csv", "\xfe\xff").string();
+  EXPECT_EQ(error_of({utf16, "x", "y"}), utf16 + ": the file is UTF-16 text; save it as UTF-8");
 }
 
 TEST(ReferenceCurves, NeedTwoPointsWithRisingAbscissa) {

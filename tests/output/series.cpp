@@ -57,14 +57,14 @@ TEST(Series, CanBeReadWhileItIsWritten) {
   const pid_t reader = fork();
   if (reader == 0) {
     char word;
-    if (read(written[0], &word, 1) != 1) _exit(2);
+    if (::read(written[0], &word, 1) != 1) _exit(2);
     const hdf5::File file(folder / "series.h5", hdf5::Mode::read);
     const auto steps = file.group("test").dataset("step").read<std::uint64_t>();
     _exit(steps == std::vector<std::uint64_t>{7} ? 0 : 1);
   }
   Series series(folder / "series.h5", probes, Flushing{.numbers = 1});
   append(series, 7);
-  ASSERT_EQ(write(written[1], "!", 1), 1);
+  ASSERT_EQ(::write(written[1], "!", 1), 1);
   int status = 0;
   waitpid(reader, &status, 0);
   EXPECT_EQ(status, 0);
@@ -117,7 +117,7 @@ TEST(Series, SurvivesSigkill) {
         if (step % 100 < 99) continue;
         series.flush();
         const std::uint64_t samples = step + 1;
-        if (write(flushed[1], &samples, sizeof samples) < 0) _exit(1);
+        if (::write(flushed[1], &samples, sizeof samples) < 0) _exit(1);
       }
     }
     close(flushed[1]);

@@ -377,5 +377,30 @@ TEST(ReportPage, PutsRunsSideBySide) {
   EXPECT_THAT(page.html, HasSubstr("largest overlap<small>of the mean diameter, in the last stage</small></td><td>"));
 }
 
+TEST(ReportPage, ListsWhatDiffersBetweenDescriptions) {
+  const Folder folder;
+  const std::vector<std::filesystem::path> folders{folder / "one", folder / "other"};
+  for (const auto& path : folders) {
+    SmallRun run(path);
+    run.options.facts.description["seed"] = path.filename() == "one" ? 1 : 2;
+    if (path.filename() == "one") run.options.facts.description["materials"]["<sand>"] = 5;
+    run.write();
+  }
+  std::string html = report_page(folders).html;
+  EXPECT_THAT(html, HasSubstr("<tr class=\"differs\"><td class=\"name\">/seed</td><td>1</td><td>2</td></tr>\n"
+                              "<tr class=\"differs\"><td class=\"name\">/materials</td><td>{&lt;sand&gt;: 5}</td>"
+                              "<td>–</td></tr>\n"));
+  EXPECT_THAT(html, Not(HasSubstr(" more</td>")));
+  EXPECT_THAT(page_of(folder / "one").html, Not(HasSubstr("class=\"differs\"")));
+
+  SmallRun run(folder / "other");
+  run.options.existing = Existing::overwrite;
+  for (int i = 0; i < 23; ++i) run.options.facts.description["key" + std::to_string(i)] = i;
+  run.write();
+  html = report_page(folders).html;
+  EXPECT_THAT(html, AllOf(HasSubstr("/key17</td>"), Not(HasSubstr("/key18</td>"))));
+  EXPECT_THAT(html, HasSubstr("<td class=\"name\" colspan=\"3\">and 5 more</td>"));
+}
+
 }  // namespace
 }  // namespace grit::page_tests

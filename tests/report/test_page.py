@@ -319,6 +319,9 @@ class Page(unittest.TestCase):
         self.open("both.html")
         self.assertEqual(self.browser.evaluate("document.querySelector('figure.chart').chart.series.map((one) => one.label)"), ["one", "two"])
         self.assertEqual(self.browser.evaluate("getComputedStyle(document.querySelector('header td:not(.name) small')).display"), "block", "a note is separate from its number")
+        self.assertEqual(self.browser.evaluate("[...document.querySelectorAll('header .differs')].map((row) => [...row.cells].map((cell) => cell.textContent).join(' '))"),
+                         ["/seed 1 2", "/probes/packing/every_time 0.001 0.003"])
+        self.assertTrue(self.browser.evaluate("(() => { const table = document.querySelector('header .wide'); return table.scrollWidth <= table.clientWidth; })()"), "the table fits")
         self.assertTrue(self.browser.evaluate("[...document.querySelector('[name=run]').options].map((one) => one.text).join() === 'one,two'"))
         first = self.saved("figure.grains", "PNG")[1]
         self.browser.evaluate("(() => { const choice = document.querySelector('[name=run]'); choice.value = 1; choice.dispatchEvent(new Event('change')); })()")

@@ -175,11 +175,12 @@ TEST_F(Resume, RefusesAnotherRun) {
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, AllOf(HasSubstr("part: holds a run of another description:\n  /seed: found 7, allowed 1"),
                                HasSubstr("'grit run --resume part'"), HasSubstr("--overwrite")));
-  // A rebuilt plugin.
-  std::filesystem::create_directories(folder / "mine/probes");
-  std::filesystem::copy(GRIT_PLUGIN_DIR "/probes/energy.so", folder / "mine/probes");
+  // A rebuilt plugin, in another copy of the installation.
+  std::filesystem::copy(GRIT_PLUGIN_DIR, folder / "mine", std::filesystem::copy_options::recursive);
   std::ofstream(folder / "mine/probes/energy.so", std::ios::app) << "built again";
-  const auto plugin = grit(run("part", {"--resume", "--plugin-path", "mine"}));
+  auto words = grit_with(run("part", {"--resume"}));
+  words.insert(words.begin(), {"env", "LD_LIBRARY_PATH=" + (folder / "mine").string()});
+  const auto plugin = Program(words, folder.path()).finish();
   EXPECT_EQ(plugin.status, 3);
   EXPECT_THAT(plugin.err,
               AllOf(HasSubstr("written with other builds of plugins"), HasSubstr("/probe energy/build/checksum")));
@@ -193,6 +194,45 @@ TEST_F(Resume, RefusesAnotherRun) {
   EXPECT_EQ(text_of(folder / "part/run.json"), before) << "nothing was changed";
   std::filesystem::rename(folder / "whole.h5", checkpoint);
   EXPECT_EQ(grit({"run", "part", "--resume", "--no-report"}).status, 0);
+}
+
+TEST_F(Resume, NamesStagesThatAreNewMissingMovedOrChanged) {
+  const std::vector<std::string> brief{"--set", "/stages/0/until/value=10", "--set", "/stages/1/until/value=10"};
+  ASSERT_EQ(grit(run("done", brief)).status, 0);
+  const auto refusal = [&](const std::string& set) {
+    auto more = brief;
+    more.insert(more.end(), {"--resume", "--set", set});
+    const auto outcome = grit(run("done", more));
+    EXPECT_EQ(outcome.status, 2) << set;
+    return outcome.err;
+  };
+  const auto stage = [](const std::string& name, int steps = 10) {
+    return R"({"name": ")" + name + R"(", "until": {"type": "steps", "value": )" + std::to_string(steps) +
+           R"(}, "limit": "10 h"})";
+  };
+  const std::string why =
+      "\n  --resume continues with the same stages; it cannot go on with other stages yet: run all of "
+      "them from the start in another folder (--out DIR)\n  continue with its own description ('grit run "
+      "--resume done'), ";
+  const std::string start = "done: holds a run of another description:\n  ";
+  EXPECT_THAT(refusal("/stages/-=" + stage("b")),
+              HasSubstr(start + "/stages/2: the stage \"b\" is new; the run has \"fall\", \"on\"" + why));
+  EXPECT_THAT(refusal("/stages=[" + stage("fall") + "]"),
+              HasSubstr(start + "/stages: the stage \"on\" of the run is missing" + why));
+  EXPECT_THAT(refusal("/stages=[" + stage("on") + ", " + stage("fall") + "]"),
+              HasSubstr(start + "/stages: found the order \"on\", \"fall\", allowed \"fall\", \"on\"" + why));
+  EXPECT_THAT(refusal("/stages=[" + stage("first") + ", " + stage("fall") + ", " + stage("on", 11) + "]"),
+              HasSubstr(start +
+                        "/stages/0: the stage \"first\" is new; the run has \"fall\", \"on\"\n  "
+                        "/stages/2/until/value: found 11, allowed 10" +
+                        why));
+  const auto changed = refusal("/stages/1/limit=\"11 h\"");
+  EXPECT_THAT(changed, AllOf(HasSubstr(start + "/stages/1/limit: found 39600.0, allowed 36000.0\n"),
+                             Not(HasSubstr("other stages"))));
+  EXPECT_THAT(refusal(R"(/engines/none={"type": "gravity", "acceleration": [0, 0, 0]})"),
+              AllOf(HasSubstr(start + "/engines/none: found {\"type\":\"gravity\""),
+                    HasSubstr(", which the run does not have\n"), Not(HasSubstr("other stages"))));
+  EXPECT_THAT(refusal("/engines/damping=null"), HasSubstr(start + "/engines/damping: missing; the run has {"));
 }
 
 TEST_F(Resume, ReportsInvalidRequests) {

@@ -101,6 +101,14 @@ Description loose() {
   return d;
 }
 
+/// Speeds and a drag limit the time step.
+Description fast() {
+  Description d = loose();
+  d["time_step"] = {{"max_displacement", 1e-3}};
+  d["engines"]["drag"] = {{"type", "drag"}, {"viscosity", 1}, {"density", 1}};
+  return d;
+}
+
 /// Clumps in a periodic cell fall on a floor; others follow.
 Description clumps() {
   Description d = description("linear-rolling", sand, jumble({6, 6, 5}, 1.2 * spacing, 0.05, 9));
@@ -251,8 +259,8 @@ TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Of, Resume,
                          testing::Values(Case{"cell", cell}, Case{"servo", [] { return servo(); }},
                                          Case{"braking_servo", braking}, Case{"stiffening", stiffening},
-                                         Case{"loose_walls", loose}, Case{"clumps", clumps}, Case{"silo", silo},
-                                         Case{"every_probe", every_probe}),
+                                         Case{"loose_walls", loose}, Case{"fast", fast}, Case{"clumps", clumps},
+                                         Case{"silo", silo}, Case{"every_probe", every_probe}),
                          [](const auto& info) { return info.param.name; });
 
 /// At the steps around a search, where lists are new or expired.

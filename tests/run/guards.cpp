@@ -66,8 +66,9 @@ TEST(Guards, Overlap) {
 
   Description wall = description("linear-rolling", {{"contact_modulus", 1e7}}, {{{0, 0, 0.7e-3}, 1e-3}});
   wall["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
-  EXPECT_THAT(complaint(wall, 1),
-              HasSubstr("step 0, time 0 s: body 0 at (0, 0, 0.0007) m overlaps wall \"floor\" by 0.3 of"));
+  EXPECT_THAT(complaint(wall, 1), HasSubstr("step 0, time 0 s: body 0 at (0, 0, 0.0007) m appears inside wall "
+                                            "\"floor\": they overlap by 0.3 of its radius, "
+                                            "more than /guards/overlap 0.2; place it in front of the wall"));
 }
 
 TEST(Guards, Travel) {
@@ -75,18 +76,34 @@ TEST(Guards, Travel) {
   EXPECT_THAT(
       complaint(two(1, 51), 3),
       HasSubstr(
-          "step 1, time 1e-06 s: body 0 at (5.1e-05, 0, 0) m moves 0.051 of its radius in one step, more than "
+          "step 0, time 0 s: body 0 at (0, 0, 0) m moves 0.051 of its radius in one step, more than "
           "/guards/travel 0.05; bodies may overlap too much at the start, a wall may be too fast, or the time step"));
+}
+
+TEST(Guards, TravelOfABodyThatIsAccelerated) {
+  Description d = two(1, 0);
+  d["engines"]["rocket"] = {{"type", "gravity"}, {"acceleration", {1e7, 0, 0}}};
+  EXPECT_THAT(complaint(d, 10), testing::AllOf(HasSubstr("step 6, time 6e-06 s: body 0 at"),
+                                               HasSubstr("moves 0.055 of its radius in one step")));
 }
 
 TEST(Guards, WallThatPassesThroughBodies) {
   Description d = two(1, 0);
-  d["walls"]["lid"] = plane({0, 0, 1}, -Vec3::UnitZ());
-  d["walls"]["lid"]["motion"]["velocity"] = {1000, 0, 49};
+  d["walls"]["lid"] = plane({0, 0, 1.0002e-3}, -Vec3::UnitZ());
+  d["walls"]["lid"]["motion"]["velocity"] = {1000, 0, -49};
   EXPECT_EQ(complaint(d, 3), "") << "however fast it slides along itself";
-  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, 51};
-  EXPECT_THAT(complaint(d, 3), HasSubstr("wall \"lid\" moves 0.051 of the smallest radius in one step, more than "
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, -51};
+  EXPECT_THAT(complaint(d, 3), HasSubstr("wall \"lid\" moves 0.051 of a radius towards a body in one step, more than "
                                          "/guards/travel 0.05; a wall this fast passes through bodies"));
+  d["walls"]["lid"]["motion"]["velocity"] = {0, 0, 51};
+  EXPECT_EQ(complaint(d, 3), "") << "away from bodies";
+}
+
+TEST(Guards, WallThatFacesAway) {
+  Description d = two(1, 0);
+  d["walls"]["floor"] = plane({0, 0, -0.04}, -Vec3::UnitZ());
+  EXPECT_THAT(complaint(d, 1), HasSubstr("wall \"floor\" faces away from the bodies: 2 of 2 have their centres behind "
+                                         "it, the deepest by an overlap of 41 of its radius"));
 }
 
 TEST(TimeStep, FollowsSpringsThatStiffenBetweenSearches) {

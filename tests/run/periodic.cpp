@@ -115,6 +115,59 @@ TEST(Periodic, AcceptsABodyJustPastASideAndNoneFarther) {
   EXPECT_THROW(Trial(at(-1.1e-3)), Error);
 }
 
+TEST(Periodic, WallThatEndsAtASideIsRefused) {
+  const auto complaint = [](const Vec3& low, const Vec3& high) -> std::string {
+    Description d = in_cell({{{3e-3, 3e-3, 4e-3}, 5e-4}}, Vec3::Zero());
+    d["walls"]["block"] = {
+        {"type", "box"}, {"inside", false}, {"low", vector(low)}, {"high", vector(high)}, {"material", "grain"}};
+    try {
+      Trial t(d);
+    } catch (const NumericsError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const double far = 6e-4;
+  EXPECT_EQ(complaint({-far, -far, 1e-3}, {6e-3 + far, 7e-3 + far, 2e-3}), "") << "beyond both sides";
+  EXPECT_EQ(complaint({far, far, 1e-3}, {2e-3, 2e-3, 2e-3}), "") << "away from all sides";
+  EXPECT_EQ(complaint({0, -far, 1e-3}, {6e-3, 7e-3 + far, 2e-3}), "") << "exactly one period";
+  EXPECT_EQ(
+      complaint({0, -far, 1e-3}, {5.9e-3, 7e-3 + far, 2e-3}),
+      "step 0, time 0 s: wall \"block\" extends from 0 to 0.0059 m along x and so ends near a periodic side (0 or "
+      "0.006 m); walls have no images: make it exactly one period long, extend it beyond both sides by at least "
+      "the largest radius, 0.0005 m, or keep it as far from both");
+  EXPECT_NE(complaint({-far, far, 1e-3}, {5e-3, 2e-3, 2e-3}), "") << "across one side only";
+}
+
+TEST(Periodic, WallOfOnePeriodHasNoEnds) {
+  // A grain slides over both sides of the cell, on a floor of one period and on an endless one.
+  const auto slid = [](const Description& floor) {
+    Description d = in_cell({{{3e-3, 3e-3, 5e-4}, 5e-4, {0.5, 0.3, 0}}}, Vec3::Zero());
+    d["domain"]["periodic"] = {true, true, false};
+    d["domain"].erase("strain_rate");
+    d["time_step"] = Description::object();
+    d["engines"]["gravity"] = {{"type", "gravity"}};
+    d["walls"]["floor"] = floor;
+    Trial t(d);
+    double highest = 0;
+    while (t.world().time() < 0.1) {
+      t.step();
+      highest = std::max(highest, t.position(0).z());
+    }
+    const Vec3 x = t.position(0), v = t.velocity(0);
+    return std::array<double, 6>{x.x(), x.y(), highest, v.x(), v.y(), v.z()};
+  };
+  const Description endless = plane(Vec3::Zero(), Vec3::UnitZ());
+  const Description one_period = {{"type", "rectangle"},
+                                  {"corner", {0, 0, 0}},
+                                  {"edge_a", {period.x(), 0, 0}},
+                                  {"edge_b", {0, period.y(), 0}},
+                                  {"material", "grain"}};
+  const auto expected = slid(endless), found = slid(one_period);
+  EXPECT_LT(expected[3], 0.49) << "friction acts";
+  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-12) << k;
+}
+
 TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {
   // Without contact up to 25 % of strain: relative positions in the cell are constant.
   auto grains = jumble({6, 7, 8}, 1e-3, 0, 10);

@@ -178,6 +178,70 @@ TEST(Stage, IsNotAtRestWithoutContacts) {
   EXPECT_EQ(run(d).summary().steps, 250u) << "free flight is not rest";
 }
 
+TEST(Stage, OfGrainsInFlightIsNotAtRest) {
+  // One grain lies on the floor, nine fall.
+  Description d = lone({{"type", "any"}, {"of", {steps(250), {{"type", "at-rest"}, {"below", 0.5}}}}});
+  auto& grains = d["bodies"]["grains"]["source"]["bodies"];
+  const auto lowest = [&](double z) { grains[0]["position"] = {0, 0, z}; };
+  lowest(radius - 9.81 * mass / (modulus * radius));  // the floor carries it
+  for (int k = 1; k < 10; ++k) grains.push_back({{"position", {0.01 * k, 0, 0.05}}, {"radius", radius}});
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  EXPECT_EQ(run(d).summary().steps, 250u);
+
+  d["stages"][0]["until"] = {{"type", "unbalanced-force"}, {"below", 10}};
+  EXPECT_THAT(run(d).notes.ended.front(), HasSubstr("so that grains are in flight: the condition \"at-rest\""));
+}
+
+TEST(Stage, OfGrainsThatSinkIsNotAtRest) {
+  // Drag balances the weight, so that no net force is left.
+  Description d = lone({{"type", "any"}, {"of", {steps(20000), {{"type", "at-rest"}, {"below", 0.5}}}}});
+  d["bodies"]["grains"]["source"]["bodies"][0]["position"] = {0, 0, 1};
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"]["oil"] = {{"type", "drag"}, {"viscosity", 1.0}, {"law", "stokes"}};
+  EXPECT_EQ(run(d).summary().steps, 20000u);
+}
+
+TEST(Stage, GrainAtRestEndsIt) {
+  const RunSummary summary = run(dropped({{"type", "at-rest"}, {"below", 0.01}})).summary();
+  EXPECT_EQ(summary.status, "done");
+  EXPECT_EQ(summary.steps % 100, 0u);
+}
+
+TEST(Stage, EndsOnTheClockOfTheRun) {
+  Description d = lone(seconds(1.004e-3));
+  d["stages"] = Description::array();
+  for (int k = 0; k < 100; ++k) d["stages"].push_back(stage(("s" + std::to_string(k)).c_str(), seconds(1.004e-3)));
+  EXPECT_EQ(run(d).summary().steps, 10040u) << "100 times 100.4 steps";
+  d["stages"].push_back(stage("steps", steps(3)));
+  d["stages"].push_back(stage("last", seconds(1e-3)));
+  EXPECT_EQ(run(d).summary().steps, 10143u) << "a stage by steps ends where it does";
+}
+
+TEST(Stage, MayBeginWithoutBodies) {
+  Description d = lone(seconds(1e-3));
+  d["time_step"] = Description::object();
+  d["stages"].push_back(stage("grains", seconds(1e-3)));
+  d["bodies"]["grains"]["stage"] = "grains";
+  EXPECT_EQ(run(d).summary().status, "done");
+  d["bodies"]["grains"]["stage"] = "only";
+  EXPECT_EQ(run(d).summary().status, "done") << "all groups begin with the first stage";
+}
+
+TEST(Stage, WithAGroupAboveThePrescribedStepIsRefusedBefore) {
+  Description d = lone(seconds(1e-3));
+  d["stages"].push_back(stage("small", seconds(1e-3)));
+  d["bodies"]["small"] = d["bodies"]["grains"];
+  d["bodies"]["small"]["stage"] = "small";
+  d["bodies"]["small"]["source"]["bodies"][0] = {{"position", {0, 0, 0.1}}, {"radius", 1e-5}};
+  try {
+    run(d);
+    FAIL() << "accepted";
+  } catch (const DescriptionError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/time_step/value: the time step 1e-05 s is above the critical one of group "
+                                        "\"small\" in stage \"small\", "));
+  }
+}
+
 TEST(Stage, EndsAtAVoidRatio) {
   const auto e = [](const Kernel& k) { return void_ratio(k.world(), k.world().specimen()); };
   const double start = 1e-6 / (mass / density) - 1;

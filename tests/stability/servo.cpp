@@ -381,11 +381,12 @@ TEST(Servo, GuardStopsALidThatGoesTooFarInAStep) {
   const double travel = 0.05 * radius / overlap_kept;
   for (const double start : {0.0, 0.5, 0.9}) {
     EXPECT_LT(peak_on(closing({}, 0.99 * travel, start)), 1.3);
+    // It may also brake before it is near enough for the guard.
     try {
-      peak_on(closing({}, 1.01 * travel, start));
-      ADD_FAILURE() << "no guard trips";
+      EXPECT_LT(peak_on(closing({}, 1.01 * travel, start)), 1.3);
+      EXPECT_GT(start, 0);
     } catch (const NumericsError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("wall \"lid\" moves 0.0505 of the smallest radius in one step"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("wall \"lid\" moves 0.0505 of a radius towards a body in one step"));
       EXPECT_THAT(error.what(), testing::HasSubstr("reduce its velocity"));
     }
     // If the displacement may exceed the skin, it searches neighbours.

@@ -26,6 +26,12 @@ struct MotionSettings {
   std::optional<int> flat;        ///< planar motion: axis (0, 1, 2) without translation; rotation is about it only
 };
 
+/// Upper bounds over all bodies of what an engine adds to their equations of motion.
+struct EngineRates {
+  double stiffness = 0;  ///< derivative of the force with position, over mass [1/s²]
+  double damping = 0;    ///< derivative of the force with velocity, over mass [1/s]
+};
+
 /// Base class of plugins of kind "engine".
 class Engine {
  public:
@@ -44,6 +50,9 @@ class Engine {
   /// Called in phase `forces`. Adds to the force [N] and moment [N m] of each body; one row per body, by index. The
   /// result must not depend on the order in which bodies are stored.
   virtual void forces(const World&, std::span<Row> /*force*/, std::span<Row> /*moment*/) const {}
+  /// Called in phase `forces` when the time step is set, at neighbour searches and after changes. The time step is
+  /// stable with these rates.
+  virtual EngineRates rates(const World&) const { return {}; }
   /// Passes each member that the engine keeps between steps to the archive, once. A resumed run is then identical to an
   /// uninterrupted one.
   virtual void serialize(Archive&) {}

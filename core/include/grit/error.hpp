@@ -43,6 +43,11 @@ class DescriptionError : public Error {
   std::vector<Problem> problems_;
 };
 
+/// "found …; allowed is …". After a question, as of did_you_mean(), a new sentence begins.
+inline std::string fault_text(const std::string& found, const std::string& allowed) {
+  return "found " + found + (found.ends_with('?') ? " Allowed is " : "; allowed is ") + allowed;
+}
+
 /// Faults of a component's parameters that show when it is prepared or expanded, e.g. a missing file or wall. grit
 /// reports each with its line and pointer in the description.
 class ParameterError : public Error {
@@ -50,7 +55,7 @@ class ParameterError : public Error {
   struct Fault {
     std::string key;  ///< of the parameter; "" for the whole object, "outlets/left" for a nested one
     std::string found, allowed;
-    std::string message() const { return "found " + found + "; allowed is " + allowed; }
+    std::string message() const { return fault_text(found, allowed); }
   };
   explicit ParameterError(std::vector<Fault> faults) : Error(text(faults)), faults_(std::move(faults)) {}
   const std::vector<Fault>& faults() const { return faults_; }

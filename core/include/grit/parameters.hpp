@@ -45,6 +45,10 @@ class Choice {
   virtual std::string what() const = 0;
   /// All available types, sorted.
   virtual std::vector<std::string> types() const = 0;
+  /// One line about an available type.
+  virtual std::string type_doc(const std::string& type) const = 0;
+  /// How to add types, for messages about unknown ones: "searched: …"; empty if there is no way.
+  virtual std::string how_to_add() const { return {}; }
   /// The chosen type; empty before a choice.
   virtual std::string type() const = 0;
   /// Chooses `type`, one of types(), with all parameters at their defaults. Throws grit::Error if it is not available.
@@ -142,7 +146,7 @@ class Parameter {
 };
 
 /// Reports a problem of one or several parameters: the key at fault ("" for the whole object, "wall/motion" for a
-/// nested one), the value found and the allowed values. The message reads "found …; allowed: …".
+/// nested one), the value found and the allowed values. The message is that of fault_text().
 using Complain = std::function<void(std::string_view key, std::string_view found, std::string_view allowed)>;
 
 /// A condition on several parameters of one object.
@@ -214,6 +218,8 @@ class Parameters {
   }
   /// Allows further keys in this object, which are not reported as unknown.
   void leave_open() { open_ = true; }
+  /// Keys of this object in a file that are resolved before it is read, e.g. "extends". Messages list them.
+  void resolved_before(std::vector<std::string> keys) { resolved_before_ = std::move(keys); }
   /// Adds a check. It runs if the keys `about` were read without a problem; without keys, if the whole object was.
   void check(std::function<void(const Complain&)> check, std::vector<std::string> about = {}) {
     checks_.push_back({std::move(check), std::move(about)});
@@ -232,6 +238,7 @@ class Parameters {
   const std::deque<Parameter>& entries() const { return entries_; }
   const std::vector<Check>& checks() const { return checks_; }
   bool is_open() const { return open_; }
+  const std::vector<std::string>& keys_resolved_before() const { return resolved_before_; }
   const std::vector<std::function<void()>>& calls_when_read() const { return when_read_; }
   /// Null if there are none.
   Description* values() const { return values_; }
@@ -240,18 +247,24 @@ class Parameters {
   Choice* choice_ = nullptr;
   Description* values_ = nullptr;
   bool open_ = false;
+  std::vector<std::string> resolved_before_;
   std::deque<Parameter> entries_;  // a deque keeps references valid while it grows
   std::vector<Check> checks_;
   std::vector<std::function<void()>> when_read_;
 };
 
-/// A choice of built-in variants. Each T has `static constexpr const char* type_name` and declare().
+/// A choice of built-in variants. Each T has `static constexpr const char *type_name, *type_doc` and declare().
 template <class... T>
 class OneOf : public Choice {
  public:
   explicit OneOf(std::string what) : what_(std::move(what)) {}
   std::string what() const override { return what_; }
   std::vector<std::string> types() const override { return {T::type_name...}; }
+  std::string type_doc(const std::string& type) const override {
+    std::string doc;
+    ((type == T::type_name ? void(doc = T::type_doc) : void()), ...);
+    return doc;
+  }
   std::string type() const override {
     return std::visit(
         []<class V>(const V&) -> std::string {

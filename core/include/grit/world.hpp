@@ -43,6 +43,7 @@ struct Cell {
   std::array<bool, 3> periodic{false, false, false};
   Vec3 strain_rate = Vec3::Zero();  ///< along periodic axes [1/s], positive in extension
 
+  bool periodic_anywhere() const { return periodic[0] || periodic[1] || periodic[2]; }
   /// A coordinate [m] moved into the cell by whole periods; unchanged along an axis that is not periodic. Bodies may be
   /// slightly outside a periodic side until the next neighbour search wraps them.
   double inside(double x, int axis) const {
@@ -108,6 +109,16 @@ struct ClumpView {
   Vec3 inertia;         ///< principal moments of inertia [kg m²]
 };
 
+/// Bodies from this id on, up to the next entry, belong to the group of this name in the description.
+struct BodyGroup {
+  std::string name;
+  std::uint32_t first_id;
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(name, first_id);
+  }
+};
+
 /// A body that left the domain through an open side.
 struct Departure {
   std::uint32_t id;
@@ -150,7 +161,12 @@ class World {
   virtual std::span<const Row> positions() const = 0;   ///< centre [m], w: radius [m]
   virtual std::span<const Row> velocities() const = 0;  ///< half a step before time() [m/s], w: 1/mass [1/kg]
   virtual std::span<const Row> spins() const = 0;  ///< half a step before time() [rad/s], w: 1/inertia [1/(kg m²)]
-  virtual std::span<const std::uint8_t> materials() const = 0;
+  virtual std::span<const std::uint8_t> materials() const = 0;  ///< indices of material_names()
+  virtual std::span<const std::string> material_names() const { return {}; }
+  /// In ascending order of ids; one group may have several entries.
+  virtual std::span<const BodyGroup> groups() const { return {}; }
+  /// Name of the group of the body with this id; empty if there are no groups().
+  std::string group_of(std::uint32_t id) const;
   virtual std::span<const Vec3> rotations() const = 0;      ///< during the stage [rad]; empty unless requested
   virtual std::span<const Vec3> displacements() const = 0;  ///< during the stage [m]; empty unless requested
   /// Index into clumps() of each body, or no_clump; empty without clumps. For a body of a clump, w of velocities() is
@@ -202,6 +218,16 @@ struct Equilibrium {
   double mean_contact_force;  ///< N
 };
 Equilibrium equilibrium(const World& world);
+
+/// Whether contacts carry the bodies. Loads are all forces on bodies but those of contacts: weight, forces of engines.
+struct Support {
+  double unbalance;  ///< sum of net forces on bodies over the sum of loads and contact forces; 1 for bodies in flight,
+                     ///< infinite without forces
+  double carried;    ///< sum of the contact forces on each body over the sum of the loads; infinite without loads
+  /// Bodies in flight are not at rest: neither those that fall freely, nor those that sink at a constant velocity.
+  bool at_rest(double below) const { return unbalance < below && carried >= 0.5; }
+};
+Support support(const World& world);
 
 /// Kinetic energy [J] of translation and rotation, `later` seconds after the instant of its velocities.
 double kinetic_energy_of(const ClumpView& clump, double later);

@@ -20,6 +20,8 @@
 #include "kernel/kernel.hpp"
 #include "lint/excess_depth.hpp"
 #include "lint/installed_studies.hpp"
+#include "lint/repeated_geometry.hpp"
+#include "lint/unmoved_bodies.hpp"
 #include "lint/unused_materials.hpp"
 #include "lint/unused_motions.hpp"
 #include "lint/unused_scenario_parameters.hpp"
@@ -96,7 +98,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   std::size_t all_bodies = bodies;
   for (const auto& [name, group] : description.bodies) {
     if (group.stage.empty()) continue;
-    const std::size_t count = body_count(group, *components.body_kinds.at(name));
+    const std::size_t count = body_count(description, name, components.body_kinds.at(name));
     all_bodies += count, coming[group.stage] += count;
   }
   for (const StageDescription& stage : description.stages)
@@ -104,7 +106,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
       std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';
   for (const auto& [name, clump] : clumps_of(components))
     std::cout << "clumps " << name << ": "
-              << body_count(description.bodies.at(name), *components.body_kinds.at(name)) / clump.spheres << " of "
+              << body_count(description, name, components.body_kinds.at(name)) / clump.spheres << " of "
               << clump.spheres << " spheres each; errors: mass " << std::setprecision(2) << clump.errors.mass
               << ", centre " << clump.errors.centre << " of the enclosing radius, inertia " << clump.errors.inertia
               << std::setprecision(6) << '\n';
@@ -159,6 +161,8 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     std::cout << ", at most " << cost(most) / 3600 << " h (" << duration_text(cost(most))
               << ") if stages run to their limits";
   std::cout << '\n' << std::defaultfloat << std::setprecision(6);
+  if (const auto warning = unmoved_bodies(scene, kernel.world()))
+    std::cout << "\nwarning\n  " << warning->pointer << ": " << warning->why << '\n';
   auto idle = unused_settings(scene, components, kernel);
   std::ranges::move(unused_motions(scene), std::back_inserter(idle));
   const auto sets = options.list("set");
@@ -180,6 +184,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
         }))
       idle.push_back(std::move(one));
   }
+  std::ranges::move(repeated_geometry(scene, is_written), std::back_inserter(idle));
   std::ranges::move(unused_scenario_parameters(written, same), std::back_inserter(idle));
   const auto [studies, unreadable] = installed_studies();
   for (const std::string& why : unreadable) std::cerr << "grit: omitted: " << why << std::endl;

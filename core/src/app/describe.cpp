@@ -5,8 +5,8 @@
 #include "app/reference.hpp"
 #include "description/description.hpp"
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "input/reference.hpp"
-#include "plugins/nearest.hpp"
 #include "study/description.hpp"
 
 namespace grit {
@@ -68,12 +68,9 @@ ExitStatus describe_command(const std::vector<std::string>& words) {
   std::vector<std::string> names{"study"};
   for (const Parameter& section : all.entries()) names.push_back(section.name());
   for (const Installed& one : registry->installed()) names.push_back(one.name);
-  if (std::ranges::find(names, name) == names.end()) {
-    const auto meant = nearest(name, names);
+  if (std::ranges::find(names, name) == names.end())
     throw PluginError("unknown section or component \"" + name + '"' +
-                      (meant ? "; did you mean \"" + *meant + "\"? 'grit describe'" : "; 'grit describe'") +
-                      " lists all");
-  }
+                      did_you_mean(name, names, "'grit describe' lists all") + "\n  " + registry->search_text());
   std::cout << component_text(*registry, name, false);
   return ExitStatus::done;
 }

@@ -7,8 +7,8 @@
 
 #include "app/command.hpp"
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "plugins/build_facts.hpp"
-#include "plugins/nearest.hpp"
 
 namespace grit {
 
@@ -36,9 +36,8 @@ const Command& named(const std::string& name) {
     if (name == c.name) return c;
     names.emplace_back(c.name);
   }
-  const auto meant = nearest(name, names);
   throw UsageError((name.starts_with('-') ? "unknown option \"" : "unknown command \"") + name + '"' +
-                   (meant ? "; did you mean \"" + *meant + "\"? See" : "; see") + " 'grit --help'");
+                   did_you_mean(name, names, "see 'grit --help'"));
 }
 
 void print_usage(std::ostream& out) {

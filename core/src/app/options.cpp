@@ -5,6 +5,7 @@
 #include <iostream>
 #include <thread>
 
+#include "grit/toolkit/did_you_mean.hpp"
 #include "simulation/standard_registry.hpp"
 
 namespace grit {
@@ -12,12 +13,13 @@ namespace po = boost::program_options;
 
 Options::Options(const Command& command) : command_(command) {
   visible_.add_options()("plugin-path", po::value<std::vector<std::string>>()->composing()->value_name("DIR"),
-                         "search for plugins here first; may be repeated")("help,h", "print this help and exit");
+                         "search for plugins here too; may be repeated")("help,h", "print this help and exit");
 }
 
 void Options::add_set() {
   visible_.add_options()("set", po::value<std::vector<std::string>>()->composing()->value_name("/POINTER=VALUE"),
-                         "override a value of the description, e.g. --set /seed=2; may be repeated");
+                         "override a value of the description, e.g. --set /seed=2; an object replaces that of the file "
+                         "and is merged onto that of a scenario; /- appends to a list, null removes; may be repeated");
 }
 
 void Options::add_threads(const char* doc) {
@@ -44,6 +46,11 @@ bool Options::read(const std::vector<std::string>& words) {
     const auto style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
     po::store(po::command_line_parser(words).options(all).positional(positional).style(style).run(), values_);
     po::notify(values_);
+  } catch (const po::unknown_option& error) {
+    std::vector<std::string> names;
+    for (const auto& option : visible_.options()) names.push_back("--" + option->long_name());
+    throw UsageError(error.what() + did_you_mean(error.get_option_name(), names,
+                                                 std::string("see 'grit ") + command_.name + " --help'"));
   } catch (const po::error& error) {
     throw UsageError(std::string(error.what()) + "; see 'grit " + command_.name + " --help'");
   }

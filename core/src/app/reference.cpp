@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "input/reference.hpp"
 #include "plugins/component.hpp"
-#include "plugins/nearest.hpp"
 
 namespace grit {
 namespace {
@@ -55,12 +55,9 @@ std::string component_text(const Registry& registry, const std::string& name, bo
               info.tag.instruction_set + '\n';
     text += '\n' + parameters_text(registry, one.kind, one.name);
   }
-  if (text.empty()) {
-    const auto meant = nearest(name, names);
-    throw PluginError("unknown component \"" + name + '"' +
-                      (meant ? "; did you mean \"" + *meant + "\"? 'grit plugins'" : "; 'grit plugins'") +
-                      " lists all");
-  }
+  if (text.empty())
+    throw PluginError("unknown component \"" + name + '"' + did_you_mean(name, names, "'grit plugins' lists all") +
+                      "\n  " + registry.search_text());
   return text;
 }
 

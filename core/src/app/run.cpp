@@ -1,3 +1,4 @@
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <iostream>
@@ -62,15 +63,14 @@ std::optional<Checkpoint> resumed(const std::filesystem::path& folder, const Run
   return std::nullopt;
 }
 
-/// Whether the folder holds this run complete. Throws Error if it holds another run.
-bool is_done(const std::filesystem::path& folder, const RunFacts& facts) {
-  const auto run = read_run_json(folder);
-  if (!run) return false;
-  const bool done = run->value("status", "") == "done";
-  const Description then = run->value("description", Description::object());
+/// Whether the folder, of this run.json, holds this run complete. Throws Error if it holds another run.
+bool is_done(const Description& run_json, const std::filesystem::path& folder, const RunFacts& facts) {
+  const bool done = run_json.value("status", "") == "done";
+  const Description then = run_json.value("description", Description::object());
   const auto other = done ? differences(facts.description, then) : differences_on_the_way(facts.description, then);
   if (!other.empty())
     throw Error(folder.string() + ": holds a run of another description:" + other +
+                advice_on_stages(facts.description, then) +
                 "\n  continue with its own description ('grit run --resume " + shell_word(folder.string()) +
                 "'), choose another folder (--out DIR) or replace it (--overwrite)");
   return done;
@@ -84,13 +84,16 @@ std::string resume_advice(Guard guard, const std::filesystem::path& folder) {
          (guard == Guard::travel ? "travel" : "energy") + " and continue with --resume";
 }
 
-RunFacts facts_of(const OpenedScene& opened, unsigned threads) {
+RunFacts facts_of(const RunJob& job, unsigned threads, const std::vector<std::string>& command_line) {
+  const OpenedScene& opened = *job.opened;
   const SceneDescription& description = *opened.scene.description;
   return {.description = resolved(description),
           .plugins = plugins_used(description, *opened.registry),
           .seed = description.seed,
           .threads = threads,
-          .clumps = clumps_of(opened.live.components())};
+          .clumps = clumps_of(opened.live.components()),
+          .source = job.source,
+          .commands = {command_line}};
 }
 
 ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodies) {
@@ -119,8 +122,8 @@ void print_speed(const RunSummary& summary) {
   std::cout << ")\n";
 }
 
-ExitStatus run_one(RunJob job, const Options& options, const std::optional<Listener>& listener,
-                   const std::atomic<bool>& interrupted) {
+ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::string>& command_line,
+                   const std::optional<Listener>& listener, const std::atomic<bool>& interrupted) {
   const std::filesystem::path& folder = job.folder;
   const Scene& scene = job.opened->scene;
   const SceneDescription& description = *scene.description;
@@ -133,13 +136,15 @@ ExitStatus run_one(RunJob job, const Options& options, const std::optional<Liste
   for (const auto& [name, reference] : description.output.references)
     if (reference.curve) read_reference(*reference.curve);  // a fault in it is reported now
   say(description.title.empty() ? job.file : job.file + ": " + description.title);
-  RunFacts facts = facts_of(*job.opened, threads);
+  RunFacts facts = facts_of(job, threads, command_line);
   std::optional<Checkpoint> checkpoint;
   if (job.existing == Existing::resume) {
-    if (is_done(folder, facts)) {
+    const auto before = read_run_json(folder);
+    if (before && is_done(*before, folder, facts)) {
       std::cout << folder.string() << ": already complete\n";
       return ExitStatus::done;
     }
+    if (before) continue_from(*before, job.file == (folder / "description.json").string(), facts);
     checkpoint = resumed(folder, facts);
     if (!checkpoint) job.existing = Existing::overwrite;
   }
@@ -212,11 +217,14 @@ ExitStatus run_command(const std::vector<std::string>& words) {
   const auto listener = listener_of(options);
   if (listener) std::cerr << "watch: http://127.0.0.1:" << listener->port() << "/ during the run" << std::endl;
   const auto& interrupted = catch_interrupts();
+  std::vector<std::string> command_line{program_invocation_name, "run"};
+  command_line.insert(command_line.end(), words.begin(), words.end());
   ExitStatus status = ExitStatus::done;
   for (const RunJob& job : jobs) {
     const ExitStatus one = report([&] {
       try {
-        return at_its_place(job.opened->scene.document, [&] { return run_one(job, options, listener, interrupted); });
+        return at_its_place(job.opened->scene.document,
+                            [&] { return run_one(job, options, command_line, listener, interrupted); });
       } catch (const NumericsError& error) {
         throw NumericsError(job.file + ": " + error.what());
       }

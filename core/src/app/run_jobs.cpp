@@ -2,6 +2,7 @@
 
 #include "app/command.hpp"
 #include "grit/error.hpp"
+#include "grit/toolkit/text_file.hpp"
 #include "input/scene.hpp"
 #include "output/folder_lock.hpp"
 
@@ -26,6 +27,17 @@ RunJob job_of(const std::string& word, const Options& options) {
   job.folder = options.has("out") ? options.get<std::string>("out") : std::string("results");
   if (!options.has("out") || options.words().size() > 1) job.folder /= std::filesystem::path(word).stem();
   return job;
+}
+
+/// Reads the description again, as it was before its scenario was expanded.
+DescriptionSource source_of(const std::string& file, const std::vector<std::string>& sets) {
+  DescriptionSource source{.path = std::filesystem::absolute(file).lexically_normal().string(), .sets = sets};
+  if (!std::filesystem::is_regular_file(file)) return source;
+  source.written = Description::parse(read_text(file));
+  Document document = Document::load(file);
+  for (const std::string& assignment : sets) document.set(assignment);
+  if (!scenario_type(document).empty()) source.unexpanded = document.json();
+  return source;
 }
 
 }  // namespace
@@ -56,6 +68,7 @@ void open_all(std::vector<RunJob>& jobs, const Options& options) {
   std::vector<Problem> problems;
   for (RunJob& job : jobs) try {
       job.opened = std::make_shared<OpenedScene>(registry, load_scene(job.file, options.list("set"), *registry));
+      job.source = source_of(job.file, options.list("set"));
     } catch (const DescriptionError& error) {
       for (const Problem& problem : error.problems()) problems.push_back(problem);
     }

@@ -17,6 +17,7 @@ struct RunJob {
   std::filesystem::path folder;  ///< of the results
   Existing existing = Existing::refuse;
   std::shared_ptr<OpenedScene> opened = nullptr;
+  DescriptionSource source = {};
 };
 
 /// One for each word of the command line: the file of a description or, with --resume, the folder of a run, which holds

@@ -20,6 +20,7 @@
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "input/places.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
@@ -30,7 +31,6 @@
 #include "output/reference_curve.hpp"
 #include "output/run_facts.hpp"
 #include "plugins/build_facts.hpp"
-#include "plugins/nearest.hpp"
 #include "run/observer.hpp"
 #include "simulation/live_scene.hpp"
 #include "study/batch.hpp"
@@ -156,10 +156,8 @@ std::string pointer_of(const std::string& metric, const std::string& key) {
 }
 
 /// `; did you mean "color"? Allowed is one of color, view`
-std::string meant(const std::string& found, const std::vector<std::string>& names) {
-  const auto name = nearest(found, names);
-  return fmt::format("{} is one of {}", name ? fmt::format("; did you mean \"{}\"? Allowed", *name) : "; allowed",
-                     fmt::join(names, ", "));
+std::string one_of(const std::string& found, const std::vector<std::string>& names) {
+  return did_you_mean(found, names, fmt::format("allowed is one of {}", fmt::join(names, ", ")));
 }
 
 /// Checks probes and reference files of the metrics before any run. Throws DescriptionError, FileError.
@@ -173,7 +171,7 @@ void check_metrics(const StudyDescription& study, const Document& written, const
       if (probe.empty() || scene.probes.contains(probe)) continue;
       problems.push_back(written.problem(pointer_of(name, key),
                                          fmt::format("found the probe \"{}\", which is not in the scene", probe) +
-                                             meant(probe, {probes.begin(), probes.end()})));
+                                             one_of(probe, {probes.begin(), probes.end()})));
     }
   }
   if (!problems.empty()) throw DescriptionError(std::move(problems));
@@ -203,7 +201,7 @@ void check_channels(const StudyDescription& study, const Document& written, cons
       if (std::ranges::find(own, channel) == own.end())
         problems.push_back(written.problem(
             pointer_of(name, key),
-            fmt::format("found \"{}\", which is not a channel of the probe", channel) + meant(channel, own)));
+            fmt::format("found \"{}\", which is not a channel of the probe", channel) + one_of(channel, own)));
       else if (!profile && wide.contains(channel))
         problems.push_back(
             written.problem(pointer_of(name, key),

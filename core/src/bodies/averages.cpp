@@ -1,8 +1,10 @@
 // Averages over a box, and measures of static equilibrium.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "bodies/kinetic_energy.hpp"
 #include "grit/world.hpp"
@@ -46,6 +48,12 @@ double share_inside(const Vec3& start, const Vec3& branch, const Region& region)
 }
 
 }  // namespace
+
+std::string World::group_of(std::uint32_t id) const {
+  const auto all = groups();
+  const auto next = std::ranges::upper_bound(all, id, {}, &BodyGroup::first_id);
+  return next == all.begin() ? "" : std::prev(next)->name;
+}
 
 double World::mean_contact_force() const {
   double sum = 0;
@@ -103,6 +111,33 @@ Equilibrium equilibrium(const World& world) {
   return {.kinetic_energy = kinetic_energy(world, world.step() > 0 ? 0.5 * world.dt() : 0),
           .unbalanced_force = normal > 0 ? net / normal : 0,
           .mean_contact_force = normal};
+}
+
+Support support(const World& world) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto velocities = world.velocities(), forces = world.forces();
+  const auto clumps = world.clumps();
+  const auto clump_of = world.clump_of();
+  // Entries of grains: clumps first, then bodies; those of bodies of clumps stay zero.
+  const auto grain = [&](std::size_t body) {
+    return clump_of.empty() || clump_of[body] == no_clump ? clumps.size() + body : clump_of[body];
+  };
+  std::vector<Vec3> by_contacts(clumps.size() + velocities.size(), Vec3::Zero());
+  double contact = 0, carried = 0;
+  for (const Contact& one : world.contacts()) {
+    const double force = one.force.norm();
+    contact += force, carried += force, by_contacts[grain(one.a)] -= one.force;
+    if (!one.with_wall) carried += force, by_contacts[grain(one.b)] += one.force;
+  }
+  double net = 0, load = 0;
+  const auto add = [&](const Vec3& force, const Vec3& of_contacts) {
+    net += force.norm(), load += (force - of_contacts).norm();
+  };
+  for (std::size_t c = 0; c < clumps.size(); ++c) add(clumps[c].force, by_contacts[c]);
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    if (velocities[i].w > 0 && grain(i) >= clumps.size()) add(xyz(forces[i]), by_contacts[grain(i)]);
+  return {.unbalance = load + contact > 0 ? net / (load + contact) : infinity,
+          .carried = load > 0 ? carried / load : infinity};
 }
 
 Grains grains_of(const World& world) {

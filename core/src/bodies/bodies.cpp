@@ -81,7 +81,7 @@ void Bodies::start_paths() {
 }
 
 std::string Bodies::group_of(std::uint32_t body) const {
-  const auto next = std::ranges::upper_bound(groups, body, {}, &Group::first_id);
+  const auto next = std::ranges::upper_bound(groups, body, {}, &BodyGroup::first_id);
   return next == groups.begin() ? "" : std::prev(next)->name;
 }
 
@@ -95,7 +95,8 @@ void Bodies::append(const Bodies& others) {
   go_on(position, others.position), go_on(velocity, others.velocity), go_on(spin, others.spin);
   go_on(material, others.material), go_on(rotation, others.rotation), go_on(origin, others.origin);
   for (const std::uint32_t other : others.id) id.push_back(ids_given + other);
-  for (const Group& group : others.groups) groups.push_back({group.name, ids_given + group.first_id});
+  for (const BodyGroup& group : others.groups)
+    if (groups.empty() || groups.back().name != group.name) groups.push_back({group.name, ids_given + group.first_id});
   if (!clumps.none() || !others.clumps.none()) {
     clumps.of_body.resize(before), clumps.volume_fraction.resize(before, 1.0);
     go_on(clumps.of_body, others.clumps.of_body), go_on(clumps.volume_fraction, others.clumps.volume_fraction);

@@ -25,13 +25,7 @@ struct Bodies {
   std::vector<Vec3> rotation;  ///< cumulative, see start_paths() [rad]; empty unless requested
   std::vector<Vec3> origin;    ///< origin of displacements [m], see start_paths(); empty unless requested
   Clumps clumps;
-  /// A group of the description; its bodies have the ids from its first id up to that of the next group.
-  struct Group {
-    std::string name;
-    std::uint32_t first_id;
-    void serialize(Archive& archive) { archive(name, first_id); }
-  };
-  std::vector<Group> groups;                         ///< in ascending order of ids
+  std::vector<BodyGroup> groups;                     ///< in ascending order of ids
   StateRequest state;                                ///< requested by components
   std::uint32_t ids_given = 0, clump_ids_given = 0;  ///< number of ids ever given, including bodies that left
 

@@ -1,5 +1,7 @@
 #include "bodies/clump_body.hpp"
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 namespace grit {
 namespace {
 
+constexpr std::size_t most_faults = 10;
 constexpr const char* lines_of_file = "a file with one line per sphere: x y z radius";
 
 struct Balls {
@@ -75,13 +78,24 @@ void ClumpBody::prepare() {
   } catch (const FileError& error) {
     throw ParameterError({{"shape/path", error.what(), lines_of_file}});
   }
-  const auto defect = clump_defect(balls_);
-  if (!defect) return;
-  std::string key = "shape";
-  if (file != nullptr) key += "/path";
-  else if (spheres_.type() == RodSpheres::type_name) key += "/spacing";
-  else key += "/spheres" + (defect->sphere ? '/' + std::to_string(*defect->sphere) : "");
-  throw ParameterError({{key, (file != nullptr ? file->path + ": " : "") + defect->found, defect->allowed}});
+  const auto defects = clump_defects(balls_);
+  if (defects.empty()) return;
+  const bool is_rod = spheres_.type() == RodSpheres::type_name;  // has one fault
+  const std::string key = file != nullptr ? "shape/path"
+                          : is_rod        ? "shape/spacing"
+                                          : "shape/spheres",
+                    before = file != nullptr ? file->path + ": " : "";
+  const std::size_t shown = is_rod ? 1 : std::min(defects.size(), most_faults);
+  std::vector<ParameterError::Fault> faults;
+  for (const ClumpDefect& defect : std::span(defects).first(shown)) {
+    const bool has_own_key = defect.sphere && key == "shape/spheres";
+    faults.push_back(
+        {has_own_key ? key + '/' + std::to_string(*defect.sphere) : key, before + defect.found, defect.allowed});
+  }
+  if (const std::size_t more = defects.size() - shown; more > 0 && !is_rod)
+    faults.push_back({key, before + std::to_string(more) + " more spheres that are inside another or not connected",
+                      "spheres that are connected, and of which none is inside another"});
+  throw ParameterError(std::move(faults));
 }
 
 const ClumpShape* ClumpBody::clump() const {

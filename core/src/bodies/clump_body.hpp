@@ -19,22 +19,27 @@ struct ClumpSphereDescription {
 };
 struct ListedSpheres {
   static constexpr const char* type_name = "list";
+  static constexpr const char* type_doc = "spheres one by one";
   std::deque<ClumpSphereDescription> spheres;
   void declare(Parameters& p);
 };
 struct SpheresOfFile {
   static constexpr const char* type_name = "file";
+  static constexpr const char* type_doc = "spheres from a text file";
   std::string path;
   void declare(Parameters& p);
 };
 struct RodSpheres {
   static constexpr const char* type_name = "rod";
+  static constexpr const char* type_doc = "equal spheres in a straight row, each overlapping the next";
   std::int64_t count = 2;
   double spacing = 0.5;
   void declare(Parameters& p);
 };
 struct AsymmetricSpheres {
   static constexpr const char* type_name = "asymmetric";
+  static constexpr const char* type_doc =
+      "four spheres of unequal size without an axis of symmetry, like a grain of sand";
   void declare(Parameters&) {}
 };
 

@@ -6,11 +6,11 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
@@ -60,21 +60,29 @@ void try_on(std::span<const Ball* const> on, std::span<const Ball> balls, Ball& 
   }
 }
 
-/// A ball that is not connected with the first, if there is one.
-std::optional<std::size_t> out_of_reach(std::span<const Ball> balls) {
-  std::vector<std::size_t> reached{0};
+/// The largest group of connected balls, the first if there are several; sorted.
+std::vector<std::size_t> largest_group(std::span<const Ball> balls) {
+  std::vector<std::size_t> largest;
   std::vector<bool> seen(balls.size(), false);
-  seen[0] = true;
-  for (std::size_t k = 0; k < reached.size(); ++k)
-    for (std::size_t j = 0; j < balls.size(); ++j) {
-      const Ball &a = balls[reached[k]], &b = balls[j];
-      if (seen[j] || (xyz(a) - xyz(b)).norm() >= a.w + b.w) continue;
-      seen[j] = true;
-      reached.push_back(j);
-    }
-  const auto lost = std::ranges::find(seen, false);
-  if (lost == seen.end()) return std::nullopt;
-  return static_cast<std::size_t>(lost - seen.begin());
+  for (std::size_t first = 0; first < balls.size(); ++first) {
+    if (seen[first]) continue;
+    std::vector<std::size_t> group{first};
+    seen[first] = true;
+    for (std::size_t k = 0; k < group.size(); ++k)
+      for (std::size_t j = 0; j < balls.size(); ++j) {
+        const Ball &a = balls[group[k]], &b = balls[j];
+        if (seen[j] || (xyz(a) - xyz(b)).norm() >= a.w + b.w) continue;
+        seen[j] = true;
+        group.push_back(j);
+      }
+    if (group.size() > largest.size()) largest = std::move(group);
+  }
+  std::ranges::sort(largest);
+  return largest;
+}
+
+bool is_inside(const Ball& inner, const Ball& outer) {
+  return (xyz(inner) - xyz(outer)).norm() + inner.w <= outer.w * (1 + least_out);
 }
 
 /// Integrals of 1, r and r rᵀ.
@@ -209,26 +217,31 @@ Ball smallest_enclosing(std::span<const Ball> balls) {
   return best;
 }
 
-std::optional<ClumpDefect> clump_defect(std::span<const Ball> spheres) {
-  if (spheres.empty() || spheres.size() > 64)
-    return ClumpDefect{{}, std::to_string(spheres.size()) + " spheres", "1 to 64"};
+std::vector<ClumpDefect> clump_defects(std::span<const Ball> spheres) {
+  if (spheres.empty() || spheres.size() > 64) return {{{}, std::to_string(spheres.size()) + " spheres", "1 to 64"}};
   const auto sphere = [](std::size_t k) { return "sphere " + std::to_string(k + 1); };
-  for (std::size_t k = 0; k < spheres.size(); ++k)
-    for (std::size_t j = 0; j < spheres.size(); ++j) {
-      const Ball &inner = spheres[k], &outer = spheres[j];
-      if (j == k || (xyz(inner) - xyz(outer)).norm() + inner.w > outer.w * (1 + least_out)) continue;
-      return ClumpDefect{k, sphere(k) + ", which is inside " + sphere(j),
-                         "a sphere that is not inside another; remove it"};
-    }
-  if (const auto lost = out_of_reach(spheres))
-    return ClumpDefect{*lost, sphere(*lost) + ", which is not connected with sphere 1",
-                       "spheres that overlap, so that all are connected"};
-  return std::nullopt;
+  std::vector<ClumpDefect> defects;
+  const auto group = largest_group(spheres);
+  for (std::size_t k = 0; k < spheres.size(); ++k) {
+    const auto around = [&](std::size_t j) {
+      const bool is_first_of_equals = k < j && is_inside(spheres[j], spheres[k]);
+      return j != k && is_inside(spheres[k], spheres[j]) && !is_first_of_equals;
+    };
+    std::size_t outer = 0;
+    while (outer < spheres.size() && !around(outer)) ++outer;
+    if (outer < spheres.size())
+      defects.push_back(
+          {k, sphere(k) + ", which is inside " + sphere(outer), "a sphere that is not inside another; remove it"});
+    else if (!std::ranges::binary_search(group, k))
+      defects.push_back({k, sphere(k) + ", which is not connected with " + sphere(group.front()),
+                         "spheres that overlap, so that all are connected"});
+  }
+  return defects;
 }
 
 ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays) {
-  if (const auto defect = clump_defect(spheres))
-    throw Error("found " + defect->found + "; allowed is " + defect->allowed);
+  if (const auto defects = clump_defects(spheres); !defects.empty())
+    throw Error(fault_text(defects.front().found, defects.front().allowed));
   const Ball enclosing = smallest_enclosing(spheres);
   std::vector<Ball> balls;
   for (const Ball& one : spheres) {
@@ -240,7 +253,7 @@ ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays) {
   for (const Moments& one : integrals.fine) all = all.plus(one);
   const ShapeErrors errors = errors_of(all, integrals);
   if (const double most = std::max({errors.mass, errors.centre, errors.inertia}); !(most <= largest_error))
-    throw Error("the error of mass, centre or inertia of a clump may be " + std::to_string(100 * most) +
+    throw Error("the error of mass, centre or inertia of a clump may be " + number(100 * most) +
                 " %; allowed is 0.1 %; reduce the overlaps of its spheres");
   const Vec3 centre = all.centre();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(all.inertia());

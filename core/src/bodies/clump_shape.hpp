@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "grit/body_kind.hpp"
 
@@ -21,8 +22,9 @@ struct ClumpDefect {
   std::optional<std::size_t> sphere;  ///< the sphere at fault, from 0; none: all of them
   std::string found, allowed;         ///< numbers of spheres in texts start from 1
 };
-/// The defect, if there is no sphere or more than 64, if one is inside another, or if they are not connected.
-std::optional<ClumpDefect> clump_defect(std::span<const Ball> spheres);
+/// All defects: no sphere or more than 64, spheres that are inside another, spheres that are not connected with the
+/// largest connected group. Of two equal spheres the second is reported.
+std::vector<ClumpDefect> clump_defects(std::span<const Ball> spheres);
 
 /// The clump of these spheres, in any unit and frame. Volume and moments are those of the union, by exact chords along
 /// `rays` × `rays` lines (a multiple of 3) through each sphere, without the parts that previous spheres cover. Errors

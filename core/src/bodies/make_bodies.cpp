@@ -3,27 +3,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 #include <string>
 #include <typeinfo>
 
 #include "bodies/cloud.hpp"
+#include "bodies/group_builder.hpp"
+#include "bodies/orientation.hpp"
 #include "bodies/packing_file.hpp"
+#include "bodies/sizes.hpp"
+#include "bodies/stream.hpp"
 #include "description/placed_error.hpp"
+#include "format/number.hpp"
 #include "grit/error.hpp"
 
 namespace grit {
 namespace {
-
-/// Random orientation, uniformly distributed (K. Shoemake, Graphics Gems III (1992) 124,
-/// doi:10.1016/B978-0-08-050755-2.50036-1).
-Eigen::Quaterniond any_orientation(Random& random) {
-  const double u = random.uniform(), a = 2 * std::numbers::pi * random.uniform(),
-               b = 2 * std::numbers::pi * random.uniform();
-  const double p = std::sqrt(1 - u), q = std::sqrt(u);
-  return {p * std::sin(a), p * std::cos(a), q * std::sin(b), q * std::cos(b)};
-}
 
 std::set<std::string> of_bodies(const SceneDescription& scene) {
   std::set<std::string> names;
@@ -32,32 +29,15 @@ std::set<std::string> of_bodies(const SceneDescription& scene) {
 }
 
 /// Adds a group. Clouds do not overlap the spheres of `there` and `bodies`.
-void add_group(const SceneDescription& scene, const BodiesDescription& group, const BodyKind& kind, const Cell& cell,
+void add_group(const BodiesDescription& group, const GroupBuilder& builder, const Cell& cell,
                std::span<const Row> there, Random& random, Bodies& bodies) {
-  const auto names = material_names(scene);
-  const auto material =
-      static_cast<std::uint8_t>(std::find(names.begin(), names.end(), group.material) - names.begin());
-  const double density = scene.materials.at(group.material).density;
-  const ClumpShape* const clump = kind.clump();
-  const auto add = [&](const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
-                       const Vec3& spin) {
-    const double inert = std::max(radius, 0.5 * group.scaled_below());
-    const double mass = density * kind.volume(inert);
-    if (clump == nullptr) {
-      bodies.add(centre, radius, mass, kind.inertia(inert, mass), material, velocity, spin);
-      return;
-    }
-    const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(clump->axes);
-    const Vec3 middle = orientation * (radius * clump->middle);
-    bodies.add_clump(*clump, centre - middle, radius, mass, mass * inert * inert * clump->inertia, orientation,
-                     material, velocity, spin);
-  };
+  if (std::holds_alternative<StreamSource>(group.source.value())) return;  // its bodies enter later
   if (const auto* placed = std::get_if<ListSource>(&group.source.value())) {
     for (const ListedBody& g : placed->bodies) {
       const double angle = g.orientation.norm();
       const Vec3 axis = angle > 0 ? Vec3(g.orientation / angle) : Vec3::UnitX();
-      add(g.position, g.radius, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), group.velocity + g.velocity,
-          g.spin);
+      builder.add(bodies, g.position, g.radius, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
+                  group.velocity + g.velocity, g.spin);
     }
     return;
   }
@@ -66,15 +46,42 @@ void add_group(const SceneDescription& scene, const BodiesDescription& group, co
   std::vector<Row> others(there.begin(), there.end());
   others.insert(others.end(), bodies.position.begin(), bodies.position.end());
   const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, others) : read_packing(file->path);
+  const ClumpShape* const clump = builder.clump();
   bodies.reserve(grains.size() * (clump != nullptr ? clump->spheres.size() : 1));
   for (const Row& g : grains) {
     const Eigen::Quaterniond turn = clump != nullptr ? any_orientation(random) : Eigen::Quaterniond::Identity();
-    add(xyz(g), g.w, turn, group.velocity, Vec3::Zero());
+    builder.add(bodies, xyz(g), g.w, turn, group.velocity, Vec3::Zero());
   }
 }
 
-/// Throws PlacedError for a body outside the cell.
+double smallest_radius(const BodiesDescription& group) {
+  double smallest = std::numeric_limits<double>::infinity();
+  if (const auto* placed = std::get_if<ListSource>(&group.source.value())) {
+    for (const ListedBody& one : placed->bodies) smallest = std::min(smallest, one.radius);
+  } else if (const auto* cloud = std::get_if<CloudSource>(&group.source.value())) {
+    Random random(0);
+    for (const double diameter : draw_diameters(cloud->sizes, static_cast<std::size_t>(cloud->count), random))
+      smallest = std::min(smallest, 0.5 * diameter);
+  } else if (const auto* stream = std::get_if<StreamSource>(&group.source.value())) {
+    constexpr std::size_t sample = 1000;
+    Random random(0);
+    for (const double diameter : draw_diameters(stream->sizes, sample, random))
+      smallest = std::min(smallest, 0.5 * diameter);
+  } else {
+    for (const Row& one : read_packing(std::get<FileSource>(group.source.value()).path))
+      smallest = std::min(smallest, one.w);
+  }
+  return smallest;
+}
+
+/// Throws PlacedError for bodies outside the cell, with a fault for each group.
 void check_inside(const Cell& cell, const Bodies& bodies) {
+  struct Outside {
+    std::size_t count = 0;
+    std::uint32_t clump = no_clump;  // the last one
+    Row first{};
+  };
+  std::map<std::string, Outside> groups;
   for (std::size_t i = 0; i < bodies.count(); ++i) {
     const Row& x = bodies.position[i];
     // Only finish() adds entries for spheres after the last clump.
@@ -84,11 +91,24 @@ void check_inside(const Cell& cell, const Bodies& bodies) {
       const double over =
           cell.periodic[k] ? reach : 0;  // just outside a periodic side, a body is inside at the opposite side
       if (xyz(x)[k] >= cell.low[k] - over && xyz(x)[k] <= cell.high[k] + over) continue;
-      throw PlacedError({"bodies", bodies.group_of(bodies.id[i])},
-                        "a body at (" + std::to_string(x.x) + ", " + std::to_string(x.y) + ", " + std::to_string(x.z) +
-                            ") m is outside the domain; enlarge /domain or move the body");
+      Outside& group = groups[bodies.group_of(bodies.id[i])];
+      if (group.count == 0) group.first = x;
+      if (c == no_clump || c != group.clump) ++group.count;
+      group.clump = c;
+      break;
     }
   }
+  std::vector<PlacedError::Fault> faults;
+  for (const auto& [name, group] : groups) {
+    const std::string at =
+        " at (" + number(group.first.x) + ", " + number(group.first.y) + ", " + number(group.first.z) + ") m";
+    const bool one = group.count == 1;
+    faults.push_back(
+        {{"bodies", name},
+         (one ? "a body" + at + " is" : std::to_string(group.count) + " bodies, the first" + at + ", are") +
+             " outside the domain; enlarge /domain or move the " + (one ? "body" : "bodies")});
+  }
+  if (!faults.empty()) throw PlacedError(std::move(faults));
 }
 
 /// Runs `work` for a group. Errors get the name of the group, except errors in files, which have a line.
@@ -145,12 +165,12 @@ Bodies make_bodies(const SceneDescription& scene, const Components& components, 
   Random random(static_cast<std::uint64_t>(scene.seed));
   Bodies bodies;
   for (const auto& [name, group] : scene.bodies) {
-    const BodyKind& kind = *components.body_kinds.at(name);
+    const auto& kind = components.body_kinds.at(name);
     if (group.stage.empty()) {
       bodies.groups.push_back({name, bodies.ids_given});
-      for_group(name, [&] { add_group(scene, group, kind, cell, {}, random, bodies); });
+      for_group(name, [&] { add_group(group, GroupBuilder(scene, group, kind), cell, {}, random, bodies); });
     } else {
-      body_count(group, kind);  // reports errors in files now, not at the start of their stage
+      body_count(scene, name, kind);  // reports errors in files now, not at the start of their stage
     }
   }
   check_inside(cell, bodies);
@@ -167,7 +187,8 @@ Newcomers make_newcomers(const SceneDescription& scene, const Components& compon
     newcomers.groups.push_back({name, newcomers.bodies.ids_given, group.overlap});
     newcomers.bodies.groups.push_back({name, newcomers.bodies.ids_given});
     for_group(name, [&, &group = group] {
-      add_group(scene, group, *components.body_kinds.at(name), cell, there, random, newcomers.bodies);
+      add_group(group, GroupBuilder(scene, group, components.body_kinds.at(name)), cell, there, random,
+                newcomers.bodies);
     });
     check_inside(cell, newcomers.bodies);
   }
@@ -175,8 +196,25 @@ Newcomers make_newcomers(const SceneDescription& scene, const Components& compon
   return newcomers;
 }
 
-std::size_t body_count(const BodiesDescription& group, const BodyKind& kind) {
-  const auto spheres = kind.clump() != nullptr ? kind.clump()->spheres.size() : 1;
+Bodies smallest_bodies(const SceneDescription& scene, const Components& components,
+                       const std::vector<std::string>& groups) {
+  Bodies bodies;
+  for (const std::string& name : groups) {
+    const BodiesDescription& group = scene.bodies.at(name);
+    if (const double radius = smallest_radius(group); std::isfinite(radius))
+      GroupBuilder(scene, group, components.body_kinds.at(name))
+          .add(bodies, Vec3::Zero(), radius, Eigen::Quaterniond::Identity(), Vec3::Zero(), Vec3::Zero());
+  }
+  bodies.finish({});
+  return bodies;
+}
+
+std::size_t body_count(const SceneDescription& scene, const std::string& name,
+                       const std::shared_ptr<const BodyKind>& kind) {
+  const BodiesDescription& group = scene.bodies.at(name);
+  const auto spheres = kind->clump() != nullptr ? kind->clump()->spheres.size() : 1;
+  if (const auto* stream = std::get_if<StreamSource>(&group.source.value()))
+    return spheres * expected_count(*stream, GroupBuilder(scene, group, kind));
   if (const auto* placed = std::get_if<ListSource>(&group.source.value())) return spheres * placed->bodies.size();
   if (const auto* cloud = std::get_if<CloudSource>(&group.source.value()))
     return spheres * static_cast<std::size_t>(cloud->count);

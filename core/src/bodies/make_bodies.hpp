@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,7 +48,13 @@ struct Newcomers {
 Newcomers make_newcomers(const SceneDescription& scene, const Components& components, const std::string& stage,
                          const Cell& cell, std::span<const Row> there, StateRequest state);
 
-/// Number of bodies of a group; each sphere of a clump is one. Throws if its file cannot be read.
-std::size_t body_count(const BodiesDescription& group, const BodyKind& kind);
+/// The smallest body of each of these groups, for estimates before they appear. Throws if a file cannot be read.
+Bodies smallest_bodies(const SceneDescription& scene, const Components& components,
+                       const std::vector<std::string>& groups);
+
+/// Number of bodies of a group; each sphere of a clump is one. For a stream those that its limits allow, or 0. Throws
+/// if its file cannot be read.
+std::size_t body_count(const SceneDescription& scene, const std::string& group,
+                       const std::shared_ptr<const BodyKind>& kind);
 
 }  // namespace grit

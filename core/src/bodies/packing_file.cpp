@@ -9,36 +9,19 @@
 #include <sstream>
 #include <string_view>
 
+#include "format/number.hpp"
 #include "grit/error.hpp"
+#include "grit/toolkit/text_file.hpp"
 
 namespace grit {
 
 namespace {
 
 constexpr std::size_t most_problems = 10;  // limits the output for a large file with many errors
-constexpr std::string_view blanks = " \t\r\v\f";
+constexpr std::string_view blanks = " \t\v\f";
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int reason) {
   throw FileError(path.string() + ": " + what + ": " + (reason != 0 ? std::strerror(reason) : "input or output error"));
-}
-
-std::string whole_file(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) fail(path, "cannot read grains", EISDIR);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(path, "cannot read grains", errno);
-  std::string text;
-  constexpr std::size_t piece = 1 << 20;
-  std::error_code unknown;  // a pipe has no size
-  if (const auto size = std::filesystem::file_size(path, unknown); !unknown) text.reserve(size + piece);
-  do {
-    const std::size_t size = text.size();
-    text.resize(size + piece);
-    file.read(text.data() + size, piece);
-    text.resize(size + static_cast<std::size_t>(file.gcount()));
-  } while (file);
-  if (file.bad()) fail(path, "cannot read grains", errno);
-  return text;
 }
 
 /// Removes the next word from `line` and returns it; empty at its end.
@@ -56,14 +39,13 @@ std::string read_grain(std::string_view line, Row& grain) {
   std::size_t found = 0;
   for (std::string_view word; !(word = next_word(line)).empty(); ++found) {
     if (found >= 4) continue;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), *numbers[found]);
-    const bool number = error != std::errc::invalid_argument && end == word.data() + word.size();
-    if (number && error == std::errc() && std::isfinite(*numbers[found])) continue;
-    return std::string(names[found]) + " is \"" + std::string(word.substr(0, 40)) + "\", not a " +
-           (number ? "finite number in double's range" : "number");
+    auto [value, fault] = parse_number(word);
+    if (fault.empty() && !std::isfinite(value)) fault = "not finite";
+    if (!fault.empty()) return std::string(names[found]) + " is " + quoted_excerpt(word) + ": " + std::string(fault);
+    *numbers[found] = value;
   }
   if (found != 4) return "found " + std::to_string(found) + " numbers; expected four: x y z radius";
-  if (!(grain.w > 0)) return "radius is " + std::to_string(grain.w) + " m; it must be above 0";
+  if (!(grain.w > 0)) return "radius is " + number(grain.w) + " m; it must be above 0";
   return "";
 }
 
@@ -76,20 +58,20 @@ void append(std::string& text, double number) {
 }  // namespace
 
 std::vector<Row> read_packing(const std::filesystem::path& path) {
-  const std::string text = whole_file(path);
+  const std::string text = read_text(path);
   std::vector<Row> grains;
   std::vector<Problem> problems;
   std::size_t left_out = 0;
-  int number = 0;
+  int line_number = 0;
   for (std::string_view rest = text; !rest.empty();) {
     std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    ++number;
+    ++line_number;
     line = line.substr(0, line.find('#'));
     if (line.find_first_not_of(blanks) == line.npos) continue;
     std::string wrong = read_grain(line, grains.emplace_back());
     if (wrong.empty()) continue;
-    if (problems.size() < most_problems) problems.push_back({path.string(), number, "", std::move(wrong)});
+    if (problems.size() < most_problems) problems.push_back({path.string(), line_number, "", std::move(wrong)});
     else ++left_out;
   }
   if (left_out > 0) problems.push_back({path.string(), 0, "", std::to_string(left_out) + " more lines have errors"});

@@ -12,7 +12,7 @@
 
 namespace grit {
 
-/// Centres [m], w: radius [m], in the order of the lines. Throws FileError if the file cannot be read. Throws
+/// Centres [m], w: radius [m], in the order of the lines. Throws FileError as read_text() does. Throws
 /// DescriptionError, with each line at fault, for lines without exactly four numbers, numbers that are not finite,
 /// radii that are not positive, and for a file without grains.
 std::vector<Row> read_packing(const std::filesystem::path& path);

@@ -27,6 +27,11 @@ class Random {
   /// Standard normal, by inversion; within ±8.3.
   double normal();
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(state_);
+  }
+
   /// Shuffles items; all orders are equally likely.
   template <std::ranges::random_access_range Items>
   void shuffle(Items& items) {

@@ -66,6 +66,33 @@ double largest(const Rates& rates) {
                 (slide - 1) * rates.across * rates.across);
 }
 
+PairSize size_of(const Bodies& bodies, std::size_t a, std::size_t b, double overlap) {
+  return {.radius_a = bodies.position[a].w,
+          .radius_b = bodies.position[b].w,
+          .inverse_mass_a = bodies.velocity[a].w,
+          .inverse_mass_b = bodies.velocity[b].w,
+          .overlap = overlap};
+}
+
+/// Demand of a body that has one contact, with a body like itself. `overlap`: over its radius.
+Demand demand_alone(const Bodies& bodies, std::size_t i, const ContactLaw& law, double overlap) {
+  const auto at_overlap = [&](double depth) {
+    return law.stiffness(size_of(bodies, i, i, depth), bodies.material[i], bodies.material[i]);
+  };
+  const Stiffness k = at_overlap(overlap * bodies.position[i].w);
+  const std::uint32_t clump = bodies.clumps.clump_of(i);
+  Vec3 across = Vec3::UnitX();
+  if (clump != no_clump && !bodies.clumps.of_body[i].place.isZero())
+    across = bodies.clumps.clump[clump].axes * bodies.clumps.of_body[i].place.unitOrthogonal();
+  const Mobility gives = mobility(bodies, i, across);
+  const double inverse_mass = 2 * bodies.velocity[i].w;
+  // Springs whose stiffness starts at 0 separate softly: the stiffness at first contact counts.
+  const double first_contact = overlap > 0 ? at_overlap(0).normal : k.normal;
+  return {.spring = 2 * demand(k, bodies, i, across),
+          .dashpot = clump != no_clump ? dashpots(k, gives, gives, inverse_mass) : largest(rates(k, inverse_mass)),
+          .impact = 2 * first_contact * gives.along};
+}
+
 /// Demand of dashpots on a body [1/s], summed over its contacts: along·n n + across·(1 − n n) for its velocity,
 /// (slide − 1) across·(1 − n n) for its spin times √(I/m), and √(slide − 1) across·n that couples both. Each of the two
 /// bodies of a contact takes the sum of both.
@@ -121,6 +148,12 @@ class Dashpots {
 
 }  // namespace
 
+Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law) {
+  Demand all;
+  for (std::size_t i = 0; i < bodies.count(); ++i) all = larger(all, demand_alone(bodies, i, law, 0));
+  return all;
+}
+
 Demand CriticalStep::find(const Instant& at, Team& team) {
   demand_.resize(at.bodies.count());
   chunk_.resize(chunks_of(at.bodies.count()));
@@ -159,9 +192,7 @@ Demand CriticalStep::look(const std::vector<std::size_t>& chunks, const Instant&
     team.each(chunk_.size(), [&](std::size_t chunk) { compare(chunk, at); });
   }
   Demand all;
-  for (const Chunk& chunk : chunk_)
-    for (const Demand& one : {chunk.demand, chunk.together})
-      all = {std::max(all.spring, one.spring), std::max(all.dashpot, one.dashpot), std::max(all.impact, one.impact)};
+  for (const Chunk& chunk : chunk_) all = larger(all, larger(chunk.demand, chunk.together));
   return all;
 }
 
@@ -173,19 +204,12 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   own.near.clear();
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const bool clumps = !bodies.clumps.none();
-  const auto size_of = [&](std::size_t a, std::size_t b, double overlap) {
-    return PairSize{.radius_a = bodies.position[a].w,
-                    .radius_b = bodies.position[b].w,
-                    .inverse_mass_a = bodies.velocity[a].w,
-                    .inverse_mass_b = bodies.velocity[b].w,
-                    .overlap = overlap};
-  };
   std::array<double, chunk_bodies> springs{}, clump_dashpots{};
   std::array<Dashpots, chunk_bodies> damped;
   at.pairs.each_near(chunk, bodies, at.shifts, at.skins, at.near, [&](std::size_t c, double distance) {
     const std::uint32_t a = at.pairs.a(c), b = at.pairs.b(c);
     const double overlap = std::max(bodies.position[a].w + bodies.position[b].w - distance, 0.0);
-    const Stiffness k = at.law.stiffness(size_of(a, b, overlap), bodies.material[a], bodies.material[b]);
+    const Stiffness k = at.law.stiffness(size_of(bodies, a, b, overlap), bodies.material[a], bodies.material[b]);
     const bool damps = k.damping_ratio > 0 || k.shear_damping_ratio > 0;
     const Vec3 normal = damps || clumps ? at.pairs.branch(c, bodies, at.shifts).normalized() : Vec3(Vec3::Zero());
     const double inverse_mass = bodies.velocity[a].w + bodies.velocity[b].w;
@@ -205,7 +229,7 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   });
   at.walls.each_near(chunk, bodies, at.surfaces, at.near, [&](const SurfaceContact& contact, const WallSurface& wall) {
     const std::uint32_t a = contact.body;
-    PairSize size = size_of(a, a, std::max(contact.overlap - at.near, 0.0));
+    PairSize size = size_of(bodies, a, a, std::max(contact.overlap - at.near, 0.0));
     size.inverse_mass_b = 0, size.wall = true;
     const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
     springs[a - first] += demand(k, bodies, a, contact.normal);
@@ -215,28 +239,15 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
   });
   own.demand = {};
   for (std::size_t i = first; i < last; ++i) {
-    const PairSize alike = size_of(i, i, at.overlap * bodies.position[i].w);
-    const Stiffness k = at.law.stiffness(alike, bodies.material[i], bodies.material[i]);
-    const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
-    Vec3 across = Vec3::UnitX();
-    if (in_clump && !bodies.clumps.of_body[i].place.isZero())
-      across = bodies.clumps.clump[bodies.clumps.clump_of(i)].axes * bodies.clumps.of_body[i].place.unitOrthogonal();
-    const double alone = demand(k, bodies, i, across);
-    demand_[i] = std::max(springs[i - first], alone);
-    own.demand.spring = std::max({own.demand.spring, 2 * alone, demand_[i]});
-    // Springs whose stiffness starts at 0 separate softly: the stiffness at first contact counts.
-    const double first_contact =
-        at.overlap > 0 ? at.law.stiffness(size_of(i, i, 0), bodies.material[i], bodies.material[i]).normal : k.normal;
-    own.demand.impact = std::max(own.demand.impact, 2 * first_contact * mobility(bodies, i, across).along);
+    const Demand alone = demand_alone(bodies, i, at.law, at.overlap);
+    const double of_one = 0.5 * alone.spring;
+    demand_[i] = std::max(springs[i - first], of_one);
+    own.demand.spring = std::max({own.demand.spring, alone.spring, demand_[i]});
+    own.demand.impact = std::max(own.demand.impact, alone.impact);
+    own.demand.dashpot = std::max(own.demand.dashpot, alone.dashpot);
     if (clumps)
-      clumps_.springs[i] = springs[i - first], clumps_.least[i] = alone,
+      clumps_.springs[i] = springs[i - first], clumps_.least[i] = of_one,
       clumps_.dashpots[i] = clump_dashpots[i - first];
-    if (in_clump) {
-      const Mobility gives = mobility(bodies, i, across);
-      own.demand.dashpot = std::max(own.demand.dashpot, dashpots(k, gives, gives, 2 * bodies.velocity[i].w));
-      continue;
-    }
-    own.demand.dashpot = std::max(own.demand.dashpot, largest(rates(k, 2 * bodies.velocity[i].w)));
   }
   // Starts with the body of the largest bound: then few others need an exact evaluation.
   std::array<double, chunk_bodies> most{};

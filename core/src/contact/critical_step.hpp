@@ -9,6 +9,9 @@
 
 namespace grit {
 
+/// Demand of bodies before their first contacts: each has one with a body like itself.
+Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
+
 /// Upper bounds of the demands of contacts on bodies, with walls held. Mass and inertia of each body are distributed
 /// over its contacts in proportion to their demands. Then ω_max² is at most the maximum over the contacts of Q_a + Q_b,
 /// with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I): the element bound of Irons and

@@ -1,6 +1,7 @@
 // Bounds that limit the time step.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +22,10 @@ struct Demand {
   double step_of_impact(double steps) const { return std::numbers::pi / (steps * std::sqrt(impact)); }
   bool more_than(const Demand& other) const { return spring > other.spring || dashpot > other.dashpot; }
 };
+
+inline Demand larger(const Demand& a, const Demand& b) {
+  return {std::max(a.spring, b.spring), std::max(a.dashpot, b.dashpot), std::max(a.impact, b.impact)};
+}
 
 template <>
 inline constexpr bool plain_numbers<Demand> = true;

@@ -155,6 +155,8 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
       sphere.body = chunk.candidate[n];
     }
     if (work.spheres.empty()) continue;
+    if (!wall.period.isZero(0.0))
+      for (Sphere& sphere : work.spheres) sphere.centre = wall.within(sphere.centre);
     wall.geometry->find_contacts(wall.pose, work.spheres, work.found);
     const bool turns = !wall.spin.isZero(0);
     for (const SurfaceContact& t : work.found) {
@@ -255,8 +257,8 @@ bool WallContacts::hidden(const WallContact& lesser, const WallContact& deeper, 
                           std::span<const WallSurface> walls, Workspace& work) {
   const Vec3 place = xyz(body) + (body.w - lesser.overlap) * lesser.normal;
   const double close = no_gap * body.w;
-  const Sphere probe{place - close * deeper.normal, 2 * close, deeper.body};
   const WallSurface& wall = walls[deeper.wall];
+  const Sphere probe{wall.within(place - close * deeper.normal), 2 * close, deeper.body};
   work.found.clear();
   wall.geometry->find_contacts(wall.pose, {&probe, 1}, work.found);
   return !work.found.empty();
@@ -341,9 +343,11 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
                                  const ContactLaw& law, const Bodies& bodies, bool all) const {
   std::vector<Sphere> spheres;
   std::vector<SurfaceContact> found;
+  WallSurface at = surface;
+  at.pose = there;
   const auto inspect = [&](std::uint32_t body) {
     const Row& x = bodies.position[body];
-    spheres.push_back({xyz(x), x.w, body});
+    spheres.push_back({at.within(xyz(x)), x.w, body});
   };
   if (all)
     for (std::uint32_t body = 0; body < bodies.count(); ++body) inspect(body);

@@ -1,6 +1,7 @@
 // Contacts of bodies with walls, and their histories.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -24,6 +25,17 @@ struct WallSurface {
   Pose pose;
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< in the last step, as those of bodies
 
+  Vec3 period = Vec3::Zero();  ///< along axes on which the wall extends over exactly one period [m]; 0 along others
+
+  /// The position at which to ask for contacts with a body: moved by whole periods into the extent of the wall.
+  Vec3 within(Vec3 position) const {
+    for (int k = 0; k < 3; ++k)
+      if (period[k] > 0) {
+        const double low = geometry->bounds().low[k] + pose.shift[k];
+        position[k] -= period[k] * std::floor((position[k] - low) / period[k]);
+      }
+    return position;
+  }
   Vec3 reference() const { return pose.about + pose.shift; }
   Vec3 point_velocity(const Vec3& point) const { return velocity + spin.cross(point - reference()); }
 };
@@ -85,18 +97,22 @@ class WallContacts {
   /// Contacts of a chunk's bodies if their radii were larger by `near` [m], at this instant; overlaps include `near`.
   template <class Use>
   void each_near(std::size_t c, const Bodies& bodies, std::span<const WallSurface> walls, double near, Use use) const {
+    for (std::size_t w = 0; w < walls.size(); ++w)
+      each_near(c, bodies, walls[w], w, near, [&](const SurfaceContact& contact) { use(contact, walls[w]); });
+  }
+  /// Those with one wall, whose index is `w`.
+  template <class Use>
+  void each_near(std::size_t c, const Bodies& bodies, const WallSurface& wall, std::size_t w, double near,
+                 Use use) const {
     const Chunk& chunk = chunks_[c];
     std::vector<Sphere> spheres;
     std::vector<SurfaceContact> found;
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-      spheres.clear(), found.clear();
-      for (std::uint32_t n = chunk.candidate_start[w]; n < chunk.candidate_start[w + 1]; ++n) {
-        const Row& x = bodies.position[chunk.candidate[n]];
-        spheres.push_back({{x.x, x.y, x.z}, x.w + near, chunk.candidate[n]});
-      }
-      if (!spheres.empty()) walls[w].geometry->find_contacts(walls[w].pose, spheres, found);
-      for (const SurfaceContact& contact : found) use(contact, walls[w]);
+    for (std::uint32_t n = chunk.candidate_start[w]; n < chunk.candidate_start[w + 1]; ++n) {
+      const Row& x = bodies.position[chunk.candidate[n]];
+      spheres.push_back({wall.within({x.x, x.y, x.z}), x.w + near, chunk.candidate[n]});
     }
+    if (!spheres.empty()) wall.geometry->find_contacts(wall.pose, spheres, found);
+    for (const SurfaceContact& contact : found) use(contact);
   }
   std::size_t touching_count() const;
   void serialize(Archive& archive) { archive(chunks_); }

@@ -4,11 +4,14 @@
 #include <cmath>
 #include <set>
 
+#include "grit/toolkit/did_you_mean.hpp"
+
 namespace grit {
 namespace {
 
 const std::vector<std::string> one_axis{"x", "y", "z"};
 const std::vector<std::string> some_axes{"x", "y", "z", "xy", "xz", "yz", "xyz"};
+const std::vector<std::string> all_sides{"-x", "+x", "-y", "+y", "-z", "+z"};
 
 std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
@@ -57,7 +60,8 @@ class References {
   bool has(const std::string& name) const { return std::ranges::find(names_, name) != names_.end(); }
   void check(const std::string& key, const std::string& name) const {
     if (!has(name))
-      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not defined", any_of(names_, "none"));
+      complain_(key, "the " + what_ + ' ' + in_quotes(name) + ", which is not defined" + did_you_mean(name, names_),
+                any_of(names_, "none"));
   }
 
  private:
@@ -268,6 +272,43 @@ void ListedBody::declare(Parameters& p) {
 }
 void ListSource::declare(Parameters& p) { p.add("bodies", bodies).required().entries(1).doc("the bodies, one by one"); }
 
+void RectangleRegion::declare(Parameters& p) {
+  p.add("corner", corner).unit("m").required().doc("corner");
+  p.add("edge_a", edge_a).unit("m").required().doc("one edge, from the corner");
+  p.add("edge_b", edge_b).unit("m").required().doc("the other edge, from the corner");
+  p.check([this](const Complain& complain) {
+    if (!(edge_a.cross(edge_b).norm() > 0)) complain("edge_b", "parallel edges", "an edge across edge_a");
+  });
+}
+void DiscRegion::declare(Parameters& p) {
+  p.add("centre", centre).unit("m").required().doc("centre");
+  p.add("normal", normal).doc("normal of the disc");
+  p.add("radius", radius).unit("m").above(0).required().doc("radius of the disc");
+  p.check([this](const Complain& complain) {
+    if (!(normal.norm() > 0)) complain("normal", "a vector of length 0", "a direction");
+  });
+}
+void BoxRegion::declare(Parameters& p) {
+  p.add("low", low).unit("m").required().doc("lower corner");
+  p.add("high", high).unit("m").required().doc("upper corner");
+  p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
+}
+void StreamSource::declare(Parameters& p) {
+  p.add("region", region).required().doc("where bodies enter: at random positions, without overlaps");
+  p.add("number_rate", number_rate).unit("1/s").above(0).doc("bodies per time; needed without mass_rate");
+  p.add("mass_rate", mass_rate).unit("kg/s").above(0).doc("mass per time");
+  p.add("sizes", sizes).required().doc("distribution of diameters");
+  p.add("count", count).at_least(0).at_most(4e9).doc("number of bodies after which the stream ends; 0: no limit");
+  p.add("mass", mass).unit("kg").above(0).doc("mass after which the stream ends");
+  p.add("time", time).unit("s").above(0).doc("time after which the stream ends, from its beginning");
+  p.check(
+      [this](const Complain& complain) {
+        if (!number_rate && !mass_rate) complain("number_rate", "no rate", "number_rate or mass_rate");
+        if (number_rate && mass_rate) complain("mass_rate", "two rates", "number_rate or mass_rate");
+      },
+      {"number_rate", "mass_rate"});
+}
+
 void DensityScalingDescription::declare(Parameters& p) {
   p.add("below", below)
       .unit("m")
@@ -439,7 +480,7 @@ void DomainDescription::declare(Parameters& p) {
           const std::string& side = open_sides[i];
           const std::string at = "open_sides/" + std::to_string(i);
           const bool known = side.size() == 2 && (side[0] == '-' || side[0] == '+') && side[1] >= 'x' && side[1] <= 'z';
-          if (!known) complain(at, in_quotes(side), "one of -x, +x, -y, +y, -z, +z");
+          if (!known) complain(at, in_quotes(side) + did_you_mean(side, all_sides), any_of(all_sides, ""));
           else if (periodic[static_cast<std::size_t>(side[1] - 'x')])
             complain(at, "a side of a periodic axis", "a side of an axis that is not periodic");
           else if (!(side[0] == '-' ? low : high))
@@ -464,16 +505,28 @@ void TimeStepDescription::declare(Parameters& p) {
       .at_least(0)
       .at_most(1e6)
       .doc("minimum number of steps in an isolated impact of two bodies; 0: no minimum");
+  p.add("max_displacement", max_displacement)
+      .above(0)
+      .doc(
+          "the time step is so short that no body moves further than this fraction of its radius in a step, and no "
+          "wall "
+          "further towards a body; default: 0.8 of guards/travel, at least 0.04");
   p.add("value", value)
       .unit("s")
       .symbol("dt")
       .above(0)
-      .doc("time step; default: safety times the critical time step, or less if steps_per_impact requires it");
+      .doc(
+          "time step; default: safety times the critical time step, or less if steps_per_impact or max_displacement "
+          "requires it");
   p.add("allow_unstable", allow_unstable).doc("allow a time step above the critical one");
   p.check([this](const Complain& complain) {
     if (safety > 1 && !allow_unstable)
       complain("safety", "a time step above the critical one", "at most 1, unless allow_unstable is true");
   });
+}
+double max_displacement(const TimeStepDescription& time_step, const GuardsDescription& guards) {
+  constexpr double of_guard = 0.8, usual = 0.04;
+  return time_step.max_displacement.value_or(std::max(usual, of_guard * guards.travel));
 }
 void GuardsDescription::declare(Parameters& p) {
   p.add("overlap", overlap).above(0).doc("maximum overlap, over the smaller radius");
@@ -515,10 +568,22 @@ void DisplacementCondition::declare(Parameters& p) {
       {"value"});
 }
 void UnbalancedForceCondition::declare(Parameters& p) {
-  p.add("below", below).above(0).doc("mean net force of a body over the mean contact force");
+  p.add("below", below)
+      .above(0)
+      .doc(
+          "mean net force of a body over the mean contact force; falling grains with few contacts may meet it: "
+          "at-rest excludes them");
+}
+void AtRestCondition::declare(Parameters& p) {
+  p.add("below", below)
+      .above(0)
+      .at_most(0.5)
+      .doc(
+          "sum of the net forces on bodies over the sum of their weights and all contact forces: 1 for bodies in "
+          "flight; contacts must also carry at least half of the weight, or other load");
 }
 void KineticEnergyCondition::declare(Parameters& p) {
-  p.add("below", below).above(0).doc("kinetic energy of all bodies over the elastic energy of all contacts");
+  p.add("below", below).above(0).doc("kinetic energy of all bodies over the amount of elastic energy of all contacts");
 }
 void VoidRatioCondition::declare(Parameters& p) {
   p.add("below", below).symbol("e").above(0).doc("void ratio of the specimen to fall below");
@@ -562,7 +627,8 @@ void RampDescription::declare(Parameters& p) {
         const auto second = pointer.find('/', 1);
         const std::string section = pointer.empty() ? "" : pointer.substr(1, second - 1);
         if (pointer.empty() || pointer.front() != '/' || second == std::string::npos || !is_changeable(section))
-          complain("pointer", in_quotes(pointer), "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
+          complain("pointer", in_quotes(pointer) + did_you_mean(section, SceneDescription::changeable()),
+                   "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
         else if (section == "domain" && !pointer.starts_with("/domain/strain_rate"))
           complain("pointer", in_quotes(pointer), "/domain/strain_rate only, in the domain");
         for (const auto& [key, value] : {std::pair("from", &from), std::pair("to", &to)})
@@ -592,7 +658,8 @@ void StageDescription::declare(Parameters& p) {
       .doc("typical simulated duration of a stage that a condition ends; grit check uses it for estimates");
   p.add("change", change)
       .doc("merge patch (RFC 7396) of the description from this stage on; allowed sections: " +
-           any_of(SceneDescription::changeable(), "").substr(7) + "; in domain only strain_rate");
+           any_of(SceneDescription::changeable(), "").substr(7) +
+           "; in domain only strain_rate; the geometry of a wall is that before its motion, which is added to it");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
   p.add("growth", growth).doc("growth of all bodies during the stage; default: none");
   p.add("expect", expect).doc("state required at the end of the stage");
@@ -601,12 +668,15 @@ void StageDescription::declare(Parameters& p) {
         if (!change.is_object()) return complain("change", "no object", "an object (a merge patch)");
         for (const auto& [section, patch] : change.items()) {
           if (!is_changeable(section))
-            complain("change/" + section, "a change of " + in_quotes(section),
+            complain("change/" + section,
+                     "a change of " + in_quotes(section) + did_you_mean(section, SceneDescription::changeable()),
                      any_of(SceneDescription::changeable(), ""));
           if (section != "domain" || !patch.is_object()) continue;
           for (const auto& [key, _] : patch.items())
             if (key != "strain_rate")
-              complain("change/domain/" + key, "a change of " + in_quotes(key), "strain_rate only");
+              complain("change/domain/" + key,
+                       "a change of " + in_quotes(key) + did_you_mean(key, std::vector<std::string>{"strain_rate"}),
+                       "strain_rate only");
         }
       },
       {"change"});
@@ -800,6 +870,7 @@ void SceneDescription::declare(Parameters& p) {
      return ProbeDescription(*registry_);
    }).doc("measurements, by name");
   p.add("output", output).doc("frames, checkpoints, picture, references, summary");
+  p.resolved_before({"scenario", "extends"});
 
   p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });

@@ -36,26 +36,33 @@ struct Cadence {
 
 struct UniformSizes {
   static constexpr const char* type_name = "uniform";
+  static constexpr const char* type_doc = "all diameters from smallest to largest are equally frequent, by number";
   double smallest = 0.25e-3, largest = 0.75e-3;
   void declare(Parameters& p);
 };
 struct LinearSizes {
   static constexpr const char* type_name = "linear";
+  static constexpr const char* type_doc =
+      "the mass that passes a sieve increases linearly from the smallest to the largest diameter";
   double smallest = 0.25e-3, largest = 0.75e-3;
   void declare(Parameters& p);
 };
 struct LogNormalSizes {
   static constexpr const char* type_name = "log-normal";
+  static constexpr const char* type_doc =
+      "the logarithm of the diameter is normally distributed, by number; cut at the smallest and largest";
   double median = 0.5e-3, log_standard_deviation = 0.25, smallest = 0.25e-3, largest = 1e-3;
   void declare(Parameters& p);
 };
 struct SieveSizes {
   static constexpr const char* type_name = "sieve";
+  static constexpr const char* type_doc = "sieve curve: the mass that passes increases linearly between the sieves";
   std::vector<double> diameters, passing;
   void declare(Parameters& p);
 };
 struct ListSizes {
   static constexpr const char* type_name = "list";
+  static constexpr const char* type_doc = "diameters one by one";
   std::vector<double> diameters;
   void declare(Parameters& p);
 };
@@ -64,6 +71,7 @@ using Sizes = OneOf<UniformSizes, LinearSizes, LogNormalSizes, SieveSizes, ListS
 /// Bodies at random positions without overlap.
 struct CloudSource {
   static constexpr const char* type_name = "cloud";
+  static constexpr const char* type_doc = "bodies at random positions without overlap";
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::int64_t count = 0;
   Sizes sizes{"size distribution"};
@@ -73,6 +81,7 @@ struct CloudSource {
 /// A text file with "x y z radius" in each line.
 struct FileSource {
   static constexpr const char* type_name = "file";
+  static constexpr const char* type_doc = "bodies from a text file";
   std::string path;
   void declare(Parameters& p);
 };
@@ -83,6 +92,7 @@ struct ListedBody {
 };
 struct ListSource {
   static constexpr const char* type_name = "list";
+  static constexpr const char* type_doc = "bodies one by one";
   std::deque<ListedBody> bodies;
   void declare(Parameters& p);
 };
@@ -91,6 +101,37 @@ struct DensityScalingDescription {
   double below = 0;  ///< m
   void declare(Parameters& p);
 };
+struct RectangleRegion {
+  static constexpr const char* type_name = "rectangle";
+  static constexpr const char* type_doc = "a parallelogram";
+  Vec3 corner = Vec3::Zero(), edge_a = Vec3::Zero(), edge_b = Vec3::Zero();
+  void declare(Parameters& p);
+};
+struct DiscRegion {
+  static constexpr const char* type_name = "disc";
+  static constexpr const char* type_doc = "a circular disc";
+  Vec3 centre = Vec3::Zero(), normal = Vec3::UnitZ();
+  double radius = 0;
+  void declare(Parameters& p);
+};
+struct BoxRegion {
+  static constexpr const char* type_name = "box";
+  static constexpr const char* type_doc = "a box along the axes";
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  void declare(Parameters& p);
+};
+/// Bodies that enter one after the other during the run.
+struct StreamSource {
+  static constexpr const char* type_name = "stream";
+  static constexpr const char* type_doc = "bodies that enter through a region at a rate, during the run";
+  OneOf<RectangleRegion, DiscRegion, BoxRegion> region{"region"};
+  std::optional<double> number_rate, mass_rate;  ///< 1/s, kg/s
+  Sizes sizes{"size distribution"};
+  std::int64_t count = 0;                        ///< limit; 0: none
+  std::optional<double> mass, time;  ///< limits [kg, s]
+  void declare(Parameters& p);
+};
+
 struct BodiesDescription {
   Component<BodyKind> kind;
   std::string material;
@@ -99,7 +140,7 @@ struct BodiesDescription {
   static constexpr double usual_overlap = 0.01;
   double overlap = usual_overlap;  ///< of the smaller radius
   std::optional<DensityScalingDescription> density_scaling;
-  OneOf<CloudSource, FileSource, ListSource> source{"source of bodies"};
+  OneOf<CloudSource, FileSource, ListSource, StreamSource> source{"source of bodies"};
   /// m, diameter below which bodies have more mass; 0: none
   double scaled_below() const { return density_scaling ? density_scaling->below : 0; }
   explicit BodiesDescription(const Registry& registry);
@@ -189,6 +230,7 @@ struct SpecimenDescription {
 struct TimeStepDescription {
   double safety = 0.8;
   double steps_per_impact = 7;  ///< (π/7)²/4: such an impact gains at most 5 % energy, the limit of the energy guard
+  std::optional<double> max_displacement;  ///< of a body or wall per step, over the radius
   std::optional<double> value;
   bool allow_unstable = false;
   void declare(Parameters& p);
@@ -199,6 +241,8 @@ struct GuardsDescription {
   double energy = 0.05;  ///< spurious gain, fraction of the energy
   void declare(Parameters& p);
 };
+/// The displacement per step to which the time step is limited, over the radius.
+double max_displacement(const TimeStepDescription& time_step, const GuardsDescription& guards);
 struct EngineDescription {
   Component<Engine> engine;
   explicit EngineDescription(const Registry& registry) : engine(registry) {}
@@ -218,48 +262,63 @@ struct ProbeDescription {
 struct Condition;
 struct TimeCondition {
   static constexpr const char* type_name = "time";
+  static constexpr const char* type_doc = "this time has passed since the stage began";
   double value = 0;
   void declare(Parameters& p);
 };
 struct StepsCondition {
   static constexpr const char* type_name = "steps";
+  static constexpr const char* type_doc = "this number of steps was taken since the stage began";
   std::int64_t value = 0;
   void declare(Parameters& p);
 };
 struct DisplacementCondition {
   static constexpr const char* type_name = "displacement";
+  static constexpr const char* type_doc = "a wall has moved this far since the stage began";
   std::string wall, axis = "x";
   double value = 0;
   void declare(Parameters& p);
 };
 struct UnbalancedForceCondition {
   static constexpr const char* type_name = "unbalanced-force";
+  static constexpr const char* type_doc = "the unbalanced force is below a limit";
   double below = 1e-3;
+  void declare(Parameters& p);
+};
+struct AtRestCondition {
+  static constexpr const char* type_name = "at-rest";
+  static constexpr const char* type_doc = "all bodies are at rest on their contacts";
+  double below = 0.01;
   void declare(Parameters& p);
 };
 struct KineticEnergyCondition {
   static constexpr const char* type_name = "kinetic-energy";
+  static constexpr const char* type_doc = "kinetic over elastic energy is below a limit; free spin does not decay";
   double below = 1e-4;
   void declare(Parameters& p);
 };
 struct VoidRatioCondition {
   static constexpr const char* type_name = "void-ratio";
+  static constexpr const char* type_doc = "the specimen is denser or looser than a limit";
   std::optional<double> below, above;
   void declare(Parameters& p);
 };
 struct MeanStressCondition {
   static constexpr const char* type_name = "mean-stress";
+  static constexpr const char* type_doc = "the mean stress of the specimen is below or above a limit";
   std::optional<double> below, above;
   void declare(Parameters& p);
 };
 struct PressureCondition {
   static constexpr const char* type_name = "pressure";
+  static constexpr const char* type_doc = "the pressure on a wall has reached a value";
   std::string wall;
   double value = 0, within = 0.01;
   void declare(Parameters& p);
 };
 struct DischargedCondition {
   static constexpr const char* type_name = "discharged";
+  static constexpr const char* type_doc = "this fraction of the mass has left through open sides";
   double fraction = 1;
   void declare(Parameters& p);
 };
@@ -275,15 +334,18 @@ struct Conditions {
 };
 struct AllCondition : Conditions {
   static constexpr const char* type_name = "all";
+  static constexpr const char* type_doc = "all of several conditions hold";
   void declare(Parameters& p);
 };
 struct AnyCondition : Conditions {
   static constexpr const char* type_name = "any";
+  static constexpr const char* type_doc = "one of several conditions holds";
   void declare(Parameters& p);
 };
 struct Condition {
-  OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, KineticEnergyCondition,
-        VoidRatioCondition, MeanStressCondition, PressureCondition, DischargedCondition, AllCondition, AnyCondition>
+  OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, AtRestCondition,
+        KineticEnergyCondition, VoidRatioCondition, MeanStressCondition, PressureCondition, DischargedCondition,
+        AllCondition, AnyCondition>
       is{"condition"};
   void declare(Parameters& p) { p.choose(is); }
 };

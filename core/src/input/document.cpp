@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <optional>
-#include <sstream>
+
+#include "grit/toolkit/text_file.hpp"
 
 namespace grit {
 namespace {
@@ -116,10 +115,8 @@ std::string describe_value(const Description& value) {
       return "null";
     case Description::value_t::boolean:
       return value.get<bool>() ? "true" : "false";
-    case Description::value_t::string: {
-      const auto& text = value.get_ref<const std::string&>();
-      return "the text \"" + (text.size() > 60 ? text.substr(0, 57) + "..." : text) + '"';
-    }
+    case Description::value_t::string:
+      return "the text " + quoted_excerpt(value.get_ref<const std::string&>(), 60);
     default:
       return "the number " + value.dump();
   }
@@ -152,8 +149,8 @@ struct Document::Parser : nlohmann::json_sax<Description> {
     if (key == "//") return comment_ = true;
     if (open_.back().value->contains(key)) {
       const std::string at = open_.back().pointer + '/' + pointer_token(key);
-      problems.push_back({source_->name, line(), at,
-                          "the key \"" + key + "\" appears twice, first in line " +
+      problems.push_back({source_->name, line(), visible_text(at),
+                          "the key " + quoted_excerpt(key) + " appears twice, first in line " +
                               std::to_string(document_.origin(at).line) + "; keep one of them"});
     }
     return true;
@@ -162,8 +159,8 @@ struct Document::Parser : nlohmann::json_sax<Description> {
     std::string text = error.what();
     for (const char* start : {"syntax error", "number overflow"})
       if (const auto at = text.find(start); at != std::string::npos) text.erase(0, at);
-    problems.push_back(
-        {source_->name, line_of_number(), open_.empty() ? "" : open_.back().pointer, "not JSON: " + text});
+    problems.push_back({source_->name, line_of_number(), open_.empty() ? "" : visible_text(open_.back().pointer),
+                        "not JSON: " + visible_text(text)});
     return false;
   }
 
@@ -233,12 +230,7 @@ Document Document::load(const fs::path& path) {
 }
 
 Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
-  std::ifstream file(path, std::ios::binary);
-  std::error_code none;
-  if (!file || fs::is_directory(path, none))
-    throw FileError(path.string() +
-                    ": cannot be read: " + (fs::is_directory(path, none) ? "it is a directory" : std::strerror(errno)));
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read_text(path);
   open.push_back(fs::weakly_canonical(path));
   Document document = read(text, {path.string(), path.parent_path()}, open);
   open.pop_back();
@@ -247,7 +239,7 @@ Document Document::load(const fs::path& path, std::vector<fs::path>& open) {
 
 Document Document::parse(const std::string& text, const std::string& name) {
   std::vector<fs::path> open;
-  return read(text, {name, {}}, open);
+  return read(plain_text(text, name), {name, {}}, open);
 }
 
 Document Document::read(const std::string& text, const Source& source, std::vector<fs::path>& open) {
@@ -290,7 +282,7 @@ Origin Document::origin(const std::string& pointer) const {
 
 Problem Document::problem(const std::string& pointer, std::string message) const {
   const Origin written = origin(pointer);
-  return {written.source->name, written.line, written.pointer, std::move(message)};
+  return {written.source->name, written.line, visible_text(written.pointer), visible_text(message)};
 }
 
 void Document::set(const std::string& assignment) {

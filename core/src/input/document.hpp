@@ -36,7 +36,7 @@ class Document {
 
   /// Reads a file and the file it extends: the value of its key "extends" is the path of another description, relative
   /// to the file's folder, onto which this one is merged (RFC 7396: objects are merged, everything else is replaced,
-  /// null removes). Throws FileError if `path` cannot be read, DescriptionError with every syntax error, duplicate key,
+  /// null removes). Throws FileError as read_text() does, DescriptionError with every syntax error, duplicate key,
   /// and extended file that does not exist or extends itself.
   static Document load(const std::filesystem::path& path);
 

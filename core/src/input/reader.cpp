@@ -6,20 +6,19 @@
 #include <set>
 #include <tuple>
 
+#include "grit/toolkit/did_you_mean.hpp"
 #include "input/range.hpp"
 #include "input/units.hpp"
-#include "plugins/nearest.hpp"
 
 namespace grit {
 namespace {
 
 std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
-/// `unknown key "colour"; did you mean "color"? Allowed are color, view.`
+/// `unknown key "colour"; did you mean "color"? Allowed are color, view`
 std::string unknown(const std::string& what, const std::string& found, const std::vector<std::string>& names) {
-  const auto meant = nearest(found, names);
-  return "unknown " + what + ' ' + in_quotes(found) + (meant ? "; did you mean " + in_quotes(*meant) + '?' : ";") +
-         (names.size() == 1 ? " allowed is " : " allowed are ") + listed(names);
+  return "unknown " + what + ' ' + in_quotes(found) +
+         did_you_mean(found, names, (names.size() == 1 ? "allowed is " : "allowed are ") + listed(names));
 }
 
 class Reader {
@@ -31,10 +30,11 @@ class Reader {
     const std::size_t before = problems_.size();
     const bool chosen = choose(value, at, parameters);
     const auto names = declared(parameters, at);
+    bool is_part = false;
     if (chosen && !parameters.is_open())
       for (const auto& [key, _] : value.items())
-        if (std::ranges::find(names, key) == names.end())
-          complain(at + '/' + pointer_token(key), unknown("key", key, names));
+        if (std::ranges::find(names, key) == names.end()) is_part |= refuse(key, at, names, parameters);
+    if (is_part) return false;
 
     std::set<std::string> unclean;
     for (const auto& parameter : parameters.entries())
@@ -48,7 +48,7 @@ class Reader {
       check.run([&](std::string_view key, std::string_view found, std::string_view allowed) {
         const std::string where = key.empty() ? at : at + '/' + std::string(key);
         if (check.despite_problems && has_fault(known, where)) return;
-        complain(where, "found " + std::string(found) + "; allowed is " + std::string(allowed));
+        complain(where, fault_text(std::string(found), std::string(allowed)));
       });
     }
     if (problems_.size() != before) return false;
@@ -79,6 +79,22 @@ class Reader {
     return complain(at, "found " + describe_value(found) + "; allowed is " + allowed);
   }
 
+  /// Reports an unknown key. Returns whether it is probably one that is resolved before the object is read: then the
+  /// object is only a part of what is meant, and what is missing in it is no fault.
+  bool refuse(const std::string& key, const std::string& at, std::vector<std::string> names,
+              const Parameters& parameters) {
+    const auto& earlier = parameters.keys_resolved_before();
+    const std::string pointer = at + '/' + pointer_token(key);
+    if (std::ranges::find(earlier, key) != earlier.end()) {
+      complain(pointer, "found " + in_quotes(key) + ", which has an effect in a file only; write it in the file");
+      return true;
+    }
+    names.insert(names.end(), earlier.begin(), earlier.end());
+    complain(pointer, unknown("key", key, names));
+    const auto meant = nearest(key, names);
+    return meant && std::ranges::find(earlier, *meant) != earlier.end();
+  }
+
   /// Makes the choice of an object and declares its parameters. False if the choice is invalid.
   bool choose(const Description& value, const std::string& at, Parameters& parameters) {
     Choice* const choice = parameters.choice();
@@ -91,10 +107,15 @@ class Reader {
     if (!type->is_string()) return wrong(at + "/type", *type, "a text that names the " + choice->what());
     const auto& name = type->get_ref<const std::string&>();
     if (std::ranges::find(types, name) == types.end())
-      return complain(at + "/type", unknown(choice->what(), name, types));
+      return complain(at + "/type", unknown(choice->what(), name, types) + how_to_add(*choice));
     choice->choose(name);
     choice->declare(parameters);
     return true;
+  }
+
+  static std::string how_to_add(const Choice& choice) {
+    const std::string text = choice.how_to_add();
+    return text.empty() ? "" : "; " + text;
   }
 
   static std::vector<std::string> declared(const Parameters& parameters, const std::string& at) {
@@ -217,12 +238,8 @@ class Reader {
     const auto& choices = parameter.choices();
     if (!value.is_string()) return wrong(at, value, choices.empty() ? "a text" : "one of " + listed(choices));
     std::string found = value.get<std::string>();
-    if (!choices.empty() && std::ranges::find(choices, found) == choices.end()) {
-      const auto meant = nearest(found, choices);
-      return complain(at, "found " + in_quotes(found) +
-                              (meant ? "; did you mean " + in_quotes(*meant) + "? Allowed" : "; allowed") +
-                              " is one of " + listed(choices));
-    }
+    if (!choices.empty() && std::ranges::find(choices, found) == choices.end())
+      return complain(at, fault_text(in_quotes(found) + did_you_mean(found, choices), "one of " + listed(choices)));
     if (parameter.is_file()) {
       const std::filesystem::path path = document_.origin(at).source->directory / found;
       found = found.empty() ? found : std::filesystem::absolute(path).lexically_normal().string();

@@ -58,7 +58,7 @@ class Table {
       twin->choose(name);
       Parameters inner;
       twin->declare(inner);
-      lines_.push_back({indented('"' + name + '"', depth + 1), "", "", "", "", ""});
+      lines_.push_back({indented('"' + name + '"', depth + 1), "", "", "", "", choice.type_doc(name)});
       object(inner, depth + 2);
     }
     seen_.erase(what);

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "grit/toolkit/did_you_mean.hpp"
+#include "input/range.hpp"
 #include "input/reader.hpp"
 #include "plugins/component.hpp"
 #include "plugins/parameter_values.hpp"
@@ -83,21 +85,26 @@ class Planner {
       const auto found = document.json().find("walls");
       return found != document.json().end() && found->is_object() ? *found : none;
     };
-    const auto refuse_of = [&](const Document& these, const Document& others, const std::string& message) {
+    const auto refuse_of = [&](const Document& these, const Document& others, const auto& message) {
       for (const auto& [name, wall] : walls(these).items()) {
         if (walls(others).contains(name) || !refused_.insert(name).second) continue;
         const std::string at = changed + '/' + pointer_token(name);
         const bool is_written = written_.json().contains(Description::json_pointer(at));
-        problems_.push_back(written_.problem(is_written ? at : changed, message));
+        problems_.push_back(written_.problem(is_written ? at : changed, message(name)));
       }
     };
-    refuse_of(
-        merged_, written_,
-        "found a wall that does not exist at the start of the run; allowed are the walls of /walls. Define it there, "
-        "away from the bodies, and let the stage change its position");
-    refuse_of(written_, merged_,
-              "found null, which would remove a wall; allowed are new values. Change its position to one away from the "
-              "bodies");
+    refuse_of(merged_, written_, [&](const std::string& name) {
+      std::vector<std::string> known;
+      for (const auto& [wall, _] : walls(written_).items()) known.push_back(wall);
+      return "found a wall that does not exist at the start of the run" +
+             did_you_mean(name, known,
+                          "allowed are the walls of /walls: " + listed(known) +
+                              ". Define it there, away from the bodies, and let the stage change its position");
+    });
+    refuse_of(written_, merged_, [](const std::string&) {
+      return "found null, which would remove a wall; allowed are new values. Change its position to one away from the "
+             "bodies";
+    });
   }
 
   void read_changed(const Description& patch, SettingsChange& change) {
@@ -109,7 +116,8 @@ class Planner {
       if (!SceneDescription::has_names(section)) read_unit({section, ""}, change);
       else if (removes) read_section(section, change);
       else
-        for (const auto& [name, one] : part.items()) read_unit({section, name}, change);
+        for (const auto& [name, one] : part.items())
+          if (section != "walls" || !refused_.contains(name)) read_unit({section, name}, change);
     }
   }
 
@@ -155,8 +163,7 @@ class Planner {
     if (!faulty_.empty()) return;
     std::vector<Problem> found;
     now_.check_together([&](std::string_view key, std::string_view what, std::string_view allowed) {
-      found.push_back(merged_.problem('/' + std::string(key),
-                                      "found " + std::string(what) + "; allowed is " + std::string(allowed)));
+      found.push_back(merged_.problem('/' + std::string(key), fault_text(std::string(what), std::string(allowed))));
     });
     add_new(problems_, found);
   }
@@ -174,6 +181,8 @@ class Planner {
     if (!place) return refuse_pointer(ramp, at), std::nullopt;
     const Unit unit{place->section, place->name};
     if (faulty_.contains(unit.pointer()) || faulty_.contains('/' + unit.section)) return std::nullopt;
+    if (!unit.name.empty() && unit.section != "interfaces" && !now_.has_unit(unit.section, unit.name))
+      return refuse_unit(unit, at + "/pointer"), std::nullopt;
     Description resolved = Description::object();
     if (now_.has_unit(unit.section, unit.name)) {
       Parameters parameters;
@@ -218,6 +227,14 @@ class Planner {
     if (!number) return refuse_pointer(ramp, at), std::nullopt;
     end.value = number->get(), end.is_integer = number->is_integer();
     return end;
+  }
+
+  void refuse_unit(const Unit& unit, const std::string& at) {
+    const auto known = now_.units_of(unit.section);
+    add_new(problems_,
+            {written_.problem(at, fault_text("\"" + unit.name + "\", which is not defined in /" + unit.section +
+                                                 did_you_mean(unit.name, known),
+                                             known.empty() ? "none, as there are none" : "one of " + listed(known)))});
   }
 
   void refuse_pointer(const RampDescription& ramp, const std::string& at) {

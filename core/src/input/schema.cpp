@@ -84,6 +84,7 @@ class Generator {
       all.update(own);
       all.update(properties(inner, form));
       Description closed = plain(std::move(all), inner, form);
+      if (const std::string doc = choice.type_doc(name); !doc.empty()) closed["description"] = doc;
       for (const auto& parameter : parameters.entries())
         if (form == Form::whole && parameter.is_required()) closed["required"].push_back(parameter.name());
       cases.push_back({{"if", {{"properties", {{"type", {{"const", name}}}}}, {"required", {"type"}}}},

@@ -42,11 +42,30 @@ void each_overlap(const State& state, const World& world, IsNew is_new, Use use)
   }
 }
 
+/// Change of velocity by gravity in half a step.
+Vec3 fall_of_half_a_step(const State& state) {
+  return 0.5 * state.time.previous_dt *
+         state.next_motion(false).free_translation().cwiseProduct(state.settings.motion.gravity);
+}
+
 }  // namespace
 
+EnteredEnergy energy_of(const Bodies& arriving, const State& state) {
+  const Vec3 fall = fall_of_half_a_step(state);
+  EnteredEnergy all;
+  const auto add = [&](const Vec3& centre, const Vec3& velocity, double inverse_mass) {
+    all.kinetic += 0.5 * (velocity + fall).squaredNorm() / inverse_mass;
+    all.potential -= state.settings.motion.gravity.dot(centre) / inverse_mass;
+  };
+  for (std::size_t i = 0; i < arriving.count(); ++i)
+    if (arriving.clumps.clump_of(i) == no_clump)
+      add(xyz(arriving.position[i]), xyz(arriving.velocity[i]), arriving.velocity[i].w);
+  for (const Clump& clump : arriving.clumps.clump) add(clump.centre, clump.velocity, clump.inverse_mass);
+  return all;
+}
+
 void match_velocities(Bodies& arriving, const State& state) {
-  const Vec3 fall = 0.5 * state.time.previous_dt *
-                    state.next_motion(false).free_translation().cwiseProduct(state.settings.motion.gravity);
+  const Vec3 fall = fall_of_half_a_step(state);
   const auto change = [&](const Vec3& place) -> Vec3 {
     return state.cell.deforms() ? Vec3(state.cell.mean_flow(place) - fall) : Vec3(-fall);
   };

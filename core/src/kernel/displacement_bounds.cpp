@@ -9,79 +9,111 @@
 namespace grit {
 namespace {
 
-/// Distance of the furthest surface of a body from `place` [m].
-double furthest_from(const Vec3& place, const State& state) {
-  double furthest = 0;
-  for (std::size_t i = 0; i < state.bodies.count(); ++i)
-    furthest = std::max(furthest, (xyz(state.bodies.position[i]) - place).norm());
-  return furthest + state.statistics.largest_radius;
+/// Displacement per step, over a radius, below which no bound needs to be exact.
+double harmless(const State& state) {
+  const Settings& settings = state.settings;
+  return std::min(settings.guards.travel, max_displacement(settings.time_step, settings.guards));
 }
 
-}  // namespace
-
-void DisplacementBounds::rebuild(const State& state) {
-  for (std::size_t w = 0; w < state.walls.size(); ++w)
-    arms_[w] = state.walls.states()[w].spin.isZero(0.0) ? unknown : furthest_from(state.walls.reference(w), state);
+Vec3 own_velocity(const State& state, std::size_t body) {
+  return xyz(state.bodies.velocity[body]) - state.cell.mean_flow(xyz(state.bodies.position[body]));
 }
 
-void DisplacementBounds::advance(State& state, const Passes& passes) {
-  const double dt = state.time.previous_dt;
-  const double strained = dt * state.cell.cell().strain_rate.cwiseAbs().maxCoeff() * 2 *
-                              (state.statistics.largest_radius + state.lists.skins().largest()) +
-                          2 * grown_;
-  const double furthest = state.lists.advance(dt, strained, passes);
-  advance_walls(state, furthest);
-  double fastest = 0;
-  bool finite = true;
-  for (const ChunkResult& chunk : passes.chunks())
-    fastest = std::max(fastest, chunk.motion.largest_speed), finite = finite && chunk.motion.finite;
-  last_approach_ = dt * std::max(2 * fastest, fastest + wall_closing_) + strained;
-  if (!finite || dt * fastest > state.settings.guards.travel * state.statistics.smallest_radius) check_bodies(state);
-}
-
-void DisplacementBounds::advance_walls(State& state, double furthest) {
-  const double dt = state.time.previous_dt, travel = state.settings.guards.travel,
-               smallest = state.statistics.smallest_radius;
-  double wall_speed = 0, wall_closing = 0;
-  for (std::size_t w = 0; w < state.walls.size(); ++w) {
-    const WallState& wall = state.walls.states()[w];
-    double turning = 0;
-    if (!wall.spin.isZero(0.0)) {
-      if (arms_[w] == unknown) arms_[w] = furthest_from(state.walls.reference(w), state);
-      turning =
-          wall.spin.norm() * (arms_[w] + furthest + state.lists.strain_travel() + state.lists.skins().walls_gone());
+/// The largest speed over a body's own radius, relative to the mean flow [1/s]; infinite for a speed that is not
+/// finite.
+double rate_of_bodies(const State& state, Passes& passes) {
+  std::vector<double> rates(passes.chunks().size());
+  passes.team().each(rates.size(), [&](std::size_t chunk) {
+    const ChunkRange range(chunk, state.bodies.count());
+    for (std::size_t i = range.first; i < range.last; ++i) {
+      const double rate = own_velocity(state, i).norm() / state.bodies.position[i].w;
+      if (!(rate <= rates[chunk])) rates[chunk] = std::isfinite(rate) ? rate : std::numeric_limits<double>::infinity();
     }
-    const double speed = wall.velocity.norm() + turning;
-    // A flat wall may move in its own plane at any speed.
-    const Vec3 normal = wall.pose.turn * state.walls.geometry(w).normal();
-    const double closing = (normal.isZero() ? wall.velocity.norm() : std::abs(wall.velocity.dot(normal))) + turning;
-    if (!(dt * closing <= travel * smallest) && state.bodies.count() > 0)
-      fail(state, Guard::travel, {"walls", state.walls.name(w), "motion"},
-           "wall \"" + state.walls.name(w) + "\" moves " + number(dt * closing / smallest) +
-               " of the smallest radius in one step, more than /guards/travel " + number(travel),
-           "a wall this fast passes through bodies; reduce its velocity, increase the mass of a free wall, or "
-           "reduce the time step");
-    wall_speed = std::max(wall_speed, speed), wall_closing = std::max(wall_closing, closing);
-  }
-  wall_speed_ = wall_speed, wall_closing_ = wall_closing;
-  state.lists.advance_walls(dt * wall_speed);
+  });
+  return rates.empty() ? 0 : *std::ranges::max_element(rates);
 }
 
-void DisplacementBounds::check_bodies(const State& state) const {
-  const double dt = state.time.previous_dt, most = state.settings.guards.travel;
+/// Throws for the first body that moves too far in a step of `dt` [s], or whose velocity is not finite.
+void check_bodies(const State& state, double dt) {
+  const double most = state.settings.guards.travel;
   for (std::size_t i = 0; i < state.bodies.count(); ++i) {
     const Vec3 v = xyz(state.bodies.velocity[i]), w = xyz(state.bodies.spin[i]);
     if (!v.allFinite() || !w.allFinite())
       fail_at_body(state, Guard::finite, group_keys(state, i), i, "has a velocity that is not a number",
                    "two bodies may have started at the same point, or the time step is too large");
-    const double travel = dt * (v - state.cell.mean_flow(xyz(state.bodies.position[i]))).norm();
-    const double radius = state.bodies.position[i].w;
+    const double travel = dt * own_velocity(state, i).norm(), radius = state.bodies.position[i].w;
     if (travel > most * radius)
       fail_at_body(
           state, Guard::travel, group_keys(state, i), i,
           "moves " + number(travel / radius) + " of its radius in one step, more than /guards/travel " + number(most),
           "bodies may overlap too much at the start, a wall may be too fast, or the time step too large");
   }
+}
+
+/// Throws if a wall approaches a body by more than a step allows; `travel`: in one step, over the radius.
+void check_wall(const State& state, std::size_t wall, double travel) {
+  const double most = state.settings.guards.travel;
+  if (travel <= most) return;
+  fail(state, Guard::travel, {"walls", state.walls.name(wall), "motion"},
+       "wall \"" + state.walls.name(wall) + "\" moves " + number(travel) +
+           " of a radius towards a body in one step, more than /guards/travel " + number(most),
+       "a wall this fast passes through bodies; reduce its velocity, increase the mass of a free wall, or reduce "
+       "the time step");
+}
+
+}  // namespace
+
+void DisplacementBounds::foresee(const State& state, double dt, Passes& passes) {
+  rate_ = rate_of_bodies(state, passes);
+  for (std::size_t w = 0; w < state.walls.size(); ++w)
+    rate_ = std::max(rate_, approach_of(state, w, state.walls.expected_motion(w), 0, dt, passes).rate);
+}
+
+void DisplacementBounds::check_foreseen(const State& state, double dt, Passes& passes) {
+  if (dt * rate_ <= state.settings.guards.travel) return;
+  check_bodies(state, dt);
+  for (std::size_t w = 0; w < state.walls.size(); ++w)
+    check_wall(state, w, dt * approach_of(state, w, state.walls.expected_motion(w), 0, dt, passes).rate);
+}
+
+void DisplacementBounds::advance(State& state, Passes& passes) {
+  const double dt = state.time.previous_dt;
+  const double strained = dt * state.cell.cell().strain_rate.cwiseAbs().maxCoeff() * 2 *
+                              (state.statistics.largest_radius + state.lists.skins().largest()) +
+                          2 * grown_;
+  const double gone = state.lists.advance(dt, strained, passes);
+  double fastest = 0;
+  bool finite = true;
+  for (const ChunkResult& chunk : passes.chunks())
+    fastest = std::max(fastest, chunk.motion.largest_speed), finite = finite && chunk.motion.finite;
+  rate_ = state.bodies.count() > 0 ? fastest / state.statistics.smallest_radius : 0;
+  if (!finite || dt * rate_ > harmless(state)) rate_ = rate_of_bodies(state, passes);
+  const double rate_of_bodies_alone = rate_;
+  advance_walls(state, gone, passes);
+  if (!finite || dt * rate_of_bodies_alone > state.settings.guards.travel) check_bodies(state, dt);
+  last_approach_ = dt * std::max(2 * fastest, fastest + wall_closing_) + strained;
+}
+
+void DisplacementBounds::advance_walls(State& state, double gone, Passes& passes) {
+  const double dt = state.time.previous_dt;
+  wall_speed_ = wall_closing_ = 0;
+  for (std::size_t w = 0; w < state.walls.size(); ++w) {
+    const WallMotion motion = state.walls.motion(w);
+    const Approach found = approach_of(state, w, motion, gone, dt, passes);
+    check_wall(state, w, dt * found.rate);
+    wall_speed_ = std::max(wall_speed_, walls_.speed(state, w, motion, gone));
+    wall_closing_ = std::max(wall_closing_, found.speed), rate_ = std::max(rate_, found.rate);
+  }
+  state.lists.advance_walls(dt * wall_speed_);
+}
+
+Approach DisplacementBounds::approach_of(const State& state, std::size_t wall, const WallMotion& motion, double gone,
+                                         double dt, Passes& passes) {
+  const double bound = walls_.normal_speed(state, wall, motion, gone);
+  if (state.bodies.count() == 0) return {bound, 0};
+  const double smallest = state.statistics.smallest_radius;
+  if (dt * bound <= harmless(state) * smallest) return {bound, bound / smallest};
+  return approach(state, wall, motion, dt, passes.team());
 }
 
 }  // namespace grit

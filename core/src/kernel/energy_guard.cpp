@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -38,21 +39,23 @@ void EnergyGuard::check(const State& state, EnergyBalance& balance) {
     return;
   }
   const Energies terms = by_balance ? balance.terms() : Energies{};
-  const double energy = by_balance ? terms.kinetic + terms.elastic() : balance.kinetic() + balance.elastic().total();
+  const double kinetic = by_balance ? terms.kinetic : balance.kinetic(),
+               elastic = by_balance ? terms.elastic() : balance.elastic().total(), energy = kinetic + elastic;
   const double stored = by_balance ? 0 : energy + balance.gravitational();
   const double last_half = by_balance ? 0 : 0.5 * state.time.previous_dt * balance.power_of_walls();
   if (begins) {
-    first_ = state.time.step, stored_at_start_ = stored, work_ = -last_half, largest_ = energy;
+    first_ = state.time.step, stored_at_start_ = stored, work_ = -last_half, largest_ = kinetic + std::abs(elastic);
     closure_at_start_ = terms.closure_error, dissipated_at_start_ = terms.dissipated();
     return;
   }
-  largest_ = std::max(largest_, energy);
+  largest_ = std::max(largest_, kinetic + std::abs(elastic));  // attraction stores negative energy
   const double gained =
       by_balance ? terms.closure_error - closure_at_start_ : stored - stored_at_start_ - (work_ + last_half);
   // The allowed error of a balance is a fraction of the energy turned over.
   const double scale = largest_ + (terms.dissipated() - dissipated_at_start_);
   const double allowed = state.settings.guards.energy;
-  if (gained > allowed * scale)
+  const double rounding = 1e-12 * std::max(std::abs(stored), std::abs(work_));
+  if (gained > allowed * scale + rounding)
     fail(state, Guard::energy, {"guards", "energy"},
          "energy was created: " + number(gained) + " J more than the work done, " + number(gained / scale) +
              " of the largest energy so far" + (by_balance ? " plus dissipation" : "") + "; /guards/energy allows " +

@@ -21,16 +21,19 @@ class EnergyGuard {
   /// A body with this kinetic and potential energy [J] has left.
   void discharged(double energy) { stored_at_start_ -= energy; }
 
+  /// The same of bodies that have entered.
+  void entered(double energy) { stored_at_start_ += energy; }
+
   void serialize(Archive& archive) {
     archive(begins_, first_, stored_at_start_, work_, largest_, closure_at_start_, dissipated_at_start_);
   }
 
  private:
   bool begins_ = true;
-  std::uint64_t first_ = 0;                                // step at which it started
-  double stored_at_start_ = 0;                             // kinetic, elastic and gravitational [J]
-  double work_ = 0;                                        // by walls since then, without half of the last step [J]
-  double largest_ = 0;                                     // kinetic and elastic energy since then [J]
+  std::uint64_t first_ = 0;     // step at which it started
+  double stored_at_start_ = 0;  // kinetic, elastic and gravitational [J]
+  double work_ = 0;             // by walls since then, without half of the last step [J]
+  double largest_ = 0;          // kinetic energy plus amount of elastic energy since then [J]
   double closure_at_start_ = 0, dissipated_at_start_ = 0;  // of the balance [J]
 };
 

@@ -1,11 +1,38 @@
 #include "kernel/guards.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "format/number.hpp"
 #include "kernel/failure.hpp"
 
 namespace grit {
+namespace {
+
+/// Reports the deepest contact, which is with a wall.
+[[noreturn]] void fail_at_wall(const State& state, const Contact& contact, std::span<const Contact> all) {
+  const Bodies& bodies = state.bodies;
+  const std::string wall = "wall \"" + state.walls.name(contact.b) + '"',
+                    allowed = number(state.settings.guards.overlap);
+  const bool starts = state.time.step == 0;
+  const auto behind = static_cast<std::size_t>(std::ranges::count_if(all, [&](const Contact& one) {
+    return one.with_wall && one.b == contact.b && one.overlap > bodies.position[one.a].w;
+  }));
+  const std::string deep = number(state.overlap) + " of its radius";
+  if (starts && 2 * behind > bodies.count())
+    fail(state, Guard::overlap, {"walls", state.walls.name(contact.b)},
+         wall + " faces away from the bodies: " + std::to_string(behind) + " of " + std::to_string(bodies.count()) +
+             " have their centres behind it, the deepest by an overlap of " + deep,
+         "reverse its normal or the order of its corners, or move it to the other side of the bodies");
+  fail_at_body(state, Guard::overlap,
+               starts ? group_keys(state, contact.a) : Keys{"walls", state.walls.name(contact.b)}, contact.a,
+               (starts ? "appears inside " + wall + ": they overlap by " : "overlaps " + wall + " by ") + deep +
+                   ", more than /guards/overlap " + allowed,
+               starts ? "place it in front of the wall; the box of a cloud must not contain walls"
+                      : "the contact modulus may be too low for this load, or the wall too fast");
+}
+
+}  // namespace
 
 void check_overlap(const State& state, const World& world) {
   if (state.overlap <= state.settings.guards.overlap) return;
@@ -18,14 +45,13 @@ void check_overlap(const State& state, const World& world) {
   const auto all = world.contacts();
   const Contact& contact = *std::max_element(all.begin(), all.end(),
                                              [&](const Contact& c, const Contact& d) { return share(c) < share(d); });
-  const Keys keys = contact.with_wall ? Keys{"walls", state.walls.name(contact.b)} : group_keys(state, contact.a);
-  fail_at_body(state, Guard::overlap, keys, contact.a,
-               "overlaps " +
-                   (contact.with_wall ? "wall \"" + state.walls.name(contact.b) + "\""
-                                      : "body " + std::to_string(bodies.id[contact.b])) +
-                   " by " + number(state.overlap) + " of its radius, more than /guards/overlap " +
-                   number(state.settings.guards.overlap),
-               "the contact modulus may be too low for this load, or bodies overlapped at the start");
+  if (contact.with_wall) fail_at_wall(state, contact, all);
+  const bool starts = state.time.step == 0;
+  fail_at_body(state, Guard::overlap, group_keys(state, contact.a), contact.a,
+               "overlaps body " + std::to_string(bodies.id[contact.b]) + " by " + number(state.overlap) +
+                   " of its radius, more than /guards/overlap " + number(state.settings.guards.overlap),
+               starts ? "place the bodies apart; a cloud avoids overlaps"
+                      : "the contact modulus may be too low for this load, or bodies overlapped at the start");
 }
 
 void check_periods(const State& state) {

@@ -1,6 +1,7 @@
 #include "kernel/kernel.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -26,6 +27,14 @@ Cell cell_of(const DomainDescription& domain) {
   return {domain.low.value_or(-open), domain.high.value_or(open), domain.periodic, Vec3::Zero()};
 }
 
+/// Groups whose bodies appear during the run.
+std::vector<std::string> later_groups(const SceneDescription& scene) {
+  std::vector<std::string> names;
+  for (const auto& [name, group] : scene.bodies)
+    if (!group.stage.empty() || std::holds_alternative<StreamSource>(group.source.value())) names.push_back(name);
+  return names;
+}
+
 bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high == b.high; }
 
 }  // namespace
@@ -35,7 +44,9 @@ Kernel::Kernel(const SceneDescription& scene, const Components& components, Bodi
       passes_(threads),
       view_(state_, passes_),
       balance_(state_, view_, passes_),
-      stepper_(state_, passes_, view_, balance_, guard_) {
+      stepper_(state_, passes_, view_, balance_, guard_),
+      smallest_bodies_(smallest_bodies(scene, components, later_groups(scene))),
+      inflow_(scene, components) {
   view_.set_balance(balance_);
   state_.materials = material_names(scene);
   state_.bodies = std::move(bodies);
@@ -51,6 +62,7 @@ void Kernel::begin_stage(const std::string& name, const SceneDescription& scene,
   state_.walls.apply(scene, components);
   apply(scene, components);
   admit(scene, components);
+  inflow_.begin_stage(name, state_.time.time);
 }
 
 void Kernel::change(const SceneDescription& scene, const Components& components) {
@@ -77,6 +89,7 @@ void Kernel::apply(const SceneDescription& scene, const Components& components) 
 void Kernel::take_settings(const SceneDescription& scene, const Components& components) {
   state_.settings = settings_of(scene, components, state_.stage, state_.materials);
   state_.pairs.set_fields(state_.settings.fields), state_.wall_contacts.set_fields(state_.settings.fields);
+  state_.settings.of_groups = demand_without_contacts(smallest_bodies_, *state_.settings.law);
   take_walls(scene, components);
 }
 
@@ -176,8 +189,35 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
   balance_.set_settings_less_stored(settings_less_stored);
 }
 
+void Kernel::let_in() {
+  if (!inflow_.due(state_.time.time)) return;
+  Bodies entering = inflow_.enter(state_, view_);
+  if (entering.count() == 0) return;
+  match_velocities(entering, state_);
+  const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
+  state_.bodies.append(entering);
+  count_in(first, first_clump);
+  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
+  stepper_.bodies_changed();
+  state_.lists.request_rebuild();
+  view_.invalidate();
+  const EnteredEnergy energy = energy_of(entering, state_);
+  balance_.add_settings(energy.kinetic);
+  guard_.entered(energy.kinetic + energy.potential);
+}
+
+void Kernel::find_forces() {
+  let_in();
+  stepper_.find_forces();
+}
+
+void Kernel::step_on() {
+  let_in();
+  stepper_.step_on();
+}
+
 double Kernel::kinetic_energy_ratio() const {
-  const double elastic = balance_.elastic().total();
+  const double elastic = std::abs(balance_.elastic().total());  // negative under attraction
   return elastic > 0 ? balance_.kinetic() / elastic : std::numeric_limits<double>::infinity();
 }
 
@@ -222,7 +262,7 @@ void Kernel::restore(const SceneDescription& scene, const Components& components
 void Kernel::serialize(Archive& archive) {
   archive(state_.stage, state_.time, state_.cell, state_.bodies, state_.statistics, state_.lists);
   archive(state_.pairs, state_.wall_contacts, state_.departures, state_.discharged_mass, state_.overlap);
-  archive(balance_, guard_, stepper_);
+  archive(balance_, guard_, stepper_, inflow_);
   passes_.serialize(archive, state_.bodies.count());
   for (const auto& [name, engine] : state_.settings.engines)
     serialize_component("engine \"" + name + '"', *engine, archive);

@@ -6,6 +6,7 @@
 
 #include "kernel/energy_balance.hpp"
 #include "kernel/energy_guard.hpp"
+#include "kernel/inflow.hpp"
 #include "kernel/model.hpp"
 #include "kernel/passes.hpp"
 #include "kernel/state.hpp"
@@ -28,9 +29,9 @@ class Kernel {
   /// Changes settings within a stage.
   void change(const SceneDescription& scene, const Components& components);
 
-  void find_forces() { stepper_.find_forces(); }
+  void find_forces();
   void advance() { stepper_.advance(); }
-  void step_on() { stepper_.step_on(); }
+  void step_on();
   /// Forces a neighbour search before the next forces.
   void request_rebuild() { state_.lists.request_rebuild(); }
 
@@ -39,6 +40,8 @@ class Kernel {
   double critical_time_step() const { return stepper_.time_step().critical(); }
   /// Kinetic over elastic energy; infinite without elastic energy.
   double kinetic_energy_ratio() const;
+  /// Bodies of streams that wait for room, in words; empty if there are none.
+  std::string waiting_bodies() const { return inflow_.waiting(); }
   double body_steps() const { return stepper_.body_steps(); }
   unsigned threads() const { return passes_.threads(); }
   std::vector<PhaseTime> phases() const { return passes_.phases(); }
@@ -57,6 +60,8 @@ class Kernel {
   void flatten(int axis);
   /// Adds the mean flow of a cell to the velocities of bodies, from its first instant.
   void change_strain_rate(const Vec3& rate);
+  /// Adds the bodies of streams that enter now.
+  void let_in();
   void admit(const SceneDescription& scene, const Components& components);
   /// Adds bodies from this one on to the statistics, and allocates their state.
   void count_in(std::size_t first, std::size_t first_clump);
@@ -68,6 +73,8 @@ class Kernel {
   EnergyBalance balance_;
   EnergyGuard guard_;
   Stepper stepper_;
+  Bodies smallest_bodies_;  // of groups that appear during the run
+  Inflow inflow_;
 };
 
 }  // namespace grit

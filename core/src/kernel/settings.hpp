@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "contact/demand.hpp"
 #include "description/components.hpp"
 #include "description/description.hpp"
 #include "grit/contact/contact_law.hpp"
@@ -25,6 +26,7 @@ struct Settings {
   SpecimenDescription specimen;
   TimeStepDescription time_step;
   GuardsDescription guards;
+  Demand of_groups;        ///< of bodies that appear during the run, before their first contacts
   double growth_rate = 0;  ///< of radii in this stage [1/s]
   bool may_clump = false;  ///< whether a group of bodies, present or future, has clumps
 

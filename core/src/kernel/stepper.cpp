@@ -10,6 +10,7 @@
 #include "kernel/arrivals.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
+#include "kernel/periodic_walls.hpp"
 #include "kernel/specimen.hpp"
 #include "motion/clump_motion.hpp"
 #include "motion/growth.hpp"
@@ -18,7 +19,7 @@ namespace grit {
 
 void Stepper::settings_changed() {
   loads_.resize(state_.walls.size());
-  bounds_.resize_walls(state_.walls.size());
+  bounds_.reset_walls(state_.walls.size());
   bounds_.grown(0);
   time_step_.request();
   time_step_.update_stiffening(state_);
@@ -34,6 +35,7 @@ void Stepper::update_surfaces() {
 
 void Stepper::rebuild() {
   check_periods(state_);
+  repeat_walls(state_);
   Bodies& bodies = state_.bodies;
   const DeformingCell& cell = state_.cell;
   const Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt),
@@ -68,7 +70,7 @@ void Stepper::rebuild() {
   state_.wall_contacts.rebuild(bodies, state_.surfaces, state_.lists.skins(), state_.settings.fields, order);
   bounds_.rebuild(state_);
   arrivals_.clear();
-  time_step_.set(state_, bounds_, passes_.team());
+  time_step_.set(state_, view_, bounds_, passes_);
 }
 
 bool Stepper::prepare() {
@@ -78,7 +80,7 @@ bool Stepper::prepare() {
   {
     const Stopwatch watch(passes_.time_of(StepPhase::search));
     if (state_.lists.due(state_.bodies, state_.cell)) rebuild();
-    else time_step_.follow(state_, bounds_, passes_.team());
+    else time_step_.follow(state_, view_, bounds_, passes_);
   }
   // Contact history advances once per step, even if forces are evaluated again at the start of a stage.
   const bool again = forces_step_ == state_.time.step;
@@ -143,7 +145,7 @@ void Stepper::find_forces() {
   add_forces_of_engines();
   balance_.find_crossing();
   take_loads();
-  time_step_.react(may_stiffen, state_, bounds_, passes_.team());
+  time_step_.react(may_stiffen, state_, view_, bounds_, passes_);
   if (guard_.due(state_.time.step)) guard_.check(state_, balance_);
 }
 
@@ -288,6 +290,11 @@ void Stepper::end_step() {
   state_.time.previous_dt = dt;
   update_cross_section(state_);
   bounds_.advance(state_, passes_);
+}
+
+void Stepper::restored() {
+  repeat_walls(state_);
+  readiness_.build(state_.pairs.reached());
 }
 
 void Stepper::serialize(Archive& archive) { archive(time_step_, bounds_, forces_step_, body_steps_); }

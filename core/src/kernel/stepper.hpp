@@ -40,7 +40,7 @@ class Stepper {
 
   void serialize(Archive& archive);
   /// After the state has been restored.
-  void restored() { readiness_.build(state_.pairs.reached()); }
+  void restored();
 
  private:
   /// Operations before contacts. Returns whether this instant has been evaluated before.

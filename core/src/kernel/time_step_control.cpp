@@ -16,6 +16,22 @@ constexpr double renew_distance = 0.03, contact_distance = 0.015;
 // The time step is raised only by this factor or more, so that it does not follow every small change.
 constexpr double raise_when = 1.1;
 
+/// Demand of engines on bodies, added up.
+Demand demand_of_engines(const State& state, const World& world) {
+  Demand all;
+  for (const Engine* engine : state.settings.force_engines) {
+    const EngineRates rates = engine->rates(world);
+    all.spring += rates.stiffness, all.dashpot += rates.damping;
+  }
+  return all;
+}
+
+/// The time step in which no surface moves too far. While bodies accelerate it is shortened only now and then.
+double step_of_displacements(const State& state, const DisplacementBounds& bounds) {
+  const Settings& settings = state.settings;
+  return max_displacement(settings.time_step, settings.guards) / (raise_when * bounds.displacement_rate());
+}
+
 }  // namespace
 
 CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
@@ -30,31 +46,55 @@ CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
           .overlap = stiffening_.expected_overlap()};
 }
 
-void TimeStepControl::set(State& state, const DisplacementBounds& bounds, Team& team) {
+void TimeStepControl::set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
   requested_ = false;
+  engines_ = demand_of_engines(state, world);
   stiffening_.expect(state, bounds);
-  choose(critical_.find(near_contacts(state), team), state);
+  // Without bodies the step is that of the groups that will appear.
+  const Demand contacts =
+      state.bodies.count() > 0 ? critical_.find(near_contacts(state), passes.team()) : state.settings.of_groups;
+  bounds.foresee(state, stable_step(contacts, state), passes);
+  choose(contacts, state, bounds);
+  if (state.settings.time_step.value) bounds.check_foreseen(state, state.time.dt, passes);
 }
 
-void TimeStepControl::follow(State& state, const DisplacementBounds& bounds, Team& team) {
+void TimeStepControl::follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes) {
+  const Settings& settings = state.settings;
   const double distance = renew_distance * state.statistics.mean_diameter;
-  if (requested_) set(state, bounds, team);
+  if (requested_) set(state, world, bounds, passes);
   // Contacts form long before the next rebuild.
   else if (critical_.due(state.lists.skins(), distance))
-    choose(critical_.renew(near_contacts(state), distance, team), state);
+    choose(critical_.renew(near_contacts(state), distance, passes.team()), state, bounds);
+  else if (!settings.time_step.value &&
+           state.time.dt * bounds.displacement_rate() > max_displacement(settings.time_step, settings.guards))
+    choose(contacts_, state, bounds);
 }
 
-void TimeStepControl::react(bool may_have_stiffened, State& state, const DisplacementBounds& bounds, Team& team) {
-  if (may_have_stiffened && stiffening_.exceeds(state.overlap, state, bounds)) set(state, bounds, team);
-  else if (state.walls.demand().more_than(walls_)) choose(contacts_, state);
+void TimeStepControl::react(bool may_have_stiffened, State& state, const World& world, DisplacementBounds& bounds,
+                            Passes& passes) {
+  if (may_have_stiffened && stiffening_.exceeds(state.overlap, state, bounds)) set(state, world, bounds, passes);
+  else if (state.walls.demand().more_than(walls_)) choose(contacts_, state, bounds);
 }
 
-void TimeStepControl::choose(const Demand& contacts, State& state) {
+/// The largest eigenvalue of a sum of positive semidefinite matrices is at most the sum of theirs.
+double TimeStepControl::critical_step(const Demand& contacts, const State& state) const {
+  const Demand walls = state.walls.demand();
+  return Demand{contacts.spring + walls.spring + engines_.spring, contacts.dashpot + walls.dashpot + engines_.dashpot,
+                0}
+      .critical_time_step();
+}
+
+double TimeStepControl::stable_step(const Demand& contacts, const State& state) const {
+  const TimeStepDescription& wish = state.settings.time_step;
+  if (wish.value) return *wish.value;
+  return std::min(wish.safety * critical_step(contacts, state), contacts.step_of_impact(wish.steps_per_impact));
+}
+
+void TimeStepControl::choose(const Demand& contacts, State& state, const DisplacementBounds& bounds) {
   const TimeStepDescription& wish = state.settings.time_step;
   double& dt = state.time.dt;
   contacts_ = contacts, walls_ = state.walls.demand();
-  critical_time_step_ =
-      Demand{contacts.spring + walls_.spring, contacts.dashpot + walls_.dashpot, 0}.critical_time_step();
+  critical_time_step_ = critical_step(contacts_, state);
   if (wish.value) {
     dt = *wish.value;
     if (*wish.value > critical_time_step_ && !wish.allow_unstable)
@@ -65,13 +105,14 @@ void TimeStepControl::choose(const Demand& contacts, State& state) {
     state.walls.check_oscillations(dt);
     return;
   }
-  const double safe = std::min(wish.safety * critical_time_step_, contacts.step_of_impact(wish.steps_per_impact));
+  double safe = stable_step(contacts, state);
   if (!std::isfinite(safe) && dt > 0) return;  // all bodies have left
   if (!std::isfinite(safe))
     throw Error(state.bodies.count() == 0
-                    ? "without bodies the time step is undefined; set /time_step/value"
+                    ? "without any group of bodies the time step is undefined; set /time_step/value"
                     : "contacts have practically no stiffness, so the critical time step is infinite; make "
                       "them stiffer, or set /time_step/value");
+  safe = std::min(safe, step_of_displacements(state, bounds));
   if (dt == 0 || safe < dt || safe > raise_when * dt) dt = safe;
   state.walls.check_oscillations(dt);
 }

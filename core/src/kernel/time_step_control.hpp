@@ -1,4 +1,4 @@
-// The time step: the largest that stability and impacts allow, or a prescribed value.
+// The time step: the largest that stability, impacts and speeds allow, or a prescribed value.
 #pragma once
 
 #include "contact/critical_step.hpp"
@@ -19,29 +19,32 @@ class TimeStepControl {
   void update_stiffening(const State& state) { stiffening_.update(state); }
   /// Sets the time step from all contacts. Throws NumericsError if a prescribed value is above the critical one, Error
   /// if nothing limits it.
-  void set(State& state, const DisplacementBounds& bounds, Team& team);
+  void set(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Before an evaluation without a rebuild: sets the time step if requested; otherwise updates it for new contacts
-  /// where bodies have moved far enough.
-  void follow(State& state, const DisplacementBounds& bounds, Team& team);
+  /// where bodies have moved far enough, and for speeds.
+  void follow(State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
   /// Whether the next evaluation may find stiffer springs.
   bool may_stiffen(const State& state, const DisplacementBounds& bounds) const {
     return stiffening_.may_exceed(state, bounds);
   }
   /// After an evaluation: sets the time step again if springs have stiffened (if `may_stiffen` was true before), or if
   /// free walls have stiffer contacts.
-  void react(bool may_have_stiffened, State& state, const DisplacementBounds& bounds, Team& team);
+  void react(bool may_have_stiffened, State& state, const World& world, DisplacementBounds& bounds, Passes& passes);
 
   void serialize(Archive& archive) {
-    archive(critical_, contacts_, walls_, critical_time_step_, requested_, stiffening_);
+    archive(critical_, contacts_, walls_, engines_, critical_time_step_, requested_, stiffening_);
   }
 
  private:
   CriticalStep::Instant near_contacts(const State& state) const;
-  void choose(const Demand& contacts, State& state);
+  double critical_step(const Demand& contacts, const State& state) const;
+  /// The step that stability and impacts allow, or the prescribed one.
+  double stable_step(const Demand& contacts, const State& state) const;
+  void choose(const Demand& contacts, State& state, const DisplacementBounds& bounds);
 
   CriticalStep critical_;
   Stiffening stiffening_;
-  Demand contacts_, walls_;  // of which the time step is a function
+  Demand contacts_, walls_, engines_;  // of which the time step is a function
   double critical_time_step_ = 0;
   bool requested_ = true;
 };

@@ -32,6 +32,8 @@ class WorldView final : public World {
   std::span<const Row> velocities() const override { return {state_.bodies.velocity.data(), count()}; }
   std::span<const Row> spins() const override { return {state_.bodies.spin.data(), count()}; }
   std::span<const std::uint8_t> materials() const override { return {state_.bodies.material.data(), count()}; }
+  std::span<const std::string> material_names() const override { return state_.materials; }
+  std::span<const BodyGroup> groups() const override { return state_.bodies.groups; }
   std::span<const Vec3> rotations() const override { return state_.bodies.rotation; }
   std::span<const Vec3> displacements() const override;
   std::span<const std::uint32_t> clump_of() const override;

@@ -7,12 +7,11 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
-#include "bodies/make_bodies.hpp"
 #include "description/current_scene.hpp"
 #include "input/scene.hpp"
 #include "simulation/live_components.hpp"
+#include "simulation/mixed_law.hpp"
 
 namespace grit {
 
@@ -34,26 +33,6 @@ bool always_by_engines(const Scene& described, Is is) {
     return is(now, engines.all());
   });
 }
-
-/// The contact law of a scene, with the materials in use mixed.
-class MixedLaw {
- public:
-  explicit MixedLaw(const SceneDescription& described) : law_(described) {}
-  /// Returns whether the mixed values may have changed.
-  bool follow(const SceneDescription& now) {
-    const bool changed = law_.follow(now);
-    auto in_use = materials_in_use(now, material_names(now));
-    if (!changed && in_use == in_use_) return false;
-    in_use_ = std::move(in_use);
-    law_->mix(in_use_, materials_of_bodies(now));
-    return true;
-  }
-  ContactLaw& law() const { return *law_; }
-
- private:
-  LiveLaw law_;
-  std::vector<std::string> in_use_;
-};
 
 /// The same of a scene and its contact law.
 template <class Is>

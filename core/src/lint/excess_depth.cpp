@@ -143,7 +143,7 @@ std::optional<UnusedSetting> by_contacts(const Scene& described, const Component
   if (!depth || !std::isfinite(depth->length)) return std::nullopt;
   std::size_t bodies = world.positions().size();
   for (const auto& [name, group] : scene.bodies)
-    if (!group.stage.empty()) bodies += body_count(group, *components.body_kinds.at(name));
+    if (!group.stage.empty()) bodies += body_count(*described.description, name, components.body_kinds.at(name));
   const double contacts = contacts_a_body * static_cast<double>(bodies);
   const double fraction =
       std::max(1 / (fine_scatter * fine_scatter) / contacts, depth->fewest * world.mean_diameter() / depth->length);

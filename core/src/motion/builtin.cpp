@@ -3,6 +3,7 @@
 #include <array>
 
 #include "grit/engine.hpp"
+#include "motion/drag.hpp"
 
 namespace grit {
 namespace {
@@ -77,8 +78,9 @@ PluginInfo engine(const char* name, const char* doc) {
 }  // namespace
 
 std::span<const PluginInfo> builtin_engines() {
-  static const std::array<PluginInfo, 4> engines{
+  static const std::array<PluginInfo, 5> engines{
       engine<Gravity>("gravity", "the same acceleration for every body"),
+      engine<Drag>("drag", "drag of a fluid: Stokes, or Schiller and Naumann"),
       engine<LocalDamping>("local-damping", "Cundall's non-viscous damping of forces and moments"),
       engine<Hold>("hold", "holds spins or velocities of bodies constant"),
       engine<Planar>("planar", "restricts bodies to planar motion: a two-dimensional model")};

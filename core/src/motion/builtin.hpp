@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// gravity, local-damping, hold, planar.
+/// gravity, drag, local-damping, hold, planar.
 std::span<const PluginInfo> builtin_engines();
 
 }  // namespace grit

@@ -158,6 +158,15 @@ std::vector<WallSetup> wall_setups(const SceneDescription& scene, const Componen
   return setups;
 }
 
+Pose moved(Pose pose, const WallMotion& motion, double dt) {
+  pose.shift += dt * motion.velocity;
+  const double angle = dt * motion.spin.norm();
+  if (angle == 0) return pose;  // the rotation of a wall without spin stays exactly the identity
+  const Mat3 turn = Eigen::AngleAxisd(angle, motion.spin.normalized()) * pose.turn;
+  pose.turn = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
+  return pose;
+}
+
 void check_oscillations(const SceneDescription& scene, double dt) {
   for (const auto& [name, wall] : scene.walls) check_oscillation(name, wall.motion, dt);
 }
@@ -246,6 +255,26 @@ std::vector<std::size_t> Walls::leaders_first(const std::vector<WallSetup>& setu
 
 Vec3 Walls::point_velocity(std::size_t wall, const Vec3& point) const {
   return states_[wall].velocity + states_[wall].spin.cross(point - reference(wall));
+}
+
+WallMotion Walls::expected_motion(std::size_t wall) const {
+  const MotionDescription& motion = setups_[wall].motion;
+  const Drive& how = drives_[wall];
+  const WallState& state = states_[wall];
+  WallMotion expected{motion.velocity, motion.spin};
+  if (motion.oscillation) {
+    const double peak = 2 * std::numbers::pi * motion.oscillation->frequency;
+    for (int axis = 0; axis < 3; ++axis)
+      expected.velocity[axis] += std::copysign(peak * motion.oscillation->amplitude[axis], expected.velocity[axis]);
+    expected.spin += peak * motion.oscillation->angle;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (how.free[axis]) expected.velocity[axis] = state.velocity[axis];
+    if (how.follow[axis]) expected.velocity[axis] = expected_motion(how.leader).velocity[axis];
+    if (axis == how.servo_axis)
+      expected.velocity[axis] = state.contacts > 0 ? state.velocity[axis] : motion.servo->max_velocity;
+  }
+  return expected;
 }
 
 bool Walls::presses_on_specimen() const {
@@ -339,12 +368,8 @@ Demand Walls::demand() const {
 
 void Walls::move(double dt) {
   for (WallState& state : states_) {
-    state.pose.shift += dt * state.velocity;
+    state.pose = moved(state.pose, {state.velocity, state.spin}, dt);
     state.stage_time += dt, state.swing_time += dt;
-    const double angle = dt * state.spin.norm();
-    if (angle == 0) continue;  // the rotation of a wall without spin stays exactly the identity
-    const Mat3 turn = Eigen::AngleAxisd(angle, state.spin.normalized()) * state.pose.turn;
-    state.pose.turn = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
   }
 }
 

@@ -49,6 +49,14 @@ struct WallState {
 template <>
 inline constexpr bool plain_numbers<WallState> = true;
 
+/// Rigid motion of a wall: velocity of its reference point [m/s], and spin [rad/s].
+struct WallMotion {
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+};
+
+/// The pose after a motion of `dt` [s].
+Pose moved(Pose pose, const WallMotion& motion, double dt);
+
 /// Owns the moving walls. A step is: clear_forces(), add() for all contacts, drive(dt), move(dt). Velocities are those
 /// at the middle of the step, as for bodies. The velocity of an oscillation is the mean over the step, so that its
 /// displacement is exactly sinusoidal at every step. Used by one thread.
@@ -71,6 +79,11 @@ class Walls {
   const Pose& pose(std::size_t wall) const { return states_[wall].pose; }
   /// Present position of the reference point [m].
   Vec3 reference(std::size_t wall) const { return states_[wall].pose.about + states_[wall].pose.shift; }
+  /// Motion in the last step.
+  WallMotion motion(std::size_t wall) const { return {states_[wall].velocity, states_[wall].spin}; }
+  /// The fastest motion foreseen in the description: at the end of its ramp, at the middle of an oscillation, of a
+  /// servo before its first contact. A free wall keeps its motion.
+  WallMotion expected_motion(std::size_t wall) const;
   /// Velocity of the wall at `point` [m/s].
   Vec3 point_velocity(std::size_t wall, const Vec3& point) const;
 

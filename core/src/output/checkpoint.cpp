@@ -2,7 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 #include "grit/error.hpp"
+#include "input/document.hpp"
 #include "output/atomic_file.hpp"
 #include "output/hdf5.hpp"
 
@@ -34,24 +39,94 @@ Description facts_of(const RunFacts& facts) {
   return as_written(all);
 }
 
-/// The differences, one line each, up to a maximum.
-std::string lines(const Description& now, const Description& then) {
-  constexpr std::size_t most = 8, longest = 60;
-  std::string text;
-  std::size_t count = 0;
-  for (const auto& change : Description::diff(then, now)) {
-    if (++count > most) continue;
-    const std::string pointer = change.at("path");
-    const Description::json_pointer at(pointer);
-    const auto value = [&](const Description& of) {
-      const std::string text = of.contains(at) ? of.at(at).dump() : "nothing";
-      return text.size() > longest ? text.substr(0, longest) + " …" : text;
-    };
-    text += fmt::format("\n  {}: found {}, allowed {}", pointer, value(now), value(then));
+/// Names of the stages of a description, or of any list of named objects; nothing for another value.
+std::optional<std::vector<std::string>> names_of(const Description& list) {
+  std::vector<std::string> names;
+  for (const Description& one : list) {
+    if (!one.is_object() || !one.contains("name") || !one.at("name").is_string()) return std::nullopt;
+    names.push_back(one.at("name").get<std::string>());
   }
-  if (count > most) text += fmt::format("\n  and {} more", count - most);
-  return text;
+  return names;
 }
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("\"{}\"", fmt::join(names, "\", \""));
+}
+
+/// Differences of two values, each with its pointer.
+class Differences {
+ public:
+  Differences(const Description& now, const Description& then) { compare("", now, then); }
+
+  /// One line each, up to a maximum.
+  std::string text() const {
+    constexpr std::size_t most = 8;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, all_.size()); ++i) text += "\n  " + all_[i];
+    if (all_.size() > most) text += fmt::format("\n  and {} more", all_.size() - most);
+    return text;
+  }
+
+ private:
+  static std::string value(const Description& value) {
+    constexpr std::size_t longest = 60;
+    const std::string text = value.dump();
+    return text.size() > longest ? text.substr(0, longest) + " …" : text;
+  }
+
+  void compare(const std::string& at, const Description& now, const Description& then) {
+    if (now == then) return;
+    if (now.is_object() && then.is_object()) return compare_objects(at, now, then);
+    if (at == "/stages" && now.is_array() && then.is_array())
+      if (const auto names = names_of(now), others = names_of(then); names && others)
+        return compare_stages(now, *names, then, *others);
+    if (now.is_array() && then.is_array() && now.size() == then.size()) {
+      for (std::size_t i = 0; i < now.size(); ++i) compare(fmt::format("{}/{}", at, i), now[i], then[i]);
+      return;
+    }
+    all_.push_back(fmt::format("{}: found {}, allowed {}", at, value(now), value(then)));
+  }
+
+  void compare_objects(const std::string& at, const Description& now, const Description& then) {
+    for (const auto& [key, one] : now.items()) {
+      const std::string pointer = at + '/' + pointer_token(key);
+      if (then.contains(key)) compare(pointer, one, then.at(key));
+      else all_.push_back(fmt::format("{}: found {}, which the run does not have", pointer, value(one)));
+    }
+    for (const auto& [key, one] : then.items())
+      if (!now.contains(key))
+        all_.push_back(fmt::format("{}/{}: missing; the run has {}", at, pointer_token(key), value(one)));
+  }
+
+  /// Stages with the same name are compared, wherever they are.
+  void compare_stages(const Description& now, const std::vector<std::string>& names, const Description& then,
+                      const std::vector<std::string>& others) {
+    std::vector<std::string> shared;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string pointer = fmt::format("/stages/{}", i);
+      const auto same = std::ranges::find(others, names[i]);
+      if (same == others.end()) {
+        all_.push_back(
+            fmt::format("{}: the stage \"{}\" is new; the run has {}", pointer, names[i], quoted_list(others)));
+        continue;
+      }
+      shared.push_back(names[i]);
+      compare(pointer, now[i], then[static_cast<std::size_t>(same - others.begin())]);
+    }
+    std::vector<std::string> shared_then;
+    for (const std::string& name : others) {
+      if (std::ranges::find(names, name) != names.end()) shared_then.push_back(name);
+      else all_.push_back(fmt::format("/stages: the stage \"{}\" of the run is missing", name));
+    }
+    if (shared != shared_then)
+      all_.push_back(
+          fmt::format("/stages: found the order {}, allowed {}", quoted_list(shared), quoted_list(shared_then)));
+  }
+
+  std::vector<std::string> all_;
+};
+
+std::string lines(const Description& now, const Description& then) { return Differences(now, then).text(); }
 
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
@@ -69,13 +144,39 @@ std::string differences(const Description& now, const Description& then) {
   return lines(without(as_written(now)), without(as_written(then)));
 }
 
+namespace {
+
+/// Whether the travel guard sets the time step: above its default, without a maximum displacement.
+bool sets_time_step(const Description& description) {
+  constexpr double usual = 0.05;
+  const auto travel = description["guards"].find("travel");
+  const auto time_step = description.find("time_step");
+  const bool has_own =
+      time_step != description.end() && time_step->is_object() && time_step->contains("max_displacement");
+  return travel != description["guards"].end() && travel->is_number() && travel->get<double>() > usual && !has_own;
+}
+
+}  // namespace
+
 std::string differences_on_the_way(const Description& now, const Description& then) {
   const auto without = [](Description description) {
-    if (const auto guards = description.find("guards"); guards != description.end() && guards->is_object())
-      for (const char* of_the_end : {"travel", "energy"}) guards->erase(of_the_end);
+    const auto guards = description.find("guards");
+    if (guards == description.end() || !guards->is_object()) return description;
+    guards->erase("energy");
+    if (!sets_time_step(description)) guards->erase("travel");
     return description;
   };
   return differences(without(now), without(then));
+}
+
+std::string advice_on_stages(const Description& now, const Description& then) {
+  const auto names = [](const Description& description) {
+    const auto stages = description.find("stages");
+    return stages == description.end() ? std::nullopt : names_of(*stages);
+  };
+  if (names(now) == names(then)) return "";
+  return "\n  --resume continues with the same stages; it cannot go on with other stages yet: run all of them from the "
+         "start in another folder (--out DIR)";
 }
 
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint) {
@@ -123,7 +224,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
     throw FileError(path.string() + ": was written by another grit, so that results would not be bitwise identical:" +
                     other + "\n  " + advice);
   if (const auto other = differences_on_the_way(now.at("description"), then.at("description")); !other.empty())
-    throw Error(path.string() + ": is of another description:" + other + "\n  " + advice);
+    throw Error(path.string() + ": is of another description:" + other +
+                advice_on_stages(now.at("description"), then.at("description")) + "\n  " + advice);
   if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
     throw PluginError(path.string() + ": was written with other builds of plugins:" + other + "\n  " + advice);
   return checkpoint;

@@ -18,12 +18,14 @@ void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, 
 /// plugins; Error if the description cannot be resumed from it.
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts);
 
-/// Pointers at which two descriptions differ, each with the found and the allowed value; empty if they are of the same
-/// run. /output/checkpoint_every may differ.
+/// Lines with the pointers at which two descriptions differ, each with the found and the allowed value; stages are
+/// compared by name. Empty if the descriptions are of the same run. /output/checkpoint_every may differ.
 std::string differences(const Description& now, const Description& then);
 /// The same, but empty if a run of one can resume from a checkpoint of the other: /guards/travel and /guards/energy may
 /// differ too, as they only decide where a run stops. /guards/overlap may not, as it also affects the time step of
 /// stiffening springs.
 std::string differences_on_the_way(const Description& now, const Description& then);
+/// What to do if stages were added, removed or moved: a line to append to differences(); empty if they were not.
+std::string advice_on_stages(const Description& now, const Description& then);
 
 }  // namespace grit

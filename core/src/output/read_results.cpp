@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "grit/toolkit/did_you_mean.hpp"
 #include "output/writing_mark.hpp"
 
 namespace grit {
@@ -69,11 +70,12 @@ SampledChannel SeriesFile::channel(const std::string& name) const {
   const auto slash = name.find('/');
   const std::string probe = name.substr(0, slash), channel = slash == std::string::npos ? "" : name.substr(slash + 1);
   if (!file_.has(probe))
-    throw FileError(file_.where() + ": there is no probe \"" + probe + "\"; the probes are " + listed(file_.names()));
+    throw FileError(file_.where() + ": there is no probe \"" + probe + '"' +
+                    did_you_mean(probe, file_.names(), "the probes are " + listed(file_.names())));
   const auto group = file_.group(probe);
   if (channel.empty() || !group.has(channel))
-    throw FileError(file_.where() + ": probe \"" + probe + "\" has no channel \"" + channel + "\"; its channels are " +
-                    listed(group.names()));
+    throw FileError(file_.where() + ": probe \"" + probe + "\" has no channel \"" + channel + '"' +
+                    did_you_mean(channel, group.names(), "its channels are " + listed(group.names())));
   const auto dataset = group.dataset(channel);
   const auto text = [&](const char* attribute, const char* otherwise) {
     return dataset.has_attribute(attribute) ? dataset.text(attribute) : otherwise;

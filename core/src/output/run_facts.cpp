@@ -1,9 +1,11 @@
 #include "output/run_facts.hpp"
 
+#include <algorithm>
 #include <boost/crc.hpp>
 #include <fstream>
 #include <iterator>
 
+#include "input/document.hpp"
 #include "plugins/build_facts.hpp"
 
 namespace grit {
@@ -18,6 +20,18 @@ std::uint32_t checksum(const std::filesystem::path& path) {
   boost::crc_32_type sum;
   sum.process_bytes(bytes.data(), bytes.size());
   return sum.checksum();
+}
+
+/// An unexpanded description with further assignments; null if they refer to what the scenario expands to.
+Description with_sets(Description unexpanded, const std::vector<std::string>& sets) {
+  if (unexpanded.is_null()) return unexpanded;
+  Document document(std::move(unexpanded), "run.json");
+  try {
+    for (const std::string& assignment : sets) document.set(assignment);
+  } catch (const DescriptionError&) {
+    return nullptr;
+  }
+  return document.json();
 }
 
 }  // namespace
@@ -45,6 +59,23 @@ Description plugin_facts(const PluginUsed& used) {
             {"body_sum", layout(tag.body_sum)},
             {"pair_batch", layout(tag.pair_batch)},
             {"wall_batch", layout(tag.wall_batch)}}}};
+}
+
+void continue_from(const Description& run_json, bool own_description, RunFacts& facts) {
+  try {
+    auto commands = run_json.at("commands").get<std::vector<std::vector<std::string>>>();
+    std::ranges::move(facts.commands, std::back_inserter(commands));
+    facts.commands = std::move(commands);
+    if (!own_description) return;
+    const Description& before = run_json.at("source");
+    DescriptionSource source{.path = before.at("path").get<std::string>(),
+                             .written = before.at("written"),
+                             .sets = before.at("set").get<std::vector<std::string>>(),
+                             .unexpanded = with_sets(before.at("unexpanded"), facts.source.sets)};
+    std::ranges::move(facts.source.sets, std::back_inserter(source.sets));
+    facts.source = std::move(source);
+  } catch (const Description::exception&) {  // of an older program, or edited: only this command is known
+  }
 }
 
 }  // namespace grit

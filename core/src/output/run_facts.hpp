@@ -26,6 +26,14 @@ struct ClumpFacts {
   ShapeErrors errors;
 };
 
+/// Where a description comes from.
+struct DescriptionSource {
+  std::string path = {};               ///< of its file
+  Description written = nullptr;       ///< JSON of that file alone; null if it cannot be read twice, as a pipe
+  std::vector<std::string> sets = {};  ///< "/pointer=value", in order
+  Description unexpanded = nullptr;    ///< with inherited and set values; null without a scenario
+};
+
 /// Facts that are known before a run begins.
 struct RunFacts {
   Description description;  ///< resolved: with inherited, set and default values
@@ -33,7 +41,13 @@ struct RunFacts {
   std::int64_t seed = 0;
   unsigned threads = 1;
   std::map<std::string, ClumpFacts> clumps;  ///< by name of the group
+  DescriptionSource source = {};
+  std::vector<std::vector<std::string>> commands = {};  ///< command lines, of the start and of each resumption
 };
+
+/// Precedes the command of a resumed run by those in its run.json. With `own_description` the run continues with the
+/// description in its results folder: its source stays that in run.json, with the assignments of this command added.
+void continue_from(const Description& run_json, bool own_description, RunFacts& facts);
 
 /// This grit: version, revision, compiler and so on.
 Description grit_facts();

@@ -77,6 +77,12 @@ RunJson::RunJson(std::filesystem::path path, const RunFacts& facts) : path_(std:
            {"probes", Description::object()},
            {"stages", Description::array()},
            {"plugins", Description::array()},
+           {"commands", facts.commands},
+           {"source",
+            {{"path", facts.source.path},
+             {"written", facts.source.written},
+             {"set", facts.source.sets},
+             {"unexpanded", facts.source.unexpanded}}},
            {"description", facts.description}};
   for (const auto& [group, clump] : facts.clumps)
     json_["clumps"][group] = {{"spheres", clump.spheres},

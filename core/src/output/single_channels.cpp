@@ -3,9 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <ranges>
+#include <iterator>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "output/hdf5.hpp"
 
 namespace grit {
@@ -25,10 +26,10 @@ const SingleChannel* SingleChannels::find(const std::string& name) const {
 }
 
 std::string SingleChannels::refusal(const std::string& name) const {
-  return fmt::format(
-      "found \"{}\", which is not a scalar channel of any probe; allowed is {}", name,
-      all_.empty() ? "none without probes"
-                   : fmt::format("one of {}", fmt::join(std::views::transform(all_, &SingleChannel::full_name), ", ")));
+  std::vector<std::string> known;
+  std::ranges::transform(all_, std::back_inserter(known), &SingleChannel::full_name);
+  return fault_text(fmt::format("\"{}\", which is not a scalar channel of any probe", name) + did_you_mean(name, known),
+                    known.empty() ? "none without probes" : fmt::format("one of {}", fmt::join(known, ", ")));
 }
 
 const SingleChannel& SingleChannels::at(const std::string& name, const std::string& pointer) const {

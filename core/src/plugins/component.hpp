@@ -27,6 +27,10 @@ class Component : public Choice {
   explicit Component(const Registry& registry) : registry_(&registry) {}
   std::string what() const override { return kind_name<Interface>(); }
   std::vector<std::string> types() const override { return registry_->names(kind_name<Interface>()); }
+  std::string type_doc(const std::string& type) const override {
+    return registry_->info(kind_name<Interface>(), type).doc;
+  }
+  std::string how_to_add() const override { return registry_->search_text(kind_name<Interface>()); }
   std::string type() const override { return type_; }
   void choose(const std::string& type) override {
     prototype_ = registry_->make<Interface>(type);

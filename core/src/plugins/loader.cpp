@@ -55,11 +55,12 @@ const Library& keep(Library library) {
 
 }  // namespace
 
-std::filesystem::path library_directory() {
+std::filesystem::path library_file() {
   static const char here = 0;
   std::error_code none;
-  return std::filesystem::weakly_canonical(boost::dll::symbol_location_ptr(&here, none)).parent_path();
+  return std::filesystem::weakly_canonical(boost::dll::symbol_location_ptr(&here, none));
 }
+std::filesystem::path library_directory() { return library_file().parent_path(); }
 
 std::vector<std::string> mismatches(const BuildTag& expected, const BuildTag& found) {
   std::vector<std::string> all;

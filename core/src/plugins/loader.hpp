@@ -9,7 +9,9 @@
 
 namespace grit {
 
-/// The directory of this library, which also contains the plugins that come with it.
+/// The file of this library.
+std::filesystem::path library_file();
+/// Its directory, which also contains the plugins that come with it.
 std::filesystem::path library_directory();
 
 /// All differences between two build tags, as "what: expected …, found …"; none if a kernel with the tag `expected` can

@@ -12,9 +12,10 @@
 #include "grit/geometry.hpp"
 #include "grit/probe.hpp"
 #include "grit/scenario.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "plugins/boundary.hpp"
+#include "plugins/build_facts.hpp"
 #include "plugins/loader.hpp"
-#include "plugins/nearest.hpp"
 
 namespace grit {
 namespace {
@@ -35,9 +36,8 @@ const Kind& kind_named(const std::string& name) {
   if (kind != std::end(kinds)) return *kind;
   std::vector<std::string> all;
   for (const auto& one : kinds) all.push_back(one.name);
-  const auto meant = nearest(name, all);
-  throw PluginError("unknown kind of plugin " + quoted(name) + (meant ? ", perhaps " + quoted(*meant) : "") +
-                    "; allowed are " + listed(all, ""));
+  throw PluginError("unknown kind of plugin " + quoted(name) +
+                    did_you_mean(name, all, "allowed are " + listed(all, "")));
 }
 
 /// Whether `name` is a plain file name, without a path.
@@ -54,11 +54,21 @@ void refuse_path(const Kind& kind, const std::string& name) {
                       "the plugin's directory by --plugin-path or GRIT_PLUGIN_PATH");
 }
 
-std::optional<fs::path> find_file(const std::vector<fs::path>& directories, const Kind& kind, const std::string& name) {
+/// The files of a plugin. A file that is found twice counts once, and one in the subfolder of a directory for this
+/// instruction set replaces that of the directory.
+std::vector<fs::path> find_files(const std::vector<fs::path>& directories, const Kind& kind, const std::string& name) {
+  std::vector<fs::path> files;
   std::error_code none;
-  for (const auto& directory : directories)
-    if (auto file = directory / kind.folder / (name + ".so"); fs::is_regular_file(file, none)) return file;
-  return std::nullopt;
+  const fs::path* last = nullptr;  // directory of the last file
+  for (const auto& directory : directories) {
+    const auto file = directory / kind.folder / (name + ".so");
+    if (!fs::is_regular_file(file, none) || (last != nullptr && *last == directory / build_facts().arch)) continue;
+    const auto is_same = [&](const fs::path& other) { return fs::equivalent(file, other, none); };
+    if (std::ranges::any_of(files, is_same)) continue;
+    files.push_back(file);
+    last = &directory;
+  }
+  return files;
 }
 
 }  // namespace
@@ -97,31 +107,48 @@ std::vector<std::string> Registry::names(const std::string& kind) const {
 
 const PluginInfo& Registry::info(const std::string& kind, const std::string& name) const {
   const Key key{kind, name};
-  if (const auto built_in = builtin_.find(key); built_in != builtin_.end()) return *built_in->second;
-  auto loaded = loaded_.find(key);
-  if (loaded == loaded_.end())
-    loaded = loaded_.emplace(key, &load_plugin(file(kind, name), kind_named(kind), name)).first;
-  return *loaded->second;
+  auto known = known_.find(key);
+  if (known == known_.end()) {
+    const auto built_in = builtin_.find(key);
+    refuse_second(key, built_in != builtin_.end());
+    const PluginInfo& info =
+        built_in != builtin_.end() ? *built_in->second : load_plugin(file(kind, name), kind_named(kind), name);
+    known = known_.emplace(key, &info).first;
+  }
+  return *known->second;
+}
+
+void Registry::refuse_second(const Key& key, bool is_built_in) const {
+  const auto& [kind, name] = key;
+  const auto files = find_files(directories_, kind_named(kind), name);
+  if (files.size() + (is_built_in ? 1 : 0) < 2) return;
+  const std::string first = is_built_in ? "built into " + library_file().string() : files[0].string();
+  throw PluginError(kind + " plugin " + quoted(name) + " exists twice: " + first + ", and " +
+                    files[is_built_in ? 0 : 1].string() +
+                    "\n  remove one from the folders that are searched, or rename the file and PluginInfo::name");
 }
 
 fs::path Registry::file(const std::string& kind, const std::string& name) const {
   if (builtin_.contains({kind, name})) return {};
   const Kind& wanted = kind_named(kind);
   refuse_path(wanted, name);
-  if (auto found = find_file(directories_, wanted, name)) return *std::move(found);
+  if (auto found = find_files(directories_, wanted, name); !found.empty()) return std::move(found.front());
 
   const auto all = names(kind);
-  const auto meant = nearest(name, all);
+  throw PluginError("unknown " + kind + " plugin " + quoted(name) + did_you_mean(name, all) +
+                    "\n  available: " + listed(all, "none") + "\n  " + search_text(kind));
+}
+
+std::string Registry::search_text(const std::string& kind) const {
+  const std::string folder_of_kind = kind.empty() ? "" : kind_named(kind).folder;
   std::vector<std::string> searched;
   std::error_code none;
   for (const auto& directory : directories_) {
-    const auto folder = directory / wanted.folder;
+    const auto folder = (kind.empty() ? directory : directory / folder_of_kind).lexically_normal();
     searched.push_back(folder.string() + (fs::is_directory(folder, none) ? "" : " (no such directory)"));
   }
-  throw PluginError("unknown " + kind + " plugin " + quoted(name) + (meant ? ", perhaps " + quoted(*meant) : "") +
-                    "\n  available: " + listed(all, "none") + "\n  searched: " + listed(searched, "no directory") +
-                    "\n  copy " + name + ".so there, or give the parent directory of its folder " + wanted.folder +
-                    "/ by --plugin-path or GRIT_PLUGIN_PATH");
+  return "searched: " + listed(searched, "no directory") + "; --plugin-path DIR or GRIT_PLUGIN_PATH=DIR adds " +
+         (kind.empty() ? "DIR" : "DIR/" + folder_of_kind);
 }
 
 std::string Registry::title(const std::string& kind, const std::string& name) const {

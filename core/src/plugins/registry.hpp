@@ -26,7 +26,7 @@ class Registry {
   Registry(const Registry&) = delete;
   Registry& operator=(const Registry&) = delete;
 
-  /// Adds a built-in component, which takes precedence over files. `info` must outlive the registry.
+  /// Adds a built-in component. `info` must outlive the registry.
   void add(const PluginInfo& info);
 
   /// All available components, by kind and name; files are listed, not opened.
@@ -34,10 +34,11 @@ class Registry {
   /// The names of one kind, sorted; files are listed, not opened. Throws PluginError for an unknown kind.
   std::vector<std::string> names(const std::string& kind) const;
   /// Loads the plugin, if necessary, and checks it. Throws PluginError if it is unknown (with the nearest name and the
-  /// directories searched), cannot be loaded, was built differently (with all mismatches), has a wrong kind or name, or
-  /// has no make_ function.
+  /// directories searched), is a second one of this kind and name (with both files), cannot be loaded, was built
+  /// differently (with all mismatches), has a wrong kind or name, or has no make_ function.
   const PluginInfo& info(const std::string& kind, const std::string& name) const;
-  /// The file of a component, which is not opened; empty for a built-in one. Throws PluginError if unknown.
+  /// The file of a component, which is not opened; empty for a built-in one. The first, if there is another one.
+  /// Throws PluginError if unknown.
   std::filesystem::path file(const std::string& kind, const std::string& name) const;
   /// Creates a component. Throws PluginError as info() does, and if its make_ function throws or returns null.
   template <class Interface>
@@ -45,13 +46,17 @@ class Registry {
   /// The name of a plugin in messages, e.g. `contact plugin "linear-rolling"
   /// (/usr/lib/grit/contacts/linear-rolling.so)`.
   std::string title(const std::string& kind, const std::string& name) const;
+  /// Where plugins are searched, and how to add a directory, for messages: of one kind, or of all if it is empty.
+  std::string search_text(const std::string& kind = "") const;
 
  private:
   using Key = std::pair<std::string, std::string>;  // kind and name
 
+  void refuse_second(const Key& key, bool is_built_in) const;
+
   std::vector<std::filesystem::path> directories_;
   std::map<Key, const PluginInfo*> builtin_;
-  mutable std::map<Key, const PluginInfo*> loaded_;
+  mutable std::map<Key, const PluginInfo*> known_;  // checked and, unless built in, loaded
 };
 
 /// The directories of --plugin-path (in order), of GRIT_PLUGIN_PATH (colon-separated), and `beside`. Before each user

@@ -13,6 +13,7 @@
 #include "output/page.hpp"
 #include "output/shell_word.hpp"
 #include "output/svg.hpp"
+#include "report/description_differences.hpp"
 #include "report/facts.hpp"
 #include "report/references.hpp"
 #include "report/run_results.hpp"
@@ -62,6 +63,22 @@ std::string cards(const std::vector<Fact>& facts) {
   return html + "</dl>\n";
 }
 
+/// Rows of the values in which the descriptions of runs differ.
+std::string difference_rows(const std::vector<RunResults>& runs) {
+  constexpr std::size_t most = 20;
+  const auto differences = description_differences(runs);
+  std::string html;
+  for (const DescriptionDifference& one : std::span(differences).first(std::min(most, differences.size()))) {
+    html += "<tr class=\"differs\"><td class=\"name\">" + escaped(one.pointer) + "</td>";
+    for (const std::string& value : one.values) html += "<td>" + (value.empty() ? "–" : escaped(value)) + "</td>";
+    html += "</tr>\n";
+  }
+  if (differences.size() > most)
+    html += fmt::format("<tr><td class=\"name\" colspan=\"{}\">and {} more</td></tr>\n", runs.size() + 1,
+                        differences.size() - most);
+  return html;
+}
+
 /// Facts of several runs, one column per run.
 std::string facts_table(const std::vector<RunResults>& runs, const std::vector<std::vector<Fact>>& facts) {
   std::vector<std::string> names;
@@ -80,7 +97,7 @@ std::string facts_table(const std::vector<RunResults>& runs, const std::vector<s
     for (const RunResults& run : runs) html += "<td>" + escaped(run.title()) + "</td>";
   html += "</tr>\n<tr><td class=\"name\">status</td>";
   for (const RunResults& run : runs) html += "<td>" + badge(run) + "</td>";
-  html += "</tr>\n";
+  html += "</tr>\n" + difference_rows(runs);
   for (const std::string& name : names) {
     std::vector<const Fact*> row;
     for (const auto& of_run : facts) {

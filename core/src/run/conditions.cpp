@@ -46,6 +46,9 @@ struct Met {
     const Equilibrium now = equilibrium(kernel.world());
     return now.mean_contact_force > 0 && now.unbalanced_force < c.below;
   }
+  bool operator()(const AtRestCondition& c) const {
+    return due_now() && (without_forces || support(kernel.world()).at_rest(c.below));
+  }
   bool operator()(const KineticEnergyCondition& c) const {
     return due_now() && (without_forces || kernel.kinetic_energy_ratio() < c.below);
   }
@@ -164,6 +167,11 @@ struct Unmet {
     if (!(now.mean_contact_force > 0)) return "unbalanced force undefined: no contact forces";
     return "unbalanced force " + number(now.unbalanced_force) + between({}, c.below);
   }
+  std::string operator()(const AtRestCondition& c) const {
+    const Support now = support(met.kernel.world());
+    return "net forces over loads and contact forces " + number(now.unbalance) + between({}, c.below) +
+           ", contacts carry " + number(now.carried) + " of the load, required 0.5";
+  }
   std::string operator()(const KineticEnergyCondition& c) const {
     return "kinetic over elastic energy " + number(met.kernel.kinetic_energy_ratio()) + between({}, c.below);
   }
@@ -200,24 +208,20 @@ struct Unmet {
   }
 };
 
-/// Duration of conditions that time ends within half a step.
-struct Brief {
-  double half_a_step;
-
-  std::optional<double> operator()(const TimeCondition& c) const {
-    return c.value <= half_a_step ? std::optional(c.value) : std::nullopt;
-  }
+/// Duration of conditions that time ends.
+struct Duration {
+  std::optional<double> operator()(const TimeCondition& c) const { return c.value; }
   std::optional<double> operator()(const AllCondition& c) const {
     std::optional<double> longest;
     for (const auto& one : c.of)
-      if (const auto brief = std::visit(*this, one.is.value())) longest = std::max(longest, brief);
+      if (const auto time = std::visit(*this, one.is.value())) longest = std::max(longest, time);
       else return std::nullopt;
     return longest;
   }
   std::optional<double> operator()(const AnyCondition& c) const {
     std::optional<double> shortest;
     for (const auto& one : c.of)
-      if (const auto brief = std::visit(*this, one.is.value())) shortest = std::min(shortest.value_or(*brief), *brief);
+      if (const auto time = std::visit(*this, one.is.value())) shortest = std::min(shortest.value_or(*time), *time);
     return shortest;
   }
   template <class Other>
@@ -240,14 +244,29 @@ std::string ended_by(const Condition& condition, const Kernel& kernel, const Sta
   return has_choice(condition) ? in_words(condition, Met{kernel, start, false}) : "";
 }
 
+std::string in_flight(const Condition& condition, const World& world) {
+  const auto refers_to_unbalanced_force = [](const auto& self, const Condition& one) -> bool {
+    const auto& is = one.is.value();
+    if (std::holds_alternative<UnbalancedForceCondition>(is)) return true;
+    const auto any_of = [&](const auto* parts) {
+      return parts != nullptr &&
+             std::ranges::any_of(parts->of, [&](const Condition& part) { return self(self, part); });
+    };
+    return any_of(std::get_if<AllCondition>(&is)) || any_of(std::get_if<AnyCondition>(&is));
+  };
+  if (!refers_to_unbalanced_force(refers_to_unbalanced_force, condition)) return "";
+  const Support now = support(world);
+  if (now.carried >= 0.5) return "";
+  return "; contacts carry only " + number(100 * now.carried) +
+         " % of the load, so that grains are in flight: the condition \"at-rest\" excludes this";
+}
+
 std::string still_wanting(const Condition& condition, const Kernel& kernel, const StageStart& start) {
   const std::string parts = Unmet{{kernel, start, false, true}}.of(condition);
   return parts.empty() ? "its condition holds now, but did not when it was last evaluated" : parts;
 }
 
-std::optional<double> time_without_a_step(const Condition& condition, const Kernel& kernel) {
-  return std::visit(Brief{0.5 * kernel.world().dt()}, condition.is.value());
-}
+std::optional<double> duration(const Condition& condition) { return std::visit(Duration{}, condition.is.value()); }
 
 std::optional<double> progress(const Condition& condition, const Kernel& kernel, const StageStart& start) {
   const auto raw = std::visit(FractionReached{kernel, start}, condition.is.value());

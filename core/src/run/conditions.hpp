@@ -32,11 +32,14 @@ bool may_be_met(const Condition& condition, const Kernel& kernel, const StageSta
 /// unbalanced-force"; "" if there was no alternative. Requires that the condition holds.
 std::string ended_by(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
+/// A warning if the unbalanced force ended a stage, although contacts carry less than half of the load; else empty.
+std::string in_flight(const Condition& condition, const World& world);
+
 /// Present and required values of each unmet part of a condition. Evaluates slow ones, too.
 std::string still_wanting(const Condition& condition, const Kernel& kernel, const StageStart& start);
 
-/// Duration of a stage that ends by time before its first step, i.e. of less than half a step; empty for others.
-std::optional<double> time_without_a_step(const Condition& condition, const Kernel& kernel);
+/// Duration of a stage that ends by time [s]; empty for others.
+std::optional<double> duration(const Condition& condition);
 
 /// Progress of the stage, 0 … 1. Empty if the condition does not define it, or if all parts that do are met and others
 /// are not.

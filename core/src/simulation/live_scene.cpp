@@ -15,7 +15,7 @@ LiveScene::LiveScene(const Scene& scene)
   geometries_.follow(now(), faults.report_of(0));
   engines_.follow(now());
   for (const auto& [name, probe] : now().probes) components_.probes[name] = probe.probe.make();
-  check_stages(scene, geometries_, faults);
+  check_stages(scene, components_, geometries_, faults);
   faults.throw_if_any();
   components_.geometries = geometries_.all(), components_.engines = engines_.all();
 }

@@ -1,11 +1,16 @@
 #include "simulation/preflight.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <map>
 #include <set>
 #include <tuple>
 
+#include "contact/critical_step.hpp"
 #include "description/servo_face.hpp"
+#include "format/number.hpp"
 #include "input/places.hpp"
+#include "simulation/mixed_law.hpp"
 #include "simulation/unreachable_conditions.hpp"
 
 namespace grit {
@@ -47,6 +52,67 @@ class ServoCheck {
   std::set<std::string> turned_, reported_;  // names of walls
 };
 
+/// Checks a prescribed time step against groups that appear later, and materials that change. The first instant is
+/// checked with all contacts.
+class TimeStepCheck {
+ public:
+  TimeStepCheck(const Scene& scene, const Components& components, Faults& faults)
+      : stages_(scene.description->stages), components_(components), faults_(faults), law_(*scene.description) {}
+
+  void check(const SceneDescription& now, std::size_t stage) {
+    const TimeStepDescription& wish = now.time_step;
+    if (reported_ || !wish.value || wish.allow_unstable || !is_complete(now)) return;
+    bool changed = law_.follow(now) || *wish.value != checked_;
+    for (const auto& [name, group] : now.bodies)
+      if (!groups_.contains(name) && (group.stage.empty() ? !is_file(group) : group.stage == stages_[stage].name)) {
+        groups_.emplace(name, smallest_of(now, name));
+        changed = true;
+      }
+    if (!changed) return;
+    checked_ = *wish.value;
+    for (const auto& [name, bodies] : groups_) {
+      const double critical = demand_without_contacts(bodies, law_.law()).critical_time_step();
+      if (*wish.value <= critical) continue;
+      reported_ = true;
+      if (stage == 0 && now.bodies.at(name).stage.empty()) return;
+      faults_.add({"/time_step/value", "/materials/" + pointer_token(now.bodies.at(name).material)}, stage + 1,
+                  "the time step " + number(*wish.value) + " s is above the critical one of group \"" + name +
+                      "\" in stage \"" + stages_[stage].name + "\", " + number(critical) +
+                      " s; remove /time_step/value, or set /time_step/allow_unstable to true");
+      return;
+    }
+  }
+
+ private:
+  /// A file may be a pipe, which can be read only once, for the run.
+  static bool is_file(const BodiesDescription& group) {
+    return std::holds_alternative<FileSource>(group.source.value());
+  }
+  /// A file that cannot be read is reported when the bodies are made.
+  Bodies smallest_of(const SceneDescription& now, const std::string& group) const {
+    try {
+      return smallest_bodies(now, components_, {group});
+    } catch (const FileError&) {
+      return {};
+    }
+  }
+  /// Whether all body kinds could be made; others have been reported.
+  bool is_complete(const SceneDescription& now) const {
+    return std::ranges::all_of(now.bodies, [this](const auto& group) {
+      const auto kind = components_.body_kinds.find(group.first);
+      return kind != components_.body_kinds.end() && kind->second != nullptr;
+    });
+  }
+
+  const std::deque<StageDescription>& stages_;
+  const Components& components_;
+  Faults& faults_;
+  MixedLaw law_;
+  std::map<std::string, Bodies> groups_;  // the smallest body of each group that has appeared
+  double checked_ = 0;                    // s
+  bool reported_ = false;
+};
+
 }  // namespace
 
 void Faults::add(const std::string& pointer, const std::string& message) {
@@ -74,8 +140,9 @@ void Faults::throw_if_any() {
   if (!problems_.empty()) throw DescriptionError(std::move(problems_));
 }
 
-void check_stages(const Scene& scene, LiveGeometries geometries, Faults& faults) {
+void check_stages(const Scene& scene, const Components& components, LiveGeometries geometries, Faults& faults) {
   ServoCheck servos(faults);
+  TimeStepCheck time_step(scene, components, faults);
   std::optional<StageStates> states;
   std::size_t stage = 0;
   const auto end_stage = [&] {
@@ -95,6 +162,7 @@ void check_stages(const Scene& scene, LiveGeometries geometries, Faults& faults)
     states->walls.push_back(now.walls);
     if (!begins) servos.note_turns(now);
     servos.check(now, geometries, stage + 1);
+    time_step.check(now, stage);
     if (begins) servos.note_turns(now);
     return true;
   });

@@ -28,8 +28,9 @@ class Faults {
   std::vector<Problem> problems_;
 };
 
-/// Checks in all stages that geometries can be prepared, that servos have an area and a normal for their pressure, and
-/// that conditions can be met. `geometries` are those at the start of the run.
-void check_stages(const Scene& scene, LiveGeometries geometries, Faults& faults);
+/// Checks in all stages that geometries can be prepared, that servos have an area and a normal for their pressure, that
+/// conditions can be met, and that a prescribed time step is below the critical one of all groups of bodies.
+/// `components` and `geometries` are those at the start of the run.
+void check_stages(const Scene& scene, const Components& components, LiveGeometries geometries, Faults& faults);
 
 }  // namespace grit

@@ -40,7 +40,7 @@ void StageRunner::prepare() {
 
 void StageRunner::start() {
   kernel_.find_forces();
-  begin_stage();
+  begin_stage(world_.time());
   begin_recording();
 }
 
@@ -71,11 +71,11 @@ void StageRunner::resume(const Checkpoint& checkpoint) {
   enter_stage();
 }
 
-void StageRunner::begin_stage() {
+void StageRunner::begin_stage(double start) {
   stages_begun_ = stage_ + 1;
   live_.begin_stage();
   kernel_.begin_stage(description().name, live_.now(), live_.components());
-  start_ = {world_.time(), world_.step(), kernel_.state().discharged_fraction()};  // with bodies that have appeared
+  start_ = {start, world_.step(), kernel_.state().discharged_fraction()};  // with bodies that have appeared
   for (Observer& observer : observers_) observer.schedule().restart(kernel_);
   for (Callback& one : callbacks_) one.schedule.restart(kernel_);
   frames_.restart(kernel_);
@@ -140,8 +140,8 @@ void StageRunner::end_stage(const StageDescription& stage) {
   refuse_without_a_step(stage);
   const std::string by = ended_by(stage.until, kernel_, start_), behind = kernel_.state().walls.fallen_behind();
   kernel_.end_stage();
-  recorder_.stage_ended(world_,
-                        (by.empty() ? "" : "by " + by + ", ") + reached() + (behind.empty() ? "" : "; " + behind));
+  recorder_.stage_ended(world_, (by.empty() ? "" : "by " + by + ", ") + reached() +
+                                    (behind.empty() ? "" : "; " + behind) + in_flight(stage.until, world_));
   if (stage.expect.void_ratio) {
     const double e = interior_void_ratio(world_);
     if (!(std::abs(e - *stage.expect.void_ratio) <= stage.expect.within))
@@ -149,8 +149,17 @@ void StageRunner::end_stage(const StageDescription& stage) {
                           number(*stage.expect.void_ratio) + " ± " + number(stage.expect.within) + " and reached " +
                           number(e) + "; wish for another one, or prepare the specimen otherwise");
   }
+  const double end = stage_end(stage);
   ++stage_;
-  if (!done()) begin_stage();
+  if (!done()) begin_stage(end);
+}
+
+double StageRunner::stage_end(const StageDescription& stage) const {
+  // A stage has whole steps. Its difference from the planned end must not add up over stages.
+  const auto lasts = duration(stage.until);
+  const double planned = start_.time + lasts.value_or(0),
+               step = std::max(world_.dt(), kernel_.state().time.previous_dt);
+  return lasts && std::abs(world_.time() - planned) <= step ? planned : world_.time();
 }
 
 void StageRunner::ramp() {
@@ -214,7 +223,7 @@ void StageRunner::serialize(Archive& archive) {
 
 void StageRunner::refuse_without_a_step(const StageDescription& stage) const {
   if (world_.step() > start_.step) return;
-  if (const auto lasts = time_without_a_step(stage.until, kernel_))
+  if (const auto lasts = duration(stage.until); lasts && *lasts <= 0.5 * world_.dt())
     throw NumericsError("stage \"" + stage.name + "\" lasts " + number(*lasts) +
                         " s, less than half of the time step of " + number(world_.dt()) +
                         " s, so that it would take no step; give it more time (/stages/" + std::to_string(stage_) +
@@ -277,11 +286,14 @@ std::string StageRunner::reached() const {
   const double e = interior_void_ratio(world_), overall = void_ratio(world_, world_.specimen());
   if (std::isfinite(e) && std::isfinite(overall))
     text = "void ratio " + number(e) + " (overall " + number(overall) + "), " + text;
-  const auto appears_later = [](const auto& group) { return !group.second.stage.empty(); };
+  const auto appears_later = [](const auto& group) {
+    return !group.second.stage.empty() || std::holds_alternative<StreamSource>(group.second.source.value());
+  };
   if (std::ranges::any_of(scene_.description->bodies, appears_later))
     text = std::to_string(world_.positions().size()) + " bodies, " + text;
   if (const double fraction = kernel_.state().discharged_fraction(); fraction > 0)
     text += ", " + number(100 * fraction) + " % of the mass discharged";
+  if (const std::string waiting = kernel_.waiting_bodies(); !waiting.empty()) text += ", " + waiting;
   return text + ", time " + number(world_.time() - start_.time) + " s";
 }
 

@@ -78,7 +78,10 @@ class StageRunner {
     bool has_forces = false;
   };
   void begin_recording();
-  void begin_stage();
+  /// `start`: on the run's clock [s].
+  void begin_stage(double start);
+  /// Where the present stage ends on the run's clock [s]: as planned if time ends it, otherwise now.
+  double stage_end(const StageDescription& stage) const;
   void enter_stage();
   void end_stage(const StageDescription& stage);
   void ramp();

@@ -10,6 +10,7 @@
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 
 namespace grit {
 namespace {
@@ -50,8 +51,8 @@ EvaluatedStudy evaluated_study(const std::filesystem::path& file, const Descript
     if (!json.at("metrics").contains(name)) {
       std::vector<std::string> known;
       for (const auto& [metric, _] : json.at("metrics").items()) known.push_back(metric);
-      throw Error(
-          fmt::format("{}: has no metric \"{}\"; its metrics are {}", file.string(), name, fmt::join(known, ", ")));
+      throw Error(fmt::format("{}: has no metric \"{}\"{}", file.string(), name,
+                              did_you_mean(name, known, fmt::format("its metrics are {}", fmt::join(known, ", ")))));
     }
   EvaluatedStudy study{file,
                        json.at("title").get<std::string>(),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grit/toolkit/did_you_mean.hpp"
 #include "input/reader.hpp"
 
 namespace grit {
@@ -101,7 +102,8 @@ void SettingDescription::declare(Parameters& p) {
         if (!usual.empty() && usual_level() == levels()) {
           std::vector<std::string> all;
           for (std::size_t i = 0; i < levels(); ++i) all.push_back(label(i));
-          complain("usual", '"' + usual + '"', fmt::format("one of the labels: {}", fmt::join(all, ", ")));
+          complain("usual", '"' + usual + '"' + did_you_mean(usual, all),
+                   fmt::format("one of the labels: {}", fmt::join(all, ", ")));
         }
       },
       {"pointers", "values", "labels", "usual"});
@@ -150,6 +152,7 @@ void StudyDescription::declare(Parameters& p) {
   p.add("tolerance", tolerance).above(0).doc("allowed error, as a fraction of the scale");
   p.add("advice", advice)
       .doc("whether 'grit advise' may use the study; false if it varies model parameters, not numerical settings");
+  p.resolved_before({"extends"});
   p.check(
       [this](const Complain& complain) {
         if (!set.is_object()) complain("set", describe_value(set), "an object of values by JSON pointer");

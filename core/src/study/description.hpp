@@ -17,36 +17,44 @@ namespace grit {
 /// Metrics of a run. Channels are named "probe/channel", as in series.h5.
 struct MaximumMetric {
   static constexpr const char* type_name = "maximum";
+  static constexpr const char* type_doc = "largest value of the curve";
   void declare(Parameters&) {}
 };
 struct PositionOfMaximumMetric {
   static constexpr const char* type_name = "position-of-maximum";
+  static constexpr const char* type_doc = "abscissa of the largest value";
   void declare(Parameters&) {}
 };
 struct MinimumMetric {
   static constexpr const char* type_name = "minimum";
+  static constexpr const char* type_doc = "smallest value of the curve";
   void declare(Parameters&) {}
 };
 struct LastMetric {
   static constexpr const char* type_name = "last";
+  static constexpr const char* type_doc = "last value of the curve";
   void declare(Parameters&) {}
 };
 struct MeanMetric {
   static constexpr const char* type_name = "mean";
+  static constexpr const char* type_doc = "mean over the last part of the curve";
   double fraction = 0.2;
   void declare(Parameters& p);
 };
 struct ValueMetric {
   static constexpr const char* type_name = "value";
+  static constexpr const char* type_doc = "value at an abscissa";
   double at = 0;
   void declare(Parameters& p);
 };
 struct CurveMetric {
   static constexpr const char* type_name = "curve";
+  static constexpr const char* type_doc = "the whole curve";
   void declare(Parameters&) {}
 };
 struct ProfileMetric {
   static constexpr const char* type_name = "profile";
+  static constexpr const char* type_doc = "the last sample of a channel with several values";
   void declare(Parameters&) {}
 };
 

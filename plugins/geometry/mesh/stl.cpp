@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "grit/toolkit/text_file.hpp"
 
 namespace grit {
 namespace {
 
-constexpr std::size_t longest_word = 20;                                // in a message
+constexpr std::size_t longest_word = 20;                                // of another format, in a message
 constexpr std::size_t header = 80, preamble = header + 4, record = 50;  // bytes of a binary file
 constexpr const char* facet_syntax =
     "facets as \"facet normal x y z, outer loop, vertex x y z (three times), endloop, endfacet\", then \"endsolid\"; "
@@ -52,7 +52,7 @@ class Text {
 
   void read() {
     for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
-      if (!same_word(word, "solid")) throw misplaced(word, "solid");
+      if (!same_word(word, "solid")) throw misplaced(word, "solid or the end of the file");
       words_.skip_line();
       while (!same_word(word = words_.next(), "endsolid")) {
         if (!same_word(word, "facet")) throw misplaced(word, "facet");
@@ -73,12 +73,10 @@ class Text {
   }
   Vec3 vector() { return Vec3{number(), number(), number()}; }  // braces: in this order
   double number() {
-    std::string_view word = words_.next();
-    const std::string_view found = word;
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) throw misplaced(found, "a number");
+    const std::string_view word = words_.next();
+    if (word.empty()) throw misplaced(word, "a number");
+    const auto [value, fault] = parse_number(word);
+    if (!fault.empty()) throw Defect{quoted_excerpt(word) + place() + ": " + std::string(fault), facet_syntax};
     return value;
   }
   void expect(std::string_view wanted) {
@@ -86,10 +84,14 @@ class Text {
     if (!same_word(word, wanted)) throw misplaced(word, wanted);
   }
   Defect misplaced(std::string_view found, std::string_view wanted) const {
-    const std::string what = found.empty() ? "the end of the file" : '"' + std::string(found.substr(0, 40)) + '"';
-    return {what + " in line " + std::to_string(words_.line()) + ", after " + std::to_string(facets_.size()) +
-                " complete facets, where " + std::string(wanted) + " should be",
+    return {(found.empty() ? "the end of the file" : quoted_excerpt(found)) + place() + ", where " +
+                std::string(wanted) + " should be",
             facet_syntax};
+  }
+
+  std::string place() const {
+    return " in line " + std::to_string(words_.line()) + ", after " + std::to_string(facets_.size()) +
+           " complete facets";
   }
 
   Words words_;
@@ -104,11 +106,20 @@ std::uint32_t count_of(std::string_view bytes) {
 
 std::size_t size_with(std::uint32_t facets) { return preamble + record * std::size_t{facets}; }
 
-/// Whether bytes are an ASCII file. A binary header may also begin with "solid"; file size then decides.
-bool is_text(std::string_view bytes) {
-  if (bytes.size() >= preamble && bytes.size() == size_with(count_of(bytes))) return false;
-  Words words(bytes);
-  return same_word(words.next(), "solid") && bytes.substr(0, 1024).find('\0') == bytes.npos;
+bool is_binary(std::string_view bytes) {
+  return bytes.size() >= preamble && bytes.size() == size_with(count_of(bytes));
+}
+
+bool begins_printable(std::string_view text) {
+  return std::ranges::all_of(text.substr(0, preamble), [](unsigned char c) { return c >= ' ' || is_blank(c); });
+}
+
+/// Whether a file that is not a complete binary one is an ASCII file, going by its beginning.
+bool is_ascii(std::string_view beginning) {
+  constexpr std::string_view keyword = "vertex";
+  if (!same_word(Words(beginning).next(), "solid")) return false;
+  // A binary header may begin with "solid" too, but control characters follow. In text they may follow a name.
+  return begins_printable(beginning) || !std::ranges::search(beginning, keyword, {}, lower, lower).empty();
 }
 
 Vec3 read_floats(const char* bytes) {
@@ -119,37 +130,39 @@ Vec3 read_floats(const char* bytes) {
 
 void read_binary(std::string_view bytes, std::vector<Stl::Facet>& facets) {
   constexpr std::size_t vector = 12;
-  if (bytes.size() < preamble)
-    throw Defect{std::to_string(bytes.size()) + " bytes, neither \"solid\" at their beginning nor a binary header",
-                 "STL, ASCII or binary"};
-  const std::uint32_t count = count_of(bytes);
-  const auto is_print = [](unsigned char c) { return c >= ' ' || (c >= '\t' && c <= '\r'); };
-  if (bytes.size() != size_with(count) && std::ranges::all_of(bytes.substr(0, preamble), is_print))
-    throw Defect{"a text that begins with \"" + std::string(Words(bytes).next().substr(0, longest_word)) +
-                     "\" instead of \"solid\"",
-                 "STL, ASCII or binary; convert other formats"};
-  if (bytes.size() != size_with(count))
-    throw Defect{"a binary file of " + std::to_string(bytes.size()) + " bytes whose header gives " +
-                     std::to_string(count) + " facets, that is " + std::to_string(size_with(count)) + " bytes",
-                 "a complete STL file, ASCII or binary; export or copy the file again"};
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < count_of(bytes); ++i) {
     const char* at = bytes.data() + size_with(i);
     facets.push_back(
         {{read_floats(at + vector), read_floats(at + 2 * vector), read_floats(at + 3 * vector)}, read_floats(at)});
   }
 }
 
-std::string whole_file(const std::filesystem::path& path) {
-  const auto unreadable = [&](int reason) {
-    return Defect{path.string() + ", which cannot be read: " + std::strerror(reason), "the path of an STL file"};
-  };
-  if (std::filesystem::is_directory(path)) throw unreadable(EISDIR);
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw unreadable(errno);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return std::move(bytes).str();
+/// Why a file is neither ASCII nor binary.
+Defect other_format(std::string_view bytes, std::string_view beginning) {
+  if (bytes.size() < preamble)
+    return {std::to_string(bytes.size()) + " bytes, neither \"solid\" at their beginning nor a binary header",
+            "STL, ASCII or binary"};
+  if (begins_printable(beginning))
+    return {
+        "a text that begins with " + quoted_excerpt(Words(beginning).next(), longest_word) + " instead of \"solid\"",
+        "STL, ASCII or binary; convert other formats"};
+  const std::uint32_t count = count_of(bytes);
+  return {"a binary file of " + std::to_string(bytes.size()) + " bytes whose header gives " + std::to_string(count) +
+              " facets, that is " + std::to_string(size_with(count)) + " bytes",
+          "a complete STL file, ASCII or binary; export or copy the file again"};
+}
+
+void read(const std::filesystem::path& path, std::vector<Stl::Facet>& facets) {
+  std::error_code error;
+  std::string bytes = read_bytes(path, error);
+  if (error) throw Defect{path.string() + ", which cannot be read: " + error.message(), "the path of an STL file"};
+  if (bytes.empty()) throw Defect{"an empty file", "STL, ASCII or binary"};
+  if (is_binary(bytes)) return read_binary(bytes, facets);
+  if (is_utf16(bytes)) throw Defect{"UTF-16 text", "STL, ASCII or binary; save the file as UTF-8"};
+  const std::string beginning = plain_text(bytes.substr(0, 1024), path.string());
+  if (!is_ascii(beginning)) throw other_format(bytes, beginning);
+  const std::string text = plain_text(std::move(bytes), path.string());
+  Text(text, facets).read();
 }
 
 }  // namespace
@@ -165,10 +178,7 @@ std::string facet_numbers(const std::vector<std::size_t>& facets) {
 Stl read_stl(const std::filesystem::path& path) {
   Stl stl;
   try {
-    const std::string bytes = whole_file(path);
-    if (bytes.empty()) throw Defect{"an empty file", "STL, ASCII or binary"};
-    if (is_text(bytes)) Text(bytes, stl.facets).read();
-    else read_binary(bytes, stl.facets);
+    read(path, stl.facets);
     if (stl.facets.empty()) throw Defect{"a file without facets", "at least one facet"};
   } catch (const Defect& defect) {
     stl.defects.push_back(defect);

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <sstream>
 #include <tuple>
+
+#include "groups.hpp"
+#include "weld.hpp"
 
 namespace grit {
 namespace {
@@ -23,28 +27,23 @@ constexpr double long_as_a_seam = 100;  // in gaps: edges that diverge at 0.6 de
 // overlap of 1 - cos(15 degrees), 3 % of its radius.
 constexpr double valley = 0.2588;
 
-auto coordinates(const Vec3& v) { return std::tuple(v.x(), v.y(), v.z()); }
-
 std::string text(const Vec3& v) {
   return (std::ostringstream() << '(' << v.x() << ", " << v.y() << ", " << v.z() << ')').str();
 }
 
-/// Disjoint sets; the root of a group is its lowest member.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
+std::string metres(double length) { return (std::ostringstream() << std::setprecision(2) << length).str(); }
 
- private:
-  std::vector<std::uint32_t> parent_;
-};
+/// A corner of the file in the scene. Negative zeros become positive.
+Vec3 placed(const Vec3& corner, const SurfaceOptions& options) {
+  return options.scale * corner + options.position + Vec3::Zero();
+}
+
+/// Place of a number among numbers in ascending order.
+std::optional<std::uint32_t> place(const std::vector<std::uint32_t>& numbers, std::uint32_t number) {
+  const auto found = std::ranges::lower_bound(numbers, number);
+  if (found == numbers.end() || *found != number) return {};
+  return static_cast<std::uint32_t>(found - numbers.begin());
+}
 
 }  // namespace
 
@@ -53,7 +52,7 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
   if (!defects_.empty()) return;
   merge_corners(stl, options);
   span_facets(stl, options);
-  join_edges(options);
+  join_edges(stl, options);
   if (!defects_.empty()) return;
   if (closed_ && oriented_ && !two_sided_) check_volumes(options.inside);
   find_regions();
@@ -80,39 +79,13 @@ Surface::Surface(const Stl& stl, const SurfaceOptions& options)
 
 /// Numbers the corners; merged corners get the number of the first of them.
 void Surface::merge_corners(const Stl& stl, const SurfaceOptions& options) {
-  std::map<std::tuple<double, double, double>, std::uint32_t> exact;
-  std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;  // cell size: merge_distance
-  const auto cell = [&](const Vec3& position, double x, double y, double z) {
-    return std::array{std::floor(position.x() / options.merge_distance) + x,
-                      std::floor(position.y() / options.merge_distance) + y,
-                      std::floor(position.z() / options.merge_distance) + z};
-  };
-  const auto close_to = [&](const Vec3& position) -> std::optional<std::uint32_t> {
-    for (const double x : {-1, 0, 1})
-      for (const double y : {-1, 0, 1})
-        for (const double z : {-1, 0, 1})
-          if (const auto found = cells.find(cell(position, x, y, z)); found != cells.end())
-            for (const std::uint32_t other : found->second)
-              if ((vertices_[other].position - position).norm() <= options.merge_distance) return other;
-    return {};
-  };
-  const auto number_of = [&](const Vec3& position) {
-    const auto [known, inserted] =
-        exact.try_emplace(coordinates(position), static_cast<std::uint32_t>(vertices_.size()));
-    if (!inserted) return known->second;
-    if (options.merge_distance > 0) {
-      if (const auto other = close_to(position)) return known->second = *other;
-      cells[cell(position, 0, 0, 0)].push_back(known->second);
-    }
-    vertices_.push_back({.position = position});
-    return known->second;
-  };
+  Weld weld(options.merge_distance);
   for (const Stl::Facet& facet : stl.facets) {
     Facet& mine = facets_.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i)
-      mine.corners[i] = number_of(options.scale * facet.corners[i] + options.position + Vec3::Zero());
+    for (std::size_t i = 0; i < 3; ++i) mine.corners[i] = weld.number(placed(facet.corners[i], options));
     if (options.inside) std::swap(mine.corners[1], mine.corners[2]);
   }
+  for (const Vec3& point : weld.points()) vertices_.push_back({.position = point});
 }
 
 /// Normals; facets without one, and those with a contradicting normal in the file.
@@ -149,7 +122,7 @@ void Surface::span_facets(const Stl& stl, const SurfaceOptions& options) {
 }
 
 /// Edges; defects where an edge does not join two facets of the same orientation.
-void Surface::join_edges(const SurfaceOptions& options) {
+void Surface::join_edges(const Stl& stl, const SurfaceOptions& options) {
   struct Entry {
     std::uint32_t from, to;
     Side side;
@@ -196,11 +169,10 @@ void Surface::join_edges(const SurfaceOptions& options) {
   closed_ = single.empty(), oriented_ = crowded.empty() && turned.empty();
 
   if (!closed_ && !options.open)
-    defects_.push_back({"an open surface: " + std::to_string(single.size()) +
-                            " edges with one facet only, the first from " + first_single + " m, of facets " +
-                            facet_numbers(single),
-                        "a closed surface; close it, merge corners with \"merge_distance\", or set \"open\": true if "
-                        "it is a sheet"});
+    defects_.push_back(
+        {"an open surface: " + std::to_string(single.size()) + " edges with one facet only, the first from " +
+             first_single + " m, of facets " + facet_numbers(single),
+         "a closed surface; " + how_to_close(stl, options) + ", or set \"open\": true if it is a sheet"});
   if (!crowded.empty() && !two_sided_)
     defects_.push_back(
         {"edges shared by more than two facets, of facets " + facet_numbers(crowded),
@@ -211,6 +183,19 @@ void Surface::join_edges(const SurfaceOptions& options) {
         {"inverted facets, oriented against most of their neighbours: " + facet_numbers(turned),
          "facets that all face outwards; repair the file, or set \"two_sided\": true if bodies may be on "
          "either side"});
+}
+
+/// What to do about free edges.
+std::string Surface::how_to_close(const Stl& stl, const SurfaceOptions& options) const {
+  std::vector<Segment> free, all;
+  for (const Edge& edge : edges_)
+    if (edge.rim) free.push_back({vertices_[edge.from].position, vertices_[edge.to].position});
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (std::size_t i = 0; i < 3 && !facets_[f].skipped; ++i)
+      all.push_back({placed(stl.facets[f].corners[i], options), placed(stl.facets[f].corners[(i + 1) % 3], options)});
+  if (const auto distance = closing_distance(free, all, two_sided_))
+    return "set \"merge_distance\" to " + metres(*distance) + " m, which closes it";
+  return "close it (no \"merge_distance\" does)";
 }
 
 /// For each facet the lowest number in its group; groups are joined by edges of two facets for which `joins` holds.
@@ -337,7 +322,6 @@ void Surface::check_seams() {
   if (!first) return;
   std::ranges::sort(facets);
   facets.erase(std::ranges::unique(facets).begin(), facets.end());
-  const auto metres = [](double length) { return (std::ostringstream() << std::setprecision(2) << length).str(); };
   std::string remedy;
   if (merge > 0) remedy = "set \"merge_distance\" to " + metres(1.1 * merge) + " m or more, to merge corners";
   if (split)
@@ -485,7 +469,7 @@ void Surface::nearest(const Vec3& centre, double radius, std::vector<std::uint32
     return;
   }
   std::erase_if(found, [](const Nearest& one) { return one.behind; });
-  if (found.size() > 1) keep_closest_per_curve(found);
+  if (found.size() > 1) keep_those_that_count(centre, radius, facets, found);
   std::ranges::sort(found, {}, &Nearest::feature);
 }
 
@@ -507,19 +491,98 @@ void Surface::remove_duplicates(const Vec3& centre, double radius, std::vector<N
   found.resize(kept);
 }
 
-/// On each curved surface keeps the closest of the contacts linked by similar normals.
-void Surface::keep_closest_per_curve(std::vector<Nearest>& found) const {
-  std::ranges::sort(found, {}, [](const Nearest& one) { return std::tuple(one.distance, one.feature); });
-  Groups curves(found.size());
-  for (std::uint32_t i = 0; i < found.size(); ++i)
-    for (std::uint32_t j = 0; j < i; ++j)
-      if (found[i].region >= 0 && found[i].region == found[j].region &&
-          found[i].away.dot(found[j].away) > smooth_cosine_)
-        curves.join(i, j);
-  std::size_t kept = 0;
-  for (std::uint32_t i = 0; i < found.size(); ++i)
-    if (curves.root(i) == i) found[kept++] = found[i];
-  found.resize(kept);
+/// On each curved surface keeps the contacts that count.
+void Surface::keep_those_that_count(const Vec3& centre, double radius, const std::vector<std::uint32_t>& facets,
+                                    std::vector<Nearest>& found) const {
+  std::ranges::sort(found, {}, [](const Nearest& one) { return std::tuple(one.region, one.distance, one.feature); });
+  std::vector<Nearest> more;
+  auto kept = found.begin();
+  for (auto begin = found.begin(), end = begin; begin != found.end(); begin = end) {
+    const auto elsewhere = [&](const Nearest& other) { return other.region != begin->region; };
+    end = begin->region < 0 ? begin + 1 : std::find_if(begin, found.end(), elsewhere);
+    const std::span minima(begin, end);
+    if (closest_relieves_all(minima, radius)) *kept++ = *begin;
+    else add_contacts_that_count(centre, radius, facets, minima, more);
+  }
+  found.erase(kept, found.end());
+  found.insert(found.end(), more.begin(), more.end());
+}
+
+/// Whether each other contact is on the side of the closest one, or relieved by it entirely and within a feature angle
+/// of a closer one. `minima` are in ascending order of distance.
+bool Surface::closest_relieves_all(std::span<const Nearest> minima, double radius) const {
+  for (std::size_t i = 1; i < minima.size(); ++i) {
+    const auto within = [&](const Nearest& closer) { return closer.away.dot(minima[i].away) > smooth_cosine_; };
+    if (within(minima[0])) continue;
+    const double relief = least_relief(minima[0].away, minima[i].away);
+    if (radius - minima[i].distance > relief * (radius - minima[0].distance)) return false;
+    if (std::ranges::none_of(minima.first(i), within)) return false;
+  }
+  return true;
+}
+
+/// Adds the contacts that count with the curved surface that has these minima.
+void Surface::add_contacts_that_count(const Vec3& centre, double radius, const std::vector<std::uint32_t>& facets,
+                                      std::span<const Nearest> minima, std::vector<Nearest>& found) const {
+  constexpr std::uint32_t none = ~0u;
+  const std::int32_t region = minima.front().region;
+  std::vector<CurveFacet> touching;
+  std::vector<std::uint32_t> numbers, minimum;  // of these facets
+  for (const std::uint32_t f : facets) {
+    if (region_[f] != region) continue;
+    const auto from = from_rim(f, centre);
+    const double height = this->height(facets_[f], centre);
+    if (!from && !two_sided_ && height < 0) continue;
+    const double distance = from ? from->norm() : std::abs(height);
+    if (!(distance < radius)) continue;
+    const Vec3 away =
+        from && distance > 0 ? Vec3(*from / distance) : Vec3(std::copysign(1, height) * facets_[f].normal);
+    touching.push_back({away, radius - distance, false});
+    numbers.push_back(f), minimum.push_back(none);
+  }
+  for (std::uint32_t m = 0; m < minima.size(); ++m)
+    if (const auto i = place(numbers, minima[m].feature / features_per_facet))
+      minimum[*i] = m, touching[*i] = {minima[m].away, radius - minima[m].distance, true};
+  for (const CurveContact& one : contacts_that_count(touching, links(touching, numbers), smooth_cosine_)) {
+    const std::uint32_t m = minimum[one.facet];
+    found.push_back({.away = one.away,
+                     .distance = radius - one.overlap,
+                     .behind = false,
+                     .feature = m == none ? features_per_facet * numbers[one.facet] : minima[m].feature,
+                     .region = region});
+  }
+}
+
+/// Paths lead over facets that share an edge, and between local minima whose normals differ by less than the feature
+/// angle.
+std::vector<CurveLink> Surface::links(std::span<const CurveFacet> touching,
+                                      const std::vector<std::uint32_t>& numbers) const {
+  std::vector<CurveLink> links;
+  Groups groups(touching.size());
+  std::vector<std::uint32_t> order(touching.size()), minima;
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::stable_sort(order, std::greater(), [&](std::uint32_t i) { return touching[i].overlap; });
+  std::vector<bool> reached(touching.size(), false);
+  // In descending order of overlap, groups of facets join at the best place between them.
+  for (const std::uint32_t i : order) {
+    const auto join = [&](std::uint32_t other) {
+      if (groups.join(i, other)) links.push_back({i, other, touching[i].overlap});
+    };
+    const Facet& facet = facets_[numbers[i]];
+    reached[i] = true;
+    for (const std::uint32_t e : facet.edges)
+      for (std::uint32_t s = edges_[e].first_side; s < edges_[e].end_side; ++s) {
+        const std::uint32_t number = sides_[s].facet;
+        const double cosine = (edges_[e].turns ? -1 : 1) * facet.normal.dot(facets_[number].normal);
+        if (number == numbers[i] || cosine <= smooth_cosine_) continue;
+        if (const auto other = place(numbers, number); other && reached[*other]) join(*other);
+      }
+    if (!touching[i].minimum) continue;
+    for (const std::uint32_t other : minima)
+      if (touching[i].away.dot(touching[other].away) > smooth_cosine_) join(other);
+    minima.push_back(i);
+  }
+  return links;
 }
 
 bool Surface::near(const Vec3& centre, double reach) const {
@@ -529,15 +592,21 @@ bool Surface::near(const Vec3& centre, double reach) const {
 }
 
 double Surface::distance(std::uint32_t number, const Vec3& centre) const {
-  const Facet& facet = facets_[number];
-  double least = std::numeric_limits<double>::infinity();
+  const auto from = from_rim(number, centre);
+  return from ? from->norm() : std::abs(height(facets_[number], centre));
+}
+
+/// From the closest point of the edges of a facet to a centre; nothing if the centre is above the facet.
+std::optional<Vec3> Surface::from_rim(std::uint32_t number, const Vec3& centre) const {
+  std::optional<Vec3> closest;
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (inside_edge({number, i}, centre) > 0) continue;
-    const Edge& edge = edges_[facet.edges[i]];
-    const Vec3 from = centre - vertices_[edge.from].position;
-    least = std::min(least, (from - std::clamp(edge.along.dot(from), 0.0, edge.length) * edge.along).norm());
+    const Edge& edge = edges_[facets_[number].edges[i]];
+    const Vec3 start = centre - vertices_[edge.from].position;
+    const Vec3 from = start - std::clamp(edge.along.dot(start), 0.0, edge.length) * edge.along;
+    if (!closest || from.squaredNorm() < closest->squaredNorm()) closest = from;
   }
-  return std::isinf(least) ? std::abs(height(facet, centre)) : least;
+  return closest;
 }
 
 }  // namespace grit

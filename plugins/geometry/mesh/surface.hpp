@@ -4,8 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "curved_surface.hpp"
 #include "facet_index.hpp"
 #include "grit/geometry.hpp"
 #include "stl.hpp"
@@ -85,7 +88,8 @@ class Surface {
 
   void merge_corners(const Stl& stl, const SurfaceOptions& options);
   void span_facets(const Stl& stl, const SurfaceOptions& options);
-  void join_edges(const SurfaceOptions& options);
+  void join_edges(const Stl& stl, const SurfaceOptions& options);
+  std::string how_to_close(const Stl& stl, const SurfaceOptions& options) const;
   void check_volumes(bool inside);
   void find_regions();
   void gather_corners();
@@ -104,11 +108,17 @@ class Surface {
   double inside_edge(const Side& side, const Vec3& centre) const;
   double height(const Facet& facet, const Vec3& centre) const { return facet.normal.dot(centre - corner(facet, 0)); }
   double distance(std::uint32_t facet, const Vec3& centre) const;
+  std::optional<Vec3> from_rim(std::uint32_t facet, const Vec3& centre) const;
   void closest_of(std::uint32_t number, const Vec3& centre, double radius, std::vector<Nearest>& found) const;
   bool touches_edge(const Edge& edge, const Vec3& centre, double slack) const;
   bool touches_vertex(const Vertex& vertex, const Vec3& centre, double slack) const;
   void remove_duplicates(const Vec3& centre, double radius, std::vector<Nearest>& found) const;
-  void keep_closest_per_curve(std::vector<Nearest>& found) const;
+  void keep_those_that_count(const Vec3& centre, double radius, const std::vector<std::uint32_t>& facets,
+                             std::vector<Nearest>& found) const;
+  bool closest_relieves_all(std::span<const Nearest> minima, double radius) const;
+  void add_contacts_that_count(const Vec3& centre, double radius, const std::vector<std::uint32_t>& facets,
+                               std::span<const Nearest> minima, std::vector<Nearest>& found) const;
+  std::vector<CurveLink> links(std::span<const CurveFacet> touching, const std::vector<std::uint32_t>& numbers) const;
 
   static constexpr std::uint32_t features_per_facet = 7;
   std::vector<Facet> facets_;

@@ -320,8 +320,10 @@ TEST(Mesh, GivesAreaNormalAndBounds) {
 TEST(Mesh, RefusesARimUnlessOpen) {
   EXPECT_THAT(
       complaint(without_top()),
-      HasSubstr("path: found an open surface: 4 edges with one facet only, the first from (0, 0, 3) to (0, 2, 3) m, "
-                "of facets 1, 4, 6, 7; allowed is a closed surface; close it, merge corners"));
+      HasSubstr(
+          "path: found an open surface: 4 edges with one facet only, the first from (0, 0, 3) to (0, 2, 3) m, "
+          "of facets 1, 4, 6, 7; allowed is a closed surface; close it (no \"merge_distance\" does), or set \"open\": "
+          "true if it is a sheet"));
   EXPECT_EQ(complaint(without_top(), {{"open", true}}), "");
 }
 
@@ -529,6 +531,39 @@ TEST(Mesh, MergesCornersWithinTheTolerance) {
   EXPECT_THAT(complaint(corners), HasSubstr("found an open surface: 36 edges"));
   EXPECT_THAT(complaint(corners, {{"merge_distance", 1e-8}}), HasSubstr("found an open surface"));
   EXPECT_EQ(complaint(corners, {{"merge_distance", 1e-6}}), "");
+}
+
+TEST(Mesh, NamesTheDistanceThatClosesIt) {
+  // The distance in the message; 0 without one.
+  const auto named = [](const std::string& message) {
+    const std::string before = "set \"merge_distance\" to ";
+    const auto at = message.find(before);
+    return at == std::string::npos ? 0.0 : std::stod(message.substr(at + before.size()));
+  };
+  for (const double gap : {1e-12, 1e-7, 1e-3, 0.3}) {
+    Corners corners = box(low, high);
+    for (std::size_t i = 30; i < corners.size(); ++i) corners[i].z() += gap;  // the top
+    const std::string message = complaint(corners);
+    EXPECT_THAT(message, HasSubstr(" m, which closes it, or set \"open\""));
+    EXPECT_GE(named(message), gap);
+    EXPECT_LE(named(message), 1.13 * gap);
+    EXPECT_EQ(complaint(corners, {{"merge_distance", named(message)}}), "") << gap;
+    EXPECT_THAT(complaint(corners, {{"merge_distance", 0.99 * gap}}), HasSubstr("found an open surface")) << gap;
+  }
+  Corners all = box(low, high);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] += 1e-7 * Vec3(std::sin(i), std::cos(3. * i), std::sin(7. * i));
+  const double close = named(complaint(all));
+  EXPECT_GT(close, 1e-7);
+  EXPECT_EQ(complaint(all, {{"merge_distance", close}}), "");
+  EXPECT_THAT(complaint(all, {{"merge_distance", 0.8 * close}}), HasSubstr("found an open surface"));
+  // A gap as wide as the lid, and a corner on the middle of an edge: nothing to merge.
+  Corners apart = box(low, high);
+  for (std::size_t i = 30; i < apart.size(); ++i) apart[i].z() += 1;
+  EXPECT_EQ(named(complaint(apart)), 0);
+  Corners split = without_top();
+  const Vec3 a(0, 0, 3), b(1, 0, 3), c(1, 2, 3), d(0, 2, 3), middle(0.5, 0, 3);
+  for (const Vec3& corner : {a, middle, d, middle, c, d, middle, b, c}) split.push_back(corner);
+  EXPECT_THAT(complaint(split), HasSubstr("no \"merge_distance\" does"));
 }
 
 TEST(Mesh, ReportsWhatIsWrongWithItsFile) {

@@ -45,9 +45,31 @@ TEST(Stl, ReadsTextOfOtherPrograms) {
            "endloop\nendfacet\nendsolid the second"));
 }
 
+TEST(Stl, ReadsTextWhateverItsLineEndsAndByteOrderMark) {
+  const std::string text = test::stl_text(two_facets);
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    for (const std::string mark : {"", "\xef\xbb\xbf"}) {
+      std::string other = mark;
+      for (const char c : text) other += c == '\n' ? end : std::string(1, c);
+      expect_two_facets(read(other));
+      EXPECT_EQ(refused(replaced(other, "vertex 1 ", "vertex one ")),
+                "\"one\" in line 5, after 0 complete facets: not a number");
+    }
+}
+
+TEST(Stl, ReadsNumbersThatAreTooSmallAsZero) {
+  expect_two_facets(read(replaced(test::stl_text(two_facets), "vertex 0 0 0", "vertex 1e-400 -1e-400 +0")));
+}
+
+TEST(Stl, ReadsANameFilledUpWithNul) {
+  expect_two_facets(read(replaced(test::stl_text(two_facets), "made", "made" + std::string(70, '\0'))));
+}
+
 TEST(Stl, ReadsBinaryWithAnyHeader) {
   expect_two_facets(read(test::stl_binary(two_facets)));
   expect_two_facets(read(test::stl_binary(two_facets, "solid facet normal")));
+  expect_two_facets(read(test::stl_binary(two_facets, "\xff\xfe")));
+  expect_two_facets(read(test::stl_binary(two_facets, "\r\r\n")));
   EXPECT_EQ(read(test::stl_binary(two_facets)).facets[1].normal, Vec3::Zero());
 }
 
@@ -72,13 +94,36 @@ TEST(Stl, RefusesIncompleteFiles) {
 TEST(Stl, RefusesInvalidFacets) {
   const std::string text = test::stl_text(two_facets);
   EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex one ")),
-            "\"one\" in line 5, after 0 complete facets, where a number should be");
-  EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex 1e999 ")),
-            "\"1e999\" in line 5, after 0 complete facets, where a number should be");
+            "\"one\" in line 5, after 0 complete facets: not a number");
+  EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex 1e400 ")),
+            "\"1e400\" in line 5, after 0 complete facets: beyond the largest number, 1.8e308");
+  EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex 1,0 ")),
+            "\"1,0\" in line 5, after 0 complete facets: numbers use a point, not a comma");
+  EXPECT_EQ(refused(text.substr(0, text.rfind("vertex") + 6)),
+            "the end of the file in line 13, after 1 complete facets, where a number should be");
   EXPECT_EQ(refused(replaced(text, " endloop", "  vertex 3 3 3\n endloop")),
             "\"vertex\" in line 7, after 0 complete facets, where endloop should be");
   EXPECT_EQ(refused(replaced(text, "endsolid", "garbage")),
             "\"garbage\" in line 16, after 2 complete facets, where facet should be");
+}
+
+TEST(Stl, ShowsBytesThatAreNoText) {
+  const std::string text = test::stl_text(two_facets);
+  const std::string nul = std::string(100, '\0');
+  std::string shown;
+  for (int i = 0; i < 40; ++i) shown += "\\x00";
+  EXPECT_EQ(refused(text + nul),
+            '"' + shown + "…\" in line 17, after 2 complete facets, where solid or the end of the file should be");
+  EXPECT_EQ(refused(replaced(text, " endloop", nul + " endloop")),
+            '"' + shown + "…\" in line 7, after 0 complete facets, where endloop should be");
+  EXPECT_EQ(refused(replaced(text, "vertex 1 ", "vertex 1\xa0 ")),
+            "\"1\\xa0\" in line 5, after 0 complete facets: text follows the number");
+  EXPECT_EQ(refused("OFF\xa0" + std::string(90, ' ')), "a text that begins with \"OFF\\xa0\" instead of \"solid\"");
+}
+
+TEST(Stl, RefusesUtf16) {
+  for (const std::string mark : {"\xff\xfe", "\xfe\xff"})
+    EXPECT_EQ(refused(mark + test::stl_text(two_facets)), "UTF-16 text");
 }
 
 TEST(Stl, RefusesNumbersThatAreNotFinite) {

@@ -161,10 +161,10 @@ void FormulaProbe::prepare(const World& world) {
 
   for (const auto& [name, curve] : curves) {
     const auto fail = [&, &name = name, &curve = curve](std::size_t position, const std::string& why,
-                                                        const std::string& allowed) {
+                                                        const std::string& allowed, const std::string& meant = "") {
       throw ParameterError(
           {{"curves/" + name + "/formula",
-            '"' + curve.formula + "\": " + why + " at character " + std::to_string(position + 1), allowed}});
+            '"' + curve.formula + "\": " + why + " at character " + std::to_string(position + 1) + meant, allowed}});
     };
     if (const auto at = assignment(curve.formula); at != std::string::npos)
       fail(at, "\"=\"", "an expression without assignments; \"==\" compares");
@@ -181,8 +181,7 @@ void FormulaProbe::prepare(const World& world) {
       const auto position = std::min(static_cast<std::size_t>(std::max(error.GetPos(), 0)), curve.formula.size());
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && is_name(error.GetToken()))
         fail(position, "the unknown name \"" + error.GetToken() + '"',
-             "one of the names " + known_names(world, constants) + "; the nearest is \"" +
-                 nearest_name(error.GetToken(), names) + '"');
+             "one of the names " + known_names(world, constants), did_you_mean(error.GetToken(), names));
       fail(position, plain_message(error), "an expression in muParser's syntax");
     }
     if (parser.GetNumResults() != 1) fail(curve.formula.rfind(','), "\",\"", "an expression with one result");

@@ -136,13 +136,12 @@ TEST(Formula, DescribesItsCurves) {
 }
 
 TEST(Formula, NamesTheNearestVariable) {
-  EXPECT_EQ(
-      error_of("2 * top_presure"),
-      "curves/curve/formula: found \"2 * top_presure\": the unknown name \"top_presure\" at character 5; allowed is "
-      "one of "
-      "the names time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z, length; of each wall "
-      "(upper_left, top): <wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, "
-      "<wall>_velocity_x/_y/_z, <wall>_pressure, <wall>_area; the nearest is \"top_pressure\"");
+  EXPECT_EQ(error_of("2 * top_presure"),
+            "curves/curve/formula: found \"2 * top_presure\": the unknown name \"top_presure\" at character 5; did you "
+            "mean \"top_pressure\"? Allowed is one of the names time, step, mean_diameter, void_ratio, mass, "
+            "departed_mass, centre_x/_y/_z, length; of each wall "
+            "(upper_left, top): <wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, "
+            "<wall>_velocity_x/_y/_z, <wall>_pressure, <wall>_area");
 }
 
 TEST(Formula, SaysWhereItCannotBeRead) {

@@ -110,7 +110,7 @@ TEST(Interface, RefusesAWallThatThereIsNot) {
     made("surfaces").prepare(rolling(0));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("wall: found \"surfaces\", which is not a wall; the nearest"));
+    EXPECT_THAT(error.what(), HasSubstr("wall: found \"surfaces\", which is not a wall; did you mean"));
   }
   Interface across = made();
   across.layer.axis = "z";

@@ -176,11 +176,10 @@ TEST(Packing, RefusesAWallThatIsNotThere) {
   world.wall = {still_wall("top"), still_wall("bottom")};
   PackingProbe probe;
   probe.driven_by = "tip";
-  EXPECT_THAT(
-      [&] { probe.prepare(world); },
-      testing::ThrowsMessage<ParameterError>(
-          "driven_by: found \"tip\", which is not a wall; the nearest name is \"top\"; allowed is one of the walls "
-          "top, bottom"));
+  EXPECT_THAT([&] { probe.prepare(world); },
+              testing::ThrowsMessage<ParameterError>(
+                  "driven_by: found \"tip\", which is not a wall; did you mean \"top\"? Allowed is one of the walls "
+                  "top, bottom"));
   probe.shear_rate = 1;
   EXPECT_EQ(complaints(probe), "driven_by: found \"tip\" beside a shear_rate, allowed: one of the two\n");
 }

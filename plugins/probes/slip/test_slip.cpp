@@ -84,7 +84,7 @@ std::string refusal(Slip probe, FakeWorld world = world_between()) {
 }
 
 TEST(Slip, RefusesWallsThatThereAreNotOrThatFaceTheWrongWay) {
-  EXPECT_THAT(refusal(made("surfaces")), HasSubstr("wall: found \"surfaces\", which is not a wall; the nearest"));
+  EXPECT_THAT(refusal(made("surfaces")), HasSubstr("wall: found \"surfaces\", which is not a wall; did you mean"));
   EXPECT_THAT(refusal(made("surface", "led")), HasSubstr("driven_by: found \"led\", which is not a wall"));
   Slip across = made();
   across.layer.axis = "z";

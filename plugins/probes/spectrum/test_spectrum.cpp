@@ -312,7 +312,7 @@ TEST(Spectrum, RefusesWhatIsNeitherAWallNorABox) {
     nowhere.prepare(swinging(0));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("wall: found \"well\", which is not a wall; the nearest name is \"wall\""));
+    EXPECT_THAT(error.what(), HasSubstr("wall: found \"well\", which is not a wall; did you mean \"wall\"?"));
   }
 }
 

@@ -183,10 +183,10 @@ std::string refusal(WallProfile probe, const FakeWorld& world) {
 TEST(WallProfile, RefusesWallsThatDoNotStand) {
   WallProfile probe = made(4);
   probe.walls = {"left", "flor"};
-  EXPECT_THAT(refusal(probe, silo()), HasSubstr("walls: found \"flor\", which is not a wall; the nearest"));
+  EXPECT_THAT(refusal(probe, silo()), HasSubstr("walls: found \"flor\", which is not a wall; did you mean"));
   WallProfile bottomless = made(4);
   bottomless.bottom = {"flor"};
-  EXPECT_THAT(refusal(bottomless, silo()), HasSubstr("bottom: found \"flor\", which is not a wall; the nearest"));
+  EXPECT_THAT(refusal(bottomless, silo()), HasSubstr("bottom: found \"flor\", which is not a wall; did you mean"));
   bottomless.bottom = {"floor", "right"};
   EXPECT_EQ(complaints(bottomless),
             "bottom: found \"right\", which is in walls as well, allowed: names that are not in walls\n");

@@ -75,10 +75,9 @@ TEST(WallsProbe, ReportsAllWallsOrTheNamedOnesInTheirOrder) {
 TEST(WallsProbe, RefusesAWallThatIsNotThere) {
   WallsProbe probe;
   probe.walls = {"botom"};
-  EXPECT_EQ(
-      error_of(probe, world_with({"top", "bottom"})),
-      "walls: found \"botom\", which is not a wall; the nearest name is \"bottom\"; allowed is one of the walls top, "
-      "bottom");
+  EXPECT_EQ(error_of(probe, world_with({"top", "bottom"})),
+            "walls: found \"botom\", which is not a wall; did you mean \"bottom\"? Allowed is one of the walls top, "
+            "bottom");
   EXPECT_EQ(error_of(probe, world_with({})),
             "walls: found \"botom\", which is not a wall; allowed is none, as the description has no walls");
 }

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "grit/error.hpp"
+#include "grit/toolkit/did_you_mean.hpp"
 #include "grit/world.hpp"
 
 namespace grit {
@@ -27,25 +25,6 @@ inline bool is_snake_case(const std::string& text) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto fits = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '_'; };
   return !text.empty() && letter(text.front()) && std::all_of(text.begin(), text.end(), fits);
-}
-
-/// The name with the fewest single-letter edits (Levenshtein) between it and `name`; empty if there are no names.
-inline std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
-  const auto edits = [name](const std::string& other) {
-    std::vector<std::size_t> row(other.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < name.size(); ++i) {
-      std::size_t diagonal = std::exchange(row[0], i + 1);
-      for (std::size_t j = 0; j < other.size(); ++j) {
-        const std::size_t swapped = diagonal + (name[i] == other[j] ? 0 : 1);
-        diagonal = std::exchange(row[j + 1], std::min({swapped, row[j] + 1, row[j + 1] + 1}));
-      }
-    }
-    return row.back();
-  };
-  const auto best = std::min_element(names.begin(), names.end(),
-                                     [&](const std::string& a, const std::string& b) { return edits(a) < edits(b); });
-  return best == names.end() ? std::string() : *best;
 }
 
 /// "a, b, c".
@@ -68,8 +47,7 @@ inline std::size_t wall_index(const World& world, const std::string& name, const
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   const std::string unknown = '"' + name + "\", which is not a wall";
   if (names.empty()) throw ParameterError({{key, unknown, "none, as the description has no walls"}});
-  throw ParameterError({{key, unknown + "; the nearest name is \"" + nearest_name(name, names) + '"',
-                         "one of the walls " + listed(names)}});
+  throw ParameterError({{key, unknown + did_you_mean(name, names), "one of the walls " + listed(names)}});
 }
 
 }  // namespace grit

@@ -1,0 +1,35 @@
+#include "bodies/group_builder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "bodies/make_bodies.hpp"
+
+namespace grit {
+
+GroupBuilder::GroupBuilder(const SceneDescription& scene, const BodiesDescription& group,
+                           std::shared_ptr<const BodyKind> kind)
+    : kind_(std::move(kind)),
+      density_(scene.materials.at(group.material).density),
+      scaled_below_(group.scaled_below()) {
+  const auto names = material_names(scene);
+  material_ = static_cast<std::uint8_t>(std::ranges::find(names, group.material) - names.begin());
+}
+
+double GroupBuilder::inert(double radius) const { return std::max(radius, 0.5 * scaled_below_); }
+
+void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn,
+                       const Vec3& velocity, const Vec3& spin) const {
+  const double own = mass(radius), size = inert(radius);
+  const ClumpShape* const shape = kind_->clump();
+  if (shape == nullptr) {
+    bodies.add(centre, radius, own, kind_->inertia(size, own), material_, velocity, spin);
+    return;
+  }
+  const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(shape->axes);
+  const Vec3 middle = orientation * (radius * shape->middle);
+  bodies.add_clump(*shape, centre - middle, radius, own, own * size * size * shape->inertia, orientation, material_,
+                   velocity, spin);
+}
+
+}  // namespace grit

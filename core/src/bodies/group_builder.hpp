@@ -1,0 +1,32 @@
+// Makes the bodies of a group: masses, inertia and spheres of clumps.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "bodies/bodies.hpp"
+#include "description/description.hpp"
+#include "grit/body_kind.hpp"
+
+namespace grit {
+
+class GroupBuilder {
+ public:
+  GroupBuilder(const SceneDescription& scene, const BodiesDescription& group, std::shared_ptr<const BodyKind> kind);
+
+  /// Mass of a body [kg]; `radius`: of a clump that of the enclosing sphere [m].
+  double mass(double radius) const { return density_ * kind_->volume(inert(radius)); }
+  void add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
+           const Vec3& spin) const;
+  const ClumpShape* clump() const { return kind_->clump(); }
+
+ private:
+  /// The radius that determines mass and inertia: larger for small bodies with density scaling.
+  double inert(double radius) const;
+
+  std::shared_ptr<const BodyKind> kind_;
+  double density_, scaled_below_;  // kg/m³, m
+  std::uint8_t material_;
+};
+
+}  // namespace grit

@@ -1,0 +1,53 @@
+#include "lint/unmoved_bodies.hpp"
+
+#include <algorithm>
+
+#include "description/wall_ways.hpp"
+#include "lint/all_stages.hpp"
+
+namespace grit {
+namespace {
+
+/// Whether the bodies of the first instant are at rest and touch nothing.
+bool is_still(const World& world) {
+  const auto is_zero = [](const Row& row) { return xyz(row).isZero(0.0); };
+  return world.contacts().empty() && std::ranges::all_of(world.velocities(), is_zero) &&
+         std::ranges::all_of(world.spins(), is_zero);
+}
+
+/// Whether a group has a velocity, or may appear in a stage with a velocity of its own or with overlaps.
+bool may_move(const BodiesDescription& group) {
+  const auto& source = group.source.value();
+  const bool is_placed = std::holds_alternative<ListSource>(source) || std::holds_alternative<FileSource>(source);
+  return !group.velocity.isZero(0.0) || (is_placed && !group.stage.empty());
+}
+
+bool has_walls_at_rest(const SceneDescription& now, const SceneDescription& start) {
+  return std::ranges::all_of(now.walls, [&](const auto& wall) {
+    const auto before = start.walls.find(wall.first);
+    return stands_still(wall.second.motion) && before != start.walls.end() &&
+           before->second.geometry == wall.second.geometry;
+  });
+}
+
+}  // namespace
+
+std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World& world) {
+  const SceneDescription& start = *described.description;
+  const auto grows = [](const StageDescription& stage) { return stage.growth.has_value(); };
+  if (!is_still(world) || std::ranges::any_of(start.stages, grows) ||
+      std::ranges::any_of(start.bodies, [](const auto& group) { return may_move(group.second); }))
+    return std::nullopt;
+  const bool still = always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
+    const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
+    return settings_of(engines).gravity.isZero(0.0) && std::ranges::none_of(engines, is_force) &&
+           now.domain.strain_rate.isZero(0.0) && has_walls_at_rest(now, start);
+  });
+  if (!still) return std::nullopt;
+  return UnusedSetting{
+      "/engines",
+      "nothing moves the bodies: they are at rest without contacts, no wall moves, and there is neither "
+      "gravity nor another force; add \"gravity\": {\"type\": \"gravity\"}, a velocity or a moving wall"};
+}
+
+}  // namespace grit
