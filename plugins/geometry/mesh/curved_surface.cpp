@@ -76,9 +76,9 @@ VectorXd shares(const Relief& relief, const VectorXd& overlap) {
 /// Linked facets.
 class Patch {
  public:
-  Patch(std::span<const CurveFacet> facets, std::span<const CurveLink> links,
-        const std::vector<std::uint32_t>& members);
-  void add_contacts_that_count(double smooth_cosine, std::vector<CurveContact>& found) const;
+  Patch(std::span<const CurveFacet> facets, std::span<const CurveLink> links, const std::vector<std::uint32_t>& members,
+        double smooth_cosine);
+  void add_contacts_that_count(std::vector<CurveContact>& found) const;
 
  private:
   struct Neighbour {
@@ -86,21 +86,36 @@ class Patch {
     double overlap;
   };
   Index size() const { return static_cast<Index>(facets_.size()); }
-  double cosine(Index i, Index j) const { return facets_[i].away.dot(facets_[j].away); }
   CurveContact contact(Index i) const { return {facets_[i].away, facets_[i].overlap, number_[i]}; }
+  bool on_one_side(Index i, Index j) const { return facets_[i].away.dot(facets_[j].away) > smooth_cosine_; }
+  Index first_minimum(double least) const;
   VectorXd reliefs(Index from, double squared_sine) const;
   VectorXd links(Index from) const;
+  bool relieves_all(Index near) const;
+  double squared_sine_of_span() const;
+  std::vector<Vec3> far_sides(Index& near) const;
 
   std::vector<CurveFacet> facets_;
   std::vector<std::uint32_t> number_;
   std::vector<std::size_t> first_neighbour_;
   std::vector<Neighbour> neighbours_;
+  VectorXd overlap_;
+  double deepest_, little_, smooth_cosine_;
 };
 
 Patch::Patch(std::span<const CurveFacet> facets, std::span<const CurveLink> links,
-             const std::vector<std::uint32_t>& members)
-    : number_(members), first_neighbour_(members.size() + 1, 0), neighbours_(2 * links.size()) {
-  for (const std::uint32_t member : members) facets_.push_back(facets[member]);
+             const std::vector<std::uint32_t>& members, double smooth_cosine)
+    : number_(members),
+      first_neighbour_(members.size() + 1, 0),
+      neighbours_(2 * links.size()),
+      overlap_(static_cast<Index>(members.size())),
+      smooth_cosine_(smooth_cosine) {
+  for (const std::uint32_t member : members) {
+    overlap_[size()] = facets[member].overlap;
+    facets_.push_back(facets[member]);
+  }
+  deepest_ = overlap_.maxCoeff(), little_ = negligible * deepest_;
+
   const auto place = [&](std::uint32_t member) {
     return static_cast<std::size_t>(std::ranges::lower_bound(members, member) - members.begin());
   };
@@ -113,6 +128,16 @@ Patch::Patch(std::span<const CurveFacet> facets, std::span<const CurveLink> link
   }
 }
 
+/// The first local minimum of distance with an overlap of at least `least`; the deepest one if there is none.
+Index Patch::first_minimum(double least) const {
+  const auto deep = [&](const CurveFacet& one) { return one.minimum && one.overlap >= least; };
+  const auto first = std::ranges::find_if(facets_, deep);
+  if (first != facets_.end()) return first - facets_.begin();
+  return std::ranges::max_element(facets_, {},
+                                  [](const CurveFacet& one) { return std::pair(one.minimum, one.overlap); }) -
+         facets_.begin();
+}
+
 VectorXd Patch::reliefs(Index from, double squared_sine) const {
   VectorXd reliefs(size());
   for (Index i = 0; i < size(); ++i) reliefs[i] = relief(facets_[i].away, facets_[from].away, squared_sine);
@@ -122,76 +147,75 @@ VectorXd Patch::reliefs(Index from, double squared_sine) const {
 /// How well a facet is linked to each, 0 … 1.
 VectorXd Patch::links(Index from) const {
   VectorXd least = VectorXd::Zero(size());
-  least[from] = facets_[from].overlap;
+  least[from] = overlap_[from];
   std::vector<std::size_t> reached{static_cast<std::size_t>(from)};
   for (std::size_t k = 0; k < reached.size(); ++k)
     for (std::size_t n = first_neighbour_[reached[k]]; n < first_neighbour_[reached[k] + 1]; ++n)
       if (const auto [next, overlap] = neighbours_[n]; least[next] == 0)
         least[next] = std::min(least[reached[k]], overlap), reached.push_back(next);
   for (Index i = 0; i < size(); ++i)
-    least[i] = std::min(1.0, least[i] / (valley_keeps * std::min(facets_[i].overlap, facets_[from].overlap)));
+    least[i] = std::min(1.0, least[i] / (valley_keeps * std::min(overlap_[i], overlap_[from])));
   return least;
 }
 
-void Patch::add_contacts_that_count(double smooth_cosine, std::vector<CurveContact>& found) const {
-  VectorXd overlap(size());
-  for (Index i = 0; i < size(); ++i) overlap[i] = facets_[i].overlap;
-  const double deepest = overlap.maxCoeff(), little = negligible * deepest;
-  const auto first_minimum = [&](double least) {
-    const auto deep = [&](const CurveFacet& one) { return one.minimum && one.overlap >= least; };
-    const auto first = std::ranges::find_if(facets_, deep);
-    return first == facets_.end() ? Index{0} : first - facets_.begin();
-  };
-  Index near = first_minimum(deepest - little);
-  const auto on_near_side = [&](Index i) { return cosine(i, near) > smooth_cosine; };
-  const VectorXd left = overlap - overlap[near] * reliefs(near, least_squared_sine).cwiseProduct(links(near));
-  bool relieved = true;
-  for (Index i = 0; i < size() && relieved; ++i) relieved = left[i] <= little || on_near_side(i);
-  if (relieved) {
-    found.push_back(contact(near));
-    return;
-  }
+/// Whether a contact relieves all that are not on its side.
+bool Patch::relieves_all(Index near) const {
+  const VectorXd left = overlap_ - overlap_[near] * reliefs(near, least_squared_sine).cwiseProduct(links(near));
+  for (Index i = 0; i < size(); ++i)
+    if (left[i] > little_ && !on_one_side(i, near)) return false;
+  return true;
+}
 
-  // β: with equal overlaps and reliefs for 90°, the sum of shares is 2 / (1 + cos² β).
-  const VectorXd weight = (overlap / (spans * deepest)).cwiseMin(1.0);
+/// sin² β. With equal overlaps and reliefs for 90° the sum of shares is 2 / (1 + cos² β).
+double Patch::squared_sine_of_span() const {
+  const VectorXd weight = (overlap_ / (spans * deepest_)).cwiseMin(1.0);
   const double sum = shares([&](Index i) { return reliefs(i, 1); }, weight).sum();
-  const double squared_sine = 1 - std::clamp(2 / sum - 1, 0.0, 1 - least_squared_sine);
-  VectorXd share =
-      shares([&](Index i) -> VectorXd { return reliefs(i, squared_sine).cwiseProduct(links(i)); }, overlap);
+  return 1 - std::clamp(2 / sum - 1, 0.0, 1 - least_squared_sine);
+}
 
+/// Overlap times direction of each far side, such that the sum with the contact `near`, which may be replaced, is that
+/// of all shares.
+std::vector<Vec3> Patch::far_sides(Index& near) const {
+  const double squared_sine = squared_sine_of_span();
+  VectorXd share =
+      shares([&](Index i) -> VectorXd { return reliefs(i, squared_sine).cwiseProduct(links(i)); }, overlap_);
   const auto take = [&](auto belongs) {
     Vec3 side = Vec3::Zero();
     for (Index i = 0; i < size(); ++i)
       if (share[i] > 0 && belongs(i)) side += share[i] * facets_[i].away, share[i] = 0;
     return side;
   };
-  const Vec3 near_side = take(on_near_side);
-  std::vector<Vec3> far_sides;
-  double far = 0;
-  for (Index head = 0; share.maxCoeff(&head) > little;) {
+  const Vec3 near_side = take([&](Index i) { return on_one_side(i, near); });
+  const double far = share.sum();
+  std::vector<Vec3> sides;
+  for (Index head = 0; share.maxCoeff(&head) > little_;) {
     const VectorXd link = links(head);
-    far_sides.push_back(take([&](Index i) { return link[i] > one_side; }));
-    far = std::max(far, far_sides.back().norm());
+    sides.push_back(take([&](Index i) { return link[i] > one_side; }));
   }
-  if (!far_sides.empty()) {
-    const double balance = std::min(1.0, far / (balances * deepest));
-    if (balance == 1) near = first_minimum(as_good_as_deepest * deepest);
-    far_sides.front() += balance * (near_side - overlap[near] * facets_[near].away);
-  }
+  if (sides.empty()) return sides;
+  const double balance = std::min(1.0, far / (balances * deepest_));
+  if (balance == 1) near = first_minimum(as_good_as_deepest * deepest_);
+  sides.front() += balance * (near_side - overlap_[near] * facets_[near].away);
+  return sides;
+}
 
+void Patch::add_contacts_that_count(std::vector<CurveContact>& found) const {
+  Index near = first_minimum(deepest_ - little_);
+  std::vector<Vec3> sides;
+  if (!relieves_all(near)) sides = far_sides(near);
+  found.push_back(contact(near));
   std::vector<bool> used(facets_.size(), false);
   used[near] = true;
-  found.push_back(contact(near));
-  for (const Vec3& side : far_sides) {
-    const double length = side.norm();
-    if (!(length > little)) continue;
-    const Vec3 away = side / length;
-    std::size_t of = 0;
+  for (const Vec3& side : sides) {
+    const double overlap = side.norm();
+    if (!(overlap > little_)) continue;
+    const Vec3 away = side / overlap;
+    std::size_t facet = 0;
     double closest = -2;
-    for (std::size_t i = 0; i < used.size() && closest <= smooth_cosine; ++i)
-      if (const double cosine = away.dot(facets_[i].away); !used[i] && cosine > closest) closest = cosine, of = i;
-    used[of] = true;
-    found.push_back({away, length, number_[of]});
+    for (std::size_t i = 0; i < used.size() && closest <= smooth_cosine_; ++i)
+      if (const double cosine = away.dot(facets_[i].away); !used[i] && cosine > closest) closest = cosine, facet = i;
+    used[facet] = true;
+    found.push_back({away, overlap, number_[facet]});
   }
 }
 
@@ -208,8 +232,10 @@ std::vector<CurveContact> contacts_that_count(std::span<const CurveFacet> facets
   for (std::uint32_t i = 0; i < facets.size(); ++i) members[groups.root(i)].push_back(i);
   for (const CurveLink& link : links) inner[groups.root(link.a)].push_back(link);
   std::vector<CurveContact> found;
+  const auto minimum = [&](std::uint32_t member) { return facets[member].minimum; };
   for (std::size_t root = 0; root < facets.size(); ++root)
-    if (!members[root].empty()) Patch(facets, inner[root], members[root]).add_contacts_that_count(smooth_cosine, found);
+    if (std::ranges::any_of(members[root], minimum))
+      Patch(facets, inner[root], members[root], smooth_cosine).add_contacts_that_count(found);
   return found;
 }
 

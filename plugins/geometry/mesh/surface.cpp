@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <tuple>
 
@@ -259,16 +260,21 @@ void Surface::check_volumes(bool inside) {
   }
 }
 
-/// Curved surfaces: regions of facets, and of edges and corners within one.
+/// Curved surfaces: regions of facets, and of edges and corners within one. Edges between the same two regions form a
+/// curve.
 void Surface::find_regions() {
   const auto group = groups([&](const Edge& edge, const Facet& a, const Facet& b) {
     return (edge.turns ? -1 : 1) * a.normal.dot(b.normal) > smooth_cosine_;
   });
   region_.assign(group.begin(), group.end());
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> curves;
   for (Edge& edge : edges_) {
-    edge.region = region_[sides_[edge.first_side].facet];
-    for (std::uint32_t s = edge.first_side; s < edge.end_side; ++s)
-      if (region_[sides_[s].facet] != edge.region) edge.region = -1;
+    std::set<std::int32_t> regions;
+    for (std::uint32_t s = edge.first_side; s < edge.end_side; ++s) regions.insert(region_[sides_[s].facet]);
+    const auto next = static_cast<std::int32_t>(facets_.size() + curves.size());
+    if (regions.size() == 1) edge.region = *regions.begin();
+    if (regions.size() == 2)
+      edge.region = curves.try_emplace({*regions.begin(), *regions.rbegin()}, next).first->second;
   }
 }
 
@@ -295,6 +301,13 @@ void Surface::gather_corners() {
   for (std::uint32_t e = 0; e < edges_.size(); ++e)
     for (Vertex* vertex : {&vertices_[edges_[e].from], &vertices_[edges_[e].to]})
       vertex_edges_[vertex->end_edge++] = e, vertex->rim = vertex->rim || edges_[e].rim;
+  for (Vertex& vertex : vertices_) {
+    if (vertex.region != -1) continue;
+    std::set<std::int32_t> curves;
+    for (std::uint32_t e = vertex.first_edge; e < vertex.end_edge; ++e)
+      if (const std::int32_t region = edges_[vertex_edges_[e]].region; !is_surface(region)) curves.insert(region);
+    if (curves.size() == 1) vertex.region = *curves.begin();
+  }
 }
 
 /// Rims that lie on other facets are defects: corners were not merged, or a facet ends on the middle of another.
@@ -500,7 +513,7 @@ void Surface::keep_those_that_count(const Vec3& centre, double radius, const std
   for (auto begin = found.begin(), end = begin; begin != found.end(); begin = end) {
     const auto elsewhere = [&](const Nearest& other) { return other.region != begin->region; };
     end = begin->region < 0 ? begin + 1 : std::find_if(begin, found.end(), elsewhere);
-    const std::span minima(begin, end);
+    const std::span<Nearest> minima(begin, end);
     if (closest_relieves_all(minima, radius)) *kept++ = *begin;
     else add_contacts_that_count(centre, radius, facets, minima, more);
   }
@@ -521,36 +534,35 @@ bool Surface::closest_relieves_all(std::span<const Nearest> minima, double radiu
   return true;
 }
 
-/// Adds the contacts that count with the curved surface that has these minima.
+/// Adds the contacts that count with the curved surface, or curve, that has these minima.
 void Surface::add_contacts_that_count(const Vec3& centre, double radius, const std::vector<std::uint32_t>& facets,
-                                      std::span<const Nearest> minima, std::vector<Nearest>& found) const {
-  constexpr std::uint32_t none = ~0u;
+                                      std::span<Nearest> minima, std::vector<Nearest>& found) const {
   const std::int32_t region = minima.front().region;
   std::vector<CurveFacet> touching;
-  std::vector<std::uint32_t> numbers, minimum;  // of these facets
+  std::vector<std::uint32_t> numbers, features;  // of these facets, in ascending order
+  const auto add = [&](std::uint32_t facet, std::uint32_t feature, const CurveFacet& one) {
+    numbers.push_back(facet), features.push_back(feature), touching.push_back(one);
+  };
+  std::ranges::sort(minima, {}, &Nearest::feature);
+  auto minimum = minima.begin();
   for (const std::uint32_t f : facets) {
-    if (region_[f] != region) continue;
-    const auto from = from_rim(f, centre);
-    const double height = this->height(facets_[f], centre);
-    if (!from && !two_sided_ && height < 0) continue;
-    const double distance = from ? from->norm() : std::abs(height);
-    if (!(distance < radius)) continue;
-    const Vec3 away =
-        from && distance > 0 ? Vec3(*from / distance) : Vec3(std::copysign(1, height) * facets_[f].normal);
-    touching.push_back({away, radius - distance, false});
-    numbers.push_back(f), minimum.push_back(none);
+    const bool owner = minimum != minima.end() && minimum->feature / features_per_facet == f;
+    for (; minimum != minima.end() && minimum->feature / features_per_facet == f; ++minimum)
+      add(f, minimum->feature, {minimum->away, radius - minimum->distance, true});
+    if (owner || region_[f] != region) continue;
+    const auto rim = closest_on_rim(f, centre);
+    const double height = this->height(facets_[f], centre), distance = rim ? rim->from.norm() : std::abs(height);
+    const bool behind = !rim && !two_sided_ && height < 0, elsewhere = rim && rim->region != region;
+    if (behind || elsewhere || !(distance > 0 && distance < radius)) continue;
+    const Vec3 from = rim ? rim->from : height * facets_[f].normal;
+    add(f, features_per_facet * f, {from / distance, radius - distance, false});
   }
-  for (std::uint32_t m = 0; m < minima.size(); ++m)
-    if (const auto i = place(numbers, minima[m].feature / features_per_facet))
-      minimum[*i] = m, touching[*i] = {minima[m].away, radius - minima[m].distance, true};
-  for (const CurveContact& one : contacts_that_count(touching, links(touching, numbers), smooth_cosine_)) {
-    const std::uint32_t m = minimum[one.facet];
+  for (const CurveContact& one : contacts_that_count(touching, links(touching, numbers), smooth_cosine_))
     found.push_back({.away = one.away,
                      .distance = radius - one.overlap,
                      .behind = false,
-                     .feature = m == none ? features_per_facet * numbers[one.facet] : minima[m].feature,
+                     .feature = features[one.facet],
                      .region = region});
-  }
 }
 
 /// Paths lead over facets that share an edge, and between local minima whose normals differ by less than the feature
@@ -592,19 +604,24 @@ bool Surface::near(const Vec3& centre, double reach) const {
 }
 
 double Surface::distance(std::uint32_t number, const Vec3& centre) const {
-  const auto from = from_rim(number, centre);
-  return from ? from->norm() : std::abs(height(facets_[number], centre));
+  const auto rim = closest_on_rim(number, centre);
+  return rim ? rim->from.norm() : std::abs(height(facets_[number], centre));
 }
 
-/// From the closest point of the edges of a facet to a centre; nothing if the centre is above the facet.
-std::optional<Vec3> Surface::from_rim(std::uint32_t number, const Vec3& centre) const {
-  std::optional<Vec3> closest;
+/// The closest point on the edges of a facet; nothing if the centre is above the facet.
+std::optional<Surface::OnRim> Surface::closest_on_rim(std::uint32_t number, const Vec3& centre) const {
+  std::optional<OnRim> closest;
+  double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (inside_edge({number, i}, centre) > 0) continue;
     const Edge& edge = edges_[facets_[number].edges[i]];
     const Vec3 start = centre - vertices_[edge.from].position;
-    const Vec3 from = start - std::clamp(edge.along.dot(start), 0.0, edge.length) * edge.along;
-    if (!closest || from.squaredNorm() < closest->squaredNorm()) closest = from;
+    const double along = edge.along.dot(start);
+    const Vec3 from = start - std::clamp(along, 0.0, edge.length) * edge.along;
+    if (from.squaredNorm() >= least) continue;
+    least = from.squaredNorm();
+    const bool inner = along > 0 && along < edge.length;
+    closest = {from, inner ? edge.region : vertices_[along > 0 ? edge.to : edge.from].region};
   }
   return closest;
 }

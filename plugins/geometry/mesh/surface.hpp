@@ -37,7 +37,7 @@ class Surface {
     double distance;  ///< m; below 0 behind
     bool behind;
     std::uint32_t feature;
-    std::int32_t region;  ///< curved surface it belongs to; −1 if several
+    std::int32_t region;  ///< curved surface or curve it belongs to; −1: none
   };
 
   Surface(const Stl& stl, const SurfaceOptions& options);
@@ -105,10 +105,18 @@ class Surface {
   std::vector<std::uint32_t> groups(Joins joins) const;
   std::vector<std::size_t> inverted() const;
   const Vec3& corner(const Facet& facet, std::size_t i) const { return vertices_[facet.corners[i]].position; }
+  /// Whether a region is one of facets; not a curve, nor none.
+  bool is_surface(std::int32_t region) const {
+    return region >= 0 && region < static_cast<std::int32_t>(facets_.size());
+  }
   double inside_edge(const Side& side, const Vec3& centre) const;
   double height(const Facet& facet, const Vec3& centre) const { return facet.normal.dot(centre - corner(facet, 0)); }
   double distance(std::uint32_t facet, const Vec3& centre) const;
-  std::optional<Vec3> from_rim(std::uint32_t facet, const Vec3& centre) const;
+  struct OnRim {
+    Vec3 from;  // to the centre
+    std::int32_t region;
+  };
+  std::optional<OnRim> closest_on_rim(std::uint32_t facet, const Vec3& centre) const;
   void closest_of(std::uint32_t number, const Vec3& centre, double radius, std::vector<Nearest>& found) const;
   bool touches_edge(const Edge& edge, const Vec3& centre, double slack) const;
   bool touches_vertex(const Vertex& vertex, const Vec3& centre, double slack) const;
@@ -117,7 +125,7 @@ class Surface {
                              std::vector<Nearest>& found) const;
   bool closest_relieves_all(std::span<const Nearest> minima, double radius) const;
   void add_contacts_that_count(const Vec3& centre, double radius, const std::vector<std::uint32_t>& facets,
-                               std::span<const Nearest> minima, std::vector<Nearest>& found) const;
+                               std::span<Nearest> minima, std::vector<Nearest>& found) const;
   std::vector<CurveLink> links(std::span<const CurveFacet> touching, const std::vector<std::uint32_t>& numbers) const;
 
   static constexpr std::uint32_t features_per_facet = 7;
