@@ -109,6 +109,23 @@ Description fast() {
   return d;
 }
 
+/// Clumps that enter during the run, faster than there is room for them.
+Description pouring() {
+  Description d = description("linear-rolling", sand, {});
+  make_clumps(d, boomerang());
+  d["bodies"]["grains"]["source"] = {{"type", "stream"},
+                                     {"number_rate", 20000},
+                                     {"region", {{"type", "disc"}, {"centre", {0, 0, 8e-3}}, {"radius", 6e-3}}},
+                                     {"sizes", {{"type", "uniform"}, {"smallest", 1e-3}, {"largest", 2e-3}}}};
+  d["bodies"]["grains"]["velocity"] = {0, 0, -0.3};
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["stages"] = {stage("pour", {{"type", "time"}, {"value", 0.02}}),
+                 stage("go on", {{"type", "time"}, {"value", 5e-3}})};
+  d["probes"]["energy"] = {{"type", "energy"}, {"every_time", 1e-3}};
+  return d;
+}
+
 /// Clumps in a periodic cell fall on a floor; others follow.
 Description clumps() {
   Description d = description("linear-rolling", sand, jumble({6, 6, 5}, 1.2 * spacing, 0.05, 9));
@@ -259,8 +276,8 @@ TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Of, Resume,
                          testing::Values(Case{"cell", cell}, Case{"servo", [] { return servo(); }},
                                          Case{"braking_servo", braking}, Case{"stiffening", stiffening},
-                                         Case{"loose_walls", loose}, Case{"fast", fast}, Case{"clumps", clumps},
-                                         Case{"silo", silo}, Case{"every_probe", every_probe}),
+                                         Case{"loose_walls", loose}, Case{"fast", fast}, Case{"pouring", pouring},
+                                         Case{"clumps", clumps}, Case{"silo", silo}, Case{"every_probe", every_probe}),
                          [](const auto& info) { return info.param.name; });
 
 /// At the steps around a search, where lists are new or expired.

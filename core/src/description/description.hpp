@@ -318,7 +318,7 @@ struct PressureCondition {
 };
 struct DischargedCondition {
   static constexpr const char* type_name = "discharged";
-  static constexpr const char* type_doc = "this fraction of the mass has left through open sides";
+  static constexpr const char* type_doc = "this fraction of the mass has been discharged through open sides";
   double fraction = 1;
   void declare(Parameters& p);
 };

@@ -149,6 +149,15 @@ void Kernel::count_in(std::size_t first, std::size_t first_clump) {
   passes_.resize(state_.bodies.count());
 }
 
+void Kernel::append(const Bodies& arriving) {
+  const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
+  state_.bodies.append(arriving);
+  count_in(first, first_clump);
+  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
+  stepper_.bodies_changed();
+  state_.lists.request_rebuild();
+}
+
 void Kernel::admit(const SceneDescription& scene, const Components& components) {
   Newcomers arriving;
   try {
@@ -162,16 +171,11 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
   match_velocities(arriving.bodies, state_);
 
   const double settings_less_stored = balance_.settings_less_stored();  // bodies may also leave in a neighbour search
-  const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
   const Bodies bodies_before = state_.bodies;
   const PopulationStatistics statistics_before = state_.statistics;
   for (auto& group : arriving.groups) group.first_id += state_.bodies.ids_given;
   stepper_.expect(std::move(arriving.groups));
-  state_.bodies.append(arriving.bodies);
-  count_in(first, first_clump);
-  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
-  stepper_.bodies_changed();
-  state_.lists.request_rebuild();
+  append(arriving.bodies);
   try {
     stepper_.find_forces();
   } catch (const NumericsError&) {
@@ -194,12 +198,7 @@ void Kernel::let_in() {
   Bodies entering = inflow_.enter(state_, view_);
   if (entering.count() == 0) return;
   match_velocities(entering, state_);
-  const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
-  state_.bodies.append(entering);
-  count_in(first, first_clump);
-  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
-  stepper_.bodies_changed();
-  state_.lists.request_rebuild();
+  append(entering);
   view_.invalidate();
   const EnteredEnergy energy = energy_of(entering, state_);
   balance_.add_settings(energy.kinetic);

@@ -62,6 +62,8 @@ class Kernel {
   void change_strain_rate(const Vec3& rate);
   /// Adds the bodies of streams that enter now.
   void let_in();
+  /// Appends new bodies; the next forces need a neighbour search.
+  void append(const Bodies& arriving);
   void admit(const SceneDescription& scene, const Components& components);
   /// Adds bodies from this one on to the statistics, and allocates their state.
   void count_in(std::size_t first, std::size_t first_clump);

@@ -53,7 +53,8 @@ void TimeStepControl::set(State& state, const World& world, DisplacementBounds& 
   // Without bodies the step is that of the groups that will appear.
   const Demand contacts =
       state.bodies.count() > 0 ? critical_.find(near_contacts(state), passes.team()) : state.settings.of_groups;
-  bounds.foresee(state, stable_step(contacts, state), passes);
+  const double stable = stable_step(contacts, state);
+  bounds.foresee(state, std::isfinite(stable) ? stable : state.time.dt, passes);
   choose(contacts, state, bounds);
   if (state.settings.time_step.value) bounds.check_foreseen(state, state.time.dt, passes);
 }

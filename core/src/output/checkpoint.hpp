@@ -22,7 +22,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
 /// compared by name. Empty if the descriptions are of the same run. /output/checkpoint_every may differ.
 std::string differences(const Description& now, const Description& then);
 /// The same, but empty if a run of one can resume from a checkpoint of the other: /guards/travel and /guards/energy may
-/// differ too, as they only decide where a run stops. /guards/overlap may not, as it also affects the time step of
+/// differ too, as they only decide where a run stops, unless a travel guard above its default sets the time step.
+/// /guards/overlap may not, as it also affects the time step of
 /// stiffening springs.
 std::string differences_on_the_way(const Description& now, const Description& then);
 /// What to do if stages were added, removed or moved: a line to append to differences(); empty if they were not.
