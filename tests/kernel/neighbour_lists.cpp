@@ -68,7 +68,7 @@ TEST_F(Lists, AreDueOnceStrainHasUsedUpTheSkins) {
 }
 
 TEST_F(Lists, AShortestPeriodIsTwiceTheReach) {
-  EXPECT_DOUBLE_EQ(NeighbourLists::shortest_period(state_.bodies, state_.statistics), 4 * (radius + least_skin));
+  EXPECT_DOUBLE_EQ(NeighbourLists::shortest_period(state_.bodies, state_.statistics, {}), 4 * (radius + least_skin));
 }
 
 }  // namespace

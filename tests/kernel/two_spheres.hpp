@@ -53,7 +53,7 @@ inline void set_velocity(State& state, std::size_t body, const Vec3& v) {
 /// Updates neighbour lists and contacts.
 inline void search(State& state, Passes& passes) {
   passes.resize(state.bodies.count());
-  state.lists.rebuild(state.bodies, state.cell, state.statistics, state.time.dt, 0, passes);
+  state.lists.rebuild(state.bodies, state.cell, state.statistics, state.reaches(), state.time.dt, 0, passes);
   state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, {},
                       passes.team());
   state.wall_contacts.rebuild(state.bodies, state.surfaces, state.lists.skins(), state.settings.fields, {});

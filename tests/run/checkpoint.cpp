@@ -84,6 +84,13 @@ Description stiffening() {
   d["materials"]["grain"] = {{"density", 2600}, {"young_modulus", 1e7}, {"poisson_ratio", 0.2}, {"restitution", 0.5}};
   return d;
 }
+/// Grains that attract each other and the walls, in growing strength.
+Description cohesive() {
+  Description d = servo("linear-cohesive");
+  d["materials"]["grain"]["tensile_strength"] = 2e4;
+  d["stages"][1]["change"]["materials"]["grain"]["tensile_strength"] = 4e4;
+  return d;
+}
 /// A free lid on the grains, a rotating side and one that oscillates at increasing frequency.
 Description loose() {
   Description d = box("linear-frictional", {7, 6, 6}, 8);
@@ -276,8 +283,9 @@ TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Of, Resume,
                          testing::Values(Case{"cell", cell}, Case{"servo", [] { return servo(); }},
                                          Case{"braking_servo", braking}, Case{"stiffening", stiffening},
-                                         Case{"loose_walls", loose}, Case{"fast", fast}, Case{"pouring", pouring},
-                                         Case{"clumps", clumps}, Case{"silo", silo}, Case{"every_probe", every_probe}),
+                                         Case{"cohesive", cohesive}, Case{"loose_walls", loose}, Case{"fast", fast},
+                                         Case{"pouring", pouring}, Case{"clumps", clumps}, Case{"silo", silo},
+                                         Case{"every_probe", every_probe}),
                          [](const auto& info) { return info.param.name; });
 
 /// At the steps around a search, where lists are new or expired.

@@ -57,7 +57,7 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
       const Bodies bodies = scattered(700, low, high, 0.1, random);
       NeighbourSearch search;
       Skins skins;
-      skins.reset(skin, 0);
+      skins.reset(skin, 0, 0);
       search.build(bodies, cell, skins);
       std::vector<Candidate> found;
       for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
@@ -84,7 +84,7 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
 void expect_no_missed_pair(const Description& d, std::size_t steps) {
   Trial t(d);
   Skins none;
-  none.reset(std::vector(chunks_of(t.world().positions().size()), 0.0), 0);
+  none.reset(std::vector(chunks_of(t.world().positions().size()), 0.0), 0, 0);
   for (std::size_t i = 0; i < steps; ++i, t.step()) {
     std::set<Pair> touching;
     const World& world = t.world();

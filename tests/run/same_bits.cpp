@@ -48,6 +48,13 @@ Description stiffening() {
   return d;
 }
 
+/// Bodies that attract each other and the walls, beyond contact.
+Description cohesive(Description d, double strength) {
+  d["contacts"]["type"] = "linear-cohesive";
+  d["materials"]["grain"].update({{"tensile_strength", strength}, {"rolling_stiffness", 0.5}, {"rolling_limit", 0.2}});
+  return d;
+}
+
 void expect_same_bits(const Description& d) {
   Trial asked(d, 1);
   std::deque<Trial> others;
@@ -86,6 +93,8 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
   expect_energies_change_nothing(boxed());
   expect_energies_change_nothing(periodic());
   expect_energies_change_nothing(stiffening());
+  expect_energies_change_nothing(cohesive(boxed(), 2e4));
+  expect_energies_change_nothing(cohesive(periodic(), 2e4));
   Description held = periodic();
   held["engines"]["hold"] = {{"type", "hold"}}, held["guards"]["overlap"] = 0.9;
   expect_energies_change_nothing(held);
@@ -94,6 +103,10 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
 TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
 TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }
+TEST(SameBits, OfBodiesThatAttract) {
+  expect_same_bits(cohesive(boxed(), 2e4));
+  expect_same_bits(cohesive(periodic(), 2e4));
+}
 
 TEST(SameBits, OfOneThatIsPressedAndShortensTheTimeStep) {
   Description d =

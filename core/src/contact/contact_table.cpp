@@ -102,7 +102,7 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   // Padding pairs a body with the dummy body far away.
   const auto pad = static_cast<std::uint32_t>(count);
   make_room(a_, slots), make_room(b_, slots), make_room(near_, slots), make_room(image_, periodic ? slots : 0);
-  touching_.assign(blocks, 0), asleep_until_.resize(blocks);
+  touching_.assign(blocks, 0), acting_.assign(search.reach() > 0 ? blocks : 0, 0), asleep_until_.resize(blocks);
   team.each(chunk_count, [&](std::size_t chunk) {
     const auto pad_to = [&](std::size_t slot, std::uint32_t block) {
       for (; slot < std::size_t{block} * block_size; ++slot) {
@@ -248,6 +248,7 @@ PairBatch ContactTable::batch(Blocks blocks, const Instant& at, std::uint32_t la
           .closing = 0,
           .state = nullptr,
           .touching = nullptr,
+          .acting = nullptr,
           .asleep_until = nullptr,
           .row = nullptr,
           .sum = nullptr,
@@ -265,6 +266,7 @@ double ContactTable::evaluate(std::size_t chunk, const Instant& at, BodySum* sum
     pairs.closing = closing;
     pairs.state = state_.empty() ? nullptr : state_.front().lane;
     pairs.touching = touching_.data();
+    pairs.acting = acting_.empty() ? nullptr : acting_.data();
     pairs.asleep_until = asleep_until_.data();
     pairs.sum = sum;
     pairs.losses = losses;
@@ -314,11 +316,12 @@ std::vector<double> ContactTable::state(std::size_t c) const {
 
 std::size_t ContactTable::bytes() const {
   const auto bytes = [](const auto&... arrays) { return (... + (arrays.capacity() * sizeof(*arrays.data()))); };
-  return bytes(a_, b_, image_, touching_, asleep_until_, row_, inbox_, near_) + state_.size() * sizeof(StateLine);
+  return bytes(a_, b_, image_, touching_, acting_, asleep_until_, row_, inbox_, near_) +
+         state_.size() * sizeof(StateLine);
 }
 
 void ContactTable::serialize(Archive& archive) {
-  archive(bodies_, chunks_, a_, b_, image_, touching_, asleep_until_, state_, first_cross_, near_);
+  archive(bodies_, chunks_, a_, b_, image_, touching_, acting_, asleep_until_, state_, first_cross_, near_);
   if (!archive.restoring()) return;
   // Rows of pairs in contact are written before they are read.
   row_.assign(a_.size() - first_cross_, {});
@@ -328,7 +331,8 @@ void ContactTable::serialize(Archive& archive) {
 
 std::size_t ContactTable::touching_count() const {
   std::size_t count = 0;
-  for (const std::uint8_t mask : touching_) count += static_cast<std::size_t>(std::popcount(mask));
+  for (const std::uint8_t mask : acting_.empty() ? touching_ : acting_)
+    count += static_cast<std::size_t>(std::popcount(mask));
   return count;
 }
 

@@ -81,12 +81,12 @@ class ContactTable {
       });
   }
   /// Calls use(candidate, distance) for pairs of a chunk's bodies, with each other and with others, whose surfaces
-  /// touch or are nearer than `near` [m].
+  /// touch or are nearer than `near` [m] plus the reach of the law.
   template <class Use>
   void each_near(std::size_t chunk, const Bodies& bodies, const ImageShift* shifts, const Skins& skins, double near,
                  Use use) const {
     const auto take = [&](std::size_t c) {
-      const double reach = bodies.position[a_[c]].w + bodies.position[b_[c]].w + near;
+      const double reach = bodies.position[a_[c]].w + bodies.position[b_[c]].w + (near + skins.reach());
       const double square = branch(c, bodies, shifts).squaredNorm();
       if (square < reach * reach) use(c, std::sqrt(square));
     };
@@ -125,6 +125,7 @@ class ContactTable {
   std::uint8_t image(std::size_t c) const { return image_.empty() ? 0 : image_[c]; }
   /// Contact history of candidate c.
   std::vector<double> state(std::size_t c) const;
+  /// Number of pairs that overlap or have a force.
   std::size_t touching_count() const;
   /// Memory [bytes].
   std::size_t bytes() const;
@@ -200,7 +201,8 @@ class ContactTable {
   LargeArray<std::uint32_t> a_, b_;
   LargeArray<std::uint8_t> image_;  // empty without periodic boundaries
   std::vector<std::uint8_t> touching_;
-  std::vector<float> asleep_until_;  // of blocks without contacts: approach before there can be one [m]
+  std::vector<std::uint8_t> acting_;  // with a law that has a reach: pairs that overlap or have a force; else empty
+  std::vector<float> asleep_until_;   // of blocks without contacts: approach before there can be one [m]
   std::vector<StateField> fields_;
   LargeArray<StateLine> state_;  // [block][field]
   std::size_t first_cross_ = 0;  // first candidate across chunks; it has the first row

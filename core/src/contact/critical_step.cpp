@@ -227,9 +227,10 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     ask(a, normal), ask(b, -normal);
     own.near.push_back(static_cast<std::uint32_t>(c));
   });
-  at.walls.each_near(chunk, bodies, at.surfaces, at.near, [&](const SurfaceContact& contact, const WallSurface& wall) {
+  const double near = at.near + at.skins.reach();
+  at.walls.each_near(chunk, bodies, at.surfaces, near, [&](const SurfaceContact& contact, const WallSurface& wall) {
     const std::uint32_t a = contact.body;
-    PairSize size = size_of(bodies, a, a, std::max(contact.overlap - at.near, 0.0));
+    PairSize size = size_of(bodies, a, a, std::max(contact.overlap - near, 0.0));
     size.inverse_mass_b = 0, size.wall = true;
     const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
     springs[a - first] += demand(k, bodies, a, contact.normal);

@@ -17,8 +17,8 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
 /// with Q the sum over a body's contacts of max(k_n/m, k_s (1/m + r²/I) + k_r/I, k_t/I): the element bound of Irons and
 /// Treharne, doi 10.1002/eqe.4290010107; Gershgorin's theorem gives the same without rotations. Dashpots are summed as
 /// tensors: the damping rate is at most the maximum over the bodies of |Σ c (1/m_a + 1/m_b) n n|. Pairs nearer than
-/// `near` count as contacts. Every body has at least one contact with a body of its own size with the overlap
-/// `overlap`; the shortest impact is that of this contact, as none with a larger body is shorter.
+/// `near`, plus the reach of the law, count as contacts. Every body has at least one contact with a body of its own
+/// size with the overlap `overlap`; the shortest impact is that of this contact, as none with a larger body is shorter.
 ///
 /// Contacts form and open where bodies move. A chunk is evaluated again, independently of others, when its bodies have
 /// moved far enough.

@@ -124,7 +124,8 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
   const Vec3 length = box.high - box.low;
   for (int c = 0; c < classes; ++c) {
     Grid& grid = grids_[c];
-    grid.size = cells(length, std::max(2 * (grid.largest_radius + thinnest), 1e-300), members[c].size());
+    const double width = 2 * (grid.largest_radius + thinnest) + skins.reach();
+    grid.size = cells(length, std::max(width, 1e-300), members[c].size());
     grid.origin = box.low;
     for (int k = 0; k < 3; ++k) grid.per_length[k] = length[k] > 0 ? grid.size[k] / length[k] : 0;
     const auto cell_of = [&](std::uint32_t i) {
@@ -145,7 +146,7 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
   const std::size_t before = candidates.size();
   const Row* const position = bodies.position.data();
   const Row own = position[body];
-  const double centre[3] = {own.x, own.y, own.z}, skin = skins_.of_body(body);
+  const double centre[3] = {own.x, own.y, own.z}, skin = skins_.of_body(body) + skins_.reach();
   const std::uint32_t own_clump = bodies.clumps.clump_of(body);
   for (const Grid& grid : grids_) {
     if (grid.body.empty()) continue;
@@ -187,7 +188,8 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
             const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
             const double contact = own.w + b.w, near = contact + (skin + skins_.of_body(other));
             if (square < near * near) {
-              const float gap = square < contact * contact ? 0 : rounded_down(std::sqrt(square) - contact);
+              const double acts = contact + skins_.reach();
+              const float gap = square < acts * acts ? 0 : rounded_down(std::sqrt(square) - acts);
               candidates.push_back({body, other, gap, image});
             }
           }

@@ -13,10 +13,10 @@
 
 namespace grit {
 
-/// A pair whose surfaces are nearer than the sum of both skins; a < b by index.
+/// A pair whose surfaces are nearer than the sum of both skins and the reach of the law; a < b by index.
 struct Candidate {
   std::uint32_t a, b;
-  float gap;           ///< lower bound of the distance of the surfaces [m]; 0 in contact
+  float gap;           ///< lower bound of the distance of the surfaces beyond the reach [m]; 0 within it, or in contact
   std::uint8_t image;  ///< periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
   bool touching() const { return gap == 0; }
 };
@@ -34,10 +34,12 @@ std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell)
 /// size classes that span a factor of 2.5 in radius, so that small grains need not search the cells of large ones.
 class NeighbourSearch {
  public:
-  /// Periods must be at least shortest_period() of the largest body and skin.
+  /// Periods must be at least shortest_period() of the largest body, skin and reach.
   void build(const Bodies& bodies, const Cell& cell, const Skins& skins);
-  /// Twice the reach of two bodies [m]: in a shorter period one body would meet another twice.
-  static double shortest_period(double radius, double skin) { return 4 * (radius + skin); }
+  /// Twice the largest distance of the centres of a pair [m]: in a shorter period one body would meet another twice.
+  static double shortest_period(double radius, double skin, double reach) { return 4 * (radius + skin) + 2 * reach; }
+  /// The largest reach of the law [m].
+  double reach() const { return skins_.reach(); }
   /// Appends the candidates with a = `body`, in ascending order of b.
   void neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
 

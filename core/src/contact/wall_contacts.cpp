@@ -98,7 +98,7 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
     chunk.candidate.clear();
     chunk.candidate_start.assign(1, 0);
     const std::size_t first = c * chunk_bodies, last = std::min(count, first + chunk_bodies);
-    const double skin = skins.of_chunk(c) + skins.of_walls();
+    const double skin = skins.of_chunk(c) + skins.of_walls() + skins.reach();
     // Sphere that encloses all bodies of the chunk: most walls are far from most chunks.
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
     for (std::size_t i = first; i < last; ++i)
@@ -145,6 +145,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
   for (const WallContact& t : chunk.contact)
     work.before.push_back({t.normal, t.body, t.wall, t.feature, t.material, t.overlap});
   chunk.contact.clear();
+  const bool at_a_distance = law.has_reach();
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
     const WallSurface& wall = walls[w];
     work.spheres.clear(), work.found.clear();
@@ -155,6 +156,11 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
       sphere.body = chunk.candidate[n];
     }
     if (work.spheres.empty()) continue;
+    const auto reach = [&](std::uint32_t body) {
+      return law.reach(at_wall(bodies, body, 0), bodies.material[body], wall.material);
+    };
+    if (at_a_distance)
+      for (Sphere& sphere : work.spheres) sphere.radius += reach(sphere.body);
     if (!wall.period.isZero(0.0))
       for (Sphere& sphere : work.spheres) sphere.centre = wall.within(sphere.centre);
     wall.geometry->find_contacts(wall.pose, work.spheres, work.found);
@@ -163,11 +169,11 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
       WallContact& contact = chunk.contact.emplace_back();
       contact.normal = contact.normal_before = t.normal;
       contact.velocity = wall.velocity, contact.spin = wall.spin;
-      contact.overlap = t.overlap, contact.body = t.body;
+      contact.overlap = at_a_distance ? t.overlap - reach(t.body) : t.overlap, contact.body = t.body;
       contact.wall = w, contact.feature = t.feature, contact.material = wall.material;
       if (!turns) continue;
       const Row& x = bodies.position[t.body];
-      contact.velocity = wall.point_velocity(xyz(x) + (x.w - t.overlap) * t.normal);
+      contact.velocity = wall.point_velocity(xyz(x) + (x.w - contact.overlap) * t.normal);
     }
   }
 
@@ -201,9 +207,9 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     load.force += Vec3(force.x, force.y, force.z);
     load.moment += Vec3(py * force.z - pz * force.y + moment.x, pz * force.x - px * force.z + moment.y,
                         px * force.y - py * force.x + moment.z);
-    ++load.contacts;
+    load.contacts += acts(t, chunk.row[i]);
     if (!walls[t.wall].gives_way) continue;
-    const PairSize size = at_wall(bodies, t.body, t.overlap);
+    const PairSize size = at_wall(bodies, t.body, std::max(t.overlap, 0.0));
     const Stiffness k = law.stiffness(size, bodies.material[t.body], t.material);
     load.stiffness += k.normal;
     load.spring += std::max(k.normal, k.shear);
@@ -313,6 +319,7 @@ void WallContacts::part(const Workspace& work, const ContactLaw& law, const Bodi
     const ElasticEnergy held = law.energy(at_wall(bodies, left.body, left.overlap), bodies.material[left.body],
                                           left.material, std::span(work.state_before).subspan(g * fields, fields));
     losses.friction += held.shear, losses.rolling += held.rolling;
+    if (left.overlap < 0) losses.viscosity += held.normal;
   }
 }
 
@@ -369,7 +376,7 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
 
 std::size_t WallContacts::touching_count() const {
   std::size_t count = 0;
-  for (const Chunk& chunk : chunks_) count += chunk.contact.size();
+  each([&](const Touching& t) { count += t.acts(); });
   return count;
 }
 

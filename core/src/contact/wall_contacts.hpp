@@ -48,10 +48,10 @@ struct WallLoad {
   Vec3 force = Vec3::Zero();   ///< N
   Vec3 moment = Vec3::Zero();  ///< N m, about the wall's reference point
   double stiffness = 0;        ///< sum of normal stiffnesses [N/m]
-  std::uint32_t contacts = 0;
-  double spring = 0;       ///< sum of stiffnesses, each in its stiffest direction [N/m]
-  double dashpot = 0;      ///< the same of dashpots [N s/m]
-  std::uint32_t near = 0;  ///< bodies that may come into contact before the next search
+  std::uint32_t contacts = 0;  ///< that overlap or have a force
+  double spring = 0;           ///< sum of stiffnesses, each in its stiffest direction [N/m]
+  double dashpot = 0;          ///< the same of dashpots [N s/m]
+  std::uint32_t near = 0;      ///< bodies that may come into contact before the next search
 };
 
 /// Contacts are sorted by the chunk of their body, then by wall, body and feature. This is the order in which they are
@@ -81,6 +81,7 @@ class WallContacts {
     const WallContact* contact;
     const ContactRow* row;
     std::span<const double> state;
+    bool acts() const { return WallContacts::acts(*contact, *row); }
   };
   /// All contacts, in order.
   template <class Use>
@@ -114,6 +115,7 @@ class WallContacts {
     if (!spheres.empty()) wall.geometry->find_contacts(wall.pose, spheres, found);
     for (const SurfaceContact& contact : found) use(contact);
   }
+  /// Number of contacts that overlap or have a force.
   std::size_t touching_count() const;
   void serialize(Archive& archive) { archive(chunks_); }
 
@@ -131,6 +133,10 @@ class WallContacts {
       row.resize(contact.size());
     }
   };
+  /// Whether a contact overlaps or has a force; otherwise it is only within the reach of the law.
+  static bool acts(const WallContact& contact, const ContactRow& row) {
+    return contact.overlap >= 0 || row.force.w != 0;
+  }
   /// A contact of the last step.
   struct Before {
     Vec3 normal;
@@ -154,7 +160,7 @@ class WallContacts {
                      std::span<const WallSurface> walls, Workspace& work);
   /// Copies histories from the contacts of the last step to those of this one. work.gone lists those that ended.
   void carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const;
-  /// Books the elastic energy of ended contacts as dissipated.
+  /// Books the elastic energy of ended contacts as dissipated, and that of bonds that broke.
   void part(const Workspace& work, const ContactLaw& law, const Bodies& bodies, Losses& losses) const;
 
   std::vector<Chunk> chunks_;

@@ -20,7 +20,7 @@ template <class IsNew, class Use>
 void each_overlap(const State& state, const World& world, IsNew is_new, Use use) {
   const Bodies& bodies = state.bodies;
   Skins none;
-  none.reset(std::vector<double>(chunks_of(bodies.count()), 0.0), 0);
+  none.reset(std::vector<double>(chunks_of(bodies.count()), 0.0), 0, 0);
   NeighbourSearch search;
   search.build(bodies, state.cell.cell(), none);
   std::vector<Candidate> found;

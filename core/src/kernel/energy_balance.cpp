@@ -16,6 +16,10 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
     const ElasticEnergy one = state_.settings.law->energy(size, material_a, material_b, history);
     all.normal += one.normal, all.shear += size.work_fraction() * one.shear, all.rolling += one.rolling;
   };
+  // Springs carry no tension, unless the law acts at a distance.
+  const auto overlap_of_springs = [tension = state_.settings.law->has_reach()](double overlap) {
+    return tension ? overlap : std::max(0.0, overlap);
+  };
   // Displacement of a clump's spheres as the clump grows.
   const auto outward = [&](std::uint32_t body) -> Vec3 {
     const std::uint32_t c = bodies.clumps.clump_of(body);
@@ -26,7 +30,7 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
     const std::uint32_t a = state_.pairs.a(c), b = state_.pairs.b(c);
     const double radius_a = factor * bodies.position[a].w, radius_b = factor * bodies.position[b].w;
     const Vec3 branch = state_.pairs.branch(c, bodies, state_.cell.images()) + outward(b) - outward(a);
-    const double overlap = std::max(0.0, radius_a + radius_b - branch.norm());  // springs carry no tension
+    const double overlap = overlap_of_springs(radius_a + radius_b - branch.norm());
     add({.radius_a = radius_a,
          .radius_b = radius_b,
          .inverse_mass_a = bodies.velocity[a].w,
@@ -37,7 +41,8 @@ ElasticEnergy EnergyBalance::elastic(std::size_t chunk, double factor) const {
   state_.wall_contacts.each(chunk, [&](const WallContacts::Touching& t) {
     const std::uint32_t a = t.contact->body;
     const double own = bodies.position[a].w, r = factor * own;
-    const double overlap = std::max(0.0, t.contact->overlap + (factor - 1) * own + t.contact->normal.dot(outward(a)));
+    const double overlap =
+        overlap_of_springs(t.contact->overlap + (factor - 1) * own + t.contact->normal.dot(outward(a)));
     add({.radius_a = r,
          .radius_b = r,
          .inverse_mass_a = bodies.velocity[a].w,

@@ -90,6 +90,7 @@ void Kernel::take_settings(const SceneDescription& scene, const Components& comp
   state_.settings = settings_of(scene, components, state_.stage, state_.materials);
   state_.pairs.set_fields(state_.settings.fields), state_.wall_contacts.set_fields(state_.settings.fields);
   state_.settings.of_groups = demand_without_contacts(smallest_bodies_, *state_.settings.law);
+  state_.lists.expect_reaches(state_.reaches());
   take_walls(scene, components);
 }
 

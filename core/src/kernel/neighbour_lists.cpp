@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace grit {
@@ -46,10 +47,11 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
 
 void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
                                double dt, double wall_speed, Passes& passes) {
-  const double least = least_skin * statistics.mean_diameter;
+  const double least = least_skin * statistics.mean_diameter, reach = largest_reach(reaches_);
   double most = most_skin * statistics.mean_diameter;
   for (int k = 0; k < 3; ++k)
-    if (cell.cell().periodic[k]) most = std::min(most, 0.25 * cell.lengths()[k] - statistics.largest_radius);
+    if (cell.cell().periodic[k])
+      most = std::min(most, 0.25 * cell.lengths()[k] - statistics.largest_radius - 0.5 * reach);
   const auto skin = [&](double speed) { return std::max(least, std::min(most, steps_of_skin * dt * speed)); };
   const Vec3 rate = cell.cell().strain_rate, middle = cell.flow_centre();
   std::vector<double> skins(chunks_of(bodies.count()));
@@ -62,12 +64,17 @@ void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, 
     }
     skins[chunk] = skin(std::sqrt(fastest));
   });
-  skins_.reset(skins, skin(wall_speed));
+  skins_.reset(skins, skin(wall_speed), reach);
   strain_travel_ = 0;
 }
 
+double NeighbourLists::largest_reach(std::span<const double> reaches) {
+  return reaches.empty() ? 0 : (1 + 1e-6) * *std::ranges::max_element(reaches);
+}
+
 void NeighbourLists::rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
-                             double dt, double wall_speed, Passes& passes) {
+                             std::vector<double> reaches, double dt, double wall_speed, Passes& passes) {
+  reaches_ = std::move(reaches);
   lay_skins(bodies, cell, statistics, dt, wall_speed, passes);
   search_.build(bodies, cell.cell(), skins_);
   reference_ = bodies.position, reference_cell_ = cell.cell();
@@ -85,16 +92,18 @@ double NeighbourLists::advance(double dt, double strained, const Passes& passes)
   return furthest;
 }
 
-double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationStatistics& statistics) {
+double NeighbourLists::shortest_period(const Bodies& bodies, const PopulationStatistics& statistics,
+                                       std::span<const double> reaches) {
   double furthest = 0;
   for (const Clump& clump : bodies.clumps.clump) furthest = std::max(furthest, clump.furthest);
   // A clump must not meet its own images.
-  return NeighbourSearch::shortest_period(statistics.largest_radius, least_skin * statistics.mean_diameter) +
+  return NeighbourSearch::shortest_period(statistics.largest_radius, least_skin * statistics.mean_diameter,
+                                          largest_reach(reaches)) +
          2 * furthest;
 }
 
 void NeighbourLists::serialize(Archive& archive) {
-  archive(skins_, reference_, reference_cell_, strain_travel_, rebuilds_, requested_);
+  archive(skins_, reference_, reference_cell_, reaches_, strain_travel_, rebuilds_, requested_);
 }
 
 }  // namespace grit

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "bodies/bodies.hpp"
 #include "bodies/large_array.hpp"
@@ -22,21 +24,27 @@ class NeighbourLists {
   double strain_travel() const { return strain_travel_; }
 
   void request_rebuild() { requested_ = true; }
+  /// The same if reaches of the law have changed since the last rebuild.
+  void expect_reaches(const std::vector<double>& reaches) { requested_ = requested_ || reaches != reaches_; }
   /// Whether a body or wall may have used up its skin. If the sum of maximum speeds does not exclude it, displacements
   /// since the last rebuild are measured.
   bool due(const Bodies& bodies, const DeformingCell& cell);
   /// Whether this rebuild should also sort bodies in space.
   bool sorts() const { return rebuilds_ % sort_every == 0; }
-  /// Searches neighbours. Skins follow from speeds only, so that a run is identical on every machine.
-  void rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics, double dt,
-               double wall_speed, Passes& passes);
+  /// Searches neighbours. `reaches`: those of the law for the largest radius [m]. Skins follow from speeds only, so
+  /// that a run is identical on every machine.
+  void rebuild(const Bodies& bodies, const DeformingCell& cell, const PopulationStatistics& statistics,
+               std::vector<double> reaches, double dt, double wall_speed, Passes& passes);
   /// After a step of `dt` [s]; `strained`: upper bound of the approach of two surfaces by strain and growth [m].
   /// Returns an upper bound of the displacement of bodies since the last rebuild [m].
   double advance(double dt, double strained, const Passes& passes);
   void advance_walls(double distance) { skins_.advance_walls(distance); }
 
-  /// The shortest allowed period [m].
-  static double shortest_period(const Bodies& bodies, const PopulationStatistics& statistics);
+  /// The largest of the law's reaches [m], and somewhat more than their rounding errors in single precision.
+  static double largest_reach(std::span<const double> reaches);
+  /// The shortest allowed period [m]. `reaches`: as in rebuild().
+  static double shortest_period(const Bodies& bodies, const PopulationStatistics& statistics,
+                                std::span<const double> reaches);
 
   void serialize(Archive& archive);
 
@@ -49,6 +57,7 @@ class NeighbourLists {
   Skins skins_;
   LargeArray<Row> reference_;  // positions at the last rebuild
   Cell reference_cell_;
+  std::vector<double> reaches_;  // of the law at the last rebuild
   double strain_travel_ = 0;
   std::uint64_t rebuilds_ = 0;
   bool requested_ = true;

@@ -30,9 +30,14 @@ bool is_out_of_reach(const Bounds& wall, const Cell& cell, double reach) {
   return false;
 }
 
+/// Distance from its centre at which the largest body acts [m].
+double reach_of_largest(const State& state) {
+  return state.statistics.largest_radius + NeighbourLists::largest_reach(state.reaches());
+}
+
 [[noreturn]] void fail_at_end(const State& state, std::size_t wall, int axis, double low, double high) {
   const Cell& cell = state.cell.cell();
-  const std::string reach = number(state.statistics.largest_radius);
+  const std::string reach = number(reach_of_largest(state));
   fail(state, Guard::period, {"walls", state.walls.name(wall)},
        "wall \"" + state.walls.name(wall) + "\" extends from " + number(low) + " to " + number(high) + " m along " +
            "xyz"[axis] + " and so ends near a periodic side (" + number(cell.low[axis]) + " or " +
@@ -46,7 +51,7 @@ bool is_out_of_reach(const Bounds& wall, const Cell& cell, double reach) {
 
 void repeat_walls(State& state) {
   const Cell& cell = state.cell.cell();
-  const double reach = (1 - rounding) * state.statistics.largest_radius;
+  const double reach = (1 - rounding) * reach_of_largest(state);
   for (WallSurface& surface : state.surfaces) surface.period.setZero();
   if (!cell.periodic_anywhere() || state.bodies.count() == 0) return;
   for (std::size_t w = 0; w < state.walls.size(); ++w) {

@@ -64,7 +64,8 @@ void Stepper::rebuild() {
     bodies.reorder(order);
     state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
   }
-  state_.lists.rebuild(bodies, cell, state_.statistics, state_.time.dt, bounds_.wall_speed(), passes_);
+  state_.lists.rebuild(bodies, cell, state_.statistics, state_.reaches(), state_.time.dt, bounds_.wall_speed(),
+                       passes_);
   state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.team());
   readiness_.build(state_.pairs.reached());
   state_.wall_contacts.rebuild(bodies, state_.surfaces, state_.lists.skins(), state_.settings.fields, order);
@@ -166,7 +167,7 @@ void Stepper::grow() {
   const double factor = std::exp(grows);
   double furthest = state_.statistics.largest_radius;
   for (const Clump& clump : state_.bodies.clumps.clump) furthest = std::max(furthest, clump.furthest);
-  const double distance = (factor - 1) * furthest;
+  const double distance = (factor - 1) * (furthest + state_.lists.skins().reach());
   bounds_.grown(distance);
   check_growth(state_, distance);
   const double kinetic_before = balance_.begun() ? balance_.kinetic() : 0;

@@ -45,8 +45,8 @@ double arm(const State& state, std::size_t wall, const Vec3& axis) {
   const AxialRange range = swept(state, wall, axis);
   const Skins& skins = state.lists.skins();
   // Skins are exceeded by less than one step.
-  const double moves =
-      skins.largest() + skins.of_walls() + 2 * state.settings.guards.travel * state.statistics.largest_radius;
+  const double moves = skins.largest() + skins.of_walls() + skins.reach() +
+                       2 * state.settings.guards.travel * state.statistics.largest_radius;
   double longest = 0;
   for (std::size_t i = 0; i < state.bodies.count(); ++i) {
     const Vec3 place = xyz(state.bodies.position[i]);

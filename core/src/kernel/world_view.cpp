@@ -8,6 +8,12 @@
 #include "motion/clump_motion.hpp"
 
 namespace grit {
+namespace {
+
+/// Whether a pair overlaps or has a force; otherwise it is only within the reach of the law.
+bool acts(const ContactRow& row) { return row.moment.w >= 0 || row.force.w != 0; }
+
+}  // namespace
 
 void WorldView::invalidate() {
   net_step_ = contact_step_ = wall_contact_step_ = wall_step_ = clump_step_ = displacement_step_ = never;
@@ -100,6 +106,7 @@ std::span<const Contact> WorldView::contacts() const {
   contacts_.clear();
   contacts_.reserve(state_.pairs.touching_count() + state_.wall_contacts.touching_count());
   state_.pairs.each_touching(state_.instant(true), [&](std::size_t c, const ContactRow& row) {
+    if (!acts(row)) return;
     const Vec3 branch = state_.pairs.branch(c, state_.bodies, state_.cell.images());
     contacts_.push_back({.a = state_.pairs.a(c),
                          .b = state_.pairs.b(c),
@@ -122,6 +129,7 @@ std::span<const Contact> WorldView::contacts_with_walls() const {
   if (wall_contact_step_ == step()) return wall_contacts_;
   wall_contacts_.clear();
   state_.wall_contacts.each([&](const WallContacts::Touching& t) {
+    if (!t.acts()) return;
     const double arm = state_.bodies.position[t.contact->body].w - t.contact->overlap;
     wall_contacts_.push_back({.a = t.contact->body,
                               .b = t.contact->wall,
@@ -141,9 +149,11 @@ std::span<const Contact> WorldView::contacts_with_walls() const {
 double WorldView::mean_contact_force() const {
   double sum = 0;
   std::size_t count = 0;
-  state_.pairs.each_touching(state_.instant(true),
-                             [&](std::size_t, const ContactRow& row) { sum += std::abs(row.force.w), ++count; });
-  state_.wall_contacts.each([&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), ++count; });
+  state_.pairs.each_touching(state_.instant(true), [&](std::size_t, const ContactRow& row) {
+    sum += std::abs(row.force.w), count += acts(row);
+  });
+  state_.wall_contacts.each(
+      [&](const WallContacts::Touching& t) { sum += std::abs(t.row->force.w), count += t.acts(); });
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 

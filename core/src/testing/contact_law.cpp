@@ -35,7 +35,7 @@ TEST_P(ContactLawContract, LanesAgreeWithScalarTwin) {
       EXPECT_LE((vec(lanes.row(c).force) - vec(twin.row(c).force)).norm(), eps * force) << c;
       EXPECT_LE((vec(lanes.row(c).moment) - vec(twin.row(c).moment)).norm(), eps * moment) << c;
       EXPECT_NEAR(lanes.row(c).force.w, twin.row(c).force.w, eps * force) << c;
-      EXPECT_NEAR(lanes.overlap(c), twin.overlap(c), eps * twin.overlap(c)) << c;
+      EXPECT_NEAR(lanes.overlap(c), twin.overlap(c), eps * std::abs(twin.overlap(c))) << c;
       const auto a = lanes.a(c);
       EXPECT_LE((vec(lanes.sum(a).force) - vec(twin.sum(a).force)).norm(), eps * force) << c;
       EXPECT_LE((vec(lanes.sum(a).moment) - vec(twin.sum(a).moment)).norm(), eps * moment) << c;
@@ -87,7 +87,7 @@ TEST_P(ContactLawContract, SinglePrecisionIsThatOfItsScalarTwinAndNearDouble) {
           for (Pairs* other : {&exact, &twin}) {
             EXPECT_LE((vec(lanes.row(c).force) - vec(other->row(c).force)).norm(), eps * force) << c;
             EXPECT_LE((vec(lanes.row(c).moment) - vec(other->row(c).moment)).norm(), eps * moment) << c;
-            EXPECT_NEAR(lanes.overlap(c), other->overlap(c), 1e-6 * exact.overlap(c)) << c;
+            EXPECT_NEAR(lanes.overlap(c), other->overlap(c), 1e-6 * std::abs(exact.overlap(c))) << c;
             for (std::size_t f = 0; f < fields.size(); ++f)
               EXPECT_NEAR(lanes.state(c, f), other->state(c, f), eps * scale_of(fields[f].unit)) << c << fields[f].name;
           }
@@ -414,7 +414,7 @@ TEST_P(ContactLawContract, SeparationClearsTheHistory) {
   Pairs pairs = two(0.02), fresh = two(0.02);
   slip(pairs, 1e-3), roll(pairs, 1e-3), twist(pairs, 1e-3);
   EXPECT_TRUE(pairs.touching(0));
-  move(pairs, {0, 0, 1.71});
+  move(pairs, {0, 0, 1.71 + law_->reach(size(pairs, 0), 0, 0)});
   EXPECT_FALSE(pairs.touching(0));
   for (const Row& r : {pairs.row(0).force, pairs.row(0).moment})
     for (const double x : {r.x, r.y, r.z, r.w}) EXPECT_EQ(x, 0);
@@ -423,6 +423,60 @@ TEST_P(ContactLawContract, SeparationClearsTheHistory) {
   fresh.step();
   EXPECT_LE((vec(pairs.row(0).force) - vec(fresh.row(0).force)).norm(), 1e-12 * vec(fresh.row(0).force).norm());
   EXPECT_LE(vec(pairs.row(0).moment).norm(), 1e-12 * vec(fresh.row(0).force).norm());
+}
+
+/// From beyond the reach into contact and back, and to and fro within the reach, without contact.
+TEST_P(ContactLawContract, ActsUpToItsReachAndYieldsNoEnergy) {
+  if (!law_->has_reach()) GTEST_SKIP() << "the law acts in contact only";
+  Pairs pairs = two(-1);
+  const double reach = law_->reach(size(pairs, 0), 0, 0), step = 1e-3 * std::max(reach, 1e-4);
+  const auto overlap_at = [&](double overlap) { move(pairs, {0, 0, 1.7 - overlap}); };
+  const auto energy = [&](double overlap) { return law_->energy(size(pairs, overlap), 0, 0, pairs.state(0)).normal; };
+  double work = 0, turnover = 0;
+  const auto go = [&](double from, double to) {
+    overlap_at(from);
+    const int steps = static_cast<int>(std::ceil(std::abs(to - from) / step));
+    for (int k = 1; k <= steps; ++k) {
+      const double before = pairs.row(0).force.w;
+      overlap_at(from + (to - from) * k / steps);
+      const double share = -0.5 * (before + pairs.row(0).force.w) * (to - from) / steps;
+      work += share, turnover += std::abs(share);
+    }
+  };
+  go(-1.1 * reach - step, -1.01 * reach);
+  EXPECT_FALSE(pairs.touching(0));
+  go(-0.99 * reach, -0.01 * reach);
+  EXPECT_EQ(pairs.touching(0), reach > 0);
+  go(-0.01 * reach, -0.99 * reach), go(-0.99 * reach, -1.01 * reach - step);
+  EXPECT_FALSE(pairs.touching(0));
+  EXPECT_LE(work, 1e-9 * turnover) << "without contact";
+  work = turnover = 0;
+  go(-1.01 * reach - step, 1e-6);
+  EXPECT_TRUE(pairs.touching(0));
+  EXPECT_TRUE(pairs.acts(0));
+  EXPECT_LE(std::abs(energy(1e-12)), 1e-9 * std::abs(pairs.row(0).force.w));
+  go(1e-6, 0.01), go(0.01, -0.999 * reach);
+  EXPECT_EQ(pairs.touching(0), reach > 0);
+  EXPECT_GE(energy(-0.999 * reach), 0);
+  go(-0.999 * reach, -1.01 * reach - step);
+  EXPECT_FALSE(pairs.touching(0));
+  EXPECT_FALSE(pairs.acts(0));
+  EXPECT_LE(work, 1e-3 * turnover) << "with contact";
+}
+
+TEST_P(ContactLawContract, NoReachIsLargerThanThatOfTheLargest) {
+  const auto reach = [&](double a, double b, bool wall) {
+    return law_->reach(
+        {.radius_a = a, .radius_b = b, .inverse_mass_a = 1, .inverse_mass_b = 1, .overlap = 0, .wall = wall}, 0, 1);
+  };
+  const auto largest = [&](double radius) {
+    const std::vector<double> all = law_->reaches(radius);
+    return all.empty() ? 0 : *std::ranges::max_element(all);
+  };
+  EXPECT_EQ(law_->reaches(1).empty(), !law_->has_reach());
+  for (const double other : {0.01, 0.1, 0.5, 1.0})
+    for (const bool wall : {false, true}) EXPECT_LE(reach(wall ? 1 : other, 1, wall), largest(1)) << other;
+  EXPECT_LE(largest(1.1), 1.1 * largest(1) * (1 + 1e-12));
 }
 
 TEST_P(ContactLawContract, ForceIsTheSlopeOfTheEnergy) {

@@ -60,7 +60,8 @@ struct PairBatch {
   double closing;                        ///< upper bound of the approach of any two bodies, summed over steps [m]
   // Contact history and results.
   double* state;           ///< [block][field][block_size]
-  std::uint8_t* touching;  ///< [block], one bit per pair in contact
+  std::uint8_t* touching;  ///< [block], one bit per pair in contact, or within the reach of the law
+  std::uint8_t* acting;    ///< out: [block], one bit per pair that overlaps or has a force; null for laws without reach
   float* asleep_until;  ///< [block]: a block without contacts is skipped until `closing` reaches this; null: skip none
   ContactRow* row;      ///< [candidate, from the first of first_block]: result for b; null if b belongs to the chunk
                         ///< too and is summed like a
@@ -75,7 +76,7 @@ struct WallContact {
   Vec3 normal_before;  ///< the same one step ago; equal to normal when the contact is new
   Vec3 velocity;       ///< of the wall's surface at the point [m/s]
   Vec3 spin;           ///< of the wall [rad/s]
-  double overlap;      ///< m, > 0
+  double overlap;      ///< m, > 0; minus the distance of the surfaces within the reach of a law
   std::uint32_t body;  ///< index
   std::uint32_t wall;
   std::uint32_t feature;   ///< SurfaceContact::feature

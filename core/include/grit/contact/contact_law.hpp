@@ -25,7 +25,7 @@ struct Stiffness {
 struct PairSize {
   double radius_a, radius_b;              ///< m
   double inverse_mass_a, inverse_mass_b;  ///< 1/kg
-  double overlap;                         ///< largest expected overlap ≥ 0 [m]
+  double overlap;  ///< largest expected overlap ≥ 0 [m]; minus the distance of two surfaces within the reach of a law
   bool wall = inverse_mass_b == 0 && radius_b == radius_a;
 
   /// Work of the shear force on the bodies over the work on its spring. They differ because laws compute slip with the
@@ -35,7 +35,8 @@ struct PairSize {
 
 /// Elastic energy of one contact [J].
 struct ElasticEnergy {
-  double normal = 0, shear = 0;
+  double normal = 0;  ///< includes that of attraction; 0 where surfaces start to touch
+  double shear = 0;
   double rolling = 0;  ///< includes twisting
   double total() const { return normal + shear + rolling; }
   ElasticEnergy operator+(const ElasticEnergy& other) const {
@@ -84,6 +85,13 @@ class ContactLaw {
   /// The same with scalars instead of SIMD lanes, for tests.
   virtual void evaluate_pairs_reference(PairBatch& batch) const noexcept = 0;
   virtual Stiffness stiffness(const PairSize& pair, std::size_t material_a, std::size_t material_b) const = 0;
+  /// Whether bodies may interact at a distance.
+  virtual bool has_reach() const { return false; }
+  /// Distance of two surfaces up to which they interact [m]; 0 for most laws.
+  virtual double reach(const PairSize&, std::size_t, std::size_t) const { return 0; }
+  /// The same for all pairs of materials of bodies of this radius [m], then for their materials and those of walls;
+  /// empty if bodies interact in contact only.
+  virtual std::vector<double> reaches(double) const { return {}; }
   /// All combined parameters of a body of the first material and a body, or wall, of the second.
   virtual std::vector<double> mixed(std::size_t material_a, std::size_t material_b, bool wall) const = 0;
   /// Elastic energy of one contact with the given history, one number per field of state().

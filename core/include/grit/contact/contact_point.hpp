@@ -25,7 +25,7 @@ struct Turn {
 template <class L>
 struct ContactPoint {
   Vec<L> normal;                     ///< unit, from a to b
-  L overlap;                         ///< m, > 0 in contact
+  L overlap;                         ///< m, > 0 in contact; minus the distance within the reach of the law
   L radius_a, radius_b;              ///< m; for a wall radius_b = radius_a
   L inverse_mass_a, inverse_mass_b;  ///< 1/kg; 0 for a wall
   Vec<L> velocity;                   ///< of b's surface relative to a's, with the radii as arms [m/s]; zero while both

@@ -155,6 +155,7 @@ class Waiting {
     own.a = a_, own.b = b_, own.image = from.image != nullptr ? image_ : nullptr;
     own.first_block = 0, own.last_block = own.last_near = blocks, own.next_count = 0;
     own.state = state_, own.touching = touching_, own.asleep_until = nullptr;
+    own.acting = from.acting != nullptr ? acting_ : nullptr;
     own.row = from.row != nullptr ? row_ : nullptr;
     return own;
   }
@@ -163,6 +164,8 @@ class Waiting {
     for (std::size_t k = 0; k < count_; ++k) {
       for (std::size_t f = 0; f < Fields; ++f) history(to.state, place_[k], f) = history(state_, k, f);
       if (to.row != nullptr) to.row[place_[k] - to.first_block * block_size] = row_[k];
+      if (to.acting != nullptr && (acting_[k / block_size] >> (k % block_size) & 1) != 0)
+        to.acting[place_[k] / block_size] |= static_cast<std::uint8_t>(1u << (place_[k] % block_size));
     }
     count_ = 0;
   }
@@ -176,7 +179,7 @@ class Waiting {
   std::size_t count_ = 0;
   std::size_t place_[most];
   std::uint32_t a_[most], b_[most];
-  std::uint8_t image_[most], touching_[most / block_size] = {};
+  std::uint8_t image_[most], touching_[most / block_size] = {}, acting_[most / block_size] = {};
   alignas(64) double state_[most * Fields + block_size];
   ContactRow row_[most];
 };
@@ -205,7 +208,7 @@ class Parted {
   double state_[most * Fields + 1];
 };
 
-/// Books the elastic energy of the springs of an opened contact as dissipated.
+/// Books the elastic energy of the springs of an opened contact as dissipated, and that of a bond that broke.
 template <class Law, unsigned Features>
 void lose_springs(const PairBatch& batch, const typename Law::template Pair<double>* table, std::size_t materials,
                   std::size_t place, std::span<const double> history) {
@@ -226,10 +229,11 @@ void lose_springs(const PairBatch& batch, const typename Law::template Pair<doub
                       .radius_b = radius_b,
                       .inverse_mass_a = batch.velocity[a].w,
                       .inverse_mass_b = batch.velocity[b].w,
-                      .overlap = std::max(0.0, overlap),
+                      .overlap = Law::traits.reach ? overlap : std::max(0.0, overlap),
                       .wall = false};
   const ElasticEnergy held = Law::energy(size, table[kind], state);
   batch.losses->friction += held.shear * size.work_fraction(), batch.losses->rolling += held.rolling;
+  if (size.overlap < 0) batch.losses->viscosity += held.normal;
 }
 
 /// The loop over candidate pairs. L is Lane or SingleLane, or a number for the scalar reference. It starts with block
@@ -269,6 +273,7 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
     const std::uint32_t before = batch.touching[block];
     if (before == 0 && batch.asleep_until != nullptr && batch.closing < batch.asleep_until[block]) continue;
     std::uint32_t contacts_now = 0;
+    [[maybe_unused]] std::uint32_t acting_now = 0;
     L gap(std::numeric_limits<float>::max());
     for (std::size_t sub = 0; sub < block_size; sub += width) {
       const std::size_t first = block * block_size + sub;
@@ -289,7 +294,23 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         if (shifted) between = between + load_rows<W>(&batch.shifts->position, shift).xyz();
       }
       const W square = dot(between, between), radii = pa.w + pb.w;
-      const auto contacts = mask_in_precision<L>(square < radii * radii);
+      typename Law::template Pair<L> pair;
+      const auto take_parameters = [&]() __attribute__((always_inline)) {
+        if constexpr (OneKind) {
+          pair = one_kind;
+        } else {
+          const auto kind = [&](std::size_t k) {
+            return batch.material != nullptr ? batch.material[ia[k]] * materials + batch.material[ib[k]] : 0;
+          };
+          pair = load_pair<Law, L>(table, kind);
+        }
+      };
+      W furthest = radii;  // distance of the centres up to which they interact
+      if constexpr (Law::traits.reach) {
+        take_parameters();
+        furthest = radii + widened(Law::template reach<L>(pair, in_precision<L>(pa.w), in_precision<L>(pb.w)));
+      }
+      const auto contacts = mask_in_precision<L>(square < furthest * furthest);
       const std::uint32_t now = bits(contacts);
       const L reach = in_precision<L>(radii);
       const auto length = [&] { return sqrt(in_precision<L>(square)); };
@@ -310,8 +331,9 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
         }
         for (std::uint32_t here = now; here != 0; here &= here - 1)
           waiting->add(first + static_cast<std::size_t>(std::countr_zero(here)));
-        if constexpr (is_single<L>) gap = min(gap, in_precision<L>(square - radii * radii) / (length() + reach));
-        else gap = min(gap, length() - reach);
+        if constexpr (is_single<L>)
+          gap = min(gap, in_precision<L>(square - furthest * furthest) / (length() + in_precision<L>(furthest)));
+        else gap = min(gap, length() - furthest);
         continue;
       }
 
@@ -343,7 +365,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
 
       ContactPoint<L> at;
       at.normal = normal;
-      at.overlap = max(overlap, L(0.0));
+      if constexpr (Law::traits.reach) at.overlap = overlap;
+      else at.overlap = max(overlap, L(0.0));
       const L work_fraction = L(1.0) - at.overlap * per_reach;  // see PairSize
       at.radius_a = in_precision<L>(pa.w), at.radius_b = in_precision<L>(pb.w);
       at.inverse_mass_a = in_precision<L>(va.w), at.inverse_mass_b = in_precision<L>(vb.w);
@@ -360,17 +383,13 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
       State state{};
       for (std::size_t f = 0; f < fields; ++f) member<L>(state, kept[f]) = load_lanes<L>(state_at + f * block_size);
       [[maybe_unused]] const State before_step = state;
-      typename Law::template Pair<L> pair;
-      if constexpr (OneKind) {
-        pair = one_kind;
-      } else {
-        const auto kind = [&](std::size_t k) {
-          return batch.material != nullptr ? batch.material[ia[k]] * materials + batch.material[ib[k]] : 0;
-        };
-        pair = load_pair<Law, L>(table, kind);
-      }
+      if constexpr (!Law::traits.reach) take_parameters();
       const Response<L> response = Law::template evaluate<Features>(at, pair, state);
       const L zero(0.0);
+      if constexpr (Law::traits.reach)
+        acting_now |=
+            (now & (bits(at.overlap >= zero) | bits(response.normal_force > zero) | bits(response.normal_force < zero)))
+            << sub;
       if constexpr (EnergyTerms) {
         const Loss<L> own = losses_of<Law, Features>(at, pair, before_step, state, response);
         left.friction = left.friction - widened(select(contacts, own.friction * work_fraction, zero));
@@ -416,6 +435,8 @@ template <class Law, unsigned Features, class L, bool Periodic, bool OneKind, bo
                    [=](std::size_t k, const Quad& moment) { sum[ia[k]].moment += moment; });
     }
     batch.touching[block] = static_cast<std::uint8_t>(contacts_now);
+    if constexpr (Law::traits.reach)
+      if (batch.acting != nullptr) batch.acting[block] = static_cast<std::uint8_t>(acting_now);
     // The reduction exceeds the rounding error of the sum and its terms by far.
     if (contacts_now == 0 && batch.asleep_until != nullptr)
       batch.asleep_until[block] = static_cast<float>(smallest(min(L(1 - 1e-6) * (L(batch.closing) + gap), L(1e30))));

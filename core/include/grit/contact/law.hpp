@@ -21,6 +21,8 @@
 //     template <unsigned Features, class L> [[gnu::always_inline]]
 //     static Loss<L> losses(const ContactPoint<L>&, const Pair<L>&, const State<L>& before, const State<L>& after,
 //                           const Response<L>&);
+//     template <class L>                                           // with traits.reach
+//     static L reach(const Pair<L>&, const L& radius_a, const L& radius_b);
 //     static Stiffness stiffness(const PairSize&, const Pair<double>&);
 //     static ElasticEnergy energy(const PairSize&, const Pair<double>&, const State<double>&);
 //   };
@@ -32,8 +34,13 @@
 // active feature needs are not kept; they are 0 in State. In single precision, keep divisors above L(tiny<L>) and test
 // equality by a difference below beyond_rounding<L>. Each number of State is then rounded to 24 bits in every step.
 // evaluate() may be called again at the same instant, with the updated history, dt = 0 and the identity as turn. It
-// must then return the same force. The normal force may be negative (attraction), but only while bodies overlap; there
-// is no force at a distance. The law must then keep friction limits from becoming negative.
+// must then return the same force. The normal force may be negative (attraction); the law must then keep friction
+// limits from becoming negative.
+// Bodies interact while they overlap, or with `.reach = true` while their surfaces are nearer than reach() [m]. The
+// contact history then exists from the reach on, with zeros at first, so that it can hold whether there is a bond. Two
+// bodies of the largest radius have the largest reach, and it grows at most in proportion to the radii. The normal
+// energy is 0 without a bond and where a bond forms; what a bond stores at the reach is dissipated when it breaks.
+// stiffness() is called for overlaps ≥ 0; no slope at a distance is larger than that at overlap 0.
 #pragma once
 
 #include "grit/contact/contact_law.hpp"

@@ -86,6 +86,17 @@ concept loses = requires(const ContactPoint<L>& at, const PairOf<Law, L>& pair, 
 };
 
 template <class Law>
+concept has_reach_template = std::is_pointer_v<decltype(&Law::template reach<double>)>;
+template <class Law>
+concept has_reach_function = std::is_pointer_v<decltype(&Law::reach)>;
+template <class Law>
+concept has_reach = has_reach_template<Law> || has_reach_function<Law>;
+template <class Law, class L>
+concept reaches = requires(const PairOf<Law, L>& pair, const L& radius) {
+  { Law::template reach<L>(pair, radius, radius) } -> std::same_as<L>;
+};
+
+template <class Law>
 concept has_features = std::is_pointer_v<decltype(&Law::features)>;
 template <class Law>
 concept features = requires(const PairOf<Law, double>& pair) {
@@ -117,6 +128,8 @@ consteval bool agrees_with_its_traits() {
   constexpr bool named = detail::feature_count<Law> != 0;
   if (Law::traits.losses != has_losses<Law> || named != has_features<Law>) return false;
   if (Law::traits.losses && !loses<Law, double>) return false;
+  if (Law::traits.reach != has_reach<Law>) return false;
+  if (Law::traits.reach && !(reaches<Law, double> && reaches<Law, Lane>)) return false;
   if (Law::traits.single_precision && !evaluates<Law, SingleLane>) return false;
   return !named || features<Law>;
 }
@@ -182,6 +195,11 @@ consteval bool check_law() {
         !Law::traits.losses || law_part::loses<Law, double>,
         "traits.losses is true: the law has template <unsigned Features, class L> static Loss<L> losses(const "
         "ContactPoint<L>&, const Pair<L>&, const State<L>& before, const State<L>& after, const Response<L>&)");
+    static_assert(Law::traits.reach || !law_part::has_reach<Law>,
+                  "the law has reach() and does not announce it: set .reach = true in its traits");
+    static_assert(!Law::traits.reach || (law_part::reaches<Law, double> && law_part::reaches<Law, Lane>),
+                  "traits.reach is true: the law has template <class L> static L reach(const Pair<L>&, const L& "
+                  "radius_a, const L& radius_b)");
     static_assert(detail::feature_count<Law> != 0 || !law_part::has_features<Law>,
                   "the law has features() and does not announce them: name them in .features of its traits");
     static_assert(detail::feature_count<Law> == 0 || law_part::features<Law>,

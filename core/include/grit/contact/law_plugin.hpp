@@ -35,7 +35,7 @@ class LawPlugin final : public ContactLaw {
     interfaces_[std::minmax(a, b)].declare(parameters);
   }
   void mix(std::span<const std::string> materials, std::size_t of_bodies) override {
-    count_ = materials.size();
+    count_ = materials.size(), of_bodies_ = of_bodies;
     table_.clear(), wall_table_.clear();
     features_ = 0;
     for (std::size_t i = 0; i < count_; ++i)
@@ -83,6 +83,23 @@ class LawPlugin final : public ContactLaw {
   }
   Stiffness stiffness(const PairSize& pair, std::size_t a, std::size_t b) const override {
     return Law::stiffness(pair, (pair.wall ? wall_table_ : table_)[a * count_ + b]);
+  }
+  bool has_reach() const override { return Law::traits.reach; }
+  double reach([[maybe_unused]] const PairSize& pair, [[maybe_unused]] std::size_t a,
+               [[maybe_unused]] std::size_t b) const override {
+    if constexpr (Law::traits.reach)
+      return Law::template reach<double>((pair.wall ? wall_table_ : table_)[a * count_ + b], pair.radius_a,
+                                         pair.radius_b);
+    else return 0;
+  }
+  std::vector<double> reaches([[maybe_unused]] double radius) const override {
+    std::vector<double> all;
+    if constexpr (Law::traits.reach)
+      for (const bool wall : {false, true})
+        for (std::size_t i = 0; i < of_bodies_; ++i)
+          for (std::size_t j = 0; j < (wall ? count_ : of_bodies_); ++j)
+            all.push_back(Law::template reach<double>((wall ? wall_table_ : table_)[i * count_ + j], radius, radius));
+    return all;
   }
   std::vector<double> mixed(std::size_t a, std::size_t b, bool wall) const override {
     const auto* const numbers = reinterpret_cast<const double*>(&(wall ? wall_table_ : table_)[a * count_ + b]);
@@ -139,7 +156,7 @@ class LawPlugin final : public ContactLaw {
   std::map<std::string, typename Law::Material> materials_;
   std::map<std::pair<std::string, std::string>, typename Law::Interface> interfaces_;
   std::vector<Pair> table_, wall_table_;  // of two bodies; of a body and a wall
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, of_bodies_ = 0;
   unsigned features_ = 0;
 };
 

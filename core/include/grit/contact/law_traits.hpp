@@ -20,6 +20,8 @@ struct LawTraits {
   bool single_precision = false;
   /// The law has losses(), so that the energy balance includes its dissipation; else it is part of the closure error.
   bool losses = false;
+  /// Bodies interact before their surfaces touch, or after: the law has reach(). Its overlaps may then be negative.
+  bool reach = false;
   /// Names of features that are evaluated only where needed, in the order of their bits; the law then has features().
   /// The loop is compiled once for each combination.
   const char* features[4] = {};

@@ -96,7 +96,8 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
   /// Relative round-off of values that follow from the overlap, a small difference of large numbers.
   double round_off(Pairs& pairs, std::size_t c) {
     const double reach = pairs.position(pairs.a(c)).w + pairs.position(pairs.b(c)).w;
-    return 1e-14 * (1 + 0.1 * (reach + branch(pairs, c).cwiseAbs().maxCoeff()) / std::max(pairs.overlap(c), 1e-9));
+    return 1e-14 *
+           (1 + 0.1 * (reach + branch(pairs, c).cwiseAbs().maxCoeff()) / std::max(std::abs(pairs.overlap(c)), 1e-9));
   }
   /// Order of magnitude of a field with this unit.
   double scale(Pairs& pairs, std::size_t c, const std::string& unit) {
@@ -165,11 +166,11 @@ class ContactLawContract : public testing::TestWithParam<LawSetup> {
   }
   static void sleeps_until_one_can(const ContactLaw& law) {
     Pairs pairs(law, dt_);
-    const double nearest = 0.25;
+    const double nearest = 0.25, reach = law.reach({1, 1, 1, 1, 0, false}, 0, 0);
     for (std::size_t c = 0; c < block_size; ++c) {
       const double gap = nearest + static_cast<double>((c + 3) % block_size);
       const auto a = pairs.add({.position = {100.0 * static_cast<double>(c), 0, 0}, .radius = 1});
-      pairs.pair(a, pairs.add({.position = vec(pairs.position(a)) + Vec3(2 + gap, 0, 0), .radius = 1}));
+      pairs.pair(a, pairs.add({.position = vec(pairs.position(a)) + Vec3(2 + reach + gap, 0, 0), .radius = 1}));
     }
     const std::size_t first = block_size - 3;
     pairs.asleep_until = {0}, pairs.closing = 3;

@@ -39,7 +39,7 @@ class Pairs {
   std::size_t pair(std::uint32_t a, std::uint32_t b, std::uint8_t image = 0) {
     if (used_ == a_.size()) {
       a_.resize(used_ + block_size, 0), b_.resize(used_ + block_size, pad_), image_.resize(used_ + block_size, 0);
-      touching_.push_back(0), row_.resize(used_ + block_size);
+      touching_.push_back(0), acting_.push_back(0), row_.resize(used_ + block_size);
       state_.resize(state_.size() + fields_.size() * block_size, 0.0);
     }
     a_[used_] = a, b_[used_] = b, image_[used_] = image;
@@ -79,6 +79,8 @@ class Pairs {
   }
   void mark_contacts(std::size_t place) { touching_[place / block_size] |= 1u << (place % block_size); }
   bool touching(std::size_t place) const { return (touching_[place / block_size] >> (place % block_size) & 1) != 0; }
+  /// Whether it overlaps or has a force, with a law that has a reach.
+  bool acts(std::size_t place) const { return (acting_[place / block_size] >> (place % block_size) & 1) != 0; }
   /// Results of the law: `row` acts on b, `sum` is the total of a body as `a` of its pairs.
   const ContactRow& row(std::size_t place) const { return row_[place]; }
   const BodySum& sum(std::size_t body) const { return sum_[body]; }
@@ -146,6 +148,7 @@ class Pairs {
                     .closing = closing,
                     .state = state_.data(),
                     .touching = touching_.data(),
+                    .acting = acting_.data(),
                     .asleep_until = asleep_until.empty() ? nullptr : asleep_until.data(),
                     .row = within ? nullptr : row_.data(),
                     .sum = sum_.data(),
@@ -158,7 +161,7 @@ class Pairs {
   const ContactLaw* law_;
   std::vector<StateField> fields_;
   std::vector<Row> position_, velocity_, spin_;
-  std::vector<std::uint8_t> material_, image_, touching_;
+  std::vector<std::uint8_t> material_, image_, touching_, acting_;
   std::vector<std::uint32_t> a_, b_;
   std::vector<double> state_;
   std::vector<ContactRow> row_;
