@@ -60,9 +60,10 @@ TEST(Units, TooLargeANumberIsInfinite) {
 }
 
 TEST(Units, EverySpellingConvertsAndMatchesThePattern) {
-  for (const char* unit : {"1",     "m",   "m^2",   "m^3",     "s",     "kg",   "kg/s", "Pa",     "N",      "N m",
-                           "rad",   "m/s", "m/s^2", "rad/s",   "1/s",   "Hz",   "1/m",  "kg/m^3", "kg m^2", "J",
-                           "J/m^3", "W",   "N/m",   "N m/rad", "N s/m", "Pa s", "Pa/m", "Pa/s",   "N/m^3"}) {
+  for (const char* unit :
+       {"1",     "m",     "m^2",   "m^3",   "s",       "kg",    "kg/s", "Pa",     "N",      "N m",
+        "rad",   "m/s",   "m/s^2", "rad/s", "1/s",     "Hz",    "1/m",  "kg/m^3", "kg m^2", "J",
+        "J/m^2", "J/m^3", "W",     "N/m",   "N m/rad", "N s/m", "Pa s", "Pa/m",   "Pa/s",   "N/m^3"}) {
     const std::regex pattern(quantity_pattern(unit));
     for (const auto& spelling : unit_spellings(unit)) {
       const auto found = parse_quantity("2 " + spelling, unit);

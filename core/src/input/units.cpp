@@ -45,6 +45,7 @@ const std::map<std::string, Spellings>& table() {
       {"N/m^3", {{"N/m^3", "kN/m^3"}, {"MN/m^3", "N/m3", "kN/m3"}}},
       {"kg m^2", {{"kg m^2"}, {"g mm^2", "g cm^2", "kg mm^2"}}},
       {"J", {{"J", "mJ", "uJ", "kJ"}, {"µJ", "nJ", "N m"}}},
+      {"J/m^2", {{"J/m^2", "mJ/m^2"}, {"J/m2", "mJ/m2", "N/m", "mN/m"}}},
       {"J/m^3", {{"J/m^3", "kJ/m^3"}, {"J/m3"}}},
       {"W", {{"W", "mW", "kW"}, {}}},
       {"N/m", {{"N/m", "kN/m", "MN/m"}, {"N/mm", "mN/m"}}},
