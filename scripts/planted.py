@@ -49,6 +49,7 @@ PARTS = {
     'linear-rolling': (LAWS / 'linear-rolling', 'linear-rolling.hpp', [
         *at_each('shear stiffness × 2', 'mean(a.shear_to_normal_stiffness, stiff_b.shear_to_normal_stiffness)'),
         *at_each('friction + 1 %', FRICTION, '1.01'),
+        ('dashpot × 2', 'dashpot(pair.damping, kn, at.inverse_mass_a + at.inverse_mass_b)', 'L(2.0) * $'),
         ('velocity of shear half a step late',
          'state.shear = response.shear;',
          f'$ response.shear = response.shear + {LATE};'),
@@ -75,6 +76,19 @@ PARTS = {
          'stretched(at, kept * state.rolling, -stiffness, at.spin)'),
         *at_each('rolling stiffness × 2', '0.5 * (a.rolling_stiffness + b.rolling_stiffness)'),
         *at_each('rolling limit + 1 %', ROLLING_LIMIT, '1.01'),
+    ]),
+    'linear-cohesive': (LAWS / 'linear-cohesive', 'linear-cohesive.hpp', [
+        ('pull-off force + 1 %', 'pair.strength * radius * radius', 'L(1.01) * $'),
+        ('a bond before bodies touch', 'select(at.overlap > L(0.0), L(1.0), L(0.0))', 'L(1.0)'),
+    ]),
+    'jkr': (LAWS / 'jkr', 'jkr.hpp', [
+        ('work of adhesion + 1 %', '2 * std::sqrt(a.surface_energy * b.surface_energy)', '1.01 * $'),
+        ('a contact before bodies touch', 'select(at.overlap > L(0.0), L(1.0), L(0.0))', 'L(1.0)'),
+    ]),
+    'capillary': (LAWS / 'capillary', 'capillary.hpp', [
+        ('force of a bridge + 1 %', 'std::cos(angle)', '1.01 * $'),
+        ('rupture distance + 1 %', 'std::cbrt(volume)', '1.01 * $'),
+        ('a bridge before bodies touch', 'select(at.overlap > none, L(1.0), none)', 'L(1.0)'),
     ]),
     'walls': (ROOT / 'core' / 'src' / 'contact', 'wall_contacts.cpp', [
         ('an edge that two faces share counts twice', '!work.found.empty()', 'false'),

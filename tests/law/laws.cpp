@@ -50,6 +50,14 @@ struct RightInAllParts : Parts {
   }
 };
 
+struct RightAtADistance : Right {
+  static constexpr LawTraits traits{.reach = true};
+  template <class L>
+  static L reach(const Pair<L>&, const L& radius_a, const L& radius_b) {
+    return min(radius_a, radius_b);
+  }
+};
+
 struct RightWithoutHistory : grit::LawBase {
   using Settings = NoParameters;
   using Interface = NoParameters;
@@ -149,6 +157,32 @@ struct FeaturesAreNotAnnounced : RightInAllParts {
   static constexpr LawTraits traits{.losses = true};
 };
 
+// error: the law has reach() and does not announce it: set .reach = true in its traits
+struct ReachIsNotAnnounced : Right {
+  template <class L>
+  static L reach(const Pair<L>&, const L&, const L&) {
+    return L(0.0);
+  }
+};
+
+// error: traits.reach is true: the law has template <class L> static L reach(const Pair<L>&, const L& radius_a, const
+struct ReachIsMisspelt : Right {
+  static constexpr LawTraits traits{.reach = true};
+  template <class L>
+  static L reaches(const Pair<L>&, const L&, const L&) {
+    return L(0.0);
+  }
+};
+
+// error: traits.reach is true: the law has template <class L> static L reach(const Pair<L>&, const L& radius_a, const
+struct ReachReturnsADouble : Right {
+  static constexpr LawTraits traits{.reach = true};
+  template <class L>
+  static double reach(const Pair<L>&, const L&, const L&) {
+    return 0;
+  }
+};
+
 // error: traits.features has names: the law has static unsigned features(const Pair<double>&)
 struct FeaturesAreMisspelt : Right {
   static constexpr LawTraits traits{.features = {"shear"}};
@@ -199,6 +233,7 @@ template grit::Response<grit::Lane> Right::evaluate<0>(const grit::ContactPoint<
 
 static_assert(grit::check_law<Right>());
 static_assert(grit::check_law<RightInAllParts>());
+static_assert(grit::check_law<RightAtADistance>());
 static_assert(grit::check_law<RightWithoutHistory>());
 static_assert(grit::check_law<EvaluateIsMissing>());
 static_assert(grit::check_law<EvaluateIsMisspelt>());
@@ -208,6 +243,9 @@ static_assert(grit::check_law<EvaluateIsForDoublesAlone>());
 static_assert(grit::check_law<TraitsAreMisspelt>());
 static_assert(grit::check_law<LossesAreNotAnnounced>());
 static_assert(grit::check_law<LossesAreMisspelt>());
+static_assert(grit::check_law<ReachIsNotAnnounced>());
+static_assert(grit::check_law<ReachIsMisspelt>());
+static_assert(grit::check_law<ReachReturnsADouble>());
 static_assert(grit::check_law<FeaturesAreNotAnnounced>());
 static_assert(grit::check_law<FeaturesAreMisspelt>());
 static_assert(grit::check_law<AFieldIsMissing>());
@@ -216,13 +254,15 @@ static_assert(grit::check_law<PairHasADouble>());
 static_assert(grit::check_law<MaterialDeclaresNothing>());
 
 static_assert(grit::LawDefinition<Right> && grit::LawDefinition<RightInAllParts> &&
-              grit::LawDefinition<RightWithoutHistory>);
+              grit::LawDefinition<RightAtADistance> && grit::LawDefinition<RightWithoutHistory>);
 static_assert(!grit::LawDefinition<EvaluateIsMissing> && !grit::LawDefinition<EvaluateIsMisspelt> &&
               !grit::LawDefinition<EvaluateTakesNoState> && !grit::LawDefinition<EvaluateReturnsANumber> &&
               !grit::LawDefinition<EvaluateIsForDoublesAlone> && !grit::LawDefinition<TraitsAreMisspelt> &&
-              !grit::LawDefinition<LossesAreNotAnnounced> && !grit::LawDefinition<LossesAreMisspelt> &&
-              !grit::LawDefinition<FeaturesAreNotAnnounced> && !grit::LawDefinition<FeaturesAreMisspelt> &&
-              !grit::LawDefinition<AFieldIsMissing> && !grit::LawDefinition<AFieldNeedsNoFeature> &&
-              !grit::LawDefinition<PairHasADouble> && !grit::LawDefinition<MaterialDeclaresNothing>);
+              !grit::LawDefinition<ReachIsNotAnnounced> && !grit::LawDefinition<ReachIsMisspelt> &&
+              !grit::LawDefinition<ReachReturnsADouble> && !grit::LawDefinition<LossesAreNotAnnounced> &&
+              !grit::LawDefinition<LossesAreMisspelt> && !grit::LawDefinition<FeaturesAreNotAnnounced> &&
+              !grit::LawDefinition<FeaturesAreMisspelt> && !grit::LawDefinition<AFieldIsMissing> &&
+              !grit::LawDefinition<AFieldNeedsNoFeature> && !grit::LawDefinition<PairHasADouble> &&
+              !grit::LawDefinition<MaterialDeclaresNothing>);
 
 }  // namespace somewhere

@@ -168,9 +168,12 @@ TEST_P(Restitution, OutIsIn) {
 }
 INSTANTIATE_TEST_SUITE_P(Collision, Restitution,
                          testing::Values(Damped{"linear-frictional", {{"contact_modulus", modulus}}, Spring().duration},
+                                         Damped{"linear-rolling", {{"contact_modulus", modulus}}, Spring().duration},
                                          Damped{
                                              "hertz-mindlin", {{"young_modulus", 1e9}, {"poisson_ratio", 0.25}}, 3e-5}),
-                         [](const auto& info) { return std::string(info.index == 0 ? "Linear" : "Hertz"); });
+                         [](const auto& info) {
+                           return std::string(info.index == 0 ? "Linear" : info.index == 1 ? "Rolling" : "Hertz");
+                         });
 
 }  // namespace
 }  // namespace grit::test::collision_tests

@@ -28,6 +28,7 @@ struct LinearRolling : LawBase {
     double rolling_limit = 0.4;
     double twisting_stiffness = 0;
     double twisting_limit = 0;
+    double restitution = 1;
 
     void declare(Parameters& p) {
       declare_contact_modulus(p, contact_modulus);
@@ -47,11 +48,12 @@ struct LinearRolling : LawBase {
           .doc(
               "limit of the twisting moment over normal force times radius; the smaller of two materials, unless an "
               "interface gives it");
+      declare_restitution(p, restitution);
     }
   };
 
   struct Interface {
-    std::optional<double> friction_angle, rolling_limit, twisting_limit;
+    std::optional<double> friction_angle, rolling_limit, twisting_limit, restitution;
 
     void declare(Parameters& p) {
       declare_friction_angle(p, friction_angle);
@@ -61,6 +63,7 @@ struct LinearRolling : LawBase {
           .at_least(0)
           .at_most(100)
           .doc("limit of the twisting moment between these two materials");
+      declare_restitution(p, restitution);
     }
   };
 
@@ -69,11 +72,12 @@ struct LinearRolling : LawBase {
     L modulus_a, modulus_b, shear_ratio, friction;
     L rolling, rolling_limit, twisting, twisting_limit;
     L smaller_radius;  ///< 1: limits by the smaller radius; 0: by the mean
+    L damping;         ///< damping ratio
   };
 
   static constexpr LawTraits traits{
-      .single_precision = true, .losses = true, .features = {"shear", "rolling", "twisting"}};
-  static constexpr unsigned with_shear = 1, with_rolling = 2, with_twisting = 4;
+      .single_precision = true, .losses = true, .features = {"shear", "rolling", "twisting", "damping"}};
+  static constexpr unsigned with_shear = 1, with_rolling = 2, with_twisting = 4, with_damping = 8;
 
   template <class L>
   struct State {
@@ -95,7 +99,7 @@ struct LinearRolling : LawBase {
 
   static unsigned features(const Pair<double>& pair) {
     return (pair.friction > 0 ? with_shear : 0u) | (pair.rolling * pair.rolling_limit > 0 ? with_rolling : 0u) |
-           (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u);
+           (pair.twisting * pair.twisting_limit > 0 ? with_twisting : 0u) | (pair.damping > 0 ? with_damping : 0u);
   }
 
   /// A wall contributes strength only; stiffness and radius are those of the body.
@@ -116,6 +120,7 @@ struct LinearRolling : LawBase {
     if (pair.shear_ratio * pair.rolling == 0) pair.rolling_limit = 0;
     if (pair.shear_ratio * pair.twisting == 0) pair.twisting_limit = 0;
     pair.smaller_radius = settings.limit_radius == "smaller" ? 1 : 0;
+    pair.damping = damping_of_restitution(interface.restitution.value_or(std::min(a.restitution, b.restitution)));
     return pair;
   }
 
@@ -132,6 +137,10 @@ struct LinearRolling : LawBase {
 
     Response<L> response;
     response.normal_force = kn * at.overlap;
+    if constexpr ((Features & with_damping) != 0) {
+      const L dash = dashpot(pair.damping, kn, at.inverse_mass_a + at.inverse_mass_b);
+      response.normal_force = max(L(0.0), response.normal_force - dash * dot(at.velocity, at.normal));
+    }
 
     if constexpr ((Features & with_shear) != 0) {
       const Vec<L> shear = stretched(at, state.shear, ks, at.velocity);
@@ -187,6 +196,8 @@ struct LinearRolling : LawBase {
     // A change of parameters that removes a spring accounts for its energy.
     const auto if_active = [](const L& limit, const L& lost) { return select(limit > L(0.0), lost, L(0.0)); };
     Loss<L> loss{L(0.0), L(0.0), L(0.0)};
+    if constexpr ((Features & with_damping) != 0)
+      loss.viscosity = dashpot_work(at, response.normal_force, kn * at.overlap);
     if constexpr ((Features & with_shear) != 0) loss.friction = if_active(pair.friction, slid * (half * other));
     if constexpr ((Features & with_rolling) != 0) loss.rolling = if_active(pair.rolling_limit, rolled * (half * ks));
     if constexpr ((Features & with_twisting) != 0) {
@@ -205,7 +216,8 @@ struct LinearRolling : LawBase {
     return {.normal = kn,
             .shear = pair.friction > 0 ? ks : 0,
             .rolling = pair.rolling_limit > 0 ? pair.rolling * angular : 0,
-            .twisting = pair.twisting_limit > 0 ? pair.twisting * angular : 0};
+            .twisting = pair.twisting_limit > 0 ? pair.twisting * angular : 0,
+            .damping_ratio = pair.damping};
   }
   static ElasticEnergy energy(const PairSize& size, const Pair<double>& pair, const State<double>& state) {
     const Stiffness k = stiffness(size, pair);

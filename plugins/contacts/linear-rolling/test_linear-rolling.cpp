@@ -19,17 +19,23 @@ Values material(double modulus, double friction_degrees, double rolling, double 
           {"twisting_stiffness", twisting},
           {"twisting_limit", 0.3 * twisting}};
 }
-LawValues three(double rolling, double twisting) {
-  return {{},
-          {material(1e6, 25, rolling, twisting), material(2e6, 30, 0.5 * rolling, twisting, 0.7),
-           material(5e5, 10, rolling, 0.5 * twisting, 0.2)},
-          {}};
+LawValues three(double rolling, double twisting, double restitution = 1) {
+  LawValues all{{},
+                {material(1e6, 25, rolling, twisting), material(2e6, 30, 0.5 * rolling, twisting, 0.7),
+                 material(5e5, 10, rolling, 0.5 * twisting, 0.2)},
+                {}};
+  for (Values& one : all.materials) one["restitution"] = restitution;
+  return all;
 }
 std::vector<LawSetup> setups() {
   return {{"Sliding", three(0, 0), 3},
           {"Rolling", three(0.7, 0), 6},
           {"Twisting", three(0, 0.5), 4},
-          {"RollingTwisting", three(0.7, 0.5), 7}};
+          {"RollingTwisting", three(0.7, 0.5), 7},
+          {"SlidingDamped", three(0, 0, 0.4), 3},
+          {"RollingDamped", three(0.7, 0, 0.4), 6},
+          {"TwistingDamped", three(0, 0.5, 0.4), 4},
+          {"RollingTwistingDamped", three(0.7, 0.5, 0.4), 7}};
 }
 INSTANTIATE_TEST_SUITE_P(LinearRolling, ContactLawContract, testing::ValuesIn(setups()), setup_name);
 
@@ -97,6 +103,24 @@ TEST(LinearRolling, ElasticCollisionLastsHalfAPeriod) {
   EXPECT_NEAR(hit.restitution, 1, 1e-7);
 }
 
+TEST(LinearRolling, RestitutionEqualsItsParameter) {
+  for (const double e : {0.2, 0.5, 0.9}) {
+    Values damped = material(1e6, 25, 0.5, 0);
+    damped["restitution"] = e;
+    const auto law = make_law({{}, {damped}, {}});
+    const double omega = std::sqrt(2 * 1e6 * 0.7 / 1.7 / (2.0 / 3));
+    EXPECT_NEAR(collide(*law, {.radius = 1, .mass = 1}, {.radius = 0.7, .mass = 2}, 3, 2e-4 / omega).restitution, e,
+                1e-3);
+    EXPECT_NEAR(collide_with_wall(*law, {.radius = 0.5, .mass = 1.3}, 3, 2e-4 / std::sqrt(5e5 / 1.3)).restitution, e,
+                1e-3);
+  }
+  Values lossy = material(1e6, 25, 0.5, 0), elastic = lossy;
+  lossy["restitution"] = 0.3;
+  const auto law = make_law({{}, {lossy, elastic}, {{{0, 1}, {{"restitution", 0.7}}}}});
+  EXPECT_NEAR(collide_with_wall(*law, {.radius = 0.5, .mass = 1.3}, 3, 2e-4 / std::sqrt(5e5 / 1.3), 1).restitution, 0.7,
+              1e-3);
+}
+
 TEST(LinearRolling, SphereOnASlopeStaysUpToTheRollingLimit) {
   // A sphere sticks to a slope while tan α < η (and μ); beyond, it rolls with a = 5/7 g (sin α − η cos α).
   const double eta = 0.3, radius = 0.1, mass = 2, gravity = 9.81, dt = 5e-6;
@@ -142,8 +166,10 @@ TEST(LinearRolling, RefusesInvalidParameters) {
   const auto with = [](const Values& values) { return [=] { make_law({{}, {values}, {}}); }; };
   EXPECT_THAT(with({{"rolling_limit", -0.1}}),
               testing::ThrowsMessage<std::invalid_argument>("rolling_limit: out of range"));
-  EXPECT_THAT(with({{"restitution", 0.5}}),
-              testing::ThrowsMessage<std::invalid_argument>("restitution: no such parameter"));
+  EXPECT_THAT(with({{"restitution", 0.001}}),
+              testing::ThrowsMessage<std::invalid_argument>("restitution: out of range"));
+  EXPECT_THAT(with({{"young_modulus", 1e9}}),
+              testing::ThrowsMessage<std::invalid_argument>("young_modulus: no such parameter"));
 }
 
 }  // namespace

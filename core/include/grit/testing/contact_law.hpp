@@ -25,7 +25,8 @@ struct LawSetup {
   std::string name;        ///< letters and digits
   LawValues values;        ///< at least three materials
   std::size_t state_size;  ///< numbers in the contact history
-  /// A wall is evaluated as a sphere of this radius, over that of the body; 1 for laws with radius_b = radius_a.
+  /// A wall is evaluated as a sphere of this radius, over that of the body; 1 for laws with radius_b = radius_a;
+  /// 0 if no sphere acts like a wall.
   double wall_sphere = 1;
   bool attracts = false;  ///< its normal force may be negative
   /// Whether shear force, rolling and twisting moment have the limits tan(friction_angle) F_n, rolling_limit R F_n and
