@@ -68,7 +68,7 @@ struct Contact {
   Vec3 force;                 ///< on b [N]; −force acts on a
   Vec3 moment;                ///< on b about its centre; on a wall about the contact point [N m]
   double normal_force = 0;    ///< N, > 0 in compression
-  double overlap = 0;         ///< m
+  double overlap = 0;         ///< m; minus the distance of the surfaces where a law acts at a distance
 };
 
 /// A wall at one instant.
@@ -137,7 +137,7 @@ struct Energies {
   double cell = 0;                                                    ///< work done by the straining of a periodic cell
   double engines = 0;   ///< work done by engines: added forces, held bodies
   double settings = 0;  ///< added by changes of the description
-  double friction = 0, rolling = 0, viscosity = 0, local_damping = 0;  ///< dissipated
+  double friction = 0, rolling = 0, viscosity = 0, local_damping = 0;  ///< dissipated; viscosity includes broken bonds
   /// Stored and dissipated energy less the initial energy and the work done. Its sources are errors of the time
   /// integration and of the contact law.
   double closure_error = 0;

@@ -25,7 +25,7 @@ constexpr Entry entries[] = {
     {"settings", "energy added by changes of the description since the first sample", &Energies::settings},
     {"friction", "energy dissipated by slip since the first sample", &Energies::friction},
     {"rolling", "energy dissipated by rolling and twisting at their limits since the first sample", &Energies::rolling},
-    {"viscosity", "energy dissipated by dashpots since the first sample", &Energies::viscosity},
+    {"viscosity", "energy dissipated by dashpots and by bonds that break since the first sample", &Energies::viscosity},
     {"local_damping", "energy dissipated by local damping since the first sample", &Energies::local_damping},
     {"closure_error", "stored and dissipated energy, less initial energy and work", &Energies::closure_error},
 };
