@@ -35,8 +35,10 @@ Description impact(double strength, double speed) {
 }
 
 TEST(Attraction, ABondThatBreaksTakesItsEnergy) {
-  const double strength = 2e5, speed = 0.1;
-  Kept hit(impact(strength, speed));
+  const double strength = 5e3, speed = 0.1;
+  Description d = impact(strength, speed);
+  d["time_step"]["value"] = 2e-8;
+  Kept hit(d);
   ASSERT_LT(bond_energy(strength), 0.5 * kinetic_at(speed));
   do hit.step();
   while (hit.velocity(0).x() > 0 || !hit.world().contacts().empty());
@@ -56,7 +58,7 @@ TEST(Attraction, SlowBallsStickAndKeepTheirEnergy) {
   for (int k = 0; k < 400; ++k) {
     hit.step(100);
     const Energies now = hit.world().energies();
-    EXPECT_NEAR(now.kinetic + now.elastic(), 2 * kinetic_at(speed), 1e-3 * kinetic_at(speed));
+    EXPECT_NEAR(now.kinetic + now.elastic(), 2 * kinetic_at(speed), 2e-3 * kinetic_at(speed));
     EXPECT_EQ(now.dissipated(), 0);
     for (const Contact& contact : hit.world().contacts()) largest = std::max(largest, -contact.overlap);
   }
@@ -70,7 +72,7 @@ Description hanging(const Description& material, const std::string& law) {
       grains(law, material, {{{0, 0, -(1 - 1e-6) * radius}, radius}, {{0, 0, -(3 - 2e-6) * radius}, radius}});
   d["walls"]["ceiling"] = plane(Vec3::Zero(), -Vec3::UnitZ());
   d["engines"]["gravity"] = {{"type", "gravity"}};
-  d["time_step"]["safety"] = 0.1;
+  d["time_step"]["safety"] = 0.05;
   return d;
 }
 void expect_hangs(const Description& d) {
@@ -110,7 +112,7 @@ TEST(Attraction, HangingBallsDoNotTripTheEnergyGuard) {
 TEST(Attraction, GuardFindsEnergyThatTensionCreates) {
   Description d = hanging(cohesive(100 * mass * 9.81 / pull_off(1)), "linear-cohesive");
   Trial stable(d);
-  d["time_step"] = {{"value", 3 / 0.1 * stable.world().dt()}, {"allow_unstable", true}};
+  d["time_step"] = {{"value", 3 / 0.05 * stable.world().dt()}, {"allow_unstable", true}};
   d["guards"]["travel"] = 1, d["guards"]["overlap"] = 0.9;
   Trial trial(d);
   EXPECT_THAT([&] { trial.step(20000); },
@@ -121,7 +123,8 @@ TEST(Attraction, BallsFallThatAreTooHeavy) {
   Description d = hanging(cohesive(1.5 * mass * 9.81 / pull_off(1)), "linear-cohesive");
   Trial trial(d);
   trial.step(20000);
-  EXPECT_EQ(trial.world().contacts().size(), 0u);
+  EXPECT_EQ(trial.world().walls()[0].contacts, 0u);
+  EXPECT_LT(trial.position(0).z(), -1.1 * radius);
 }
 
 /// A bond that is stretched over more than the skins, through many neighbour searches.
@@ -229,7 +232,7 @@ const Description sticky{
     {"young_modulus", young}, {"poisson_ratio", poisson}, {"surface_energy", surface_energy}, {"friction_angle", 0}};
 
 TEST(PullOff, IsWhatJohnsonKendallAndRobertsSay) {
-  const PulledOff found = pull_off("jkr", sticky, {}, 1e-8);
+  const PulledOff found = pull_off("jkr", sticky, {}, 2e-9);
   const double force = 1.5 * std::numbers::pi * work * radius;
   const double least = std::cbrt(std::numbers::pi * work * radius * radius / (8 * plane_modulus));
   const double gap = std::sqrt(2 * std::numbers::pi * work * least / plane_modulus) - least * least / radius;
@@ -271,6 +274,7 @@ TEST(Attraction, CollisionsCloseTheEnergyBalance) {
     Description d =
         grains(law, material, {{Vec3::Zero(), radius, {speed, 0, 0}}, {{2.01 * radius, 0, 0}, radius, {-speed, 0, 0}}});
     if (law == "capillary") d["contacts"].update({{"bridge_volume", 1e-12}});
+    d["time_step"]["value"] = 2e-8;
     Kept hit(d);
     do hit.step();
     while (hit.velocity(0).x() > 0 || !hit.world().contacts().empty());
