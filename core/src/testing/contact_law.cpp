@@ -31,7 +31,10 @@ TEST_P(ContactLawContract, LanesAgreeWithScalarTwin) {
       ASSERT_EQ(lanes.touching(c), twin.touching(c));
       if (!lanes.touching(c)) continue;
       ++touching;
-      const double eps = round_off(lanes, c), force = scale(lanes, c, "N"), moment = scale(lanes, c, "N m");
+      // If spring and attraction nearly cancel, their sum has the rounding errors of each.
+      const double spring = GetParam().attracts ? spring_force(lanes, c) : 0;
+      const double eps = round_off(lanes, c), force = std::max(scale(lanes, c, "N"), spring),
+                   moment = scale(lanes, c, "N m");
       EXPECT_LE((vec(lanes.row(c).force) - vec(twin.row(c).force)).norm(), eps * force) << c;
       EXPECT_LE((vec(lanes.row(c).moment) - vec(twin.row(c).moment)).norm(), eps * moment) << c;
       EXPECT_NEAR(lanes.row(c).force.w, twin.row(c).force.w, eps * force) << c;
