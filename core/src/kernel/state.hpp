@@ -42,8 +42,10 @@ struct State {
   ContactTable::Instant instant(bool again) const {
     return {*settings.law, bodies, statistics.one_material, cell.images(), time.previous_dt, lists.skins(), again};
   }
-  /// Distances of surfaces up to which the law acts [m], for bodies of the largest radius.
-  std::vector<double> reaches() const { return settings.law->reaches(statistics.largest_radius); }
+  /// Distances of surfaces up to which the law acts [m], for bodies of the largest radius; empty before there is a law.
+  std::vector<double> reaches() const {
+    return settings.law != nullptr ? settings.law->reaches(statistics.largest_radius) : std::vector<double>{};
+  }
   /// The next step of the leap-frog scheme. `energies`: whether work is summed up.
   MotionStep next_motion(bool energies) const;
   /// Discharged mass over all mass that entered.
