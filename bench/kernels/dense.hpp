@@ -57,7 +57,7 @@ class Dense {
   void search() { find(), rebuild(); }
   /// Neighbour search only.
   void find() {
-    skins_.reset(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0);
+    skins_.reset(std::vector(chunks_of(bodies_.count()), 0.03 * spacing), 0, 0);
     search_.build(bodies_, cell_, skins_);
   }
   /// Builds the contact table from the pairs found.

@@ -41,7 +41,8 @@ TEST(Descriptions, AllProblemsAreReportedAtOnceWithTheirLocations) {
         outcome.err,
         AllOf(
             HasSubstr("bad.json:2: /contacts/type: unknown contact \"linear-roling\"; did you mean \"linear-rolling\"? "
-                      "Allowed are hertz-mindlin, linear-frictional, linear-rolling; searched: " GRIT_PLUGIN_DIR
+                      "Allowed are capillary, hertz-mindlin, jkr, linear-cohesive, linear-frictional, linear-rolling; "
+                      "searched: " GRIT_PLUGIN_DIR
                       "/contacts; --plugin-path DIR or GRIT_PLUGIN_PATH=DIR adds DIR/contacts\n"),
             HasSubstr("bad.json:3: /materials/sand/density: "), HasSubstr("kPa"), HasSubstr("kg/m^3"),
             HasSubstr("bad.json:4: /bodies/grains/materials: "), HasSubstr("\"material\""),
@@ -65,7 +66,7 @@ TEST(Descriptions, KeysOfAFileAreSuggestedAndListed) {
     return outcome.err;
   };
   const std::string all =
-      "? Allowed are title, seed, contacts, materials, interfaces, domain, bodies, walls, engines, specimen, "
+      "? Allowed are title, seed, contacts, materials, interfaces, domain, bodies, begin, walls, engines, specimen, "
       "time_step, "
       "guards, stages, probes, output, scenario, extends\ngrit: 1 problem in the description\n";
   EXPECT_EQ(problems("{\n\"scenaro\": {\"type\": \"direct-shear\"},\n\"walls\": {\"platen\": {}}}"),
@@ -155,8 +156,12 @@ TEST(Descriptions, CheckReportsMotionsWithoutEffect) {
   };
   const std::string moves = R"({"velocity": [0, 0, "1 mm/s"]})",
                     follows = R"({"follow": {"wall": "lid", "axes": "z"}})";
-  EXPECT_THAT(check(R"({"ramp_time": "1 ms"})"),
-              HasSubstr("  /walls/lid/motion/ramp_time: the wall has no velocity, spin or oscillation\n"));
+  EXPECT_THAT(
+      check(R"({"ramp_time": "1 ms"})"),
+      HasSubstr(
+          "  /walls/lid/motion/ramp_time: neither the wall nor its surface has a velocity, spin or oscillation\n"));
+  EXPECT_THAT(check(R"({"surface_velocity": ["1 m/s", 0, 0], "ramp_time": "1 us"})"),
+              testing::Not(HasSubstr("/motion/")));
   const std::string brief = R"(/stages/0/until={"type": "time", "value": "0.5 ms"})";
   EXPECT_THAT(check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "1 ms"})", "{}", brief),
               HasSubstr("  /walls/lid/motion/ramp_time: the wall never reaches its full speed: the ramp takes 0.001 s, "
@@ -168,6 +173,12 @@ TEST(Descriptions, CheckReportsMotionsWithoutEffect) {
       << "the stage has a shorter one";
   EXPECT_THAT(check(R"({"velocity": [0, 0, "1 mm/s"], "ramp_time": "0.4 ms"})", "{}", brief),
               testing::Not(HasSubstr("ramp_time")));
+  EXPECT_THAT(
+      check(R"({"oscillation": {"amplitude": [0, 0, "1 mm"], "angle": ["1 deg", 0, 0], "frequency": "10 Hz",
+                                        "amplitude_phase": ["1 rad", 0, "1 rad"], "angle_phase": [0, "1 rad", 0]}})"),
+      HasSubstr("  /walls/lid/motion/oscillation/amplitude_phase: it has a component along x, where amplitude is "
+                "0\n  /walls/lid/motion/oscillation/angle_phase: it has a component along y, where angle is "
+                "0\n"));
   EXPECT_THAT(
       check(R"({"free": {"axes": "z", "mass": 1, "load": [0, "1 N", "1 N"]}})"),
       HasSubstr("  /walls/lid/motion/free/load: it has a component along y, along which the wall is not free\n"));
@@ -296,7 +307,7 @@ TEST(Descriptions, CheckReportsSettingsWithoutEffect) {
       HasSubstr("  /probes/turns: it samples rotations, but rotations are held, so that they are all 0\n");
   EXPECT_THAT(check({turning, held, damped, later(R"({"damping": {"coefficient": 0.3}})")}), turns_not)
       << "a stage changes another engine";
-  EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": false}})")}), testing::Not(turns_not));
+  EXPECT_THAT(check({turning, held, later(R"({"hold": {"rotation": "none"}})")}), testing::Not(turns_not));
   const std::string second = R"(/engines/other={"type": "local-damping", "coefficient": 0})";
   EXPECT_THAT(check({damped, second}), testing::Not(HasSubstr("/engines/other"))) << "the last one counts";
   EXPECT_THAT(

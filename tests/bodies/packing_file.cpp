@@ -103,14 +103,14 @@ TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
   const std::string text =
       "# head\n1 2 3 4\n1 2 3\n1 2 x3 4\n1 2 3 4 5\n1 nan 3 4\n1 2 3 inf\n1 2 3 0\n1 2 3 -1e-7\n1e400 2 3 4\n0,01 2 3 "
       "4\n"
-      "0.01, 2, 3, 4\n1 2 3 1mm\n1\0\xff 2 3 4\n1 2 3 1e-400\n"s;
+      "0.01, 2 3 4\n1 2 3 1mm\n1\0\xff 2 3 4\n1 2 3 1e-400\n"s;
   std::vector<Problem> found = problems(text.substr(0, text.find("0.01,")));
   // More than ten problems are not listed.
   for (const auto& one : problems(std::string(11, '\n') + text.substr(text.find("0.01,")))) found.push_back(one);
   const std::pair<int, const char*> wanted[] = {
-      {3, "found 3 numbers; expected four: x y z radius"},
+      {3, "found 3 columns; expected 4: x y z radius"},
       {4, "z is \"x3\": not a number"},
-      {5, "found 5 numbers; expected four: x y z radius"},
+      {5, "found 5 columns; expected 4: x y z radius"},
       {6, "y is \"nan\": not finite"},
       {7, "radius is \"inf\": not finite"},
       {8, "radius is 0 m; it must be above 0"},
@@ -128,7 +128,7 @@ TEST_F(PackingFile, NamesFileAndLineOfEachFault) {
     EXPECT_EQ(found[i].line, wanted[i].first);
     EXPECT_EQ(found[i].message, wanted[i].second);
   }
-  EXPECT_THAT(DescriptionError(found).what(), testing::StartsWith(path_.string() + ":3: found 3 numbers"));
+  EXPECT_THAT(DescriptionError(found).what(), testing::StartsWith(path_.string() + ":3: found 3 columns"));
 }
 
 TEST_F(PackingFile, ReportsTheFirstErrorsOnly) {

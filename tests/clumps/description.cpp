@@ -106,7 +106,7 @@ TEST_F(ClumpDescription, OfAFileNamesFileAndLine) {
                                               "with one line per sphere: x y z radius");
   EXPECT_EQ(file("# x y z radius\n0 0 0 1\n1 0 0\n1 0 x 1\n0 0 0 -1\n"),
             place + path +
-                ":3: found 3 numbers; expected four: x y z radius; allowed is a file with one line "
+                ":3: found 3 columns; expected 4: x y z radius; allowed is a file with one line "
                 "per sphere: x y z radius\n" +
                 place + path +
                 ":4: z is \"x\": not a number; allowed is a file with one line per sphere: x y z radius\n" + place +

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "components.hpp"
 #include "description/current_scene.hpp"
 #include "folder.hpp"
@@ -53,6 +55,14 @@ TEST_F(SceneTest, ReadsIntoTypes) {
   EXPECT_EQ(shaken.angle, Vec3(0, 0, 0.5));
   EXPECT_EQ(shaken.frequency, 2000);
   EXPECT_EQ(shaken.phase, -0.25);
+  EXPECT_EQ(shaken.phases_of_displacement(), Vec3(90 * 0.017453292519943295 - 0.25, -0.25, -0.25));
+  EXPECT_EQ(shaken.phases_of_rotation(), Vec3(-0.25, -0.25, 0.25));
+  const MotionDescription& turned = s.walls.at("floor").motion;
+  EXPECT_EQ(turned.surface_velocity, Vec3(2, 0, 0));
+  EXPECT_NEAR(turned.surface_spin.z(), 10 * 2 * std::numbers::pi / 60, 1e-15);
+  EXPECT_EQ(turned.free_rotation->axis, Vec3(0, 1, 0));
+  EXPECT_EQ(turned.free_rotation->inertia, 0.1);
+  EXPECT_EQ(turned.free_rotation->moment, 2);
   EXPECT_EQ(s.walls.at("cup").geometry.type(), "mesh");
   EXPECT_EQ(s.engines.at("damping").engine.type(), "damping");
   EXPECT_EQ(s.probes.at("curve").cadence.every_time, 1e-3);
@@ -232,9 +242,9 @@ TEST_F(SceneTest, ManyProblemsInOneGo) {
     EXPECT_THAT(found, testing::UnorderedElementsAre(
                            "19 /colour", "18 /seed", "4 /materials/sand/density", "5 /materials/sand/frictoin_angle",
                            "7 /bodies/grains/type", "7 /bodies/grains/source", "7 /bodies/grains/source",
-                           "7 /bodies/grains/source", "7 /bodies/grains/source", "9 /walls/floor/position",
-                           "14 /stages/0/until/value", "16 /stages/0/change/guards/overlap", "9 /walls/floor/material",
-                           "9 /walls/side", "11 /walls/lid/motion/follow/wall", "7 /bodies/grains/material"))
+                           "7 /bodies/grains/source", "9 /walls/floor/position", "14 /stages/0/until/value",
+                           "16 /stages/0/change/guards/overlap", "9 /walls/floor/material", "9 /walls/side",
+                           "11 /walls/lid/motion/follow/wall", "7 /bodies/grains/material"))
         << error.what();
   }
 }

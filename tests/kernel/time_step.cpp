@@ -70,7 +70,7 @@ TEST_F(TimeStep, IsStableWithTheRatesOfEngines) {
   } damper;
   state_.settings.time_step.steps_per_impact = 0;
   const double without = set();
-  state_.settings.force_engines = {&damper};
+  state_.settings.force_engines = {{&damper, {}}};
   EXPECT_LT(set(), without);
   EXPECT_NEAR(control_.critical(), 2e-9, 1e-12) << "2 m/c for a dashpot alone";
 }

@@ -56,7 +56,8 @@ inline void search(State& state, Passes& passes) {
   state.lists.rebuild(state.bodies, state.cell, state.statistics, state.reaches(), state.time.dt, 0, passes);
   state.pairs.rebuild(state.bodies, state.lists.search(), state.cell.periodic(), state.settings.fields, {},
                       passes.team());
-  state.wall_contacts.rebuild(state.bodies, state.surfaces, state.lists.skins(), state.settings.fields, {});
+  state.wall_contacts.rebuild(state.bodies, state.group, state.surfaces, state.lists.skins(), state.settings.fields,
+                              {});
 }
 
 /// Evaluates the contacts of the only chunk.

@@ -38,7 +38,7 @@ class Wind final : public Engine {
 
 INSTANTIATE_TEST_SUITE_P(Engines, EngineContract,
                          testing::Values(builtin("gravity"), builtin("local-damping"), builtin("hold"),
-                                         builtin("planar"),
+                                         builtin("planar"), builtin("prescribed-motion"), builtin("sink"),
                                          EngineCase{"with_a_memory", [] { return std::make_shared<Wind>(); }}),
                          engine_case_name);
 

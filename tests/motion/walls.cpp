@@ -178,6 +178,40 @@ TEST(Walls, OscillatesInRotationAlongItsSine) {
   }
 }
 
+TEST(Walls, PhasesByAxisMoveItOnACircle) {
+  const double radius = 2e-3;
+  const OscillationDescription how{.amplitude = {radius, 0, radius},
+                                   .frequency = 40,
+                                   .phase = 0.3,
+                                   .amplitude_phase = {0, 0, 0.5 * std::numbers::pi}};
+  Walls walls;
+  walls.apply({plate({.oscillation = how})});
+  const double omega = 2 * std::numbers::pi * how.frequency, dt = 1e-4;
+  const Vec3 centre = -radius * Vec3(std::sin(how.phase), 0, std::cos(how.phase));
+  for (int n = 1; n <= 1000; ++n) {
+    step(walls, dt);
+    const double angle = omega * n * dt + how.phase;
+    const Vec3 place = centre + radius * Vec3(std::sin(angle), 0, std::cos(angle));
+    EXPECT_LT((walls.pose(0).shift - place).norm(), 1e-15) << n;
+  }
+  EXPECT_FALSE(walls.pose(0).turned());
+}
+
+TEST(Walls, PhasesOfRotationAreAddedToThatOfTheDisplacement) {
+  const OscillationDescription how{
+      .amplitude = {1e-3, 0, 0}, .angle = {0, 0.2, 0}, .frequency = 10, .phase = 0.3, .angle_phase = {9, 1.1, 9}};
+  Walls walls;
+  walls.apply({plate({.oscillation = how})});
+  OscillationDescription alone = how;
+  alone.phase = 1.4;
+  for (int n = 1; n <= 300; ++n) {
+    step(walls, 1e-3);
+    EXPECT_NEAR(walls.pose(0).shift.x(), 1e-3 * sine(how, n * 1e-3), 1e-15);
+    const double angle = 0.2 * sine(alone, n * 1e-3);
+    EXPECT_LT((walls.pose(0).turn - Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix()).norm(), 1e-13) << n;
+  }
+}
+
 TEST(Walls, OscillationGrowsWithTheRampFromRest) {
   const OscillationDescription how{.amplitude = {0, 1, 0}, .frequency = 10, .phase = 2};
   Walls walls;
@@ -220,12 +254,119 @@ TEST(Walls, OscillationContinuesAcrossStagesAndChanges) {
   how.phase = -1;
   walls.apply(set());
   EXPECT_NEAR(go(9) - later, sine(how, 9 * dt), 1e-14) << "another phase: it starts again";
+  const double shifted = walls.pose(0).shift.z();
+  how.amplitude_phase.z() = 1.5;
+  walls.apply(set());
+  OscillationDescription together = how;
+  together.phase = 0.5;
+  EXPECT_NEAR(go(9) - shifted, sine(together, 9 * dt), 1e-14) << "also for a phase of one axis";
+  how.amplitude_phase.setZero();
 
   const double last = walls.pose(0).shift.z();
   walls.apply({plate({})});
   EXPECT_EQ(go(5), last) << "it stops at its position";
   walls.apply(set());
   EXPECT_NEAR(go(6) - last, sine(how, 6 * dt), 1e-14) << "and starts again";
+}
+
+TEST(Walls, SurfaceMovesWithoutTheWall) {
+  Walls walls;
+  walls.apply({plate({.spin = {0, 0, 0.5 * std::numbers::pi},
+                      .surface_velocity = {2, 0, 0},
+                      .surface_spin = {0, 3, 0},
+                      .ramp_time = 1}),
+               plate({}, "side")});
+  EXPECT_TRUE(walls.surface_moves(0));
+  EXPECT_FALSE(walls.surface_moves(1));
+  const double dt = 1.0 / 64;
+  for (int n = 0; n < 96; ++n) {
+    const Mat3 turn = walls.pose(0).turn;
+    step(walls, dt);
+    const double ramp = std::min(1.0, (n + 0.5) * dt);
+    EXPECT_LT((walls.states()[0].surface_velocity - 2 * ramp * turn * Vec3::UnitX()).norm(), 1e-14) << "of the wall";
+    EXPECT_LT((walls.states()[0].surface_spin - 3 * ramp * turn * Vec3::UnitY()).norm(), 1e-14);
+  }
+  EXPECT_EQ(walls.pose(0).shift, Vec3::Zero());
+  EXPECT_EQ(walls.motion(0).velocity, Vec3::Zero());
+  EXPECT_NEAR(walls.states()[0].surface_velocity.x(), 0, 0.05) << "after a quarter turn";
+  EXPECT_NEAR(walls.states()[0].surface_velocity.y(), 2, 0.05);
+  walls.apply({plate({}), plate({}, "side")});
+  EXPECT_TRUE(walls.surface_moves(0)) << "it did in the last step";
+  step(walls, dt);
+  EXPECT_FALSE(walls.surface_moves(0));
+  EXPECT_EQ(walls.states()[0].surface_velocity, Vec3::Zero());
+}
+
+TEST(Walls, FreeRotationSpeedsUpWithItsMoment) {
+  const Vec3 axis(1, 2, -2), about(1, 0, 0.5);
+  const double inertia = 4, moment = -0.6, dt = 1e-3;
+  Walls walls;
+  walls.apply({plate({.velocity = {0, 0.1, 0},
+                      .about = about,
+                      .free_rotation = FreeRotationDescription{.axis = axis, .inertia = inertia, .moment = moment}})});
+  const int steps = 1000;
+  for (int n = 1; n <= steps; ++n) {
+    step(walls, dt);
+    EXPECT_LT((view(walls).spin - moment * n * dt / inertia * axis / 3).norm(), 1e-14) << "M t / I";
+  }
+  const double angle = moment / inertia * dt * dt * steps * (steps + 1) / 2;
+  const Mat3 turn = Eigen::AngleAxisd(angle, axis / 3).toRotationMatrix();
+  EXPECT_LT((walls.pose(0).turn - turn).norm(), 1e-13);
+  EXPECT_LT((walls.pose(0).shift - Vec3(0, 0.1 * steps * dt, 0)).norm(), 1e-13) << "about its reference point";
+  EXPECT_EQ(walls.expected_motion(0).spin, view(walls).spin);
+}
+
+TEST(Walls, FreeRotationOnASpringOscillatesAtTheLeapFrogFrequency) {
+  const double dt = 0.1, inertia = 2, stiffness = 8, omega = std::sqrt(stiffness / inertia), moment = 0.01;
+  const Vec3 axis = Vec3(2, -1, 2) / 3;
+  Walls walls;
+  walls.apply(
+      {plate({.free_rotation = FreeRotationDescription{.axis = 7 * axis, .inertia = inertia, .moment = moment}})});
+  const double phase = 2 * std::asin(0.5 * omega * dt), rest = moment / stiffness;  // as of a free mass
+  const auto angle = [&] {
+    const Eigen::AngleAxisd turned(walls.pose(0).turn);
+    return turned.angle() * turned.axis().dot(axis);
+  };
+  for (int n = 0; n < 200; ++n) {
+    EXPECT_NEAR(angle(), rest * (1 - std::cos((n + 0.5) * phase) / std::cos(0.5 * phase)), 1e-14) << n;
+    walls.clear_forces();
+    // Moments about other axes are borne by the bearing.
+    walls.add(0, {Vec3::Zero(), -stiffness * angle() * axis + 5 * axis.cross(Vec3::UnitX()), stiffness, 1});
+    step(walls, dt);
+  }
+}
+
+TEST(Walls, WallSetFreeToRotateKeepsTheSpinAlongItsAxis) {
+  Walls walls;
+  walls.apply({plate({.spin = {1, 0, 3}})});
+  step(walls, 0.1);
+  const FreeRotationDescription free{.axis = Vec3::UnitZ(), .inertia = 1};
+  walls.apply({plate({.free_rotation = free})});
+  EXPECT_EQ(view(walls).spin, Vec3(0, 0, 3));
+  step(walls, 0.1);
+  EXPECT_EQ(view(walls).spin, Vec3(0, 0, 3));
+  walls.apply({plate({})});
+  step(walls, 0.1);
+  EXPECT_EQ(view(walls).spin, Vec3::Zero()) << "it is held again";
+}
+
+TEST(Walls, DemandOfFreeWallsIsThatOfTheirContactsOverMassAndInertia) {
+  const WallLoad load{.spring = 8, .dashpot = 3, .turning_spring = 50, .turning_dashpot = 20};
+  const FreeDescription free{.axes = "z", .mass = 2};
+  const FreeRotationDescription rotation{.axis = Vec3::UnitX(), .inertia = 10};
+  const auto demand = [&](const MotionDescription& motion) {
+    Walls walls;
+    walls.apply({plate({}), plate(motion, "other")});
+    walls.add(0, load), walls.add(1, load);
+    return walls.demand();
+  };
+  EXPECT_EQ(demand({}).spring, 0);
+  EXPECT_EQ(demand({.free = free}).spring, 4);
+  EXPECT_EQ(demand({.free = free}).dashpot, 1.5);
+  EXPECT_EQ(demand({.free_rotation = rotation}).spring, 5);
+  EXPECT_EQ(demand({.free_rotation = rotation}).dashpot, 2);
+  EXPECT_EQ(demand({.free = free, .free_rotation = rotation}).spring, 9);
+  EXPECT_EQ(demand({.free = free, .free_rotation = rotation}).dashpot, 3.5);
 }
 
 TEST(Walls, RotatesAboutTheCentreOfItsBoundsByDefault) {
@@ -465,8 +606,13 @@ TEST(Walls, RestoredWallsContinueIdentically) {
       plate({.velocity = {1, 0, 0},
              .spin = {0.1, 0.2, 0.3},
              .ramp_time = 0.7,
-             .oscillation = OscillationDescription{.amplitude = {0, 0.2, 0}, .angle = {0.3, 0, 0}, .frequency = 0.4},
-             .free = FreeDescription{.axes = "z", .mass = 3, .load = {0, 0, 1}}})};
+             .oscillation = OscillationDescription{.amplitude = {0, 0.2, 0},
+                                                   .angle = {0.3, 0, 0},
+                                                   .frequency = 0.4,
+                                                   .amplitude_phase = {0, 0.3, 0},
+                                                   .angle_phase = {0.7, 0, 0}},
+             .free = FreeDescription{.axes = "z", .mass = 3, .load = {0, 0, 1}}}),
+      plate({.free_rotation = FreeRotationDescription{.axis = {1, 2, 3}, .inertia = 3, .moment = 1}}, "rotor")};
   Walls whole, halved;
   whole.apply(setups);
   for (int i = 0; i < 5; ++i) step(whole, 0.1);
@@ -482,13 +628,15 @@ TEST(Walls, RestoredWallsContinueIdentically) {
   EXPECT_EQ(whole.pose(0).turn, halved.pose(0).turn);
   EXPECT_GT(std::abs(whole.pose(0).shift.y()), 1e-3);
   EXPECT_EQ(view(whole).velocity, view(halved).velocity);
+  EXPECT_EQ(view(whole, 1).spin, view(halved, 1).spin);
+  EXPECT_EQ(whole.pose(1).turn, halved.pose(1).turn);
   try {
     Walls none;
     restore_state(halved, saved_state(none));
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "the checkpoint has 0 walls, but the description has 1; continue with the description that wrote it");
+                 "the checkpoint has 0 walls, but the description has 2; continue with the description that wrote it");
   }
 }
 
@@ -528,6 +676,19 @@ TEST(Walls, RejectInvalidMotions) {
             "wall \"lid\": a free wall needs a mass above 0");
   EXPECT_EQ(complaint({plate({.free = FreeDescription{.axes = "w", .mass = 1}})}),
             "wall \"lid\": free along \"w\"; allowed is x, y or z");
+  const auto turns = [](const Vec3& axis, double inertia) {
+    return FreeRotationDescription{.axis = axis, .inertia = inertia};
+  };
+  EXPECT_EQ(complaint({plate({.free_rotation = turns(Vec3::UnitX(), 0)})}),
+            "wall \"lid\": free rotation needs an inertia above 0");
+  EXPECT_EQ(complaint({plate({.free_rotation = turns(Vec3::Zero(), 1)})}),
+            "wall \"lid\": free rotation needs an axis of a length above 0");
+  const std::string two = "wall \"lid\": two rotations; choose spin and oscillation, or free_rotation";
+  EXPECT_EQ(complaint({plate({.spin = {1, 0, 0}, .free_rotation = turns(Vec3::UnitX(), 1)})}), two);
+  EXPECT_EQ(complaint({plate({.oscillation = OscillationDescription{.angle = {0, 0, 1}, .frequency = 1},
+                              .free_rotation = turns(Vec3::UnitX(), 1)})}),
+            two);
+  EXPECT_EQ(complaint({plate({.velocity = {1, 0, 0}, .free_rotation = turns(Vec3::UnitX(), 1)})}), "");
   EXPECT_EQ(complaint({plate({.follow = FollowDescription{.wall = "base"}})}),
             "wall \"lid\": follows the wall \"base\", which does not exist");
   EXPECT_EQ(complaint({plate({.follow = FollowDescription{.wall = "b"}}, "a"),

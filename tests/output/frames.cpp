@@ -8,7 +8,7 @@
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
-#include "output/hdf5.hpp"
+#include "storage/hdf5.hpp"
 #include "support/scene.hpp"
 #include "support/stl_file.hpp"
 
@@ -205,6 +205,38 @@ TEST(Frames, IndexNamesAllDatasets) {
                                     Pair("lid", ElementsAre(1, 1))));
   EXPECT_THAT(items, ElementsAre(Pair("contacts", ElementsAre(6, 6)), Pair("grains", ElementsAre(6, 8)),
                                  Pair("lid", ElementsAre(2, 2))));
+}
+
+TEST(Frames, FieldsOfAWallColourItsTriangles) {
+  const Folder folder;
+  const auto field = [](const char* name, std::size_t width, std::vector<double> values, const char* wall) {
+    return Field{name, "Pa", "of a facet", width, std::move(values), {}, wall};
+  };
+  const std::vector<FieldGroup> fields{
+      {"facets",
+       {field("pressure", 1, {7}, "lid"), field("shear", 3, {1, 2, 3}, "lid"), field("elsewhere", 1, {7}, ""),
+        field("longer", 1, {7, 8}, "lid"), field("unknown", 1, {7}, "roof")}}};
+  const auto world = three_grains();
+  { Frames(folder.path(), lid).write(world, fields); }
+  const auto check = [&](const char* when) {
+    SCOPED_TRACE(when);
+    boost::property_tree::ptree xml;
+    read_xml((folder / "frames.xdmf").string(), xml);
+    std::map<std::string, std::string> types;
+    for (const auto& [tag, series] : xml.get_child("Xdmf.Domain")) {
+      if (series.get<std::string>("<xmlattr>.Name") != "lid") continue;
+      for (const auto& [kind, child] : series.get_child("Grid")) {
+        if (kind != "Attribute") continue;
+        EXPECT_EQ(child.get<std::string>("<xmlattr>.Center"), "Cell");
+        types[child.get<std::string>("<xmlattr>.Name")] = child.get<std::string>("<xmlattr>.AttributeType");
+        check_item(child.get_child("DataItem"), folder.path());
+      }
+    }
+    EXPECT_THAT(types, ElementsAre(Pair("facets/pressure", "Scalar"), Pair("facets/shear", "Vector")));
+  };
+  check("as written");
+  Frames(folder.path(), lid, 1);
+  check("as read again");
 }
 
 TEST(Frames, ContinueFromACount) {

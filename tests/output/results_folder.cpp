@@ -208,7 +208,8 @@ TEST(ResultsFolder, ContinuesAResumedRun) {
   EXPECT_THAT(series.group("test").dataset("step").read<int>(), ElementsAre(10, 20, 21));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/frames/000002.h5"));
   EXPECT_TRUE(std::filesystem::exists(folder / "run/frames/000001.h5"));
-  EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5")) << "it is not needed after the end of the run";
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5")) << "it is the final state now";
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/final.h5"));
   EXPECT_THAT(text_of(folder / "run/picture.svg"),
               testing::ContainsRegex("points=\"[0-9.]+,[0-9.]+ [0-9.]+,[0-9.]+ [0-9.]+,[0-9.]+\""))
       << "two points before the checkpoint and one after it";

@@ -113,7 +113,7 @@ TEST(Attraction, GuardFindsEnergyThatTensionCreates) {
   Description d = hanging(cohesive(100 * mass * 9.81 / pull_off(1)), "linear-cohesive");
   Trial stable(d);
   d["time_step"] = {{"value", 3 / 0.05 * stable.world().dt()}, {"allow_unstable", true}};
-  d["guards"]["travel"] = 1, d["guards"]["overlap"] = 0.9;
+  d["guards"]["travel"] = 1e9, d["guards"]["overlap"] = 1e9;
   Trial trial(d);
   EXPECT_THAT([&] { trial.step(20000); },
               testing::ThrowsMessage<NumericsError>(testing::HasSubstr("energy was created")));
@@ -134,7 +134,7 @@ TEST(Attraction, NeighbourListsIncludeTheReach) {
     std::vector<Grain> balls{{{0, 0, (1 - 1e-9) * radius}, radius, {0, 0, speed}}};
     if (!wall) balls.push_back({{0, 0, -(1 - 1e-9) * radius}, radius, {0, 0, -speed}});
     Description d = grains("linear-cohesive", cohesive(strength), balls);
-    d["engines"]["hold"] = {{"type", "hold"}};
+    d["engines"]["hold"] = {{"type", "hold"}, {"translation", "xyz"}};
     if (wall) d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
     d["domain"] = {{"low", {-0.02, -0.02, -0.02}}, {"high", {0.02, 0.02, 0.02}}};
     d["time_step"] = {{"value", 1e-5}, {"allow_unstable", true}};
@@ -206,7 +206,7 @@ PulledOff pull_off(const std::string& law, const Description& material, const De
   const double speed = 1e-3;
   Description d = grains(law, material, {{{0, 0, radius - 1e-9}, radius, {0, 0, speed}}});
   if (!settings.is_null()) d["contacts"].update(settings);
-  d["engines"]["hold"] = {{"type", "hold"}};
+  d["engines"]["hold"] = {{"type", "hold"}, {"translation", "xyz"}};
   d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
   d["time_step"] = {{"value", travel / speed}, {"allow_unstable", true}};
   Trial trial(d);

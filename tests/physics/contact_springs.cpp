@@ -57,7 +57,7 @@ TEST(ContactSprings, GiveWayAlongAWallAsTheirShearStiffnessSays) {
   constexpr double load = 1e-3;  // of the weight
   for (const std::string law : {"linear-frictional", "linear-rolling", "hertz-mindlin"}) {
     Description d = on_floor(law, material(law, 1), load);
-    d["engines"]["hold"] = {{"type", "hold"}, {"rotation", true}};
+    d["engines"]["hold"] = {{"type", "hold"}, {"rotation", "xyz"}};
     verify("way of a ball that cannot turn along a wall under a small load, " + law + " [m]", moved(d),
            load * mass * g / shear_stiffness(law), 1e-6);
   }

@@ -13,7 +13,7 @@ namespace grit::test::energy_balance_tests {
 namespace {
 
 Description hold(bool translation, bool rotation) {
-  return {{"type", "hold"}, {"translation", translation}, {"rotation", rotation}};
+  return {{"type", "hold"}, {"translation", translation ? "xyz" : "none"}, {"rotation", rotation ? "xyz" : "none"}};
 }
 
 TEST(Energies, WhatHoldsGrainsPressesTheirSpring) {

@@ -52,7 +52,7 @@ struct Turning {
     if (!wall) grains.push_back({{0, 0, -radius_a}, radius_a});
     Description d = description(law, m, grains);
     if (wall) d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
-    d["engines"]["hold"] = {{"type", "hold"}, {"rotation", false}, {"translation", true}};
+    d["engines"]["hold"] = {{"type", "hold"}, {"rotation", "none"}, {"translation", "xyz"}};
     d["time_step"]["value"] = 2 * pi / frequency() / 2000;
     return d;
   }

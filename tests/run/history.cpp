@@ -62,7 +62,7 @@ TEST(History, IsKeptWhenTwoBodiesSwapIndices) {
                             {{9 * r, 9 * r, 9 * r}, r},
                             {{-9 * r, -9 * r, -9 * r}, r}};
   Description d = description("linear-rolling", {{"contact_modulus", 1e6}}, grains);
-  d["engines"]["hold"] = {{"type", "hold"}, {"rotation", false}, {"translation", true}};
+  d["engines"]["hold"] = {{"type", "hold"}, {"rotation", "none"}, {"translation", "xyz"}};
   d["time_step"]["value"] = 1e-6;
   Trial steady(d), searching(d);
   std::size_t now_swapped = 0, ever_swapped = 0, never_swapped = 0;

@@ -1,4 +1,5 @@
 // Periodic sides: their position has no effect on bodies, at rest or in a deforming cell.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/packing.hpp"
@@ -166,6 +167,65 @@ TEST(Periodic, WallOfOnePeriodHasNoEnds) {
   const auto expected = slid(endless), found = slid(one_period);
   EXPECT_LT(expected[3], 0.49) << "friction acts";
   for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-12) << k;
+}
+
+TEST(Periodic, WallOfOnePeriodMayMoveAlongIt) {
+  // A floor that has moved by a third of the period carries a grain anywhere.
+  for (const double place : {0.1, 0.5, 0.9}) {
+    Description d = in_cell({{{place * period.x(), 3e-3, 5e-4}, 5e-4}}, Vec3::Zero());
+    d["domain"]["periodic"] = {true, true, false};
+    d["domain"].erase("strain_rate");
+    d["time_step"] = Description::object();
+    d["engines"]["gravity"] = {{"type", "gravity"}};
+    d["walls"]["floor"] = {{"type", "rectangle"},
+                           {"corner", {0, 0, 0}},
+                           {"edge_a", {period.x(), 0, 0}},
+                           {"edge_b", {0, period.y(), 0}},
+                           {"material", "grain"}};
+    d["walls"]["floor"]["motion"]["velocity"] = {period.x() / 0.15, 0, 0};
+    Trial t(d);
+    while (t.world().time() < 0.05) t.step();
+    EXPECT_GT(t.position(0).z(), 4.9e-4) << place;
+  }
+}
+
+TEST(Periodic, DrumOfOnePeriodMaySpinAboutIt) {
+  Description d = in_cell({{{3e-3, 3e-3, 3e-3}, 5e-4}}, Vec3::Zero());
+  d["domain"]["periodic"] = {false, true, false};
+  d["domain"].erase("strain_rate");
+  d["time_step"] = Description::object();
+  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["walls"]["drum"] = {{"type", "cylinder"},
+                        {"start", {3e-3, 0, 3e-3}},
+                        {"end", {3e-3, period.y(), 3e-3}},
+                        {"radius", 2.5e-3},
+                        {"material", "grain"}};
+  d["walls"]["drum"]["motion"]["spin"] = {0, 3, 0};
+  Trial t(d);
+  while (t.world().time() < 0.1) t.step();
+  EXPECT_NEAR((t.position(0) - Vec3(3e-3, t.position(0).y(), 3e-3)).norm(), 2e-3, 1e-4) << "it lies on the drum";
+}
+
+TEST(Periodic, WallOfOnePeriodMustBeUniformAlongIt) {
+  const auto grooved = [](const Vec3& along, const Vec3& across) {
+    Description d = in_cell({{{3e-3, 3e-3, 6e-4}, 5e-4}}, Vec3::Zero());
+    d["domain"]["periodic"] = {true, true, false};
+    d["domain"].erase("strain_rate");
+    d["walls"]["floor"] = {{"type", "saw-tooth"},     {"corner", {0, 0, 0}}, {"edge_a", vector(across)},
+                           {"edge_b", vector(along)}, {"depth", 5e-4},       {"material", "grain"}};
+    return d;
+  };
+  const double wide = 2e-3;  // beyond the sides
+  Description beyond = grooved({0, period.y(), 0}, {period.x() + 2 * wide, 0, 0});
+  beyond["walls"]["floor"]["corner"] = {-wide, 0, 0};
+  EXPECT_NO_THROW(Trial{beyond});
+  try {
+    Trial t(grooved({0, period.y(), 0}, {period.x(), 0, 0}));
+    FAIL();
+  } catch (const NumericsError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("is one period long along x"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("its surface changes along x"));
+  }
 }
 
 TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {

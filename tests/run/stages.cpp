@@ -122,7 +122,7 @@ TEST(Stage, EndsAtADisplacementInTheDirectionOfItsSign) {
 TEST(Stage, EndsAtAPressureWithinItsBand) {
   Description d = lone({{"type", "pressure"}, {"wall", "floor"}, {"value", 1e3}, {"within", 0.02}});
   d["bodies"]["grains"]["source"]["bodies"][0]["position"] = {0, 0, radius};
-  d["engines"]["hold"] = {{"type", "hold"}, {"translation", true}};
+  d["engines"]["hold"] = {{"type", "hold"}, {"translation", "xyz"}};
   d["walls"]["floor"]["motion"]["velocity"] = {0, 0, 1e-2};
   const Done done = run(d);
   // E R u / A = 1e8 Pa/m · u: 980 Pa are reached 9.8 µm up, after 98 steps; rounding may take one more.

@@ -94,6 +94,24 @@ TEST(Stream, BodiesNeverOverlapWhenTheyEnter) {
   EXPECT_THAT(t.kernel().waiting_bodies(), HasSubstr("bodies of the stream \"grains\" wait for room"));
 }
 
+// At one neighbour search bodies enter and others leave, across the borders of chunks of bodies.
+TEST(Stream, EntersWhileOthersLeave) {
+  Description d = stream({{"number_rate", 40000}});
+  d["engines"]["sink"] = {{"type", "sink"}, {"region", {{"type", "half-space"}, {"point", {0, 0, 0.03}}}}};
+  d["walls"]["plate"] = {{"type", "rectangle"},
+                         {"corner", {-0.01, -0.01, 0.035}},
+                         {"edge_a", {0.02, 0, 0}},
+                         {"edge_b", {0, 0.02, 0}},
+                         {"material", "grain"}};
+  Trial t(d);
+  begin(t);
+  while (t.world().time() < 0.2) t.step();
+  const std::size_t there = t.world().positions().size(), left = t.world().departures().size();
+  EXPECT_GT(there, 256u) << "more than a chunk";
+  EXPECT_GT(left, 1000u);
+  EXPECT_EQ(there + left, t.kernel().state().bodies.ids_given);
+}
+
 TEST(Stream, EntersInItsRegionAtItsVelocity) {
   const auto check = [](const Description& region, auto inside) {
     Trial t(stream({{"number_rate", 5000}, {"region", region}}));

@@ -266,6 +266,7 @@ TEST(Probes, AllAtOnceChangeNotOneBit) {
       {"wall-profile", R"("walls": ["platen"], "width": "9 mm", "along": "x")"}};
   std::map<std::string, std::string> all;
   for (const std::string& name : registry().names("probe")) all[name] = asked.contains(name) ? asked.at(name) : "";
+  all.erase("facets");  // needs a mesh
   EXPECT_GE(all.size(), 16u);
   Simulation without = sheared({}), with = sheared(all);
   EXPECT_GT(test::kernel_of(with).state().pairs.touching_count(), 100u);

@@ -92,6 +92,29 @@ TEST(FreeWall, StepAboveTheLimitIsRefusedAndTheChosenOneIsBelow) {
     }
 }
 
+/// The lid hinged at a distance: as heavy at the grain as its inertia over the square of that.
+Description under_a_hinged_lid(double wall_mass, double restitution) {
+  constexpr double arm = 20 * radius;
+  Description d = under_a_lid(wall_mass, restitution);
+  d["walls"]["lid"]["motion"] = {{"about", {arm, 0, 2 * (1 - squeeze) * radius}},
+                                 {"free_rotation",
+                                  {{"axis", {0, 1, 0}},
+                                   {"inertia", wall_mass * mass * arm * arm},
+                                   {"moment", -arm * stiffness * squeeze * radius}}}};
+  return d;
+}
+
+TEST(FreeWall, HingedLimitsTheStepByItsInertia) {
+  for (const double e : {1.0, 0.5})
+    for (const double wall : {1e-2, 0.3, 1.0, 10.0}) {
+      SCOPED_TRACE("restitution " + std::to_string(e) + ", inertia " + std::to_string(wall));
+      const double limit = predicted_limit(wall, e), said = critical(under_a_hinged_lid(wall, e));
+      EXPECT_NEAR(found_limit(under_a_hinged_lid(wall, e), limit) / limit, 1, 5e-3);
+      EXPECT_LE(said, 1.0001 * limit);
+      EXPECT_GE(said, 0.5 * limit);
+    }
+}
+
 TEST(FreeWall, EnergyGuardTripsBeyondTheLimit) {
   Description d = under_a_lid(0.5, 1);
   d["time_step"] = {{"value", 1.02 * predicted_limit(0.5, 1)}, {"allow_unstable", true}};

@@ -38,7 +38,7 @@ Trial on_slope(const Edge& edge, double slope, double damping) {
   Description d = description(edge.law, m, {{{0, 0, radius - sunk}, radius}});
   d["walls"]["slope"] = plane(Vec3::Zero(), Vec3::UnitZ());
   d["engines"]["gravity"] = {{"type", "gravity"}, {"acceleration", {g * std::sin(angle), 0, -g * std::cos(angle)}}};
-  if (!edge.turns) d["engines"]["hold"] = {{"type", "hold"}, {"rotation", true}};
+  if (!edge.turns) d["engines"]["hold"] = {{"type", "hold"}, {"rotation", "xyz"}};
   if (damping > 0) d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", damping}};
   d["guards"] = {{"energy", 1}, {"travel", 1}};
   return Trial(d);

@@ -26,6 +26,7 @@ struct ClumpShape {
   double volume = 0;                     ///< of the union
   Vec3 inertia = Vec3::Zero();           ///< principal moments of inertia for a mass of 1
   ShapeErrors errors = {};               ///< of volume, centre of mass and inertia
+  double given_radius = 0;  ///< of the enclosing sphere as the shape was given [m]; 0: only its proportions
 };
 
 /// Base class of plugins of kind "body".

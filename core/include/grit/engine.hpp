@@ -1,6 +1,7 @@
 // Engines: components that act on bodies in every step, such as gravity, local damping or added forces.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,15 +16,52 @@ namespace grit {
 enum class Phase {
   settings,  ///< before a stage: sets up the integration of the kernel
   forces,    ///< in each step, after the contacts: adds forces and moments to bodies
+  removal,   ///< at each neighbour search: removes bodies
 };
 
-/// Settings of the kernel's integration; engines of phase `settings` write them.
+/// Motion as a rigid body, about an axis that is fixed in space.
+struct RigidMotion {
+  Vec3 velocity = Vec3::Zero();  ///< m/s
+  Vec3 spin = Vec3::Zero();      ///< rad/s
+  Vec3 about = Vec3::Zero();     ///< a point of the axis of rotation [m]
+
+  /// The velocity of the point `place`.
+  Vec3 at(const Vec3& place) const { return velocity + spin.cross(place - about); }
+  bool operator==(const RigidMotion&) const = default;
+};
+
+/// Settings of the kernel's integration, of all bodies or of a group; engines of phase `settings` write them.
 struct MotionSettings {
-  Vec3 gravity = Vec3::Zero();    ///< m/s²
-  double local_damping = 0;       ///< λ in F (1 − λ sgn(F v)), 0 … 1
-  bool hold_rotation = false;     ///< spins stay constant
-  bool hold_translation = false;  ///< velocities stay constant
-  std::optional<int> flat;        ///< planar motion: axis (0, 1, 2) without translation; rotation is about it only
+  Vec3 gravity = Vec3::Zero();             ///< m/s²
+  double local_damping = 0;                ///< λ in F (1 − λ sgn(F v)), 0 … 1
+  std::array<bool, 3> held_translation{};  ///< axes along which velocities stay constant
+  std::array<bool, 3> held_rotation{};     ///< axes about which spins stay constant
+  std::optional<RigidMotion> prescribed;   ///< bodies move so, whatever the forces on them are
+  std::optional<int> flat;  ///< planar motion: axis (0, 1, 2) without translation; rotation is about it only
+
+  bool holds() const {
+    const auto any = [](const std::array<bool, 3>& axes) { return axes[0] || axes[1] || axes[2]; };
+    return prescribed || any(held_translation) || any(held_rotation);
+  }
+  /// 1 along axes whose velocity engines keep or prescribe, 0 along others.
+  Vec3 kept_translation() const { return prescribed ? Vec3(Vec3::Ones()) : ones(held_translation); }
+  /// The same about axes of rotation.
+  Vec3 kept_rotation() const { return prescribed ? Vec3(Vec3::Ones()) : ones(held_rotation); }
+  /// 1 along axes along which forces accelerate bodies, 0 along others.
+  Vec3 free_translation() const {
+    Vec3 free = Vec3::Ones() - kept_translation();
+    if (flat) free[*flat] = 0;
+    return free;
+  }
+  /// The same about axes of rotation.
+  Vec3 free_rotation() const {
+    const Vec3 free = Vec3::Ones() - kept_rotation();
+    return flat ? Vec3(free.cwiseProduct(Vec3::Unit(*flat))) : free;
+  }
+  bool operator==(const MotionSettings&) const = default;
+
+ private:
+  static Vec3 ones(const std::array<bool, 3>& axes) { return Vec3(axes[0], axes[1], axes[2]); }
 };
 
 /// Upper bounds over all bodies of what an engine adds to their equations of motion.
@@ -45,11 +83,14 @@ class Engine {
   virtual Phase phase() const = 0;
   /// State that the kernel must keep for this engine.
   virtual StateRequest needs() const { return {}; }
-  /// Called in phase `settings`.
+  /// Called in phase `settings`; for each group of bodies if engines act on some groups only.
   virtual void settings(MotionSettings&) const {}
-  /// Called in phase `forces`. Adds to the force [N] and moment [N m] of each body; one row per body, by index. The
-  /// result must not depend on the order in which bodies are stored.
+  /// Called in phase `forces`. Adds to the force [N] and moment [N m] of each body; one row per body, by index. What it
+  /// adds to bodies of groups on which it does not act is discarded. The result must not depend on the order in which
+  /// bodies are stored.
   virtual void forces(const World&, std::span<Row> /*force*/, std::span<Row> /*moment*/) const {}
+  /// Called in phase `removal` for each sphere and clump at a position [m]: whether it leaves the simulation.
+  virtual bool removes(const World&, const Vec3& /*centre*/) const { return false; }
   /// Called in phase `forces` when the time step is set, at neighbour searches and after changes. The time step is
   /// stable with these rates.
   virtual EngineRates rates(const World&) const { return {}; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,6 +76,9 @@ class Geometry {
   virtual bool near(const Pose& pose, const Vec3& centre, double reach) const = 0;
   /// Triangles for pictures and files, three corners each [m], at the initial position.
   virtual std::vector<Vec3> triangles() const = 0;
+  /// Index of the triangle of triangles() on which a feature lies, for a surface that consists of them; none for other
+  /// shapes, of which they are pictures.
+  virtual std::optional<std::uint32_t> triangle_of(std::uint32_t /*feature*/) const { return {}; }
 };
 
 }  // namespace grit

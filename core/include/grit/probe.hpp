@@ -22,6 +22,8 @@ struct Field {
   std::vector<double> values;  ///< row by row
   /// Names of the numbers of a row, without spaces, e.g. "xx". Empty: x, y, z for width 3; xx, xy … zz for width 9.
   std::vector<std::string> components = {};
+  /// Name of a wall if the rows are its triangles: ParaView then colours the wall by the field.
+  std::string wall = {};
 };
 
 /// Base class of plugins of kind "probe". Called from one thread, between steps.

@@ -83,8 +83,9 @@ struct WallView {
   double pressure = 0;  ///< normal force over area, > 0 in compression [Pa]
   Vec3 normal;          ///< mean unit normal, towards the bodies; zero where the geometry has none
   std::uint32_t contacts = 0;
-  bool flat = false;  ///< made of wide plane faces
-  Pose pose;          ///< present translation and rotation
+  bool flat = false;                   ///< made of wide plane faces
+  Pose pose;                           ///< present translation and rotation
+  const Geometry* geometry = nullptr;  ///< at its initial position; null if it is not known
 };
 
 /// Distance of a point from the surface of a wall.
@@ -177,10 +178,12 @@ class World {
   virtual std::span<const Vec3> arms() const { return {}; }
   /// Fraction of each body's volume that counts, as bodies of a clump overlap; empty if all are 1.
   virtual std::span<const double> volume_fractions() const { return {}; }
+  /// 1 for bodies whose translation engines hold or prescribe along all axes, 0 for others; empty if there are none.
+  virtual std::span<const std::uint8_t> held() const { return {}; }
   /// Bodies that left the domain, in order of time.
   virtual std::span<const Departure> departures() const { return {}; }
   /// Net force [N] and moment [N m] on each body, of gravity and contacts, before damping; for a body of a clump, of
-  /// contacts only.
+  /// contacts only. 0 along (or about) axes that engines hold.
   virtual std::span<const Row> forces() const = 0;
   virtual std::span<const Row> moments() const = 0;
 
@@ -211,7 +214,7 @@ class World {
   virtual Energies energies() const { return {}; }
 };
 
-/// Measures of static equilibrium of all bodies.
+/// Measures of static equilibrium of all bodies that are not held().
 struct Equilibrium {
   double kinetic_energy;      ///< J, translation and rotation, at time()
   double unbalanced_force;    ///< mean net force on a body over the mean contact force; 0 without contacts

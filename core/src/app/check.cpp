@@ -30,6 +30,7 @@
 #include "run/observer.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
+#include "simulation/prepared_sample.hpp"
 
 namespace grit {
 namespace {
@@ -73,8 +74,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
 
   const unsigned threads = options.threads();
   Kernel kernel(at_first_instant(scene.document, [&] {
-    return Kernel(description, components, make_bodies(description, components, run_state(description, components)),
-                  threads);
+    return Kernel(description, components, prepare(live, registry, run_state(description, components)), threads);
   }));
   at_first_instant(scene.document, [&] { kernel.find_forces(); });
   std::vector<ProbeGroup> probes;
@@ -92,6 +92,9 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   const char* before = " with ";
   for (const auto& [name, engine] : components.engines)
     if (engine->phase() == Phase::settings) std::cout << std::exchange(before, ", ") << name;
+  before = "; removal by ";
+  for (const auto& [name, engine] : components.engines)
+    if (engine->phase() == Phase::removal) std::cout << std::exchange(before, ", ") << name;
   std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.state().pairs.touching_count()
             << '\n';
   std::map<std::string, std::size_t> coming;  // by stage

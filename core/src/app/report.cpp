@@ -7,7 +7,7 @@
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "grit/error.hpp"
-#include "output/atomic_file.hpp"
+#include "storage/atomic_file.hpp"
 #include "report/curve_pictures.hpp"
 #include "report/pictures.hpp"
 #include "report/report_page.hpp"

@@ -14,7 +14,7 @@
 #include "format/duration.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "output/atomic_file.hpp"
+#include "storage/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
@@ -149,8 +149,8 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     if (!checkpoint) job.existing = Existing::overwrite;
   }
 
-  Bodies bodies = job.opened->make_bodies(picture_state(description));
-  ResultsFolder results(results_of(job, std::move(facts), bodies));
+  Prepared prepared = job.opened->prepare(picture_state(description));
+  ResultsFolder results(results_of(job, std::move(facts), prepared.bodies));
   std::optional<Watch> watch;  // before the simulation, which makes threads
   if (listener) watch.emplace(*listener, folder);
   ProgressBar bar;
@@ -159,7 +159,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
     say(line);
   });
 
-  Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(bodies), threads, &curves));
+  Simulation simulation(std::make_unique<Simulation::Parts>(job.opened, std::move(prepared), threads, &curves));
   const std::size_t count = simulation.world().positions().size();
   say(std::to_string(count) + (count == 1 ? " body, " : " bodies, ") + std::to_string(threads) +
       (threads == 1 ? " thread" : " threads") + ", results in " + folder.string());

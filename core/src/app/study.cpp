@@ -24,7 +24,6 @@
 #include "input/places.hpp"
 #include "input/scene.hpp"
 #include "kernel/kernel.hpp"
-#include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/folder_lock.hpp"
 #include "output/read_results.hpp"
@@ -33,6 +32,8 @@
 #include "plugins/build_facts.hpp"
 #include "run/observer.hpp"
 #include "simulation/live_scene.hpp"
+#include "simulation/prepared_sample.hpp"
+#include "storage/atomic_file.hpp"
 #include "study/batch.hpp"
 #include "study/study_page.hpp"
 #include "study/study_result.hpp"
@@ -178,9 +179,11 @@ void check_metrics(const StudyDescription& study, const Document& written, const
 }
 
 /// Checks channels, which probes know only once they are bound to a world.
-void check_channels(const StudyDescription& study, const Document& written, const SceneDescription& scene,
-                    const Components& components) try {
-  const Kernel kernel(scene, components, make_bodies(scene, components, run_state(scene, components)), 1);
+void check_channels(const StudyDescription& study, const Document& written, const LiveScene& live,
+                    const Registry& registry) try {
+  const SceneDescription& scene = live.now();
+  const Components& components = live.components();
+  const Kernel kernel(scene, components, prepare(live, registry, run_state(scene, components)), 1);
   std::vector<std::string> all;
   std::set<std::string> wide;  // several values per sample
   for (const auto& [name, probe] : scene.probes) {
@@ -250,9 +253,8 @@ std::vector<Run> missing_runs(const StudyDescription& study, const std::filesyst
                                        "values",
                                        other->second, variant.name))});
       if (all == 1 && !options.has("collect"))
-        of_variant(file, variant, [&] {
-          at_its_place(scene.document, [&] { check_channels(study, written, *scene.description, live->components()); });
-        });
+        of_variant(file, variant,
+                   [&] { at_its_place(scene.document, [&] { check_channels(study, written, *live, registry); }); });
       if (options.has("collect")) {
         expect_same(folder, description);
         continue;

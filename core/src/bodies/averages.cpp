@@ -47,6 +47,25 @@ double share_inside(const Vec3& start, const Vec3& branch, const Region& region)
   return std::max(to - from, 0.0);
 }
 
+/// Which bodies and clumps forces may move.
+class Movable {
+ public:
+  explicit Movable(const World& world) : velocities_(world.velocities()), held_(world.held()) {
+    if (held_.empty()) return;
+    const auto clump_of = world.clump_of();
+    held_clumps_.resize(world.clumps().size());
+    for (std::size_t i = 0; i < clump_of.size(); ++i)
+      if (clump_of[i] != no_clump) held_clumps_[clump_of[i]] = held_[i] != 0;
+  }
+  bool body(std::size_t i) const { return velocities_[i].w > 0 && (held_.empty() || held_[i] == 0); }
+  bool clump(std::size_t c) const { return held_clumps_.empty() || !held_clumps_[c]; }
+
+ private:
+  std::span<const Row> velocities_;
+  std::span<const std::uint8_t> held_;
+  std::vector<bool> held_clumps_;
+};
+
 }  // namespace
 
 std::string World::group_of(std::uint32_t id) const {
@@ -72,10 +91,10 @@ double kinetic_energy_of(const ClumpView& clump, double later) {
   return 0.5 * clump.mass * velocity.squaredNorm() + 0.5 * momentum.dot(momentum.cwiseQuotient(clump.inertia));
 }
 
-double kinetic_energy(const World& world, double half_step, const Accelerating& how, std::size_t first,
+double kinetic_energy(const World& world, double half_step, const Vec3& strain_rate, std::size_t first,
                       std::size_t last) {
   const auto velocities = world.velocities(), spins = world.spins(), forces = world.forces(), moments = world.moments();
-  const Vec3 flowing = Vec3::Ones() + half_step * how.strain_rate;
+  const Vec3 flowing = Vec3::Ones() + half_step * strain_rate;
   const auto energy = [half_step](const Row& velocity, const Vec3& force, const Vec3& brought_on) {
     return velocity.w > 0 ? 0.5 / velocity.w * (brought_on + half_step * velocity.w * force).squaredNorm() : 0.0;
   };
@@ -85,28 +104,28 @@ double kinetic_energy(const World& world, double half_step, const Accelerating& 
   for (std::size_t c = first; c < std::min(last, clumps.size()); ++c) {
     ClumpView clump = clumps[c];
     clump.velocity = flowing.cwiseProduct(clump.velocity);
-    clump.force = how.free_translation.cwiseProduct(clump.force);
-    clump.moment = how.free_rotation.cwiseProduct(clump.moment);
     sum += kinetic_energy_of(clump, half_step);
   }
   for (std::size_t i = first; i < std::min(last, velocities.size()); ++i)
     if (clump_of.empty() || clump_of[i] == no_clump)
-      sum += energy(velocities[i], how.free_translation.cwiseProduct(xyz(forces[i])),
-                    flowing.cwiseProduct(xyz(velocities[i]))) +
-             energy(spins[i], how.free_rotation.cwiseProduct(xyz(moments[i])), xyz(spins[i]));
+      sum += energy(velocities[i], xyz(forces[i]), flowing.cwiseProduct(xyz(velocities[i]))) +
+             energy(spins[i], xyz(moments[i]), xyz(spins[i]));
   return sum;
 }
 
 Equilibrium equilibrium(const World& world) {
   const auto velocities = world.velocities(), forces = world.forces();
+  const Movable movable(world);
   double net = 0;
-  std::size_t movable = 0;
+  std::size_t count = 0;
   const auto clump_of = world.clump_of();
-  for (const ClumpView& clump : world.clumps()) net += clump.force.norm(), ++movable;
+  const auto clumps = world.clumps();
+  for (std::size_t c = 0; c < clumps.size(); ++c)
+    if (movable.clump(c)) net += clumps[c].force.norm(), ++count;
   for (std::size_t i = 0; i < velocities.size(); ++i)
-    if (velocities[i].w > 0 && (clump_of.empty() || clump_of[i] == no_clump)) net += xyz(forces[i]).norm(), ++movable;
+    if (movable.body(i) && (clump_of.empty() || clump_of[i] == no_clump)) net += xyz(forces[i]).norm(), ++count;
   const double normal = world.mean_contact_force();
-  if (movable > 0) net /= static_cast<double>(movable);
+  if (count > 0) net /= static_cast<double>(count);
   // Velocities are half a step old, except at the first step.
   return {.kinetic_energy = kinetic_energy(world, world.step() > 0 ? 0.5 * world.dt() : 0),
           .unbalanced_force = normal > 0 ? net / normal : 0,
@@ -122,20 +141,25 @@ Support support(const World& world) {
   const auto grain = [&](std::size_t body) {
     return clump_of.empty() || clump_of[body] == no_clump ? clumps.size() + body : clump_of[body];
   };
+  const Movable movable(world);
   std::vector<Vec3> by_contacts(clumps.size() + velocities.size(), Vec3::Zero());
   double contact = 0, carried = 0;
   for (const Contact& one : world.contacts()) {
     const double force = one.force.norm();
-    contact += force, carried += force, by_contacts[grain(one.a)] -= one.force;
-    if (!one.with_wall) carried += force, by_contacts[grain(one.b)] += one.force;
+    contact += force, by_contacts[grain(one.a)] -= one.force;
+    if (movable.body(one.a)) carried += force;
+    if (one.with_wall) continue;
+    by_contacts[grain(one.b)] += one.force;
+    if (movable.body(one.b)) carried += force;
   }
   double net = 0, load = 0;
   const auto add = [&](const Vec3& force, const Vec3& of_contacts) {
     net += force.norm(), load += (force - of_contacts).norm();
   };
-  for (std::size_t c = 0; c < clumps.size(); ++c) add(clumps[c].force, by_contacts[c]);
+  for (std::size_t c = 0; c < clumps.size(); ++c)
+    if (movable.clump(c)) add(clumps[c].force, by_contacts[c]);
   for (std::size_t i = 0; i < velocities.size(); ++i)
-    if (velocities[i].w > 0 && grain(i) >= clumps.size()) add(xyz(forces[i]), by_contacts[grain(i)]);
+    if (movable.body(i) && grain(i) >= clumps.size()) add(xyz(forces[i]), by_contacts[grain(i)]);
   return {.unbalance = load + contact > 0 ? net / (load + contact) : infinity,
           .carried = load > 0 ? carried / load : infinity};
 }

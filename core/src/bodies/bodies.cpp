@@ -68,10 +68,14 @@ void Bodies::finish(StateRequest asked_for) {
   velocity.push_back({});
   spin.push_back({});
   material.push_back(0);
-  state = asked_for;
   if (!clumps.none()) clumps.of_body.resize(count()), clumps.volume_fraction.resize(count(), 1.0);
-  if (state.has(BodyState::rotation)) rotation.resize(count());
-  if (state.has(BodyState::displacement)) origin.resize(count());
+  request(asked_for);
+}
+
+void Bodies::request(StateRequest asked_for) {
+  state = asked_for;
+  rotation.resize(state.has(BodyState::rotation) ? count() : 0);
+  origin.resize(state.has(BodyState::displacement) ? count() : 0);
   start_paths();
 }
 

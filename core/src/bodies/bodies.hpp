@@ -45,6 +45,8 @@ struct Bodies {
                  const Vec3& spin = Vec3::Zero());
   /// After the last add(): adds the padding and allocates the requested state.
   void finish(StateRequest asked_for);
+  /// Changes the requested state of finished bodies.
+  void request(StateRequest asked_for);
   /// Resets displacements and rotations to zero. Origins are shifted by a period with their bodies, so that
   /// displacements need not be summed up in each step.
   void start_paths();

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
+#include "bodies/mesh_interior.hpp"
 #include "bodies/sizes.hpp"
 #include "grit/error.hpp"
 
@@ -16,6 +21,8 @@ namespace grit {
 namespace {
 
 constexpr int most_tries = 100'000;  // for one grain
+// Of a region, positions outside it are tried in vain, too.
+constexpr int most_tries_in_region = 10 * most_tries;
 
 /// Finds free space: grains on cell grids, one grid per factor of two in size.
 class Room {
@@ -143,21 +150,6 @@ std::string text(const Region& box) {
   return out.str();
 }
 
-/// The periodic axes that the box spans.
-std::array<bool, 3> wrapped_axes(const Region& box, const Cell& cell) {
-  std::array<bool, 3> wrapped;
-  for (int k = 0; k < 3; ++k) {
-    if (!(box.low[k] < box.high[k]) || !std::isfinite(box.high[k] - box.low[k]))
-      throw Error("cloud: the box " + text(box) +
-                  " is empty or infinite; its low corner must be below its high corner");
-    if (cell.periodic[k] && (box.low[k] < cell.low[k] || box.high[k] > cell.high[k]))
-      throw Error("cloud: the box " + text(box) + " leaves the periodic cell " + text({cell.low, cell.high}) +
-                  "; keep it inside");
-    wrapped[k] = cell.periodic[k] && box.low[k] == cell.low[k] && box.high[k] == cell.high[k];
-  }
-  return wrapped;
-}
-
 /// The grains of `others`, and their images, that may overlap a grain in the box with at most this radius. Along
 /// wrapped axes no images are needed: free space is searched across these sides anyway.
 std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<bool, 3>& wrapped,
@@ -185,16 +177,32 @@ std::vector<Row> near_box(const Region& box, const Cell& cell, const std::array<
 
 }  // namespace
 
+std::array<bool, 3> wrapped_axes(const std::string& source, const Region& box, const Cell& cell) {
+  std::array<bool, 3> wrapped;
+  for (int k = 0; k < 3; ++k) {
+    if (!(box.low[k] < box.high[k]) || !std::isfinite(box.high[k] - box.low[k]))
+      throw Error(source + ": the box " + text(box) +
+                  " is empty or infinite; its low corner must be below its high corner");
+    if (cell.periodic[k] && (box.low[k] < cell.low[k] || box.high[k] > cell.high[k]))
+      throw Error(source + ": the box " + text(box) + " leaves the periodic cell " + text({cell.low, cell.high}) +
+                  "; keep it inside");
+    wrapped[k] = cell.periodic[k] && box.low[k] == cell.low[k] && box.high[k] == cell.high[k];
+  }
+  return wrapped;
+}
+
 std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vector<double> diameters, Random& random,
-                                 std::span<const Row> others, std::optional<int> flat) {
-  const auto wrapped = wrapped_axes(box, cell);
+                                 std::span<const Row> others, std::optional<int> flat, const CloudShape* shape) {
+  const auto wrapped = wrapped_axes("cloud", box, cell);
   if (diameters.empty()) return {};
   std::sort(diameters.begin(), diameters.end(), std::greater<>());
   const Vec3 size = box.high - box.low;
+  const std::string what = shape != nullptr ? shape->name : "box",
+                    place = (shape != nullptr ? shape->name + " in the box " : "box ") + text(box);
   if (diameters.front() > size.minCoeff()) {
     std::ostringstream out;
-    out << "cloud: a grain of diameter " << diameters.front() << " m does not fit into the box " << text(box)
-        << "; use a larger box or smaller grains";
+    out << "cloud: a grain of diameter " << diameters.front() << " m does not fit into the " << place
+        << "; use a larger " << what << " or smaller grains";
     throw Error(out.str());
   }
 
@@ -216,22 +224,26 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   for (const double diameter : diameters) {
     Row grain;
     grain.w = 0.5 * diameter;
-    int tries = 0;
+    int tries = 0, outside = 0;
+    const auto is_inside = [&] {
+      if (shape == nullptr || shape->holds(xyz(grain), grain.w)) return true;
+      ++outside;
+      return false;
+    };
     do {
-      if (tries++ == most_tries) {
+      if (tries++ == most_tries + outside || tries > most_tries_in_region) {
         double solid = 0;
         for (const auto& one : placed) solid += 4.0 / 3.0 * std::numbers::pi * one.w * one.w * one.w;
         std::ostringstream out;
-        out << "cloud: only " << placed.size() << " of " << diameters.size() << " grains fit into the box " << text(box)
-            << ": solid fraction " << solid / size.prod() << ", no space found for a grain of diameter " << diameter
-            << " m in " << most_tries
-            << " tries; random insertion of equal grains reaches about 0.38: use a larger box, or fewer or smaller "
-               "grains"
-            << (in_the_way.empty() ? "" : "; bodies of other groups take space, too");
+        out << "cloud: only " << placed.size() << " of " << diameters.size() << " grains fit into the " << place
+            << ": solid fraction " << solid / (shape != nullptr ? shape->volume : size.prod())
+            << ", no space found for a grain of diameter " << diameter << " m in " << tries - 1
+            << " tries; random insertion of equal grains reaches about 0.38: use a larger " << what
+            << ", or fewer or smaller grains" << (in_the_way.empty() ? "" : "; bodies of other groups take space, too");
         throw Error(out.str());
       }
       grain.x = coordinate(0, grain.w), grain.y = coordinate(1, grain.w), grain.z = coordinate(2, grain.w);
-    } while (!room.has_room(grain));
+    } while (!is_inside() || !room.has_room(grain));
     room.add(grain);
     placed.push_back(grain);
   }
@@ -239,12 +251,79 @@ std::vector<Row> place_at_random(const Region& box, const Cell& cell, std::vecto
   return placed;
 }
 
-std::vector<Row> make_cloud(const CloudSource& cloud, const Cell& cell, Random& random, std::span<const Row> others) {
+namespace {
+
+/// A region with the box around it.
+struct BoundedShape {
+  Region bounds;
+  CloudShape shape;
+};
+
+BoundedShape shape_of(const BoxRegion& box, const Cell&) {
+  return {{box.low, box.high}, {"box", (box.high - box.low).prod(), nullptr}};
+}
+
+BoundedShape shape_of(const SphereRegion& sphere, const Cell&) {
+  const Vec3 reach = Vec3::Constant(sphere.radius);
+  const auto holds = [sphere](const Vec3& centre, double radius) {
+    return radius <= sphere.radius && (centre - sphere.centre).norm() <= sphere.radius - radius;
+  };
+  return {{sphere.centre - reach, sphere.centre + reach},
+          {"sphere", 4.0 / 3.0 * std::numbers::pi * sphere.radius * sphere.radius * sphere.radius, holds}};
+}
+
+/// Grains cross its ends where these are opposite sides of a periodic cell.
+BoundedShape shape_of(const CylinderRegion& cylinder, const Cell& cell) {
+  const Vec3 way = cylinder.end - cylinder.start;
+  const double length = way.norm();
+  const Vec3 axis = way / length;
+  const Vec3 reach = cylinder.radius * (Vec3::Ones() - axis.cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
+  BoundedShape all{{cylinder.start.cwiseMin(cylinder.end) - reach, cylinder.start.cwiseMax(cylinder.end) + reach}, {}};
+  const auto wrapped = wrapped_axes("cloud", all.bounds, cell);
+  bool endless = false;
+  for (int k = 0; k < 3; ++k) endless = endless || (std::abs(way[k]) == length && wrapped[static_cast<std::size_t>(k)]);
+  const auto holds = [=, start = cylinder.start, wall = cylinder.radius](const Vec3& centre, double radius) {
+    const Vec3 arm = centre - start;
+    const double along = arm.dot(axis);
+    if (!endless && !(along >= radius && along <= length - radius)) return false;
+    return radius <= wall && (arm - along * axis).norm() <= wall - radius;
+  };
+  all.shape = {"cylinder", std::numbers::pi * cylinder.radius * cylinder.radius * length, holds};
+  return all;
+}
+
+BoundedShape shape_of(const MeshRegion& mesh, const Cell&) {
+  const auto inside = std::make_shared<const MeshInterior>(mesh);
+  const auto holds = [inside](const Vec3& centre, double radius) { return inside->holds(centre, radius); };
+  return {inside->bounds(), {"mesh", inside->volume(), holds}};
+}
+
+BoundedShape shape_of(const CloudRegion& region, const Cell& cell) {
+  return std::visit(
+      [&]<class R>(const R& one) -> BoundedShape {
+        if constexpr (std::same_as<R, std::monostate>) throw Error("cloud: no region was chosen");
+        else return shape_of(one, cell);
+      },
+      region.is.value());
+}
+
+}  // namespace
+
+std::vector<Row> make_cloud(const CloudSource& cloud, const Cell& cell, Random& random, std::span<const Row> others,
+                            std::optional<double> shape_diameter) {
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(cloud.count, 0));
   const std::optional<int> flat =
       cloud.plane_normal == "none" ? std::nullopt : std::optional(cloud.plane_normal[0] - 'x');
-  return place_at_random({cloud.low, cloud.high}, cell, draw_diameters(cloud.sizes, count, random), random, others,
-                         flat);
+  auto diameters = draw_diameters(cloud.sizes, count, random, shape_diameter);
+  if (!cloud.region)
+    return place_at_random({*cloud.low, *cloud.high}, cell, std::move(diameters), random, others, flat);
+  const auto [bounds, shape] = shape_of(*cloud.region, cell);
+  return place_at_random(bounds, cell, std::move(diameters), random, others, flat, shape.holds ? &shape : nullptr);
+}
+
+void check_region(const CloudSource& cloud) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  if (cloud.region) shape_of(*cloud.region, {Vec3::Constant(-endless), Vec3::Constant(endless)});
 }
 
 }  // namespace grit

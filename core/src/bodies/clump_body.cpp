@@ -51,13 +51,17 @@ void ListedSpheres::declare(Parameters& p) {
   p.add("spheres", spheres)
       .required()
       .entries(1)
-      .doc("list of spheres; only their relative positions and sizes matter");
+      .doc("list of spheres; only proportions count, except with sizes of type shape");
 }
 void SpheresOfFile::declare(Parameters& p) {
   p.add("path", path)
       .file()
       .required()
-      .doc("text file with one line per sphere: x y z radius, in any unit; # starts a comment");
+      .doc("text file with one line per sphere: x y z radius; # starts a comment. Other formats as in the source file");
+  p.add("scale", scale)
+      .unit("m")
+      .above(0)
+      .doc("length of one file unit, for sizes of type shape; else only proportions count");
 }
 void RodSpheres::declare(Parameters& p) {
   p.add("count", count).at_least(2).at_most(64).doc("number of equal spheres in a row");
@@ -78,6 +82,7 @@ void ClumpBody::prepare() {
   } catch (const FileError& error) {
     throw ParameterError({{"shape/path", error.what(), lines_of_file}});
   }
+  unit_ = file != nullptr ? file->scale : spheres_.type() == ListedSpheres::type_name ? 1 : 0;
   const auto defects = clump_defects(balls_);
   if (defects.empty()) return;
   const bool is_rod = spheres_.type() == RodSpheres::type_name;  // has one fault
@@ -99,7 +104,10 @@ void ClumpBody::prepare() {
 }
 
 const ClumpShape* ClumpBody::clump() const {
-  if (!shape_) shape_ = make_clump_shape(balls_);
+  if (!shape_) {
+    shape_ = make_clump_shape(balls_);
+    shape_->given_radius *= unit_;
+  }
   return &*shape_;
 }
 

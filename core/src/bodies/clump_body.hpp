@@ -27,6 +27,7 @@ struct SpheresOfFile {
   static constexpr const char* type_name = "file";
   static constexpr const char* type_doc = "spheres from a text file";
   std::string path;
+  double scale = 1;  ///< m
   void declare(Parameters& p);
 };
 struct RodSpheres {
@@ -58,6 +59,7 @@ class ClumpBody : public BodyKind {
  private:
   OneOf<AsymmetricSpheres, RodSpheres, ListedSpheres, SpheresOfFile> spheres_{"shape of a clump"};
   std::vector<Ball> balls_;
+  double unit_ = 0;                          // of the spheres, m; 0: only their proportions count
   mutable std::optional<ClumpShape> shape_;  // integrated on demand
 };
 

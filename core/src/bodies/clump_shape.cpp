@@ -261,7 +261,7 @@ ClumpShape make_clump_shape(std::span<const Ball> spheres, int rays) {
   if (axes.determinant() < 0) axes.col(2) *= -1;
 
   ClumpShape shape;
-  shape.errors = errors;
+  shape.errors = errors, shape.given_radius = enclosing.w;
   shape.volume = all.volume, shape.inertia = solver.eigenvalues(), shape.axes = axes;
   shape.middle = axes.transpose() * -centre;
   // The fractions have their own errors; they are scaled so that their sum is the volume of the union.

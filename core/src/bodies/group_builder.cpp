@@ -18,6 +18,11 @@ GroupBuilder::GroupBuilder(const SceneDescription& scene, const BodiesDescriptio
 
 double GroupBuilder::inert(double radius) const { return std::max(radius, 0.5 * scaled_below_); }
 
+std::optional<double> GroupBuilder::shape_diameter() const {
+  if (clump() == nullptr || !(clump()->given_radius > 0)) return std::nullopt;
+  return 2 * clump()->given_radius;
+}
+
 void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn,
                        const Vec3& velocity, const Vec3& spin) const {
   const double own = mass(radius), size = inert(radius);

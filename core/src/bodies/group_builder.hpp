@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "bodies/bodies.hpp"
 #include "description/description.hpp"
@@ -19,6 +20,8 @@ class GroupBuilder {
   void add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
            const Vec3& spin) const;
   const ClumpShape* clump() const { return kind_->clump(); }
+  /// Diameter of the enclosing sphere of the shape as it was given [m].
+  std::optional<double> shape_diameter() const;
 
  private:
   /// The radius that determines mass and inertia: larger for small bodies with density scaling.

@@ -1,16 +1,19 @@
 #include "bodies/make_bodies.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <typeinfo>
 
 #include "bodies/cloud.hpp"
 #include "bodies/group_builder.hpp"
+#include "bodies/lattice.hpp"
 #include "bodies/orientation.hpp"
 #include "bodies/packing_file.hpp"
 #include "bodies/sizes.hpp"
@@ -28,6 +31,13 @@ std::set<std::string> of_bodies(const SceneDescription& scene) {
   return names;
 }
 
+std::vector<PackedBody> at_rest(const std::vector<Row>& spheres) {
+  std::vector<PackedBody> bodies;
+  bodies.reserve(spheres.size());
+  for (const Row& one : spheres) bodies.push_back({one});
+  return bodies;
+}
+
 /// Adds a group. Clouds do not overlap the spheres of `there` and `bodies`.
 void add_group(const BodiesDescription& group, const GroupBuilder& builder, const Cell& cell,
                std::span<const Row> there, Random& random, Bodies& bodies) {
@@ -41,35 +51,42 @@ void add_group(const BodiesDescription& group, const GroupBuilder& builder, cons
     }
     return;
   }
-  const auto* cloud = std::get_if<CloudSource>(&group.source.value());
-  const auto* file = std::get_if<FileSource>(&group.source.value());
-  std::vector<Row> others(there.begin(), there.end());
-  others.insert(others.end(), bodies.position.begin(), bodies.position.end());
-  const auto grains = cloud != nullptr ? make_cloud(*cloud, cell, random, others) : read_packing(file->path);
+  const auto grains = [&]() -> std::vector<PackedBody> {
+    if (const auto* file = std::get_if<FileSource>(&group.source.value())) return read_bodies(*file);
+    if (const auto* lattice = std::get_if<LatticeSource>(&group.source.value()))
+      return at_rest(make_lattice(*lattice, cell));
+    std::vector<Row> others(there.begin(), there.end());
+    others.insert(others.end(), bodies.position.begin(), bodies.position.end());
+    return at_rest(
+        make_cloud(std::get<CloudSource>(group.source.value()), cell, random, others, builder.shape_diameter()));
+  }();
   const ClumpShape* const clump = builder.clump();
   bodies.reserve(grains.size() * (clump != nullptr ? clump->spheres.size() : 1));
-  for (const Row& g : grains) {
+  for (const PackedBody& g : grains) {
     const Eigen::Quaterniond turn = clump != nullptr ? any_orientation(random) : Eigen::Quaterniond::Identity();
-    builder.add(bodies, xyz(g), g.w, turn, group.velocity, Vec3::Zero());
+    builder.add(bodies, xyz(g.sphere), g.sphere.w, turn, group.velocity + g.velocity, g.spin);
   }
 }
 
-double smallest_radius(const BodiesDescription& group) {
+double smallest_radius(const BodiesDescription& group, std::optional<double> shape_diameter) {
   double smallest = std::numeric_limits<double>::infinity();
   if (const auto* placed = std::get_if<ListSource>(&group.source.value())) {
     for (const ListedBody& one : placed->bodies) smallest = std::min(smallest, one.radius);
   } else if (const auto* cloud = std::get_if<CloudSource>(&group.source.value())) {
     Random random(0);
-    for (const double diameter : draw_diameters(cloud->sizes, static_cast<std::size_t>(cloud->count), random))
+    for (const double diameter :
+         draw_diameters(cloud->sizes, static_cast<std::size_t>(cloud->count), random, shape_diameter))
       smallest = std::min(smallest, 0.5 * diameter);
+  } else if (const auto* lattice = std::get_if<LatticeSource>(&group.source.value())) {
+    smallest = 0.5 * lattice->diameter;
   } else if (const auto* stream = std::get_if<StreamSource>(&group.source.value())) {
     constexpr std::size_t sample = 1000;
     Random random(0);
-    for (const double diameter : draw_diameters(stream->sizes, sample, random))
+    for (const double diameter : draw_diameters(stream->sizes, sample, random, shape_diameter))
       smallest = std::min(smallest, 0.5 * diameter);
   } else {
-    for (const Row& one : read_packing(std::get<FileSource>(group.source.value()).path))
-      smallest = std::min(smallest, one.w);
+    for (const PackedBody& one : read_bodies(std::get<FileSource>(group.source.value())))
+      smallest = std::min(smallest, one.sphere.w);
   }
   return smallest;
 }
@@ -122,6 +139,16 @@ void for_group(const std::string& name, const Work& work) {
   }
 }
 
+/// The periodic axes of the domain that a lattice spans.
+std::array<bool, 3> spanned_axes(const LatticeSource& lattice, const DomainDescription& domain) {
+  std::array<bool, 3> spanned{};
+  if (!domain.low || !domain.high) return spanned;
+  for (int k = 0; k < 3; ++k)
+    spanned[static_cast<std::size_t>(k)] = domain.periodic[static_cast<std::size_t>(k)] &&
+                                           lattice.low[k] == (*domain.low)[k] && lattice.high[k] == (*domain.high)[k];
+  return spanned;
+}
+
 /// A separate random stream for each stage, so that the bodies of a stage do not depend on other stages.
 Random random_of(const SceneDescription& scene, const std::string& stage) {
   Random seeds(static_cast<std::uint64_t>(scene.seed));
@@ -166,11 +193,15 @@ Bodies make_bodies(const SceneDescription& scene, const Components& components, 
   Bodies bodies;
   for (const auto& [name, group] : scene.bodies) {
     const auto& kind = components.body_kinds.at(name);
+    if (group.is_from_sample()) continue;
     if (group.stage.empty()) {
       bodies.groups.push_back({name, bodies.ids_given});
       for_group(name, [&] { add_group(group, GroupBuilder(scene, group, kind), cell, {}, random, bodies); });
     } else {
-      body_count(scene, name, kind);  // reports errors in files now, not at the start of their stage
+      // Errors in files are reported now, not at the start of their stage.
+      body_count(scene, name, kind);
+      if (const auto* cloud = std::get_if<CloudSource>(&group.source.value()))
+        for_group(name, [&] { check_region(*cloud); });
     }
   }
   check_inside(cell, bodies);
@@ -201,9 +232,9 @@ Bodies smallest_bodies(const SceneDescription& scene, const Components& componen
   Bodies bodies;
   for (const std::string& name : groups) {
     const BodiesDescription& group = scene.bodies.at(name);
-    if (const double radius = smallest_radius(group); std::isfinite(radius))
-      GroupBuilder(scene, group, components.body_kinds.at(name))
-          .add(bodies, Vec3::Zero(), radius, Eigen::Quaterniond::Identity(), Vec3::Zero(), Vec3::Zero());
+    const GroupBuilder builder(scene, group, components.body_kinds.at(name));
+    if (const double radius = smallest_radius(group, builder.shape_diameter()); std::isfinite(radius))
+      builder.add(bodies, Vec3::Zero(), radius, Eigen::Quaterniond::Identity(), Vec3::Zero(), Vec3::Zero());
   }
   bodies.finish({});
   return bodies;
@@ -212,13 +243,16 @@ Bodies smallest_bodies(const SceneDescription& scene, const Components& componen
 std::size_t body_count(const SceneDescription& scene, const std::string& name,
                        const std::shared_ptr<const BodyKind>& kind) {
   const BodiesDescription& group = scene.bodies.at(name);
+  if (group.is_from_sample()) return 0;
   const auto spheres = kind->clump() != nullptr ? kind->clump()->spheres.size() : 1;
   if (const auto* stream = std::get_if<StreamSource>(&group.source.value()))
     return spheres * expected_count(*stream, GroupBuilder(scene, group, kind));
   if (const auto* placed = std::get_if<ListSource>(&group.source.value())) return spheres * placed->bodies.size();
   if (const auto* cloud = std::get_if<CloudSource>(&group.source.value()))
     return spheres * static_cast<std::size_t>(cloud->count);
-  return spheres * read_packing(std::get<FileSource>(group.source.value()).path).size();
+  if (const auto* lattice = std::get_if<LatticeSource>(&group.source.value()))
+    return spheres * count_of_lattice(*lattice, spanned_axes(*lattice, scene.domain));
+  return spheres * read_bodies(std::get<FileSource>(group.source.value())).size();
 }
 
 }  // namespace grit

@@ -1,4 +1,4 @@
-// Grains as plain text: one line "x y z radius" per grain, in m; "#" starts a comment. Other DEM codes read it, too.
+// Files of bodies: those of other codes, and grit's own, with one line "x y z radius" per grain in m.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "bodies/packing_rows.hpp"
+#include "description/description.hpp"
 #include "grit/vec.hpp"
 
 namespace grit {
 
-/// Centres [m], w: radius [m], in the order of the lines. Throws FileError as read_text() does. Throws
-/// DescriptionError, with each line at fault, for lines without exactly four numbers, numbers that are not finite,
-/// radii that are not positive, and for a file without grains.
+/// The bodies of a file, in the order of its lines. Throws FileError as read_text() does. Throws DescriptionError, with
+/// each line at fault, for lines with other columns than expected, numbers that are not finite, radii that are not
+/// positive, for files that end early, and for a file without bodies.
+std::vector<PackedBody> read_bodies(const FileSource& source);
+
+/// Their centres [m], w: radius [m].
 std::vector<Row> read_packing(const std::filesystem::path& path);
 
 /// Writes 17 significant digits, so that reading gives identical numbers. The file is replaced as a whole or not at

@@ -88,11 +88,21 @@ std::vector<double> draw_diameters(const ListSizes& sizes, std::size_t count, Ra
   return diameters;
 }
 
-std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random) {
+std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random,
+                                   std::optional<double> shape_diameter) {
   return std::visit(
       [&]<class S>(const S& chosen) -> std::vector<double> {
-        if constexpr (std::same_as<S, std::monostate>) throw Error("sizes of grains: no size distribution was chosen");
-        else return draw_diameters(chosen, count, random);
+        if constexpr (std::same_as<S, std::monostate>) {
+          throw Error("sizes of grains: no size distribution was chosen");
+        } else if constexpr (std::same_as<S, ShapeSizes>) {
+          if (!shape_diameter)
+            throw Error(
+                "sizes of type shape: these bodies have no size of their own; use a clump whose shape is a list or a "
+                "file, or other sizes");
+          return std::vector<double>(count, *shape_diameter);
+        } else {
+          return draw_diameters(chosen, count, random);
+        }
       },
       sizes.value());
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "bodies/random.hpp"
@@ -19,7 +20,9 @@ std::vector<double> draw_diameters(const LogNormalSizes& sizes, std::size_t coun
 std::vector<double> draw_diameters(const SieveSizes& sizes, std::size_t count, Random& random);
 /// The listed diameters in their order, repeated as needed.
 std::vector<double> draw_diameters(const ListSizes& sizes, std::size_t count, Random& random);
-/// Of the chosen distribution. Throws grit::Error if none was chosen.
-std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random);
+/// Of the chosen distribution. `shape_diameter`: of the clump as its shape was given [m]. Throws grit::Error if none
+/// was chosen, or for sizes of a shape that has none.
+std::vector<double> draw_diameters(const Sizes& sizes, std::size_t count, Random& random,
+                                   std::optional<double> shape_diameter = {});
 
 }  // namespace grit

@@ -111,7 +111,8 @@ void Stream::enter() {
 
 void Stream::draw() {
   const auto* list = std::get_if<ListSizes>(&source_.sizes.value());
-  std::vector<double> more = draw_diameters(source_.sizes, list != nullptr ? list->diameters.size() : batch, random_);
+  std::vector<double> more = draw_diameters(source_.sizes, list != nullptr ? list->diameters.size() : batch, random_,
+                                            builder_.shape_diameter());
   std::ranges::reverse(more);
   diameters_.insert(diameters_.begin(), more.begin(), more.end());
 }
@@ -123,7 +124,7 @@ std::size_t expected_count(const StreamSource& source, const GroupBuilder& build
   if (source.count > 0) count = static_cast<double>(source.count);
   Random random(0);
   double mean = 0;
-  for (const double diameter : draw_diameters(source.sizes, batch, random))
+  for (const double diameter : draw_diameters(source.sizes, batch, random, builder.shape_diameter()))
     mean += builder.mass(0.5 * diameter) / batch;
   if (source.mass) count = std::min(count, *source.mass / mean);
   if (source.time && source.number_rate) count = std::min(count, *source.number_rate * *source.time);

@@ -45,7 +45,9 @@ void ContactTable::rebuild(const Bodies& bodies, const NeighbourSearch& search, 
   const std::size_t count = bodies.count(), field_count = fields_.size();
   // Free arrays that are rebuilt last, to reduce peak memory.
   give_back(row_), give_back(inbox_);
-  std::vector<std::uint32_t> now(std::max(bodies_, count), order.empty() ? 0 : nowhere);
+  // Bodies may have been appended and others removed since the last time.
+  const std::size_t before = order.empty() ? bodies_ : std::max<std::size_t>(bodies_, std::ranges::max(order) + 1);
+  std::vector<std::uint32_t> now(std::max(before, count), order.empty() ? 0 : nowhere);
   if (order.empty()) std::iota(now.begin(), now.end(), 0u);
   else
     for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);

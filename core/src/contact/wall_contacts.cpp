@@ -60,14 +60,17 @@ void straighten(WallContact& contact, std::span<const WallSurface> walls) {
 
 }  // namespace
 
-void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> walls, const Skins& skins,
-                           std::span<const StateField> fields, std::span<const std::uint32_t> order) {
+void WallContacts::rebuild(const Bodies& bodies, std::span<const std::uint16_t> group,
+                           std::span<const WallSurface> walls, const Skins& skins, std::span<const StateField> fields,
+                           std::span<const std::uint32_t> order) {
   set_fields(fields);
   const std::size_t count = bodies.count(), field_count = fields_.size();
   // Contact histories follow their bodies into other chunks.
   if (!order.empty()) {
     constexpr std::uint32_t gone = ~0u;
-    std::vector<std::uint32_t> now(std::max(count, chunks_.size() * chunk_bodies), gone);
+    // Bodies may have been appended and others removed since the last time.
+    std::vector<std::uint32_t> now(std::max<std::size_t>(std::ranges::max(order) + 1, chunks_.size() * chunk_bodies),
+                                   gone);
     for (std::size_t i = 0; i < count; ++i) now[order[i]] = static_cast<std::uint32_t>(i);
     std::vector<WallContact> contact;
     std::vector<double> state;
@@ -109,9 +112,11 @@ void WallContacts::rebuild(const Bodies& bodies, std::span<const WallSurface> wa
       around = std::max(around, (xyz(bodies.position[i]) - middle).norm() + bodies.position[i].w + skin);
     around *= 1 + 1e-12;
     for (const WallSurface& wall : walls) {
-      const bool close = !middle.allFinite() || wall.geometry->near(wall.pose, middle, around);
+      const bool repeated = !wall.period.isZero(0.0);  // then bodies of a chunk may be at both of its ends
+      const bool close = repeated || !middle.allFinite() || wall.geometry->near(wall.pose, middle, around);
       for (std::size_t i = first; close && i < last; ++i)
-        if (wall.geometry->near(wall.pose, xyz(bodies.position[i]), bodies.position[i].w + skin))
+        if (wall.acts_on(group, i) &&
+            wall.geometry->near(wall.pose, wall.within(xyz(bodies.position[i])), bodies.position[i].w + skin))
           chunk.candidate.push_back(static_cast<std::uint32_t>(i));
       chunk.candidate_start.push_back(static_cast<std::uint32_t>(chunk.candidate.size()));
     }
@@ -129,6 +134,26 @@ void WallContacts::set_fields(std::span<const StateField> fields) {
     for (std::size_t i = 0; i < chunk.contact.size(); ++i)
       for (const auto& [from, to] : moves) state[i * after + to] = chunk.state[i * before + from];
     chunk.state.swap(state);
+  }
+}
+
+void WallContacts::renumber_walls(std::span<const std::uint32_t> now) {
+  const std::size_t fields = fields_.size();
+  for (Chunk& chunk : chunks_) {
+    Chunk before;
+    before.contact.swap(chunk.contact), before.state.swap(chunk.state);
+    chunk.row.clear(), chunk.candidate.clear();
+    for (WallContact& contact : before.contact) contact.wall = now[contact.wall];
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < before.contact.size(); ++i)
+      if (before.contact[i].wall != no_wall) order.push_back(i);
+    std::ranges::sort(order, {}, [&](std::size_t i) { return key(before.contact[i]); });
+    for (const std::size_t i : order) {
+      chunk.contact.push_back(before.contact[i]);
+      const auto first = before.state.begin() + static_cast<std::ptrdiff_t>(i * fields);
+      chunk.state.insert(chunk.state.end(), first, first + static_cast<std::ptrdiff_t>(fields));
+      chunk.row.emplace_back();
+    }
   }
 }
 
@@ -179,6 +204,7 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
 
   leave_out_hidden(chunk, work, bodies, walls);
   carry_histories(chunk, work, bodies, dt);
+  if (std::ranges::any_of(walls, &WallSurface::surface_moves)) carry_along(chunk, bodies, walls);
   if (losses != nullptr) part(work, law, bodies, *losses);
   chunk.row.resize(chunk.contact.size());
   WallBatch batch{.position = bodies.position.data(),
@@ -208,13 +234,25 @@ double WallContacts::evaluate(std::size_t c, const ContactLaw& law, const Bodies
     load.moment += Vec3(py * force.z - pz * force.y + moment.x, pz * force.x - px * force.z + moment.y,
                         px * force.y - py * force.x + moment.z);
     load.contacts += acts(t, chunk.row[i]);
+    if (walls[t.wall].surface_moves) {
+      const Vec3 shear = xyz(force) - force.w * t.normal;
+      load.surface_force += shear;
+      load.surface_moment += Vec3(px, py, pz).cross(shear) + xyz(moment);
+    }
     if (!walls[t.wall].gives_way) continue;
     const PairSize size = at_wall(bodies, t.body, std::max(t.overlap, 0.0));
     const Stiffness k = law.stiffness(size, bodies.material[t.body], t.material);
     load.stiffness += k.normal;
-    load.spring += std::max(k.normal, k.shear);
-    load.dashpot += 2 * std::max(k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a),
-                                 k.shear_damping_ratio * std::sqrt(k.shear / (3.5 * size.inverse_mass_a)));
+    const double spring = std::max(k.normal, k.shear),
+                 dashpot = 2 * std::max(k.damping_ratio * std::sqrt(k.normal / size.inverse_mass_a),
+                                        k.shear_damping_ratio * std::sqrt(k.shear / (3.5 * size.inverse_mass_a)));
+    load.spring += spring, load.dashpot += dashpot;
+    const Vec3& axis = walls[t.wall].free_axis;
+    if (axis.isZero(0.0)) continue;
+    // Shear acts one overlap behind the surface of the wall.
+    const double arm = axis.cross(Vec3(px, py, pz)).norm() + std::max(t.overlap, 0.0);
+    load.turning_spring += arm * arm * spring + std::max(k.rolling, k.twisting);
+    load.turning_dashpot += arm * arm * dashpot;
   }
   return batch.largest_overlap;
 }
@@ -268,6 +306,18 @@ bool WallContacts::hidden(const WallContact& lesser, const WallContact& deeper, 
   work.found.clear();
   wall.geometry->find_contacts(wall.pose, {&probe, 1}, work.found);
   return !work.found.empty();
+}
+
+void WallContacts::carry_along(Chunk& chunk, const Bodies& bodies, std::span<const WallSurface> walls) {
+  for (WallContact& t : chunk.contact) {
+    const WallSurface& wall = walls[t.wall];
+    if (!wall.surface_moves) continue;
+    const Row& x = bodies.position[t.body];
+    const Vec3 point = xyz(x) + (x.w - t.overlap) * t.normal;
+    const Vec3 moves = wall.surface_velocity + wall.surface_spin.cross(point - wall.reference());
+    t.velocity += moves - moves.dot(t.normal) * t.normal;
+    t.spin += wall.surface_spin;
+  }
 }
 
 void WallContacts::carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const {
@@ -342,12 +392,16 @@ void WallContacts::loads(std::span<WallLoad> loads) const {
       loads[w].force += chunk.load[w].force, loads[w].moment += chunk.load[w].moment;
       loads[w].stiffness += chunk.load[w].stiffness, loads[w].contacts += chunk.load[w].contacts;
       loads[w].spring += chunk.load[w].spring, loads[w].dashpot += chunk.load[w].dashpot;
+      loads[w].surface_force += chunk.load[w].surface_force, loads[w].surface_moment += chunk.load[w].surface_moment;
+      loads[w].turning_spring += chunk.load[w].turning_spring;
+      loads[w].turning_dashpot += chunk.load[w].turning_dashpot;
       loads[w].near += chunk.candidate_start[w + 1] - chunk.candidate_start[w];
     }
 }
 
 double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
-                                 const ContactLaw& law, const Bodies& bodies, bool all) const {
+                                 const ContactLaw& law, const Bodies& bodies, std::span<const std::uint16_t> group,
+                                 bool all) const {
   std::vector<Sphere> spheres;
   std::vector<SurfaceContact> found;
   WallSurface at = surface;
@@ -357,7 +411,9 @@ double WallContacts::force_ahead(std::size_t wall, const WallSurface& surface, c
     spheres.push_back({at.within(xyz(x)), x.w, body});
   };
   if (all)
-    for (std::uint32_t body = 0; body < bodies.count(); ++body) inspect(body);
+    for (std::uint32_t body = 0; body < bodies.count(); ++body) {
+      if (surface.acts_on(group, body)) inspect(body);
+    }
   else
     for (const Chunk& chunk : chunks_)
       for (std::uint32_t n = chunk.candidate_start[wall]; n < chunk.candidate_start[wall + 1]; ++n)

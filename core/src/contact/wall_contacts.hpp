@@ -1,6 +1,7 @@
 // Contacts of bodies with walls, and their histories.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -20,12 +21,17 @@ namespace grit {
 struct WallSurface {
   std::shared_ptr<const Geometry> geometry;
   std::uint32_t material = 0;
-  bool gives_way = false;  ///< moved by contact forces (servo or free), so that its stiffness is needed
-  bool free = false;       ///< moved by contact forces only
+  bool gives_way = false;    ///< moved by contact forces (servo, free), so that its stiffness is needed
+  bool free = false;         ///< moved by contact forces only
+  std::vector<bool> groups;  ///< of bodies on which the wall acts; empty: all
   Pose pose;
-  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< in the last step, as those of bodies
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();                  ///< in the last step, as those of bodies
+  bool surface_moves = false;                                         ///< relative to the wall
+  Vec3 surface_velocity = Vec3::Zero(), surface_spin = Vec3::Zero();  ///< the same of the surface relative to the wall
+  Vec3 free_axis = Vec3::Zero();                                      ///< unit, of free rotation; zero: none
 
   Vec3 period = Vec3::Zero();  ///< along axes on which the wall extends over exactly one period [m]; 0 along others
+  std::array<const Geometry*, 3> uniform{};  ///< geometry that was found to be uniform along each axis
 
   /// The position at which to ask for contacts with a body: moved by whole periods into the extent of the wall.
   Vec3 within(Vec3 position) const {
@@ -35,6 +41,9 @@ struct WallSurface {
         position[k] -= period[k] * std::floor((position[k] - low) / period[k]);
       }
     return position;
+  }
+  bool acts_on(std::span<const std::uint16_t> group, std::size_t body) const {
+    return groups.empty() || groups[group[body]];
   }
   Vec3 reference() const { return pose.about + pose.shift; }
   Vec3 point_velocity(const Vec3& point) const { return velocity + spin.cross(point - reference()); }
@@ -52,16 +61,25 @@ struct WallLoad {
   double spring = 0;           ///< sum of stiffnesses, each in its stiffest direction [N/m]
   double dashpot = 0;          ///< the same of dashpots [N s/m]
   std::uint32_t near = 0;      ///< bodies that may come into contact before the next search
+  /// Shear forces and their moments with those of rolling and twisting, of a wall whose surface moves [N, N m].
+  Vec3 surface_force = Vec3::Zero(), surface_moment = Vec3::Zero();
+  double turning_spring = 0;   ///< upper bound of the stiffness against free rotation [N m/rad]
+  double turning_dashpot = 0;  ///< the same of dashpots [N m s/rad]
 };
 
 /// Contacts are sorted by the chunk of their body, then by wall, body and feature. This is the order in which they are
 /// found, so that histories are matched by walking along two sorted lists.
 class WallContacts {
  public:
-  /// Finds which bodies may come into contact with which walls while no displacement exceeds its skin.
-  void rebuild(const Bodies& bodies, std::span<const WallSurface> walls, const Skins& skins,
-               std::span<const StateField> fields, std::span<const std::uint32_t> order);
+  /// Finds which bodies may come into contact with which walls while no displacement exceeds its skin. `group`: of each
+  /// body; may be empty if walls act on all groups.
+  void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
+               const Skins& skins, std::span<const StateField> fields, std::span<const std::uint32_t> order);
   void set_fields(std::span<const StateField> fields);
+  const std::vector<StateField>& fields() const { return fields_; }
+  static constexpr std::uint32_t no_wall = ~0u;
+  /// Walls get new indices, before the next rebuild(). Contacts of walls that become no_wall are removed.
+  void renumber_walls(std::span<const std::uint32_t> now);
 
   /// Finds and evaluates the contacts of one chunk; adds to the sums of its bodies, and to `losses` unless it is
   /// null. Returns the largest overlap over a radius.
@@ -75,7 +93,7 @@ class WallContacts {
   /// of springs, linear with their present stiffness, and of dashpots. Considers `all` bodies, or only those that it
   /// may come into contact with before the next search.
   double force_ahead(std::size_t wall, const WallSurface& surface, const Pose& there, const Vec3& velocity,
-                     const ContactLaw& law, const Bodies& bodies, bool all) const;
+                     const ContactLaw& law, const Bodies& bodies, std::span<const std::uint16_t> group, bool all) const;
 
   struct Touching {
     const WallContact* contact;
@@ -158,6 +176,8 @@ class WallContacts {
   /// Whether the wall of the deeper contact also covers the point of the other one.
   static bool hidden(const WallContact& lesser, const WallContact& deeper, const Row& body,
                      std::span<const WallSurface> walls, Workspace& work);
+  /// Adds the velocities of surfaces that move relative to their walls.
+  static void carry_along(Chunk& chunk, const Bodies& bodies, std::span<const WallSurface> walls);
   /// Copies histories from the contacts of the last step to those of this one. work.gone lists those that ended.
   void carry_histories(Chunk& chunk, Workspace& work, const Bodies& bodies, double dt) const;
   /// Books the elastic energy of ended contacts as dissipated, and that of bonds that broke.

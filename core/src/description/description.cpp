@@ -44,6 +44,27 @@ void declare_sizes(Parameters& p, double& smallest, double& largest) {
       {"smallest", "largest"});
 }
 
+void check_columns(const FileSource& file, const Complain& complain) {
+  const auto& columns = file.columns;
+  const bool any_format = file.format == "auto", is_text = any_format || file.format == "text";
+  if (!columns.empty() && !is_text && file.format != "lammps-data")
+    complain("columns", "columns of the format " + file.format, "none; the file names them");
+  if (file.header_lines > 0 && !is_text)
+    complain("header_lines", "lines to skip in the format " + file.format, "0; they are for the format text");
+  if (file.time_step >= 0 && !any_format && file.format != "lammps-dump")
+    complain("time_step", "a time step in the format " + file.format, "-1; it is for the format lammps-dump");
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (columns[i] != "-" &&
+        std::ranges::count(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(i), columns[i]) == 1)
+      complain("columns/" + std::to_string(i), "a second column " + columns[i], "one; - skips a column");
+  if (columns.empty()) return;
+  const auto has = [&](const char* name) { return std::ranges::find(columns, name) != columns.end(); };
+  for (const std::string& axis : one_axis)
+    if (!has(axis.c_str())) complain("columns", "no column " + axis, "x, y, z and r or d");
+  if (has("r") == has("d"))
+    complain("columns", has("r") ? "a radius and a diameter" : "neither a radius nor a diameter", "r or d");
+}
+
 /// Reports each axis along which low is not below high.
 void check_box(const Vec3& low, const Vec3& high, const Complain& complain) {
   for (int k = 0; k < 3; ++k)
@@ -139,13 +160,46 @@ void check_materials_of_walls(const SceneDescription& scene, const Complain& com
 void check_weight(const SceneDescription& scene, const Complain& complain) {
   const auto is_scaled = [](const auto& group) { return group.second.scaled_below() > 0; };
   if (std::ranges::none_of(scene.bodies, is_scaled)) return;
-  MotionSettings settings;
-  for (const auto& [name, engine] : scene.engines) engine.engine.make()->settings(settings);
-  if (settings.gravity.isZero(0.0)) return;
+  const auto has_weight = [&](const std::string& group) {
+    MotionSettings settings;
+    for (const auto& [name, engine] : scene.engines)
+      if (engine.groups.empty() || std::ranges::find(engine.groups, group) != engine.groups.end())
+        engine.engine.make()->settings(settings);
+    return !settings.gravity.isZero(0.0);
+  };
   for (const auto& [name, group] : scene.bodies)
-    if (group.scaled_below() > 0)
+    if (group.scaled_below() > 0 && has_weight(name))
       complain("bodies/" + name + "/density_scaling", "density scaling together with gravity",
                "only one of them, as weight would grow with the scaled mass; remove one");
+}
+
+/// Reports groups of bodies that do not exist.
+void check_groups(const SceneDescription& scene, const Complain& complain) {
+  const References known("group", keys(scene.bodies), complain);
+  const auto check = [&](const std::string& key, const std::vector<std::string>& groups) {
+    for (std::size_t i = 0; i < groups.size(); ++i) known.check(key + "/groups/" + std::to_string(i), groups[i]);
+  };
+  for (const auto& [name, wall] : scene.walls) check("walls/" + name, wall.groups);
+  for (const auto& [name, engine] : scene.engines) check("engines/" + name, engine.groups);
+  for (const auto& [name, probe] : scene.probes) check("probes/" + name, probe.groups);
+}
+
+/// Reports groups from a sample without one, and a sample of which no group is used.
+void check_sample(const SceneDescription& scene, const Complain& complain) {
+  bool used = false;
+  for (const auto& [name, group] : scene.bodies) {
+    if (!group.is_from_sample()) continue;
+    used = true;
+    if (!scene.begin)
+      complain("bodies/" + name + "/source", "a source of type sample without /begin",
+               "a run that begins from a sample: add \"begin\": {\"from\": FOLDER}");
+    if (!group.stage.empty())
+      complain("bodies/" + name + "/stage", "a group of a sample that appears in a stage",
+               "the start of the run; remove stage");
+  }
+  if (scene.begin && !used)
+    complain("begin", "a sample of which no group of bodies is used",
+             "a group of bodies with \"source\": {\"type\": \"sample\"}");
 }
 
 void check_followers(const SceneDescription& scene, const Complain& complain) {
@@ -243,23 +297,45 @@ void ListSizes::declare(Parameters& p) {
       .doc("diameters, assigned in order and repeated");
 }
 
-void CloudSource::declare(Parameters& p) {
+void LatticeSource::declare(Parameters& p) {
+  p.add("kind", kind)
+      .one_of({"simple-cubic", "bcc", "fcc", "hcp"})
+      .required()
+      .doc("lattice; of hcp close-packed layers are normal to z");
   p.add("low", low).unit("m").required().doc("lower corner of the box to fill");
   p.add("high", high).unit("m").required().doc("upper corner of the box to fill");
-  p.add("count", count).at_least(1).at_most(4e9).required().doc("number of bodies");
-  p.add("sizes", sizes).required().doc("distribution of diameters");
-  p.add("plane_normal", plane_normal)
-      .one_of({"none", "x", "y", "z"})
-      .doc("normal of the plane through the centre of the box in which all centres lie, for the engine planar");
+  p.add("diameter", diameter).unit("m").symbol("d").above(0).required().doc("diameter of the bodies");
+  p.add("spacing", spacing).unit("m").above(0).doc("distance of nearest neighbours; default: the diameter");
   p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
 }
+const std::vector<std::string>& FileSource::column_names() {
+  static const std::vector<std::string> names{"x",  "y",  "z",  "r",  "d",    "vx", "vy",
+                                              "vz", "wx", "wy", "wz", "type", "id", "-"};
+  return names;
+}
 void FileSource::declare(Parameters& p) {
-  p.add("path", path).file().required().doc("text file with one body per line: x y z radius, in m; # starts a comment");
+  p.add("path", path).file().required().doc("text file with one body per line; # starts a comment");
+  p.add("format", format)
+      .one_of({"auto", "text", "lammps-data", "lammps-dump", "yade", "xyz", "dem-engine"})
+      .doc("format of the file; auto: found by its content. lammps-* are also those of LIGGGHTS");
+  p.add("columns", columns)
+      .one_of(column_names())
+      .doc(
+          "what the columns hold, for the formats text and lammps-data: r radius, d diameter, vx velocity, wx angular "
+          "velocity, - skipped; default: x y z r, or the names in the first line");
+  p.add("header_lines", header_lines).at_least(0).doc("lines at the beginning that are skipped, for the format text");
+  p.add("scale", scale).unit("m").above(0).doc("length of one file unit, e.g. \"1 mm\"; also scales velocities");
+  p.add("particle_type", particle_type).doc("reads only bodies of this type in the file, e.g. \"2\"; default: all");
+  p.add("time_step", time_step)
+      .at_least(-1)
+      .doc("time step of the snapshot to read, for the format lammps-dump; -1: the last one");
   p.check(
       [this](const Complain& complain) {
         if (path.empty()) complain("path", "an empty text", "the path of a file");
       },
       {"path"});
+  p.check([this](const Complain& complain) { check_columns(*this, complain); },
+          {"format", "columns", "header_lines", "time_step"});
 }
 void ListedBody::declare(Parameters& p) {
   p.add("position", position).unit("m").required().doc("centre");
@@ -293,6 +369,64 @@ void BoxRegion::declare(Parameters& p) {
   p.add("high", high).unit("m").required().doc("upper corner");
   p.check([this](const Complain& complain) { check_box(low, high, complain); }, {"low", "high"});
 }
+void SphereRegion::declare(Parameters& p) {
+  p.add("centre", centre).unit("m").required().doc("centre");
+  p.add("radius", radius).unit("m").above(0).required().doc("radius");
+}
+void CylinderRegion::declare(Parameters& p) {
+  p.add("start", start).unit("m").required().doc("start of the axis: centre of one end");
+  p.add("end", end).unit("m").required().doc("end of the axis: centre of the other end");
+  p.add("radius", radius).unit("m").above(0).required().doc("radius");
+  p.check([this](const Complain& complain) {
+    if (start == end) complain("end", "the start of the axis", "another point");
+  });
+}
+void HalfSpaceRegion::declare(Parameters& p) {
+  p.add("point", point).unit("m").required().doc("any point of the plane");
+  p.add("normal", normal).doc("normal of the plane, out of the region; any length above 0");
+  p.check([this](const Complain& complain) {
+    if (!(normal.norm() > 0)) complain("normal", "a vector of length 0", "a direction");
+  });
+}
+bool contains(const BoxRegion& region, const Vec3& point) {
+  return (point.array() >= region.low.array()).all() && (point.array() <= region.high.array()).all();
+}
+bool contains(const SphereRegion& region, const Vec3& point) {
+  return (point - region.centre).squaredNorm() <= region.radius * region.radius;
+}
+bool contains(const CylinderRegion& region, const Vec3& point) {
+  const Vec3 axis = region.end - region.start, arm = point - region.start;
+  const double along = arm.dot(axis) / axis.squaredNorm();
+  return along >= 0 && along <= 1 && (arm - along * axis).squaredNorm() <= region.radius * region.radius;
+}
+bool contains(const HalfSpaceRegion& region, const Vec3& point) {
+  return (point - region.point).dot(region.normal) <= 0;
+}
+
+void MeshRegion::declare(Parameters& p) {
+  p.add("path", path).file().required().doc("STL file, ASCII or binary, of a closed surface");
+  p.add("scale", scale).unit("m").required().above(0).doc("length of one file unit, e.g. \"1 mm\"");
+  p.add("position", position).unit("m").doc("position of the file's origin in the scene");
+}
+void CloudSource::declare(Parameters& p) {
+  p.add("low", low).unit("m").doc("lower corner of the box to fill; needed without a region");
+  p.add("high", high).unit("m").doc("upper corner of the box to fill; needed without a region");
+  p.add("region", region).doc("region to fill instead of a box; bodies are inside it as a whole");
+  p.add("count", count).at_least(1).at_most(4e9).required().doc("number of bodies");
+  p.add("sizes", sizes).required().doc("distribution of diameters");
+  p.add("plane_normal", plane_normal)
+      .one_of({"none", "x", "y", "z"})
+      .doc("normal of the plane through the centre of the box in which all centres lie, for the engine planar");
+  p.check(
+      [this](const Complain& complain) {
+        if (region && (low || high)) complain("region", "a region and a box", "a region, or low and high");
+        else if (!region && !(low && high))
+          complain("", low || high ? "one corner of a box" : "neither a box nor a region", "low and high, or a region");
+        else if (!region) check_box(*low, *high, complain);
+      },
+      {"low", "high", "region"});
+}
+
 void StreamSource::declare(Parameters& p) {
   p.add("region", region).required().doc("where bodies enter: at random positions, without overlaps");
   p.add("number_rate", number_rate).unit("1/s").above(0).doc("bodies per time; needed without mass_rate");
@@ -366,6 +500,21 @@ void FreeDescription::declare(Parameters& p) {
   p.add("mass", mass).unit("kg").symbol("m").above(0).required().doc("mass of the wall");
   p.add("load", load).unit("N").symbol("F").doc("external force on the wall");
 }
+void FreeRotationDescription::declare(Parameters& p) {
+  p.add("axis", axis).required().doc("axis about which the wall rotates freely, through the point `about`");
+  p.add("inertia", inertia)
+      .unit("kg m^2")
+      .symbol("I")
+      .above(0)
+      .required()
+      .doc("moment of inertia of the wall about the axis");
+  p.add("moment", moment).unit("N m").symbol("M").doc("external moment on the wall about the axis, right-handed");
+  p.check(
+      [this](const Complain& complain) {
+        if (!(axis.norm() > 0)) complain("axis", "a vector of length 0", "a direction");
+      },
+      {"axis"});
+}
 void OscillationDescription::declare(Parameters& p) {
   p.add("amplitude", amplitude)
       .unit("m")
@@ -380,6 +529,12 @@ void OscillationDescription::declare(Parameters& p) {
       .unit("rad")
       .symbol("phi")
       .doc("phase at the start; 0: at the mean position, 90 deg: at the positive extreme");
+  p.add("amplitude_phase", amplitude_phase)
+      .unit("rad")
+      .doc(
+          "phases of the displacement along x, y and z, added to phase; with a difference of 90 deg a point moves on "
+          "an ellipse");
+  p.add("angle_phase", angle_phase).unit("rad").doc("the same for the components of angle");
   p.check(
       [this](const Complain& complain) {
         if (amplitude.isZero(0.0) && angle.isZero(0.0))
@@ -390,15 +545,24 @@ void OscillationDescription::declare(Parameters& p) {
 void MotionDescription::declare(Parameters& p) {
   p.add("velocity", velocity).unit("m/s").symbol("v").doc("velocity");
   p.add("spin", spin).unit("rad/s").symbol("omega").doc("angular velocity, right-handed");
+  p.add("surface_velocity", surface_velocity)
+      .unit("m/s")
+      .doc(
+          "velocity of the surface while the wall stays, as of a belt; bodies feel its part along the surface; it "
+          "turns with the wall");
+  p.add("surface_spin", surface_spin)
+      .unit("rad/s")
+      .doc("angular velocity of the surface about the point `about` while the wall stays, as of a turntable");
   p.add("about", about).unit("m").doc("centre of rotation; default: the reference point of the geometry");
   p.add("ramp_time", ramp_time)
       .unit("s")
       .at_least(0)
-      .doc("time over which velocity, spin and oscillation increase linearly from zero");
+      .doc("time over which velocity, spin, those of the surface, and oscillation increase linearly from zero");
   p.add("oscillation", oscillation).doc("sinusoidal motion, added to velocity and spin");
   p.add("servo", servo).doc("motion that keeps a pressure or force");
   p.add("follow", follow).doc("motion of another wall");
   p.add("free", free).doc("free motion under the forces on the wall");
+  p.add("free_rotation", free_rotation).doc("free rotation under the moments on the wall");
   p.check(
       [this](const Complain& complain) {
         for (int k = 0; k < 3; ++k) {
@@ -419,11 +583,22 @@ void MotionDescription::declare(Parameters& p) {
         }
       },
       {"velocity", "oscillation", "servo", "follow", "free"});
+  p.check(
+      [this](const Complain& complain) {
+        if (!free_rotation) return;
+        const bool swings = oscillation && !oscillation->angle.isZero(0.0);
+        if (spin.isZero(0.0) && !swings) return;
+        complain("free_rotation",
+                 std::string("a rotation controlled by ") + (swings ? "oscillation" : "spin") + " and free_rotation",
+                 "one of them");
+      },
+      {"spin", "oscillation", "free_rotation"});
 }
 WallDescription::WallDescription(const Registry& registry) : geometry(registry) {}
 void WallDescription::declare(Parameters& p) {
   p.choose(geometry);
   p.add("material", material).required().doc("name of the surface material");
+  p.add("groups", groups).doc("names of the groups of bodies on which the wall acts; empty: all");
   p.add("motion", motion).doc("motion, axis by axis; default: fixed");
 }
 
@@ -490,6 +665,15 @@ void DomainDescription::declare(Parameters& p) {
       },
       {"low", "high", "periodic", "open_sides"});
 }
+void BeginDescription::declare(Parameters& p) {
+  p.add("from", from).file().required().doc("folder of results of the run whose state is the sample");
+  p.add("at", at)
+      .one_of({"end", "checkpoint"})
+      .doc("end: the end of a complete run; checkpoint: the last checkpoint of an incomplete one");
+  p.add("springs", springs)
+      .one_of({"keep", "drop"})
+      .doc("whether contacts keep their shear and rolling springs; fields of the same name are kept with another law");
+}
 void SpecimenDescription::declare(Parameters& p) {
   p.add("low", low).doc("names of the walls at its lower x, y and z sides; \"\": bound of the domain");
   p.add("high", high).doc("names of the walls at its upper x, y and z sides; \"\": bound of the domain");
@@ -537,10 +721,17 @@ void GuardsDescription::declare(Parameters& p) {
           "maximum spurious energy gain, as a fraction of the energy; without an energy probe, dissipation may hide a "
           "gain; not checked if the domain deforms, bodies are held or engines apply forces");
 }
-void EngineDescription::declare(Parameters& p) { p.choose(engine); }
+void EngineDescription::declare(Parameters& p) {
+  p.choose(engine);
+  p.add("groups", groups).doc("names of the groups of bodies on which it acts; empty: all");
+}
 void ProbeDescription::declare(Parameters& p) {
   p.choose(probe);
   cadence.declare(p);
+  p.add("groups", groups)
+      .doc(
+          "names of the groups of bodies sampled: these bodies, their contacts with each other and with walls, and "
+          "their loads on walls; empty: all");
   p.add("stages", stages).doc("names of the stages sampled; empty: all");
   p.add("frames", frames).doc("whether its fields are written to frames");
 }
@@ -701,8 +892,10 @@ void PictureDescription::declare(Parameters& p) {
   p.add("y", y).required().entries(1).doc("series of the vertical axis");
   p.add("view", view).one_of({"xz", "yz", "xy"}).doc("plane in which the bodies are drawn");
   p.add("color", color)
-      .one_of({"rotation", "displacement", "speed"})
-      .doc("colour of the bodies: rotation about the line of sight, displacement along the first axis, speed");
+      .one_of({"rotation", "displacement", "speed", "radius", "group"})
+      .doc(
+          "colour of the bodies: rotation about the line of sight, displacement along the first axis, speed, radius, "
+          "or the group of the description");
 }
 void check_channel(const std::string& name, const char* key, const Complain& complain) {
   const auto slash = name.find('/');
@@ -846,6 +1039,7 @@ void SceneDescription::check_together(const Complain& complain) const {
   check_materials_of_bodies(*this, complain);
   check_weight(*this, complain);
   check_materials_of_walls(*this, complain);
+  check_groups(*this, complain);
   check_followers(*this, complain);
 }
 
@@ -860,6 +1054,7 @@ void SceneDescription::declare(Parameters& p) {
       .required()
       .entries(1)
       .doc("groups of bodies by name");
+  p.add("begin", begin).doc("prepared sample from which the run begins; default: none");
   declare_section("walls", p);
   declare_section("engines", p);
   p.add("specimen", specimen).doc("region over which averages are taken");
@@ -871,6 +1066,12 @@ void SceneDescription::declare(Parameters& p) {
    }).doc("measurements, by name");
   p.add("output", output).doc("frames, checkpoints, picture, references, summary");
   p.resolved_before({"scenario", "extends"});
+  // Bodies are placed beside those of a sample when the first stage begins.
+  p.when_read([this] {
+    if (!begin || stages.empty()) return;
+    for (auto& [name, group] : bodies)
+      if (!group.is_from_sample() && group.stage.empty()) group.stage = stages.front().name;
+  });
 
   p.check_names([this](const Complain& complain) { check_number_of_materials(*this, complain); });
   p.check_names([this](const Complain& complain) { check_interfaces(*this, complain); });
@@ -886,6 +1087,8 @@ void SceneDescription::declare(Parameters& p) {
       },
       {"bodies", "stages"});
   p.check_names([this](const Complain& complain) { check_materials_of_walls(*this, complain); });
+  p.check_names([this](const Complain& complain) { check_groups(*this, complain); });
+  p.check([this](const Complain& complain) { check_sample(*this, complain); }, {"bodies", "begin"});
   p.check_names([this](const Complain& complain) { check_followers(*this, complain); });
   p.check_names([this](const Complain& complain) {
     const References known("wall", keys(walls), complain);

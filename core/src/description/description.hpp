@@ -66,23 +66,35 @@ struct ListSizes {
   std::vector<double> diameters;
   void declare(Parameters& p);
 };
-using Sizes = OneOf<UniformSizes, LinearSizes, LogNormalSizes, SieveSizes, ListSizes>;
+struct ShapeSizes {
+  static constexpr const char* type_name = "shape";
+  static constexpr const char* type_doc = "all clumps have the size in which their shape is given, by a list or a file";
+  void declare(Parameters&) {}
+};
+using Sizes = OneOf<UniformSizes, LinearSizes, LogNormalSizes, SieveSizes, ListSizes, ShapeSizes>;
 
-/// Bodies at random positions without overlap.
-struct CloudSource {
-  static constexpr const char* type_name = "cloud";
-  static constexpr const char* type_doc = "bodies at random positions without overlap";
+/// Equal bodies at regular positions.
+struct LatticeSource {
+  static constexpr const char* type_name = "lattice";
+  static constexpr const char* type_doc = "equal bodies on a crystal lattice";
+  std::string kind = "simple-cubic";
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-  std::int64_t count = 0;
-  Sizes sizes{"size distribution"};
-  std::string plane_normal = "none";
+  double diameter = 0;            ///< m
+  std::optional<double> spacing;  ///< of nearest neighbours, m; none: the diameter
   void declare(Parameters& p);
 };
-/// A text file with "x y z radius" in each line.
+/// A text file with a body in each line, written by grit or another code.
 struct FileSource {
   static constexpr const char* type_name = "file";
   static constexpr const char* type_doc = "bodies from a text file";
-  std::string path;
+  /// What columns may hold: x, y, z, r (radius), d (diameter), velocity, spin, type, id; - is skipped.
+  static const std::vector<std::string>& column_names();
+  std::string path, format = "auto";
+  std::vector<std::string> columns;  ///< empty: those of the format
+  std::int64_t header_lines = 0;
+  double scale = 1;             ///< m
+  std::string particle_type;    ///< empty: all
+  std::int64_t time_step = -1;  ///< below 0: the last one
   void declare(Parameters& p);
 };
 struct ListedBody {
@@ -95,6 +107,13 @@ struct ListSource {
   static constexpr const char* type_doc = "bodies one by one";
   std::deque<ListedBody> bodies;
   void declare(Parameters& p);
+};
+/// The bodies of the group of this name in the sample from which the run begins.
+struct SampleSource {
+  static constexpr const char* type_name = "sample";
+  static constexpr const char* type_doc =
+      "the bodies of the group of this name in the sample that /begin names, with their positions and velocities";
+  void declare(Parameters&) {}
 };
 /// Small bodies get the mass and moment of inertia of larger ones.
 struct DensityScalingDescription {
@@ -120,6 +139,56 @@ struct BoxRegion {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   void declare(Parameters& p);
 };
+struct SphereRegion {
+  static constexpr const char* type_name = "sphere";
+  static constexpr const char* type_doc = "a sphere";
+  Vec3 centre = Vec3::Zero();
+  double radius = 0;
+  void declare(Parameters& p);
+};
+struct CylinderRegion {
+  static constexpr const char* type_name = "cylinder";
+  static constexpr const char* type_doc = "a circular cylinder";
+  Vec3 start = Vec3::Zero(), end = Vec3::Zero();
+  double radius = 0;
+  void declare(Parameters& p);
+};
+struct HalfSpaceRegion {
+  static constexpr const char* type_name = "half-space";
+  static constexpr const char* type_doc = "all that is behind a plane";
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+  void declare(Parameters& p);
+};
+/// Whether a point is inside, or on the boundary.
+bool contains(const BoxRegion& region, const Vec3& point);
+bool contains(const SphereRegion& region, const Vec3& point);
+bool contains(const CylinderRegion& region, const Vec3& point);
+bool contains(const HalfSpaceRegion& region, const Vec3& point);
+/// The inside of a closed surface.
+struct MeshRegion {
+  static constexpr const char* type_name = "mesh";
+  static constexpr const char* type_doc = "the inside of a closed surface from an STL file";
+  std::string path;
+  double scale = 0;  ///< m
+  Vec3 position = Vec3::Zero();
+  void declare(Parameters& p);
+};
+/// What a cloud fills.
+struct CloudRegion {
+  OneOf<BoxRegion, SphereRegion, CylinderRegion, MeshRegion> is{"region"};
+  void declare(Parameters& p) { p.choose(is); }
+};
+/// Bodies at random positions without overlap.
+struct CloudSource {
+  static constexpr const char* type_name = "cloud";
+  static constexpr const char* type_doc = "bodies at random positions without overlap";
+  std::optional<Vec3> low, high;      ///< of a box
+  std::optional<CloudRegion> region;  ///< instead
+  std::int64_t count = 0;
+  Sizes sizes{"size distribution"};
+  std::string plane_normal = "none";
+  void declare(Parameters& p);
+};
 /// Bodies that enter one after the other during the run.
 struct StreamSource {
   static constexpr const char* type_name = "stream";
@@ -127,7 +196,7 @@ struct StreamSource {
   OneOf<RectangleRegion, DiscRegion, BoxRegion> region{"region"};
   std::optional<double> number_rate, mass_rate;  ///< 1/s, kg/s
   Sizes sizes{"size distribution"};
-  std::int64_t count = 0;                        ///< limit; 0: none
+  std::int64_t count = 0;            ///< limit; 0: none
   std::optional<double> mass, time;  ///< limits [kg, s]
   void declare(Parameters& p);
 };
@@ -140,8 +209,9 @@ struct BodiesDescription {
   static constexpr double usual_overlap = 0.01;
   double overlap = usual_overlap;  ///< of the smaller radius
   std::optional<DensityScalingDescription> density_scaling;
-  OneOf<CloudSource, FileSource, ListSource, StreamSource> source{"source of bodies"};
+  OneOf<CloudSource, FileSource, LatticeSource, ListSource, StreamSource, SampleSource> source{"source of bodies"};
   /// m, diameter below which bodies have more mass; 0: none
+  bool is_from_sample() const { return std::holds_alternative<SampleSource>(source.value()); }
   double scaled_below() const { return density_scaling ? density_scaling->below : 0; }
   explicit BodiesDescription(const Registry& registry);
   void declare(Parameters& p);
@@ -168,29 +238,44 @@ struct FreeDescription {
   Vec3 load = Vec3::Zero();
   void declare(Parameters& p);
 };
-/// Added to velocity and spin. The displacement after t is amplitude × (sin(2π f t + phase) − sin(phase)), the rotation
-/// the same with angle.
+/// Rotation under the moment of bodies, about an axis through the reference point of the wall.
+struct FreeRotationDescription {
+  Vec3 axis = Vec3::Zero();  ///< of any length above 0
+  double inertia = 0;        ///< kg m²
+  double moment = 0;         ///< external, N m
+  void declare(Parameters& p);
+};
+/// Added to velocity and spin. The displacement after t is amplitude × (sin(2π f t + φ) − sin(φ)) along each axis, the
+/// rotation the same with angle.
 struct OscillationDescription {
-  Vec3 amplitude = Vec3::Zero(), angle = Vec3::Zero();  ///< of displacement [m], of rotation vector [rad]
-  double frequency = 0;                                 ///< Hz
-  double phase = 0;                                     ///< rad
+  Vec3 amplitude = Vec3::Zero(), angle = Vec3::Zero();              ///< of displacement [m], of rotation vector [rad]
+  double frequency = 0;                                             ///< Hz
+  double phase = 0;                                                 ///< rad
+  Vec3 amplitude_phase = Vec3::Zero(), angle_phase = Vec3::Zero();  ///< added to phase, by axis [rad]
+  Vec3 phases_of_displacement() const { return amplitude_phase.array() + phase; }
+  Vec3 phases_of_rotation() const { return angle_phase.array() + phase; }
   void declare(Parameters& p);
 };
 /// Along each axis a wall is fixed, has a velocity or oscillates, follows another wall, is servo-controlled, or is
 /// free.
 struct MotionDescription {
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+  /// Of the surface relative to the wall, in the axes of the wall [m/s, rad/s]; bodies feel the part along the surface.
+  Vec3 surface_velocity = Vec3::Zero(), surface_spin = Vec3::Zero();
   std::optional<Vec3> about{};
   double ramp_time = 0;
   std::optional<OscillationDescription> oscillation{};
   std::optional<ServoDescription> servo{};
   std::optional<FollowDescription> follow{};
   std::optional<FreeDescription> free{};
+  std::optional<FreeRotationDescription> free_rotation{};
+  bool surface_moves() const { return !surface_velocity.isZero(0.0) || !surface_spin.isZero(0.0); }
   void declare(Parameters& p);
 };
 struct WallDescription {
   Component<Geometry> geometry;
   std::string material;
+  std::vector<std::string> groups;  ///< of bodies on which it acts; empty: all
   MotionDescription motion;
   explicit WallDescription(const Registry& registry);
   void declare(Parameters& p);
@@ -223,6 +308,13 @@ struct DomainDescription {
   std::vector<std::string> open_sides;
   void declare(Parameters& p);
 };
+/// A prepared sample from which a run begins: the state of another run.
+struct BeginDescription {
+  std::string from;  ///< its folder of results
+  std::string at = "end";
+  std::string springs = "keep";
+  void declare(Parameters& p);
+};
 struct SpecimenDescription {
   std::vector<std::string> low, high;  ///< walls at the x, y and z sides; "": bound of the domain
   void declare(Parameters& p);
@@ -245,12 +337,14 @@ struct GuardsDescription {
 double max_displacement(const TimeStepDescription& time_step, const GuardsDescription& guards);
 struct EngineDescription {
   Component<Engine> engine;
+  std::vector<std::string> groups;  ///< of bodies on which it acts; empty: all
   explicit EngineDescription(const Registry& registry) : engine(registry) {}
   void declare(Parameters& p);
 };
 struct ProbeDescription {
   Component<Probe> probe;
   Cadence cadence;
+  std::vector<std::string> groups;  ///< of bodies that it samples; empty: all
   std::vector<std::string> stages;  ///< empty: all
   bool frames = true;               ///< whether its fields are written to frames
   explicit ProbeDescription(const Registry& registry) : probe(registry) {}
@@ -424,6 +518,7 @@ struct SceneDescription {
   std::map<std::string, MaterialDescription> materials;
   std::vector<InterfaceDescription> interfaces;  ///< in written order
   DomainDescription domain;
+  std::optional<BeginDescription> begin;
   std::map<std::string, BodiesDescription> bodies;
   std::map<std::string, WallDescription> walls;
   std::map<std::string, EngineDescription> engines;

@@ -10,7 +10,7 @@ namespace grit {
 
 inline bool stands_still(const MotionDescription& motion) {
   return motion.velocity.isZero(0.0) && motion.spin.isZero(0.0) && !motion.oscillation && !motion.servo &&
-         !motion.follow && !motion.free;
+         !motion.follow && !motion.free && !motion.free_rotation && !motion.surface_moves();
 }
 
 /// Whether a wall's reference point may move in the positive and negative direction of an axis.

@@ -70,13 +70,14 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::ve
   return result;
 }
 
-std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time, const Vec3& gravity) {
+std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time,
+                             const std::function<Vec3(std::size_t body)>& gravity) {
   std::vector<Leaving> all;
   const auto add = [&](std::size_t i, const Vec3& x, const Vec3& v, double inverse_mass, double turning) {
     all.push_back(
         {{.id = bodies.id[i], .material = bodies.material[i], .time = time, .mass = 1 / inverse_mass, .position = x},
          0.5 / inverse_mass * v.squaredNorm() + turning,
-         -gravity.dot(x) / inverse_mass});
+         -gravity(i).dot(x) / inverse_mass});
   };
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < bodies.count(); ++i)

@@ -28,6 +28,7 @@ struct Leaving {
   double potential;  ///< relative to the origin
 };
 /// In order of ids; a clump leaves as a whole, with the id of its first sphere.
-std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time, const Vec3& gravity);
+std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time,
+                             const std::function<Vec3(std::size_t body)>& gravity);
 
 }  // namespace grit

@@ -36,6 +36,14 @@ void DeformingCell::set_strain_rate(const Vec3& rate, double previous_dt) {
     if (cell_.periodic[k]) lengths_before_[k] -= previous_dt * change[k] * lengths[k];
 }
 
+void DeformingCell::set_open_sides(const Cell& box) {
+  for (int k = 0; k < 3; ++k)
+    if (!cell_.periodic[k]) {
+      cell_.low[k] = box.low[k], cell_.high[k] = box.high[k];
+      lengths_before_[k] = box.high[k] - box.low[k];
+    }
+}
+
 void DeformingCell::advance(double dt) {
   lengths_before_ = cell_.high - cell_.low;
   if (!deforms()) return;

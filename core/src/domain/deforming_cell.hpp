@@ -39,6 +39,8 @@ class DeformingCell {
   Vec3 period_growth(double previous_dt) const;
   /// Sets the strain rate [1/s]. The velocities of images change with those of bodies.
   void set_strain_rate(const Vec3& rate, double previous_dt);
+  /// Takes the sides of `box` along axes that are not periodic.
+  void set_open_sides(const Cell& box);
   /// Deforms the cell by one step [s].
   void advance(double dt);
 

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "format/number.hpp"
+#include "kernel/body_groups.hpp"
 #include "kernel/failure.hpp"
 
 namespace grit {
@@ -36,45 +37,64 @@ void each_overlap(const State& state, const World& world, IsNew is_new, Use use)
     }
     if (!is_new(body)) continue;
     const Row& x = bodies.position[body];
-    for (std::uint32_t wall = 0; wall < state.walls.size(); ++wall)
+    for (std::uint32_t wall = 0; wall < state.walls.size(); ++wall) {
+      if (!state.surfaces[wall].acts_on(state.group, body)) continue;
       if (const auto near = world.clearance(wall, xyz(x), x.w))
         use(Overlap{(x.w - near->distance) / x.w, body, wall, true});
+    }
   }
 }
 
-/// Change of velocity by gravity in half a step.
-Vec3 fall_of_half_a_step(const State& state) {
-  return 0.5 * state.time.previous_dt *
-         state.next_motion(false).free_translation().cwiseProduct(state.settings.motion.gravity);
-}
+/// Gravity on new bodies.
+class Weights {
+ public:
+  Weights(const Bodies& arriving, const State& state)
+      : arriving_(arriving), state_(state), group_(groups_of(arriving, state.settings.groups)) {}
+
+  const Vec3& gravity(std::size_t body) const { return state_.settings.motion_of(group_[body]).gravity; }
+  /// Change of velocity in half a step.
+  Vec3 fall(std::size_t body) const {
+    const MotionSettings& motion = state_.settings.motion_of(group_[body]);
+    return 0.5 * state_.time.previous_dt * motion.free_translation().cwiseProduct(motion.gravity);
+  }
+  /// A sphere of a clump.
+  std::size_t body_of(const Clump& clump) const { return arriving_.clumps.spheres[clump.first]; }
+
+ private:
+  const Bodies& arriving_;
+  const State& state_;
+  std::vector<std::uint16_t> group_;
+};
 
 }  // namespace
 
 EnteredEnergy energy_of(const Bodies& arriving, const State& state) {
-  const Vec3 fall = fall_of_half_a_step(state);
+  const Weights weights(arriving, state);
   EnteredEnergy all;
-  const auto add = [&](const Vec3& centre, const Vec3& velocity, double inverse_mass) {
-    all.kinetic += 0.5 * (velocity + fall).squaredNorm() / inverse_mass;
-    all.potential -= state.settings.motion.gravity.dot(centre) / inverse_mass;
+  const auto add = [&](std::size_t body, const Vec3& centre, const Vec3& velocity, double inverse_mass) {
+    all.kinetic += 0.5 * (velocity + weights.fall(body)).squaredNorm() / inverse_mass;
+    all.potential -= weights.gravity(body).dot(centre) / inverse_mass;
   };
   for (std::size_t i = 0; i < arriving.count(); ++i)
     if (arriving.clumps.clump_of(i) == no_clump)
-      add(xyz(arriving.position[i]), xyz(arriving.velocity[i]), arriving.velocity[i].w);
-  for (const Clump& clump : arriving.clumps.clump) add(clump.centre, clump.velocity, clump.inverse_mass);
+      add(i, xyz(arriving.position[i]), xyz(arriving.velocity[i]), arriving.velocity[i].w);
+  for (const Clump& clump : arriving.clumps.clump)
+    add(weights.body_of(clump), clump.centre, clump.velocity, clump.inverse_mass);
   return all;
 }
 
 void match_velocities(Bodies& arriving, const State& state) {
-  const Vec3 fall = fall_of_half_a_step(state);
-  const auto change = [&](const Vec3& place) -> Vec3 {
+  const Weights weights(arriving, state);
+  const auto change = [&](std::size_t body, const Vec3& place) -> Vec3 {
+    const Vec3 fall = weights.fall(body);
     return state.cell.deforms() ? Vec3(state.cell.mean_flow(place) - fall) : Vec3(-fall);
   };
   for (std::size_t i = 0; i < arriving.count(); ++i) {
     const std::uint32_t c = arriving.clumps.clump_of(i);
-    const Vec3 v = change(c == no_clump ? xyz(arriving.position[i]) : arriving.clumps.clump[c].centre);
+    const Vec3 v = change(i, c == no_clump ? xyz(arriving.position[i]) : arriving.clumps.clump[c].centre);
     arriving.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
   }
-  for (Clump& clump : arriving.clumps.clump) clump.velocity += change(clump.centre);
+  for (Clump& clump : arriving.clumps.clump) clump.velocity += change(weights.body_of(clump), clump.centre);
 }
 
 void check_arrivals(const State& state, const World& world, const std::vector<Newcomers::Group>& groups) {

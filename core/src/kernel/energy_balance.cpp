@@ -64,24 +64,25 @@ double EnergyBalance::elastic_by_growth() const {
 }
 
 double EnergyBalance::kinetic() const {
-  const MotionStep next = state_.next_motion(is_kept());
-  const Accelerating how{next.free_translation(), next.free_rotation(), next.strain_rate};
+  const Vec3& strain_rate = state_.cell.cell().strain_rate;
   static_cast<void>(world_.forces()), static_cast<void>(world_.clumps());  // computed once, before threads read them
   return passes_.sum([&](std::size_t chunk) {
-    return kinetic_energy(world_, 0.5 * state_.time.previous_dt, how, chunk * chunk_bodies, (chunk + 1) * chunk_bodies);
+    return kinetic_energy(world_, 0.5 * state_.time.previous_dt, strain_rate, chunk * chunk_bodies,
+                          (chunk + 1) * chunk_bodies);
   });
 }
 
 double EnergyBalance::gravitational() const {
-  const Vec3& gravity = state_.settings.motion.gravity;
   const Bodies& bodies = state_.bodies;
   return passes_.sum([&](std::size_t chunk) {
     const ChunkRange clumps(chunk, bodies.clumps.clump.size()), range(chunk, bodies.count());
     double energy = 0;
     for (std::size_t c = clumps.first; c < clumps.last; ++c)
-      energy -= gravity.dot(bodies.clumps.clump[c].centre) / bodies.clumps.clump[c].inverse_mass;
+      energy -= state_.motion_of(bodies.clumps.clump[c]).gravity.dot(bodies.clumps.clump[c].centre) /
+                bodies.clumps.clump[c].inverse_mass;
     for (std::size_t i = range.first; i < range.last; ++i)
-      if (bodies.clumps.clump_of(i) == no_clump) energy -= gravity.dot(xyz(bodies.position[i])) / bodies.velocity[i].w;
+      if (bodies.clumps.clump_of(i) == no_clump)
+        energy -= state_.motion_of(i).gravity.dot(xyz(bodies.position[i])) / bodies.velocity[i].w;
     return energy;
   });
 }
@@ -89,13 +90,13 @@ double EnergyBalance::gravitational() const {
 double EnergyBalance::power_of_walls() const {
   double power = 0;
   for (const WallState& wall : state_.walls.states())
-    power -= wall.force.dot(wall.velocity) + wall.moment.dot(wall.spin);
+    power -= wall.force.dot(wall.velocity) + wall.moment.dot(wall.spin) +
+             wall.surface_force.dot(wall.surface_velocity) + wall.surface_moment.dot(wall.surface_spin);
   return power;
 }
 
 double EnergyBalance::power_of_engines(std::size_t chunk) const {
   const Bodies& bodies = state_.bodies;
-  const MotionSettings& motion = state_.settings.motion;
   const ChunkRange range(chunk, bodies.count()), clumps(chunk, bodies.clumps.clump.size());
   double power = 0;
   if (!state_.added_force.empty())
@@ -104,18 +105,22 @@ double EnergyBalance::power_of_engines(std::size_t chunk) const {
                xyz(state_.added_moment[i]).dot(xyz(bodies.spin[i]));
   if (!state_.settings.holds_bodies()) return power;
   // Held bodies: the engine's work is the negative of that of all other forces.
-  const double translation = motion.hold_translation ? 1 : 0, rotation = motion.hold_rotation ? 1 : 0;
   for (std::size_t i = range.first; i < range.last; ++i) {
     if (bodies.clumps.clump_of(i) != no_clump) continue;
+    const MotionSettings& motion = state_.motion_of(i);
+    if (!motion.holds()) continue;
     const Vec3 force = xyz(state_.sum[i].force) + motion.gravity / bodies.velocity[i].w;
-    power -= translation * force.dot(xyz(bodies.velocity[i])) +
-             rotation * xyz(state_.sum[i].moment).dot(xyz(bodies.spin[i]));
+    power -= motion.kept_translation().cwiseProduct(force).dot(xyz(bodies.velocity[i])) +
+             motion.kept_rotation().cwiseProduct(xyz(state_.sum[i].moment)).dot(xyz(bodies.spin[i]));
   }
   for (std::size_t c = clumps.first; c < clumps.last; ++c) {
     const Clump& clump = bodies.clumps.clump[c];
+    const MotionSettings& motion = state_.motion_of(clump);
+    if (!motion.holds()) continue;
     const ClumpLoad load = load_of(clump, bodies, state_.sum.data());
     const Vec3 force = load.force + motion.gravity / clump.inverse_mass;
-    power -= translation * force.dot(clump.velocity) + rotation * load.moment.dot(clump.spin);
+    power -= motion.kept_translation().cwiseProduct(force).dot(clump.velocity) +
+             motion.kept_rotation().cwiseProduct(load.moment).dot(clump.spin);
   }
   return power;
 }
@@ -200,6 +205,7 @@ void EnergyBalance::add_step(double work_of_walls) {
     flows_.damped += chunk.motion.damped + of_clumps.damped;
     flows_.fallen += chunk.motion.fallen + of_clumps.fallen;
     flows_.cell += chunk.motion.carried + of_clumps.carried;
+    flows_.engines += chunk.motion.prescribed + of_clumps.prescribed;
   }
 }
 

@@ -20,7 +20,9 @@ bool all_work_is_known(const State& state) {
   const Settings& settings = state.settings;
   bool known = settings.growth_rate == 0 && !state.cell.deforms() && !settings.engines_do_work();
   // There is no potential along a periodic axis.
-  for (int k = 0; k < 3; ++k) known = known && !(state.cell.cell().periodic[k] && settings.motion.gravity[k] != 0);
+  for (int k = 0; k < 3; ++k)
+    known = known && !(state.cell.cell().periodic[k] &&
+                       settings.any_motion([k](const MotionSettings& motion) { return motion.gravity[k] != 0; }));
   return known;
 }
 

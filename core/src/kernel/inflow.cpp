@@ -30,8 +30,13 @@ Vec3 nearest_image(Vec3 apart, const Cell& cell) {
 /// What may be in the way of a sphere of this radius in a region.
 class Obstacles {
  public:
-  Obstacles(const State& state, const World& world, const Bodies& entering, const Region& region, double radius)
-      : cell_(state.cell.cell()), world_(world), walls_(state.walls.size()), radius_(radius) {
+  Obstacles(const State& state, const World& world, const std::string& group, const Bodies& entering,
+            const Region& region, double radius)
+      : cell_(state.cell.cell()), world_(world), radius_(radius) {
+    const auto& names = state.settings.groups;
+    const auto own = static_cast<std::size_t>(std::ranges::find(names, group) - names.begin());
+    for (std::size_t wall = 0; wall < state.surfaces.size(); ++wall)
+      if (const auto& groups = state.surfaces[wall].groups; groups.empty() || groups[own]) walls_.push_back(wall);
     const Vec3 middle = 0.5 * (region.low + region.high), half = 0.5 * (region.high - region.low);
     const auto add = [&](const Row& body) {
       const Vec3 apart = nearest_image(xyz(body) - middle, cell_).cwiseAbs() - half;
@@ -46,7 +51,7 @@ class Obstacles {
       const double reach = body.w + radius_;
       if (nearest_image(xyz(body) - centre, cell_).squaredNorm() < reach * reach) return false;
     }
-    for (std::size_t wall = 0; wall < walls_; ++wall)
+    for (const std::size_t wall : walls_)
       if (world_.clearance(wall, centre, radius_)) return false;
     return true;
   }
@@ -54,7 +59,7 @@ class Obstacles {
  private:
   const Cell& cell_;
   const World& world_;
-  std::size_t walls_;
+  std::vector<std::size_t> walls_;
   double radius_;
   std::vector<Row> near_;
 };
@@ -105,7 +110,7 @@ bool Inflow::enter_one(const std::string& name, Entry& entry, const State& state
                        Bodies& entering) {
   Stream& stream = entry.stream;
   const double radius = 0.5 * stream.next_diameter();
-  const Obstacles obstacles(state, world, entering, stream.bounds(), radius);
+  const Obstacles obstacles(state, world, name, entering, stream.bounds(), radius);
   Vec3 centre = stream.position(radius);
   for (int tried = 1; !obstacles.leave_room_at(centre); ++tried) {
     if (tried == tries) return false;

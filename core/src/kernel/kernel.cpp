@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "bodies/kinetic_energy.hpp"
@@ -10,6 +11,7 @@
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
+#include "kernel/body_groups.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
@@ -39,7 +41,7 @@ bool same(const Bounds& a, const Bounds& b) { return a.low == b.low && a.high ==
 
 }  // namespace
 
-Kernel::Kernel(const SceneDescription& scene, const Components& components, Bodies bodies, unsigned threads)
+Kernel::Kernel(const SceneDescription& scene, const Components& components, Prepared prepared, unsigned threads)
     : state_(cell_of(scene.domain)),
       passes_(threads),
       view_(state_, passes_),
@@ -49,11 +51,66 @@ Kernel::Kernel(const SceneDescription& scene, const Components& components, Bodi
       inflow_(scene, components) {
   view_.set_balance(balance_);
   state_.materials = material_names(scene);
-  state_.bodies = std::move(bodies);
+  state_.bodies = std::move(prepared.bodies);
+  if (prepared.sample) take_sample(scene, components, *prepared.sample);
   count_in(0, 0);
-  check_periods(state_);
   state_.walls.apply(scene, components);
   apply(scene, components);
+  check_periods(state_);
+}
+
+void Kernel::take_sample(const SceneDescription& scene, const Components& components, SampleState& sample) {
+  sample.cell.set_open_sides(state_.cell.cell());
+  state_.cell = sample.cell;
+  state_.walls = std::move(sample.walls);
+  std::vector<std::string> before;
+  for (std::size_t w = 0; w < state_.walls.size(); ++w) before.push_back(state_.walls.name(w));
+  state_.walls.apply(scene, components);
+  std::map<std::string, std::uint32_t> now;
+  for (std::size_t w = 0; w < state_.walls.size(); ++w) now[state_.walls.name(w)] = static_cast<std::uint32_t>(w);
+  std::vector<std::uint32_t> renumbered;
+  for (const std::string& name : before)
+    renumbered.push_back(now.contains(name) ? now.at(name) : WallContacts::no_wall);
+  sample.wall_contacts.renumber_walls(renumbered);
+  state_.pairs = std::move(sample.pairs), state_.wall_contacts = std::move(sample.wall_contacts);
+}
+
+void Kernel::synchronise_velocities() {
+  const double half = 0.5 * state_.time.previous_dt;
+  if (half == 0) return;
+  Bodies& bodies = state_.bodies;
+  const auto forces = view_.forces(), moments = view_.moments();
+  const auto clumps = view_.clumps();
+  const Vec3 flowing = Vec3::Ones() + half * state_.cell.cell().strain_rate;
+  for (std::size_t c = 0; c < clumps.size(); ++c) {
+    Clump& clump = bodies.clumps.clump[c];
+    clump.velocity = flowing.cwiseProduct(clump.velocity) + half * clump.inverse_mass * clumps[c].force;
+    clump.momentum += half * clumps[c].moment;
+    clump.spin = clump.spin_of(clump.momentum);
+  }
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    Row &velocity = bodies.velocity[i], &spin = bodies.spin[i];
+    Vec3 v, w;
+    if (const std::uint32_t c = bodies.clumps.clump_of(i); c != no_clump) {
+      const Clump& clump = bodies.clumps.clump[c];
+      const ClumpSphere& own = bodies.clumps.of_body[i];
+      const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
+      w = clump.spin;
+      v = clump.velocity + w.cross(clump.axes * own.place) -
+          periods.cwiseProduct(state_.cell.period_growth(state_.time.previous_dt));
+    } else {
+      v = flowing.cwiseProduct(xyz(velocity)) + half * velocity.w * xyz(forces[i]);
+      w = xyz(spin) + half * spin.w * xyz(moments[i]);
+    }
+    velocity = {v.x(), v.y(), v.z(), velocity.w}, spin = {w.x(), w.y(), w.z(), spin.w};
+  }
+}
+
+Prepared Kernel::hand_over() {
+  stepper_.find_forces();
+  synchronise_velocities();
+  return {std::move(state_.bodies),
+          SampleState{state_.cell, state_.walls, std::move(state_.pairs), std::move(state_.wall_contacts)}};
 }
 
 void Kernel::begin_stage(const std::string& name, const SceneDescription& scene, const Components& components) {
@@ -77,11 +134,12 @@ void Kernel::apply(const SceneDescription& scene, const Components& components) 
     return balance_.begun() ? kinetic_energy(view_, 0) : 0;
   };
   const double kinetic_before = kinetic();
-  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
+  constrain(state_.bodies, state_.settings);
   change_strain_rate(state_.settings.strain_rate);
   balance_.add_settings(kinetic() - kinetic_before);
   update_cross_section(state_);
   guard_.restart();
+  if (!state_.settings.removal_engines.empty()) state_.lists.request_rebuild();
   stepper_.settings_changed();
   view_.invalidate();
 }
@@ -92,6 +150,7 @@ void Kernel::take_settings(const SceneDescription& scene, const Components& comp
   state_.settings.of_groups = demand_without_contacts(smallest_bodies_, *state_.settings.law);
   state_.lists.expect_reaches(state_.reaches());
   take_walls(scene, components);
+  find_groups(state_);
 }
 
 void Kernel::take_walls(const SceneDescription& scene, const Components& components) {
@@ -103,23 +162,15 @@ void Kernel::take_walls(const SceneDescription& scene, const Components& compone
     // Candidates remain valid unless a wall was replaced.
     if (surface.geometry == nullptr || !same(surface.geometry->bounds(), geometry->bounds()))
       state_.lists.request_rebuild();
-    surface.geometry = geometry;
-    surface.gives_way = wall.motion.servo || wall.motion.free;
-    surface.free = bool(wall.motion.free);
+    const GroupMask& groups = state_.settings.groups_of_walls[w];
+    if (surface.groups != groups) state_.lists.request_rebuild();
+    surface.geometry = geometry, surface.groups = groups;
+    const auto& rotation = wall.motion.free_rotation;
+    surface.gives_way = wall.motion.servo || wall.motion.free || rotation;
+    surface.free = wall.motion.free || rotation;
+    surface.free_axis = rotation ? rotation->axis.normalized() : Vec3(Vec3::Zero());
     surface.material =
         static_cast<std::uint32_t>(std::ranges::find(state_.materials, wall.material) - state_.materials.begin());
-  }
-}
-
-void Kernel::flatten(int axis) {
-  if (state_.settings.may_clump)
-    throw Error("clumps rotate about all axes, so planar motion is not possible; remove the engine \"planar\"");
-  Bodies& bodies = state_.bodies;
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    Vec3 v = xyz(bodies.velocity[i]), w = xyz(bodies.spin[i]);
-    v[axis] = 0, w = w.cwiseProduct(Vec3::Unit(axis));
-    bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
-    bodies.spin[i] = {w.x(), w.y(), w.z(), bodies.spin[i].w};
   }
 }
 
@@ -153,8 +204,8 @@ void Kernel::count_in(std::size_t first, std::size_t first_clump) {
 void Kernel::append(const Bodies& arriving) {
   const std::size_t first = state_.bodies.count(), first_clump = state_.bodies.clumps.clump.size();
   state_.bodies.append(arriving);
+  find_groups(state_);
   count_in(first, first_clump);
-  if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
   stepper_.bodies_changed();
   state_.lists.request_rebuild();
 }
@@ -170,6 +221,7 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
   }
   if (arriving.bodies.count() == 0) return;
   match_velocities(arriving.bodies, state_);
+  constrain(arriving.bodies, state_.settings);
 
   const double settings_less_stored = balance_.settings_less_stored();  // bodies may also leave in a neighbour search
   const Bodies bodies_before = state_.bodies;
@@ -185,6 +237,7 @@ void Kernel::admit(const SceneDescription& scene, const Components& components) 
       balance_.set_settings_less_stored(settings_less_stored);
     } else {  // bodies were rejected; the previous state is kept
       state_.bodies = bodies_before, state_.statistics = statistics_before;
+      find_groups(state_);
       state_.sum.resize(state_.bodies.count() + 1), passes_.resize(state_.bodies.count());
       stepper_.bodies_changed();
       stepper_.expect({});
@@ -199,6 +252,7 @@ void Kernel::let_in() {
   Bodies entering = inflow_.enter(state_, view_);
   if (entering.count() == 0) return;
   match_velocities(entering, state_);
+  constrain(entering, state_.settings);
   append(entering);
   view_.invalidate();
   const EnteredEnergy energy = energy_of(entering, state_);
@@ -236,7 +290,8 @@ Model Kernel::model() const {
   model.materials = state_.materials;
   model.one_material = state_.statistics.one_material, model.periodic = state_.cell.periodic();
   model.walls = state_.walls.size() > 0;
-  model.gravity = !settings.motion.gravity.isZero(0.0), model.local_damping = settings.motion.local_damping > 0;
+  model.gravity = settings.any_motion([](const MotionSettings& one) { return !one.gravity.isZero(0.0); });
+  model.local_damping = settings.any_motion([](const MotionSettings& one) { return one.local_damping > 0; });
   model.bytes = state_.bytes();
   return model;
 }
@@ -252,6 +307,7 @@ void Kernel::restore(const SceneDescription& scene, const Components& components
   take_settings(scene, components);
   serialize(archive);
   state_.settings.growth_rate = growth_rate(scene, state_.stage);
+  find_groups(state_);
   state_.sum.assign(state_.bodies.count() + 1, {});
   stepper_.restored();
   update_cross_section(state_);

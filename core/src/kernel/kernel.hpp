@@ -9,6 +9,7 @@
 #include "kernel/inflow.hpp"
 #include "kernel/model.hpp"
 #include "kernel/passes.hpp"
+#include "kernel/prepared.hpp"
 #include "kernel/state.hpp"
 #include "kernel/stepper.hpp"
 #include "kernel/world_view.hpp"
@@ -17,8 +18,9 @@ namespace grit {
 
 class Kernel {
  public:
-  /// Starts with the bodies of the scene and the state that its components request.
-  Kernel(const SceneDescription& scene, const Components& components, Bodies bodies, unsigned threads);
+  /// Starts with the bodies of the scene and the state that its components request. Walls of a sample keep their poses
+  /// by name.
+  Kernel(const SceneDescription& scene, const Components& components, Prepared prepared, unsigned threads);
 
   /// Begins a stage with the settings of `scene`, which has the same materials, walls and bodies as the first. Inserts
   /// the bodies of this stage. Throws NumericsError if there is no room for them, or if they overlap others or walls by
@@ -47,6 +49,9 @@ class Kernel {
   std::vector<PhaseTime> phases() const { return passes_.phases(); }
   Model model() const;
 
+  /// The state at the present instant as a sample for another simulation. This one cannot be continued.
+  Prepared hand_over();
+
   /// Saves the complete state, between two steps.
   void save(Archive& archive);
   /// Continues with identical results from the saved state of a kernel of the same scene; `scene`: its settings then.
@@ -55,9 +60,11 @@ class Kernel {
  private:
   void apply(const SceneDescription& scene, const Components& components);
   void take_settings(const SceneDescription& scene, const Components& components);
+  /// Before the first settings.
+  void take_sample(const SceneDescription& scene, const Components& components, SampleState& sample);
+  /// Advances the velocities of half a step ago to the present instant.
+  void synchronise_velocities();
   void take_walls(const SceneDescription& scene, const Components& components);
-  /// Removes motion out of the plane.
-  void flatten(int axis);
   /// Adds the mean flow of a cell to the velocities of bodies, from its first instant.
   void change_strain_rate(const Vec3& rate);
   /// Adds the bodies of streams that enter now.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "format/number.hpp"
 #include "kernel/failure.hpp"
@@ -35,6 +36,51 @@ double reach_of_largest(const State& state) {
   return state.statistics.largest_radius + NeighbourLists::largest_reach(state.reaches());
 }
 
+/// The largest overlap of a sphere with a wall.
+double overlap_at(const Geometry& geometry, const Pose& pose, const Vec3& centre, double radius) {
+  const Sphere sphere{centre, radius, 0};
+  std::vector<SurfaceContact> contacts;
+  geometry.find_contacts(pose, {&sphere, 1}, contacts);
+  double largest = 0;
+  for (const SurfaceContact& contact : contacts) largest = std::max(largest, contact.overlap);
+  return largest;
+}
+
+/// Whether a wall is the same all along an axis, as the grooves that run along it are: judged by spheres on a grid.
+bool is_uniform_along(int axis, const Geometry& geometry, const Pose& pose, const Bounds& bounds, double radius) {
+  if (geometry.flat()) return true;
+  constexpr int grid = 12, along = 4;
+  const int one = (axis + 1) % 3, other = (axis + 2) % 3;
+  const Vec3 size = bounds.high - bounds.low;
+  // An irrational part of the length, so that the places are not all alike in a pattern that repeats.
+  constexpr double step = 0.1618033988749895;
+  for (int i = 0; i < grid; ++i)
+    for (int j = 0; j < grid; ++j) {
+      Vec3 place;
+      place[one] = bounds.low[one] + (i + 0.5) / grid * size[one];
+      place[other] = bounds.low[other] + (j + 0.5) / grid * size[other];
+      double first = 0;
+      for (int k = 0; k < along; ++k) {
+        place[axis] = bounds.low[axis] + (0.25 + k * step) * size[axis];
+        const double overlap = overlap_at(geometry, pose, place, radius);
+        if (k == 0) first = overlap;
+        else if (std::abs(overlap - first) > rounding * radius) return false;
+      }
+    }
+  return true;
+}
+
+[[noreturn]] void fail_not_uniform(const State& state, std::size_t wall, int axis) {
+  const std::string name(1, "xyz"[axis]);
+  fail(state, Guard::period, {"walls", state.walls.name(wall)},
+       "wall \"" + state.walls.name(wall) + "\" is one period long along " + name +
+           ", where it is periodic, but its surface changes along " + name,
+       "only plane walls, and grooves that run along the axis, go on at periodic sides: extend the wall beyond both "
+       "sides by at "
+       "least the largest radius, " +
+           number(state.statistics.largest_radius) + " m, and by the distance that it will move");
+}
+
 [[noreturn]] void fail_at_end(const State& state, std::size_t wall, int axis, double low, double high) {
   const Cell& cell = state.cell.cell();
   const std::string reach = number(reach_of_largest(state));
@@ -63,8 +109,16 @@ void repeat_walls(State& state) {
       const double low = bounds->low[k], high = bounds->high[k], from = cell.low[k], to = cell.high[k];
       const double period = to - from;
       const bool inside = low > from + reach && high < to - reach, across = low <= from - reach && high >= to + reach;
-      if (!pose.turned() && std::abs(high - low - period) <= rounding * period) state.surfaces[w].period[k] = period;
-      else if (!inside && !across) fail_at_end(state, w, k, low, high);
+      const bool keeps_axis =
+          (pose.turn * Vec3::Unit(k) - Vec3::Unit(k)).norm() <= rounding;  // such as a drum along it
+      if (keeps_axis && std::abs(high - low - period) <= rounding * period) {
+        const Geometry* geometry = &state.walls.geometry(w);
+        const Geometry*& uniform = state.surfaces[w].uniform[static_cast<std::size_t>(k)];
+        if (uniform != geometry && !is_uniform_along(k, *geometry, pose, *bounds, state.statistics.largest_radius))
+          fail_not_uniform(state, w, k);
+        uniform = geometry;
+        state.surfaces[w].period[k] = period;
+      } else if (!inside && !across) fail_at_end(state, w, k, low, high);
     }
   }
 }

@@ -1,10 +1,51 @@
 #include "kernel/settings.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "bodies/make_bodies.hpp"
+#include "kernel/body_groups.hpp"
 
 namespace grit {
+
+namespace {
+
+/// Sorts the engines by their phases; returns those of phase `settings`.
+std::vector<ActingEngine> take_engines(const SceneDescription& scene, const Components& components, Settings& now) {
+  std::vector<ActingEngine> of_settings;
+  for (const auto& [name, engine] : components.engines) {
+    GroupMask groups = group_mask(scene.engines.at(name).groups, now.groups);
+    const Phase phase = engine->phase();
+    auto& engines = phase == Phase::settings ? of_settings
+                    : phase == Phase::forces ? now.force_engines
+                                             : now.removal_engines;
+    engines.push_back({engine.get(), std::move(groups)});
+  }
+  return of_settings;
+}
+
+/// The settings of a group; without one, those by engines that act on all groups.
+MotionSettings motion_of(const std::vector<ActingEngine>& engines, std::optional<std::size_t> group) {
+  MotionSettings motion;
+  for (const ActingEngine& one : engines)
+    if (one.groups.empty() || (group && one.groups[*group])) one.engine->settings(motion);
+  return motion;
+}
+
+}  // namespace
+
+bool Settings::by_group() const {
+  const auto limited = [](const GroupMask& groups) { return !groups.empty(); };
+  return !motion_of_groups.empty() || std::ranges::any_of(force_engines, limited, &ActingEngine::groups) ||
+         std::ranges::any_of(removal_engines, limited, &ActingEngine::groups) ||
+         std::ranges::any_of(groups_of_walls, limited);
+}
+
+const MotionSettings& Settings::motion_of(const std::string& group) const {
+  const auto known = std::ranges::find(groups, group);
+  return known == groups.end() ? motion : motion_of(static_cast<std::size_t>(known - groups.begin()));
+}
 
 double growth_rate(const SceneDescription& scene, const std::string& stage) {
   const auto found = std::ranges::find(scene.stages, stage, &StageDescription::name);
@@ -18,10 +59,13 @@ Settings settings_of(const SceneDescription& scene, const Components& components
   now.law->mix(materials_in_use(scene, materials), materials_of_bodies(scene));
   now.fields = now.law->state();
   now.engines = components.engines;
-  for (const auto& [name, engine] : components.engines) {
-    if (engine->phase() == Phase::settings) engine->settings(now.motion);
-    else now.force_engines.push_back(engine.get());
-  }
+  now.groups = group_names(scene);
+  const std::vector<ActingEngine> settings_engines = take_engines(scene, components, now);
+  now.motion = motion_of(settings_engines, std::nullopt);
+  if (std::ranges::any_of(settings_engines, [](const ActingEngine& one) { return !one.groups.empty(); }))
+    for (std::size_t group = 0; group < now.groups.size(); ++group)
+      now.motion_of_groups.push_back(motion_of(settings_engines, group));
+  for (const auto& [name, wall] : scene.walls) now.groups_of_walls.push_back(group_mask(wall.groups, now.groups));
   now.strain_rate = scene.domain.strain_rate, now.open_sides = scene.domain.open_sides;
   now.specimen = scene.specimen, now.time_step = scene.time_step, now.guards = scene.guards;
   now.growth_rate = growth_rate(scene, stage);

@@ -1,7 +1,9 @@
 // Present settings of the kernel, from the description.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -15,14 +17,27 @@
 
 namespace grit {
 
+/// Groups of bodies, by index; empty: all.
+using GroupMask = std::vector<bool>;
+
+/// An engine and the groups on which it acts.
+struct ActingEngine {
+  const Engine* engine;
+  GroupMask groups;
+};
+
 struct Settings {
   std::shared_ptr<ContactLaw> law;
   std::vector<StateField> fields;                          ///< fields of the contact history
   std::map<std::string, std::shared_ptr<Engine>> engines;  ///< by name
-  std::vector<Engine*> force_engines;                      ///< those of phase `forces`, by name
-  MotionSettings motion;
-  Vec3 strain_rate = Vec3::Zero();      ///< of the cell [1/s]
-  std::vector<std::string> open_sides;  ///< of the domain, as "-x", "+z"
+  std::vector<ActingEngine> force_engines;                 ///< of phase `forces`, by name
+  std::vector<ActingEngine> removal_engines;               ///< of phase `removal`, by name
+  std::vector<std::string> groups;                         ///< names, ascending
+  MotionSettings motion;                                   ///< of all bodies
+  std::vector<MotionSettings> motion_of_groups;            ///< instead, by group; empty if all are alike
+  std::vector<GroupMask> groups_of_walls;                  ///< on which they act, by wall
+  Vec3 strain_rate = Vec3::Zero();                         ///< of the cell [1/s]
+  std::vector<std::string> open_sides;                     ///< of the domain, as "-x", "+z"
   SpecimenDescription specimen;
   TimeStepDescription time_step;
   GuardsDescription guards;
@@ -30,7 +45,18 @@ struct Settings {
   double growth_rate = 0;  ///< of radii in this stage [1/s]
   bool may_clump = false;  ///< whether a group of bodies, present or future, has clumps
 
-  bool holds_bodies() const { return motion.hold_rotation || motion.hold_translation; }
+  /// Whether anything depends on the groups of bodies.
+  bool by_group() const;
+  const MotionSettings& motion_of(std::size_t group) const {
+    return motion_of_groups.empty() ? motion : motion_of_groups[group];
+  }
+  const MotionSettings& motion_of(const std::string& group) const;
+  /// Whether `is` holds for the settings of any body.
+  template <class Is>
+  bool any_motion(Is is) const {
+    return motion_of_groups.empty() ? std::invoke(is, motion) : std::ranges::any_of(motion_of_groups, is);
+  }
+  bool holds_bodies() const { return any_motion(&MotionSettings::holds); }
   /// Whether engines change the energy of bodies: by forces, or by holding them.
   bool engines_do_work() const { return !force_engines.empty() || holds_bodies(); }
 };

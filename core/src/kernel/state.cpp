@@ -13,7 +13,9 @@ MotionStep State::next_motion(bool energies) const {
           .centre = cell.flow_centre(),
           .period = period + dt * growth,
           .period_growth = growth,
-          .energies = energies};
+          .energies = energies,
+          .by_group = settings.motion_of_groups,
+          .group = group};
 }
 
 std::size_t State::bytes() const {

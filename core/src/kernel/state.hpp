@@ -1,6 +1,7 @@
 // Complete state of a simulation at one instant. The parts of the kernel share it; data of one part are in that part.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct State {
   std::vector<std::string> materials;  ///< names by index
   DeformingCell cell;
   Bodies bodies;
+  std::vector<std::uint16_t> group;   ///< of each body, index of Settings::groups; empty if nothing depends on it
   PopulationStatistics statistics;    ///< of all bodies that ever entered
   std::vector<Departure> departures;  ///< bodies that left through open sides
   double discharged_mass = 0;         ///< of these [kg]
@@ -42,10 +44,13 @@ struct State {
   ContactTable::Instant instant(bool again) const {
     return {*settings.law, bodies, statistics.one_material, cell.images(), time.previous_dt, lists.skins(), again};
   }
-  /// Distances of surfaces up to which the law acts [m], for bodies of the largest radius; empty before there is a law.
-  std::vector<double> reaches() const {
-    return settings.law != nullptr ? settings.law->reaches(statistics.largest_radius) : std::vector<double>{};
+  /// Settings of the motion of a body.
+  const MotionSettings& motion_of(std::size_t body) const {
+    return settings.motion_of_groups.empty() ? settings.motion : settings.motion_of_groups[group[body]];
   }
+  const MotionSettings& motion_of(const Clump& clump) const { return motion_of(bodies.clumps.spheres[clump.first]); }
+  /// Distances of surfaces up to which the law acts [m], for bodies of the largest radius.
+  std::vector<double> reaches() const { return settings.law->reaches(statistics.largest_radius); }
   /// The next step of the leap-frog scheme. `energies`: whether work is summed up.
   MotionStep next_motion(bool energies) const;
   /// Discharged mass over all mass that entered.

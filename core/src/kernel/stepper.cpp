@@ -8,6 +8,7 @@
 
 #include "domain/boundaries.hpp"
 #include "kernel/arrivals.hpp"
+#include "kernel/body_groups.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/periodic_walls.hpp"
@@ -30,7 +31,20 @@ void Stepper::update_surfaces() {
     const WallState& wall = state_.walls.states()[w];
     state_.surfaces[w].pose = wall.pose;
     state_.surfaces[w].velocity = wall.velocity, state_.surfaces[w].spin = wall.spin;
+    state_.surfaces[w].surface_moves = state_.walls.surface_moves(w);
+    state_.surfaces[w].surface_velocity = wall.surface_velocity, state_.surfaces[w].surface_spin = wall.surface_spin;
   }
+}
+
+void Stepper::mark_removed(std::vector<bool>& leaves) const {
+  const Bodies& bodies = state_.bodies;
+  for (const ActingEngine& one : state_.settings.removal_engines)
+    for (std::size_t i = 0; i < bodies.count(); ++i) {
+      if (!one.groups.empty() && !one.groups[state_.group[i]]) continue;
+      const std::uint32_t c = bodies.clumps.clump_of(i);
+      const Vec3 centre = c == no_clump ? xyz(bodies.position[i]) : bodies.clumps.clump[c].centre;
+      if (one.engine->removes(view_, centre)) leaves[i] = true;
+    }
 }
 
 void Stepper::rebuild() {
@@ -38,22 +52,24 @@ void Stepper::rebuild() {
   repeat_walls(state_);
   Bodies& bodies = state_.bodies;
   const DeformingCell& cell = state_.cell;
-  const Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt),
-                               state_.settings.open_sides, [this](std::size_t body, int axis, bool high) {
-                                 fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
-                                              "left the domain through its " + std::string(high ? "upper" : "lower") +
-                                                  " " + "xyz"[axis] + " side",
-                                              "close the domain there with a wall, make it larger, or name the side "
-                                              "in /domain/open_sides");
-                               });
+  Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt), state_.settings.open_sides,
+                         [this](std::size_t body, int axis, bool high) {
+                           fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
+                                        "left the domain through its " + std::string(high ? "upper" : "lower") + " " +
+                                            "xyz"[axis] + " side",
+                                        "close the domain there with a wall, make it larger, or name the side "
+                                        "in /domain/open_sides");
+                         });
   balance_.add_cell(wrapped.energy_gained);
+  mark_removed(wrapped.leaves);
   if (!arrivals_.empty()) check_arrivals(state_, view_, arrivals_);
   const bool some_leave = std::ranges::find(wrapped.leaves, true) != wrapped.leaves.end();
   std::vector<std::uint32_t> order;
   if (state_.lists.sorts() || some_leave || !arrivals_.empty()) {
     order = spatial_order(bodies, cell.cell());
     if (some_leave) {
-      for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, state_.settings.motion.gravity)) {
+      const auto gravity = [this](std::size_t body) { return state_.motion_of(body).gravity; };
+      for (Leaving& one : leaving(bodies, wrapped.leaves, state_.time.time, gravity)) {
         state_.departures.push_back(one.departure);
         state_.discharged_mass += one.departure.mass;
         balance_.add_settings(-one.kinetic);
@@ -62,13 +78,15 @@ void Stepper::rebuild() {
       std::erase_if(order, [&](std::uint32_t i) { return wrapped.leaves[i]; });
     }
     bodies.reorder(order);
+    find_groups(state_);
     state_.sum.resize(bodies.count() + 1), passes_.resize(bodies.count());
   }
   state_.lists.rebuild(bodies, cell, state_.statistics, state_.reaches(), state_.time.dt, bounds_.wall_speed(),
                        passes_);
   state_.pairs.rebuild(bodies, state_.lists.search(), cell.periodic(), state_.settings.fields, order, passes_.team());
   readiness_.build(state_.pairs.reached());
-  state_.wall_contacts.rebuild(bodies, state_.surfaces, state_.lists.skins(), state_.settings.fields, order);
+  state_.wall_contacts.rebuild(bodies, state_.group, state_.surfaces, state_.lists.skins(), state_.settings.fields,
+                               order);
   bounds_.rebuild(state_);
   arrivals_.clear();
   time_step_.set(state_, view_, bounds_, passes_);
@@ -122,7 +140,16 @@ void Stepper::add_forces_of_engines() {
   if (state_.settings.force_engines.empty()) return;
   const std::size_t count = state_.bodies.count();
   std::vector<Row> force(count), moment(count);
-  for (const Engine* engine : state_.settings.force_engines) engine->forces(view_, force, moment);
+  for (const ActingEngine& one : state_.settings.force_engines) {
+    if (one.groups.empty()) {
+      one.engine->forces(view_, force, moment);
+      continue;
+    }
+    std::vector<Row> own_force(count), own_moment(count);
+    one.engine->forces(view_, own_force, own_moment);
+    for (std::size_t i = 0; i < count; ++i)
+      if (one.groups[state_.group[i]]) force[i] += own_force[i], moment[i] += own_moment[i];
+  }
   for (std::size_t i = 0; i < count; ++i) state_.sum[i].force += force[i], state_.sum[i].moment += moment[i];
   state_.added_force.swap(force), state_.added_moment.swap(moment);
   view_.invalidate_forces();  // engines may have read forces without their own
@@ -278,7 +305,7 @@ void Stepper::end_step() {
     const Skins& skins = state_.lists.skins();
     const bool beyond = skins.walls_gone() + distance > skins.of_walls();
     return state_.wall_contacts.force_ahead(wall, state_.surfaces[wall], there, velocity, *state_.settings.law,
-                                            state_.bodies, beyond);
+                                            state_.bodies, state_.group, beyond);
   });
   const double work = work_at_start + 0.5 * dt * balance_.power_of_walls();
   guard_.add_work_of_walls(work);

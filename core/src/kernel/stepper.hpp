@@ -46,6 +46,8 @@ class Stepper {
   /// Operations before contacts. Returns whether this instant has been evaluated before.
   bool prepare();
   void rebuild();
+  /// Marks the bodies that engines remove.
+  void mark_removed(std::vector<bool>& leaves) const;
   void update_surfaces();
   /// Contacts of one chunk with others and with walls.
   void evaluate(std::size_t chunk, bool again, BodySum* sum, Laps& laps);

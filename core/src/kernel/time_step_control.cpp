@@ -19,8 +19,8 @@ constexpr double raise_when = 1.1;
 /// Demand of engines on bodies, added up.
 Demand demand_of_engines(const State& state, const World& world) {
   Demand all;
-  for (const Engine* engine : state.settings.force_engines) {
-    const EngineRates rates = engine->rates(world);
+  for (const ActingEngine& one : state.settings.force_engines) {
+    const EngineRates rates = one.engine->rates(world);
     all.spring += rates.stiffness, all.dashpot += rates.damping;
   }
   return all;

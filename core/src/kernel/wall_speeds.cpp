@@ -49,6 +49,7 @@ double arm(const State& state, std::size_t wall, const Vec3& axis) {
                        2 * state.settings.guards.travel * state.statistics.largest_radius;
   double longest = 0;
   for (std::size_t i = 0; i < state.bodies.count(); ++i) {
+    if (!state.surfaces[wall].acts_on(state.group, i)) continue;
     const Vec3 place = xyz(state.bodies.position[i]);
     const double radius = state.bodies.position[i].w, reach = radius + moves, along = range.along(place),
                  away = range.away(place);

@@ -21,18 +21,17 @@ void WorldView::invalidate() {
 
 void WorldView::find_net_forces(std::size_t chunk) const {
   const Bodies& bodies = state_.bodies;
-  const MotionSettings& motion = state_.settings.motion;
   const ChunkRange range(chunk, bodies.count());
   for (std::size_t i = range.first; i < range.last; ++i) {
+    const MotionSettings& motion = state_.motion_of(i);
     const bool single = bodies.clumps.clump_of(i) == no_clump;
     const Vec3 weight = single ? Vec3(motion.gravity / bodies.velocity[i].w) : Vec3(Vec3::Zero());
     net_force_[i] = state_.sum[i].force, net_moment_[i] = state_.sum[i].moment;
     net_force_[i] += Row{weight.x(), weight.y(), weight.z(), 0};
     net_force_[i].w = net_moment_[i].w = 0;
-    if (motion.flat) {
-      Vec3 force = xyz(net_force_[i]);
-      force[*motion.flat] = 0;
-      const Vec3 moment = xyz(net_moment_[i]).cwiseProduct(Vec3::Unit(*motion.flat));
+    if (single && (motion.flat || motion.holds())) {
+      const Vec3 force = motion.free_translation().cwiseProduct(xyz(net_force_[i])),
+                 moment = motion.free_rotation().cwiseProduct(xyz(net_moment_[i]));
       net_force_[i] = {force.x(), force.y(), force.z(), 0}, net_moment_[i] = {moment.x(), moment.y(), moment.z(), 0};
     }
   }
@@ -62,6 +61,14 @@ std::span<const Vec3> WorldView::displacements() const {
   return displacements_;
 }
 
+std::span<const std::uint8_t> WorldView::held() const {
+  const auto held = [](const MotionSettings& motion) { return motion.kept_translation() == Vec3::Ones(); };
+  held_.clear();
+  if (!state_.settings.any_motion(held)) return held_;
+  for (std::size_t i = 0; i < count(); ++i) held_.push_back(held(state_.motion_of(i)));
+  return held_;
+}
+
 std::span<const std::uint32_t> WorldView::clump_of() const {
   static_cast<void>(clumps());
   return clump_of_;
@@ -86,17 +93,19 @@ std::span<const ClumpView> WorldView::clumps() const {
   }
   for (const Clump& clump : bodies.clumps.clump) {
     const ClumpLoad load = load_of(clump, bodies, state_.sum.data());
-    clumps_.push_back({.id = clump.id,
-                       .centre = clump.centre,
-                       .velocity = clump.velocity,
-                       .spin = clump.spin,
-                       .momentum = clump.momentum,
-                       .force = load.force + state_.settings.motion.gravity / clump.inverse_mass,
-                       .moment = load.moment,
-                       .radius = clump.radius,
-                       .mass = 1 / clump.inverse_mass,
-                       .axes = clump.axes,
-                       .inertia = clump.inertia});
+    const MotionSettings& motion = state_.motion_of(clump);
+    clumps_.push_back(
+        {.id = clump.id,
+         .centre = clump.centre,
+         .velocity = clump.velocity,
+         .spin = clump.spin,
+         .momentum = clump.momentum,
+         .force = motion.free_translation().cwiseProduct(load.force + motion.gravity / clump.inverse_mass),
+         .moment = motion.free_rotation().cwiseProduct(load.moment),
+         .radius = clump.radius,
+         .mass = 1 / clump.inverse_mass,
+         .axes = clump.axes,
+         .inertia = clump.inertia});
   }
   return clumps_;
 }

@@ -50,12 +50,23 @@ inline double longest(const StageDescription& stage) {
   return time != nullptr ? std::min(time->value, stage.limit) : stage.limit;
 }
 
-/// Motion settings from all engines except the one of this name.
-inline MotionSettings settings_of(const EngineMap& engines, const std::string& excluded = "") {
+/// Motion settings of a group of bodies, from all engines except the one of this name.
+inline MotionSettings settings_of(const SceneDescription& scene, const EngineMap& engines, const std::string& group,
+                                  const std::string& excluded = "") {
   MotionSettings settings;
-  for (const auto& [name, engine] : engines)
-    if (name != excluded) engine->settings(settings);
+  for (const auto& [name, engine] : engines) {
+    const auto& groups = scene.engines.at(name).groups;
+    if (name != excluded && (groups.empty() || std::ranges::find(groups, group) != groups.end()))
+      engine->settings(settings);
+  }
   return settings;
+}
+
+/// Whether `is` holds for the motion settings of all groups.
+template <class Is>
+bool all_settings(const SceneDescription& scene, const EngineMap& engines, Is is) {
+  return std::ranges::all_of(scene.bodies,
+                             [&](const auto& group) { return is(settings_of(scene, engines, group.first)); });
 }
 
 }  // namespace grit

@@ -81,8 +81,8 @@ bool is_still_and_smooth(const Scene& described, const std::string& name) {
 }
 
 bool has_gravity_along(const Scene& described, int axis) {
-  return !always_by_engines(described, [&](const SceneDescription&, const EngineMap& engines) {
-    return settings_of(engines).gravity[axis] == 0;
+  return !always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
+    return all_settings(now, engines, [&](const MotionSettings& group) { return group.gravity[axis] == 0; });
   });
 }
 

@@ -18,7 +18,8 @@ bool is_still(const World& world) {
 /// Whether a group has a velocity, or may appear in a stage with a velocity of its own or with overlaps.
 bool may_move(const BodiesDescription& group) {
   const auto& source = group.source.value();
-  const bool is_placed = std::holds_alternative<ListSource>(source) || std::holds_alternative<FileSource>(source);
+  const bool is_placed = std::holds_alternative<ListSource>(source) || std::holds_alternative<FileSource>(source) ||
+                         std::holds_alternative<LatticeSource>(source);
   return !group.velocity.isZero(0.0) || (is_placed && !group.stage.empty());
 }
 
@@ -40,7 +41,10 @@ std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World&
     return std::nullopt;
   const bool still = always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
     const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
-    return settings_of(engines).gravity.isZero(0.0) && std::ranges::none_of(engines, is_force) &&
+    const auto is_unmoved = [](const MotionSettings& group) {
+      return group.gravity.isZero(0.0) && (!group.prescribed || *group.prescribed == RigidMotion{});
+    };
+    return all_settings(now, engines, is_unmoved) && std::ranges::none_of(engines, is_force) &&
            now.domain.strain_rate.isZero(0.0) && has_walls_at_rest(now, start);
   });
   if (!still) return std::nullopt;

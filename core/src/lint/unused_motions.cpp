@@ -18,7 +18,7 @@ bool always_of(const Scene& described, const std::string& wall, Is is) {
 }
 
 bool has_speed(const MotionDescription& motion) {
-  return !motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation;
+  return !motion.velocity.isZero(0.0) || !motion.spin.isZero(0.0) || motion.oscillation || motion.surface_moves();
 }
 
 /// A message naming the first stage in which the wall moves, if the wall's ramp is longer than all such stages.
@@ -55,9 +55,25 @@ std::vector<UnusedSetting> unused_motions(const Scene& described) {
     const std::string& wall_name = name;
     if (motion.ramp_time > 0 &&
         always_of(described, name, [](const auto&, const MotionDescription& now) { return !has_speed(now); }))
-      say("ramp_time", "the wall has no velocity, spin or oscillation");
+      say("ramp_time", "neither the wall nor its surface has a velocity, spin or oscillation");
     else if (const auto message = never_at_full_speed(described, name))
       say("ramp_time", "the wall never reaches its full speed: " + *message + "; it starts again with each stage");
+    using Vector = Vec3 OscillationDescription::*;
+    const auto check_phase = [&](Vector phase, Vector of, const char* key, const char* what) {
+      for (const char axis : {'x', 'y', 'z'}) {
+        const int k = axis - 'x';
+        if (((*motion.oscillation).*phase)[k] != 0 && always_of(described, name, [&](const auto&, const auto& now) {
+              return !now.oscillation || ((*now.oscillation).*of)[k] == 0;
+            }))
+          say(key, fmt::format("it has a component along {}, where {} is 0", axis, what));
+      }
+    };
+    if (motion.oscillation) {
+      check_phase(&OscillationDescription::amplitude_phase, &OscillationDescription::amplitude,
+                  "oscillation/amplitude_phase", "amplitude");
+      check_phase(&OscillationDescription::angle_phase, &OscillationDescription::angle, "oscillation/angle_phase",
+                  "angle");
+    }
     if (motion.free)
       for (const char axis : {'x', 'y', 'z'})
         if (motion.free->load[axis - 'x'] != 0 && always_of(described, name, [axis](const auto&, const auto& now) {

@@ -11,11 +11,6 @@
 namespace grit {
 namespace {
 
-bool same(const MotionSettings& a, const MotionSettings& b) {
-  return a.gravity == b.gravity && a.local_damping == b.local_damping && a.hold_rotation == b.hold_rotation &&
-         a.hold_translation == b.hold_translation && a.flat == b.flat;
-}
-
 bool is_changed(const SceneDescription& scene, const std::string& section, const std::string& name) {
   return std::ranges::any_of(scene.stages, [&](const StageDescription& stage) {
     const bool changed = stage.change.contains(section) && stage.change.at(section).contains(name);
@@ -102,10 +97,12 @@ double time_of_stages(const SceneDescription& scene, const std::vector<std::stri
   return sum;
 }
 
-/// Whether a body that is inserted by a stage has an initial spin.
+/// Whether a body that is inserted by a stage may have an initial spin.
 bool comes_spinning(const BodiesDescription& group) {
+  if (group.stage.empty()) return false;
+  if (std::holds_alternative<FileSource>(group.source.value())) return true;  // perhaps: it is not read for this
   const auto* placed = std::get_if<ListSource>(&group.source.value());
-  return !group.stage.empty() && placed != nullptr &&
+  return placed != nullptr &&
          std::ranges::any_of(placed->bodies, [](const ListedBody& one) { return !one.spin.isZero(0.0); });
 }
 
@@ -116,8 +113,9 @@ bool only_contacts_turn(const Scene& described) {
            std::ranges::all_of(scene.bodies, [](const auto& one) { return one.second.kind.type() == "sphere"; }) &&
            std::ranges::all_of(scene.walls, [](const auto& one) {
              const MotionDescription& motion = one.second.motion;
-             return motion.spin.isZero(0.0) && !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) &&
-                    !motion.free;
+             return motion.spin.isZero(0.0) && motion.surface_spin.isZero(0.0) &&
+                    !(motion.oscillation && !motion.oscillation->angle.isZero(0.0)) && !motion.free &&
+                    !motion.free_rotation;
            });
   });
 }
@@ -135,20 +133,23 @@ std::vector<UnusedSetting> unused_settings(const Scene& described, const Compone
     const bool is_of_settings = instance->phase() == Phase::settings;
     // Compares scenes with the engine and without it; scenes that lack it are equal.
     const auto idle = [&](auto is) {
-      return is_of_settings && always_by_engines(described, [&](const SceneDescription&, const EngineMap& engines) {
-               return !engines.contains(name) || is(settings_of(engines), settings_of(engines, name));
+      return is_of_settings && always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
+               return !engines.contains(name) || std::ranges::all_of(now.bodies, [&](const auto& group) {
+                 return is(settings_of(now, engines, group.first), settings_of(now, engines, group.first, name));
+               });
              });
     };
-    if (idle([](const MotionSettings& with, const MotionSettings& without) { return same(with, without); }))
+    if (idle([](const MotionSettings& with, const MotionSettings& without) { return with == without; }))
       say("/engines/" + name, "it has no effect with these values");
     else if (idle([](const MotionSettings& with, MotionSettings without) {
                if (with.flat) without.gravity[*with.flat] = with.gravity[*with.flat];
-               return with.flat && same(with, without);
+               return with.flat && with == without;
              }))
       say("/engines/" + name, "bodies are held along the axis on which it acts");
   }
-  const bool never_turn = always_by_engines(
-      described, [](const SceneDescription&, const EngineMap& engines) { return settings_of(engines).hold_rotation; });
+  const bool never_turn = always_by_engines(described, [](const SceneDescription& now, const EngineMap& engines) {
+    return all_settings(now, engines, [](const MotionSettings& group) { return group.free_rotation().isZero(0.0); });
+  });
   const bool spun = std::ranges::any_of(world.spins(), [](const Row& w) { return !xyz(w).isZero(0.0); }) ||
                     std::ranges::any_of(scene.bodies, [](const auto& group) { return comes_spinning(group.second); });
   const Description values = resolved(scene);

@@ -1,7 +1,10 @@
 #include "motion/builtin.hpp"
 
 #include <array>
+#include <type_traits>
+#include <variant>
 
+#include "description/description.hpp"
 #include "grit/engine.hpp"
 #include "motion/drag.hpp"
 
@@ -41,16 +44,37 @@ class LocalDamping final : public Engine {
 class Hold final : public Engine {
  public:
   void declare(Parameters& p) override {
-    p.add("rotation", rotation_).doc("keep the spins of bodies constant");
-    p.add("translation", translation_).doc("keep the velocities of bodies constant");
+    const std::vector<std::string> axes{"none", "x", "y", "z", "xy", "xz", "yz", "xyz"};
+    p.add("rotation", rotation_)
+        .one_of(axes)
+        .doc("axes about which spins stay constant; for clumps, the angular momentum about them");
+    p.add("translation", translation_).one_of(axes).doc("axes along which velocities stay constant");
   }
   Phase phase() const override { return Phase::settings; }
   void settings(MotionSettings& settings) const override {
-    settings.hold_rotation |= rotation_, settings.hold_translation |= translation_;
+    add(rotation_, settings.held_rotation), add(translation_, settings.held_translation);
   }
 
  private:
-  bool rotation_ = true, translation_ = false;
+  static void add(const std::string& axes, std::array<bool, 3>& held) {
+    for (std::size_t k = 0; k < 3; ++k) held[k] |= axes != "none" && axes.find("xyz"[k]) != std::string::npos;
+  }
+
+  std::string rotation_ = "xyz", translation_ = "none";
+};
+
+class PrescribedMotion final : public Engine {
+ public:
+  void declare(Parameters& p) override {
+    p.add("velocity", motion_.velocity).unit("m/s").symbol("v").doc("velocity of the bodies; default: fixed");
+    p.add("spin", motion_.spin).unit("rad/s").symbol("omega").doc("angular velocity as one rigid body, right-handed");
+    p.add("about", motion_.about).unit("m").doc("a point of the axis of rotation, which is fixed in space");
+  }
+  Phase phase() const override { return Phase::settings; }
+  void settings(MotionSettings& settings) const override { settings.prescribed = motion_; }
+
+ private:
+  RigidMotion motion_;
 };
 
 class Planar final : public Engine {
@@ -67,6 +91,28 @@ class Planar final : public Engine {
   std::string normal_ = "y";
 };
 
+class Sink final : public Engine {
+ public:
+  void declare(Parameters& p) override {
+    p.add("region", region_)
+        .required()
+        .doc(
+            "where bodies are removed: at the neighbour search after their centre has entered, within a fraction of a "
+            "diameter; they count as discharged");
+  }
+  Phase phase() const override { return Phase::removal; }
+  bool removes(const World&, const Vec3& centre) const override {
+    const auto has_centre = [&]<class Region>(const Region& region) {
+      if constexpr (std::is_same_v<Region, std::monostate>) return false;
+      else return contains(region, centre);
+    };
+    return std::visit(has_centre, region_.value());
+  }
+
+ private:
+  OneOf<BoxRegion, CylinderRegion, SphereRegion, HalfSpaceRegion> region_{"region"};
+};
+
 template <class T>
 PluginInfo engine(const char* name, const char* doc) {
   PluginInfo info;
@@ -78,11 +124,14 @@ PluginInfo engine(const char* name, const char* doc) {
 }  // namespace
 
 std::span<const PluginInfo> builtin_engines() {
-  static const std::array<PluginInfo, 5> engines{
+  static const std::array<PluginInfo, 7> engines{
       engine<Gravity>("gravity", "the same acceleration for every body"),
       engine<Drag>("drag", "drag of a fluid: Stokes, or Schiller and Naumann"),
       engine<LocalDamping>("local-damping", "Cundall's non-viscous damping of forces and moments"),
       engine<Hold>("hold", "holds spins or velocities of bodies constant"),
+      engine<PrescribedMotion>("prescribed-motion",
+                               "bodies move as one rigid body, or are fixed, whatever the forces on them are"),
+      engine<Sink>("sink", "removes the bodies that enter a region"),
       engine<Planar>("planar", "restricts bodies to planar motion: a two-dimensional model")};
   return engines;
 }

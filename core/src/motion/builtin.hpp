@@ -7,7 +7,7 @@
 
 namespace grit {
 
-/// gravity, drag, local-damping, hold, planar.
+/// gravity, drag, local-damping, hold, planar, prescribed-motion, sink.
 std::span<const PluginInfo> builtin_engines();
 
 }  // namespace grit

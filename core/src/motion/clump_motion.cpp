@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/rigid_step.hpp"
+
 namespace grit {
 namespace {
 
@@ -52,6 +54,16 @@ template <int axis>
   momentum[next] = double_cosine * p + double_sine * r, momentum[last] = double_cosine * r - double_sine * p;
 }
 
+/// Rotates a clump to a new orientation; `turn` is the rotation from the old one.
+void set_orientation(const Eigen::Quaterniond& now, Eigen::Quaterniond turn, double dt, Clump& clump) {
+  if (turn.w() < 0) turn.coeffs() *= -1;
+  clump.orientation = now;
+  clump.axes = now.toRotationMatrix();
+  clump.half_turn = turn.vec() / turn.w();
+  clump.chord_rate = 2 / (dt * (1 + clump.half_turn.squaredNorm()));
+  clump.spin = 2 * arc_over_sine(turn.vec().squaredNorm()) / dt * turn.vec();
+}
+
 void turn_freely(Clump& clump, double dt) {
   Eigen::Quaterniond now = clump.orientation;
   Vec3 momentum = clump.axes.transpose() * clump.momentum;
@@ -63,13 +75,25 @@ void turn_freely(Clump& clump, double dt) {
   turn_about<0>(0.5 * time[0], now, momentum);
   // It was normalised before, so that one Newton step normalises it to rounding.
   now.coeffs() *= 1.5 - 0.5 * now.squaredNorm();
-  Eigen::Quaterniond turn = now * clump.orientation.conjugate();
-  if (turn.w() < 0) turn.coeffs() *= -1;
-  clump.orientation = now;
-  clump.axes = now.toRotationMatrix();
-  clump.half_turn = turn.vec() / turn.w();
-  clump.chord_rate = 2 / (dt * (1 + clump.half_turn.squaredNorm()));
-  clump.spin = 2 * arc_over_sine(turn.vec().squaredNorm()) / dt * turn.vec();
+  set_orientation(now, now * clump.orientation.conjugate(), dt, clump);
+}
+
+double kinetic_energy(const Clump& clump) {
+  return 0.5 * clump.velocity.squaredNorm() / clump.inverse_mass +
+         0.5 * clump.spin_of(clump.momentum).dot(clump.momentum);
+}
+
+/// Moves a clump whose motion is prescribed; returns the change of its kinetic energy [J].
+double move_rigidly(const RigidStep& motion, double dt, Clump& clump) {
+  const double before = kinetic_energy(clump);
+  clump.velocity = motion.velocity_at(clump.centre);
+  clump.centre += dt * clump.velocity;
+  // Normalised by one Newton step.
+  Eigen::Quaterniond now = motion.turn() * clump.orientation;
+  now.coeffs() *= 1.5 - 0.5 * now.squaredNorm();
+  set_orientation(now, motion.turn(), dt, clump);
+  clump.momentum = clump.axes * clump.inertia.cwiseProduct(clump.axes.transpose() * motion.spin());
+  return kinetic_energy(clump) - before;
 }
 
 /// Moves a body with its clump; its velocity is its displacement in the step over the step.
@@ -117,11 +141,17 @@ ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum) 
 
 Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   Motion motion;
-  const MotionSettings& settings = step.settings;
-  const Vec3 free = step.free_translation(), turns = step.free_rotation();
   for (std::size_t c = first; c < last; ++c) {
     fetch(bodies.clumps.clump[std::min(c + ahead, last - 1)], bodies, sum);
     Clump& clump = bodies.clumps.clump[c];
+    const MotionSettings& settings = step.of(bodies.clumps.spheres[clump.first]);
+    if (settings.prescribed) {
+      motion.prescribed += move_rigidly(RigidStep(*settings.prescribed, step.drift), step.drift, clump);
+      motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
+      for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step);
+      continue;
+    }
+    const Vec3 free = settings.free_translation(), turns = settings.free_rotation();
     const ClumpLoad load = load_of(clump, bodies, sum);
     const Vec3 before = clump.velocity, carried = (step.flowed * step.strain_rate).cwiseProduct(before);
     clump.velocity += carried;

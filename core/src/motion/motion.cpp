@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
+#include <vector>
+
+#include "motion/rigid_step.hpp"
 
 namespace grit {
 namespace {
@@ -33,29 +37,43 @@ void turn_on(Vec3* turned, std::size_t body, const Quad& spin, const Quad& drift
 
 double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+/// What a step does to bodies with the same settings. The fourth number of a row (radius, 1/mass, 1/inertia) is
+/// unchanged.
+struct Kick {
+  Quad kick, turn_kick, fall, weight;
+  double damping;
+  std::optional<RigidStep> prescribed;
+
+  Kick(const MotionSettings& settings, const MotionStep& step)
+      : kick(step.kick * quad(settings.free_translation())),
+        turn_kick(step.kick * quad(settings.free_rotation())),
+        fall(quad(settings.free_translation()) * quad(Vec3(settings.gravity * step.kick))),
+        weight(quad(settings.gravity)),
+        damping(settings.local_damping) {
+    if (settings.prescribed) prescribed.emplace(*settings.prescribed, step.drift);
+  }
+};
+
 /// Which energies are summed up. Compile-time constants: otherwise the compiler divides for every body even if the
 /// result is not needed, and these divisions are the main cost of an energy balance.
 enum class EnergyTerms { none, without_weight, with_weight, with_flow };
 
 /// Not inlined: with all variants in one function, their constants would be in memory.
-template <EnergyTerms energies, bool Clumps>
+template <EnergyTerms energies, bool Clumps, bool Groups>
 [[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
-  const MotionSettings& settings = step.settings;
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
   // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's
   // sides.
   const Quad growth = rate * step.flowed;
-  // The fourth number of a row (radius, 1/mass, 1/inertia) is unchanged.
-  const Quad free = quad(step.free_translation());
-  const Quad kick = step.kick * free, turn_kick = step.kick * quad(step.free_rotation());
-  const Quad fall = free * quad(Vec3(settings.gravity * step.kick));
-  const Quad drift{step.drift, step.drift, step.drift, 0};
-  const double damping = settings.local_damping;
+  std::vector<Kick> by_group;
+  if constexpr (Groups)
+    for (const MotionSettings& settings : step.by_group) by_group.emplace_back(settings, step);
+  const Kick same(step.settings, step);
+  const Quad drift{step.drift, step.drift, step.drift, 0}, ones{1, 1, 1, 0};
   constexpr bool flows = energies == EnergyTerms::with_flow, falls = flows || energies == EnergyTerms::with_weight;
-  const Quad weight = quad(settings.gravity);
   Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
-  double fastest_carried = 0;
+  double fastest_carried = 0, prescribed = 0;
   // Local copies of the pointers: for the compiler, stores might alias them.
   Row *const position = bodies.position.data(), *const velocity = bodies.velocity.data(),
              *const spin = bodies.spin.data();
@@ -70,6 +88,24 @@ template <EnergyTerms energies, bool Clumps>
         turn_on(turned, i, load(spin[i]), drift);
         continue;
       }
+    const Kick& own = Groups ? by_group[step.group[i]] : same;
+    if constexpr (Groups)
+      if (own.prescribed) {
+        const Quad v_before = load(velocity[i]), w_before = load(spin[i]), x = load(position[i]);
+        const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
+        Quad v = quad(own.prescribed->velocity_at(xyz(position[i]))), w = quad(own.prescribed->spin());
+        prescribed += 0.5 * (product(v, v) - product(v_before, v_before)) / inverse_mass +
+                      0.5 * (product(w, w) - product(w_before, w_before)) / inverse_inertia;
+        if constexpr (falls) momentum += v * own.weight / inverse_mass;
+        const Quad speed = absolute(v - rate * (x - centre));
+        fastest = speed > fastest ? speed : fastest;
+        turn_on(turned, i, w, drift);
+        v[3] = inverse_mass, w[3] = inverse_inertia;
+        store(x + v * drift, position[i]), store(v, velocity[i]), store(w, spin[i]);
+        continue;
+      }
+    const Quad &kick = own.kick, &turn_kick = own.turn_kick, &fall = own.fall, &weight = own.weight;
+    const double damping = own.damping;
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
     const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
@@ -82,16 +118,18 @@ template <EnergyTerms energies, bool Clumps>
     if (damping > 0) {
       const Quad pushed = damped(push, v - flow, damping), twisted = damped(twist, w, damping);
       if constexpr (energies != EnergyTerms::none) {
-        const Quad less = taken(falls ? force + weight * mass : force, push, v - flow);
+        // Sums of bodies with the same settings are multiplied by these at the end.
+        const Quad lost = Groups ? damping * kick : ones, lost_by_turning = Groups ? damping * turn_kick : ones;
+        const Quad less = lost * taken(falls ? force + weight * mass : force, push, v - flow);
         damped_power += less * (v - flow + 0.5 * pushed);
         if constexpr (flows) flow_power -= less * flow;
-        damped_turning += taken(moment, twist, w) * (w + 0.5 * twisted);
+        damped_turning += lost_by_turning * taken(moment, twist, w) * (w + 0.5 * twisted);
       }
       push = pushed, twist = twisted;
     }
     v += push, w += twist;
     x += v * drift;
-    if constexpr (falls) momentum += v * mass;
+    if constexpr (falls) momentum += Groups ? v * mass * weight : v * mass;
     if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
     turn_on(turned, i, w, drift);
@@ -100,34 +138,36 @@ template <EnergyTerms energies, bool Clumps>
     poison += v * 0.0 + w * 0.0;
   }
   const double fastest_free = std::sqrt(fastest[0] * fastest[0] + fastest[1] * fastest[1] + fastest[2] * fastest[2]);
-  return {std::max(fastest_free, std::sqrt(fastest_carried)), poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
+  const Quad kick = Groups ? ones : same.kick, turn_kick = Groups ? ones : same.turn_kick,
+             weight = Groups ? ones : same.weight;
+  const double damping = Groups ? 1 : same.damping;
+  return {std::max(fastest_free, std::sqrt(fastest_carried)),
+          poison[0] == 0 && poison[1] == 0 && poison[2] == 0,
           damping * (product(damped_power, kick) + product(damped_turning, turn_kick)),
-          step.drift * product(momentum, quad(settings.gravity)),
-          damping * product(flow_power, kick) + product(flow_work, Quad{1, 1, 1, 0})};
+          step.drift * product(momentum, weight),
+          damping * product(flow_power, kick) + product(flow_work, ones),
+          prescribed};
 }
 
 }  // namespace
 
-Vec3 MotionStep::free_translation() const {
-  Vec3 free = settings.hold_translation ? Vec3::Zero() : Vec3::Ones();
-  if (settings.flat) free[*settings.flat] = 0;
-  return free;
-}
-
-Vec3 MotionStep::free_rotation() const {
-  if (settings.hold_rotation) return Vec3::Zero();
-  return settings.flat ? Vec3(Vec3::Unit(*settings.flat)) : Vec3(Vec3::Ones());
+bool MotionStep::falls() const {
+  const auto falls = [](const MotionSettings& one) { return !one.gravity.isZero(0.0); };
+  return by_group.empty() ? falls(settings) : std::ranges::any_of(by_group, falls);
 }
 
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const auto with = [&]<EnergyTerms energies>() {
-    return bodies.clumps.none() ? move<energies, false>(chunk, bodies, sum, step)
-                                : move<energies, true>(chunk, bodies, sum, step);
+    const bool clumps = !bodies.clumps.none();
+    if (!step.by_group.empty())
+      return clumps ? move<energies, true, true>(chunk, bodies, sum, step)
+                    : move<energies, false, true>(chunk, bodies, sum, step);
+    return clumps ? move<energies, true, false>(chunk, bodies, sum, step)
+                  : move<energies, false, false>(chunk, bodies, sum, step);
   };
   if (!step.energies) return with.operator()<EnergyTerms::none>();
   if (step.flows()) return with.operator()<EnergyTerms::with_flow>();
-  return step.settings.gravity.isZero(0.0) ? with.operator()<EnergyTerms::without_weight>()
-                                           : with.operator()<EnergyTerms::with_weight>();
+  return step.falls() ? with.operator()<EnergyTerms::with_weight>() : with.operator()<EnergyTerms::without_weight>();
 }
 
 }  // namespace grit

@@ -1,6 +1,9 @@
 // Damping and integration of bodies in one pass.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
 #include "bodies/bodies.hpp"
 #include "contact/search.hpp"
 #include "grit/contact/batch.hpp"
@@ -19,11 +22,13 @@ struct MotionStep {
   Vec3 period;         ///< of the cell after the step [m]; 0 along axes that are not periodic
   Vec3 period_growth;  ///< m/s
   bool energies;       ///< whether the energies of Motion are needed
+  std::span<const MotionSettings> by_group{};  ///< instead of `settings`, by group; empty if all bodies have the same
+  std::span<const std::uint16_t> group{};      ///< group of each body; may be empty without by_group
 
   bool flows() const { return !strain_rate.isZero(0.0); }
-  /// 1 for axes along (or about) which bodies may move, 0 for others.
-  Vec3 free_translation() const;
-  Vec3 free_rotation() const;
+  const MotionSettings& of(std::size_t body) const { return by_group.empty() ? settings : by_group[group[body]]; }
+  /// Whether any body is subject to gravity.
+  bool falls() const;
 };
 
 /// Summary of the motion of a chunk's bodies.
@@ -33,6 +38,7 @@ struct Motion {
   double damped = 0;         ///< energy dissipated by local damping [J]
   double fallen = 0;         ///< work of gravity [J]
   double carried = 0;        ///< work of moving bodies with the mean flow of a deforming cell [J]
+  double prescribed = 0;     ///< change of the kinetic energy of bodies whose motion is prescribed [J]
 };
 
 /// Moves the bodies of one chunk under the forces `sum`, by index; bodies of clumps have already been moved.

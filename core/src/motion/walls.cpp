@@ -83,23 +83,42 @@ Vec3 middle(const Geometry& geometry) {
   return middle;
 }
 
-/// Displacement of an oscillation of amplitude 1 at a time [s] after its start.
-double swing(const MotionDescription& motion, double time, double lead) {
+/// Displacement of an oscillation of amplitude 1 and this phase at a time [s] after its start.
+double swing(const MotionDescription& motion, double phase, double time, double lead) {
   const OscillationDescription& how = *motion.oscillation;
   const double periods = how.frequency * time + lead,
                ramp = motion.ramp_time > 0 ? std::min(1.0, time / motion.ramp_time) : 1;
-  const double angle = 2 * std::numbers::pi * (periods - std::floor(periods)) + how.phase;
-  return ramp * (std::sin(angle) - std::sin(how.phase));
+  const double angle = 2 * std::numbers::pi * (periods - std::floor(periods)) + phase;
+  return ramp * (std::sin(angle) - std::sin(phase));
+}
+
+/// Mean velocities of oscillations of amplitude 1 and these phases in the next step of dt [s].
+Vec3 swing_velocities(const MotionDescription& motion, const Vec3& phases, const WallState& state, double dt) {
+  const auto one = [&](double phase) {
+    return (swing(motion, phase, state.swing_time + dt, state.swing_lead) -
+            swing(motion, phase, state.swing_time, state.swing_lead)) /
+           dt;
+  };
+  return {one(phases.x()), one(phases.y()), one(phases.z())};
 }
 
 /// Updates an oscillation after a change of motion: it continues from its present phase at the new frequency, or
 /// starts.
 void swing_on(const MotionDescription& motion, WallState& state) {
   const OscillationDescription how = motion.oscillation.value_or(OscillationDescription{});
-  if (state.swing_frequency > 0 && how.frequency > 0 && state.swing_phase == how.phase)
+  const Vec3 phases = how.phases_of_displacement(), angle_phases = how.phases_of_rotation();
+  if (state.swing_frequency > 0 && how.frequency > 0 && state.swing_phases == phases &&
+      state.swing_angle_phases == angle_phases)
     state.swing_lead += (state.swing_frequency - how.frequency) * state.swing_time;
   else state.swing_time = state.swing_lead = 0;
-  state.swing_frequency = how.frequency, state.swing_phase = how.phase;
+  state.swing_frequency = how.frequency, state.swing_phases = phases, state.swing_angle_phases = angle_phases;
+}
+
+/// A wall that is free to rotate keeps the component of its spin along the axis.
+void keep_spin_along(const Vec3& axis, WallState& state) {
+  constexpr double rounding = 1e-12;
+  if (axis.isZero(0.0) || axis.cross(state.spin).norm() <= rounding * state.spin.norm()) return;
+  state.spin = axis.dot(state.spin) * axis;
 }
 
 /// Component of the normal of a servo's wall along its axis. Throws if it is zero.
@@ -195,6 +214,7 @@ void Walls::change(std::vector<WallSetup> setups) {
     swing_on(setup.motion, state);
     change_reference(setup.motion.about.value_or(state.pose.about), state);
     drives.push_back(drive_of(setups, setup));
+    keep_spin_along(drives.back().free_axis, state);
     if (drives.back().servo_axis >= 0 && setup.motion.servo->pressure) facing(setup, state.pose);
     states.push_back(state);
   }
@@ -227,6 +247,13 @@ Walls::Drive Walls::drive_of(const std::vector<WallSetup>& setups, const WallSet
   if (motion.free) {
     drive.free = axes_of(setup, "free", motion.free->axes);
     if (!(motion.free->mass > 0)) fail(setup, "a free wall needs a mass above 0");
+  }
+  if (motion.free_rotation) {
+    if (!(motion.free_rotation->inertia > 0)) fail(setup, "free rotation needs an inertia above 0");
+    if (!(motion.free_rotation->axis.norm() > 0)) fail(setup, "free rotation needs an axis of a length above 0");
+    if (!motion.spin.isZero(0.0) || (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
+      fail(setup, "two rotations; choose spin and oscillation, or free_rotation");
+    drive.free_axis = motion.free_rotation->axis.normalized();
   }
   for (int axis = 0; axis < 3; ++axis) {
     const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
@@ -274,7 +301,13 @@ WallMotion Walls::expected_motion(std::size_t wall) const {
     if (axis == how.servo_axis)
       expected.velocity[axis] = state.contacts > 0 ? state.velocity[axis] : motion.servo->max_velocity;
   }
+  if (motion.free_rotation) expected.spin = state.spin;
   return expected;
+}
+
+bool Walls::surface_moves(std::size_t wall) const {
+  return setups_[wall].motion.surface_moves() || !states_[wall].surface_velocity.isZero(0.0) ||
+         !states_[wall].surface_spin.isZero(0.0);
 }
 
 bool Walls::presses_on_specimen() const {
@@ -294,11 +327,20 @@ double Walls::area(std::size_t wall) const {
   return across / std::abs(facing(setup, states_[wall].pose));
 }
 
+void Walls::drop(const std::vector<std::string>& names) {
+  for (std::size_t wall = size(); wall-- > 0;) {
+    if (std::ranges::find(names, name(wall)) == names.end()) continue;
+    const auto at = static_cast<std::ptrdiff_t>(wall);
+    setups_.erase(setups_.begin() + at), drives_.erase(drives_.begin() + at), states_.erase(states_.begin() + at);
+  }
+  order_.clear();  // indices of leaders are not valid either until the next apply()
+}
+
 void Walls::clear_forces() {
   for (WallState& state : states_) {
-    state.force.setZero();
-    state.moment.setZero();
-    state.stiffness = state.spring = state.dashpot = 0;
+    state.force.setZero(), state.moment.setZero();
+    state.surface_force.setZero(), state.surface_moment.setZero();
+    state.stiffness = state.spring = state.dashpot = state.turning_spring = state.turning_dashpot = 0;
     state.contacts = state.near = 0;
   }
 }
@@ -307,7 +349,9 @@ void Walls::add(std::size_t wall, const WallLoad& load) {
   WallState& state = states_[wall];
   state.force += load.force;
   state.moment += load.moment;
+  state.surface_force += load.surface_force, state.surface_moment += load.surface_moment;
   state.stiffness += load.stiffness, state.spring += load.spring, state.dashpot += load.dashpot;
+  state.turning_spring += load.turning_spring, state.turning_dashpot += load.turning_dashpot;
   state.contacts += load.contacts, state.near += load.near;
 }
 
@@ -318,11 +362,8 @@ void Walls::drive(double dt, const Ahead& ahead) {
     WallState& state = states_[wall];
     // The ramp at the middle of the step: a ramp of whole steps then covers exactly velocity × ramp_time / 2.
     const double ramp = motion.ramp_time > 0 ? std::min(1.0, (state.stage_time + 0.5 * dt) / motion.ramp_time) : 1.0;
-    double swings = 0;  // amplitudes per second
-    if (motion.oscillation)
-      swings =
-          (swing(motion, state.swing_time + dt, state.swing_lead) - swing(motion, state.swing_time, state.swing_lead)) /
-          dt;
+    Vec3 swings = Vec3::Zero();  // amplitudes per second
+    if (motion.oscillation) swings = swing_velocities(motion, motion.oscillation->phases_of_displacement(), state, dt);
     for (int axis = 0; axis < 3; ++axis) {
       double& velocity = state.velocity[axis];
       if (axis == how.servo_axis) velocity = servo_velocity(setups_[wall], wall, axis, area(wall), state, dt, ahead);
@@ -330,11 +371,18 @@ void Walls::drive(double dt, const Ahead& ahead) {
       else if (how.free[axis]) velocity += (state.force[axis] + motion.free->load[axis]) / motion.free->mass * dt;
       else {
         velocity = ramp * motion.velocity[axis];
-        if (motion.oscillation) velocity += swings * motion.oscillation->amplitude[axis];
+        if (motion.oscillation) velocity += swings[axis] * motion.oscillation->amplitude[axis];
       }
     }
-    state.spin = ramp * motion.spin;
-    if (motion.oscillation) state.spin += swings * motion.oscillation->angle;
+    if (const auto& free = motion.free_rotation) {
+      state.spin += (how.free_axis.dot(state.moment) + free->moment) / free->inertia * dt * how.free_axis;
+    } else {
+      state.spin = ramp * motion.spin;
+      if (const auto& of = motion.oscillation)
+        state.spin += swing_velocities(motion, of->phases_of_rotation(), state, dt).cwiseProduct(of->angle);
+    }
+    state.surface_velocity = ramp * (state.pose.turn * motion.surface_velocity);
+    state.surface_spin = ramp * (state.pose.turn * motion.surface_spin);
   }
 }
 
@@ -359,10 +407,15 @@ std::string Walls::fallen_behind() const {
 
 Demand Walls::demand() const {
   Demand most;
-  for (std::size_t wall = 0; wall < size(); ++wall)
-    if (const auto& free = setups_[wall].motion.free)
-      most = {std::max(most.spring, states_[wall].spring / free->mass),
-              std::max(most.dashpot, states_[wall].dashpot / free->mass)};
+  for (std::size_t wall = 0; wall < size(); ++wall) {
+    const MotionDescription& motion = setups_[wall].motion;
+    const WallState& state = states_[wall];
+    Demand own;
+    if (motion.free) own = {state.spring / motion.free->mass, state.dashpot / motion.free->mass};
+    if (const auto& rotation = motion.free_rotation)
+      own.spring += state.turning_spring / rotation->inertia, own.dashpot += state.turning_dashpot / rotation->inertia;
+    most = larger(most, own);
+  }
   return most;
 }
 
@@ -390,7 +443,7 @@ void Walls::view(std::vector<WallView>& views) const {
     view.normal = state.pose.turn * geometry.normal();
     view.pressure = view.area > 0 ? -state.force.dot(view.normal) / view.area : 0;
     view.contacts = state.contacts;
-    view.pose = state.pose;
+    view.pose = state.pose, view.geometry = &geometry;
   }
 }
 

@@ -32,17 +32,21 @@ void check_oscillations(const SceneDescription& scene, double dt);
 /// State of a wall. pose.about is its reference point in the description; pose.shift is the displacement of that point.
 struct WallState {
   Pose pose;
-  Vec3 stage_start = Vec3::Zero();                    ///< pose.shift at the start of the stage [m]
-  double stage_time = 0;                              ///< since the start of the stage [s]
-  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  ///< in the step that drive() started [m/s, rad/s]
-  Vec3 force = Vec3::Zero();                          ///< by the bodies on the wall [N]
-  Vec3 moment = Vec3::Zero();                         ///< the same about the reference point [N m]
-  double stiffness = 0;                               ///< sum of normal stiffnesses of contacts [N/m]
-  double spring = 0, dashpot = 0;                     ///< sums in the stiffest directions of contacts [N/m, N s/m]
-  double habit = 0;                                   ///< of a servo: its velocity, averaged over recent steps [m/s]
-  double swing_time = 0;                              ///< since the start of the oscillation [s]
-  double swing_lead = 0;                              ///< phase advance by changes of frequency [periods]
-  double swing_frequency = 0, swing_phase = 0;        ///< of the present oscillation [Hz, rad]; 0 Hz: none
+  Vec3 stage_start = Vec3::Zero();                                    ///< pose.shift at the start of the stage [m]
+  double stage_time = 0;                                              ///< since the start of the stage [s]
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();                  ///< in the step that drive() started [m/s, rad/s]
+  Vec3 surface_velocity = Vec3::Zero(), surface_spin = Vec3::Zero();  ///< of the surface relative to the wall, likewise
+  Vec3 force = Vec3::Zero();                                          ///< by the bodies on the wall [N]
+  Vec3 moment = Vec3::Zero();                                         ///< the same about the reference point [N m]
+  Vec3 surface_force = Vec3::Zero(), surface_moment = Vec3::Zero();   ///< the parts that do work on a moving surface
+  double stiffness = 0;                                               ///< sum of normal stiffnesses of contacts [N/m]
+  double spring = 0, dashpot = 0;                  ///< sums in the stiffest directions of contacts [N/m, N s/m]
+  double turning_spring = 0, turning_dashpot = 0;  ///< the same for free rotation [N m/rad, N m s/rad]
+  double habit = 0;                                ///< of a servo: its velocity, averaged over recent steps [m/s]
+  double swing_time = 0;                           ///< since the start of the oscillation [s]
+  double swing_lead = 0;                           ///< phase advance by changes of frequency [periods]
+  double swing_frequency = 0;                      ///< of the present oscillation [Hz]; 0: none
+  Vec3 swing_phases = Vec3::Zero(), swing_angle_phases = Vec3::Zero();  ///< of displacement and rotation, by axis [rad]
   std::uint32_t contacts = 0;
   std::uint32_t near = 0;  ///< bodies that may come into contact before the next search
 };
@@ -64,14 +68,18 @@ class Walls {
  public:
   /// Begins a stage: walls get their new geometries and motions and keep poses and velocities by name; new walls start
   /// at their position in the description. Throws grit::Error, naming the wall, for motions that are not possible: two
-  /// on one axis, a wall that does not exist or follows itself, a servo for pressure on a wall without area or along
-  /// its face, no mass. An oscillation continues from the previous stage unless it is new or its phase has changed.
+  /// on one axis, two rotations, a wall that does not exist or follows itself, a servo for pressure on a wall without
+  /// area or along its face, no mass. An oscillation continues from the previous stage unless it is new or its phase
+  /// has changed.
   void apply(const SceneDescription& scene, const Components& components) { apply(wall_setups(scene, components)); }
   void apply(std::vector<WallSetup> setups);
   /// The same within a stage, e.g. for one increment of a ramp: time and start of the stage stay, and an oscillation
   /// continues at its present phase. Throws as apply() does.
   void change(const SceneDescription& scene, const Components& components) { change(wall_setups(scene, components)); }
   void change(std::vector<WallSetup> setups);
+
+  /// Removes the walls of these names, before the next apply().
+  void drop(const std::vector<std::string>& names);
 
   std::size_t size() const { return states_.size(); }
   const std::string& name(std::size_t wall) const { return setups_[wall].name; }
@@ -84,6 +92,8 @@ class Walls {
   /// The fastest motion foreseen in the description: at the end of its ramp, at the middle of an oscillation, of a
   /// servo before its first contact. A free wall keeps its motion.
   WallMotion expected_motion(std::size_t wall) const;
+  /// Whether the surface moves, or moved in the last step, relative to the wall.
+  bool surface_moves(std::size_t wall) const;
   /// Velocity of the wall at `point` [m/s].
   Vec3 point_velocity(std::size_t wall, const Vec3& point) const;
 
@@ -103,9 +113,9 @@ class Walls {
   /// Sets the velocities of the next step of dt [s] from the forces, leaders before walls that follow them. With
   /// `ahead`, servos slow down before contacts that would exceed the target force within a step.
   void drive(double dt, const Ahead& ahead = nullptr);
-  /// Demands of the present contacts on free walls, bodies held: the largest k/m and c/m. Added to the demands on
-  /// bodies, walls held, this bounds those on all together: the largest eigenvalue of a positive semidefinite matrix is
-  /// at most the sum of those of its two diagonal blocks.
+  /// Demands of the present contacts on free walls, bodies held: the largest k/m and c/m, of a wall that also rotates
+  /// freely plus those of its rotation. Added to the demands on bodies, walls held, this bounds those on all together:
+  /// the largest eigenvalue of a positive semidefinite matrix is at most the sum of those of its two diagonal blocks.
   Demand demand() const;
   /// Moves and rotates the walls by one step of dt [s].
   void move(double dt);
@@ -128,6 +138,7 @@ class Walls {
     int servo_axis = -1;
     Axes follow{}, free{};
     std::size_t leader = 0;
+    Vec3 free_axis = Vec3::Zero();  // unit; zero: no free rotation
   };
   /// Area on which the pressure on a wall acts [m²].
   double area(std::size_t wall) const;

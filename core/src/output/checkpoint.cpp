@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "grit/error.hpp"
 #include "input/document.hpp"
-#include "output/atomic_file.hpp"
-#include "output/hdf5.hpp"
+#include "storage/state_file.hpp"
 
 namespace grit {
 namespace {
 
-/// Version of the layout of the file and of the state.
-constexpr std::uint64_t format = 2;
 constexpr const char* advice =
     "resume with the original program, plugins and description, or start again (--overwrite)";
 
@@ -128,8 +126,6 @@ class Differences {
 
 std::string lines(const Description& now, const Description& then) { return Differences(now, then).text(); }
 
-std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
-
 }  // namespace
 
 std::string differences(const Description& now, const Description& then) {
@@ -180,45 +176,18 @@ std::string advice_on_stages(const Description& now, const Description& then) {
 }
 
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint) {
-  const auto part = temporary_path(path);
-  try {
-    hdf5::File file(part, hdf5::Mode::replace);
-    file.set_attribute("format", format);
-    file.set_attribute("stage", checkpoint.stage);
-    file.set_attribute("time", checkpoint.time);
-    file.set_attribute("step", checkpoint.step);
-    file.write_checked("facts", bytes_of(text_of(facts_of(facts))));
-    file.write_checked("state", checkpoint.state);
-    file.close();
-    sync_to_disk(part);
-  } catch (const FileError&) {
-    std::error_code ignored;
-    std::filesystem::remove(part, ignored);  // incomplete, e.g. because the disk is full
-    throw;
-  }
-  publish(path);
+  write_state(path, {facts_of(facts), checkpoint});
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& facts) {
-  Checkpoint checkpoint;
-  Description then;
+  StateFile file;
   try {
-    const hdf5::File file(path, hdf5::Mode::read);
-    if (const auto found = file.number<std::uint64_t>("format"); found != format)
-      throw FileError(fmt::format("{}: found format {}, allowed {}", path.string(), found, format));
-    checkpoint = {file.text("stage"), file.number<double>("time"), file.number<std::uint64_t>("step"), {}};
-    const auto text = file.dataset("facts").read_bytes();
-    then = Description::parse(reinterpret_cast<const char*>(text.data()),
-                              reinterpret_cast<const char*>(text.data()) + text.size());
-    for (const char* key : {"grit", "plugins", "description"})
-      if (!then.contains(key)) throw FileError(path.string() + ": lacks \"" + key + '"');
-    checkpoint.state = file.dataset("state").read_bytes();
+    file = read_state(path);
   } catch (const FileError& error) {
     throw FileError(std::string(error.what()) +
                     "\n  it is not a complete checkpoint of this grit; start again (--overwrite)");
-  } catch (const Description::exception&) {
-    throw FileError(path.string() + ": its facts are not JSON\n  the file is damaged; start again (--overwrite)");
   }
+  const Description& then = file.facts;
   const Description now = facts_of(facts);
   if (const auto other = lines(now.at("grit"), then.at("grit")); !other.empty())
     throw FileError(path.string() + ": was written by another grit, so that results would not be bitwise identical:" +
@@ -228,7 +197,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const RunFacts& fa
                 advice_on_stages(now.at("description"), then.at("description")) + "\n  " + advice);
   if (const auto other = lines(now.at("plugins"), then.at("plugins")); !other.empty())
     throw PluginError(path.string() + ": was written with other builds of plugins:" + other + "\n  " + advice);
-  return checkpoint;
+  return std::move(file.checkpoint);
 }
 
 }  // namespace grit

@@ -9,9 +9,7 @@
 
 namespace grit {
 
-/// Writes a temporary file and renames it once it is on disk, so that a complete checkpoint always exists. Attributes:
-/// format, stage, time [s] and step. Datasets with checksums: "facts" (JSON: grit, plugins and description) and
-/// "state". Throws FileError.
+/// Writes a checkpoint with the facts of its run: grit, plugins and description. Throws FileError.
 void write_checkpoint(const std::filesystem::path& path, const RunFacts& facts, const Checkpoint& checkpoint);
 
 /// Throws FileError for an incomplete checkpoint or one of another build of grit; PluginError for other builds of

@@ -6,10 +6,12 @@
 #include <map>
 #include <numeric>
 
+#include "grit/description.hpp"
 #include "grit/error.hpp"
-#include "output/atomic_file.hpp"
-#include "output/hdf5.hpp"
+#include "output/group_index.hpp"
 #include "output/svg.hpp"
+#include "storage/atomic_file.hpp"
+#include "storage/hdf5.hpp"
 
 namespace grit {
 namespace {
@@ -33,11 +35,11 @@ class Bodies {
 
   /// One number a body, in the order of ids.
   template <class T, class Read>
-  void scalar(const Channel& what, Read read) {
+  hdf5::Dataset scalar(const Channel& what, Read read) {
     std::vector<T> values;
     values.reserve(order_.size());
     for (const auto body : order_) values.push_back(read(body));
-    put(group_, what, {order_.size()}, values);
+    return put(group_, what, {order_.size()}, values);
   }
 
   template <class Read>
@@ -74,6 +76,12 @@ void write_bodies(hdf5::Group group, const World& world) {
                                 [&, clumps = world.clumps()](auto i) -> std::int64_t {
                                   return clump_of[i] == no_clump ? -1 : std::int64_t{clumps[clump_of[i]].id};
                                 });
+  if (const GroupIndex groups = group_index(world); groups.names.size() > 1) {
+    bodies
+        .scalar<std::int32_t>({"group", "1", "index of the body's group among the attribute \"names\"", {}},
+                              [&](auto i) { return groups.of_bodies[i]; })
+        .set_attribute("names", Description(groups.names).dump());
+  }
   if (const auto rotations = world.rotations(); !rotations.empty())
     bodies.vector({"rotation", "rad", "cumulative rotation since the start of the stage, right-handed", {}},
                   [&](auto i) { return rotations[i]; });
@@ -169,6 +177,7 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
                        field.width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, field.width}, field.values);
       if (!field.components.empty())
         table.set_attribute("components", fmt::format("{}", fmt::join(field.components, " ")));
+      if (!field.wall.empty()) table.set_attribute("wall", field.wall);
     }
   }
 }
@@ -176,13 +185,13 @@ void write_probes(hdf5::Group group, std::span<const FieldGroup> probes) {
 // ---- the index
 
 /// A dataset that ParaView shows on the points of its group.
-struct Column {
+struct Attribute {
   const char *name, *type;
   int bytes, width;
 };
-constexpr Column radius{"radius", "Float", 8, 1}, velocity{"velocity", "Float", 8, 3}, spin{"spin", "Float", 8, 3},
+constexpr Attribute radius{"radius", "Float", 8, 1}, velocity{"velocity", "Float", 8, 3}, spin{"spin", "Float", 8, 3},
     id{"id", "Int", 8, 1}, material{"material", "Int", 4, 1}, clump{"clump", "Int", 8, 1},
-    rotation{"rotation", "Float", 8, 3}, displacement{"displacement", "Float", 8, 3},
+    body_group{"group", "Int", 4, 1}, rotation{"rotation", "Float", 8, 3}, displacement{"displacement", "Float", 8, 3},
     normal_force{"normal_force", "Float", 8, 1}, force{"force", "Float", 8, 3}, branch{"branch", "Float", 8, 3},
     body_a{"body_a", "Int", 8, 1}, body_b{"body_b", "Int", 8, 1};
 
@@ -192,9 +201,9 @@ class FrameIndex {
   FrameIndex(std::size_t number, double time) : number_(number), time_(time) {}
 
   std::string points(const std::string& group, std::size_t rows, const char* position,
-                     const std::vector<Column>& columns) const {
+                     const std::vector<Attribute>& columns) const {
     std::string attributes;
-    for (const Column& column : columns)
+    for (const Attribute& column : columns)
       attributes += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
                                 column.name, column.width == 3 ? "Vector" : "Scalar",
                                 item(column.type, column.bytes, dimensions(rows, column.width), group + column.name));
@@ -203,10 +212,17 @@ class FrameIndex {
         item("Float", 8, dimensions(rows, 3), group + position), attributes);
   }
 
-  std::string triangles(const std::string& path, std::size_t count) const {
+  /// An attribute of the triangles of a wall.
+  std::string of_triangles(const std::string& name, const std::string& path, std::size_t count, int width) const {
+    return fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Cell\">{}</Attribute>\n",
+                       escaped(name), width == 3 ? "Vector" : "Scalar",
+                       item("Float", 8, dimensions(count, width), path));
+  }
+
+  std::string triangles(const std::string& path, std::size_t count, const std::string& attributes) const {
     return grid(fmt::format("<Topology TopologyType=\"Triangle\" NumberOfElements=\"{}\">{}</Topology>", count,
                             item("Int", 4, dimensions(count, 3), "/corners")),
-                item("Float", 8, fmt::format("{} 3 3", count), path), "");
+                item("Float", 8, fmt::format("{} 3 3", count), path), attributes);
   }
 
  private:
@@ -269,10 +285,24 @@ Frames::Instant Frames::instant_of(const hdf5::File& file) {
                   .bodies = bodies.dataset("id").rows(),
                   .contacts = file.group("contacts").dataset("middle").rows(),
                   .clump = bodies.has("clump"),
+                  .group = bodies.has("group"),
                   .rotation = bodies.has("rotation"),
                   .displacement = bodies.has("displacement"),
-                  .walls = {}};
+                  .walls = {},
+                  .on_walls = {}};
   for (const auto& name : walls.names()) instant.walls.push_back({name, walls.dataset(name).rows()});
+  const auto probes = file.group("probes");
+  for (const auto& probe : probes.names()) {
+    const auto tables = probes.group(probe);
+    for (const auto& name : tables.names()) {
+      const auto table = tables.dataset(name);
+      if (!table.has_attribute("wall")) continue;
+      const std::string wall = table.text("wall");
+      const std::size_t width = hdf5::product(table.shape()) / std::max<std::size_t>(table.rows(), 1);
+      if (walls.has(wall) && walls.dataset(wall).rows() == table.rows() && (width == 1 || width == 3))
+        instant.on_walls.push_back({wall, probe, name, width});
+    }
+  }
   return instant;
 }
 
@@ -301,14 +331,22 @@ void Frames::write_index() const {
   for (std::size_t number = 0; number < instants_.size(); ++number) {
     const auto& instant = instants_[number];
     const FrameIndex index(number, instant.time);
-    std::vector<Column> columns{radius, velocity, spin, id, material};
+    std::vector<Attribute> columns{radius, velocity, spin, id, material};
     if (instant.clump) columns.push_back(clump);
+    if (instant.group) columns.push_back(body_group);
     if (instant.rotation) columns.push_back(rotation);
     if (instant.displacement) columns.push_back(displacement);
     grains += index.points("/bodies/", instant.bodies, "position", columns);
     contacts += index.points("/contacts/", instant.contacts, "middle", {normal_force, force, branch, body_a, body_b});
-    for (const auto& [name, triangles] : instant.walls)
-      if (triangles > 0) walls[name] += index.triangles("/walls/" + name, triangles);
+    for (const auto& [name, triangles] : instant.walls) {
+      if (triangles == 0) continue;
+      std::string attributes;
+      for (const auto& field : instant.on_walls)
+        if (field.wall == name)
+          attributes += index.of_triangles(field.probe + '/' + field.name, "/probes/" + field.probe + '/' + field.name,
+                                           triangles, static_cast<int>(field.width));
+      walls[name] += index.triangles("/walls/" + name, triangles, attributes);
+    }
   }
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n";
   text += collection("grains", grains) + collection("contacts", contacts);

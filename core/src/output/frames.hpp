@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "output/hdf5.hpp"
 #include "run/recorder.hpp"
+#include "storage/hdf5.hpp"
 
 namespace grit {
 
@@ -36,8 +36,13 @@ class Frames {
   struct Instant {
     double time;
     std::size_t bodies, contacts;
-    bool clump, rotation, displacement;
+    bool clump, group, rotation, displacement;
+    struct WallField {
+      std::string wall, probe, name;
+      std::size_t width;
+    };
     std::vector<std::pair<std::string, std::size_t>> walls;  ///< names and numbers of triangles
+    std::vector<WallField> on_walls;                         ///< fields by triangle
   };
   static Instant instant_of(const hdf5::File& file);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grit/error.hpp"
+#include "output/group_index.hpp"
 #include "output/scale.hpp"
 #include "output/strays.hpp"
 
@@ -57,7 +58,21 @@ Value colouring(const SeenBodies& seen, const Sight& look, const std::string& co
       return layers[i] > 0 ? layers[i] : std::numeric_limits<double>::quiet_NaN();
     };
   }
-  throw Error("picture: found the color '" + color + "'; allowed are 'rotation', 'displacement' and 'speed'");
+  if (color == "radius") {
+    shown.value = {"radius", "m"};
+    shown.symmetric = false;
+    return [rows = seen.positions](std::uint32_t i) { return rows[i].w; };
+  }
+  if (color == "group" && !seen.groups.empty()) {
+    shown.value = {"group", "1"};
+    shown.symmetric = false;
+    shown.layers = static_cast<int>(seen.group_names.size());
+    for (std::size_t k = 0; k < seen.group_names.size(); ++k)
+      shown.note += (k > 0 ? ", " : "") + std::to_string(k + 1) + ' ' + seen.group_names[k];
+    return [groups = seen.groups](std::uint32_t i) { return groups[i] + 1; };
+  }
+  throw Error("picture: found the color '" + color +
+              "'; allowed are 'rotation', 'displacement', 'speed', 'radius' and 'group'");
 }
 
 /// Whether each body is no outlier.
@@ -138,9 +153,11 @@ GrainView grain_view(const World& world, std::span<const WallShape> walls, const
                      const std::string& color) {
   std::vector<std::vector<Vec3>> where;
   for (const WallView& wall : world.walls()) where.push_back(triangles_of(wall, walls, world.stage()));
-  return grain_view(
-      SeenBodies{world.positions(), world.velocities(), world.rotations(), world.displacements(), world.specimen()},
-      where, view, color);
+  SeenBodies seen{world.positions(), world.velocities(), world.rotations(), world.displacements(), world.specimen()};
+  GroupIndex groups;
+  if (color == "group") groups = group_index(world);
+  seen.groups = groups.of_bodies, seen.group_names = groups.names;
+  return grain_view(seen, where, view, color);
 }
 
 }  // namespace grit

@@ -1,6 +1,7 @@
 // The grains of a world as drawn in a picture.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ struct SeenBodies {
   std::span<const Vec3> rotations, displacements;
   Region specimen{Vec3::Zero(), Vec3::Zero()};  ///< its middle is the section through walls if there is no body
   std::span<const int> layers = {};             ///< from 1, 0 for none; for the colour "layer"
+  std::span<const std::int32_t> groups = {};    ///< index of each body's group; for the colour "group"
+  std::span<const std::string> group_names = {};
 };
 
 /// Number of layers in pictures and on the page of a run.
@@ -25,7 +28,7 @@ inline constexpr int layer_count = 10;
 ///
 /// `view`: "xz" (from the front, y into the page), "xy" (from above), "yz" (from the side); first axis to the right,
 /// second upwards. `color`: "rotation" about the line of sight, positive clockwise as seen; "displacement" along the
-/// first axis; "speed"; "layer" if layers are given. Grains are grey if the state is not tracked.
+/// first axis; "speed"; "radius"; "group" and "layer" if they are given. Grains are grey if the state is not tracked.
 ///
 /// Grains whose centres lie in the middle third of the depth are shown, back to front; all of them if the depth is less
 /// than three mean diameters. Outliers (far_to_draw) are counted, not shown. Walls, as triangles of three corners each

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
+#include "grit/description.hpp"
 #include "grit/error.hpp"
-#include "output/hdf5.hpp"
+#include "storage/hdf5.hpp"
 
 namespace grit {
 namespace {
@@ -27,6 +28,10 @@ void read_bodies(const hdf5::Group& group, Frame& frame) {
   if (group.has("rotation")) frame.rotation = column<double>(group, "rotation", n, 3);
   if (group.has("displacement")) frame.displacement = column<double>(group, "displacement", n, 3);
   if (group.has("clump")) frame.clump = column<std::int64_t>(group, "clump", n);
+  if (group.has("group")) {
+    frame.group = column<std::int32_t>(group, "group", n);
+    frame.group_names = Description::parse(group.dataset("group").text("names")).get<std::vector<std::string>>();
+  }
 }
 
 void read_contacts(const hdf5::Group& group, Frame& frame) {

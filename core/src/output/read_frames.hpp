@@ -23,6 +23,8 @@ struct Frame {
   std::vector<double> rotation;          ///< rad; empty if not tracked
   std::vector<double> displacement;      ///< m; empty if not tracked
   std::vector<std::int64_t> clump;       ///< id of the clump, -1 for a single sphere; empty without clumps
+  std::vector<std::int32_t> group;       ///< index of the body's group; empty if there is only one
+  std::vector<std::string> group_names;  ///< ascending
   std::size_t bodies() const { return id.size(); }
 
   std::vector<std::int64_t> body_a;  ///< id of a contact's first body

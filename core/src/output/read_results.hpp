@@ -9,7 +9,7 @@
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
-#include "output/hdf5.hpp"
+#include "storage/hdf5.hpp"
 
 namespace grit {
 

@@ -10,10 +10,10 @@
 #include "format/number.hpp"
 #include "format/symbols.hpp"
 #include "grit/error.hpp"
-#include "output/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
+#include "storage/atomic_file.hpp"
 
 namespace grit {
 namespace {
@@ -57,13 +57,13 @@ std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& 
   if (!lock.held()) refuse_busy(folder);
   std::error_code error;
   if (options.existing == Existing::resume) return folder;
-  for (const char* mark : {"run.json", "series.h5", "checkpoint.h5"})
+  for (const char* mark : {"run.json", "series.h5", "checkpoint.h5", "final.h5"})
     if (options.existing == Existing::refuse && std::filesystem::exists(folder / mark))
       throw FileError(folder.string() + ": holds a run already (" + mark +
                       "); choose another folder, resume that run, or allow it to be overwritten");
-  for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "frames", "frames.xdmf",
-                           "packing.txt", "picture.svg", "report.html", "curves.svg", "curves.png", "grains.svg",
-                           "grains.png", "layers.svg", "layers.png"}) {
+  for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "final.h5", "frames",
+                           "frames.xdmf", "packing.txt", "picture.svg", "report.html", "curves.svg", "curves.png",
+                           "grains.svg", "grains.png", "layers.svg", "layers.png"}) {
     std::filesystem::remove_all(folder / mine, error);
     if (error) throw FileError((folder / mine).string() + ": cannot remove it: " + error.message());
   }
@@ -152,10 +152,16 @@ void ResultsFolder::finish(const World& world, const RunSummary& summary) {
   if (summary.status != "failed")
     write_grains(options_.folder / "packing.txt", world, comment_on(world, options_.title));
   if (options_.picture && !kept_.empty()) draw_picture(world, summary);
+  if (summary.status == "done") keep_final_state();
   run_json_.finish(world, summary);
-  if (summary.status != "done") return;
-  std::error_code ignored;
-  std::filesystem::remove(options_.folder / "checkpoint.h5", ignored);
+}
+
+void ResultsFolder::keep_final_state() const {
+  const auto checkpoint = options_.folder / "checkpoint.h5";
+  std::error_code error;
+  if (!std::filesystem::exists(checkpoint, error)) return;  // none was asked for
+  std::filesystem::rename(checkpoint, options_.folder / "final.h5", error);
+  if (error) throw FileError(checkpoint.string() + ": cannot rename it to final.h5: " + error.message());
 }
 
 void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) const {

@@ -45,9 +45,9 @@ struct ResultsOptions {
 [[noreturn]] void refuse_busy(const std::filesystem::path& folder);
 
 /// Writes at the start description.json and run.json; during the run series.h5, frames/, frames.xdmf, run.json and
-/// checkpoint.h5, which is removed when the run is done; at the end packing.txt (`x y z radius` in m, by id, in full
-/// precision; not for a failed run), picture.svg, and run.json last, so that its status implies that the rest is
-/// complete. All functions throw FileError for write errors.
+/// checkpoint.h5, whose last one becomes final.h5 when the run is done; at the end packing.txt (`x y z radius` in m, by
+/// id, in full precision; not for a failed run), picture.svg, and run.json last, so that its status implies that the
+/// rest is complete. All functions throw FileError for write errors.
 class ResultsFolder final : public Recorder {
  public:
   /// Creates the folder. Throws FileError if that fails, if another run is writing to it, or if it holds a run and
@@ -86,6 +86,7 @@ class ResultsFolder final : public Recorder {
 
   void draw_picture(const World& world, const RunSummary& summary) const;
 
+  void keep_final_state() const;
   void discard() noexcept;
 
   ResultsOptions options_;

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "grit/error.hpp"
-#include "output/atomic_file.hpp"
+#include "storage/atomic_file.hpp"
 
 namespace grit {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "output/hdf5.hpp"
 #include "output/writing_mark.hpp"
 #include "run/recorder.hpp"
+#include "storage/hdf5.hpp"
 
 namespace grit {
 

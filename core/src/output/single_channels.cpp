@@ -7,7 +7,7 @@
 
 #include "grit/error.hpp"
 #include "grit/toolkit/did_you_mean.hpp"
-#include "output/hdf5.hpp"
+#include "storage/hdf5.hpp"
 
 namespace grit {
 

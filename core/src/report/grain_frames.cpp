@@ -129,7 +129,7 @@ std::size_t drop_unplaced(Frame& frame) {
       for (std::size_t k = 0; k < width; ++k) left.push_back(rows[width * i + k]);
     rows = std::move(left);
   };
-  keep(frame.radius, 1), keep(frame.clump, 1);
+  keep(frame.radius, 1), keep(frame.clump, 1), keep(frame.group, 1);
   for (auto* vectors : {&frame.position, &frame.velocity, &frame.rotation, &frame.displacement}) keep(*vectors, 3);
   keep(frame.id, 1);
   return dropped;
@@ -193,7 +193,9 @@ class Writer {
   std::size_t frames() const { return frames_.size(); }
   Description result() const {
     Description bodies = Description::array(), walls = Description::array();
-    for (const Set& set : sets_) bodies.push_back(Description{{"count", set.id.size()}, {"data", set.data}});
+    for (const Set& set : sets_)
+      bodies.push_back(
+          Description{{"count", set.id.size()}, {"data", set.data}, {"clumps", set.clumps}, {"groups", set.groups}});
     for (const Wall& wall : walls_) walls.push_back(Description{{"name", wall.name}, {"data", wall.data}});
     const LayersBegin layers = where_layers_begin(instants_);
     Description json = {
@@ -202,6 +204,7 @@ class Writer {
         {"mean_diameter", extent_.diameters / static_cast<double>(std::max<std::size_t>(1, extent_.bodies))},
         {"reach", extent_.reach},
         {"clumps", clumps_},
+        {"groups", groups_},
         {"bodies", bodies},
         {"walls", walls},
         {"layers", {{"frame", layers.frame}, {"stage", layers.stage}}},
@@ -221,6 +224,7 @@ class Writer {
   struct Set {
     std::vector<std::int64_t> id;
     std::size_t data, first_frame;
+    bool clumps, groups;  ///< whether it has these
     Numbers positions;
   };
   struct Wall {
@@ -252,7 +256,8 @@ class Writer {
     put(std::vector<float>(frame.radius.begin(), frame.radius.end()));
     put(std::vector<std::int32_t>(frame.id.begin(), frame.id.end()));
     if (!frame.clump.empty()) put(std::vector<std::int32_t>(frame.clump.begin(), frame.clump.end())), clumps_ = true;
-    sets_.push_back({frame.id, data_.add(bytes), frames_.size(), {}});
+    if (!frame.group.empty()) put(frame.group), groups_ = frame.group_names;
+    sets_.push_back({frame.id, data_.add(bytes), frames_.size(), !frame.clump.empty(), !frame.group.empty(), {}});
     return sets_.size() - 1;
   }
 
@@ -344,6 +349,7 @@ class Writer {
   std::vector<Wall> walls_;
   std::size_t wall_bytes_ = 0;
   bool clumps_ = false;
+  std::vector<std::string> groups_;
   Description frames_ = Description::array();
   std::vector<StageAndCount> instants_;
 };

@@ -64,6 +64,7 @@ Picture view_of(const RunResults& run, const Frame& frame, const std::string& co
   const auto rotations = vectors(frame.rotation), displacements = vectors(frame.displacement);
   SeenBodies seen{positions, velocities, rotations, displacements};
   seen.layers = layers;
+  seen.groups = frame.group, seen.group_names = frame.group_names;
   return {run.title(),
           fmt::format("{} grains  ·  stage {}  ·  {}", grouped(frame.bodies()), frame.stage, written_time(frame.time)),
           {},
@@ -130,8 +131,9 @@ std::optional<std::string> grains_picture(RunResults& run) {
   const auto frame = last_frame(run);
   if (!frame) return std::nullopt;
   const std::string wanted = text_or(run.at("/description/output/picture/color"), "rotation");
-  const bool kept =
-      (wanted != "rotation" || !frame->rotation.empty()) && (wanted != "displacement" || !frame->displacement.empty());
+  const bool kept = (wanted != "rotation" || !frame->rotation.empty()) &&
+                    (wanted != "displacement" || !frame->displacement.empty()) &&
+                    (wanted != "group" || !frame->group.empty());
   return draw(view_of(run, *frame, kept ? wanted : "speed", {}));
 }
 

@@ -12,6 +12,7 @@
 #include "description/placed_error.hpp"
 #include "kernel/stopwatch.hpp"
 #include "plugins/component_archive.hpp"
+#include "run/group_view.hpp"
 #include "run/recorder.hpp"
 #include "run/schedule.hpp"
 
@@ -26,6 +27,7 @@ class Observer {
       : name_(name),
         description_(&description),
         probe_(std::move(probe)),
+        groups_(description.groups),
         schedule_(description.cadence),
         values_(prepared(world)) {}
   ProbeGroup group() const { return {name_, probe_->channels()}; }
@@ -41,7 +43,7 @@ class Observer {
     {
       const Stopwatch watch(seconds_);
       values_.clear();
-      probe_->sample(world, values_);
+      probe_->sample(seen(world), values_);
       values_.check();
     }
     recorder.sample(index, world, values_.all());
@@ -52,12 +54,20 @@ class Observer {
     archive(schedule_, last_step_, samples_, seconds_);
     serialize_component("probe \"" + name_ + '"', *probe_, archive);
   }
-  FieldGroup fields(const World& world) const { return {name_, probe_->fields(world)}; }
+  FieldGroup fields(const World& world) { return {name_, probe_->fields(seen(world))}; }
 
  private:
+  /// The world as the probe sees it: of all bodies, or of its groups.
+  const World& seen(const World& world) {
+    if (description_->groups.empty()) return world;
+    groups_.update(world);
+    return groups_;
+  }
   /// Room for the samples of the probe, which is prepared.
-  ChannelValues prepared(const World& world) const try {
-    probe_->prepare(world);
+  ChannelValues prepared(const World& world) try {
+    if (!description_->groups.empty() && probe_->needs().has(BodyState::energy))
+      throw PlacedError({"probes", name_, "groups"}, "the energy balance is that of all bodies; remove groups");
+    probe_->prepare(seen(world));
     return {"probe \"" + name_ + "\" of type \"" + description_->probe.type() + '"', probe_->channels()};
   } catch (const ParameterError& error) {
     throw PlacedError(placed(error, {"probes", name_}));
@@ -69,6 +79,7 @@ class Observer {
   std::string name_;
   const ProbeDescription* description_;
   std::shared_ptr<Probe> probe_;
+  GroupView groups_;
   Schedule schedule_;
   ChannelValues values_;
   std::uint64_t last_step_ = ~0ull, samples_ = 0;

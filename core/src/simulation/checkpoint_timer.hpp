@@ -18,6 +18,7 @@ class CheckpointTimer {
     keep_ = std::move(keep), interval_ = interval;
     restart();
   }
+  bool keeps() const { return keep_ != nullptr; }
   void restart() { saved_ = std::chrono::steady_clock::now(); }
   /// Whether one is due. `interrupted`: the simulation stops here.
   bool is_due(bool interrupted) const {

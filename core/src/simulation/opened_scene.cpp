@@ -4,16 +4,16 @@
 
 #include "bodies/make_bodies.hpp"
 #include "simulation/first_instant.hpp"
+#include "simulation/prepared_sample.hpp"
 
 namespace grit {
 
 OpenedScene::OpenedScene(std::shared_ptr<const Registry> plugins, Scene read)
     : registry(std::move(plugins)), scene(std::move(read)), live(scene) {}
 
-Bodies OpenedScene::make_bodies(StateRequest more) const {
-  return at_first_instant(scene.document, [&] {
-    return grit::make_bodies(live.now(), live.components(), requested_state(live.components(), more));
-  });
+Prepared OpenedScene::prepare(StateRequest more) const {
+  return at_first_instant(scene.document,
+                          [&] { return grit::prepare(live, *registry, requested_state(live.components(), more)); });
 }
 
 }  // namespace grit

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "bodies/bodies.hpp"
 #include "input/scene.hpp"
+#include "kernel/prepared.hpp"
 #include "simulation/live_scene.hpp"
 
 namespace grit {
@@ -14,8 +14,9 @@ struct OpenedScene {
   /// Makes the components of a scene that was read with this registry. Throws DescriptionError with every fault;
   /// PluginError.
   OpenedScene(std::shared_ptr<const Registry> plugins, Scene read);
-  /// The bodies at the start, with the state requested by components and by `more`. Throws DescriptionError, FileError.
-  Bodies make_bodies(StateRequest more = {}) const;
+  /// From which a simulation starts: the bodies of the description or of its sample, with the state requested by
+  /// components and by `more`. Throws DescriptionError, FileError.
+  Prepared prepare(StateRequest more = {}) const;
 
   std::shared_ptr<const Registry> registry;
   Scene scene;

@@ -4,19 +4,10 @@
 
 #include "grit/error.hpp"
 #include "simulation/first_instant.hpp"
+#include "simulation/no_recorder.hpp"
 
 namespace grit {
 namespace {
-
-/// A recorder that writes nothing.
-class NoRecorder final : public Recorder {
- public:
-  void begin(const World&, std::span<const ProbeGroup>) override {}
-  void sample(std::size_t, const World&, std::span<const std::span<const double>>) override {}
-  void frame(const World&, std::span<const FieldGroup>) override {}
-  void stage_ended(const World&, const std::string&) override {}
-  void finish(const World&, const RunSummary&) override {}
-};
 
 Recorder& no_recorder() {
   static NoRecorder none;
@@ -25,13 +16,13 @@ Recorder& no_recorder() {
 
 }  // namespace
 
-Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Bodies bodies, unsigned threads, Recorder* record)
+Simulation::Parts::Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record)
     : opened(std::move(scene)),
       recorder(record != nullptr ? *record : no_recorder()),
       kernel(at_first_instant(opened->scene.document,
                               [&] {
                                 const LiveScene& live = opened->live;
-                                return Kernel(live.now(), live.components(), std::move(bodies), threads);
+                                return Kernel(live.now(), live.components(), std::move(prepared), threads);
                               })),
       runner(opened->scene, opened->live, kernel, recorder),
       progress(runner, kernel.world(), opened->scene.stages.size()) {

@@ -18,9 +18,9 @@ namespace grit {
 
 /// Members are made in this order; later ones refer to earlier ones.
 struct Simulation::Parts {
-  /// `bodies` are those at the start. `record` gets all reports of the simulation and must outlive it; null: nothing is
-  /// recorded. Throws DescriptionError for faults found when the kernel and probes are made.
-  Parts(std::shared_ptr<OpenedScene> scene, Bodies bodies, unsigned threads, Recorder* record = nullptr);
+  /// `prepared`: from which the simulation starts. `record` gets all reports of the simulation and must outlive it;
+  /// null: nothing is recorded. Throws DescriptionError for faults found when the kernel and probes are made.
+  Parts(std::shared_ptr<OpenedScene> scene, Prepared prepared, unsigned threads, Recorder* record = nullptr);
 
   /// Begins the first stage, if it has not begun.
   void start();

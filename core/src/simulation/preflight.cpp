@@ -42,8 +42,8 @@ class ServoCheck {
   /// The normal of a wall after a rotation is known only during the run.
   void note_turns(const SceneDescription& now) {
     for (const auto& [name, wall] : now.walls)
-      if (const MotionDescription& motion = wall.motion;
-          !motion.spin.isZero(0.0) || (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
+      if (const MotionDescription& motion = wall.motion; !motion.spin.isZero(0.0) || motion.free_rotation ||
+                                                         (motion.oscillation && !motion.oscillation->angle.isZero(0.0)))
         turned_.insert(name);
   }
 

@@ -11,6 +11,8 @@ RunSummary run_recorded(Simulation& simulation) {
   RunSummary summary;
   try {
     summary.status = simulation.run() ? "done" : "interrupted";
+    if (summary.status == "done" && parts.checkpoints.keeps())
+      parts.checkpoints.save([&] { return parts.runner.save(); });
   } catch (const NumericsError& error) {
     summary.status = "failed", summary.message = error.what(), summary.guard = error.guard();
   } catch (const DescriptionError& error) {

@@ -13,7 +13,7 @@ namespace {
 std::unique_ptr<Simulation::Parts> made(std::shared_ptr<const Registry> registry, Document document, unsigned threads) {
   Scene scene = read_scene(std::move(document), *registry);
   const auto opened = std::make_shared<OpenedScene>(std::move(registry), std::move(scene));
-  return std::make_unique<Simulation::Parts>(opened, opened->make_bodies(), threads);
+  return std::make_unique<Simulation::Parts>(opened, opened->prepare(), threads);
 }
 
 }  // namespace

@@ -52,9 +52,24 @@ void StageRunner::begin_recording() {
 
 void StageRunner::resume(const Checkpoint& checkpoint) {
   Archive archive(checkpoint.state);
+  restore_kernel(archive);
+  if (done()) throw Error("a checkpoint of a complete simulation; there is nothing to resume");
+  serialize(archive);
+  if (!archive.at_end()) throw Error("a checkpoint holds more than this simulation restores");
+  begin_recording();
+  enter_stage();
+}
+
+void StageRunner::restore_kernel(const Checkpoint& checkpoint) {
+  Archive archive(checkpoint.state);
+  restore_kernel(archive);
+}
+
+void StageRunner::restore_kernel(Archive& archive) {
   archive(stage_, increments_, sets_);
-  stages_begun_ = stage_ + 1;
-  if (stage_ >= scene_.stages.size() || increments_ > scene_.stages[stage_].increments())
+  const std::size_t stage = std::min(stage_, scene_.stages.size() - 1);  // the last one if all are complete
+  stages_begun_ = stage + 1;
+  if (stage_ > scene_.stages.size() || increments_ > scene_.stages[stage].increments())
     throw Error("a checkpoint in stage " + std::to_string(stage_ + 1) + ", but the description has " +
                 std::to_string(scene_.stages.size()) + "; continue with the description that wrote it");
   for (const Set& set : sets_) {
@@ -63,12 +78,8 @@ void StageRunner::resume(const Checkpoint& checkpoint) {
     if (set.in_place) live_.restore(set.pointer, value.get<double>());
     else live_.set(set.pointer, value);
   }
-  live_.go_to(stage_, increments_);
+  live_.go_to(stage, increments_);
   kernel_.restore(live_.now(), live_.components(), archive);
-  serialize(archive);
-  if (!archive.at_end()) throw Error("a checkpoint holds more than this simulation restores");
-  begin_recording();
-  enter_stage();
 }
 
 void StageRunner::begin_stage(double start) {
@@ -276,7 +287,7 @@ void StageRunner::frame() {
   last_frame_ = world_.step();
   const Stopwatch watch(phases_[1].seconds);
   std::vector<FieldGroup> fields;
-  for (const Observer& observer : observers_)
+  for (Observer& observer : observers_)
     if (observer.in_frames() && observer.watches(world_.stage())) fields.push_back(observer.fields(world_));
   recorder_.frame(world_, fields);
 }

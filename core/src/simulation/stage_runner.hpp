@@ -29,6 +29,8 @@ class StageRunner {
   void start();
   /// Instead of both: continues from a checkpoint. Throws Error if it is of another scene.
   void resume(const Checkpoint& checkpoint);
+  /// Restores the kernel alone, also from the state of a complete run.
+  void restore_kernel(const Checkpoint& checkpoint);
 
   enum class Event { stepped, stage_ended, stopped };
   /// One step of the present stage, or its end and the start of the next. If `stop`, stops instead, where positions and
@@ -60,6 +62,7 @@ class StageRunner {
   double output_seconds() const { return phases_[1].seconds; }
 
  private:
+  void restore_kernel(Archive& archive);
   /// A value that was set from outside, and where in the stages.
   struct Set {
     std::size_t stage, increments;

@@ -1,6 +1,8 @@
 // A surface of triangles from a file. See README.md.
 #include "mesh.hpp"
 
+#include <Eigen/Geometry>
+
 #include "grit/error.hpp"
 #include "grit/plugin.hpp"
 
@@ -9,6 +11,10 @@ namespace grit {
 void Mesh::declare(Parameters& p) {
   p.add("path", path_).file().required().doc("STL file, ASCII or binary");
   p.add("scale", options_.scale).unit("m").required().above(0).doc("length of one file unit, e.g. \"1 mm\"");
+  p.add("stretch", options_.stretch).above(0).doc("further factors along the axes of the file, for unequal scales");
+  p.add("orientation", orientation_)
+      .unit("rad")
+      .doc("rotation vector about the file's origin, right-handed, after scale and before position");
   p.add("position", options_.position).unit("m").doc("position of the file's origin in the scene");
   p.add("merge_distance", options_.merge_distance).unit("m").at_least(0).doc("corners closer than this are merged");
   p.add("open", options_.open).doc("whether the surface may have a rim, such as a sheet or a container without a lid");
@@ -29,6 +35,8 @@ void Mesh::declare(Parameters& p) {
 }
 
 void Mesh::prepare() {
+  if (const double angle = orientation_.norm(); angle > 0)
+    options_.turn = Eigen::AngleAxisd(angle, orientation_ / angle).toRotationMatrix();
   surface_ = std::make_shared<const Surface>(read_stl(path_), options_);
   std::vector<ParameterError::Fault> faults;
   for (const Defect& defect : surface_->defects()) faults.push_back({"path", defect.found, defect.allowed});

@@ -26,9 +26,11 @@ class Mesh : public Geometry {
     return surface_->near(pose.to_local(centre), reach);
   }
   std::vector<Vec3> triangles() const override { return surface_->triangles(); }
+  std::optional<std::uint32_t> triangle_of(std::uint32_t feature) const override { return Surface::facet_of(feature); }
 
  private:
   std::string path_;
+  Vec3 orientation_ = Vec3::Zero();
   SurfaceOptions options_{.feature_angle = std::numbers::pi / 12};
   std::shared_ptr<const Surface> surface_;  // after prepare()
 };

@@ -36,7 +36,13 @@ std::string metres(double length) { return (std::ostringstream() << std::setprec
 
 /// A corner of the file in the scene. Negative zeros become positive.
 Vec3 placed(const Vec3& corner, const SurfaceOptions& options) {
-  return options.scale * corner + options.position + Vec3::Zero();
+  const Vec3 scaled = options.scale * corner.cwiseProduct(options.stretch);
+  return options.turn * scaled + options.position + Vec3::Zero();
+}
+
+/// The normal of a plane of the file in the scene, of any length.
+Vec3 placed_normal(const Vec3& normal, const SurfaceOptions& options) {
+  return options.turn * normal.cwiseQuotient(options.stretch);
 }
 
 /// Place of a number among numbers in ascending order.
@@ -108,7 +114,8 @@ void Surface::span_facets(const Stl& stl, const SurfaceOptions& options) {
     }
     facet.normal = twice_area.normalized();
     for (std::size_t i = 0; i < 3; ++i) facet.inward[i] = facet.normal.cross(side[i]).normalized();
-    if ((options.inside ? -1 : 1) * facet.normal.dot(stl.facets[f].normal) < 0) against.push_back(f);
+    if ((options.inside ? -1 : 1) * facet.normal.dot(placed_normal(stl.facets[f].normal, options)) < 0)
+      against.push_back(f);
   }
   if (!degenerate.empty() && !options.skip_degenerate)
     defects_.push_back({"degenerate facets, without area: " + facet_numbers(degenerate),

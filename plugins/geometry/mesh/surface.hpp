@@ -11,19 +11,21 @@
 #include "curved_surface.hpp"
 #include "facet_index.hpp"
 #include "grit/geometry.hpp"
-#include "stl.hpp"
+#include "grit/toolkit/stl_file.hpp"
 
 namespace grit {
 
 /// How facets are joined, and which irregularities are allowed.
 struct SurfaceOptions {
-  double scale = 1;  ///< m per file unit
-  Vec3 position = Vec3::Zero();
-  double merge_distance = 0;  ///< m; closer corners are merged
-  double feature_angle = 0;   ///< rad; facets that meet at less form one curved surface
-  bool open = false;          ///< edges with one facet are allowed
-  bool two_sided = false;     ///< also inconsistent orientation and edges with three facets or more
-  bool inside = false;        ///< bodies are behind the facets as drawn
+  double scale = 1;              ///< m per file unit
+  Vec3 stretch = Vec3::Ones();   ///< further factors along the axes of the file
+  Mat3 turn = Mat3::Identity();  ///< after scaling, about the origin of the file
+  Vec3 position = Vec3::Zero();  ///< of the origin of the file [m]
+  double merge_distance = 0;     ///< m; closer corners are merged
+  double feature_angle = 0;      ///< rad; facets that meet at less form one curved surface
+  bool open = false;             ///< edges with one facet are allowed
+  bool two_sided = false;        ///< also inconsistent orientation and edges with three facets or more
+  bool inside = false;           ///< bodies are behind the facets as drawn
   bool skip_degenerate = false, ignore_normals = false;
 };
 
@@ -49,6 +51,8 @@ class Surface {
   const Vec3& area_vector() const { return area_vector_; }
   /// Three corners each, counter-clockwise as seen by the bodies; skipped facets have three equal corners.
   std::vector<Vec3> triangles() const;
+
+  static std::uint32_t facet_of(std::uint32_t feature) { return feature / features_per_facet; }
 
   /// Contacts of a sphere: in front, each local minimum of distance; behind, the closest point only. `facets` is
   /// scratch.

@@ -148,6 +148,51 @@ INSTANTIATE_TEST_SUITE_P(
                                  .in_front = [](const Vec3& c) { return !within(askew.transpose() * c); }}),
     case_name);
 
+TEST(Mesh, IsScaledThenTurnedThenShifted) {
+  const Vec3 stretch(2, 1, 0.5), axis = Vec3(1, 2, 3).normalized(), position(-1, -2, 5);
+  const double angle = 2.5;  // normals of the file point the other way
+  const Mat3 turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  Corners in_metres = hills();
+  for (Vec3& corner : in_metres) corner = turn * corner.cwiseProduct(stretch) + position;
+  Corners in_millimetres = hills();
+  for (Vec3& corner : in_millimetres) corner *= 1e3;
+  const auto plain = mesh(in_metres, {{"open", true}}),
+             placed = mesh(in_millimetres, {{"open", true},
+                                            {"scale", 1e-3},
+                                            {"stretch", stretch},
+                                            {"orientation", Vec3(angle * axis)},
+                                            {"position", position}});
+  const auto one = plain->triangles(), other = placed->triangles();
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_LE((one[i] - other[i]).norm(), 1e-14);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> draw(0, 1);
+  int touching = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const Vec3 over(4 * draw(random), draw(random), 0.2 * draw(random)), centre = turn * over + position;
+    const auto expected = contacts_of(*plain, centre, 0.1), found = contacts_of(*placed, centre, 0.1);
+    ASSERT_EQ(expected.size(), found.size());
+    for (std::size_t i = 0; i < found.size(); ++i, ++touching) {
+      EXPECT_EQ(expected[i].feature, found[i].feature);
+      EXPECT_NEAR(expected[i].overlap, found[i].overlap, 1e-14);
+      EXPECT_LE((expected[i].normal - found[i].normal).norm(), 1e-12);
+    }
+  }
+  EXPECT_GT(touching, 100);
+}
+
+TEST(Mesh, RefusesScalesThatAreNotPositive) {
+  Mesh mesh;
+  Parameters parameters;
+  mesh.declare(parameters);
+  for (const Parameter& one : parameters.entries())
+    if (one.name() == "scale" || one.name() == "stretch") {
+      EXPECT_FALSE(one.allows(0)) << one.name();
+      EXPECT_FALSE(one.allows(-1)) << one.name();
+      EXPECT_TRUE(one.allows(1e-3)) << one.name();
+    }
+}
+
 TEST(Mesh, EachFaceOfACornerHasOneContact) {
   const auto contacts = contacts_of(*mesh(box(low, high), {{"inside", true}}), {0.91, 0.08, 2.93}, 0.1);
   ASSERT_EQ(contacts.size(), 3u);
@@ -293,7 +338,8 @@ TEST(Mesh, FeaturesIdentifyTheFacet) {
     const auto contacts = contacts_of(*sheet, {0.47, y, 0.07}, 0.08);
     ASSERT_EQ(contacts.size(), 1u);
     EXPECT_EQ(contacts[0].feature % 7, 0u);
-    const std::size_t first = 3 * (contacts[0].feature / 7);
+    EXPECT_EQ(sheet->triangle_of(contacts[0].feature + 6), contacts[0].feature / 7) << "of its corners, too";
+    const std::size_t first = 3 * std::size_t{*sheet->triangle_of(contacts[0].feature)};
     const Vec3 below(0.47, y, 0);
     EXPECT_LE((closest_on_triangle(below, corners[first], corners[first + 1], corners[first + 2]) - below).norm(),
               1e-15);

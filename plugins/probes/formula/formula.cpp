@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <regex>
@@ -59,6 +60,11 @@ std::deque<Variable> variables_of(const World& world) {
   for (int k = 0; k < 3; ++k)
     add(std::string("centre_") + "xyz"[k],
         [k](const World& w) { return over_masses(w, [k](const Vec3& centre) { return centre[k]; }) / mass_of(w); });
+  for (int k = 0; k < 3; ++k)
+    add(std::string("spread_") + "xyz"[k], [k](const World& w) {
+      const double mass = mass_of(w), mean = over_masses(w, [k](const Vec3&centre) { return centre[k]; }) / mass;
+      return std::sqrt(over_masses(w, [=](const Vec3& centre) { return std::pow(centre[k] - mean, 2); }) / mass);
+    });
   for (std::size_t i = 0; i < world.walls().size(); ++i) {
     const std::string stem = wall_stem(world.walls()[i].name);
     for (const auto& [suffix, member] : wall_vectors)
@@ -73,7 +79,7 @@ std::deque<Variable> variables_of(const World& world) {
 
 /// What a formula may name, without repeating the same for each wall.
 std::string known_names(const World& world, const std::map<std::string, FormulaProbe::Constant>& constants) {
-  std::string known = "time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z";
+  std::string known = "time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z, spread_x/_y/_z";
   for (const auto& constant : constants) known += ", " + constant.first;
   if (world.walls().empty()) return known;
   std::vector<std::string> stems;

@@ -74,6 +74,9 @@ TEST(Formula, WeighsGrainsAndSaysWhereTheirCentreIs) {
   EXPECT_NEAR(value_of("centre_x", world), (0.5 + 8 * 0.2) / 9, 1e-12);
   EXPECT_NEAR(value_of("centre_y", world), (0.5 + 8 * 0.8) / 9, 1e-12);
   EXPECT_NEAR(value_of("centre_z", world), 0.5, 1e-12);
+  // Masses of 1 and 8: the mean square distance from the centre of mass is 8/81 of the squared distance.
+  EXPECT_NEAR(value_of("spread_x", world), 0.3 * std::sqrt(8.0) / 9, 1e-12);
+  EXPECT_NEAR(value_of("spread_z", world), 0, 1e-12);
   EXPECT_EQ(value_of("departed_mass", world), 7);
 }
 
@@ -139,7 +142,7 @@ TEST(Formula, NamesTheNearestVariable) {
   EXPECT_EQ(error_of("2 * top_presure"),
             "curves/curve/formula: found \"2 * top_presure\": the unknown name \"top_presure\" at character 5; did you "
             "mean \"top_pressure\"? Allowed is one of the names time, step, mean_diameter, void_ratio, mass, "
-            "departed_mass, centre_x/_y/_z, length; of each wall "
+            "departed_mass, centre_x/_y/_z, spread_x/_y/_z, length; of each wall "
             "(upper_left, top): <wall>_force_x/_y/_z, <wall>_travel_x/_y/_z, <wall>_stage_travel_x/_y/_z, "
             "<wall>_velocity_x/_y/_z, <wall>_pressure, <wall>_area");
 }

@@ -53,6 +53,17 @@ TEST(WallsProbe, ReportsWhatTheWallSays) {
   EXPECT_THAT(channel_values(probe, world, "top_contacts"), ElementsAre(42));
 }
 
+TEST(WallsProbe, ReportsSpinsIfWanted) {
+  FakeWorld world = world_with({"top"});
+  world.wall[0].spin = {13, 14, 15};
+  WallsProbe probe;
+  probe.spin = true;
+  probe.prepare(world);
+  ASSERT_EQ(names_of(probe).size(), 7u);
+  EXPECT_EQ(names_of(probe)[6], "top_spin");
+  EXPECT_THAT(channel_values(probe, world, "top_spin"), ElementsAre(13, 14, 15));
+}
+
 TEST(WallsProbe, ReportsAllWallsOrTheNamedOnesInTheirOrder) {
   FakeWorld world = world_with({"top", "left-upper", "2nd"});
   world.wall[2].pressure = 5;

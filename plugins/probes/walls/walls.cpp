@@ -1,7 +1,8 @@
-// Six channels a wall. See README.md.
+// Six channels a wall, or seven. See README.md.
 #include "walls.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -34,12 +35,19 @@ constexpr Quantity quantities[] = {
      [](const WallView& wall, std::span<double> value) { value.front() = wall.pressure; }},
     {"_contacts", "1", "number of contacts between bodies and the wall", 1,
      [](const WallView& wall, std::span<double> value) { value.front() = wall.contacts; }},
+    {"_spin", "rad s-1", "angular velocity, right-handed about x, y, z", 3, fill_vector<&WallView::spin>},
 };
+
+/// The last only if it is wanted.
+std::span<const Quantity> reported(bool spin) {
+  return std::span(quantities).first(std::size(quantities) - (spin ? 0 : 1));
+}
 
 }  // namespace
 
 void WallsProbe::declare(Parameters& parameters) {
   parameters.add("walls", walls).doc("names of the walls to report, in this order; empty: all walls");
+  parameters.add("spin", spin).doc("whether to report angular velocities, too");
 }
 
 void WallsProbe::prepare(const World& world) {
@@ -52,7 +60,7 @@ void WallsProbe::prepare(const World& world) {
                                "walls \"" + world.walls()[other.index].name + "\" and \"" + name +
                                    "\", whose channels would both be \"" + wall.stem + "_…\"",
                                "one of the two; remove one, or rename it"}});
-    for (const auto& quantity : quantities) wall.channels.push_back(wall.stem + quantity.suffix);
+    for (const auto& quantity : reported(spin)) wall.channels.push_back(wall.stem + quantity.suffix);
     reported_.push_back(std::move(wall));
   }
 }
@@ -60,7 +68,7 @@ void WallsProbe::prepare(const World& world) {
 std::vector<Channel> WallsProbe::channels() const {
   std::vector<Channel> channels;
   for (const auto& wall : reported_)
-    for (std::size_t i = 0; const auto& quantity : quantities)
+    for (std::size_t i = 0; const auto& quantity : reported(spin))
       channels.push_back({wall.channels[i++], quantity.unit, quantity.doc,
                           quantity.size == 1 ? std::vector<std::size_t>{} : std::vector{quantity.size}});
   return channels;
@@ -68,7 +76,7 @@ std::vector<Channel> WallsProbe::channels() const {
 
 void WallsProbe::sample(const World& world, ChannelValues& values) {
   for (const auto& wall : reported_)
-    for (std::size_t i = 0; const auto& quantity : quantities)
+    for (std::size_t i = 0; const auto& quantity : reported(spin))
       quantity.fill(world.walls()[wall.index], values.list(wall.channels[i++]));
 }
 

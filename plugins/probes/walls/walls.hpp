@@ -12,6 +12,7 @@ class WallsProbe : public Probe {
  public:
   /// The walls to report, in this order; empty: all.
   std::vector<std::string> walls;
+  bool spin = false;  ///< whether to report angular velocities
 
   void declare(Parameters& parameters) override;
   /// Throws ParameterError for a wall that does not exist, or for two that would get the same channels.

@@ -33,8 +33,15 @@ inline std::vector<double> acted(const Engine& engine, const World& world) {
     MotionSettings settings;
     engine.settings(settings);
     all.assign(settings.gravity.begin(), settings.gravity.end());
-    all.insert(all.end(), {settings.local_damping, double(settings.hold_rotation), double(settings.hold_translation),
-                           double(settings.flat.value_or(-1))});
+    const RigidMotion motion = settings.prescribed.value_or(RigidMotion{});
+    for (const Vec3& v :
+         {settings.kept_translation(), settings.kept_rotation(), motion.velocity, motion.spin, motion.about})
+      all.insert(all.end(), v.begin(), v.end());
+    all.insert(all.end(), {settings.local_damping, double(settings.flat.value_or(-1))});
+    return all;
+  }
+  if (engine.phase() == Phase::removal) {
+    for (const Row& x : world.positions()) all.push_back(engine.removes(world, xyz(x)));
     return all;
   }
   std::vector<Row> force(world.positions().size()), moment(world.positions().size());

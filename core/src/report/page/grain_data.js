@@ -28,11 +28,13 @@ class GrainFrames {
   /** Radius [m], id and clump of the bodies of a set. */
   set(number) {
     if (!this.sets.has(number)) {
-      const { count, data } = this.json.bodies[number];
+      const { count, data, clumps, groups } = this.json.bodies[number];
+      const integers = (buffer, place) => new Int32Array(buffer, 4 * place * count, count);
       this.sets.set(number, inflated(data).then((buffer) => ({
         radius: new Float32Array(buffer, 0, count),
-        id: new Int32Array(buffer, 4 * count, count),
-        clump: buffer.byteLength > 8 * count ? new Int32Array(buffer, 8 * count, count) : null,
+        id: integers(buffer, 1),
+        clump: clumps ? integers(buffer, 2) : null,
+        group: groups ? integers(buffer, clumps ? 3 : 2) : null,
       })));
     }
     return this.sets.get(number);

@@ -14,6 +14,7 @@ const colourings = {
   radius: { label: "radius", unit: "m", table: "sequential", between: true, value: (of, view, frame) => (i) => frame.radius[i] },
   layers: { label: "layer", unit: "1", table: "sequential", note: (view, seen) => `by ${letter(view.up)} at the start of ${seen.json.layers.stage}`,
     value: (of, view, frame, seen) => (i) => seen.layers.get(frame.id[i]) ?? -1 },
+  group: { label: "group", unit: "1", table: "clumps", needs: "groups", value: (of, view, frame) => (i) => frame.group?.[i] ?? -1 },
   clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (of, view, frame) => (i) => frame.clump?.[i] ?? -1 },
 };
 
@@ -121,7 +122,7 @@ class GrainView {
     this.state.run = run;
     this.now = null;
     const { json } = this;
-    const there = Object.entries(colourings).filter(([, one]) => !one.needs || (one.needs === "clumps" ? json.clumps : this.frames.has(one.needs)));
+    const there = Object.entries(colourings).filter(([, one]) => !one.needs || (one.needs === "clumps" ? json.clumps : one.needs === "groups" ? json.groups.length > 1 : this.frames.has(one.needs)));
     const { color, view } = this.runs[run].picture; // from its description, until the user has chosen
     if (!this.chosen) this.state.colour = color ?? "rotation";
     if (!this.viewChosen) this.state.view = view in views ? view : "xz";
@@ -193,7 +194,7 @@ class GrainView {
   places(frame) {
     const value = this.valueOf(frame), { low, high } = this.colours;
     const places = new Float32Array(frame.count);
-    if (this.state.colour === "clump") {
+    if (this.colouring.table === "clumps") {
       for (let i = 0; i < frame.count; ++i) places[i] = value(i) < 0 ? -1 : (value(i) % 251) / 255;
       return places;
     }
@@ -336,7 +337,7 @@ class GrainView {
     drawLengthBar(pen, look, layout);
     pen.box(width - margin.right - 58, height - 26, 62, 20, look.paper);
     pen.text(width - margin.right, height - 12, `${letter(view.right)} →  ${letter(view.up)} ↑`, look.soft, "end");
-    if (this.state.colour === "clump") return;
+    if (this.colouring.table === "clumps") return;
     const [factor, unit] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
     drawColourScale(pen, look, { width, height, ...colours, label: colouring.label, unit, factor,
       note: typeof colouring.note === "function" ? colouring.note(view, this) : colouring.note });
@@ -356,7 +357,7 @@ class GrainView {
     if (found < 0) return this.under.replaceChildren();
     const { colouring } = this, value = this.valueOf(now)(found), [size, unit] = prefixed("m", now.radius[found]);
     const [scale, shown] = prefixed(colouring.unit, Math.abs(value));
-    const rest = ["radius", "clump"].includes(this.state.colour) || (this.state.colour === "layers" && value < 0) ? [] : [make("span", {}, `${colouring.label} ${readable(value * scale)}${ofUnit(shown)}`)];
+    const rest = ["radius", "clump"].includes(this.state.colour) || (this.state.colour === "layers" && value < 0) ? [] : [make("span", {}, this.state.colour === "group" ? `group ${this.json.groups[value]}` : `${colouring.label} ${readable(value * scale)}${ofUnit(shown)}`)];
     this.under.replaceChildren(make("span", {}, `grain ${now.id[found]}`), make("span", {}, `radius ${readable(now.radius[found] * size)} ${unit}`), ...rest);
   }
 

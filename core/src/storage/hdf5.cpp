@@ -1,4 +1,4 @@
-#include "output/hdf5.hpp"
+#include "storage/hdf5.hpp"
 
 #include <hdf5.h>
 

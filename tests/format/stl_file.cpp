@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "stl.hpp"
+#include "grit/toolkit/stl_file.hpp"
 #include "support/stl_file.hpp"
 
 namespace grit {

@@ -1,4 +1,4 @@
-#include "output/atomic_file.hpp"
+#include "storage/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

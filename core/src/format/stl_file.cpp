@@ -1,4 +1,4 @@
-#include "stl.hpp"
+#include "grit/toolkit/stl_file.hpp"
 
 #include <algorithm>
 #include <cctype>

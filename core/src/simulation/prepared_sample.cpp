@@ -1,0 +1,154 @@
+#include "simulation/prepared_sample.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "bodies/make_bodies.hpp"
+#include "description/placed_error.hpp"
+#include "grit/error.hpp"
+#include "simulation/no_recorder.hpp"
+#include "simulation/stage_runner.hpp"
+#include "storage/state_file.hpp"
+
+namespace grit {
+namespace {
+
+using Refusals = std::vector<PlacedError::Fault>;
+
+std::string quoted_names(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "\"" : ", \"") + name + '"';
+  return text.empty() ? "none" : text;
+}
+
+/// The file with the state of the sample.
+std::filesystem::path file_of(const BeginDescription& begin) {
+  const std::filesystem::path folder = begin.from;
+  const bool at_end = begin.at == "end";
+  auto file = folder / (at_end ? "final.h5" : "checkpoint.h5");
+  if (std::filesystem::exists(file)) return file;
+  const bool other = std::filesystem::exists(folder / (at_end ? "checkpoint.h5" : "final.h5"));
+  throw PlacedError({"begin", "from"},
+                    folder.string() + ": holds no " + file.filename().string() +
+                        (other && at_end ? "; the run is not complete: continue it with --resume, or begin at its last "
+                                           "checkpoint with \"at\": \"checkpoint\""
+                         : other         ? "; the run is complete: begin at its end with \"at\": \"end\""
+                                         : "; name the folder of results of a run"));
+}
+
+/// The groups of the sample and those of the scene must be the same.
+void check_groups(const SceneDescription& scene, const Bodies& bodies, const std::string& sample, Refusals& faults) {
+  std::set<std::string> has, used;
+  for (const BodyGroup& group : bodies.groups) has.insert(group.name);
+  for (const auto& [name, group] : scene.bodies)
+    if (group.is_from_sample()) used.insert(name);
+  for (const std::string& name : used)
+    if (!has.contains(name))
+      faults.push_back({{"bodies", name}, sample + " has no group of this name; it has " + quoted_names(has)});
+  for (const std::string& name : has)
+    if (!used.contains(name))
+      faults.push_back({{"bodies"},
+                        sample + " has a group \"" + name +
+                            "\", which is not described; add it with \"source\": {\"type\": \"sample\"}"});
+}
+
+void check_domain(const DomainDescription& now, const DomainDescription& before, const std::string& sample,
+                  Refusals& faults) {
+  if (now.periodic != before.periodic)
+    faults.push_back(
+        {{"domain", "periodic"}, "the domain of " + sample + " is periodic along other axes; use the same"});
+  else if ((now.periodic[0] || now.periodic[1] || now.periodic[2]) &&
+           (now.low != before.low || now.high != before.high))
+    faults.push_back({{"domain"},
+                      "the domain of " + sample +
+                          " has other bounds; use those of its description: the cell keeps its present size"});
+}
+
+void check_springs(const ContactLaw& law, const std::vector<StateField>& fields, const std::string& sample,
+                   Refusals& faults) {
+  const std::vector<StateField> kept = law.state();
+  for (const StateField& field : fields)
+    if (std::ranges::find(kept, field.name, &StateField::name) == kept.end())
+      faults.push_back({{"contacts"},
+                        "contacts of " + sample + " have the history \"" + field.name +
+                            "\", which the contact law does not have with these materials; use the law and parameters "
+                            "of the sample, or start without springs: \"begin\": {\"springs\": \"drop\"}"});
+}
+
+/// Gives bodies the materials and densities of the scene.
+void set_materials(const SceneDescription& scene, const SceneDescription& before, Bodies& bodies) {
+  const std::vector<std::string> names = material_names(scene);
+  struct Change {
+    std::uint8_t material;
+    double lighter;  // former over present density
+  };
+  std::map<std::string, Change> changes;
+  for (const auto& [name, group] : scene.bodies)
+    if (group.is_from_sample()) {
+      const double now = scene.materials.at(group.material).density,
+                   then = before.materials.at(before.bodies.at(name).material).density;
+      changes[name] = {static_cast<std::uint8_t>(std::ranges::find(names, group.material) - names.begin()), then / now};
+    }
+  std::set<std::uint32_t> done;
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    const Change& change = changes.at(bodies.group_of(bodies.id[i]));
+    bodies.material[i] = change.material;
+    bodies.velocity[i].w *= change.lighter, bodies.spin[i].w *= change.lighter;
+    const std::uint32_t c = bodies.clumps.clump_of(i);
+    if (c == no_clump || !done.insert(c).second) continue;
+    Clump& clump = bodies.clumps.clump[c];
+    clump.inverse_mass *= change.lighter, clump.inertia /= change.lighter, clump.momentum /= change.lighter;
+  }
+}
+
+std::vector<std::string> walls_with_other_geometry(const SceneDescription& now, const SceneDescription& before) {
+  std::vector<std::string> names;
+  for (const auto& [name, wall] : now.walls)
+    if (const auto then = before.walls.find(name); then != before.walls.end() && then->second.geometry != wall.geometry)
+      names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+Prepared prepared_sample(const LiveScene& live, const Registry& registry, StateRequest state) {
+  const SceneDescription& scene = live.now();
+  const BeginDescription& begin = *scene.begin;
+  const std::filesystem::path path = file_of(begin);
+  const StateFile file = read_state(path);
+  const Scene before = read_scene(Document(file.facts.at("description"), path.string()), registry);
+  LiveScene live_before(before);
+  Bodies none;
+  none.finish(requested_state(live_before.components()));
+  Kernel kernel(live_before.now(), live_before.components(), std::move(none), 1);
+  NoRecorder recorder;
+  StageRunner(before, live_before, kernel, recorder).restore_kernel(file.checkpoint);
+  const std::vector<StateField> fields = kernel.state().settings.fields;
+  Prepared prepared = kernel.hand_over();
+
+  Refusals faults;
+  const std::string sample = "the sample in " + begin.from;
+  check_groups(scene, prepared.bodies, sample, faults);
+  check_domain(scene.domain, live_before.now().domain, sample, faults);
+  if (begin.springs == "keep") {
+    ContactLaw& law = *live.components().law;
+    law.mix(materials_in_use(scene, material_names(scene)), materials_of_bodies(scene));
+    check_springs(law, fields, sample, faults);
+  } else {
+    prepared.sample->pairs = {}, prepared.sample->wall_contacts = {};
+  }
+  if (!faults.empty()) throw PlacedError(std::move(faults));
+  set_materials(scene, live_before.now(), prepared.bodies);
+  prepared.sample->walls.drop(walls_with_other_geometry(scene, live_before.now()));
+  prepared.bodies.request(state);
+  return prepared;
+}
+
+Prepared prepare(const LiveScene& live, const Registry& registry, StateRequest state) {
+  if (live.now().begin) return prepared_sample(live, registry, state);
+  return make_bodies(live.now(), live.components(), state);
+}
+
+}  // namespace grit

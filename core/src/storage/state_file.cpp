@@ -1,0 +1,59 @@
+#include "storage/state_file.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <span>
+#include <string>
+
+#include "grit/error.hpp"
+#include "storage/atomic_file.hpp"
+#include "storage/hdf5.hpp"
+
+namespace grit {
+namespace {
+
+/// Version of the layout of the file and of the state.
+constexpr std::uint64_t format = 3;
+
+}  // namespace
+
+void write_state(const std::filesystem::path& path, const StateFile& state) {
+  const auto part = temporary_path(path);
+  try {
+    hdf5::File file(part, hdf5::Mode::replace);
+    file.set_attribute("format", format);
+    file.set_attribute("stage", state.checkpoint.stage);
+    file.set_attribute("time", state.checkpoint.time);
+    file.set_attribute("step", state.checkpoint.step);
+    // JSON has neither infinite numbers nor texts that are not UTF-8.
+    const std::string facts = state.facts.dump(-1, ' ', false, Description::error_handler_t::replace);
+    file.write_checked("facts", std::as_bytes(std::span(facts)));
+    file.write_checked("state", state.checkpoint.state);
+    file.close();
+    sync_to_disk(part);
+  } catch (const FileError&) {
+    std::error_code ignored;
+    std::filesystem::remove(part, ignored);  // incomplete, e.g. because the disk is full
+    throw;
+  }
+  publish(path);
+}
+
+StateFile read_state(const std::filesystem::path& path) try {
+  const hdf5::File file(path, hdf5::Mode::read);
+  if (const auto found = file.number<std::uint64_t>("format"); found != format)
+    throw FileError(fmt::format("{}: found format {}, allowed {}", path.string(), found, format));
+  StateFile state;
+  state.checkpoint = {file.text("stage"), file.number<double>("time"), file.number<std::uint64_t>("step"), {}};
+  const auto text = file.dataset("facts").read_bytes();
+  state.facts = Description::parse(reinterpret_cast<const char*>(text.data()),
+                                   reinterpret_cast<const char*>(text.data()) + text.size());
+  for (const char* key : {"grit", "plugins", "description"})
+    if (!state.facts.contains(key)) throw FileError(path.string() + ": lacks \"" + key + '"');
+  state.checkpoint.state = file.dataset("state").read_bytes();
+  return state;
+} catch (const Description::exception&) {
+  throw FileError(path.string() + ": its facts are not JSON; the file is damaged");
+}
+
+}  // namespace grit

@@ -1,0 +1,24 @@
+// The state of a run in a file.
+#pragma once
+
+#include <filesystem>
+
+#include "grit/checkpoint.hpp"
+#include "grit/description.hpp"
+
+namespace grit {
+
+/// A state, and facts of the run that wrote it: the keys "grit", "plugins" and "description" of a JSON object.
+struct StateFile {
+  Description facts;
+  Checkpoint checkpoint;
+};
+
+/// Writes a temporary file and renames it once it is on disk, so that a complete file always exists. Attributes:
+/// format, stage, time [s] and step. Datasets with checksums: "facts" and "state". Throws FileError.
+void write_state(const std::filesystem::path& path, const StateFile& file);
+
+/// Throws FileError for an incomplete or damaged file, or one of another format.
+StateFile read_state(const std::filesystem::path& path);
+
+}  // namespace grit

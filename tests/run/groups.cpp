@@ -1,0 +1,283 @@
+// Groups of bodies: held, moved, and acted on by some engines, walls and probes only.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "run/group_view.hpp"
+#include "support/clump.hpp"
+#include "support/notes.hpp"
+#include "support/scene.hpp"
+
+namespace grit::test::groups_tests {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double radius = 1e-3, g = 9.81;
+const Description material = {{"density", 2600}, {"contact_modulus", 1e6}, {"friction_angle", 0.4}};
+
+/// The grains of the groups "grains" and "others"; those of the latter have higher ids.
+Description two_groups(const std::vector<Grain>& grains, const std::vector<Grain>& others) {
+  Description d = description("linear-frictional", material, grains);
+  d["bodies"]["others"] = description("linear-frictional", material, others)["bodies"]["grains"];
+  return d;
+}
+Description gravity() { return {{"type", "gravity"}, {"acceleration", {0, 0, -g}}}; }
+
+TEST(Groups, FixedBodiesCarryOthers) {
+  // Three fixed spheres, a ball on top of them.
+  const double side = 2.02 * radius;
+  const std::vector<Grain> base{
+      {{0, 0, 0}, radius}, {{side, 0, 0}, radius}, {{side / 2, side * std::sqrt(0.75), 0}, radius}};
+  const Vec3 middle(side / 2, side * std::sqrt(0.75) / 3, 0);
+  Description d = two_groups(base, {{middle + Vec3(0, 0, 1.8 * radius), radius}});
+  d["engines"] = {{"gravity", gravity()},
+                  {"fixed", {{"type", "prescribed-motion"}, {"groups", {"grains"}}}},
+                  {"damping", {{"type", "local-damping"}, {"coefficient", 0.7}}}};
+  d["time_step"]["safety"] = 0.05;  // errors of the balance are of second order
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  while (t.world().time() < 0.1) t.step();
+  for (std::uint32_t id = 0; id < 3; ++id) {
+    EXPECT_EQ(t.position(id), base[id].position);
+    EXPECT_EQ(t.velocity(id), Vec3::Zero());
+    EXPECT_EQ(xyz(t.world().forces()[index_of(t.world(), id)]), Vec3::Zero()) << "no net force accelerates it";
+  }
+  EXPECT_EQ(t.world().contacts().size(), 3u);
+  EXPECT_LT(t.velocity(3).norm(), 1e-9);
+  // The fixed ones would fall if their weight counted.
+  EXPECT_LT(equilibrium(t.world()).unbalanced_force, 1e-6);
+  EXPECT_TRUE(support(t.world()).at_rest(1e-6));
+  EXPECT_LT(std::abs(t.world().energies().closure_error), 2e-4 * t.world().energies().dissipated());
+}
+
+TEST(Groups, MoveAsPrescribedAgainstAnyForce) {
+  const Vec3 velocity(0.3, 0, 0.1);
+  Description d = two_groups({{{0, 0, 0}, radius}}, {{{2.1 * radius, 0, 0}, radius}});
+  d["engines"]["push"] = {{"type", "prescribed-motion"}, {"groups", {"grains"}}, {"velocity", vector(velocity)}};
+  d["guards"] = {{"overlap", 0.5}};
+  Trial t(d, 1, BodyState::energy);
+  const Energies start = t.world().energies();
+  EXPECT_DOUBLE_EQ(start.kinetic, 0.5 * t.mass(0) * velocity.squaredNorm()) << "moves from the first instant";
+  t.step(3000);
+  EXPECT_LT((t.position(0) - t.world().time() * velocity).norm(), 1e-12);
+  EXPECT_EQ(t.velocity(0), velocity);
+  EXPECT_GT(t.velocity(1).x(), 0.5) << "an elastic impact with an infinite mass: twice 0.3 m/s";
+  const Energies now = t.world().energies();
+  EXPECT_GT(now.engines, 0);
+  EXPECT_LT(std::abs(now.closure_error), 1e-3 * now.engines);
+}
+
+TEST(Groups, TurnAsOneRigidBody) {
+  for (const bool clumped : {false, true}) {
+    const double arm = 5 * radius, rate = 20;
+    Description d = two_groups({{{arm, 0, 0}, radius}, {{0, arm, 0.5 * radius}, radius}}, {{{1, 1, 1}, radius}});
+    if (clumped) make_clumps(d, boomerang());
+    d["engines"]["turn"] = {
+        {"type", "prescribed-motion"}, {"groups", {"grains"}}, {"spin", {0, 0, rate}}, {"about", {0, 0, 0}}};
+    d["time_step"]["value"] = 2 * std::numbers::pi / rate / 20000;
+    Trial t(d);
+    std::vector<Vec3> before;
+    for (const Row& x : t.world().positions()) before.push_back(xyz(x));
+    const std::vector<std::uint32_t> ids(t.world().ids().begin(), t.world().ids().end());
+    t.step(5000);  // a quarter turn
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Vec3& x = before[i];
+      const Vec3 turned = t.world().group_of(ids[i]) == "grains" ? Vec3(-x.y(), x.x(), x.z()) : x;
+      EXPECT_LT((t.position(ids[i]) - turned).norm(), 1e-11 * arm) << ids[i];
+    }
+    EXPECT_NEAR(xyz(t.world().spins()[index_of(t.world(), 0)]).z(), rate, 1e-9 * rate);
+  }
+}
+
+TEST(Groups, PrescribedMotionMayChangeInTime) {
+  Description d = two_groups({{{0, 0, 0}, radius}}, {{{1, 0, 0}, radius}});
+  d["engines"]["push"] = {{"type", "prescribed-motion"}, {"groups", {"grains"}}};
+  d["stages"] = {{{"name", "accelerate"},
+                  {"until", {{"type", "time"}, {"value", 0.01}}},
+                  {"limit", 1},
+                  {"ramps", {{{"pointer", "/engines/push/velocity/0"}, {"from", 0}, {"to", 1}, {"duration", 0.01}}}}},
+                 {{"name", "fix"},
+                  {"until", {{"type", "time"}, {"value", 0.01}}},
+                  {"limit", 1},
+                  {"change", {{"engines", {{"push", {{"velocity", {0, 0, 0}}}}}}}}}};
+  d["probes"]["watch"] = {{"type", "watch"}, {"every_time", 1e-3}};
+  watched() = [](const World& world) { return world.positions()[index_of(world, 0)].x; };
+  const Done done = run(d);
+  ASSERT_EQ(done.summary().status, "done") << done.summary().message;
+  EXPECT_NEAR(done.notes.samples.back().values[0], 0.5 * 0.01, 2e-4) << "50 increments";
+  EXPECT_NEAR(done.notes.samples.back().values[0], done.notes.samples[done.notes.samples.size() - 5].values[0], 1e-15);
+}
+
+TEST(Groups, HoldSomeAxesOnly) {
+  Description d = two_groups({{{0, 0, 0}, radius, {0.1, 0.2, 0}, {1, 2, 3}}}, {{{1, 0, 0}, radius}});
+  d["engines"] = {{"gravity", {{"type", "gravity"}, {"acceleration", {1, 2, 3}}}},
+                  {"rail", {{"type", "hold"}, {"groups", {"grains"}}, {"translation", "xz"}, {"rotation", "none"}}}};
+  Trial t(d);
+  t.step(500);
+  const double time = t.world().time();
+  EXPECT_LT((t.velocity(0) - Vec3(0.1, 0.2 + 2 * time, 0)).norm(), 1e-12);
+  EXPECT_LT((t.velocity(1) - time * Vec3(1, 2, 3)).norm(), 1e-12);
+}
+
+TEST(Groups, EnginesActOnTheirGroups) {
+  Description d = two_groups({{{0, 0, 0}, radius, {1, 0, 0}}}, {{{0.1, 0, 0}, radius, {1, 0, 0}}});
+  Description fall = gravity();
+  fall["groups"] = {"others"};
+  d["engines"] = {{"gravity", fall},
+                  {"drag", {{"type", "drag"}, {"viscosity", 1}, {"law", "stokes"}, {"groups", {"grains"}}}}};
+  d["time_step"]["value"] = 1e-7;
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  t.step(10000);
+  const double time = t.world().time(), rate = 6 * std::numbers::pi * radius / t.mass(0);
+  EXPECT_NEAR(t.velocity(0).x(), std::exp(-rate * time), 1e-4);
+  EXPECT_EQ(t.velocity(0).z(), 0);
+  EXPECT_EQ(t.velocity(1).x(), 1);
+  EXPECT_NEAR(t.velocity(1).z(), -g * time, 1e-12);
+  EXPECT_LT(std::abs(t.world().energies().closure_error), 1e-6 * std::abs(t.world().energies().engines));
+}
+
+TEST(Groups, WallsActOnTheirGroups) {
+  Description d = two_groups({{{0, 0, 1.5 * radius}, radius}}, {{{0.1, 0, 1.5 * radius}, radius}});
+  d["engines"]["gravity"] = gravity();
+  d["walls"]["sieve"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["sieve"]["groups"] = {"grains"};
+  Trial t(d);
+  while (t.world().time() < 0.05) t.step();
+  EXPECT_GT(t.position(0).z(), 0.9 * radius);
+  EXPECT_NEAR(t.position(1).z(), 1.5 * radius - 0.5 * g * std::pow(t.world().time(), 2), 1e-6);
+}
+
+TEST(Groups, AServoPressesOnItsGroups) {
+  // The lid reaches the lower ball through the higher one, on which it does not act.
+  Description d = two_groups({{{0, 0, radius}, radius}}, {{{0.01, 0, 3 * radius}, radius}});
+  d["engines"]["hold"] = {{"type", "prescribed-motion"}, {"groups", {"others"}}};
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  d["walls"]["lid"] = plane({0, 0, 5 * radius}, -Vec3::UnitZ());
+  d["walls"]["lid"]["groups"] = {"grains"};
+  d["walls"]["lid"]["motion"]["servo"] = {{"force", -1e-3}, {"axis", "z"}, {"max_velocity", 0.1}};
+  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.5}, {"groups", {"grains"}}};
+  Trial t(d);
+  while (t.world().time() < 0.1) t.step();
+  const WallView& lid = t.world().walls()[1];
+  EXPECT_NEAR(lid.force.z(), 1e-3, 1e-5);
+  EXPECT_EQ(lid.contacts, 1u);
+}
+
+TEST(Groups, ProbesSeeTheirGroups) {
+  Description d = two_groups({{{0, 0, 0.99 * radius}, radius}, {{1.98 * radius, 0, 0.99 * radius}, radius}},
+                             {{{-1.98 * radius, 0, 0.98 * radius}, 0.99 * radius}});
+  d["walls"]["floor"] = plane(Vec3::Zero(), Vec3::UnitZ());
+  Trial t(d);
+  ASSERT_EQ(t.world().contacts().size(), 5u) << "two between bodies, three with the floor";
+  GroupView seen({"grains"});
+  seen.update(t.world());
+  ASSERT_EQ(seen.ids().size(), 2u);
+  EXPECT_EQ(seen.contacts().size(), 3u) << "one between bodies, two with the floor";
+  EXPECT_EQ(seen.walls()[0].contacts, 2u);
+  double force = 0;
+  for (const Contact& contact : seen.contacts_with_walls()) force += contact.force.z();
+  EXPECT_DOUBLE_EQ(seen.walls()[0].force.z(), force);
+  EXPECT_LT(std::abs(force), std::abs(t.world().walls()[0].force.z()));
+  EXPECT_DOUBLE_EQ(seen.mean_diameter(), 2 * radius);
+  EXPECT_NEAR(seen.solid_density(), 2600, 1e-9);
+  // All groups: everything as in the whole world, also the moment of a wall about its reference point.
+  GroupView all({"grains", "others"});
+  all.update(t.world());
+  EXPECT_EQ(all.contacts().size(), 5u);
+  EXPECT_LT((all.walls()[0].moment - t.world().walls()[0].moment).norm(), 1e-12 * t.world().walls()[0].moment.norm());
+  EXPECT_DOUBLE_EQ(all.walls()[0].force.z(), t.world().walls()[0].force.z());
+}
+
+TEST(Groups, AProbeOfAGroupInARun) {
+  Description d = two_groups({{{0, 0, 0}, radius}, {{0.1, 0, 0}, radius}}, {{{0.2, 0, 0}, radius}});
+  d["probes"]["one"] = {{"type", "watch"}, {"every_steps", 1}, {"groups", {"others"}}};
+  d["probes"]["all"] = {{"type", "watch"}, {"every_steps", 1}};
+  watched() = [](const World& world) { return static_cast<double>(world.ids().size()); };
+  const Done done = run(d);
+  for (const auto& sample : done.notes.samples) EXPECT_EQ(sample.values[0], sample.probe == "one" ? 1 : 3);
+  d["probes"]["energy"] = {{"type", "energy"}, {"every_steps", 1}, {"groups", {"others"}}};
+  try {
+    run(d);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the energy balance is that of all bodies"));
+  }
+}
+
+TEST(Groups, ThatDoNotExistAreReported) {
+  for (const std::string where : {"/engines/gravity/groups/0", "/walls/floor/groups/0", "/probes/all/groups/0"}) {
+    Description d = two_groups({{{0, 0, 0}, radius}}, {{{1, 0, 0}, radius}});
+    d["engines"]["gravity"] = gravity();
+    d["walls"]["floor"] = plane({0, 0, -1}, Vec3::UnitZ());
+    d["probes"]["all"] = {{"type", "packing"}, {"every_steps", 1}};
+    d[Description::json_pointer(where.substr(0, where.size() - 2))] = {"other"};
+    try {
+      scene_of(d);
+      FAIL() << where;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(where));
+      EXPECT_THAT(error.what(), HasSubstr("did you mean \"others\""));
+    }
+  }
+}
+
+// ---- sinks
+
+TEST(Sink, RemovesWhatEntersItsRegion) {
+  Description d = two_groups({{{0, 0, 0.02}, radius, {0, 0, -0.5}}, {{0.1, 0, 0.02}, radius, {0, 0, -0.5}}},
+                             {{{0, 0, 0.03}, radius, {0, 0, -0.5}}});
+  d["engines"]["sink"] = {{"type", "sink"},
+                          {"groups", {"grains"}},
+                          {"region", {{"type", "box"}, {"low", {-0.01, -0.01, 0}}, {"high", {0.01, 0.01, 0.01}}}}};
+  Trial t(d, 1, BodyState::energy);
+  t.world().energies();
+  double entered = 0;
+  while (t.world().time() < 0.06) {
+    t.step();
+    if (t.world().departures().empty()) entered = t.world().time();
+  }
+  ASSERT_EQ(t.world().departures().size(), 1u);
+  EXPECT_EQ(t.world().departures()[0].id, 0u);
+  EXPECT_NEAR(entered, 0.02, 2e-3) << "after 1 cm at 0.5 m/s, within less than a radius";
+  EXPECT_LE(t.world().departures()[0].position.z(), 0.01);
+  EXPECT_EQ(t.world().ids().size(), 2u);
+  EXPECT_NEAR(t.kernel().state().discharged_fraction(), 1.0 / 3, 1e-9);
+  EXPECT_NEAR(t.world().energies().closure_error, 0, 1e-9 * t.world().energies().kinetic);
+}
+
+TEST(Sink, TakesAClumpAsAWhole) {
+  Description d = two_groups({{{0, 0, 0.01}, radius, {0, 0, -0.5}}}, {{{0.1, 0, 0.03}, radius}});
+  make_clumps(d, boomerang());
+  d["engines"]["sink"] = {{"type", "sink"}, {"region", {{"type", "half-space"}, {"point", {0, 0, 0}}}}};
+  Trial t(d);
+  ASSERT_EQ(t.world().ids().size(), 4u);
+  while (t.world().time() < 0.03) t.step();
+  EXPECT_EQ(t.world().ids().size(), 1u);
+  EXPECT_TRUE(t.world().clumps().empty());
+  ASSERT_EQ(t.world().departures().size(), 1u);
+}
+
+TEST(Sink, RegionsContainTheirPoints) {
+  const CylinderRegion pipe{.start = {0, 0, 1}, .end = {0, 0, 3}, .radius = 0.5};
+  EXPECT_TRUE(contains(pipe, {0.3, 0.4, 1}));
+  EXPECT_TRUE(contains(pipe, {0, 0.5, 3}));
+  EXPECT_FALSE(contains(pipe, {0.4, 0.4, 2}));
+  EXPECT_FALSE(contains(pipe, {0, 0, 0.99}));
+  EXPECT_FALSE(contains(pipe, {0, 0, 3.01}));
+  const SphereRegion ball{.centre = {1, 0, 0}, .radius = 1};
+  EXPECT_TRUE(contains(ball, {0, 0, 0}));
+  EXPECT_FALSE(contains(ball, {-0.01, 0, 0}));
+  const HalfSpaceRegion below{.point = {0, 0, 1}, .normal = {1, 0, 1}};
+  EXPECT_TRUE(contains(below, {-5, 0, 5}));
+  EXPECT_FALSE(contains(below, {1, 0, 1}));
+  const BoxRegion box{.low = {0, 0, 0}, .high = {1, 2, 3}};
+  EXPECT_TRUE(contains(box, {1, 2, 3}));
+  EXPECT_FALSE(contains(box, {1, 2, 3.01}));
+}
+
+}  // namespace
+}  // namespace grit::test::groups_tests
