@@ -76,7 +76,6 @@ class WallContacts {
   void rebuild(const Bodies& bodies, std::span<const std::uint16_t> group, std::span<const WallSurface> walls,
                const Skins& skins, std::span<const StateField> fields, std::span<const std::uint32_t> order);
   void set_fields(std::span<const StateField> fields);
-  const std::vector<StateField>& fields() const { return fields_; }
   static constexpr std::uint32_t no_wall = ~0u;
   /// Walls get new indices, before the next rebuild(). Contacts of walls that become no_wall are removed.
   void renumber_walls(std::span<const std::uint32_t> now);

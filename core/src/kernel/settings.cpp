@@ -42,11 +42,6 @@ bool Settings::by_group() const {
          std::ranges::any_of(groups_of_walls, limited);
 }
 
-const MotionSettings& Settings::motion_of(const std::string& group) const {
-  const auto known = std::ranges::find(groups, group);
-  return known == groups.end() ? motion : motion_of(static_cast<std::size_t>(known - groups.begin()));
-}
-
 double growth_rate(const SceneDescription& scene, const std::string& stage) {
   const auto found = std::ranges::find(scene.stages, stage, &StageDescription::name);
   return found != scene.stages.end() && found->growth ? found->growth->rate : 0;

@@ -50,7 +50,6 @@ struct Settings {
   const MotionSettings& motion_of(std::size_t group) const {
     return motion_of_groups.empty() ? motion : motion_of_groups[group];
   }
-  const MotionSettings& motion_of(const std::string& group) const;
   /// Whether `is` holds for the settings of any body.
   template <class Is>
   bool any_motion(Is is) const {

@@ -70,6 +70,10 @@ template <EnergyTerms energies, bool Clumps, bool Groups>
   if constexpr (Groups)
     for (const MotionSettings& settings : step.by_group) by_group.emplace_back(settings, step);
   const Kick same(step.settings, step);
+  // Local copies, as of the pointers below: for the compiler, stores might alias members.
+  const Quad kick_of_all = same.kick, turn_kick_of_all = same.turn_kick, fall_of_all = same.fall,
+             weight_of_all = same.weight;
+  const double damping_of_all = same.damping;
   const Quad drift{step.drift, step.drift, step.drift, 0}, ones{1, 1, 1, 0};
   constexpr bool flows = energies == EnergyTerms::with_flow, falls = flows || energies == EnergyTerms::with_weight;
   Quad fastest{}, poison{}, damped_power{}, damped_turning{}, momentum{}, flow_power{}, flow_work{};
@@ -104,8 +108,9 @@ template <EnergyTerms energies, bool Clumps, bool Groups>
         store(x + v * drift, position[i]), store(v, velocity[i]), store(w, spin[i]);
         continue;
       }
-    const Quad &kick = own.kick, &turn_kick = own.turn_kick, &fall = own.fall, &weight = own.weight;
-    const double damping = own.damping;
+    const Quad kick = Groups ? own.kick : kick_of_all, turn_kick = Groups ? own.turn_kick : turn_kick_of_all,
+               fall = Groups ? own.fall : fall_of_all, weight = Groups ? own.weight : weight_of_all;
+    const double damping = Groups ? own.damping : damping_of_all;
     const Quad force = load(sum[i].force), moment = load(sum[i].moment);
     Quad x = load(position[i]), v = load(velocity[i]), w = load(spin[i]);
     const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
