@@ -85,6 +85,25 @@ TEST(Energies, OfAStrainedPackingClosesBetterWithShorterSteps) {
   }
 }
 
+TEST(Energies, OfAPackingUnderPrescribedStressesCloses) {
+  for (const bool clumped : {false, true}) {
+    SCOPED_TRACE(clumped);
+    Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},
+                             jumble({6, 6, 6}, 1e-3, 0.005, 5), Vec3::Constant(6e-3), {0, 0, -30});
+    if (clumped) make_clumps(d, boomerang());
+    d["domain"]["servo"] = {{"stress", {{"xx", 5e4}, {"yy", 1e5}}}, {"max_strain_rate", 40}, {"interval", 5}};
+    d["time_step"]["safety"] = 0.05;
+    d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
+    Kept cell(d);
+    while (cell.world().time() < 1.5e-3) cell.step();
+    const Energies now = cell.world().energies();
+    EXPECT_GT(std::abs(now.cell), 0.3 * turnover(now));
+    verify("closure error of rough " + std::string(clumped ? "clumps" : "spheres") +
+               " under prescribed stresses, over all that is turned over",
+           closure_fraction(now), 0, 5e-3, 1.0);
+  }
+}
+
 // In slow deformation, bodies are in equilibrium.
 TEST(Energies, ACellsWorkIsThatOfItsStresses) {
   Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},

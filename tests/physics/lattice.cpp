@@ -210,6 +210,32 @@ TEST(Lattice, FaceCentredPackingIsAsStrongAsThorntonSays) {
     }
 }
 
+TEST(Lattice, FaceCentredPackingYieldsUnderConstantLateralStress) {
+  // The same in a drained triaxial test: lateral stresses are kept while the cell is shortened along z. Contacts in the
+  // plane open, since the lateral stress is then carried by those across it alone.
+  for (const Law* law : {&linear_rolling, &linear_frictional, &hertz_mindlin})
+    for (const double angle : {5.0, 18.0, 30.0}) {
+      constexpr double squeeze = 1e-5, dt = 2e-8;
+      Description d = packed(face_centred, *law, squeeze, enough(face_centred));
+      d["materials"]["grain"]["friction_angle"] = std::to_string(angle) + " deg";
+      d["time_step"]["value"] = dt;
+      const double lateral = pressure(Trial(d).world()).x();
+      // In 10 000 steps the cell is shortened by ten times the strain of the overlap.
+      d["domain"]["strain_rate"] = vector(-10 * squeeze / (1e4 * dt) * Vec3::UnitZ());
+      d["domain"]["servo"] = {{"stress", {{"xx", lateral}, {"yy", lateral}}}, {"max_strain_rate", 100}};
+      Trial t(d);
+      t.step(10000);
+      EXPECT_EQ(2 * t.kernel().state().pairs.touching_count(), 8 * t.world().positions().size());
+      const Vec3 stress = pressure(t.world());
+      const double friction = std::tan(angle * std::numbers::pi / 180);
+      const std::string of = std::string(law->name) + ", φ = " + std::to_string(int(angle)) + "°";
+      verify("σ1/σ3 at constant lateral stress, " + of, stress.z() / stress.x(), 2 * (1 + friction) / (1 - friction),
+             1e-3);
+      verify("lateral stress over the one kept, " + of, stress.x() / lateral, 1, 1e-3);
+      EXPECT_NEAR(stress.y(), stress.x(), 1e-6 * stress.x());
+    }
+}
+
 TEST(Lattice, SixSpheresBetweenWallsAreAsStrongAsThorntonSays) {
   // A cell of the face-centred packing between smooth walls: one above, four in the plane, one below. The lids approach
   // and the sides move outwards so that contacts across slide at constant overlap; those in the plane open. Each lid

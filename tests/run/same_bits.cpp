@@ -40,6 +40,14 @@ Description periodic() {
   return d;
 }
 
+/// The same under prescribed stresses along x and y.
+Description under_stress() {
+  Description d = periodic();
+  d["domain"]["strain_rate"] = {0, 0, 15};
+  d["domain"]["servo"] = {{"stress", {{"xx", 2e4}, {"yy", 1e4}}}, {"max_strain_rate", 50}, {"interval", 7}};
+  return d;
+}
+
 /// Springs that stiffen, so that the time step follows the overlaps.
 Description stiffening() {
   Description d = boxed();
@@ -85,6 +93,7 @@ void expect_energies_change_nothing(const Description& d) {
 TEST(SameBits, WhetherOrNotEnergiesAreKept) {
   expect_energies_change_nothing(boxed());
   expect_energies_change_nothing(periodic());
+  expect_energies_change_nothing(under_stress());
   expect_energies_change_nothing(stiffening());
   Description held = periodic();
   held["engines"]["hold"] = {{"type", "hold"}}, held["guards"]["overlap"] = 0.9;
@@ -93,6 +102,7 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
 
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
 TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
+TEST(SameBits, OfAPeriodicPackingUnderPrescribedStresses) { expect_same_bits(under_stress()); }
 TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }
 
 TEST(SameBits, OfOneThatIsPressedAndShortensTheTimeStep) {

@@ -127,7 +127,7 @@ struct StreamSource {
   OneOf<RectangleRegion, DiscRegion, BoxRegion> region{"region"};
   std::optional<double> number_rate, mass_rate;  ///< 1/s, kg/s
   Sizes sizes{"size distribution"};
-  std::int64_t count = 0;                        ///< limit; 0: none
+  std::int64_t count = 0;            ///< limit; 0: none
   std::optional<double> mass, time;  ///< limits [kg, s]
   void declare(Parameters& p);
 };
@@ -216,11 +216,30 @@ struct InterfaceDescription {
   void declare(ContactLaw* law, Parameters& p);
   bool operator==(const InterfaceDescription&) const = default;
 };
+/// Target stresses of a cell [Pa]; components without one keep their strain rate.
+struct CellStressDescription {
+  std::optional<double> xx, yy, zz;
+  void declare(Parameters& p);
+};
+/// The strain rate of a periodic cell that keeps stresses.
+struct CellServoDescription {
+  CellStressDescription stress;
+  double max_strain_rate = 0;  ///< 1/s
+  double gain = 1;
+  std::int64_t interval = 10;  ///< steps
+  std::array<std::optional<double>, 3> targets() const { return {stress.xx, stress.yy, stress.zz}; }
+  void declare(Parameters& p);
+};
 struct DomainDescription {
   std::optional<Vec3> low, high;
   std::array<bool, 3> periodic{false, false, false};
   Vec3 strain_rate = Vec3::Zero();
+  std::optional<CellServoDescription> servo;
   std::vector<std::string> open_sides;
+  /// Keys that stages may change.
+  static const std::vector<std::string>& changeable();
+  /// Whether the cell may change its shape.
+  bool deforms() const { return servo || !strain_rate.isZero(0.0); }
   void declare(Parameters& p);
 };
 struct SpecimenDescription {
@@ -309,6 +328,13 @@ struct MeanStressCondition {
   std::optional<double> below, above;
   void declare(Parameters& p);
 };
+struct StressCondition {
+  static constexpr const char* type_name = "stress";
+  static constexpr const char* type_doc = "a component of the stress of the specimen has reached a value";
+  std::string component = "zz";
+  double value = 0, within = 0.01;
+  void declare(Parameters& p);
+};
 struct PressureCondition {
   static constexpr const char* type_name = "pressure";
   static constexpr const char* type_doc = "the pressure on a wall has reached a value";
@@ -344,8 +370,8 @@ struct AnyCondition : Conditions {
 };
 struct Condition {
   OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, AtRestCondition,
-        KineticEnergyCondition, VoidRatioCondition, MeanStressCondition, PressureCondition, DischargedCondition,
-        AllCondition, AnyCondition>
+        KineticEnergyCondition, VoidRatioCondition, MeanStressCondition, StressCondition, PressureCondition,
+        DischargedCondition, AllCondition, AnyCondition>
       is{"condition"};
   void declare(Parameters& p) { p.choose(is); }
 };

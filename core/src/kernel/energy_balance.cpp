@@ -131,7 +131,7 @@ double EnergyBalance::power_of_flow() const {
 }
 
 void EnergyBalance::find_crossing() {
-  if (!state_.bodies.energies() || !state_.cell.deforms()) return;
+  if (!state_.bodies.energies() || !state_.deforms()) return;
   const Stopwatch watch(passes_.time_of(StepPhase::contacts));
   const Bodies& bodies = state_.bodies;
   passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) {

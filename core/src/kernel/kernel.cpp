@@ -10,6 +10,7 @@
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
+#include "kernel/cell_servo.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
@@ -78,7 +79,7 @@ void Kernel::apply(const SceneDescription& scene, const Components& components) 
   };
   const double kinetic_before = kinetic();
   if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
-  change_strain_rate(state_.settings.strain_rate);
+  change_strain_rate(state_, prescribed_strain_rate(state_));
   balance_.add_settings(kinetic() - kinetic_before);
   update_cross_section(state_);
   guard_.restart();
@@ -120,26 +121,6 @@ void Kernel::flatten(int axis) {
     bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
     bodies.spin[i] = {w.x(), w.y(), w.z(), bodies.spin[i].w};
   }
-}
-
-void Kernel::change_strain_rate(const Vec3& rate) {
-  const Vec3 change = rate - state_.cell.cell().strain_rate;
-  if (change.isZero(0.0)) return;
-  Bodies& bodies = state_.bodies;
-  const Vec3 centre = state_.cell.centre(), period = state_.cell.lengths();
-  const auto flow = [&](const Vec3& place) -> Vec3 { return change.cwiseProduct(place - centre); };
-  for (Clump& clump : bodies.clumps.clump) clump.velocity += flow(clump.centre);
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    Vec3 v = flow(xyz(bodies.position[i]));
-    if (const std::uint32_t c = bodies.clumps.clump_of(i); c != no_clump) {
-      const auto& periods = bodies.clumps.of_body[i].periods;
-      v = flow(bodies.clumps.clump[c].centre);
-      for (int k = 0; k < 3; ++k)
-        if (state_.cell.cell().periodic[k]) v[k] -= periods[static_cast<std::size_t>(k)] * change[k] * period[k];
-    }
-    bodies.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
-  }
-  state_.cell.set_strain_rate(rate, state_.time.previous_dt);
 }
 
 void Kernel::count_in(std::size_t first, std::size_t first_clump) {
@@ -213,6 +194,11 @@ void Kernel::find_forces() {
 void Kernel::step_on() {
   let_in();
   stepper_.step_on();
+}
+
+std::string Kernel::fallen_behind() const {
+  const std::string walls = state_.walls.fallen_behind(), cell = cell_servo_behind(state_, passes_);
+  return walls + (walls.empty() || cell.empty() ? "" : "; ") + cell;
 }
 
 double Kernel::kinetic_energy_ratio() const {

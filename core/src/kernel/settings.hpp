@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct Settings {
   std::map<std::string, std::shared_ptr<Engine>> engines;  ///< by name
   std::vector<Engine*> force_engines;                      ///< those of phase `forces`, by name
   MotionSettings motion;
-  Vec3 strain_rate = Vec3::Zero();      ///< of the cell [1/s]
+  Vec3 strain_rate = Vec3::Zero();  ///< of the cell [1/s]
+  std::optional<CellServoDescription> cell_servo;
   std::vector<std::string> open_sides;  ///< of the domain, as "-x", "+z"
   SpecimenDescription specimen;
   TimeStepDescription time_step;

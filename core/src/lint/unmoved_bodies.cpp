@@ -41,7 +41,7 @@ std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World&
   const bool still = always_by_engines(described, [&](const SceneDescription& now, const EngineMap& engines) {
     const auto is_force = [](const auto& one) { return one.second->phase() == Phase::forces; };
     return settings_of(engines).gravity.isZero(0.0) && std::ranges::none_of(engines, is_force) &&
-           now.domain.strain_rate.isZero(0.0) && has_walls_at_rest(now, start);
+           !now.domain.deforms() && has_walls_at_rest(now, start);
   });
   if (!still) return std::nullopt;
   return UnusedSetting{

@@ -1,0 +1,153 @@
+#include "kernel/cell_servo.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace grit {
+namespace {
+
+constexpr double most_behind = 0.05;
+// Evaluations over which strain rates are averaged. Fewer make a soft packing oscillate: with a tangent stiffness of
+// 1 % of that of the mean flow, 100 damp by half of the critical value, 10 by a sixth.
+constexpr double habit_evaluations = 100;
+
+/// Stress of a cell and its change with strain if all bodies move with the mean flow, times the volume [N m].
+struct Response {
+  Vec3 stress = Vec3::Zero();
+  Mat3 stiffness = Mat3::Zero();
+  friend Response operator+(const Response& a, const Response& b) {
+    return {a.stress + b.stress, a.stiffness + b.stiffness};
+  }
+};
+
+/// Adds a contact with this unit normal and branch [m], force on its far end [N] and stiffness.
+void add(Response& all, const Vec3& normal, const Vec3& branch, const Vec3& force, const Stiffness& k) {
+  all.stress += force.cwiseProduct(branch);
+  const Vec3 along = normal.cwiseProduct(branch);
+  all.stiffness += (k.normal - k.shear) * along * along.transpose();
+  all.stiffness.diagonal() += k.shear * branch.cwiseAbs2();
+}
+
+Response response_of_chunk(const State& state, std::size_t chunk) {
+  Response all;
+  const Bodies& bodies = state.bodies;
+  // Branches are between the centres of clumps.
+  const auto arm = [&](std::uint32_t body) -> Vec3 {
+    const std::uint32_t c = bodies.clumps.clump_of(body);
+    return c == no_clump ? Vec3(Vec3::Zero()) : Vec3(bodies.clumps.clump[c].axes * bodies.clumps.of_body[body].place);
+  };
+  state.pairs.each_contact(chunk, state.instant(true), [&](std::size_t c, const ContactRow& row) {
+    const std::uint32_t a = state.pairs.a(c), b = state.pairs.b(c);
+    const Vec3 centres = state.pairs.branch(c, bodies, state.cell.images());
+    const PairSize size{.radius_a = bodies.position[a].w,
+                        .radius_b = bodies.position[b].w,
+                        .inverse_mass_a = bodies.velocity[a].w,
+                        .inverse_mass_b = bodies.velocity[b].w,
+                        .overlap = row.moment.w};
+    add(all, centres.normalized(), centres + arm(a) - arm(b), xyz(row.force),
+        state.settings.law->stiffness(size, bodies.material[a], bodies.material[b]));
+  });
+  state.wall_contacts.each(chunk, [&](const WallContacts::Touching& t) {
+    const std::uint32_t a = t.contact->body;
+    const double radius = bodies.position[a].w;
+    const PairSize size{.radius_a = radius,
+                        .radius_b = radius,
+                        .inverse_mass_a = bodies.velocity[a].w,
+                        .inverse_mass_b = 0,
+                        .overlap = t.contact->overlap,
+                        .wall = true};
+    add(all, t.contact->normal, (radius - t.contact->overlap) * t.contact->normal + arm(a), xyz(t.row->force),
+        state.settings.law->stiffness(size, bodies.material[a], t.contact->material));
+  });
+  return all;
+}
+
+/// Stress and stiffness of the cell [Pa].
+Response response(const State& state, Passes& passes) {
+  const Response all = passes.sum([&](std::size_t chunk) { return response_of_chunk(state, chunk); });
+  const double volume = state.cell.lengths().prod();
+  return {all.stress / volume, all.stiffness / volume};
+}
+
+}  // namespace
+
+bool CellServo::due(const State& state) {
+  const auto& servo = state.settings.cell_servo;
+  return servo && state.time.step % static_cast<std::uint64_t>(servo->interval) == 0;
+}
+
+Vec3 CellServo::strain_rate(const State& state, Passes& passes) {
+  const CellServoDescription& servo = *state.settings.cell_servo;
+  const auto targets = servo.targets();
+  const Response now = response(state, passes);
+  const double time = static_cast<double>(servo.interval) * state.time.dt;
+  Vec3 rate = state.cell.cell().strain_rate;
+  for (int k = 0; k < 3; ++k) {
+    const auto& target = targets[static_cast<std::size_t>(k)];
+    if (!target) {
+      habit_[k] = 0;
+      continue;
+    }
+    // A strain along one axis changes the stresses along others. The sum bounds the eigenvalues of the whole.
+    double stiffness = 0;
+    for (int other = 0; other < 3; ++other)
+      if (targets[static_cast<std::size_t>(other)]) stiffness += std::abs(now.stiffness(k, other));
+    const double missing = *target - now.stress[k], most = servo.max_strain_rate;
+    const double wanted = habit_[k] - (missing == 0 ? 0 : servo.gain * missing / (stiffness * time));
+    rate[k] = std::clamp(wanted, -most, most);
+    // At the limit the average would delay the reaction when the stress is reached.
+    habit_[k] = rate[k] == wanted ? habit_[k] + (rate[k] - habit_[k]) / habit_evaluations : 0;
+  }
+  return rate;
+}
+
+Vec3 prescribed_strain_rate(const State& state) {
+  Vec3 rate = state.settings.strain_rate;
+  if (!state.settings.cell_servo) return rate;
+  const auto targets = state.settings.cell_servo->targets();
+  for (int k = 0; k < 3; ++k)
+    if (targets[static_cast<std::size_t>(k)]) rate[k] = state.cell.cell().strain_rate[k];
+  return rate;
+}
+
+void change_strain_rate(State& state, const Vec3& rate) {
+  const Vec3 change = rate - state.cell.cell().strain_rate;
+  if (change.isZero(0.0)) return;
+  Bodies& bodies = state.bodies;
+  const Vec3 centre = state.cell.centre(), period = state.cell.lengths();
+  const auto flow = [&](const Vec3& place) -> Vec3 { return change.cwiseProduct(place - centre); };
+  for (Clump& clump : bodies.clumps.clump) clump.velocity += flow(clump.centre);
+  for (std::size_t i = 0; i < bodies.count(); ++i) {
+    Vec3 v = flow(xyz(bodies.position[i]));
+    if (const std::uint32_t c = bodies.clumps.clump_of(i); c != no_clump) {
+      const auto& periods = bodies.clumps.of_body[i].periods;
+      v = flow(bodies.clumps.clump[c].centre);
+      for (int k = 0; k < 3; ++k)
+        if (state.cell.cell().periodic[k]) v[k] -= periods[static_cast<std::size_t>(k)] * change[k] * period[k];
+    }
+    bodies.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
+  }
+  state.cell.set_strain_rate(rate, state.time.previous_dt);
+}
+
+std::string cell_servo_behind(const State& state, Passes& passes) {
+  if (!state.settings.cell_servo) return "";
+  const CellServoDescription& servo = *state.settings.cell_servo;
+  const auto targets = servo.targets();
+  const Vec3 stress = response(state, passes).stress, rate = state.cell.cell().strain_rate;
+  std::string words;
+  for (int k = 0; k < 3; ++k) {
+    const auto& target = targets[static_cast<std::size_t>(k)];
+    if (!target || std::abs(rate[k]) < (1 - 1e-9) * servo.max_strain_rate ||
+        std::abs(stress[k] - *target) <= most_behind * std::abs(*target))
+      continue;
+    words += fmt::format(
+        "{}servo of the cell is limited by its max_strain_rate of {:g} 1/s: stress {} {:.4g} Pa, target {:.4g}",
+        words.empty() ? "" : "; ", servo.max_strain_rate, std::string(2, "xyz"[k]), stress[k], *target);
+  }
+  return words;
+}
+
+}  // namespace grit
