@@ -44,12 +44,24 @@ Description cell() {
 /// The same under prescribed stresses, of which one changes, then at a strain rate along one axis.
 Description cell_under_stress() {
   Description d = cell();
+  d["stages"] = {stage("fast", steps(400)), stage("slow", steps(300))};
   d["domain"].erase("strain_rate");
   d["domain"]["servo"] = {
       {"stress", {{"xx", 1e4}, {"yy", 1e4}, {"zz", 1e4}}}, {"max_strain_rate", 50}, {"interval", 3}};
   d["stages"][0]["ramps"] = {
       {{"pointer", "/domain/servo/stress/zz"}, {"from", 1e4}, {"to", 2e4}, {"duration", 2e-3}, {"increments", 40}}};
   d["stages"][1]["change"]["domain"] = {{"servo", {{"stress", {{"zz", nullptr}}}}}, {"strain_rate", {0, 0, -20}}};
+  return d;
+}
+
+/// The same sheared, first at a rate, then by a stress, with clumps.
+Description sheared_cell() {
+  Description d = cell();
+  make_clumps(d, boomerang());
+  d["domain"].erase("strain_rate");
+  d["domain"]["shear_rate"] = {{"xz", 300}, {"xy", -200}};
+  d["domain"]["servo"] = {{"stress", {{"zz", 1e4}}}, {"max_strain_rate", 50}, {"interval", 3}};
+  d["stages"][1]["change"]["domain"] = {{"shear_rate", {{"xz", nullptr}}}, {"servo", {{"stress", {{"xz", -3e3}}}}}};
   return d;
 }
 
@@ -287,10 +299,10 @@ TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Of, Resume,
                          testing::Values(Case{"cell", cell}, Case{"cell_under_stress", cell_under_stress},
-                                         Case{"servo", [] { return servo(); }}, Case{"braking_servo", braking},
-                                         Case{"stiffening", stiffening}, Case{"loose_walls", loose}, Case{"fast", fast},
-                                         Case{"pouring", pouring}, Case{"clumps", clumps}, Case{"silo", silo},
-                                         Case{"every_probe", every_probe}),
+                                         Case{"sheared_cell", sheared_cell}, Case{"servo", [] { return servo(); }},
+                                         Case{"braking_servo", braking}, Case{"stiffening", stiffening},
+                                         Case{"loose_walls", loose}, Case{"fast", fast}, Case{"pouring", pouring},
+                                         Case{"clumps", clumps}, Case{"silo", silo}, Case{"every_probe", every_probe}),
                          [](const auto& info) { return info.param.name; });
 
 /// At the steps around a search, where lists are new or expired.

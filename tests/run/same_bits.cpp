@@ -40,6 +40,15 @@ Description periodic() {
   return d;
 }
 
+/// The same, sheared at constant normal stress.
+Description sheared() {
+  Description d = periodic();
+  d["domain"].erase("strain_rate");
+  d["domain"]["shear_rate"] = {{"xz", 150}, {"yz", -100}};
+  d["domain"]["servo"] = {{"stress", {{"zz", 2e4}, {"xy", 0}}}, {"max_strain_rate", 50}, {"interval", 7}};
+  return d;
+}
+
 /// The same under prescribed stresses along x and y.
 Description under_stress() {
   Description d = periodic();
@@ -94,6 +103,7 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
   expect_energies_change_nothing(boxed());
   expect_energies_change_nothing(periodic());
   expect_energies_change_nothing(under_stress());
+  expect_energies_change_nothing(sheared());
   expect_energies_change_nothing(stiffening());
   Description held = periodic();
   held["engines"]["hold"] = {{"type", "hold"}}, held["guards"]["overlap"] = 0.9;
@@ -103,6 +113,7 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
 TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
 TEST(SameBits, OfAPeriodicPackingUnderPrescribedStresses) { expect_same_bits(under_stress()); }
+TEST(SameBits, OfAPackingThatIsSheared) { expect_same_bits(sheared()); }
 TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }
 
 TEST(SameBits, OfOneThatIsPressedAndShortensTheTimeStep) {

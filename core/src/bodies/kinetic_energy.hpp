@@ -11,6 +11,7 @@ namespace grit {
 struct Accelerating {
   Vec3 free_translation = Vec3::Ones(), free_rotation = Vec3::Ones();  ///< 0 along (or about) held axes
   Vec3 strain_rate = Vec3::Zero();  ///< of a cell with whose mean flow bodies move [1/s]
+  Vec3 shear_rate = Vec3::Zero();   ///< the same, see Cell
 };
 
 /// Kinetic energy of translation and rotation [J], with velocities advanced by `half_step` [s] with the present

@@ -148,6 +148,17 @@ void check_weight(const SceneDescription& scene, const Complain& complain) {
                "only one of them, as weight would grow with the scaled mass; remove one");
 }
 
+/// Walls and sources of bodies know no images off the axes.
+void check_shear(const SceneDescription& scene, const Complain& complain) {
+  if (!scene.domain.shears()) return;
+  for (const auto& [name, wall] : scene.walls)
+    complain("walls/" + name, "a wall in a domain that shears", "a domain without walls; or no shear of /domain");
+  for (const auto& [name, group] : scene.bodies)
+    if (!group.stage.empty() || std::holds_alternative<StreamSource>(group.source.value()))
+      complain("bodies/" + name, "bodies that appear during the run in a domain that shears",
+               "bodies from the start; or no shear of /domain");
+}
+
 void check_followers(const SceneDescription& scene, const Complain& complain) {
   const References known("wall", keys(scene.walls), complain);
   for (const auto& [name, wall] : scene.walls)
@@ -454,6 +465,16 @@ void InterfaceDescription::declare(ContactLaw* law, Parameters& p) {
 void CellStressDescription::declare(Parameters& p) {
   for (const auto& [name, value] : {std::pair("xx", &xx), std::pair("yy", &yy), std::pair("zz", &zz)})
     p.add(name, *value).unit("Pa").symbol(std::string("sigma_") + name).doc("target, compression positive");
+  for (const auto& [name, value] : {std::pair("xy", &xy), std::pair("xz", &xz), std::pair("yz", &yz)})
+    p.add(name, *value)
+        .unit("Pa")
+        .symbol(std::string("sigma_") + name)
+        .doc("target; a positive shear rate makes it negative, as extension does with normal stresses");
+}
+void ShearRateDescription::declare(Parameters& p) {
+  p.add("xy", xy).unit("1/s").symbol("gamma_dot_xy").doc("gradient of the velocity along x in the direction y");
+  p.add("xz", xz).unit("1/s").symbol("gamma_dot_xz").doc("gradient of the velocity along x in the direction z");
+  p.add("yz", yz).unit("1/s").symbol("gamma_dot_yz").doc("gradient of the velocity along y in the direction z");
 }
 void CellServoDescription::declare(Parameters& p) {
   p.add("stress", stress)
@@ -471,7 +492,7 @@ void CellServoDescription::declare(Parameters& p) {
   p.add("interval", interval).at_least(1).at_most(1000).doc("steps between evaluations of the stress");
 }
 const std::vector<std::string>& DomainDescription::changeable() {
-  static const std::vector<std::string> keys{"strain_rate", "servo"};
+  static const std::vector<std::string> keys{"strain_rate", "shear_rate", "servo"};
   return keys;
 }
 void DomainDescription::declare(Parameters& p) {
@@ -482,6 +503,7 @@ void DomainDescription::declare(Parameters& p) {
       .unit("1/s")
       .symbol("eps_dot")
       .doc("strain rate along periodic axes, positive in extension");
+  p.add("shear_rate", shear_rate).doc("simple shear of a domain that is periodic along all axes, without walls");
   p.add("servo", servo).doc("strain rates that keep stresses of a cell that is periodic along all axes");
   p.add("open_sides", open_sides)
       .doc("sides through which bodies may leave; they are removed: -x, +x, -y, +y, -z, +z; elsewhere it is an error");
@@ -500,19 +522,27 @@ void DomainDescription::declare(Parameters& p) {
       {"low", "high", "periodic", "strain_rate"});
   p.check(
       [this](const Complain& complain) {
+        const bool periodic_everywhere = periodic[0] && periodic[1] && periodic[2];
+        const Vec3 shear = shear_rate.vector();
+        if (!shear.isZero(0.0) && !periodic_everywhere)
+          complain("shear_rate", "shear of a domain that is not periodic along all axes",
+                   "one with domain/periodic along x, y and z");
         if (!servo) return;
-        if (!(periodic[0] && periodic[1] && periodic[2]))
+        if (!periodic_everywhere)
           complain("servo", "a servo of a domain that is not periodic along all axes",
                    "one with domain/periodic along x, y and z");
         const auto targets = servo->targets();
         if (std::ranges::none_of(targets, [](const auto& one) { return one.has_value(); }))
           complain("servo/stress", "no target stress", "at least one, or no servo");
-        for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t k = 0; k < 3; ++k) {
           if (targets[k] && strain_rate[static_cast<int>(k)] != 0)
-            complain("servo/stress/" + std::string(2, "xyz"[k]), "a target along an axis that has a strain rate",
+            complain("servo/stress/" + cell_components[k], "a target along an axis that has a strain rate",
                      "one of them");
+          if (targets[k + 3] && shear[static_cast<int>(k)] != 0)
+            complain("servo/stress/" + cell_components[k + 3], "a target together with a shear rate", "one of them");
+        }
       },
-      {"servo", "periodic", "strain_rate"});
+      {"servo", "periodic", "strain_rate", "shear_rate"});
   p.check(
       [this](const Complain& complain) {
         for (std::size_t i = 0; i < open_sides.size(); ++i) {
@@ -639,7 +669,9 @@ void MeanStressCondition::declare(Parameters& p) {
   });
 }
 void StressCondition::declare(Parameters& p) {
-  p.add("component", component).one_of({"xx", "yy", "zz"}).doc("component of the stress tensor");
+  p.add("component", component)
+      .one_of({cell_components.begin(), cell_components.end()})
+      .doc("component of the stress tensor");
   p.add("value", value).unit("Pa").symbol("sigma").required().doc("stress, compression positive");
   p.add("within", within).above(0).at_most(1).doc("relative tolerance");
 }
@@ -706,7 +738,8 @@ void StageDescription::declare(Parameters& p) {
   p.add("change", change)
       .doc("merge patch (RFC 7396) of the description from this stage on; allowed sections: " +
            any_of(SceneDescription::changeable(), "").substr(7) +
-           "; in domain only strain_rate and servo; the geometry of a wall is that before its motion, which is added "
+           "; in domain only strain_rate, shear_rate and servo; the geometry of a wall is that before its motion, "
+           "which is added "
            "to it");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
   p.add("growth", growth).doc("growth of all bodies during the stage; default: none");
@@ -895,6 +928,7 @@ void SceneDescription::check_together(const Complain& complain) const {
   check_weight(*this, complain);
   check_materials_of_walls(*this, complain);
   check_followers(*this, complain);
+  check_shear(*this, complain);
 }
 
 void SceneDescription::declare(Parameters& p) {
@@ -935,6 +969,7 @@ void SceneDescription::declare(Parameters& p) {
       {"bodies", "stages"});
   p.check_names([this](const Complain& complain) { check_materials_of_walls(*this, complain); });
   p.check_names([this](const Complain& complain) { check_followers(*this, complain); });
+  p.check([this](const Complain& complain) { check_shear(*this, complain); }, {"domain", "walls", "bodies"});
   p.check_names([this](const Complain& complain) {
     const References known("wall", keys(walls), complain);
     for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})

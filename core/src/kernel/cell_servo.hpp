@@ -1,4 +1,4 @@
-// Stress of a periodic cell, and the strain rates that keep it.
+// Stress of a periodic cell, and the rates of deformation that keep it.
 #pragma once
 
 #include <string>
@@ -9,25 +9,30 @@
 
 namespace grit {
 
+/// Components xx, yy, zz, xy, xz, yz: strain rates, then shear rates [1/s].
+using CellRates = Eigen::Matrix<double, 6, 1>;
+
 class CellServo {
  public:
-  /// Whether the strain rate is set before the next motion; forces must then be known.
+  /// Whether rates are set before the next motion; forces must then be known.
   static bool due(const State& state);
-  /// The strain rate of the next steps [1/s]. In an interval it changes each stress by the missing one, if bodies move
-  /// with the mean flow. They give way to forces instead, so that a packing is softer and this is stable.
-  Vec3 strain_rate(const State& state, Passes& passes);
+  /// The rates of the next steps. In an interval they change each stress by the missing one, if bodies move with the
+  /// mean flow. They give way to forces instead, so that a packing is softer and this is stable.
+  CellRates rates(const State& state, Passes& passes);
 
-  void serialize(Archive& archive) { archive(habit_); }
+  void serialize(Archive& archive) {
+    for (double& rate : habit_) archive(rate);
+  }
 
  private:
-  /// Strain rate averaged over the last evaluations [1/s]; it keeps the stress in steady deformation without an error.
-  Vec3 habit_ = Vec3::Zero();
+  /// Rates averaged over the last evaluations; they keep stresses in steady deformation without an error.
+  CellRates habit_ = CellRates::Zero();
 };
 
-/// Strain rate of the description [1/s], and the present one where the servo sets it.
-Vec3 prescribed_strain_rate(const State& state);
-/// Sets the strain rate of the cell, and adds the change of the mean flow to the velocities of bodies.
-void change_strain_rate(State& state, const Vec3& rate);
+/// Rates of the description, and the present ones where the servo sets them.
+CellRates prescribed_rates(const State& state);
+/// Sets the rates of the cell, and adds the change of the mean flow to the velocities of bodies.
+void change_rates(State& state, const CellRates& rates);
 /// Message for each stress that misses its target by more than a twentieth at the maximum strain rate; empty if there
 /// is none. Uses the present forces.
 std::string cell_servo_behind(const State& state, Passes& passes);

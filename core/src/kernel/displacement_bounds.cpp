@@ -78,9 +78,9 @@ void DisplacementBounds::check_foreseen(const State& state, double dt, Passes& p
 
 void DisplacementBounds::advance(State& state, Passes& passes) {
   const double dt = state.time.previous_dt;
-  const double strained = dt * state.cell.cell().strain_rate.cwiseAbs().maxCoeff() * 2 *
-                              (state.statistics.largest_radius + state.lists.skins().largest()) +
-                          2 * grown_;
+  const double strained =
+      dt * state.cell.largest_rate() * 2 * (state.statistics.largest_radius + state.lists.skins().largest()) +
+      2 * grown_;
   const double gone = state.lists.advance(dt, strained, passes);
   double fastest = 0;
   bool finite = true;

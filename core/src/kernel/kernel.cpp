@@ -60,6 +60,7 @@ Kernel::Kernel(const SceneDescription& scene, const Components& components, Bodi
 void Kernel::begin_stage(const std::string& name, const SceneDescription& scene, const Components& components) {
   state_.stage = name;
   state_.bodies.start_paths();
+  state_.cell.begin_stage();
   state_.walls.apply(scene, components);
   apply(scene, components);
   admit(scene, components);
@@ -79,7 +80,7 @@ void Kernel::apply(const SceneDescription& scene, const Components& components) 
   };
   const double kinetic_before = kinetic();
   if (state_.settings.motion.flat) flatten(*state_.settings.motion.flat);
-  change_strain_rate(state_, prescribed_strain_rate(state_));
+  change_rates(state_, prescribed_rates(state_));
   balance_.add_settings(kinetic() - kinetic_before);
   update_cross_section(state_);
   guard_.restart();

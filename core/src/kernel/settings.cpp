@@ -22,8 +22,8 @@ Settings settings_of(const SceneDescription& scene, const Components& components
     if (engine->phase() == Phase::settings) engine->settings(now.motion);
     else now.force_engines.push_back(engine.get());
   }
-  now.strain_rate = scene.domain.strain_rate, now.cell_servo = scene.domain.servo;
-  now.open_sides = scene.domain.open_sides;
+  now.strain_rate = scene.domain.strain_rate, now.shear_rate = scene.domain.shear_rate.vector();
+  now.cell_servo = scene.domain.servo, now.open_sides = scene.domain.open_sides;
   now.specimen = scene.specimen, now.time_step = scene.time_step, now.guards = scene.guards;
   now.growth_rate = growth_rate(scene, stage);
   now.may_clump =

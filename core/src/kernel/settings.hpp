@@ -23,6 +23,7 @@ struct Settings {
   std::vector<Engine*> force_engines;                      ///< those of phase `forces`, by name
   MotionSettings motion;
   Vec3 strain_rate = Vec3::Zero();  ///< of the cell [1/s]
+  Vec3 shear_rate = Vec3::Zero();   ///< the same, see Cell
   std::optional<CellServoDescription> cell_servo;
   std::vector<std::string> open_sides;  ///< of the domain, as "-x", "+z"
   SpecimenDescription specimen;

@@ -37,8 +37,12 @@ void Stepper::rebuild() {
   check_periods(state_);
   repeat_walls(state_);
   Bodies& bodies = state_.bodies;
-  const DeformingCell& cell = state_.cell;
-  const Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt),
+  DeformingCell& cell = state_.cell;
+  if (const Eigen::Matrix3i moved = cell.reduce_tilt(); !moved.isIdentity()) {
+    change_periods(bodies, moved);
+    cell.update_images(state_.time.previous_dt);
+  }
+  const Wrapped wrapped = wrap(bodies, cell.cell(), cell.image_velocities(state_.time.previous_dt),
                                state_.settings.open_sides, [this](std::size_t body, int axis, bool high) {
                                  fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
                                               "left the domain through its " + std::string(high ? "upper" : "lower") +
@@ -195,9 +199,9 @@ void Stepper::move_clumps_of_chunks(const MotionStep& step) {
 
 void Stepper::drive_cell() {
   const Stopwatch watch(passes_.time_of(StepPhase::contacts));
-  const Vec3 rate = cell_servo_.strain_rate(state_, passes_);
+  const CellRates rates = cell_servo_.rates(state_, passes_);
   const double kinetic_before = balance_.is_kept() ? balance_.kinetic() : 0;
-  change_strain_rate(state_, rate);
+  change_rates(state_, rates);
   view_.invalidate_forces();
   balance_.add_cell((balance_.is_kept() ? balance_.kinetic() : 0) - kinetic_before);
 }

@@ -38,7 +38,7 @@ double product(const Quad& a, const Quad& b) { return a[0] * b[0] + a[1] * b[1] 
 enum class EnergyTerms { none, without_weight, with_weight, with_flow };
 
 /// Not inlined: with all variants in one function, their constants would be in memory.
-template <EnergyTerms energies, bool Clumps>
+template <EnergyTerms energies, bool Clumps, bool Shears>
 [[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const MotionSettings& settings = step.settings;
@@ -46,6 +46,11 @@ template <EnergyTerms energies, bool Clumps>
   // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's
   // sides.
   const Quad growth = rate * step.flowed;
+  [[maybe_unused]] const double xy = step.shear_rate[0], xz = step.shear_rate[1], yz = step.shear_rate[2];
+  // Of velocities that the gradients xy, xz and yz add.
+  [[maybe_unused]] const auto sheared = [&](const Quad& place) {
+    return Quad{xy * place[1] + xz * place[2], yz * place[2], 0, 0};
+  };
   // The fourth number of a row (radius, 1/mass, 1/inertia) is unchanged.
   const Quad free = quad(step.free_translation());
   const Quad kick = step.kick * free, turn_kick = step.kick * quad(step.free_rotation());
@@ -63,8 +68,9 @@ template <EnergyTerms energies, bool Clumps>
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
-        const Quad v = load(velocity[i]), before = load(position[i]) - v * drift,
-                   against = v - rate * (before - centre);
+        const Quad v = load(velocity[i]), before = load(position[i]) - v * drift;
+        Quad against = v - rate * (before - centre);
+        if constexpr (Shears) against -= sheared(before - centre);
         fastest_carried = std::max(fastest_carried, product(against, against));
         poison += v * 0.0 + load(spin[i]) * 0.0;
         turn_on(turned, i, load(spin[i]), drift);
@@ -75,7 +81,8 @@ template <EnergyTerms energies, bool Clumps>
     const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
     const Quad before = v;
     v += growth * v;
-    const Quad flow = rate * (x - centre);
+    Quad flow = rate * (x - centre);
+    if constexpr (Shears) v += step.flowed * sheared(before), flow += sheared(x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
     const double mass = falls ? 1 / inverse_mass : 0;
@@ -93,6 +100,7 @@ template <EnergyTerms energies, bool Clumps>
     x += v * drift;
     if constexpr (falls) momentum += v * mass;
     if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
+    if constexpr (flows && Shears) flow_work += 0.5 * mass * step.flowed * sheared(before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
     turn_on(turned, i, w, drift);
     const Quad speed = absolute(v - flow);
@@ -121,9 +129,16 @@ Vec3 MotionStep::free_rotation() const {
 
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const auto with = [&]<EnergyTerms energies>() {
-    return bodies.clumps.none() ? move<energies, false>(chunk, bodies, sum, step)
-                                : move<energies, true>(chunk, bodies, sum, step);
+    return bodies.clumps.none() ? move<energies, false, false>(chunk, bodies, sum, step)
+                                : move<energies, true, false>(chunk, bodies, sum, step);
   };
+  if (step.shears()) {
+    const auto sheared = [&]<EnergyTerms energies>() {
+      return bodies.clumps.none() ? move<energies, false, true>(chunk, bodies, sum, step)
+                                  : move<energies, true, true>(chunk, bodies, sum, step);
+    };
+    return step.energies ? sheared.operator()<EnergyTerms::with_flow>() : sheared.operator()<EnergyTerms::none>();
+  }
   if (!step.energies) return with.operator()<EnergyTerms::none>();
   if (step.flows()) return with.operator()<EnergyTerms::with_flow>();
   return step.settings.gravity.isZero(0.0) ? with.operator()<EnergyTerms::without_weight>()

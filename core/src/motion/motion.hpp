@@ -19,8 +19,11 @@ struct MotionStep {
   Vec3 period;         ///< of the cell after the step [m]; 0 along axes that are not periodic
   Vec3 period_growth;  ///< m/s
   bool energies;       ///< whether the energies of Motion are needed
+  Vec3 shear_rate = Vec3::Zero();                        ///< see Cell
+  Vec3 tilt = Vec3::Zero(), tilt_growth = Vec3::Zero();  ///< of the cell after the step [m, m/s]
 
-  bool flows() const { return !strain_rate.isZero(0.0); }
+  bool shears() const { return !shear_rate.isZero(0.0); }
+  bool flows() const { return !strain_rate.isZero(0.0) || shears(); }
   /// 1 for axes along (or about) which bodies may move, 0 for others.
   Vec3 free_translation() const;
   Vec3 free_rotation() const;

@@ -4,10 +4,12 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <deque>
 #include <functional>
 #include <regex>
+#include <tuple>
 
 #include "grit/plugin.hpp"
 #include "grit/toolkit/grain_masses.hpp"
@@ -41,6 +43,23 @@ struct Variable {
   double value = 0;
 };
 
+/// Lengths, strains and stresses of a periodic cell.
+template <class Add>
+void add_cell(const Add& add) {
+  for (int k = 0; k < 3; ++k) {
+    const char axis = "xyz"[k];
+    add(std::string("cell_length_") + axis, [k](const World& w) { return w.cell().high[k] - w.cell().low[k]; });
+    add(std::string("cell_stage_length_") + axis, [k](const World& w) { return w.cell().stage_lengths[k]; });
+    add(std::string("cell_shear_strain_") + std::array{"xy", "xz", "yz"}[static_cast<std::size_t>(k)],
+        [k](const World& w) { return w.cell().stage_shear_strain[k]; });
+  }
+  for (const auto& [name, row, column] : {std::tuple("xx", 0, 0), std::tuple("yy", 1, 1), std::tuple("zz", 2, 2),
+                                          std::tuple("xy", 0, 1), std::tuple("xz", 0, 2), std::tuple("yz", 1, 2)})
+    add(std::string("stress_") + name, [row = row, column = column](const World& w) {
+      return mean_stress(w, {w.cell().low, w.cell().high})(row, column);
+    });
+}
+
 std::deque<Variable> variables_of(const World& world) {
   std::deque<Variable> variables;
   const auto add = [&](std::string name, std::function<double(const World&)> read) {
@@ -59,6 +78,7 @@ std::deque<Variable> variables_of(const World& world) {
   for (int k = 0; k < 3; ++k)
     add(std::string("centre_") + "xyz"[k],
         [k](const World& w) { return over_masses(w, [k](const Vec3& centre) { return centre[k]; }) / mass_of(w); });
+  if (world.cell().periodic_everywhere()) add_cell(add);
   for (std::size_t i = 0; i < world.walls().size(); ++i) {
     const std::string stem = wall_stem(world.walls()[i].name);
     for (const auto& [suffix, member] : wall_vectors)
@@ -75,6 +95,10 @@ std::deque<Variable> variables_of(const World& world) {
 std::string known_names(const World& world, const std::map<std::string, FormulaProbe::Constant>& constants) {
   std::string known = "time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z";
   for (const auto& constant : constants) known += ", " + constant.first;
+  if (world.cell().periodic_everywhere())
+    known +=
+        "; of the periodic cell: cell_length_x/_y/_z, cell_stage_length_x/_y/_z, cell_shear_strain_xy/_xz/_yz, "
+        "stress_xx/_yy/_zz/_xy/_xz/_yz";
   if (world.walls().empty()) return known;
   std::vector<std::string> stems;
   for (const auto& name : wall_names(world)) stems.push_back(wall_stem(name));
