@@ -14,7 +14,7 @@ TEST(Boundaries, BodiesReEnterAtTheOtherSideWithTheFlowThere) {
   State state = two_spheres(0.004, box({true, false, false}));
   state.bodies.position[1].x = 0.012;
   set_velocity(state, 1, {1, 0, 0});
-  const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), {0.5, 0, 0}, {}, must_not_escape);
+  const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), Vec3(0.5, 0, 0).asDiagonal(), {}, must_not_escape);
   EXPECT_DOUBLE_EQ(state.bodies.position[1].x, -0.008);
   EXPECT_DOUBLE_EQ(state.bodies.velocity[1].x, 0.5) << "the opposite side of the cell moves faster by 0.5 m/s";
   EXPECT_NEAR(wrapped.energy_gained, 0.5 * sphere_mass() * (0.25 - 1), 1e-12 * sphere_mass());
@@ -22,13 +22,28 @@ TEST(Boundaries, BodiesReEnterAtTheOtherSideWithTheFlowThere) {
   EXPECT_THAT(wrapped.leaves, testing::Each(false));
 }
 
+TEST(Boundaries, BodiesReEnterASkewedCellAtTheirImage) {
+  State state = two_spheres(0.004, box({true, true, true}));
+  state.cell.set_rates(Vec3::Zero(), {0, 50, 0}, 0);
+  state.cell.advance(1e-3);  // the image across z moves by 50 1/s · 20 mm · 1 ms = 1 mm along x
+  EXPECT_NEAR(state.cell.cell().tilt[1], 1e-3, 1e-18);
+  state.bodies.position[1].x = -0.0095, state.bodies.position[1].z = 0.0105;
+  set_velocity(state, 1, {2, 0, 3});
+  const Wrapped wrapped = wrap(state.bodies, state.cell.cell(), state.cell.image_velocities(1e-3), {}, must_not_escape);
+  EXPECT_NEAR(state.bodies.position[1].z, -0.0095, 1e-15);
+  EXPECT_NEAR(state.bodies.position[1].x, 0.0095, 1e-15) << "1 mm back, and then across x";
+  EXPECT_NEAR(state.bodies.velocity[1].x, 2 - 50 * 0.02, 1e-12) << "shear rate times height";
+  EXPECT_EQ(state.bodies.velocity[1].z, 3);
+  EXPECT_NEAR(wrapped.energy_gained, 0.5 * sphere_mass() * (1 - 4), 1e-12 * sphere_mass());
+}
+
 TEST(Boundaries, BodiesLeaveThroughOpenSidesAlone) {
   State state = two_spheres(0.004);
   state.bodies.position[0].z = -0.011;
-  EXPECT_EQ(wrap(state.bodies, state.cell.cell(), Vec3::Zero(), {"-z"}, must_not_escape).leaves,
+  EXPECT_EQ(wrap(state.bodies, state.cell.cell(), Mat3::Zero(), {"-z"}, must_not_escape).leaves,
             (std::vector{true, false}));
   int escaped = 0;
-  wrap(state.bodies, state.cell.cell(), Vec3::Zero(), {"+z", "-x"}, [&](std::size_t body, int axis, bool high) {
+  wrap(state.bodies, state.cell.cell(), Mat3::Zero(), {"+z", "-x"}, [&](std::size_t body, int axis, bool high) {
     EXPECT_EQ(body, 0u);
     EXPECT_EQ(axis, 2);
     EXPECT_FALSE(high);

@@ -36,12 +36,14 @@ TEST(Energies, ACellsWorkIsStoredInALattice) {
 
 // Without contacts, they move with the mean flow and re-enter with the flow of the opposite side.
 TEST(Energies, ACellsWorkMovesWhatGoesThroughIt) {
-  for (const bool clumped : {false, true}) {
+  for (const auto& [clumped, sheared] :
+       {std::pair(false, false), std::pair(true, false), std::pair(false, true), std::pair(true, true)}) {
     SCOPED_TRACE(clumped);
     Description d = periodic("linear-rolling", {}, {{Vec3::Constant(0.012), radius, {3, -2, 1}, {20, 30, 10}}},
                              Vec3::Constant(0.02), {-20, 30, 10});
     if (clumped) make_clumps(d, boomerang());
     d["time_step"]["value"] = 1e-6;
+    if (sheared) d["domain"]["shear_rate"] = {{"xy", 30}, {"xz", -50}, {"yz", 40}};
     Kept one(d);
     const double before = one.world().energies().kinetic;
     for (int round = 0; round < 20; ++round) one.kernel().request_rebuild(), one.step(1000);
@@ -85,30 +87,77 @@ TEST(Energies, OfAStrainedPackingClosesBetterWithShorterSteps) {
   }
 }
 
+TEST(Energies, OfAShearedPackingCloses) {
+  for (const auto& [clumped, kept] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+    SCOPED_TRACE(clumped);
+    Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},
+                             jumble({6, 6, 6}, 1e-3, 0.005, 5), Vec3::Constant(6e-3), {-20, -20, 0});
+    if (clumped) make_clumps(d, boomerang());
+    d["domain"]["shear_rate"] = {{"xy", 200}, {"xz", -400}, {"yz", 300}};
+    if (kept) {
+      d["domain"]["shear_rate"].erase("xy");
+      d["domain"]["servo"] = {{"stress", {{"zz", 1e5}, {"xy", 2e4}}}, {"max_strain_rate", 100}, {"interval", 5}};
+    }
+    d["time_step"]["safety"] = 0.05;
+    d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
+    Kept cell(d);
+    while (cell.world().time() < 1.5e-3) cell.step();
+    const Energies now = cell.world().energies();
+    EXPECT_GT(std::abs(now.cell), 0.1 * turnover(now));
+    EXPECT_GT(now.friction, 0.1 * turnover(now));
+    const std::string of = std::string(clumped ? "clumps" : "spheres") + (kept ? " at prescribed stresses" : "");
+    verify("closure error of sheared " + of + ", over all that is turned over", closure_fraction(now), 0, 5e-3, 1.0);
+  }
+}
+
+TEST(Energies, OfAPackingUnderPrescribedStressesCloses) {
+  for (const bool clumped : {false, true}) {
+    SCOPED_TRACE(clumped);
+    Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},
+                             jumble({6, 6, 6}, 1e-3, 0.005, 5), Vec3::Constant(6e-3), {0, 0, -30});
+    if (clumped) make_clumps(d, boomerang());
+    d["domain"]["servo"] = {{"stress", {{"xx", 5e4}, {"yy", 1e5}}}, {"max_strain_rate", 40}, {"interval", 5}};
+    d["time_step"]["safety"] = 0.05;
+    d["guards"] = {{"overlap", 0.9}, {"travel", 0.2}};
+    Kept cell(d);
+    while (cell.world().time() < 1.5e-3) cell.step();
+    const Energies now = cell.world().energies();
+    EXPECT_GT(std::abs(now.cell), 0.3 * turnover(now));
+    verify("closure error of rough " + std::string(clumped ? "clumps" : "spheres") +
+               " under prescribed stresses, over all that is turned over",
+           closure_fraction(now), 0, 5e-3, 1.0);
+  }
+}
+
 // In slow deformation, bodies are in equilibrium.
 TEST(Energies, ACellsWorkIsThatOfItsStresses) {
-  Description d = periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}},
-                           jumble({6, 6, 6}, 1e-3, 0, 5), Vec3::Constant(6e-3), {-8, -6, 4});
-  d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
-  d["time_step"]["safety"] = 0.4;
-  d["guards"]["overlap"] = 0.9;
-  Kept cell(d);
-  const auto power = [&] {
-    const Cell& now = cell.world().cell();
-    const Mat3 stress = mean_stress(cell.world(), {now.low, now.high});
-    return -(now.high - now.low).prod() * now.strain_rate.dot(stress.diagonal());
-  };
-  while (cell.world().time() < 1e-3) cell.step();
-  const double before = cell.world().energies().cell;
-  double work = 0;
-  for (double last = power(); cell.world().time() < 6e-3;) {
-    const double from = cell.world().time();
-    cell.step();
-    const double now = power();
-    work += 0.5 * (last + now) * (cell.world().time() - from), last = now;
+  for (const bool sheared : {false, true}) {
+    Description d =
+        periodic("linear-rolling", {{"contact_modulus", 1e7}, {"friction_angle", 0.3}}, jumble({6, 6, 6}, 1e-3, 0, 5),
+                 Vec3::Constant(6e-3), sheared ? Vec3(-4, -4, -4) : Vec3(-8, -6, 4));
+    if (sheared) d["domain"]["shear_rate"] = {{"xy", 10}, {"xz", -20}, {"yz", 15}};
+    d["engines"]["damping"] = {{"type", "local-damping"}, {"coefficient", 0.2}};
+    d["time_step"]["safety"] = 0.4;
+    d["guards"]["overlap"] = 0.9;
+    Kept cell(d);
+    const auto power = [&] {
+      const Cell& now = cell.world().cell();
+      const Mat3 stress = mean_stress(cell.world(), {now.low, now.high});
+      const Vec3 shear(stress(0, 1), stress(0, 2), stress(1, 2));
+      return -(now.high - now.low).prod() * (now.strain_rate.dot(stress.diagonal()) + now.shear_rate.dot(shear));
+    };
+    while (cell.world().time() < 1e-3) cell.step();
+    const double before = cell.world().energies().cell;
+    double work = 0;
+    for (double last = power(); cell.world().time() < 6e-3;) {
+      const double from = cell.world().time();
+      cell.step();
+      const double now = power();
+      work += 0.5 * (last + now) * (cell.world().time() - from), last = now;
+    }
+    verify("work of a cell that " + std::string(sheared ? "shears" : "strains") + " slowly over that of its stresses",
+           (cell.world().energies().cell - before) / work, 1, 0.01);
   }
-  verify("work of a cell that strains slowly over that of its stresses", (cell.world().energies().cell - before) / work,
-         1, 0.01);
 }
 
 TEST(Energies, AChangeOfTheStrainRateIsPutInBySettings) {

@@ -41,6 +41,30 @@ Description cell() {
   return d;
 }
 
+/// The same under prescribed stresses, of which one changes, then at a strain rate along one axis.
+Description cell_under_stress() {
+  Description d = cell();
+  d["stages"] = {stage("fast", steps(400)), stage("slow", steps(300))};
+  d["domain"].erase("strain_rate");
+  d["domain"]["servo"] = {
+      {"stress", {{"xx", 1e4}, {"yy", 1e4}, {"zz", 1e4}}}, {"max_strain_rate", 50}, {"interval", 3}};
+  d["stages"][0]["ramps"] = {
+      {{"pointer", "/domain/servo/stress/zz"}, {"from", 1e4}, {"to", 2e4}, {"duration", 2e-3}, {"increments", 40}}};
+  d["stages"][1]["change"]["domain"] = {{"servo", {{"stress", {{"zz", nullptr}}}}}, {"strain_rate", {0, 0, -20}}};
+  return d;
+}
+
+/// The same sheared, first at a rate, then by a stress, with clumps.
+Description sheared_cell() {
+  Description d = cell();
+  make_clumps(d, boomerang());
+  d["domain"].erase("strain_rate");
+  d["domain"]["shear_rate"] = {{"xz", 300}, {"xy", -200}};
+  d["domain"]["servo"] = {{"stress", {{"zz", 1e4}}}, {"max_strain_rate", 50}, {"interval", 3}};
+  d["stages"][1]["change"]["domain"] = {{"shear_rate", {{"xz", nullptr}}}, {"servo", {{"stress", {{"xz", -3e3}}}}}};
+  return d;
+}
+
 Description box(const std::string& law, const std::array<int, 3>& sides, std::uint64_t seed) {
   const Vec3 low = Vec3::Zero(), high = spacing * Vec3(sides[0], sides[1], sides[2]);
   Description d = description(law, sand, jumble(sides, spacing, 0.02, seed));
@@ -313,7 +337,8 @@ TEST_P(Resume, AtWallClockIntervalsChangesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Resume,
-                         testing::Values(Case{"cell", cell}, Case{"servo", [] { return servo(); }},
+                         testing::Values(Case{"cell", cell}, Case{"cell_under_stress", cell_under_stress},
+                                         Case{"sheared_cell", sheared_cell}, Case{"servo", [] { return servo(); }},
                                          Case{"braking_servo", braking}, Case{"stiffening", stiffening},
                                          Case{"cohesive", cohesive}, Case{"loose_walls", loose}, Case{"fast", fast},
                                          Case{"pouring", pouring}, Case{"plate", plate}, Case{"clumps", clumps},

@@ -14,14 +14,13 @@ using Pair = std::tuple<std::uint32_t, std::uint32_t, int>;  // a < b by index, 
 
 /// All pairs closer than their skins, by brute force.
 std::set<Pair> brute_force(std::span<const Row> x, const Cell& cell, const Skins& skins) {
-  const Vec3 period = cell.high - cell.low;
   std::set<Pair> pairs;
-  for (int image = 0; image < 27; ++image) {
+  for (int image = 0; image < (cell.skewed() ? all_images : straight_images); ++image) {
     const auto shift = image_shift(static_cast<std::uint8_t>(image));
     Vec3 by = Vec3::Zero();
     bool there = true;
     for (int k = 0; k < 3; ++k)
-      if (shift[k] != 0) by[k] = shift[k] * period[k], there = there && cell.periodic[k];
+      if (shift[k] != 0) by += shift[k] * cell.period(k), there = there && cell.periodic[k];
     if (!there) continue;
     for (std::uint32_t a = 0; a < x.size(); ++a)
       for (std::uint32_t b = a + 1; b < x.size(); ++b)
@@ -78,6 +77,44 @@ TEST(NeighbourSearch, FindsWhatBruteForceFinds) {
       EXPECT_EQ(pairs, all) << "periodic axes " << axes << ", skins up to " << skins.largest();
       EXPECT_GT(all.size(), 700u);
     }
+}
+
+TEST(NeighbourSearch, FindsWhatBruteForceFindsInASkewedCell) {
+  Random random(12);
+  std::set<int> images;
+  const Vec3 sides(4.3, 5.1, 6.7);
+  for (const Vec3& share : {Vec3(0.5, 0.5, 0.5), Vec3(-0.5, -0.5, 0.5), Vec3(0.3, -0.4, 0), Vec3(0, 0.5, -0.2)})
+    for (const std::vector<double>& skin : {std::vector{0.0, 0.0, 0.0}, std::vector{0.02, 0.0, 0.07}})
+      for (const double smallest : {0.1, 0.02}) {
+        const Vec3 low(-1, 2, 0.5), high = low + sides;
+        Cell cell{low, high, {true, true, true}};
+        cell.tilt = share.cwiseProduct(Vec3(sides.x(), sides.x(), sides.y()));
+        const Bodies bodies = scattered(700, low, high, smallest, random);
+        NeighbourSearch search;
+        Skins skins;
+        skins.reset(skin, 0);
+        search.build(bodies, cell, skins);
+        std::vector<Candidate> found;
+        for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
+        std::set<Pair> pairs;
+        for (const Candidate& c : found) {
+          EXPECT_TRUE(pairs.emplace(c.a, c.b, c.image).second) << "found twice";
+          images.insert(c.image);
+        }
+        EXPECT_EQ(pairs, brute_force({bodies.position.data(), bodies.count()}, cell, skins)) << share.transpose();
+      }
+  EXPECT_GT(*images.rbegin(), straight_images) << "two periods along x, too";
+}
+
+TEST(NeighbourSearch, NumbersImagesByTheirShift) {
+  std::set<std::array<int, 3>> shifts;
+  for (std::uint8_t image = 0; image < all_images; ++image) {
+    const auto shift = image_shift(image);
+    EXPECT_EQ(image_with(shift), image);
+    EXPECT_LE(std::abs(shift[0]), 2);
+    shifts.insert(shift);
+  }
+  EXPECT_EQ(shifts.size(), 45u);
 }
 
 /// At every step, the contacts are those of brute force, and searches are not overdue.
@@ -194,6 +231,18 @@ TEST(NeighbourSearch, MissesNoPairInACellThatDeforms) {
                    {"high", {6e-3, 6e-3, 6e-3}},
                    {"periodic", {true, true, true}},
                    {"strain_rate", {rate, -0.5 * rate, 0}}};
+    expect_no_missed_pair(d, 900);
+  }
+}
+
+TEST(NeighbourSearch, MissesNoPairInACellThatShears) {
+  for (const double rate : {-2000.0, 2000.0}) {
+    Description d = fast();
+    d["domain"] = {{"low", {0, 0, 0}},
+                   {"high", {6e-3, 6e-3, 6e-3}},
+                   {"periodic", {true, true, true}},
+                   {"strain_rate", {0.05 * rate, -0.05 * rate, 0}},
+                   {"shear_rate", {{"xy", 0.5 * rate}, {"xz", rate}, {"yz", -0.7 * rate}}}};
     expect_no_missed_pair(d, 900);
   }
 }

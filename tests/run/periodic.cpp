@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "support/packing.hpp"
 
 namespace grit::test::periodic_tests {
@@ -9,7 +11,8 @@ namespace {
 
 const Vec3 period(6e-3, 7e-3, 8e-3);
 
-Description in_cell(std::vector<Grain> grains, const Vec3& shift, const Vec3& strain_rate = Vec3::Zero()) {
+Description in_cell(std::vector<Grain> grains, const Vec3& shift, const Vec3& strain_rate = Vec3::Zero(),
+                    const Vec3& shear_rate = Vec3::Zero()) {
   for (Grain& g : grains) {
     g.position += shift;
     for (int k = 0; k < 3; ++k) {
@@ -21,7 +24,8 @@ Description in_cell(std::vector<Grain> grains, const Vec3& shift, const Vec3& st
   d["domain"] = {{"low", {0, 0, 0}},
                  {"high", vector(period)},
                  {"periodic", {true, true, true}},
-                 {"strain_rate", vector(strain_rate)}};
+                 {"strain_rate", vector(strain_rate)},
+                 {"shear_rate", {{"xy", shear_rate[0]}, {"xz", shear_rate[1]}, {"yz", shear_rate[2]}}}};
   d["time_step"]["value"] = 2e-6;
   d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
   return d;
@@ -44,10 +48,12 @@ double apart(const Trial& a, const Trial& b, std::uint32_t bodies) {
     const Cell& cell = t.world().cell();
     const std::size_t i = index_of(t.world(), id);
     // Velocities are half a step old, and so is the mean flow.
-    const Vec3 v = xyz(t.world().velocities()[i]), dt = Vec3::Constant(t.kernel().state().time.previous_dt);
+    const Vec3 v = xyz(t.world().velocities()[i]);
+    const double dt = t.kernel().state().time.previous_dt;
     const Vec3 from_middle = xyz(t.world().positions()[i]) - 0.5 * (cell.low + cell.high);
-    const Vec3 before = from_middle.cwiseQuotient(Vec3::Ones() + cell.strain_rate.cwiseProduct(dt));
-    return Vec3(v - cell.strain_rate.cwiseProduct(before));
+    Mat3 gradient = cell.strain_rate.asDiagonal();
+    gradient(0, 1) = cell.shear_rate[0], gradient(0, 2) = cell.shear_rate[1], gradient(1, 2) = cell.shear_rate[2];
+    return Vec3(v - gradient * ((Mat3::Identity() + dt * gradient).inverse() * from_middle));
   });
   return worst;
 }
@@ -74,23 +80,28 @@ TEST(Periodic, GrainsThatMeetAcrossASideFeelTheSame) {
 TEST(Periodic, PackingMayBeShiftedAndWrapped) {
   const auto grains = jumble({6, 7, 8}, 1e-3, 0.1, 9);
   const auto bodies = static_cast<std::uint32_t>(grains.size());
-  for (const Vec3& rate : {Vec3(0, 0, 0), Vec3(-30, 20, -10)}) {
+  const Vec3 none(0, 0, 0), rate(-30, 20, -10);
+  for (const auto& [rate, shear] : {std::pair(none, none), std::pair(rate, none), std::pair(rate, Vec3(200, -300, 100)),
+                                    std::pair(none, Vec3(3000, 9000, -5000))}) {
     // With a mean flow all bodies start at rest relative to it.
-    Trial one(in_cell(grains, Vec3::Zero(), rate)), other(in_cell(grains, {1.3e-3, -2.9e-3, 5.1e-3}, rate));
+    Trial one(in_cell(grains, Vec3::Zero(), rate, shear)),
+        other(in_cell(grains, {1.3e-3, -2.9e-3, 5.1e-3}, rate, shear));
     EXPECT_LT(apart(one, other, bodies), 1e-12);
     one.step(60), other.step(60);
-    EXPECT_GT(one.kernel().state().pairs.touching_count(), 500u);
+    EXPECT_GT(one.kernel().state().pairs.touching_count(), shear.norm() > 1000 ? 200u : 500u);
     // The order of sums causes round-off, which collisions amplify.
-    EXPECT_LT(apart(one, other, bodies), 1e-9) << rate.transpose();
+    EXPECT_LT(apart(one, other, bodies), 1e-9) << rate.transpose() << ", " << shear.transpose();
   }
 }
 
 /// Displacements need the jumps of positions at periodic sides.
 TEST(Periodic, DisplacementsContinueAcrossSides) {
-  for (const Vec3& rate : {Vec3(0, 0, 0), Vec3(-30, 20, -10)}) {
+  const Vec3 none(0, 0, 0);
+  for (const auto& [rate, shear] : {std::pair(none, none), std::pair(Vec3(-30, 20, -10), none),
+                                    std::pair(Vec3(-30, 20, -10), Vec3(500, -700, 300))}) {
     // Across several sides, back and forth, past each other and swapping indices.
     std::vector<Grain> grains{{{2e-3, 3e-3, 3e-3}, 0.5e-3, {40, 3, -25}}, {{4.5e-3, 1e-3, 7e-3}, 0.4e-3, {-30, 0, 7}}};
-    Trial t(in_cell(grains, Vec3::Zero(), rate), 1, BodyState::displacement);
+    Trial t(in_cell(grains, Vec3::Zero(), rate, shear), 1, BodyState::displacement);
     std::vector<Vec3> gone(2, Vec3::Zero());
     for (int step = 0; step < 600; ++step) {
       t.kernel().advance();
@@ -250,6 +261,44 @@ TEST(Periodic, DeformingCellCarriesAllBodiesAlike) {
     worst = std::max(worst, moved.norm());
   }
   EXPECT_LT(worst, 1e-11) << "round-off of 2500 steps";
+}
+
+TEST(Periodic, ShearMovesAllBodiesAlike) {
+  // Without contact over several periods of shear.
+  auto grains = jumble({6, 7, 8}, 1e-3, 0, 10);
+  for (Grain& g : grains) g.radius *= 0.3;
+  const Vec3 shear(0, 900, 400);
+  Trial t(in_cell(grains, Vec3::Zero(), Vec3::Zero(), shear));
+  const Vec3 middle = 0.5 * period;
+  std::vector<Vec3> places;
+  for (std::uint32_t id = 0; id < grains.size(); ++id) places.push_back(t.position(id) - middle);
+  t.step(2500);
+  const double time = t.world().time();
+  ASSERT_EQ(t.kernel().state().pairs.touching_count(), 0u);
+  double worst = 0;
+  for (std::uint32_t id = 0; id < grains.size(); ++id) {
+    const Vec3& from = places[id];
+    const Vec3 expected = middle + from + time * Vec3(shear[1] * from.z(), shear[2] * from.z(), 0);
+    const Cell& cell = t.world().cell();
+    worst = std::max(worst, (cell.inside(expected) - cell.inside(t.position(id))).norm());
+  }
+  EXPECT_GT(time * shear[1] * period.z(), 4 * period.x());
+  EXPECT_LT(worst, 1e-12) << "round-off of 2500 steps";
+}
+
+TEST(Periodic, AveragesOfASkewedCellAreThoseOfAllContactsAndBodies) {
+  Trial t(in_cell(jumble({6, 7, 8}, 1e-3, 0.1, 9), Vec3::Zero(), Vec3::Zero(), {2000, 3000, -2500}));
+  t.step(60);
+  const World& world = t.world();
+  const Cell& cell = world.cell();
+  ASSERT_GT(std::abs(cell.tilt[1]), 0.1 * period.x());
+  Mat3 sum = Mat3::Zero();
+  for (const Contact& contact : world.contacts()) sum += contact.force * contact.branch.transpose();
+  const Mat3 stress = mean_stress(world, {cell.low, cell.high});
+  EXPECT_LT((stress - sum / period.prod()).norm(), 1e-12 * stress.norm());
+  double solid = 0;
+  for (const Row& x : world.positions()) solid += 4.0 / 3 * std::numbers::pi * x.w * x.w * x.w;
+  EXPECT_NEAR(void_ratio(world, {cell.low, cell.high}), period.prod() / solid - 1, 1e-12);
 }
 
 TEST(Periodic, ChangeOfStrainRateIsTheSameEverywhere) {

@@ -40,6 +40,23 @@ Description periodic() {
   return d;
 }
 
+/// The same, sheared at constant normal stress.
+Description sheared() {
+  Description d = periodic();
+  d["domain"].erase("strain_rate");
+  d["domain"]["shear_rate"] = {{"xz", 150}, {"yz", -100}};
+  d["domain"]["servo"] = {{"stress", {{"zz", 2e4}, {"xy", 0}}}, {"max_strain_rate", 50}, {"interval", 7}};
+  return d;
+}
+
+/// The same under prescribed stresses along x and y.
+Description under_stress() {
+  Description d = periodic();
+  d["domain"]["strain_rate"] = {0, 0, 15};
+  d["domain"]["servo"] = {{"stress", {{"xx", 2e4}, {"yy", 1e4}}}, {"max_strain_rate", 50}, {"interval", 7}};
+  return d;
+}
+
 /// Springs that stiffen, so that the time step follows the overlaps.
 Description stiffening() {
   Description d = boxed();
@@ -92,6 +109,8 @@ void expect_energies_change_nothing(const Description& d) {
 TEST(SameBits, WhetherOrNotEnergiesAreKept) {
   expect_energies_change_nothing(boxed());
   expect_energies_change_nothing(periodic());
+  expect_energies_change_nothing(under_stress());
+  expect_energies_change_nothing(sheared());
   expect_energies_change_nothing(stiffening());
   expect_energies_change_nothing(cohesive(boxed(), 2e4));
   expect_energies_change_nothing(cohesive(periodic(), 2e4));
@@ -102,6 +121,8 @@ TEST(SameBits, WhetherOrNotEnergiesAreKept) {
 
 TEST(SameBits, OfAPackingBetweenWalls) { expect_same_bits(boxed()); }
 TEST(SameBits, OfAPeriodicPackingThatDeforms) { expect_same_bits(periodic()); }
+TEST(SameBits, OfAPeriodicPackingUnderPrescribedStresses) { expect_same_bits(under_stress()); }
+TEST(SameBits, OfAPackingThatIsSheared) { expect_same_bits(sheared()); }
 TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }
 TEST(SameBits, OfBodiesThatAttract) {
   for (Description d : {cohesive(boxed(), 2e4), cohesive(periodic(), 2e4)}) {

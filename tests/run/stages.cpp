@@ -70,6 +70,17 @@ TEST(Stage, ReportsAServoThatFellBehind) {
   EXPECT_THAT(told(), testing::Not(HasSubstr("is limited by")));
 }
 
+TEST(Stage, ReportsACellThatFellBehind) {
+  Description d = shrinking(steps(100), 0);
+  d["domain"]["servo"] = {{"stress", {{"xx", 2e3}, {"zz", 0}}}, {"max_strain_rate", 0.5}};
+  EXPECT_THAT(
+      run(d).notes.ended.front(),
+      HasSubstr("; servo of the cell is limited by its max_strain_rate of 0.5 1/s: stress xx 0 Pa, target 2000"))
+      << "and not zz";
+  d["domain"]["servo"]["stress"]["xx"] = 0;
+  EXPECT_THAT(run(d).notes.ended.front(), testing::Not(HasSubstr("is limited by")));
+}
+
 TEST(Stage, EndsAtATimeOrAfterSteps) {
   EXPECT_EQ(steps_until(seconds(1e-3)), 100u);
   EXPECT_EQ(steps_until(seconds(1.004e-3)), 100u);
@@ -318,7 +329,8 @@ TEST(Stage, ReportsUnmetConditions) {
       press{{"type", "pressure"}, {"wall", "floor"}, {"value", 5e3}, {"within", 0.02}},
       rest{{"type", "unbalanced-force"}, {"below", 0.003}}, calm{{"type", "kinetic-energy"}, {"below", 1e-4}},
       left{{"type", "discharged"}, {"fraction", 0.25}}, loose{{"type", "void-ratio"}, {"above", 500}, {"below", 600}},
-      stress{{"type", "mean-stress"}, {"above", 2e4}};
+      stress{{"type", "mean-stress"}, {"above", 2e4}},
+      along{{"type", "stress"}, {"component", "yy"}, {"value", 3e4}, {"within", 0.05}};
   Description moving = lone(steps(1));
   moving["walls"]["floor"]["motion"]["velocity"] = {0.2, 0, 0};
   moving["domain"] = {{"low", {-1, -1, -1}}, {"high", {1, 1, 1}}, {"open_sides", {"-z"}}};
@@ -334,6 +346,7 @@ TEST(Stage, ReportsUnmetConditions) {
       "either kinetic over elastic energy inf, required below 0.0001 or 0 % of the mass discharged, required 25 %");
   EXPECT_EQ(told(shrinking(steps(1), -20), loose), "void ratio of the interior 233, required above 500 and below 600");
   EXPECT_EQ(told(shrinking(steps(1), -20), stress), "mean stress 0 Pa, required above 2e+04 Pa");
+  EXPECT_EQ(told(shrinking(steps(1), -20), along), "stress yy 0 Pa, required 3e+04 Pa ± 5 %");
   EXPECT_THAT(told(dropped(steps(1)), rest), testing::MatchesRegex("unbalanced force [0-9.e-]+, required below 0.003"));
 }
 

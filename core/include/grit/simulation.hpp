@@ -85,8 +85,8 @@ class Simulation {
   Description description() const;
 
   /// Sets a value (SI) of the description from now on, as `change` of a stage does: of a material, interface, wall or
-  /// engine, /domain/strain_rate, /time_step or /guards. Setting a number again is cheap enough for every step. Throws
-  /// DescriptionError for another pointer or a value out of range.
+  /// engine, rates or servo of /domain, /time_step or /guards. Setting a number again is cheap enough for every step.
+  /// Throws DescriptionError for another pointer or a value out of range.
   void set(const std::string& pointer, const Description& value);
 
   using Observer = std::function<void(const World&)>;

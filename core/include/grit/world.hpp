@@ -42,15 +42,64 @@ struct Cell {
   Vec3 low, high;  ///< m
   std::array<bool, 3> periodic{false, false, false};
   Vec3 strain_rate = Vec3::Zero();  ///< along periodic axes [1/s], positive in extension
+  /// Gradients of the mean flow [1/s]: of v_x along y, of v_x along z, of v_y along z.
+  Vec3 shear_rate = Vec3::Zero();
+  /// Offsets of images across sides [m]: along x across y, along x across z, along y across z.
+  Vec3 tilt = Vec3::Zero();
+
+  Vec3 stage_lengths = Vec3::Zero();       ///< side lengths at the start of the stage [m]
+  Vec3 stage_shear_strain = Vec3::Zero();  ///< shear rates integrated since the start of the stage
 
   bool periodic_anywhere() const { return periodic[0] || periodic[1] || periodic[2]; }
+  bool periodic_everywhere() const { return periodic[0] && periodic[1] && periodic[2]; }
+  bool shears() const { return !shear_rate.isZero(0.0); }
+  /// Whether images are, or will be, off the axes.
+  bool skewed() const { return shears() || !tilt.isZero(0.0); }
+  /// From a body to its next image across the upper side of an axis [m]; zero along an axis that is not periodic. The
+  /// image across z may be off along x and y, that across y along x.
+  Vec3 period(int axis) const {
+    if (!periodic[static_cast<std::size_t>(axis)]) return Vec3::Zero();
+    const double length = high[axis] - low[axis];
+    return axis == 0 ? Vec3(length, 0, 0) : axis == 1 ? Vec3(tilt[0], length, 0) : Vec3(tilt[1], tilt[2], length);
+  }
   /// A coordinate [m] moved into the cell by whole periods; unchanged along an axis that is not periodic. Bodies may be
   /// slightly outside a periodic side until the next neighbour search wraps them.
   double inside(double x, int axis) const {
     const double period = high[axis] - low[axis];
     return periodic[static_cast<std::size_t>(axis)] ? x - period * std::floor((x - low[axis]) / period) : x;
   }
+  /// The same for a point, also in a cell that is skewed.
+  Vec3 inside(Vec3 x) const {
+    if (!skewed()) return {inside(x[0], 0), inside(x[1], 1), inside(x[2], 2)};
+    for (int axis = 2; axis >= 0; --axis)
+      if (const double length = high[axis] - low[axis]; periodic[static_cast<std::size_t>(axis)])
+        x -= std::floor((x[axis] - low[axis]) / length) * period(axis);
+    return x;
+  }
+  /// Calls visit(shift) for each image, also in a cell that is skewed, in which a box may intersect a region.
+  template <class Visit>
+  void each_image(const Vec3& low_of_box, const Vec3& high_of_box, const Vec3& low_of_region,
+                  const Vec3& high_of_region, const Visit& visit) const;
 };
+
+template <class Visit>
+void Cell::each_image(const Vec3& low_of_box, const Vec3& high_of_box, const Vec3& low_of_region,
+                      const Vec3& high_of_region, const Visit& visit) const {
+  // Images across z first: they shift those across y, and these those across x.
+  const auto along = [&](int axis, const Vec3& shift, const auto& next) {
+    const double before = low_of_region[axis] - shift[axis] - high_of_box[axis],
+                 after = high_of_region[axis] - shift[axis] - low_of_box[axis];
+    if (!periodic[static_cast<std::size_t>(axis)]) {
+      if (before <= 0 && after >= 0) next(shift);
+      return;
+    }
+    const double length = high[axis] - low[axis];
+    const Vec3 to_next = period(axis);
+    for (double n = std::ceil(before / length); n <= std::floor(after / length); ++n) next(Vec3(shift + n * to_next));
+  };
+  along(2, Vec3::Zero(),
+        [&](const Vec3& z) { along(1, z, [&](const Vec3& y) { along(0, y, [&](const Vec3& x) { visit(x); }); }); });
+}
 
 /// A box over which averages are taken.
 struct Region {

@@ -56,6 +56,12 @@ class ContactTable {
         {0, 0, static_cast<std::uint32_t>(touching_.size())}, at,
         [this](std::size_t block) { return touching_[block] != 0; }, use);
   }
+  /// The same for the contacts of one chunk.
+  template <class Use>
+  void each_contact(std::size_t chunk, const Instant& at, Use use) const {
+    const auto any = [this](std::size_t block) { return touching_[block] != 0; };
+    for (const Blocks blocks : {chunks_[chunk].within, chunks_[chunk].across}) each_touching(blocks, at, any, use);
+  }
   /// The same for the contacts of one chunk across a periodic boundary.
   template <class Use>
   void each_crossing(std::size_t chunk, const Instant& at, Use use) const {

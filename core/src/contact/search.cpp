@@ -54,6 +54,9 @@ std::array<int, 3> cells(const Vec3& length, double width, std::size_t bodies) {
   }
 }
 
+/// By how many periods a cell of the grid lies beyond it, if the period has `cells`.
+int periods_beyond(int place, int cells) { return place >= 0 ? place / cells : -((cells - 1 - place) / cells); }
+
 }  // namespace
 
 std::vector<std::uint32_t> spatial_order(const Bodies& bodies, const Cell& cell) {
@@ -101,6 +104,7 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
   for (int k = 0; k < 3; ++k) {
     period_[k] = cell.periodic[k] ? cell.high[k] - cell.low[k] : 0;
     per_period_[k] = cell.periodic[k] ? 1 / period_[k] : 0;
+    to_image_[static_cast<std::size_t>(k)] = cell.period(k);
   }
 
   // Each size class spans a factor of 2.5 in radius: one class suffices up to this ratio.
@@ -143,6 +147,12 @@ void NeighbourSearch::build(const Bodies& bodies, const Cell& cell, const Skins&
 }
 
 void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const {
+  if (cell_.skewed()) find<true>(bodies, body, candidates);
+  else find<false>(bodies, body, candidates);
+}
+
+template <bool skewed>
+void NeighbourSearch::find(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const {
   const std::size_t before = candidates.size();
   const Row* const position = bodies.position.data();
   const Row own = position[body];
@@ -152,19 +162,34 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
     if (grid.body.empty()) continue;
     const double reach = own.w + skin + grid.largest_reach;
     int first[3], last[3];
-    for (int k = 0; k < 3; ++k) {
-      first[k] = grid.index(k, centre[k] - reach), last[k] = grid.index(k, centre[k] + reach);
+    const auto reach_along = [&](int k, double from) {
+      first[k] = grid.index(k, from - reach), last[k] = grid.index(k, from + reach);
       if (!cell_.periodic[k]) {
         first[k] = std::clamp(first[k], 0, grid.size[k] - 1), last[k] = std::clamp(last[k], 0, grid.size[k] - 1);
       } else if (last[k] - first[k] >= grid.size[k]) {
         first[k] = 0, last[k] = grid.size[k] - 1;  // each cell once
       }
-    }
+    };
+    for (int k = 0; k < 3; ++k) reach_along(k, centre[k]);
     const auto wrapped = [&](int k, int place) {
+      if constexpr (skewed) return place - grid.size[k] * periods_beyond(place, grid.size[k]);
       return place < 0 ? place + grid.size[k] : place >= grid.size[k] ? place - grid.size[k] : place;
     };
+    // Bodies of cells beyond a side are seen from where this body has its image there.
+    const bool all_z = skewed && last[2] - first[2] + 1 >= grid.size[2];
     for (int cz = first[2]; cz <= last[2]; ++cz) {
+      const int beyond_z = skewed ? periods_beyond(cz, grid.size[2]) : 0;
+      bool all_y = all_z;
+      if constexpr (skewed) {
+        reach_along(1, centre[1] - beyond_z * cell_.tilt[2]);
+        if (all_y) first[1] = 0, last[1] = grid.size[1] - 1;
+        all_y = all_y || last[1] - first[1] + 1 >= grid.size[1];
+      }
       for (int cy = first[1]; cy <= last[1]; ++cy) {
+        if constexpr (skewed) {
+          reach_along(0, centre[0] - beyond_z * cell_.tilt[1] - periods_beyond(cy, grid.size[1]) * cell_.tilt[0]);
+          if (all_y) first[0] = 0, last[0] = grid.size[0] - 1;
+        }
         const std::size_t line = (std::size_t(wrapped(2, cz)) * grid.size[1] + wrapped(1, cy)) * grid.size[0];
         for (int cx = first[0]; cx <= last[0]; ++cx) {
           const std::size_t cell = line + wrapped(0, cx);
@@ -177,7 +202,17 @@ void NeighbourSearch::neighbours(const Bodies& bodies, std::uint32_t body, std::
             const Row& b = position[other];
             double d[3] = {b.x - own.x, b.y - own.y, b.z - own.z};
             std::uint8_t image = 0;
-            if (any_periodic_) {
+            if constexpr (skewed) {
+              std::array<int, 3> shift{};
+              for (int k = 2; k >= 0; --k) {
+                // Two bodies in the cell are no farther apart; half a period more is the side of an image.
+                const double most = k == 0 ? 2 : 1;
+                const double periods = std::clamp(std::nearbyint(d[k] * per_period_[k]), -most, most);
+                for (int j = 0; j <= k; ++j) d[j] -= periods * to_image_[static_cast<std::size_t>(k)][j];
+                shift[static_cast<std::size_t>(k)] = -static_cast<int>(periods);
+              }
+              image = image_with(shift);
+            } else if (any_periodic_) {
               int place = 1;
               for (int k = 0; k < 3; ++k, place *= 3) {
                 const double periods = std::nearbyint(d[k] * per_period_[k]);

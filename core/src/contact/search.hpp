@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -17,14 +18,26 @@ namespace grit {
 struct Candidate {
   std::uint32_t a, b;
   float gap;           ///< lower bound of the distance of the surfaces beyond the reach [m]; 0 within it, or in contact
-  std::uint8_t image;  ///< periodic image of b: sum of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods)
+  std::uint8_t image;  ///< periodic image of b, see image_shift()
   bool touching() const { return gap == 0; }
 };
 
+/// Numbers of images: sums of 3^axis × (0, 1, 2 for a shift of 0, +1, −1 periods); after these, those two periods away
+/// along x, which exist in a skewed cell only.
+inline constexpr std::uint8_t straight_images = 27, all_images = 45;
 /// The shift of an image, in periods.
 inline std::array<int, 3> image_shift(std::uint8_t image) {
   const auto one = [](int digit) { return digit == 2 ? -1 : digit; };
-  return {one(image % 3), one(image / 3 % 3), one(image / 9)};
+  if (image < straight_images) return {one(image % 3), one(image / 3 % 3), one(image / 9)};
+  const int two = image - straight_images;
+  return {two % 2 == 0 ? 2 : -2, one(two / 2 % 3), one(two / 6)};
+}
+/// The image with this shift.
+inline std::uint8_t image_with(const std::array<int, 3>& shift) {
+  const auto digit = [](int one) { return one < 0 ? 2 : one; };
+  const int across = digit(shift[1]) + 3 * digit(shift[2]);
+  return static_cast<std::uint8_t>(std::abs(shift[0]) == 2 ? straight_images + (shift[0] < 0 ? 1 : 0) + 2 * across
+                                                           : digit(shift[0]) + 3 * across);
 }
 
 /// The order of bodies along a space-filling (Morton) curve through cells of about the largest diameter.
@@ -52,9 +65,12 @@ class NeighbourSearch {
 
     int index(int axis, double x) const;
   };
+  template <bool skewed>
+  void find(const Bodies& bodies, std::uint32_t body, std::vector<Candidate>& candidates) const;
 
   Cell cell_;
   Vec3 period_, per_period_;
+  std::array<Vec3, 3> to_image_;  // Cell::period
   bool any_periodic_ = false;
   Skins skins_;
   std::vector<Grid> grids_;

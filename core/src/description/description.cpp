@@ -202,6 +202,17 @@ void check_sample(const SceneDescription& scene, const Complain& complain) {
              "a group of bodies with \"source\": {\"type\": \"sample\"}");
 }
 
+/// Walls and sources of bodies know no images off the axes.
+void check_shear(const SceneDescription& scene, const Complain& complain) {
+  if (!scene.domain.shears()) return;
+  for (const auto& [name, wall] : scene.walls)
+    complain("walls/" + name, "a wall in a domain that shears", "a domain without walls; or no shear of /domain");
+  for (const auto& [name, group] : scene.bodies)
+    if (!group.stage.empty() || std::holds_alternative<StreamSource>(group.source.value()))
+      complain("bodies/" + name, "bodies that appear during the run in a domain that shears",
+               "bodies from the start; or no shear of /domain");
+}
+
 void check_followers(const SceneDescription& scene, const Complain& complain) {
   const References known("wall", keys(scene.walls), complain);
   for (const auto& [name, wall] : scene.walls)
@@ -626,6 +637,39 @@ void InterfaceDescription::declare(ContactLaw* law, Parameters& p) {
     values = write(own);
   });
 }
+void CellStressDescription::declare(Parameters& p) {
+  for (const auto& [name, value] : {std::pair("xx", &xx), std::pair("yy", &yy), std::pair("zz", &zz)})
+    p.add(name, *value).unit("Pa").symbol(std::string("sigma_") + name).doc("target, compression positive");
+  for (const auto& [name, value] : {std::pair("xy", &xy), std::pair("xz", &xz), std::pair("yz", &yz)})
+    p.add(name, *value)
+        .unit("Pa")
+        .symbol(std::string("sigma_") + name)
+        .doc("target; a positive shear rate makes it negative, as extension does with normal stresses");
+}
+void ShearRateDescription::declare(Parameters& p) {
+  p.add("xy", xy).unit("1/s").symbol("gamma_dot_xy").doc("gradient of the velocity along x in the direction y");
+  p.add("xz", xz).unit("1/s").symbol("gamma_dot_xz").doc("gradient of the velocity along x in the direction z");
+  p.add("yz", yz).unit("1/s").symbol("gamma_dot_yz").doc("gradient of the velocity along y in the direction z");
+}
+void CellServoDescription::declare(Parameters& p) {
+  p.add("stress", stress)
+      .required()
+      .doc("stresses of the whole cell to keep; the strain rate of other components is prescribed");
+  p.add("max_strain_rate", max_strain_rate)
+      .unit("1/s")
+      .above(0)
+      .required()
+      .doc("maximum strain rate of each component; without contacts the cell contracts at this rate");
+  p.add("gain", gain)
+      .above(0)
+      .at_most(1)
+      .doc("fraction of the error in stress that is corrected in an interval if bodies move with the mean flow");
+  p.add("interval", interval).at_least(1).at_most(1000).doc("steps between evaluations of the stress");
+}
+const std::vector<std::string>& DomainDescription::changeable() {
+  static const std::vector<std::string> keys{"strain_rate", "shear_rate", "servo"};
+  return keys;
+}
 void DomainDescription::declare(Parameters& p) {
   p.add("low", low).unit("m").doc("lower corner; default: unbounded");
   p.add("high", high).unit("m").doc("upper corner; default: unbounded");
@@ -634,6 +678,8 @@ void DomainDescription::declare(Parameters& p) {
       .unit("1/s")
       .symbol("eps_dot")
       .doc("strain rate along periodic axes, positive in extension");
+  p.add("shear_rate", shear_rate).doc("simple shear of a domain that is periodic along all axes, without walls");
+  p.add("servo", servo).doc("strain rates that keep stresses of a cell that is periodic along all axes");
   p.add("open_sides", open_sides)
       .doc("sides through which bodies may leave; they are removed: -x, +x, -y, +y, -z, +z; elsewhere it is an error");
   p.check(
@@ -649,6 +695,29 @@ void DomainDescription::declare(Parameters& p) {
         }
       },
       {"low", "high", "periodic", "strain_rate"});
+  p.check(
+      [this](const Complain& complain) {
+        const bool periodic_everywhere = periodic[0] && periodic[1] && periodic[2];
+        const Vec3 shear = shear_rate.vector();
+        if (!shear.isZero(0.0) && !periodic_everywhere)
+          complain("shear_rate", "shear of a domain that is not periodic along all axes",
+                   "one with domain/periodic along x, y and z");
+        if (!servo) return;
+        if (!periodic_everywhere)
+          complain("servo", "a servo of a domain that is not periodic along all axes",
+                   "one with domain/periodic along x, y and z");
+        const auto targets = servo->targets();
+        if (std::ranges::none_of(targets, [](const auto& one) { return one.has_value(); }))
+          complain("servo/stress", "no target stress", "at least one, or no servo");
+        for (std::size_t k = 0; k < 3; ++k) {
+          if (targets[k] && strain_rate[static_cast<int>(k)] != 0)
+            complain("servo/stress/" + cell_components[k], "a target along an axis that has a strain rate",
+                     "one of them");
+          if (targets[k + 3] && shear[static_cast<int>(k)] != 0)
+            complain("servo/stress/" + cell_components[k + 3], "a target together with a shear rate", "one of them");
+        }
+      },
+      {"servo", "periodic", "strain_rate", "shear_rate"});
   p.check(
       [this](const Complain& complain) {
         for (std::size_t i = 0; i < open_sides.size(); ++i) {
@@ -790,6 +859,13 @@ void MeanStressCondition::declare(Parameters& p) {
     if (!below && !above) complain("", "neither below nor above", "at least one of them");
   });
 }
+void StressCondition::declare(Parameters& p) {
+  p.add("component", component)
+      .one_of({cell_components.begin(), cell_components.end()})
+      .doc("component of the stress tensor");
+  p.add("value", value).unit("Pa").symbol("sigma").required().doc("stress, compression positive");
+  p.add("within", within).above(0).at_most(1).doc("relative tolerance");
+}
 void PressureCondition::declare(Parameters& p) {
   p.add("wall", wall).required().doc("name of the wall");
   p.add("value", value).unit("Pa").symbol("p").at_least(0).required().doc("pressure on the wall, compression positive");
@@ -820,8 +896,11 @@ void RampDescription::declare(Parameters& p) {
         if (pointer.empty() || pointer.front() != '/' || second == std::string::npos || !is_changeable(section))
           complain("pointer", in_quotes(pointer) + did_you_mean(section, SceneDescription::changeable()),
                    "a JSON pointer below " + any_of(SceneDescription::changeable(), ""));
-        else if (section == "domain" && !pointer.starts_with("/domain/strain_rate"))
-          complain("pointer", in_quotes(pointer), "/domain/strain_rate only, in the domain");
+        else if (const auto& of_domain = DomainDescription::changeable();
+                 section == "domain" && std::ranges::none_of(of_domain, [&](const std::string& key) {
+                   return (pointer + '/').starts_with("/domain/" + key + '/');
+                 }))
+          complain("pointer", in_quotes(pointer), "in the domain " + any_of(of_domain, ""));
         for (const auto& [key, value] : {std::pair("from", &from), std::pair("to", &to)})
           if (!value->is_number() && !value->is_string())
             complain(key, "neither a number nor a text", "a number or a quantity");
@@ -850,7 +929,9 @@ void StageDescription::declare(Parameters& p) {
   p.add("change", change)
       .doc("merge patch (RFC 7396) of the description from this stage on; allowed sections: " +
            any_of(SceneDescription::changeable(), "").substr(7) +
-           "; in domain only strain_rate; the geometry of a wall is that before its motion, which is added to it");
+           "; in domain only strain_rate, shear_rate and servo; the geometry of a wall is that before its motion, "
+           "which is added "
+           "to it");
   p.add("ramps", ramps).doc("numbers that change during the stage, one after the other");
   p.add("growth", growth).doc("growth of all bodies during the stage; default: none");
   p.add("expect", expect).doc("state required at the end of the stage");
@@ -863,11 +944,11 @@ void StageDescription::declare(Parameters& p) {
                      "a change of " + in_quotes(section) + did_you_mean(section, SceneDescription::changeable()),
                      any_of(SceneDescription::changeable(), ""));
           if (section != "domain" || !patch.is_object()) continue;
+          const auto& of_domain = DomainDescription::changeable();
           for (const auto& [key, _] : patch.items())
-            if (key != "strain_rate")
-              complain("change/domain/" + key,
-                       "a change of " + in_quotes(key) + did_you_mean(key, std::vector<std::string>{"strain_rate"}),
-                       "strain_rate only");
+            if (std::ranges::find(of_domain, key) == of_domain.end())
+              complain("change/domain/" + key, "a change of " + in_quotes(key) + did_you_mean(key, of_domain),
+                       any_of(of_domain, ""));
         }
       },
       {"change"});
@@ -1041,6 +1122,7 @@ void SceneDescription::check_together(const Complain& complain) const {
   check_materials_of_walls(*this, complain);
   check_groups(*this, complain);
   check_followers(*this, complain);
+  check_shear(*this, complain);
 }
 
 void SceneDescription::declare(Parameters& p) {
@@ -1090,6 +1172,7 @@ void SceneDescription::declare(Parameters& p) {
   p.check_names([this](const Complain& complain) { check_groups(*this, complain); });
   p.check([this](const Complain& complain) { check_sample(*this, complain); }, {"bodies", "begin"});
   p.check_names([this](const Complain& complain) { check_followers(*this, complain); });
+  p.check([this](const Complain& complain) { check_shear(*this, complain); }, {"domain", "walls", "bodies"});
   p.check_names([this](const Complain& complain) {
     const References known("wall", keys(walls), complain);
     for (const auto& [key, side] : {std::pair("low", &specimen.low), std::pair("high", &specimen.high)})

@@ -301,11 +301,46 @@ struct InterfaceDescription {
   void declare(ContactLaw* law, Parameters& p);
   bool operator==(const InterfaceDescription&) const = default;
 };
+/// Names of the components of strain and stress of a cell.
+inline const std::array<std::string, 6> cell_components{"xx", "yy", "zz", "xy", "xz", "yz"};
+/// Target stresses of a cell [Pa]; components without one keep their strain rate.
+struct CellStressDescription {
+  std::optional<double> xx, yy, zz, xy, xz, yz;
+  void declare(Parameters& p);
+};
+/// The strain rate of a periodic cell that keeps stresses.
+struct CellServoDescription {
+  CellStressDescription stress;
+  double max_strain_rate = 0;  ///< 1/s
+  double gain = 1;
+  std::int64_t interval = 10;  ///< steps
+  /// xx, yy, zz, xy, xz, yz
+  std::array<std::optional<double>, 6> targets() const {
+    return {stress.xx, stress.yy, stress.zz, stress.xy, stress.xz, stress.yz};
+  }
+  void declare(Parameters& p);
+};
+/// Gradients of the mean flow of a cell [1/s], of the first component along the second axis.
+struct ShearRateDescription {
+  double xy = 0, xz = 0, yz = 0;
+  Vec3 vector() const { return {xy, xz, yz}; }
+  void declare(Parameters& p);
+};
 struct DomainDescription {
   std::optional<Vec3> low, high;
   std::array<bool, 3> periodic{false, false, false};
   Vec3 strain_rate = Vec3::Zero();
+  ShearRateDescription shear_rate;
+  std::optional<CellServoDescription> servo;
   std::vector<std::string> open_sides;
+  /// Keys that stages may change.
+  static const std::vector<std::string>& changeable();
+  /// Whether images may move off the axes.
+  bool shears() const {
+    return !shear_rate.vector().isZero(0.0) || (servo && (servo->stress.xy || servo->stress.xz || servo->stress.yz));
+  }
+  /// Whether the cell may change its shape.
+  bool deforms() const { return servo || shears() || !strain_rate.isZero(0.0); }
   void declare(Parameters& p);
 };
 /// A prepared sample from which a run begins: the state of another run.
@@ -403,6 +438,13 @@ struct MeanStressCondition {
   std::optional<double> below, above;
   void declare(Parameters& p);
 };
+struct StressCondition {
+  static constexpr const char* type_name = "stress";
+  static constexpr const char* type_doc = "a component of the stress of the specimen has reached a value";
+  std::string component = "zz";
+  double value = 0, within = 0.01;
+  void declare(Parameters& p);
+};
 struct PressureCondition {
   static constexpr const char* type_name = "pressure";
   static constexpr const char* type_doc = "the pressure on a wall has reached a value";
@@ -438,8 +480,8 @@ struct AnyCondition : Conditions {
 };
 struct Condition {
   OneOf<TimeCondition, StepsCondition, DisplacementCondition, UnbalancedForceCondition, AtRestCondition,
-        KineticEnergyCondition, VoidRatioCondition, MeanStressCondition, PressureCondition, DischargedCondition,
-        AllCondition, AnyCondition>
+        KineticEnergyCondition, VoidRatioCondition, MeanStressCondition, StressCondition, PressureCondition,
+        DischargedCondition, AllCondition, AnyCondition>
       is{"condition"};
   void declare(Parameters& p) { p.choose(is); }
 };

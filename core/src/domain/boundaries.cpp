@@ -13,21 +13,34 @@ bool may_leave(const std::vector<std::string>& open_sides, int axis, bool high) 
 
 }  // namespace
 
-Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::vector<std::string>& open_sides,
+Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std::vector<std::string>& open_sides,
              const std::function<void(std::size_t body, int axis, bool high)>& escaped) {
   const Vec3 period = cell.high - cell.low;
   Wrapped result{std::vector<bool>(bodies.count(), false)};
   const auto outside = [&](const Vec3& x, int k) { return x[k] < cell.low[k] || x[k] > cell.high[k]; };
   const auto periods_off = [&](const Vec3& x, int k) { return std::floor((x[k] - cell.low[k]) / period[k]); };
+  // The image across z may be off along x and y, that across y along x.
+  const bool skewed = cell.skewed();
+  const auto axis = [skewed](int n) { return skewed ? 2 - n : n; };
+  const auto shift = [&](Vec3& x, double periods, int k) {
+    const Vec3 to_next = cell.period(k);
+    for (int j = skewed ? 0 : k; j <= k; ++j) x[j] -= periods * to_next[j];
+  };
   // A body that re-enters takes the mean flow there.
-  const auto jump = [](double& speed, double by, double inverse_mass) {
-    const double before = speed;
-    speed -= by;
-    return 0.5 / inverse_mass * (speed * speed - before * before);
+  const auto jump = [&](Vec3& v, double periods, int k, double inverse_mass) {
+    double gained = 0;
+    for (int j = skewed ? 0 : k; j <= k; ++j) {
+      const double before = v[j];
+      const double by = periods * velocities(j, k);
+      v[j] -= by;
+      gained += 0.5 / inverse_mass * (v[j] * v[j] - before * before);
+    }
+    return gained;
   };
   // A clump leaves as a whole, by its centre.
   for (Clump& clump : bodies.clumps.clump)
-    for (int k = 0; k < 3; ++k) {
+    for (int n = 0; n < 3; ++n) {
+      const int k = axis(n);
       if (!cell.periodic[k]) {
         if (!outside(clump.centre, k) || !may_leave(open_sides, k, clump.centre[k] > cell.high[k])) continue;
         for (std::uint32_t s = clump.first; s < clump.last; ++s) result.leaves[bodies.clumps.spheres[s]] = true;
@@ -35,8 +48,8 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::ve
       }
       const double periods = periods_off(clump.centre, k);
       if (periods == 0) continue;
-      clump.centre[k] -= periods * period[k];
-      result.energy_gained += jump(clump.velocity[k], periods * growth[k], clump.inverse_mass);
+      shift(clump.centre, periods, k);
+      result.energy_gained += jump(clump.velocity, periods, k, clump.inverse_mass);
       for (std::uint32_t s = clump.first; s < clump.last; ++s)
         bodies.clumps.of_body[bodies.clumps.spheres[s]].periods[static_cast<std::size_t>(k)] -=
             static_cast<std::int8_t>(periods);
@@ -45,7 +58,8 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::ve
     Vec3 x = xyz(bodies.position[i]), v = xyz(bodies.velocity[i]);
     const bool in_clump = bodies.clumps.clump_of(i) != no_clump;
     bool moved = false;
-    for (int k = 0; k < 3; ++k) {
+    for (int n = 0; n < 3; ++n) {
+      const int k = axis(n);
       if (!cell.periodic[k]) {
         const bool high = x[k] > cell.high[k];
         if (!outside(x, k)) continue;
@@ -55,9 +69,9 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::ve
       }
       const double periods = periods_off(x, k);
       if (periods == 0) continue;
-      x[k] -= periods * period[k];
-      if (!bodies.origin.empty()) bodies.origin[i][k] -= periods * period[k];
-      const double own = jump(v[k], periods * growth[k], bodies.velocity[i].w);
+      shift(x, periods, k);
+      if (!bodies.origin.empty()) shift(bodies.origin[i], periods, k);
+      const double own = jump(v, periods, k, bodies.velocity[i].w);
       if (!in_clump) result.energy_gained += own;
       if (in_clump) bodies.clumps.of_body[i].periods[static_cast<std::size_t>(k)] += static_cast<std::int8_t>(periods);
       else if (x[k] >= cell.high[k]) x[k] = cell.low[k];
@@ -68,6 +82,13 @@ Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::ve
     bodies.velocity[i] = {v.x(), v.y(), v.z(), bodies.velocity[i].w};
   }
   return result;
+}
+
+void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old) {
+  for (ClumpSphere& sphere : bodies.clumps.of_body) {
+    const Eigen::Vector3i old(sphere.periods[0], sphere.periods[1], sphere.periods[2]), now = of_old * old;
+    for (int k = 0; k < 3; ++k) sphere.periods[static_cast<std::size_t>(k)] = static_cast<std::int8_t>(now[k]);
+  }
 }
 
 std::vector<Leaving> leaving(const Bodies& bodies, const std::vector<bool>& leaves, double time,

@@ -16,10 +16,14 @@ struct Wrapped {
   double energy_gained = 0;  ///< kinetic, from the mean flow where bodies re-enter [J]
 };
 
-/// Moves bodies that have left the periodic cell back into it. `growth` is the rate of its periods [m/s]; `open_sides`
-/// has entries such as "-x". Calls `escaped(body, axis, high)`, which must throw, for a body outside a closed side.
-Wrapped wrap(Bodies& bodies, const Cell& cell, const Vec3& growth, const std::vector<std::string>& open_sides,
+/// Moves bodies that have left the periodic cell back into it. `velocities` of its images [m/s] are in columns, by
+/// axis; `open_sides` has entries such as "-x". Calls `escaped(body, axis, high)`, which must throw, for a body outside
+/// a closed side.
+Wrapped wrap(Bodies& bodies, const Cell& cell, const Mat3& velocities, const std::vector<std::string>& open_sides,
              const std::function<void(std::size_t body, int axis, bool high)>& escaped);
+
+/// Expresses the shifts of spheres relative to their clumps in new periods; see DeformingCell::reduce_tilt().
+void change_periods(Bodies& bodies, const Eigen::Matrix3i& of_old);
 
 /// A body that leaves, and its energy [J].
 struct Leaving {

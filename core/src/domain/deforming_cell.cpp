@@ -1,12 +1,14 @@
 #include "domain/deforming_cell.hpp"
 
+#include <cmath>
 #include <cstdint>
 
 #include "contact/search.hpp"
 
 namespace grit {
 
-DeformingCell::DeformingCell(const Cell& cell) : cell_(cell), lengths_before_(cell.high - cell.low), images_(27) {}
+DeformingCell::DeformingCell(const Cell& cell)
+    : cell_(cell), lengths_before_(cell.high - cell.low), tilt_before_(cell.tilt), images_(all_images) {}
 
 Vec3 DeformingCell::periods() const {
   Vec3 periods = Vec3::Zero();
@@ -16,7 +18,31 @@ Vec3 DeformingCell::periods() const {
 }
 
 Vec3 DeformingCell::mean_flow(const Vec3& place) const {
-  return deforms() ? Vec3(cell_.strain_rate.cwiseProduct(place - centre())) : Vec3::Zero();
+  if (!deforms()) return Vec3::Zero();
+  const Vec3 stretching = cell_.strain_rate.cwiseProduct(place - centre());
+  return cell_.shears() ? Vec3(stretching + shear_flow(cell_.shear_rate, place - centre())) : stretching;
+}
+
+Vec3 DeformingCell::shear_flow(const Vec3& shear_rate, const Vec3& place) {
+  return {shear_rate[0] * place.y() + shear_rate[1] * place.z(), shear_rate[2] * place.z(), 0};
+}
+
+Mat3 DeformingCell::columns(const Vec3& periods, const Vec3& tilt) {
+  Mat3 all = periods.asDiagonal();
+  all(0, 1) = tilt[0], all(0, 2) = tilt[1], all(1, 2) = tilt[2];
+  return all;
+}
+
+Vec3 DeformingCell::tilt_rate(const Vec3& lengths, const Vec3& tilt, const Vec3& strain_rate, const Vec3& shear_rate) {
+  return {strain_rate.x() * tilt[0] + shear_rate[0] * lengths.y(),
+          strain_rate.x() * tilt[1] + shear_rate[0] * tilt[2] + shear_rate[1] * lengths.z(),
+          strain_rate.y() * tilt[2] + shear_rate[2] * lengths.z()};
+}
+
+Vec3 DeformingCell::tilt_growth(double previous_dt) const {
+  if (!cell_.skewed()) return Vec3::Zero();
+  return previous_dt == 0 ? tilt_rate(lengths(), cell_.tilt, cell_.strain_rate, cell_.shear_rate)
+                          : Vec3((cell_.tilt - tilt_before_) / previous_dt);
 }
 
 Vec3 DeformingCell::period_growth(double previous_dt) const {
@@ -29,11 +55,32 @@ Vec3 DeformingCell::period_growth(double previous_dt) const {
   return growth;
 }
 
-void DeformingCell::set_strain_rate(const Vec3& rate, double previous_dt) {
-  const Vec3 change = rate - cell_.strain_rate, lengths = cell_.high - cell_.low;
-  cell_.strain_rate = rate;
+void DeformingCell::set_rates(const Vec3& strain_rate, const Vec3& shear_rate, double previous_dt) {
+  const Vec3 change = strain_rate - cell_.strain_rate, lengths = cell_.high - cell_.low;
+  const Vec3 change_of_shear = shear_rate - cell_.shear_rate;
+  const bool skews = cell_.skewed() || !shear_rate.isZero(0.0);
+  cell_.strain_rate = strain_rate, cell_.shear_rate = shear_rate;
   for (int k = 0; k < 3; ++k)
     if (cell_.periodic[k]) lengths_before_[k] -= previous_dt * change[k] * lengths[k];
+  if (skews) tilt_before_ -= previous_dt * tilt_rate(lengths, cell_.tilt, change, change_of_shear);
+}
+
+Eigen::Matrix3i DeformingCell::reduce_tilt() {
+  Eigen::Matrix3i moved = Eigen::Matrix3i::Identity();
+  if (!cell_.skewed()) return moved;
+  Mat3 now = columns(lengths(), cell_.tilt), before = columns(lengths_before_, tilt_before_);
+  // The image across y first: that across z moves by its new place.
+  const auto move = [&](int across, int along) {
+    const double periods = std::nearbyint(now(along, across) / now(along, along));
+    if (periods == 0) return;
+    now.col(across) -= periods * now.col(along), before.col(across) -= periods * before.col(along);
+    // old(across) = new(across) + periods · along, for all that was expressed in it
+    moved.row(along) += static_cast<int>(periods) * moved.row(across);
+  };
+  move(1, 0), move(2, 1), move(2, 0);
+  cell_.tilt = {now(0, 1), now(0, 2), now(1, 2)};
+  tilt_before_ = {before(0, 1), before(0, 2), before(1, 2)};
+  return moved;
 }
 
 void DeformingCell::set_open_sides(const Cell& box) {
@@ -45,8 +92,10 @@ void DeformingCell::set_open_sides(const Cell& box) {
 }
 
 void DeformingCell::advance(double dt) {
-  lengths_before_ = cell_.high - cell_.low;
+  lengths_before_ = cell_.high - cell_.low, tilt_before_ = cell_.tilt;
   if (!deforms()) return;
+  cell_.stage_shear_strain += dt * cell_.shear_rate;
+  if (cell_.skewed()) cell_.tilt += dt * tilt_rate(lengths_before_, tilt_before_, cell_.strain_rate, cell_.shear_rate);
   const Vec3 middle = centre();
   for (int k = 0; k < 3; ++k) {
     if (!cell_.periodic[k]) continue;
@@ -66,8 +115,15 @@ void DeformingCell::update_images(double previous_dt) {
     }
     images_[image] = {{position[0], position[1], position[2], 0}, {velocity[0], velocity[1], velocity[2], 0}};
   }
+  if (!cell_.skewed()) return;
+  const Mat3 periods = columns(period, cell_.tilt), velocities = image_velocities(previous_dt);
+  for (std::uint8_t image = 0; image < all_images; ++image) {
+    const auto shift = image_shift(image);
+    const Vec3 numbers(shift[0], shift[1], shift[2]), position = periods * numbers, velocity = velocities * numbers;
+    images_[image] = {{position.x(), position.y(), position.z(), 0}, {velocity.x(), velocity.y(), velocity.z(), 0}};
+  }
 }
 
-void DeformingCell::serialize(Archive& archive) { archive(cell_, lengths_before_, images_); }
+void DeformingCell::serialize(Archive& archive) { archive(cell_, lengths_before_, tilt_before_, images_); }
 
 }  // namespace grit

@@ -205,11 +205,10 @@ Description scene_properties(Generator& generator, const Registry& registry, con
   change["properties"]["//"] = Description::object();
   for (const auto& section : SceneDescription::changeable()) change["properties"][section] = parts.at(section);
   Description& domain = change["properties"]["domain"];
-  const Description strain_rate = domain.at("anyOf").at(0).at("properties").at("strain_rate");
-  domain = any_of({{"type", "object"},
-                   {"properties", {{"strain_rate", strain_rate}, {"//", Description::object()}}},
-                   {"additionalProperties", false}},
-                  type("null"));
+  Description of_domain = {{"//", Description::object()}};
+  for (const auto& key : DomainDescription::changeable())
+    of_domain[key] = domain.at("anyOf").at(0).at("properties").at(key);
+  domain = any_of({{"type", "object"}, {"properties", of_domain}, {"additionalProperties", false}}, type("null"));
   Description& stages = form == Form::patch ? all.at("stages").at("anyOf").at(0) : all.at("stages");
   const std::string name = "change" + (law.empty() ? "" : "-" + law);
   const Description doc = stages.at("items").at("properties").at("change").at("description");

@@ -79,7 +79,7 @@ void DisplacementBounds::check_foreseen(const State& state, double dt, Passes& p
 void DisplacementBounds::advance(State& state, Passes& passes) {
   const double dt = state.time.previous_dt;
   const double strained =
-      dt * state.cell.cell().strain_rate.cwiseAbs().maxCoeff() * 2 *
+      dt * state.cell.largest_rate() * 2 *
           (state.statistics.largest_radius + state.lists.skins().largest() + 0.5 * state.lists.skins().reach()) +
       2 * grown_;
   const double gone = state.lists.advance(dt, strained, passes);

@@ -64,10 +64,10 @@ double EnergyBalance::elastic_by_growth() const {
 }
 
 double EnergyBalance::kinetic() const {
-  const Vec3& strain_rate = state_.cell.cell().strain_rate;
+  const MeanFlow flow{state_.cell.cell().strain_rate, state_.cell.cell().shear_rate};
   static_cast<void>(world_.forces()), static_cast<void>(world_.clumps());  // computed once, before threads read them
   return passes_.sum([&](std::size_t chunk) {
-    return kinetic_energy(world_, 0.5 * state_.time.previous_dt, strain_rate, chunk * chunk_bodies,
+    return kinetic_energy(world_, 0.5 * state_.time.previous_dt, flow, chunk * chunk_bodies,
                           (chunk + 1) * chunk_bodies);
   });
 }
@@ -131,23 +131,38 @@ double EnergyBalance::power_of_engines() const {
 
 double EnergyBalance::power_of_flow() const {
   const Bodies& bodies = state_.bodies;
-  const Vec3 rate = state_.cell.cell().strain_rate;
+  const Cell& cell = state_.cell.cell();
   double power = 0;
-  for (const Clump& clump : bodies.clumps.clump) power += rate.dot(clump.velocity.cwiseAbs2()) / clump.inverse_mass;
+  const auto add = [&](const Vec3& velocity, double inverse_mass) {
+    power += cell.strain_rate.dot(velocity.cwiseAbs2()) / inverse_mass;
+    if (cell.shears()) power += DeformingCell::shear_flow(cell.shear_rate, velocity).dot(velocity) / inverse_mass;
+  };
+  for (const Clump& clump : bodies.clumps.clump) add(clump.velocity, clump.inverse_mass);
   for (std::size_t i = 0; i < bodies.count(); ++i)
-    if (bodies.clumps.clump_of(i) == no_clump)
-      power += rate.dot(xyz(bodies.velocity[i]).cwiseAbs2()) / bodies.velocity[i].w;
+    if (bodies.clumps.clump_of(i) == no_clump) add(xyz(bodies.velocity[i]), bodies.velocity[i].w);
   return power;
 }
 
+double EnergyBalance::power_of_cell() const {
+  const double previous_dt = state_.time.previous_dt;
+  return power_of_cell(state_.cell.period_growth(previous_dt), state_.cell.tilt_growth(previous_dt));
+}
+
+double EnergyBalance::power_of_cell(const Vec3& growth, const Vec3& tilt_growth) const {
+  const Vec3 straight = crossing_.diagonal();
+  const double power = -straight.dot(growth);
+  return tilt_growth.isZero(0.0) ? power
+                                 : power - Vec3(crossing_(0, 1), crossing_(0, 2), crossing_(1, 2)).dot(tilt_growth);
+}
+
 void EnergyBalance::find_crossing() {
-  if (!state_.bodies.energies() || !state_.cell.deforms()) return;
+  if (!state_.bodies.energies() || !state_.deforms()) return;
   const Stopwatch watch(passes_.time_of(StepPhase::contacts));
   const Bodies& bodies = state_.bodies;
   passes_.team().each(passes_.chunks().size(), [&](std::size_t chunk) {
-    Vec3& crossing = passes_.chunks()[chunk].crossing = Vec3::Zero();
-    const auto over = [](const auto& periods, const Row& force) -> Vec3 {
-      return Vec3(periods[0], periods[1], periods[2]).cwiseProduct(xyz(force));
+    Mat3& crossing = passes_.chunks()[chunk].crossing = Mat3::Zero();
+    const auto over = [](const auto& periods, const Row& force) -> Mat3 {
+      return xyz(force) * Vec3(periods[0], periods[1], periods[2]).transpose();
     };
     state_.pairs.each_crossing(chunk, state_.instant(true), [&](std::size_t c, const ContactRow& row) {
       crossing += over(image_shift(state_.pairs.image(c)), row.force);
@@ -158,7 +173,7 @@ void EnergyBalance::find_crossing() {
     for (std::size_t i = range.first; i < range.last; ++i)
       crossing -= over(bodies.clumps.of_body[i].periods, state_.sum[i].force);
   });
-  crossing_ = Vec3::Zero();
+  crossing_ = Mat3::Zero();
   for (const ChunkResult& chunk : passes_.chunks()) crossing_ += chunk.crossing;
 }
 
@@ -185,7 +200,7 @@ void EnergyBalance::before_motion(const MotionStep& step) {
     const Stopwatch watch(passes_.time_of(StepPhase::motion));
     engines_in_step_ = half_before * power_of_engines();
   }
-  if (step.flows()) cell_in_step_ = half_before * power_of_cell(state_.cell.period_growth(state_.time.previous_dt));
+  if (step.flows()) cell_in_step_ = half_before * power_of_cell();
 }
 
 void EnergyBalance::after_motion(const MotionStep& step) {
@@ -194,7 +209,7 @@ void EnergyBalance::after_motion(const MotionStep& step) {
     const Stopwatch watch(passes_.time_of(StepPhase::motion));
     engines_in_step_ += half_after * power_of_engines();
   }
-  if (step.energies && step.flows()) cell_in_step_ += half_after * power_of_cell(step.period_growth);
+  if (step.energies && step.flows()) cell_in_step_ += half_after * power_of_cell(step.period_growth, step.tilt_growth);
   flows_.engines += engines_in_step_, flows_.cell += cell_in_step_;
 }
 
@@ -234,7 +249,7 @@ Energies EnergyBalance::terms() {
   // The second half of the last step's work, by the forces at its end.
   const double half_step = 0.5 * state_.time.previous_dt;
   double cell = 0;
-  if (state_.cell.deforms()) cell = power_of_cell(state_.cell.period_growth(state_.time.previous_dt)) + power_of_flow();
+  if (state_.cell.deforms()) cell = power_of_cell() + power_of_flow();
   const double by_walls = half_step * power_of_walls(), by_cell = half_step * cell,
                by_engines = half_step * (state_.settings.engines_do_work() ? power_of_engines() : 0);
   const double by_growth = flows_.grown > 0 ? 0.5 * flows_.grown * elastic_by_growth() : 0;

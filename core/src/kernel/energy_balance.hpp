@@ -76,7 +76,9 @@ class EnergyBalance {
   double elastic_by_growth() const;
   double power_of_engines(std::size_t chunk) const;
   double power_of_engines() const;
-  double power_of_cell(const Vec3& growth) const { return -crossing_.dot(growth); }
+  /// With the rates of periods and tilt in the last step, or with these [m/s].
+  double power_of_cell() const;
+  double power_of_cell(const Vec3& growth, const Vec3& tilt_growth) const;
   double power_of_flow() const;
 
   const State& state_;
@@ -84,8 +86,9 @@ class EnergyBalance {
   Passes& passes_;
   Flows flows_;
   double engines_in_step_ = 0, cell_in_step_ = 0;
-  /// Sum over contacts across periodic boundaries: periods along each axis times the force on the far end [N].
-  Vec3 crossing_ = Vec3::Zero();
+  /// Sum over contacts across periodic boundaries: components of the force on the far end in rows, periods along each
+  /// axis in columns [N].
+  Mat3 crossing_ = Mat3::Zero();
 };
 
 }  // namespace grit

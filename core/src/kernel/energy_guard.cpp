@@ -18,7 +18,7 @@ constexpr std::uint64_t check_every = 500, first_check = 64;
 /// Whether all work that changes the stored energy is summed up in each step, without a balance.
 bool all_work_is_known(const State& state) {
   const Settings& settings = state.settings;
-  bool known = settings.growth_rate == 0 && !state.cell.deforms() && !settings.engines_do_work();
+  bool known = settings.growth_rate == 0 && !state.deforms() && !settings.engines_do_work();
   // There is no potential along a periodic axis.
   for (int k = 0; k < 3; ++k)
     known = known && !(state.cell.cell().periodic[k] &&

@@ -12,6 +12,7 @@
 #include "grit/error.hpp"
 #include "kernel/arrivals.hpp"
 #include "kernel/body_groups.hpp"
+#include "kernel/cell_servo.hpp"
 #include "kernel/failure.hpp"
 #include "kernel/guards.hpp"
 #include "kernel/specimen.hpp"
@@ -81,10 +82,14 @@ void Kernel::synchronise_velocities() {
   Bodies& bodies = state_.bodies;
   const auto forces = view_.forces(), moments = view_.moments();
   const auto clumps = view_.clumps();
-  const Vec3 flowing = Vec3::Ones() + half * state_.cell.cell().strain_rate;
+  const Cell& cell = state_.cell.cell();
+  const Vec3 stretching = Vec3::Ones() + half * cell.strain_rate;
+  const auto flowing = [&](const Vec3& v) -> Vec3 {
+    return stretching.cwiseProduct(v) + half * DeformingCell::shear_flow(cell.shear_rate, v);
+  };
   for (std::size_t c = 0; c < clumps.size(); ++c) {
     Clump& clump = bodies.clumps.clump[c];
-    clump.velocity = flowing.cwiseProduct(clump.velocity) + half * clump.inverse_mass * clumps[c].force;
+    clump.velocity = flowing(clump.velocity) + half * clump.inverse_mass * clumps[c].force;
     clump.momentum += half * clumps[c].moment;
     clump.spin = clump.spin_of(clump.momentum);
   }
@@ -97,9 +102,9 @@ void Kernel::synchronise_velocities() {
       const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
       w = clump.spin;
       v = clump.velocity + w.cross(clump.axes * own.place) -
-          periods.cwiseProduct(state_.cell.period_growth(state_.time.previous_dt));
+          state_.cell.image_velocities(state_.time.previous_dt) * periods;
     } else {
-      v = flowing.cwiseProduct(xyz(velocity)) + half * velocity.w * xyz(forces[i]);
+      v = flowing(xyz(velocity)) + half * velocity.w * xyz(forces[i]);
       w = xyz(spin) + half * spin.w * xyz(moments[i]);
     }
     velocity = {v.x(), v.y(), v.z(), velocity.w}, spin = {w.x(), w.y(), w.z(), spin.w};
@@ -116,6 +121,7 @@ Prepared Kernel::hand_over() {
 void Kernel::begin_stage(const std::string& name, const SceneDescription& scene, const Components& components) {
   state_.stage = name;
   state_.bodies.start_paths();
+  state_.cell.begin_stage();
   state_.walls.apply(scene, components);
   apply(scene, components);
   admit(scene, components);
@@ -135,7 +141,7 @@ void Kernel::apply(const SceneDescription& scene, const Components& components) 
   };
   const double kinetic_before = kinetic();
   constrain(state_.bodies, state_.settings);
-  change_strain_rate(state_.settings.strain_rate);
+  change_rates(state_, prescribed_rates(state_));
   balance_.add_settings(kinetic() - kinetic_before);
   update_cross_section(state_);
   guard_.restart();
@@ -174,24 +180,6 @@ void Kernel::take_walls(const SceneDescription& scene, const Components& compone
   }
 }
 
-void Kernel::change_strain_rate(const Vec3& rate) {
-  const Vec3 change = rate - state_.cell.cell().strain_rate;
-  if (change.isZero(0.0)) return;
-  Bodies& bodies = state_.bodies;
-  const Vec3 centre = state_.cell.centre(), period = state_.cell.lengths();
-  const auto flow = [&](const Vec3& place) -> Vec3 { return change.cwiseProduct(place - centre); };
-  for (Clump& clump : bodies.clumps.clump) clump.velocity += flow(clump.centre);
-  for (std::size_t i = 0; i < bodies.count(); ++i) {
-    Vec3 v = flow(xyz(bodies.position[i]));
-    if (const std::uint32_t c = bodies.clumps.clump_of(i); c != no_clump) {
-      const auto& periods = bodies.clumps.of_body[i].periods;
-      v = flow(bodies.clumps.clump[c].centre);
-      for (int k = 0; k < 3; ++k)
-        if (state_.cell.cell().periodic[k]) v[k] -= periods[static_cast<std::size_t>(k)] * change[k] * period[k];
-    }
-    bodies.velocity[i] += Row{v.x(), v.y(), v.z(), 0};
-  }
-  state_.cell.set_strain_rate(rate, state_.time.previous_dt);
 }
 
 void Kernel::count_in(std::size_t first, std::size_t first_clump) {
@@ -268,6 +256,11 @@ void Kernel::find_forces() {
 void Kernel::step_on() {
   let_in();
   stepper_.step_on();
+}
+
+std::string Kernel::fallen_behind() const {
+  const std::string walls = state_.walls.fallen_behind(), cell = cell_servo_behind(state_, passes_);
+  return walls + (walls.empty() || cell.empty() ? "" : "; ") + cell;
 }
 
 double Kernel::kinetic_energy_ratio() const {

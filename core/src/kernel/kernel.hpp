@@ -42,6 +42,8 @@ class Kernel {
   double critical_time_step() const { return stepper_.time_step().critical(); }
   /// Kinetic over elastic energy; infinite without elastic energy.
   double kinetic_energy_ratio() const;
+  /// Message for each servo of a wall or of the cell that misses its target; empty if there is none.
+  std::string fallen_behind() const;
   /// Bodies of streams that wait for room, in words; empty if there are none.
   std::string waiting_bodies() const { return inflow_.waiting(); }
   double body_steps() const { return stepper_.body_steps(); }
@@ -65,8 +67,6 @@ class Kernel {
   /// Advances the velocities of half a step ago to the present instant.
   void synchronise_velocities();
   void take_walls(const SceneDescription& scene, const Components& components);
-  /// Adds the mean flow of a cell to the velocities of bodies, from its first instant.
-  void change_strain_rate(const Vec3& rate);
   /// Adds the bodies of streams that enter now.
   void let_in();
   /// Appends new bodies; the next forces need a neighbour search.

@@ -25,18 +25,26 @@ bool NeighbourLists::due(const Bodies& bodies, const DeformingCell& cell) {
   // The sum of the largest speeds is a bound; the true distance is often far less. In a cell that deforms it is the
   // distance relative to the mean flow.
   Vec3 stretch = Vec3::Ones(), from = Vec3::Zero(), to = Vec3::Zero();
-  if (cell.deforms()) {
+  if (cell.deforms() || cell.cell().skewed()) {
     from = 0.5 * (reference_cell_.low + reference_cell_.high), to = cell.centre();
     for (int k = 0; k < 3; ++k)
       if (cell.cell().periodic[k]) stretch[k] = cell.lengths()[k] / (reference_cell_.high[k] - reference_cell_.low[k]);
       else from[k] = to[k] = 0;
   }
+  // Deformation since the last rebuild, which has moved no image since.
+  const bool skewed = cell.cell().skewed();
+  Mat3 deformed = Mat3::Identity();
+  if (skewed)
+    deformed = DeformingCell::columns(cell.lengths(), cell.cell().tilt) *
+               DeformingCell::columns(reference_cell_.high - reference_cell_.low, reference_cell_.tilt).inverse();
   for (std::size_t chunk = 0; chunk < chunks_of(bodies.count()); ++chunk) {
     if (!used_up(chunk)) continue;
     const ChunkRange range(chunk, bodies.count());
     double largest = 0;
     for (std::size_t i = range.first; i < range.last; ++i) {
-      const Vec3 away = xyz(bodies.position[i]) - to - stretch.cwiseProduct(xyz(reference_[i]) - from);
+      const Vec3 x = xyz(bodies.position[i]), before = xyz(reference_[i]);
+      const Vec3 away =
+          skewed ? Vec3(x - to - deformed * (before - from)) : Vec3(x - to - stretch.cwiseProduct(before - from));
       largest = std::max(largest, away.squaredNorm());
     }
     skins_.found(chunk, std::sqrt(largest));
@@ -53,13 +61,12 @@ void NeighbourLists::lay_skins(const Bodies& bodies, const DeformingCell& cell, 
     if (cell.cell().periodic[k])
       most = std::min(most, 0.25 * cell.lengths()[k] - statistics.largest_radius - 0.5 * reach);
   const auto skin = [&](double speed) { return std::max(least, std::min(most, steps_of_skin * dt * speed)); };
-  const Vec3 rate = cell.cell().strain_rate, middle = cell.flow_centre();
   std::vector<double> skins(chunks_of(bodies.count()));
   passes.team().each(skins.size(), [&](std::size_t chunk) {
     const ChunkRange range(chunk, bodies.count());
     double fastest = 0;
     for (std::size_t i = range.first; i < range.last; ++i) {
-      const Vec3 flow = rate.cwiseProduct(xyz(bodies.position[i]) - middle);
+      const Vec3 flow = cell.mean_flow(xyz(bodies.position[i]));
       fastest = std::max(fastest, (xyz(bodies.velocity[i]) - flow).squaredNorm());
     }
     skins[chunk] = skin(std::sqrt(fastest));

@@ -23,7 +23,7 @@ struct alignas(64) ChunkResult {
   double overlap = 0;  ///< largest, over a radius
   Losses losses;
   Motion motion, clumps;
-  Vec3 crossing = Vec3::Zero();  ///< see EnergyBalance
+  Mat3 crossing = Mat3::Zero();  ///< see EnergyBalance
   bool moved = false;
   std::array<double, step_phases> seconds{};
 

@@ -61,7 +61,8 @@ Settings settings_of(const SceneDescription& scene, const Components& components
     for (std::size_t group = 0; group < now.groups.size(); ++group)
       now.motion_of_groups.push_back(motion_of(settings_engines, group));
   for (const auto& [name, wall] : scene.walls) now.groups_of_walls.push_back(group_mask(wall.groups, now.groups));
-  now.strain_rate = scene.domain.strain_rate, now.open_sides = scene.domain.open_sides;
+  now.strain_rate = scene.domain.strain_rate, now.shear_rate = scene.domain.shear_rate.vector();
+  now.cell_servo = scene.domain.servo, now.open_sides = scene.domain.open_sides;
   now.specimen = scene.specimen, now.time_step = scene.time_step, now.guards = scene.guards;
   now.growth_rate = growth_rate(scene, stage);
   now.may_clump =

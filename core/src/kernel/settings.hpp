@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,9 @@ struct Settings {
   std::vector<MotionSettings> motion_of_groups;            ///< instead, by group; empty if all are alike
   std::vector<GroupMask> groups_of_walls;                  ///< on which they act, by wall
   Vec3 strain_rate = Vec3::Zero();                         ///< of the cell [1/s]
-  std::vector<std::string> open_sides;                     ///< of the domain, as "-x", "+z"
+  Vec3 shear_rate = Vec3::Zero();                          ///< the same, see Cell
+  std::optional<CellServoDescription> cell_servo;
+  std::vector<std::string> open_sides;  ///< of the domain, as "-x", "+z"
   SpecimenDescription specimen;
   TimeStepDescription time_step;
   GuardsDescription guards;

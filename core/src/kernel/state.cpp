@@ -4,18 +4,25 @@ namespace grit {
 
 MotionStep State::next_motion(bool energies) const {
   const double dt = time.dt;
-  const Vec3 period = cell.periods(), growth = period.cwiseProduct(cell.cell().strain_rate);
+  const Cell& box = cell.cell();
+  const Vec3 period = cell.periods(), growth = period.cwiseProduct(box.strain_rate);
+  const Vec3 tilt_growth = box.skewed()
+                               ? DeformingCell::tilt_rate(cell.lengths(), box.tilt, box.strain_rate, box.shear_rate)
+                               : Vec3(Vec3::Zero());
   return {.settings = settings.motion,
           .kick = time.previous_dt > 0 ? 0.5 * (time.previous_dt + dt) : 0.5 * dt,
           .drift = dt,
           .flowed = time.previous_dt,
-          .strain_rate = cell.cell().strain_rate,
+          .strain_rate = box.strain_rate,
           .centre = cell.flow_centre(),
           .period = period + dt * growth,
           .period_growth = growth,
           .energies = energies,
           .by_group = settings.motion_of_groups,
-          .group = group};
+          .group = group,
+          .shear_rate = box.shear_rate,
+          .tilt = box.tilt + dt * tilt_growth,
+          .tilt_growth = tilt_growth};
 }
 
 std::size_t State::bytes() const {

@@ -53,6 +53,8 @@ struct State {
   std::vector<double> reaches() const { return settings.law->reaches(statistics.largest_radius); }
   /// The next step of the leap-frog scheme. `energies`: whether work is summed up.
   MotionStep next_motion(bool energies) const;
+  /// Whether the cell may change its shape in the next step.
+  bool deforms() const { return cell.deforms() || settings.cell_servo; }
   /// Discharged mass over all mass that entered.
   double discharged_fraction() const { return statistics.mass > 0 ? discharged_mass / statistics.mass : 0; }
   /// Memory of bodies and contacts [bytes].

@@ -51,9 +51,13 @@ void Stepper::rebuild() {
   check_periods(state_);
   repeat_walls(state_);
   Bodies& bodies = state_.bodies;
-  const DeformingCell& cell = state_.cell;
-  Wrapped wrapped = wrap(bodies, cell.cell(), cell.period_growth(state_.time.previous_dt), state_.settings.open_sides,
-                         [this](std::size_t body, int axis, bool high) {
+  DeformingCell& cell = state_.cell;
+  if (const Eigen::Matrix3i moved = cell.reduce_tilt(); !moved.isIdentity()) {
+    change_periods(bodies, moved);
+    cell.update_images(state_.time.previous_dt);
+  }
+  Wrapped wrapped = wrap(bodies, cell.cell(), cell.image_velocities(state_.time.previous_dt),
+                         state_.settings.open_sides, [this](std::size_t body, int axis, bool high) {
                            fail_at_body(state_, Guard::domain, group_keys(state_, body), body,
                                         "left the domain through its " + std::string(high ? "upper" : "lower") + " " +
                                             "xyz"[axis] + " side",
@@ -221,9 +225,22 @@ void Stepper::move_clumps_of_chunks(const MotionStep& step) {
   });
 }
 
+void Stepper::drive_cell() {
+  const Stopwatch watch(passes_.time_of(StepPhase::contacts));
+  const CellRates rates = cell_servo_.rates(state_, passes_);
+  const double kinetic_before = balance_.is_kept() ? balance_.kinetic() : 0;
+  change_rates(state_, rates);
+  view_.invalidate_forces();
+  balance_.add_cell((balance_.is_kept() ? balance_.kinetic() : 0) - kinetic_before);
+}
+
 void Stepper::advance() {
-  const MotionStep step = state_.next_motion(balance_.is_kept());
+  MotionStep step = state_.next_motion(balance_.is_kept());
   balance_.before_motion(step);
+  if (CellServo::due(state_)) {
+    drive_cell();
+    step = state_.next_motion(balance_.is_kept());
+  }
   if (state_.settings.growth_rate > 0 || balance_.has_growth()) grow();
   move_clumps_of_chunks(step);
   passes_.each(state_.time.step, [&](std::size_t chunk, Laps& laps) {
@@ -239,10 +256,10 @@ void Stepper::advance() {
 bool Stepper::can_move_at_once() const {
   const Settings& settings = state_.settings;
   const bool free_walls = std::ranges::any_of(state_.surfaces, &WallSurface::free);
-  const bool power_of_forces = balance_.is_kept() && (state_.cell.deforms() || settings.holds_bodies());
+  const bool power_of_forces = balance_.is_kept() && (state_.deforms() || settings.holds_bodies());
   return settings.growth_rate == 0 && !balance_.has_growth() && settings.force_engines.empty() &&
          state_.bodies.clumps.none() && !free_walls && !power_of_forces && !guard_.due(state_.time.step) &&
-         !time_step_.may_stiffen(state_, bounds_);
+         !CellServo::due(state_) && !time_step_.may_stiffen(state_, bounds_);
 }
 
 void Stepper::step_on() {
@@ -325,6 +342,6 @@ void Stepper::restored() {
   readiness_.build(state_.pairs.reached());
 }
 
-void Stepper::serialize(Archive& archive) { archive(time_step_, bounds_, forces_step_, body_steps_); }
+void Stepper::serialize(Archive& archive) { archive(time_step_, bounds_, cell_servo_, forces_step_, body_steps_); }
 
 }  // namespace grit

@@ -5,6 +5,7 @@
 
 #include "bodies/make_bodies.hpp"
 #include "contact/readiness.hpp"
+#include "kernel/cell_servo.hpp"
 #include "kernel/displacement_bounds.hpp"
 #include "kernel/energy_guard.hpp"
 #include "kernel/time_step_control.hpp"
@@ -58,6 +59,8 @@ class Stepper {
   void take_loads();
   bool can_move_at_once() const;
   void grow();
+  /// Sets the strain rate that keeps the stresses of the cell.
+  void drive_cell();
   void move_clumps_of_chunks(const MotionStep& step);
   /// Operations after the motion of bodies.
   void end_step();
@@ -71,6 +74,7 @@ class Stepper {
   EnergyGuard& guard_;
   TimeStepControl time_step_;
   DisplacementBounds bounds_;
+  CellServo cell_servo_;
   Readiness readiness_;
   std::vector<Newcomers::Group> arrivals_;  // since the last rebuild, with their first ids
   std::vector<std::size_t> late_;           // chunks that could not move at once

@@ -81,12 +81,10 @@ bool Stiffening::may_exceed(const State& state, const DisplacementBounds& bounds
 void Stiffening::expect(const State& state, const DisplacementBounds& bounds) {
   if (!is_there()) return;
   // New bodies with a velocity have not moved yet.
-  const Vec3 rate = state.cell.cell().strain_rate, middle = state.cell.flow_centre();
   double fastest = 0;
   for (std::size_t i = 0; i < state.bodies.count(); ++i)
     fastest = std::max(
-        fastest,
-        (xyz(state.bodies.velocity[i]) - rate.cwiseProduct(xyz(state.bodies.position[i]) - middle)).squaredNorm());
+        fastest, (xyz(state.bodies.velocity[i]) - state.cell.mean_flow(xyz(state.bodies.position[i]))).squaredNorm());
   fastest = std::sqrt(fastest);
   const double speed =
       std::max({2 * fastest, fastest + bounds.wall_closing_speed(), bounds.closing_speed(state.time.previous_dt)});

@@ -138,7 +138,7 @@ std::optional<Depth> depth_of(const Scene& described, const World& world, bool p
 std::optional<UnusedSetting> by_contacts(const Scene& described, const Components& components, const World& world,
                                          bool plain) {
   const SceneDescription& scene = *described.description;
-  if (!scene.domain.strain_rate.isZero(0.0)) return std::nullopt;
+  if (scene.domain.deforms()) return std::nullopt;
   const auto depth = depth_of(described, world, plain);
   if (!depth || !std::isfinite(depth->length)) return std::nullopt;
   std::size_t bodies = world.positions().size();

@@ -44,8 +44,8 @@ std::optional<UnusedSetting> unmoved_bodies(const Scene& described, const World&
     const auto is_unmoved = [](const MotionSettings& group) {
       return group.gravity.isZero(0.0) && (!group.prescribed || *group.prescribed == RigidMotion{});
     };
-    return all_settings(now, engines, is_unmoved) && std::ranges::none_of(engines, is_force) &&
-           now.domain.strain_rate.isZero(0.0) && has_walls_at_rest(now, start);
+    return all_settings(now, engines, is_unmoved) && std::ranges::none_of(engines, is_force) && !now.domain.deforms() &&
+           has_walls_at_rest(now, start);
   });
   if (!still) return std::nullopt;
   return UnusedSetting{

@@ -46,10 +46,11 @@ bool is_zero(const Scene& described, const std::string& key) {
 /// Whether a wall at rest is out of reach of all bodies in the domain. Tests spheres that cover the domain.
 bool is_out_of_reach(const SceneDescription& scene, const Kernel& kernel, std::size_t wall, const std::string& name) {
   const DomainDescription& domain = scene.domain;
-  const bool deforms = !domain.strain_rate.isZero(0.0) || std::ranges::any_of(scene.stages, [](const auto& stage) {
-    return stage.change.contains("domain") || stage.growth ||
-           std::ranges::any_of(stage.ramps, [](const auto& ramp) { return ramp.pointer.starts_with("/domain/"); });
-  });
+  const bool deforms =
+      domain.deforms() || std::ranges::any_of(scene.stages, [](const auto& stage) {
+        return stage.change.contains("domain") || stage.growth ||
+               std::ranges::any_of(stage.ramps, [](const auto& ramp) { return ramp.pointer.starts_with("/domain/"); });
+      });
   if (!domain.low || !domain.high || deforms || !domain.open_sides.empty() ||
       std::ranges::any_of(scene.bodies, [](const auto& group) { return !group.second.stage.empty(); }))
     return false;

@@ -96,17 +96,33 @@ double move_rigidly(const RigidStep& motion, double dt, Clump& clump) {
   return kinetic_energy(clump) - before;
 }
 
+/// This number of periods, or of their growths.
+[[gnu::always_inline]] inline Vec3 across_sides(const Vec3& periods, const Vec3& length, const Vec3& tilt,
+                                                bool skewed) {
+  const Vec3 straight = periods.cwiseProduct(length);
+  if (!skewed) return straight;
+  return straight + Vec3(periods.y() * tilt[0] + periods.z() * tilt[1], periods.z() * tilt[2], 0);
+}
+
+/// The velocity that the mean flow of a cell adds at `place` from its centre.
+[[gnu::always_inline]] inline Vec3 flow_at(const Vec3& place, const MotionStep& step, bool shears) {
+  const Vec3 stretching = step.strain_rate.cwiseProduct(place);
+  if (!shears) return stretching;
+  const Vec3& rate = step.shear_rate;
+  return stretching + Vec3(rate[0] * place.y() + rate[1] * place.z(), rate[2] * place.z(), 0);
+}
+
 /// Moves a body with its clump; its velocity is its displacement in the step over the step.
-[[gnu::always_inline]] inline void carry(std::uint32_t body, const Clump& clump, Bodies& bodies,
-                                         const MotionStep& step) {
+[[gnu::always_inline]] inline void carry(std::uint32_t body, const Clump& clump, Bodies& bodies, const MotionStep& step,
+                                         bool skewed) {
   const ClumpSphere& own = bodies.clumps.of_body[body];
   const Vec3 arm = clump.axes * own.place;
   const Vec3 periods(own.periods[0], own.periods[1], own.periods[2]);
   // Chord of the arc over the step: from the arm before the rotation to the arm.
   const Vec3 across = clump.half_turn.cross(arm);
   const Vec3 v = clump.velocity + clump.chord_rate * (across - clump.half_turn.cross(across)) -
-                 periods.cwiseProduct(step.period_growth);
-  const Vec3 x = clump.centre + arm - periods.cwiseProduct(step.period);
+                 across_sides(periods, step.period_growth, step.tilt_growth, skewed);
+  const Vec3 x = clump.centre + arm - across_sides(periods, step.period, step.tilt, skewed);
   Row &position = bodies.position[body], &velocity = bodies.velocity[body], &spin = bodies.spin[body];
   position.x = x.x(), position.y = x.y(), position.z = x.z();
   velocity.x = v.x(), velocity.y = v.y(), velocity.z = v.z();
@@ -141,6 +157,7 @@ ClumpLoad load_of(const Clump& clump, const Bodies& bodies, const BodySum* sum) 
 
 Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   Motion motion;
+  const bool shears = step.shears(), skewed = !step.tilt.isZero(0.0) || !step.tilt_growth.isZero(0.0);
   for (std::size_t c = first; c < last; ++c) {
     fetch(bodies.clumps.clump[std::min(c + ahead, last - 1)], bodies, sum);
     Clump& clump = bodies.clumps.clump[c];
@@ -153,9 +170,11 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
     }
     const Vec3 free = settings.free_translation(), turns = settings.free_rotation();
     const ClumpLoad load = load_of(clump, bodies, sum);
-    const Vec3 before = clump.velocity, carried = (step.flowed * step.strain_rate).cwiseProduct(before);
+    const Vec3 before = clump.velocity;
+    const Vec3 carried = shears ? Vec3(step.flowed * flow_at(before, step, true))
+                                : Vec3((step.flowed * step.strain_rate).cwiseProduct(before));
     clump.velocity += carried;
-    const Vec3 flow = step.strain_rate.cwiseProduct(clump.centre - step.centre);
+    const Vec3 flow = flow_at(clump.centre - step.centre, step, shears);
     Vec3 push = step.kick * free.cwiseProduct(clump.inverse_mass * load.force + settings.gravity);
     Vec3 twist = step.kick * turns.cwiseProduct(load.moment);
     if (settings.local_damping > 0) {
@@ -175,7 +194,8 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
       motion.carried += 0.5 * carried.dot(before + clump.velocity) / clump.inverse_mass;
     }
     turn_freely(clump, step.drift);
-    for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step);
+    for (std::uint32_t k = clump.first; k < clump.last; ++k)
+      carry(bodies.clumps.spheres[k], clump, bodies, step, skewed);
   }
   return motion;
 }

@@ -59,13 +59,18 @@ struct Kick {
 enum class EnergyTerms { none, without_weight, with_weight, with_flow };
 
 /// Not inlined: with all variants in one function, their constants would be in memory.
-template <EnergyTerms energies, bool Clumps, bool Groups>
+template <EnergyTerms energies, bool Clumps, bool Groups, bool Shears>
 [[gnu::noinline]] Motion move(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
   const std::size_t first = chunk * chunk_bodies, last = std::min(bodies.count(), first + chunk_bodies);
   const Quad rate = quad(step.strain_rate), centre = quad(step.centre);
   // The mean flow at a body changes as the body moves with it; without this term, bodies would lag behind the cell's
   // sides.
   const Quad growth = rate * step.flowed;
+  [[maybe_unused]] const double xy = step.shear_rate[0], xz = step.shear_rate[1], yz = step.shear_rate[2];
+  // Of velocities that the gradients xy, xz and yz add.
+  [[maybe_unused]] const auto sheared = [&](const Quad& place) {
+    return Quad{xy * place[1] + xz * place[2], yz * place[2], 0, 0};
+  };
   std::vector<Kick> by_group;
   if constexpr (Groups)
     for (const MotionSettings& settings : step.by_group) by_group.emplace_back(settings, step);
@@ -85,8 +90,9 @@ template <EnergyTerms energies, bool Clumps, bool Groups>
   for (std::size_t i = first; i < last; ++i) {
     if constexpr (Clumps)
       if (bodies.clumps.of_body[i].clump != no_clump) {
-        const Quad v = load(velocity[i]), before = load(position[i]) - v * drift,
-                   against = v - rate * (before - centre);
+        const Quad v = load(velocity[i]), before = load(position[i]) - v * drift;
+        Quad against = v - rate * (before - centre);
+        if constexpr (Shears) against -= sheared(before - centre);
         fastest_carried = std::max(fastest_carried, product(against, against));
         poison += v * 0.0 + load(spin[i]) * 0.0;
         turn_on(turned, i, load(spin[i]), drift);
@@ -101,7 +107,9 @@ template <EnergyTerms energies, bool Clumps, bool Groups>
         prescribed += 0.5 * (product(v, v) - product(v_before, v_before)) / inverse_mass +
                       0.5 * (product(w, w) - product(w_before, w_before)) / inverse_inertia;
         if constexpr (falls) momentum += v * own.weight / inverse_mass;
-        const Quad speed = absolute(v - rate * (x - centre));
+        Quad carried = rate * (x - centre);
+        if constexpr (Shears) carried += sheared(x - centre);
+        const Quad speed = absolute(v - carried);
         fastest = speed > fastest ? speed : fastest;
         turn_on(turned, i, w, drift);
         v[3] = inverse_mass, w[3] = inverse_inertia;
@@ -116,7 +124,8 @@ template <EnergyTerms energies, bool Clumps, bool Groups>
     const double inverse_mass = velocity[i].w, inverse_inertia = spin[i].w;
     const Quad before = v;
     v += growth * v;
-    const Quad flow = rate * (x - centre);
+    Quad flow = rate * (x - centre);
+    if constexpr (Shears) v += step.flowed * sheared(before), flow += sheared(x - centre);
     Quad push = force * (kick * inverse_mass) + fall;
     Quad twist = moment * (turn_kick * inverse_inertia);
     const double mass = falls ? 1 / inverse_mass : 0;
@@ -136,6 +145,7 @@ template <EnergyTerms energies, bool Clumps, bool Groups>
     x += v * drift;
     if constexpr (falls) momentum += Groups ? v * mass * weight : v * mass;
     if constexpr (flows) flow_work += 0.5 * mass * (growth * before) * (before + v);
+    if constexpr (flows && Shears) flow_work += 0.5 * mass * step.flowed * sheared(before) * (before + v);
     store(x, position[i]), store(v, velocity[i]), store(w, spin[i]);
     turn_on(turned, i, w, drift);
     const Quad speed = absolute(v - flow);
@@ -162,14 +172,16 @@ bool MotionStep::falls() const {
 }
 
 Motion move_bodies(std::size_t chunk, Bodies& bodies, const BodySum* sum, const MotionStep& step) {
-  const auto with = [&]<EnergyTerms energies>() {
+  const auto with = [&]<EnergyTerms energies, bool shears = false>() {
     const bool clumps = !bodies.clumps.none();
     if (!step.by_group.empty())
-      return clumps ? move<energies, true, true>(chunk, bodies, sum, step)
-                    : move<energies, false, true>(chunk, bodies, sum, step);
-    return clumps ? move<energies, true, false>(chunk, bodies, sum, step)
-                  : move<energies, false, false>(chunk, bodies, sum, step);
+      return clumps ? move<energies, true, true, shears>(chunk, bodies, sum, step)
+                    : move<energies, false, true, shears>(chunk, bodies, sum, step);
+    return clumps ? move<energies, true, false, shears>(chunk, bodies, sum, step)
+                  : move<energies, false, false, shears>(chunk, bodies, sum, step);
   };
+  if (step.shears())
+    return step.energies ? with.operator()<EnergyTerms::with_flow, true>() : with.operator()<EnergyTerms::none, true>();
   if (!step.energies) return with.operator()<EnergyTerms::none>();
   if (step.flows()) return with.operator()<EnergyTerms::with_flow>();
   return step.falls() ? with.operator()<EnergyTerms::with_weight>() : with.operator()<EnergyTerms::without_weight>();

@@ -24,8 +24,11 @@ struct MotionStep {
   bool energies;       ///< whether the energies of Motion are needed
   std::span<const MotionSettings> by_group{};  ///< instead of `settings`, by group; empty if all bodies have the same
   std::span<const std::uint16_t> group{};      ///< group of each body; may be empty without by_group
+  Vec3 shear_rate = Vec3::Zero();              ///< see Cell
+  Vec3 tilt = Vec3::Zero(), tilt_growth = Vec3::Zero();  ///< of the cell after the step [m, m/s]
 
-  bool flows() const { return !strain_rate.isZero(0.0); }
+  bool shears() const { return !shear_rate.isZero(0.0); }
+  bool flows() const { return !strain_rate.isZero(0.0) || shears(); }
   const MotionSettings& of(std::size_t body) const { return by_group.empty() ? settings : by_group[group[body]]; }
   /// Whether any body is subject to gravity.
   bool falls() const;

@@ -26,7 +26,8 @@ void write_grains(const std::filesystem::path& path, const World& world, const s
   const Cell& cell = world.cell();
   const auto grain = [&](std::size_t i) -> Row {
     const Row& x = world.positions()[order[i]];
-    return {cell.inside(x.x, 0), cell.inside(x.y, 1), cell.inside(x.z, 2), x.w};
+    const Vec3 inside = cell.inside(xyz(x));
+    return {inside.x(), inside.y(), inside.z(), x.w};
   };
   write_packing(path, order.size(), grain, comment);
 }
@@ -36,7 +37,9 @@ std::string comment_on(const World& world, const std::string& title) {
   const Cell& cell = world.cell();
   if (!(cell.periodic[0] || cell.periodic[1] || cell.periodic[2])) return title;
   const Vec3 &a = cell.low, &b = cell.high;
-  return fmt::format("{}\ncell {} {} {} to {} {} {}, m", title, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+  const std::string box = fmt::format("{}\ncell {} {} {} to {} {} {}", title, a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+  const Vec3& tilt = cell.tilt;
+  return box + (cell.skewed() ? fmt::format(", tilt xy {} xz {} yz {}, m", tilt[0], tilt[1], tilt[2]) : ", m");
 }
 
 /// Creates a folder. Returns all folders that were created, the innermost first.

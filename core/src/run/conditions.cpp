@@ -19,6 +19,10 @@ double stage_displacement(const DisplacementCondition& c, const World& world) {
   return wall(world, c.wall).stage_position[c.axis[0] - 'x'];
 }
 
+double stress(const StressCondition& c, const World& world) {
+  return mean_stress(world, world.interior(world.mean_diameter()))(c.component[0] - 'x', c.component[1] - 'x');
+}
+
 struct Met {
   const Kernel& kernel;
   const StageStart& start;
@@ -62,6 +66,11 @@ struct Met {
     if (without_forces) return true;
     const double p = mean_stress(kernel.world(), kernel.world().interior(kernel.world().mean_diameter())).trace() / 3;
     return (!c.below || p < *c.below) && (!c.above || p > *c.above);
+  }
+  bool operator()(const StressCondition& c) const {
+    if (!due_now(stress_condition_every)) return false;
+    return without_forces ||
+           std::abs(stress(c, kernel.world()) - c.value) <= c.within * std::max(std::abs(c.value), 1e-300);
   }
   bool operator()(const PressureCondition& c) const {
     return without_forces ||
@@ -183,6 +192,10 @@ struct Unmet {
     const Mat3 stress =
         mean_stress(met.kernel.world(), met.kernel.world().interior(met.kernel.world().mean_diameter()));
     return "mean stress " + number(stress.trace() / 3) + " Pa" + between(c.above, c.below, " Pa");
+  }
+  std::string operator()(const StressCondition& c) const {
+    return "stress " + c.component + ' ' + number(stress(c, met.kernel.world())) + " Pa, required " + number(c.value) +
+           " Pa ± " + number(100 * c.within) + " %";
   }
   std::string operator()(const PressureCondition& c) const {
     return "pressure on wall \"" + c.wall + "\" " + number(wall(met.kernel.world(), c.wall).pressure + 0.0) +

@@ -149,7 +149,7 @@ void StageRunner::find_forces() {
 
 void StageRunner::end_stage(const StageDescription& stage) {
   refuse_without_a_step(stage);
-  const std::string by = ended_by(stage.until, kernel_, start_), behind = kernel_.state().walls.fallen_behind();
+  const std::string by = ended_by(stage.until, kernel_, start_), behind = kernel_.fallen_behind();
   kernel_.end_stage();
   recorder_.stage_ended(world_, (by.empty() ? "" : "by " + by + ", ") + reached() +
                                     (behind.empty() ? "" : "; " + behind) + in_flight(stage.until, world_));

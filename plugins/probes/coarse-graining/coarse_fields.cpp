@@ -19,6 +19,20 @@ class Spread {
   template <class Visit>
   void operator()(std::vector<CoarseFields>& fields, const Vec3& place, const Vec3& low, const Vec3& high,
                   Visit visit) const {
+    if (!cell_.skewed()) return from(fields, place, low, high, visit);
+    if (!(place + low).allFinite() || !(place + high).allFinite()) return;  // a run that has failed
+    const Vec3 reach = Vec3::Constant(reach_);
+    Vec3 last = grid_.first;
+    for (int axis = 0; axis < 3; ++axis)
+      last[axis] += (static_cast<double>(grid_.count[static_cast<std::size_t>(axis)]) - 1) * grid_.step[axis];
+    cell_.each_image(place + low - reach, place + high + reach, grid_.first, last,
+                     [&](const Vec3& shift) { from(fields, place + shift, low, high, visit); });
+  }
+
+ private:
+  template <class Visit>
+  void from(std::vector<CoarseFields>& fields, const Vec3& place, const Vec3& low, const Vec3& high,
+            Visit& visit) const {
     std::array<Places, 3> rows;
     for (int axis = 0; axis < 3; ++axis) rows[static_cast<std::size_t>(axis)] = on(axis, place, low, high);
     for (const Place& x : rows[0])
@@ -28,7 +42,6 @@ class Spread {
       }
   }
 
- private:
   /// A place of the grid along an axis that is reached, and how far it is off an image's place [m].
   struct Place {
     std::size_t index;
@@ -41,7 +54,7 @@ class Spread {
     const double least = place[axis] + low[axis] - reach_, most = place[axis] + high[axis] + reach_;
     Places rows;
     if (!std::isfinite(least + most)) return rows;  // a run that has failed
-    const bool periodic = cell_.periodic[static_cast<std::size_t>(axis)];
+    const bool periodic = cell_.periodic[static_cast<std::size_t>(axis)] && !cell_.skewed();
     const double period = periodic ? cell_.high[axis] - cell_.low[axis] : 0;
     double image = periodic ? std::ceil((first - most) / period) : 0;
     for (; least + image * period <= first + last * step; ++image) {

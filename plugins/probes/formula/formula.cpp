@@ -4,11 +4,13 @@
 #include <muParser.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <deque>
 #include <functional>
 #include <regex>
+#include <tuple>
 
 #include "grit/plugin.hpp"
 #include "grit/toolkit/grain_masses.hpp"
@@ -42,6 +44,23 @@ struct Variable {
   double value = 0;
 };
 
+/// Lengths, strains and stresses of a periodic cell.
+template <class Add>
+void add_cell(const Add& add) {
+  for (int k = 0; k < 3; ++k) {
+    const char axis = "xyz"[k];
+    add(std::string("cell_length_") + axis, [k](const World& w) { return w.cell().high[k] - w.cell().low[k]; });
+    add(std::string("cell_stage_length_") + axis, [k](const World& w) { return w.cell().stage_lengths[k]; });
+    add(std::string("cell_shear_strain_") + std::array{"xy", "xz", "yz"}[static_cast<std::size_t>(k)],
+        [k](const World& w) { return w.cell().stage_shear_strain[k]; });
+  }
+  for (const auto& [name, row, column] : {std::tuple("xx", 0, 0), std::tuple("yy", 1, 1), std::tuple("zz", 2, 2),
+                                          std::tuple("xy", 0, 1), std::tuple("xz", 0, 2), std::tuple("yz", 1, 2)})
+    add(std::string("stress_") + name, [row = row, column = column](const World& w) {
+      return mean_stress(w, {w.cell().low, w.cell().high})(row, column);
+    });
+}
+
 std::deque<Variable> variables_of(const World& world) {
   std::deque<Variable> variables;
   const auto add = [&](std::string name, std::function<double(const World&)> read) {
@@ -65,6 +84,7 @@ std::deque<Variable> variables_of(const World& world) {
       const double mass = mass_of(w), mean = over_masses(w, [k](const Vec3&centre) { return centre[k]; }) / mass;
       return std::sqrt(over_masses(w, [=](const Vec3& centre) { return std::pow(centre[k] - mean, 2); }) / mass);
     });
+  if (world.cell().periodic_everywhere()) add_cell(add);
   for (std::size_t i = 0; i < world.walls().size(); ++i) {
     const std::string stem = wall_stem(world.walls()[i].name);
     for (const auto& [suffix, member] : wall_vectors)
@@ -81,6 +101,10 @@ std::deque<Variable> variables_of(const World& world) {
 std::string known_names(const World& world, const std::map<std::string, FormulaProbe::Constant>& constants) {
   std::string known = "time, step, mean_diameter, void_ratio, mass, departed_mass, centre_x/_y/_z, spread_x/_y/_z";
   for (const auto& constant : constants) known += ", " + constant.first;
+  if (world.cell().periodic_everywhere())
+    known +=
+        "; of the periodic cell: cell_length_x/_y/_z, cell_stage_length_x/_y/_z, cell_shear_strain_xy/_xz/_yz, "
+        "stress_xx/_yy/_zz/_xy/_xz/_yz";
   if (world.walls().empty()) return known;
   std::vector<std::string> stems;
   for (const auto& name : wall_names(world)) stems.push_back(wall_stem(name));

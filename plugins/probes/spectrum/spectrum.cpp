@@ -20,7 +20,10 @@ constexpr const char* densities[] = {
 constexpr double most_kept = 1e8;  // points of all windows: 1.6 GB of densities
 
 /// Whether a box holds a point or one of its periodic images. The box is no longer than a period.
-bool holds(const Cell& domain, const Region& box, const Vec3& point) {
+bool holds(const Cell& domain, const Region& box, Vec3 point) {
+  if (domain.skewed())
+    for (int k = 2; k >= 0; --k)
+      point -= std::floor((point[k] - box.low[k]) / (domain.high[k] - domain.low[k])) * domain.period(k);
   for (int k = 0; k < 3; ++k) {
     double above = point[k] - box.low[k];
     if (domain.periodic[static_cast<std::size_t>(k)]) {

@@ -51,6 +51,7 @@ std::vector<Strain::Body> Strain::bodies(const World& world) const {
   std::vector<Body> all;
   const auto axes = plane();
   // Where bodies began cannot be told in a cell whose sides have moved since.
+  if (world.cell().skewed()) return all;
   for (const int axis : axes)
     if (world.cell().periodic[static_cast<std::size_t>(axis)] && world.cell().strain_rate[axis] != 0) return all;
   for (std::size_t i = 0; i < world.displacements().size(); ++i) {

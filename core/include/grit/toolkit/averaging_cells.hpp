@@ -220,6 +220,9 @@ class AveragingCells {
   template <class Visit>
   void each_image(const Vec3& place, const Vec3& low, const Vec3& high, const Visit& visit) const {
     if (axes_.empty() || !(place + low).allFinite() || !(place + high).allFinite()) return;
+    if (domain_.skewed())
+      return domain_.each_image(place + low, place + high, inner_.low, inner_.high,
+                                [&](const Vec3& shift) { visit(Vec3(place + shift)); });
     std::array<int, 3> least, most;
     Vec3 period = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
