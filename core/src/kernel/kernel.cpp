@@ -180,8 +180,6 @@ void Kernel::take_walls(const SceneDescription& scene, const Components& compone
   }
 }
 
-}
-
 void Kernel::count_in(std::size_t first, std::size_t first_clump) {
   state_.statistics.add(state_.bodies, first, first_clump);
   state_.sum.resize(state_.bodies.count() + 1);

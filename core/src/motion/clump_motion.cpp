@@ -165,7 +165,7 @@ Motion move_clumps(std::size_t first, std::size_t last, Bodies& bodies, const Bo
     if (settings.prescribed) {
       motion.prescribed += move_rigidly(RigidStep(*settings.prescribed, step.drift), step.drift, clump);
       motion.fallen += step.drift * settings.gravity.dot(clump.velocity) / clump.inverse_mass;
-      for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step);
+      for (std::uint32_t k = clump.first; k < clump.last; ++k) carry(bodies.clumps.spheres[k], clump, bodies, step, skewed);
       continue;
     }
     const Vec3 free = settings.free_translation(), turns = settings.free_rotation();
