@@ -92,7 +92,7 @@ TEST(NeighbourSearch, FindsWhatBruteForceFindsInASkewedCell) {
         const Bodies bodies = scattered(700, low, high, smallest, random);
         NeighbourSearch search;
         Skins skins;
-        skins.reset(skin, 0);
+        skins.reset(skin, 0, 0);
         search.build(bodies, cell, skins);
         std::vector<Candidate> found;
         for (std::uint32_t i = 0; i < bodies.count(); ++i) search.neighbours(bodies, i, found);
