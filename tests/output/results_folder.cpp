@@ -150,6 +150,7 @@ TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
   ResultsFolder(options(folder / "run")).begin(world, probes);
   std::ofstream(folder / "run/notes.txt") << "mine";
   std::ofstream(folder / "run/checkpoint.h5") << "old";
+  std::ofstream(folder / "run/grains.pvd") << "old";
   EXPECT_THAT(error_of<FileError>([&] { ResultsFolder(options(folder / "run")); }),
               AllOf(HasSubstr("run: holds a run already (run.json)"), HasSubstr("choose another folder")));
   auto again = options(folder / "run");
@@ -157,6 +158,7 @@ TEST(ResultsFolder, RefusesAFolderThatHoldsARun) {
   ResultsFolder results(again);
   EXPECT_FALSE(std::filesystem::exists(folder / "run/series.h5"));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/checkpoint.h5"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/grains.pvd"));
   EXPECT_EQ(text_of(folder / "run/notes.txt"), "mine");
 }
 

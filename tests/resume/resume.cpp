@@ -36,7 +36,7 @@ constexpr auto falling = R"({
     "packing": {"type": "packing", "every_steps": 5000},
     "energy": {"type": "energy", "every_steps": 7000},
     "force-chains": {"type": "force-chains", "every_steps": 7700}},
-  "output": {"frames": {"every_steps": 9000}, "checkpoint_every": 0, "summary": ["energy/friction"],
+  "output": {"frames": {"every_steps": 9000, "formats": ["vtk", "lammps-dump"]}, "checkpoint_every": 0, "summary": ["energy/friction"],
              "picture": {"x": "packing/time", "y": ["packing/coordination_number"], "color": "speed"}}
 }
 )";
@@ -111,8 +111,12 @@ class Resume : public testing::Test {
       EXPECT_TRUE(same(x.position, y.position) && same(x.velocity, y.velocity) &&
                   same(x.normal_force, y.normal_force) && x.body_a == y.body_a)
           << frames[i];
+      for (const char* end : {"_grains.vtp", "_walls.vtp", ".dump"}) {
+        const auto file = "/frames/" + frames[i].stem().string() + end;
+        EXPECT_EQ(text_of(folder / (a + file)), text_of(folder / (b + file))) << file;
+      }
     }
-    for (const char* file : {"/packing.txt", "/frames.xdmf"})
+    for (const char* file : {"/packing.txt", "/frames.xdmf", "/grains.pvd", "/walls.pvd"})
       EXPECT_EQ(text_of(folder / (a + file)), text_of(folder / (b + file))) << file;
     const auto first = run_json(a), second = run_json(b);
     for (const char* key : {"status", "steps", "time", "rebuilds", "contacts_per_body", "bodies"})

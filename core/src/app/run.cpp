@@ -14,7 +14,6 @@
 #include "format/duration.hpp"
 #include "grit/error.hpp"
 #include "input/places.hpp"
-#include "storage/atomic_file.hpp"
 #include "output/checkpoint.hpp"
 #include "output/read_results.hpp"
 #include "output/reference_curve.hpp"
@@ -22,6 +21,7 @@
 #include "report/report_page.hpp"
 #include "simulation/parts.hpp"
 #include "simulation/recorded_run.hpp"
+#include "storage/atomic_file.hpp"
 
 namespace grit {
 namespace {
@@ -104,6 +104,7 @@ ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodie
                          .title = description.title,
                          .facts = std::move(facts),
                          .walls = wall_shapes(opened.scene, opened.live.geometries(), bodies),
+                         .formats = description.output.frames.formats,
                          .picture = {}};
   if (const auto& picture = description.output.picture)
     results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};

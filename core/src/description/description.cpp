@@ -1002,6 +1002,14 @@ void ReferenceDescription::declare(Parameters& p) {
       complain("curve", value ? "a value and a curve" : "neither a value nor a curve", "one of them");
   });
 }
+void FramesDescription::declare(Parameters& p) {
+  Cadence::declare(p);
+  p.add("formats", formats)
+      .one_of({"vtk", "lammps-dump"})
+      .doc(
+          "formats in which frames are written too: vtk for programs that use VTK, lammps-dump for OVITO and others; "
+          "HDF5 files with an XDMF index are always written");
+}
 void OutputDescription::declare(Parameters& p) {
   p.add("frames", frames)
       .doc("when frames are written; one is always written at the end of the run; default: only that one");

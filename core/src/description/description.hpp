@@ -541,8 +541,12 @@ struct ReferenceDescription {
   std::optional<ReferenceCurve> curve;
   void declare(Parameters& p);
 };
+struct FramesDescription : Cadence {
+  std::vector<std::string> formats;  ///< beside HDF5
+  void declare(Parameters& p);
+};
 struct OutputDescription {
-  Cadence frames;
+  FramesDescription frames;
   double checkpoint_every = 600;  ///< s of wall clock
   std::optional<PictureDescription> picture;
   std::map<std::string, ReferenceDescription> references;

@@ -8,15 +8,19 @@
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
-#include "output/group_index.hpp"
+#include "output/body_columns.hpp"
+#include "output/frame_exports.hpp"
 #include "output/svg.hpp"
+#include "output/vtk.hpp"
 #include "storage/atomic_file.hpp"
 #include "storage/hdf5.hpp"
 
 namespace grit {
 namespace {
 
-std::string file_name(std::size_t number) { return fmt::format("{:06}.h5", number); }
+constexpr const char* suffix = ".h5";
+
+std::string file_name(std::size_t number, const char* end = suffix) { return fmt::format("{:06}{}", number, end); }
 
 template <class T>
 hdf5::Dataset put(hdf5::Group& group, const Channel& what, const hdf5::Shape& shape, const std::vector<T>& values) {
@@ -26,68 +30,13 @@ hdf5::Dataset put(hdf5::Group& group, const Channel& what, const hdf5::Shape& sh
   return dataset;
 }
 
-class Bodies {
- public:
-  Bodies(hdf5::Group group, const World& world) : group_(std::move(group)), order_(world.ids().size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::ranges::sort(order_, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
-  }
-
-  /// One number a body, in the order of ids.
-  template <class T, class Read>
-  hdf5::Dataset scalar(const Channel& what, Read read) {
-    std::vector<T> values;
-    values.reserve(order_.size());
-    for (const auto body : order_) values.push_back(read(body));
-    return put(group_, what, {order_.size()}, values);
-  }
-
-  template <class Read>
-  void vector(const Channel& what, Read read) {
-    std::vector<double> values;
-    values.reserve(3 * order_.size());
-    for (const auto body : order_) {
-      const Vec3 v = read(body);
-      values.insert(values.end(), v.data(), v.data() + 3);
-    }
-    put(group_, what, {order_.size(), 3}, values);
-  }
-
- private:
-  hdf5::Group group_;
-  std::vector<std::uint32_t> order_;
-};
-
 void write_bodies(hdf5::Group group, const World& world) {
-  Bodies bodies(std::move(group), world);
-  bodies.scalar<std::int64_t>({"id", "1", "number that the body keeps for the whole run", {}},
-                              [ids = world.ids()](auto i) { return ids[i]; });
-  bodies.vector({"position", "m", "centre", {}}, [rows = world.positions()](auto i) { return xyz(rows[i]); });
-  bodies.scalar<double>({"radius", "m", "radius", {}}, [rows = world.positions()](auto i) { return rows[i].w; });
-  bodies.vector({"velocity", "m/s", "velocity of the centre, half a step before the frame's time", {}},
-                [rows = world.velocities()](auto i) { return xyz(rows[i]); });
-  bodies.vector({"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}},
-                [rows = world.spins()](auto i) { return xyz(rows[i]); });
-  bodies.scalar<std::int32_t>(
-      {"material", "1", "number of the material, from 0: its index in /model/materials of run.json", {}},
-      [materials = world.materials()](auto i) { return materials[i]; });
-  if (const auto clump_of = world.clump_of(); !clump_of.empty())
-    bodies.scalar<std::int64_t>({"clump", "1", "id of the clump that the body is part of; -1 for a single body", {}},
-                                [&, clumps = world.clumps()](auto i) -> std::int64_t {
-                                  return clump_of[i] == no_clump ? -1 : std::int64_t{clumps[clump_of[i]].id};
-                                });
-  if (const GroupIndex groups = group_index(world); groups.names.size() > 1) {
-    bodies
-        .scalar<std::int32_t>({"group", "1", "index of the body's group among the attribute \"names\"", {}},
-                              [&](auto i) { return groups.of_bodies[i]; })
-        .set_attribute("names", Description(groups.names).dump());
-  }
-  if (const auto rotations = world.rotations(); !rotations.empty())
-    bodies.vector({"rotation", "rad", "cumulative rotation since the start of the stage, right-handed", {}},
-                  [&](auto i) { return rotations[i]; });
-  if (const auto displacements = world.displacements(); !displacements.empty())
-    bodies.vector({"displacement", "m", "displacement since the start of the stage", {}},
-                  [&](auto i) { return displacements[i]; });
+  const GroupIndex groups = group_index(world);
+  put_body_columns(world, groups, [&](const Channel& what, std::size_t width, const auto& values) {
+    const std::size_t rows = values.size() / width;
+    put(group, what, width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, width}, values);
+  });
+  if (group.has("group")) group.dataset("group").set_attribute("names", Description(groups.names).dump());
 }
 
 void write_clumps(hdf5::Group group, const World& world) {
@@ -252,20 +201,11 @@ std::string collection(const std::string& name, const std::string& grids) {
 
 }  // namespace
 
-std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> shapes, const std::string& stage) {
-  const auto in = [&](const std::string& when) {
-    return std::ranges::find_if(shapes, [&](const WallShape& s) { return s.name == wall.name && s.stage == when; });
-  };
-  auto shape = in(stage);
-  if (shape == shapes.end()) shape = in("");
-  if (shape == shapes.end()) return {};
-  auto triangles = shape->triangles;
-  for (auto& corner : triangles) corner = wall.pose.turned() ? wall.pose.to_world(corner) : corner + wall.position;
-  return triangles;
-}
-
-Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept)
+Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept,
+               std::span<const std::string> formats)
     : results_(results), walls_(std::move(walls)) {
+  for (const FrameExport& one : frame_exports())
+    if (std::ranges::find(formats, one.format) != formats.end()) exports_.push_back(&one);
   const auto folder = results_ / "frames";
   std::error_code error;
   if (kept == 0) std::filesystem::remove_all(folder, error);
@@ -274,9 +214,13 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
 
   for (std::size_t number = 0; number < kept; ++number)
     instants_.push_back(instant_of(hdf5::File(folder / file_name(number), hdf5::Mode::read)));
-  for (std::size_t number = kept; std::filesystem::exists(folder / file_name(number)); ++number)
-    std::filesystem::remove(folder / file_name(number), error);
-  write_index();
+  const auto remove_later = [&](const char* end) {
+    for (std::size_t number = kept; std::filesystem::exists(folder / file_name(number, end)); ++number)
+      std::filesystem::remove(folder / file_name(number, end), error);
+  };
+  remove_later(suffix);
+  for (const FrameExport* one : exports_) remove_later(one->suffix);
+  write_indices();
 }
 
 Frames::Instant Frames::instant_of(const hdf5::File& file) {
@@ -321,11 +265,24 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   write_corners(file, instant.walls);
   file.close();
   publish(path);
+  for (const FrameExport* one : exports_)
+    write_atomically(results_ / "frames" / file_name(instants_.size(), one->suffix), one->text(world, walls_));
   instants_.push_back(std::move(instant));
-  write_index();
+  write_indices();
 }
 
-void Frames::write_index() const {
+void Frames::write_indices() const {
+  write_xdmf();
+  for (const FrameExport* one : exports_) {
+    if (one->collection == nullptr) continue;
+    std::vector<TimedFile> files;
+    for (std::size_t number = 0; number < instants_.size(); ++number)
+      files.push_back({instants_[number].time, "frames/" + file_name(number, one->suffix)});
+    write_atomically(results_ / one->collection, vtk_collection(files));
+  }
+}
+
+void Frames::write_xdmf() const {
   std::string grains, contacts;
   std::map<std::string, std::string> walls;
   for (std::size_t number = 0; number < instants_.size(); ++number) {

@@ -1,4 +1,4 @@
-// frames/000123.h5, one file per instant, and frames.xdmf, which opens them all in ParaView.
+// frames/000123.h5, one file per instant, frames.xdmf, which opens them all in ParaView, and files in other formats.
 #pragma once
 
 #include <filesystem>
@@ -6,28 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "output/wall_shape.hpp"
 #include "run/recorder.hpp"
 #include "storage/hdf5.hpp"
 
 namespace grit {
 
-/// The shape of a wall at its initial position.
-struct WallShape {
-  std::string name;
-  std::vector<Vec3> triangles;  ///< three corners each [m]
-  std::string stage = {};       ///< stage with this shape; empty: all stages without a shape of their own
-};
-
-/// The triangles of a wall at its present position; none if no shape has its name.
-std::vector<Vec3> triangles_of(const WallView& wall, std::span<const WallShape> shapes, const std::string& stage);
+struct FrameExport;
 
 /// Writes frames: /bodies sorted by id, /contacts, /walls/<name>, /probes/<name>/<field>; every dataset has `units` and
-/// `long_name`, the file `time`, `step`, `stage`. A file appears under its name only when it is whole. All functions
-/// throw FileError.
+/// `long_name`, the file `time`, `step`, `stage`. Beside each frame are the files of frame_exports() in these formats.
+/// A file appears under its name only when it is whole. All functions throw FileError.
 class Frames {
  public:
-  /// Keeps the first `kept` existing frames and removes later ones.
-  Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0);
+  /// Keeps the first `kept` existing frames and removes later ones. `formats`: those of FrameExport.
+  Frames(const std::filesystem::path& results, std::vector<WallShape> walls, std::size_t kept = 0,
+         std::span<const std::string> formats = {});
 
   void write(const World& world, std::span<const FieldGroup> fields);
   std::size_t count() const { return instants_.size(); }
@@ -46,10 +40,12 @@ class Frames {
   };
   static Instant instant_of(const hdf5::File& file);
 
-  void write_index() const;
+  void write_indices() const;
+  void write_xdmf() const;
 
   std::filesystem::path results_;
   std::vector<WallShape> walls_;
+  std::vector<const FrameExport*> exports_;
   std::vector<Instant> instants_;
 };
 

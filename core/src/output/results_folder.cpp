@@ -2,14 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <numeric>
-
 #include "bodies/packing_file.hpp"
 #include "format/duration.hpp"
 #include "format/number.hpp"
 #include "format/symbols.hpp"
 #include "grit/error.hpp"
+#include "output/body_columns.hpp"
 #include "output/checkpoint.hpp"
 #include "output/grain_view.hpp"
 #include "output/picture.hpp"
@@ -20,9 +18,7 @@ namespace {
 
 /// Writes the bodies by id. Positions are not copied, as packings may be large.
 void write_grains(const std::filesystem::path& path, const World& world, const std::string& comment) {
-  std::vector<std::uint32_t> order(world.ids().size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::sort(order, {}, [ids = world.ids()](std::uint32_t body) { return ids[body]; });
+  const auto order = bodies_by_id(world);
   const Cell& cell = world.cell();
   const auto grain = [&](std::size_t i) -> Row {
     const Row& x = world.positions()[order[i]];
@@ -65,8 +61,8 @@ std::filesystem::path prepared(const ResultsOptions& options, const FolderLock& 
       throw FileError(folder.string() + ": holds a run already (" + mark +
                       "); choose another folder, resume that run, or allow it to be overwritten");
   for (const char* mine : {"run.json", "description.json", "series.h5", "checkpoint.h5", "final.h5", "frames",
-                           "frames.xdmf", "packing.txt", "picture.svg", "report.html", "curves.svg", "curves.png",
-                           "grains.svg", "grains.png", "layers.svg", "layers.png"}) {
+                           "frames.xdmf", "grains.pvd", "walls.pvd", "packing.txt", "picture.svg", "report.html",
+                           "curves.svg", "curves.png", "grains.svg", "grains.png", "layers.svg", "layers.png"}) {
     std::filesystem::remove_all(folder / mine, error);
     if (error) throw FileError((folder / mine).string() + ": cannot remove it: " + error.message());
   }
@@ -115,7 +111,7 @@ void ResultsFolder::begin(const World& world, std::span<const ProbeGroup> probes
   } else {
     series_.emplace(path, probes, options_.flushing);
   }
-  frames_.emplace(options_.folder, options_.walls, resumed_.frames);
+  frames_.emplace(options_.folder, options_.walls, resumed_.frames, options_.formats);
   run_json_.begin(world, resumes);
 }
 

@@ -37,6 +37,7 @@ struct ResultsOptions {
   std::string title;
   RunFacts facts;
   std::vector<WallShape> walls;
+  std::vector<std::string> formats = {};  ///< of frames, beside HDF5
   std::optional<PictureRequest> picture;
   Flushing flushing = {};
 };
@@ -44,10 +45,10 @@ struct ResultsOptions {
 /// Throws FileError: another run is writing to the folder.
 [[noreturn]] void refuse_busy(const std::filesystem::path& folder);
 
-/// Writes at the start description.json and run.json; during the run series.h5, frames/, frames.xdmf, run.json and
-/// checkpoint.h5, whose last one becomes final.h5 when the run is done; at the end packing.txt (`x y z radius` in m, by
-/// id, in full precision; not for a failed run), picture.svg, and run.json last, so that its status implies that the
-/// rest is complete. All functions throw FileError for write errors.
+/// Writes at the start description.json and run.json; during the run series.h5, frames/, frames.xdmf, grains.pvd and
+/// walls.pvd for VTK, run.json and checkpoint.h5, whose last one becomes final.h5 when the run is done; at the end
+/// packing.txt (`x y z radius` in m, by id, in full precision; not for a failed run), picture.svg, and run.json last,
+/// so that its status implies that the rest is complete. All functions throw FileError for write errors.
 class ResultsFolder final : public Recorder {
  public:
   /// Creates the folder. Throws FileError if that fails, if another run is writing to it, or if it holds a run and

@@ -3,10 +3,11 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include "format/base64.hpp"
 
 namespace grit {
 
@@ -16,12 +17,8 @@ std::string packed(std::span<const std::byte> bytes) {
   std::vector<unsigned char> deflated(size);
   if (compress2(deflated.data(), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 1) != Z_OK)
     throw std::runtime_error("data of the page cannot be compressed");
-  deflated.resize((size + 2) / 3 * 3);  // base64 takes three bytes at a time
-  using namespace boost::archive::iterators;
-  using Text = base64_from_binary<transform_width<const unsigned char*, 6, 8>>;
-  std::string text(Text(deflated.data()), Text(deflated.data() + deflated.size()));
-  std::fill_n(text.rbegin(), deflated.size() - size, '=');
-  return text;
+  deflated.resize(size);
+  return base64(std::move(deflated));
 }
 
 std::vector<std::byte> byte_planes(std::span<const std::uint16_t> numbers) {

@@ -1,0 +1,186 @@
+// Frames in the formats of other programs.
+#include "output/frame_exports.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <boost/archive/iterators/binary_from_base64.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <numbers>
+
+#include "bodies/packing_file.hpp"
+#include "fake_world.hpp"
+#include "folder.hpp"
+#include "output/frames.hpp"
+#include "output/lammps_dump.hpp"
+#include "output/vtk.hpp"
+
+namespace grit::frame_exports_tests {
+namespace {
+
+using boost::property_tree::ptree;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Two groups; the bodies are not in the order of their ids.
+struct GroupedWorld : NumberedWorld {
+  GroupedWorld() {
+    now = 0.25, steps = 1000;
+    add(7, {1.0 / 3, std::numbers::pi, 0.1}, 0.07);
+    add(2, {0.2, 1e-12, -3e5}, 0.02);
+    add(5, {0.5, 0, 0}, 0.05);
+    add_wall("base", Vec3::Zero());
+    add_wall("lid", {0, 0, -0.5});
+  }
+  std::span<const BodyGroup> groups() const override { return all; }
+  std::vector<BodyGroup> all{{"sand", 0}, {"balls", 5}};
+};
+
+const std::vector<WallShape> lid{{"lid", {Vec3(0, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 1)}}};
+
+ptree parsed(const std::string& text) {
+  std::istringstream stream(text);
+  ptree xml;
+  read_xml(stream, xml);
+  return xml;
+}
+
+/// The numbers of an array; checks the size in front of them.
+template <class T>
+std::vector<T> numbers(const ptree& parent, const std::string& name) {
+  for (const auto& [tag, array] : parent) {
+    if (tag != "DataArray" || array.get<std::string>("<xmlattr>.Name") != name) continue;
+    EXPECT_EQ(array.get<std::string>("<xmlattr>.format"), "binary");
+    std::string text = array.get_value<std::string>();
+    std::ranges::replace(text, '=', 'A');
+    using namespace boost::archive::iterators;
+    using Bytes = transform_width<binary_from_base64<std::string::const_iterator>, 8, 6>;
+    const std::string bytes(Bytes(text.cbegin()), Bytes(text.cend()));
+    std::uint64_t size = 0;
+    std::memcpy(&size, bytes.data(), sizeof size);
+    std::vector<T> values(size / sizeof(T));
+    EXPECT_LT(bytes.size() - sizeof size - size, 3u) << name << ": no more than the padding";
+    if (size > 0) std::memcpy(values.data(), bytes.data() + sizeof size, size);
+    return values;
+  }
+  ADD_FAILURE() << "there is no array " << name;
+  return {};
+}
+
+std::vector<PackedBody> read_dump(const std::filesystem::path& path, const std::string& type = "") {
+  FileSource source;
+  source.path = path.string(), source.particle_type = type;
+  return read_bodies(source);
+}
+
+TEST(FrameExports, DumpsAreReadAsPackings) {
+  const Folder folder;
+  const GroupedWorld world;
+  const std::vector<std::string> formats{"lammps-dump"};
+  Frames(folder.path(), lid, 0, formats).write(world, {});
+  const auto bodies = read_dump(folder / "frames/000000.dump");
+  ASSERT_EQ(bodies.size(), 3u);
+  const std::size_t by_id[] = {1, 2, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t body = by_id[i];
+    EXPECT_EQ(xyz(bodies[i].sphere), xyz(world.position[body]));
+    EXPECT_EQ(bodies[i].sphere.w, world.position[body].w);
+    EXPECT_EQ(bodies[i].velocity, xyz(world.velocity[body]));
+    EXPECT_EQ(bodies[i].spin, xyz(world.spin[body]));
+  }
+  const auto balls = read_dump(folder / "frames/000000.dump", "1"),
+             sand = read_dump(folder / "frames/000000.dump", "2");
+  ASSERT_EQ(sand.size(), 1u) << "types are the groups in the order of their names";
+  EXPECT_EQ(sand[0].sphere.w, 0.02);
+  EXPECT_EQ(balls.size(), 2u);
+  EXPECT_FALSE(std::filesystem::exists(folder / "grains.pvd")) << "a format that was not asked for";
+}
+
+TEST(FrameExports, DumpsHaveABox) {
+  NumberedWorld world;
+  world.steps = 40;
+  world.add(1, {0.5, 2.25, 3}, 0.25);
+  world.add(2, {3.5, 2.25, 5}, 0.5);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  world.box = {{1, 0, -infinity}, {3, 9, infinity}, {true, false, false}};
+  EXPECT_EQ(lammps_dump(world, {}),
+            "ITEM: TIMESTEP\n40\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff ss\n1 3\n0 9\n2.75 5.5\n"
+            "ITEM: ATOMS id type x y z radius vx vy vz omegax omegay omegaz\n"
+            "1 1 2.5 2.25 3 0.25 1 1.25 1.5 -1 2 3\n2 1 1.5 2.25 5 0.5 2 2.25 2.5 -2 4 6\n");
+  EXPECT_THAT(lammps_dump(NumberedWorld(), {}), HasSubstr("ss ss ss\n0 1\n0 1\n0 1\n")) << "without bodies";
+}
+
+TEST(FrameExports, VtkHasTheGrains) {
+  const ptree xml = parsed(vtk_grains(GroupedWorld(), lid));
+  EXPECT_EQ(xml.get<std::string>("VTKFile.<xmlattr>.type"), "PolyData");
+  EXPECT_EQ(xml.get<std::string>("VTKFile.<xmlattr>.header_type"), "UInt64");
+  const ptree& piece = xml.get_child("VTKFile.PolyData.Piece");
+  EXPECT_EQ(piece.get<int>("<xmlattr>.NumberOfPoints"), 3);
+  EXPECT_EQ(piece.get<int>("<xmlattr>.NumberOfVerts"), 3);
+  EXPECT_EQ(piece.get<int>("<xmlattr>.NumberOfPolys"), 0);
+  EXPECT_THAT(numbers<double>(piece.get_child("Points"), "position"),
+              ElementsAre(0.2, 1e-12, -3e5, 0.5, 0, 0, 1.0 / 3, std::numbers::pi, 0.1));
+  const ptree& data = piece.get_child("PointData");
+  EXPECT_THAT(numbers<std::int64_t>(data, "id"), ElementsAre(2, 5, 7));
+  EXPECT_THAT(numbers<double>(data, "radius"), ElementsAre(0.02, 0.05, 0.07));
+  EXPECT_THAT(numbers<std::int32_t>(data, "group"), ElementsAre(1, 0, 0));
+  EXPECT_THAT(numbers<std::int32_t>(data, "material"), ElementsAre(0, 1, 1));
+  EXPECT_THAT(numbers<double>(data, "velocity"), ElementsAre(2, 2.25, 2.5, 5, 5.25, 5.5, 7, 7.25, 7.5));
+  EXPECT_THAT(numbers<double>(data, "spin"), ElementsAre(-2, 4, 6, -5, 10, 15, -7, 14, 21));
+  EXPECT_THAT(numbers<std::int64_t>(piece.get_child("Verts"), "connectivity"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(numbers<std::int64_t>(piece.get_child("Verts"), "offsets"), ElementsAre(1, 2, 3));
+}
+
+TEST(FrameExports, VtkHasTheWallsWhereTheyAre) {
+  const ptree xml = parsed(vtk_walls(GroupedWorld(), lid));
+  const ptree& piece = xml.get_child("VTKFile.PolyData.Piece");
+  EXPECT_EQ(piece.get<int>("<xmlattr>.NumberOfPoints"), 3);
+  EXPECT_EQ(piece.get<int>("<xmlattr>.NumberOfVerts"), 0);
+  EXPECT_EQ(piece.get<int>("<xmlattr>.NumberOfPolys"), 1);
+  EXPECT_THAT(numbers<double>(piece.get_child("Points"), "position"), ElementsAre(0, 0, 0.5, 1, 0, 0.5, 0, 1, 0.5));
+  EXPECT_THAT(numbers<std::int32_t>(piece.get_child("CellData"), "wall"), ElementsAre(1));
+  EXPECT_THAT(numbers<std::int64_t>(piece.get_child("Polys"), "offsets"), ElementsAre(3));
+}
+
+TEST(FrameExports, ContinueFromACount) {
+  const Folder folder;
+  const std::vector<std::string> formats{"vtk", "lammps-dump"};
+  GroupedWorld world;
+  const auto write = [&](Frames& frames, std::initializer_list<double> times) {
+    for (const double time : times) world.now = time, frames.write(world, {});
+  };
+  {
+    Frames frames(folder.path(), lid, 0, formats);
+    write(frames, {0, 1, 2, 3});
+  }
+  std::ofstream(folder / "frames/mine.txt") << "mine";
+  Frames frames(folder.path(), lid, 2, formats);
+  const auto times = [&](const char* name) {
+    ptree xml;
+    read_xml((folder / name).string(), xml);
+    std::vector<double> all;
+    for (const auto& [tag, one] : xml.get_child("VTKFile.Collection")) {
+      if (tag != "DataSet") continue;
+      EXPECT_TRUE(std::filesystem::exists(folder / one.get<std::string>("<xmlattr>.file")));
+      all.push_back(one.get<double>("<xmlattr>.timestep"));
+    }
+    return all;
+  };
+  for (const char* end : {".h5", "_grains.vtp", "_walls.vtp", ".dump"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / ("frames/000001" + std::string(end)))) << end;
+    EXPECT_FALSE(std::filesystem::exists(folder / ("frames/000002" + std::string(end)))) << end;
+    EXPECT_FALSE(std::filesystem::exists(folder / ("frames/000003" + std::string(end)))) << end;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames/mine.txt"));
+  EXPECT_THAT(times("grains.pvd"), ElementsAre(0, 1));
+  write(frames, {5});
+  EXPECT_THAT(times("grains.pvd"), ElementsAre(0, 1, 5));
+  EXPECT_THAT(times("walls.pvd"), ElementsAre(0, 1, 5));
+}
+
+}  // namespace
+}  // namespace grit::frame_exports_tests
