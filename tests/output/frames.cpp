@@ -8,6 +8,7 @@
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
+#include "storage/frame_state.hpp"
 #include "storage/hdf5.hpp"
 #include "support/scene.hpp"
 #include "support/stl_file.hpp"
@@ -94,6 +95,44 @@ TEST(Frames, PlaceContactsWallsAndFields) {
   EXPECT_THAT(error_of<PluginError>([&] { Frames(folder.path(), lid).write(three_grains(), ragged); }),
               HasSubstr("probe 'chains': found 4 values in field 'strength'; allowed are whole rows of 3"));
   EXPECT_FALSE(std::filesystem::exists(folder / "frames/000000.h5")) << "a frame that failed is no frame";
+}
+
+TEST(Frames, HoldTheStateOfWallsAndTheCell) {
+  const Folder folder;
+  auto world = three_grains();
+  world.make_periodic({1, 2, 3}, {4, 5, 6});
+  world.box.strain_rate = {-1, 0, 0.5};
+  Mat3 quarter;
+  quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  world.wall[1].pose = {Vec3(1, 0, 1), Vec3(0, 0, -0.5), quarter};
+  world.wall[1].velocity = {1, 2, 3}, world.wall[1].spin = {4, 5, 6};
+  Frames(folder.path(), lid).write(world, {});
+  const FrameState state = read_frame_state(folder / "frames/000000.h5");
+  EXPECT_EQ(state.stage, "shear");
+  EXPECT_EQ(state.cell_low, Vec3(1, 2, 3));
+  EXPECT_EQ(state.cell_high, Vec3(4, 5, 6));
+  EXPECT_EQ(state.strain_rate, Vec3(-1, 0, 0.5));
+  ASSERT_EQ(state.bodies.size(), 3u);
+  EXPECT_EQ(state.bodies[1].id, 5u);
+  EXPECT_EQ(state.bodies[1].clump, -1);
+  EXPECT_EQ(state.bodies[1].position, Vec3(0.5, 0, 0));
+  EXPECT_EQ(state.bodies[1].radius, 0.05);
+  EXPECT_EQ(state.bodies[1].velocity, Vec3(5, 5.25, 5.5));
+  EXPECT_EQ(state.bodies[1].spin, Vec3(-5, 10, 15));
+  ASSERT_EQ(state.walls.size(), 2u);
+  EXPECT_FALSE(state.walls[0].pose.turned());
+  const FrameWall& wall = state.walls[1];
+  EXPECT_EQ(wall.name, "lid");
+  EXPECT_EQ(wall.pose.about, Vec3(1, 0, 1));
+  EXPECT_EQ(wall.pose.shift, Vec3(0, 0, -0.5));
+  EXPECT_LE((wall.pose.turn - quarter).norm(), 1e-15);
+  EXPECT_EQ(wall.velocity, Vec3(1, 2, 3));
+  EXPECT_EQ(wall.spin, Vec3(4, 5, 6));
+  EXPECT_EQ(time_of_frame(folder / "frames/000000.h5"), 0.25);
+
+  hdf5::File(folder / "old.h5", hdf5::Mode::replace).set_attribute("time", 0.5);
+  EXPECT_THAT(error_of<FileError>([&] { read_frame_state(folder / "old.h5"); }),
+              HasSubstr("old.h5: is of an earlier version, whose frames hold neither poses of walls nor the cell"));
 }
 
 TEST(Frames, HaveTheWallShapesOfTheirStage) {

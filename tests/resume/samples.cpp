@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "output/read_frames.hpp"
 #include "output/read_results.hpp"
+#include "storage/frame_state.hpp"
 #include "support/program.hpp"
 
 namespace grit {
@@ -41,6 +43,37 @@ constexpr auto go_on = R"({
 }
 )";
 
+/// Clumps in a periodic cell that strains, under a paddle that turns.
+constexpr auto stir = R"({
+  "title": "rods under a paddle",
+  "contacts": {"type": "linear-rolling"},
+  "materials": {"sand": {"density": 2600, "contact_modulus": "10 MPa", "friction_angle": "30 deg"}},
+  "domain": {"low": [0, 0, "-1 mm"], "high": ["20 mm", "20 mm", "30 mm"], "periodic": [true, true, false], "strain_rate": [-1, 0, 0]},
+  "bodies": {
+    "balls": {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [
+      {"position": ["5 mm", "5 mm", "16.5 mm"], "radius": "1 mm", "velocity": [0.1, 0, 0], "spin": [0, 30, 0]}]}},
+    "rods": {"type": "clump", "material": "sand", "shape": {"type": "rod"}, "source": {
+      "type": "cloud", "low": [0, 0, 0], "high": ["20 mm", "20 mm", "15 mm"], "count": 80,
+      "sizes": {"type": "uniform", "smallest": "3 mm", "largest": "4 mm"}}}},
+  "walls": {
+    "floor": {"type": "plane", "material": "sand"},
+    "paddle": {"type": "plane", "point": ["10 mm", "10 mm", "20 mm"], "normal": [0, 0, -1], "extent": "4 mm", "material": "sand",
+               "motion": {"velocity": [0, 0, 0.1], "spin": [20, 0, 5]}}},
+  "engines": {"gravity": {"type": "gravity"}},
+  "stages": [{"name": "stir", "until": {"type": "time", "value": "30 ms"}, "limit": "1 s"}],
+  "output": {"frames": {"every_time": "10 ms"}}
+}
+)";
+constexpr auto stir_on = R"({
+  "extends": "stir.json",
+  "begin": {"from": "stirred", "at": "frame", "frame": 2},
+  "bodies": {
+    "balls": {"source": {"type": "sample", "bodies": null}},
+    "rods": {"source": {"type": "sample", "low": null, "high": null, "count": null, "sizes": null}}},
+  "stages": [{"name": "on", "until": {"type": "time", "value": "10 ms"}, "limit": "1 s"}]
+}
+)";
+
 class Samples : public testing::Test {
  protected:
   Samples() { folder.write("prepare.json", prepare), folder.write("test.json", go_on); }
@@ -56,8 +89,9 @@ class Samples : public testing::Test {
     ASSERT_TRUE(std::filesystem::exists(folder / "sample/final.h5"));
   }
   /// A test from the sample must be refused with these messages.
-  void refuses(const std::vector<std::string>& sets, const testing::Matcher<const std::string&>& message) const {
-    const auto refused = run("test.json", "refused", sets);
+  void refuses(const std::vector<std::string>& sets, const testing::Matcher<const std::string&>& message,
+               const std::string& file = "test.json") const {
+    const auto refused = run(file, "refused", sets);
     EXPECT_EQ(refused.status, 2) << refused.out;
     EXPECT_THAT(refused.err, message);
     EXPECT_FALSE(std::filesystem::exists(folder / "refused"));
@@ -103,6 +137,122 @@ TEST_F(Samples, MayBeACheckpoint) {
   const auto failed = run("prepare.json", "sample", {"/stages/0/limit=20 ms"});
   ASSERT_EQ(failed.status, 4) << failed.err;
   refuses({}, HasSubstr("holds no final.h5"));
+}
+
+TEST_F(Samples, MayBeAFrame) {
+  const auto prepared =
+      run("prepare.json", "sample", {R"(/output={"frames": {"every_time": "5 ms"}})", "/stages/0/limit=40 ms"});
+  ASSERT_EQ(prepared.status, 4) << prepared.err;
+  const auto begin = [&](const std::vector<std::string>& sets) {
+    std::vector<std::string> words{"run", "test.json", "--no-report", "--overwrite", "--out", "test"};
+    for (const char* set : {"/begin/at=frame", R"(/output={"frames": {"every_time": "1 ms"}})"})
+      words.insert(words.end(), {"--set", set});
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto test = grit(words);
+    EXPECT_EQ(test.status, 0) << test.err;
+    EXPECT_THAT(test.err, HasSubstr("; frames hold no contact springs, which start at zero"));
+    return test.err;
+  };
+  EXPECT_THAT(begin({"/begin/frame=5"}), HasSubstr("begins from frame 5 of "));
+  const Frame before = read_frame(folder / "sample/frames/000005.h5"),
+              after = read_frame(folder / "test/frames/000000.h5");
+  EXPECT_EQ(after.time, 0);
+  EXPECT_EQ(after.id, before.id);
+  EXPECT_EQ(after.position, before.position);
+  EXPECT_EQ(after.radius, before.radius);
+  EXPECT_EQ(after.velocity, before.velocity);
+  ASSERT_EQ(after.walls.size(), before.walls.size());
+  for (std::size_t i = 0; i < after.walls.size(); ++i)
+    EXPECT_EQ(after.walls[i].displacement, before.walls[i].displacement);
+  EXPECT_LT(after.walls.back().displacement.z(), 0) << "of the lid";
+  EXPECT_EQ(series("test", "energy/elastic_shear").front(), 0);
+
+  EXPECT_THAT(begin({"/begin/time=26 ms"}), HasSubstr("begins from frame 5 of ")) << "the nearest";
+  const auto last = frame_files(folder / "sample").size() - 1;
+  EXPECT_THAT(begin({}), HasSubstr("begins from frame " + std::to_string(last) + " of "));
+}
+
+TEST_F(Samples, FramesHoldClumpsWallsAndTheCell) {
+  folder.write("stir.json", stir), folder.write("on.json", stir_on);
+  const auto stirred = run("stir.json", "stirred");
+  ASSERT_EQ(stirred.status, 0) << stirred.err;
+  const auto on = run("on.json", "on");
+  ASSERT_EQ(on.status, 0) << on.err;
+  const FrameState before = read_frame_state(folder / "stirred/frames/000002.h5"),
+                   after = read_frame_state(folder / "on/frames/000000.h5");
+  EXPECT_EQ(after.groups, before.groups);
+  EXPECT_EQ(after.cell_low, before.cell_low);
+  EXPECT_EQ(after.cell_high, before.cell_high);
+  EXPECT_EQ(after.strain_rate, before.strain_rate);
+  ASSERT_LT(before.cell_high.x() - before.cell_low.x(), 0.0197);
+
+  // A neighbour search moves bodies into the cell, by whole periods.
+  const Vec3 period = after.cell_high - after.cell_low;
+  const auto distance = [&](const Vec3& a, const Vec3& b) {
+    Vec3 d = a - b;
+    for (int k = 0; k < 2; ++k) d[k] -= period[k] * std::round(d[k] / period[k]);
+    return d.norm();
+  };
+  constexpr double rounding = 1e-14;  // m
+  ASSERT_EQ(after.bodies.size(), before.bodies.size());
+  for (std::size_t i = 0; i < after.bodies.size(); ++i) {
+    const FrameBody &now = after.bodies[i], &then = before.bodies[i];
+    EXPECT_EQ(now.id, then.id);
+    EXPECT_EQ(now.group, then.group);
+    EXPECT_EQ(now.clump, then.clump);
+    EXPECT_EQ(now.radius, then.radius);
+    EXPECT_LE(distance(now.position, then.position), rounding) << i;
+  }
+  EXPECT_EQ(after.bodies.front().spin, before.bodies.front().spin) << "of a single ball";
+  ASSERT_EQ(after.clumps.size(), 80u);
+  ASSERT_EQ(before.clumps.size(), 80u);
+  double most_turned = 0;
+  for (std::size_t i = 0; i < 80; ++i) {
+    const FrameClump &now = after.clumps[i], &then = before.clumps[i];
+    EXPECT_EQ(now.id, then.id);
+    EXPECT_EQ(now.radius, then.radius);
+    EXPECT_LE(distance(now.centre, then.centre), rounding);
+    EXPECT_LE((now.orientation.toRotationMatrix() - then.orientation.toRotationMatrix()).norm(), 1e-13);
+    EXPECT_LE((now.spin - then.spin).norm(), 1e-9 * (1 + then.spin.norm()));
+    if (now.centre == then.centre) EXPECT_EQ(now.velocity, then.velocity);
+    most_turned = std::max(most_turned, then.spin.norm());
+  }
+  EXPECT_GT(most_turned, 1) << "rods that only fall would show little";
+  ASSERT_EQ(after.walls.size(), 2u);
+  for (std::size_t w = 0; w < 2; ++w) {
+    EXPECT_EQ(after.walls[w].name, before.walls[w].name);
+    EXPECT_EQ(after.walls[w].pose.shift, before.walls[w].pose.shift);
+    EXPECT_LE((after.walls[w].pose.turn - before.walls[w].pose.turn).norm(), 1e-14);
+  }
+  EXPECT_TRUE(before.walls[1].pose.turned());
+  EXPECT_NEAR(before.walls[1].pose.shift.z(), 2e-3, 1e-4);
+
+  refuses({"/bodies/rods/type=sphere", "/bodies/rods/shape=null"},
+          AllOf(HasSubstr("/bodies/rods"), HasSubstr("has clumps of 2 spheres, here it has single spheres")),
+          "on.json");
+  refuses({"/bodies/balls/type=clump", R"(/bodies/balls/shape={"type": "rod"})"},
+          AllOf(HasSubstr("/bodies/balls"),
+                HasSubstr("has single spheres, here it has clumps of 2 spheres; use the type and "
+                          "shape of the sample")),
+          "on.json");
+  refuses({"/bodies/rods/shape/spacing=0.9"},
+          AllOf(HasSubstr("/bodies/rods"), HasSubstr("has clumps of 2 spheres, here it has others")), "on.json");
+}
+
+TEST_F(Samples, SayWhichFramesThereAre) {
+  ASSERT_EQ(
+      run("prepare.json", "sample", {R"(/output={"frames": {"every_time": "10 ms"}})", "/stages/0/limit=25 ms"}).status,
+      4);
+  refuses({"/begin/at=frame", "/begin/frame=99"},
+          AllOf(HasSubstr("/begin/frame"), HasSubstr("has no frame 99; its frames are 0 to ")));
+  refuses({"/begin/frame=1"},
+          AllOf(HasSubstr("/begin/at"),
+                HasSubstr("found \"end\" with the number of a frame; allowed is \"at\": \"frame\"")));
+  refuses(
+      {"/begin/at=frame", "/begin/frame=1", "/begin/time=10 ms"},
+      AllOf(HasSubstr("/begin/time"), HasSubstr("found the number and the time of a frame; allowed is one of them")));
+  std::filesystem::remove_all(folder / "sample/frames");
+  refuses({"/begin/at=frame"}, AllOf(HasSubstr("/begin/from"), HasSubstr("holds no frames")));
 }
 
 TEST_F(Samples, MayChangeMaterialsWallsAndStages) {

@@ -25,16 +25,23 @@ std::optional<double> GroupBuilder::shape_diameter() const {
 
 void GroupBuilder::add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn,
                        const Vec3& velocity, const Vec3& spin) const {
-  const double own = mass(radius), size = inert(radius);
   const ClumpShape* const shape = kind_->clump();
   if (shape == nullptr) {
-    bodies.add(centre, radius, own, kind_->inertia(size, own), material_, velocity, spin);
+    const double own = mass(radius);
+    bodies.add(centre, radius, own, kind_->inertia(inert(radius), own), material_, velocity, spin);
     return;
   }
   const Eigen::Quaterniond orientation = turn * Eigen::Quaterniond(shape->axes);
   const Vec3 middle = orientation * (radius * shape->middle);
-  bodies.add_clump(*shape, centre - middle, radius, own, own * size * size * shape->inertia, orientation, material_,
-                   velocity, spin);
+  add_clump(bodies, centre - middle, radius, orientation, velocity, spin);
+}
+
+void GroupBuilder::add_clump(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& orientation,
+                             const Vec3& velocity, const Vec3& spin) const {
+  const double own = mass(radius), size = inert(radius);
+  const ClumpShape& shape = *kind_->clump();
+  bodies.add_clump(shape, centre, radius, own, own * size * size * shape.inertia, orientation, material_, velocity,
+                   spin);
 }
 
 }  // namespace grit

@@ -19,6 +19,9 @@ class GroupBuilder {
   double mass(double radius) const { return density_ * kind_->volume(inert(radius)); }
   void add(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& turn, const Vec3& velocity,
            const Vec3& spin) const;
+  /// Adds a clump by its centre of mass and the orientation of its principal axes.
+  void add_clump(Bodies& bodies, const Vec3& centre, double radius, const Eigen::Quaterniond& orientation,
+                 const Vec3& velocity, const Vec3& spin) const;
   const ClumpShape* clump() const { return kind_->clump(); }
   /// Diameter of the enclosing sphere of the shape as it was given [m].
   std::optional<double> shape_diameter() const;

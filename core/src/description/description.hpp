@@ -347,6 +347,8 @@ struct DomainDescription {
 struct BeginDescription {
   std::string from;  ///< its folder of results
   std::string at = "end";
+  std::int64_t frame = -1;     ///< below 0: the last one
+  std::optional<double> time;  ///< of the frame [s]
   std::string springs = "keep";
   void declare(Parameters& p);
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "bodies/bodies.hpp"
@@ -12,7 +13,7 @@
 
 namespace grit {
 
-/// State of another simulation beside its bodies, at one instant: velocities are not half a step older than positions.
+/// State of another simulation beside its bodies, at one instant.
 struct SampleState {
   DeformingCell cell;
   Walls walls;
@@ -27,6 +28,7 @@ struct Prepared {
 
   Bodies bodies;
   std::unique_ptr<SampleState> sample;  ///< null without one
+  std::string note;                     ///< what users should know about the sample; may be empty
 };
 
 }  // namespace grit

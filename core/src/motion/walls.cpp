@@ -327,6 +327,11 @@ double Walls::area(std::size_t wall) const {
   return across / std::abs(facing(setup, states_[wall].pose));
 }
 
+void Walls::put(std::size_t wall, const Pose& pose, const WallMotion& motion) {
+  WallState& state = states_[wall];
+  state.pose = pose, state.velocity = motion.velocity, state.spin = motion.spin;
+}
+
 void Walls::drop(const std::vector<std::string>& names) {
   for (std::size_t wall = size(); wall-- > 0;) {
     if (std::ranges::find(names, name(wall)) == names.end()) continue;

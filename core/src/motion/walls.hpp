@@ -78,6 +78,8 @@ class Walls {
   void change(const SceneDescription& scene, const Components& components) { change(wall_setups(scene, components)); }
   void change(std::vector<WallSetup> setups);
 
+  /// Puts a wall where it was, with its motion in the last step.
+  void put(std::size_t wall, const Pose& pose, const WallMotion& motion);
   /// Removes the walls of these names, before the next apply().
   void drop(const std::vector<std::string>& names);
 

@@ -13,14 +13,11 @@
 #include "output/svg.hpp"
 #include "output/vtk.hpp"
 #include "storage/atomic_file.hpp"
+#include "storage/frame_state.hpp"
 #include "storage/hdf5.hpp"
 
 namespace grit {
 namespace {
-
-constexpr const char* suffix = ".h5";
-
-std::string file_name(std::size_t number, const char* end = suffix) { return fmt::format("{:06}{}", number, end); }
 
 template <class T>
 hdf5::Dataset put(hdf5::Group& group, const Channel& what, const hdf5::Shape& shape, const std::vector<T>& values) {
@@ -37,11 +34,12 @@ void write_bodies(hdf5::Group group, const World& world) {
     put(group, what, width == 1 ? hdf5::Shape{rows} : hdf5::Shape{rows, width}, values);
   });
   if (group.has("group")) group.dataset("group").set_attribute("names", Description(groups.names).dump());
+  else if (!groups.names.empty()) group.set_attribute("group", groups.names.front());
 }
 
 void write_clumps(hdf5::Group group, const World& world) {
   std::vector<std::int64_t> id;
-  std::vector<double> centre, orientation, spin, radius;
+  std::vector<double> centre, orientation, velocity, spin, radius;
   std::vector<ClumpView> clumps(world.clumps().begin(), world.clumps().end());
   std::ranges::sort(clumps, {}, &ClumpView::id);
   for (const ClumpView& clump : clumps) {
@@ -49,12 +47,15 @@ void write_clumps(hdf5::Group group, const World& world) {
     id.push_back(clump.id), radius.push_back(clump.radius);
     centre.insert(centre.end(), clump.centre.begin(), clump.centre.end());
     orientation.insert(orientation.end(), {turn.w(), turn.x(), turn.y(), turn.z()});
+    velocity.insert(velocity.end(), clump.velocity.begin(), clump.velocity.end());
     spin.insert(spin.end(), clump.spin.begin(), clump.spin.end());
   }
   const auto n = id.size();
   put(group, {"id", "1", "number that the clump keeps for the whole run", {}}, {n}, id);
   put(group, {"centre", "m", "centre of mass", {}}, {n, 3}, centre);
   put(group, {"orientation", "1", "unit quaternion (w, x, y, z) of the principal axes", {}}, {n, 4}, orientation);
+  put(group, {"velocity", "m/s", "velocity of the centre of mass, half a step before the frame's time", {}}, {n, 3},
+      velocity);
   put(group, {"spin", "rad/s", "angular velocity, right-handed, half a step before the frame's time", {}}, {n, 3},
       spin);
   put(group, {"radius", "m", "radius of the enclosing sphere", {}}, {n}, radius);
@@ -97,11 +98,8 @@ void write_walls(hdf5::Group group, const World& world, std::span<const WallShap
                          {corners.size() / 9, 3, 3}, corners);
     triangles.set_attribute("index", static_cast<std::int64_t>(index));
     triangles.set_attribute("pressure", wall.pressure);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto letter = std::string(1, "xyz"[axis]);
-      triangles.set_attribute("displacement_" + letter, wall.position[axis]);
-      triangles.set_attribute("force_" + letter, wall.force[axis]);
-    }
+    set_vector(triangles, "force", wall.force);
+    set_wall(triangles, {wall.name, {wall.pose.about, wall.position, wall.pose.turn}, wall.velocity, wall.spin});
   }
 }
 
@@ -181,7 +179,7 @@ class FrameIndex {
   std::string item(const char* type, int bytes, const std::string& dimensions, const std::string& path) const {
     return fmt::format(
         "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">frames/{}:{}</DataItem>",
-        dimensions, type, bytes, file_name(number_), escaped(path));
+        dimensions, type, bytes, frame_name(number_), escaped(path));
   }
   std::string grid(const std::string& topology, const std::string& points, const std::string& attributes) const {
     return fmt::format(
@@ -213,12 +211,12 @@ Frames::Frames(const std::filesystem::path& results, std::vector<WallShape> wall
   if (error) throw FileError(folder.string() + ": cannot make the folder: " + error.message());
 
   for (std::size_t number = 0; number < kept; ++number)
-    instants_.push_back(instant_of(hdf5::File(folder / file_name(number), hdf5::Mode::read)));
+    instants_.push_back(instant_of(hdf5::File(folder / frame_name(number), hdf5::Mode::read)));
   const auto remove_later = [&](const char* end) {
-    for (std::size_t number = kept; std::filesystem::exists(folder / file_name(number, end)); ++number)
-      std::filesystem::remove(folder / file_name(number, end), error);
+    for (std::size_t number = kept; std::filesystem::exists(folder / frame_name(number, end)); ++number)
+      std::filesystem::remove(folder / frame_name(number, end), error);
   };
-  remove_later(suffix);
+  remove_later(".h5");
   for (const FrameExport* one : exports_) remove_later(one->suffix);
   write_indices();
 }
@@ -251,11 +249,14 @@ Frames::Instant Frames::instant_of(const hdf5::File& file) {
 }
 
 void Frames::write(const World& world, std::span<const FieldGroup> fields) {
-  const auto path = results_ / "frames" / file_name(instants_.size());
+  const auto path = results_ / "frames" / frame_name(instants_.size());
   hdf5::File file(temporary_path(path), hdf5::Mode::replace);
   file.set_attribute("time", world.time());
   file.set_attribute("step", world.step());
   file.set_attribute("stage", world.stage());
+  const Cell& cell = world.cell();
+  set_vector(file, "cell_low", cell.low), set_vector(file, "cell_high", cell.high);
+  set_vector(file, "strain_rate", cell.strain_rate);
   write_bodies(file.create_group("bodies"), world);
   if (!world.clumps().empty()) write_clumps(file.create_group("clumps"), world);
   write_contacts(file.create_group("contacts"), world);
@@ -266,7 +267,7 @@ void Frames::write(const World& world, std::span<const FieldGroup> fields) {
   file.close();
   publish(path);
   for (const FrameExport* one : exports_)
-    write_atomically(results_ / "frames" / file_name(instants_.size(), one->suffix), one->text(world, walls_));
+    write_atomically(results_ / "frames" / frame_name(instants_.size(), one->suffix), one->text(world, walls_));
   instants_.push_back(std::move(instant));
   write_indices();
 }
@@ -277,7 +278,7 @@ void Frames::write_indices() const {
     if (one->collection == nullptr) continue;
     std::vector<TimedFile> files;
     for (std::size_t number = 0; number < instants_.size(); ++number)
-      files.push_back({instants_[number].time, "frames/" + file_name(number, one->suffix)});
+      files.push_back({instants_[number].time, "frames/" + frame_name(number, one->suffix)});
     write_atomically(results_ / one->collection, vtk_collection(files));
   }
 }

@@ -9,19 +9,13 @@
 #include "description/placed_error.hpp"
 #include "grit/error.hpp"
 #include "simulation/no_recorder.hpp"
+#include "simulation/sample_checks.hpp"
+#include "simulation/sample_of_frame.hpp"
 #include "simulation/stage_runner.hpp"
 #include "storage/state_file.hpp"
 
 namespace grit {
 namespace {
-
-using Refusals = std::vector<PlacedError::Fault>;
-
-std::string quoted_names(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "\"" : ", \"") + name + '"';
-  return text.empty() ? "none" : text;
-}
 
 /// The file with the state of the sample.
 std::filesystem::path file_of(const BeginDescription& begin) {
@@ -33,41 +27,13 @@ std::filesystem::path file_of(const BeginDescription& begin) {
   throw PlacedError({"begin", "from"},
                     folder.string() + ": holds no " + file.filename().string() +
                         (other && at_end ? "; the run is not complete: continue it with --resume, or begin at its last "
-                                           "checkpoint with \"at\": \"checkpoint\""
+                                           "checkpoint with \"at\": \"checkpoint\", or at a frame"
                          : other         ? "; the run is complete: begin at its end with \"at\": \"end\""
                                          : "; name the folder of results of a run"));
 }
 
-/// The groups of the sample and those of the scene must be the same.
-void check_groups(const SceneDescription& scene, const Bodies& bodies, const std::string& sample, Refusals& faults) {
-  std::set<std::string> has, used;
-  for (const BodyGroup& group : bodies.groups) has.insert(group.name);
-  for (const auto& [name, group] : scene.bodies)
-    if (group.is_from_sample()) used.insert(name);
-  for (const std::string& name : used)
-    if (!has.contains(name))
-      faults.push_back({{"bodies", name}, sample + " has no group of this name; it has " + quoted_names(has)});
-  for (const std::string& name : has)
-    if (!used.contains(name))
-      faults.push_back({{"bodies"},
-                        sample + " has a group \"" + name +
-                            "\", which is not described; add it with \"source\": {\"type\": \"sample\"}"});
-}
-
-void check_domain(const DomainDescription& now, const DomainDescription& before, const std::string& sample,
-                  Refusals& faults) {
-  if (now.periodic != before.periodic)
-    faults.push_back(
-        {{"domain", "periodic"}, "the domain of " + sample + " is periodic along other axes; use the same"});
-  else if ((now.periodic[0] || now.periodic[1] || now.periodic[2]) &&
-           (now.low != before.low || now.high != before.high))
-    faults.push_back({{"domain"},
-                      "the domain of " + sample +
-                          " has other bounds; use those of its description: the cell keeps its present size"});
-}
-
 void check_springs(const ContactLaw& law, const std::vector<StateField>& fields, const std::string& sample,
-                   Refusals& faults) {
+                   SampleFaults& faults) {
   const std::vector<StateField> kept = law.state();
   for (const StateField& field : fields)
     if (std::ranges::find(kept, field.name, &StateField::name) == kept.end())
@@ -103,19 +69,12 @@ void set_materials(const SceneDescription& scene, const SceneDescription& before
   }
 }
 
-std::vector<std::string> walls_with_other_geometry(const SceneDescription& now, const SceneDescription& before) {
-  std::vector<std::string> names;
-  for (const auto& [name, wall] : now.walls)
-    if (const auto then = before.walls.find(name); then != before.walls.end() && then->second.geometry != wall.geometry)
-      names.push_back(name);
-  return names;
-}
-
 }  // namespace
 
 Prepared prepared_sample(const LiveScene& live, const Registry& registry, StateRequest state) {
   const SceneDescription& scene = live.now();
   const BeginDescription& begin = *scene.begin;
+  if (begin.at == "frame") return sample_of_frame(live, registry, state);
   const std::filesystem::path path = file_of(begin);
   const StateFile file = read_state(path);
   const Scene before = read_scene(Document(file.facts.at("description"), path.string()), registry);
@@ -128,9 +87,11 @@ Prepared prepared_sample(const LiveScene& live, const Registry& registry, StateR
   const std::vector<StateField> fields = kernel.state().settings.fields;
   Prepared prepared = kernel.hand_over();
 
-  Refusals faults;
-  const std::string sample = "the sample in " + begin.from;
-  check_groups(scene, prepared.bodies, sample, faults);
+  SampleFaults faults;
+  const std::string sample = name_of_sample(begin);
+  std::set<std::string> groups;
+  for (const BodyGroup& group : prepared.bodies.groups) groups.insert(group.name);
+  check_groups(scene, groups, sample, faults);
   check_domain(scene.domain, live_before.now().domain, sample, faults);
   if (begin.springs == "keep") {
     ContactLaw& law = *live.components().law;

@@ -1,0 +1,185 @@
+#include "simulation/sample_of_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "bodies/group_builder.hpp"
+#include "format/number.hpp"
+#include "grit/error.hpp"
+#include "input/scene.hpp"
+#include "simulation/sample_checks.hpp"
+#include "storage/frame_state.hpp"
+
+namespace grit {
+namespace {
+
+struct ChosenFrame {
+  std::size_t number;
+  std::filesystem::path path;
+  double time;  // s
+};
+
+ChosenFrame chosen_frame(const BeginDescription& begin) {
+  const auto path = [&](std::size_t number) {
+    return std::filesystem::path(begin.from) / "frames" / frame_name(number);
+  };
+  const auto chosen = [&](std::size_t number) -> ChosenFrame {
+    return {number, path(number), time_of_frame(path(number))};
+  };
+  std::size_t count = 0;
+  while (std::filesystem::exists(path(count))) ++count;
+  if (count == 0)
+    throw PlacedError({"begin", "from"},
+                      begin.from + ": holds no frames; name the folder of results of a run with /output/frames");
+  if (begin.frame >= static_cast<std::int64_t>(count))
+    throw PlacedError({"begin", "frame"}, name_of_sample(begin) + " has no frame " + std::to_string(begin.frame) +
+                                              "; its frames are 0 to " + std::to_string(count - 1));
+  if (!begin.time) return chosen(begin.frame < 0 ? count - 1 : static_cast<std::size_t>(begin.frame));
+  ChosenFrame nearest = chosen(0);
+  for (std::size_t number = 1; number < count; ++number)
+    if (const ChosenFrame one = chosen(number); std::abs(one.time - *begin.time) < std::abs(nearest.time - *begin.time))
+      nearest = one;
+  return nearest;
+}
+
+/// The description of the run that wrote the frames.
+Scene scene_of(const BeginDescription& begin, const Registry& registry) {
+  const auto path = std::filesystem::path(begin.from) / "description.json";
+  if (!std::filesystem::exists(path))
+    throw PlacedError({"begin", "from"},
+                      begin.from + ": holds no description.json; name the folder of results of a run");
+  return read_scene(load_document(path, {}, registry), registry);
+}
+
+std::size_t stage_of(const FrameState& frame, const Scene& before) {
+  const auto& stages = before.description->stages;
+  const auto at = std::ranges::find(stages, frame.stage, &StageDescription::name);
+  return at == stages.end() ? 0 : static_cast<std::size_t>(at - stages.begin());
+}
+
+std::string spheres(std::size_t count) {
+  return count == 1 ? "single spheres" : "clumps of " + std::to_string(count) + " spheres";
+}
+
+/// Makes the bodies of a frame by the groups of the scene.
+class FrameBodies {
+ public:
+  FrameBodies(const LiveScene& live, const FrameState& frame, std::string sample)
+      : live_(live), frame_(frame), sample_(std::move(sample)) {
+    for (const FrameClump& clump : frame_.clumps) clumps_[clump.id] = &clump;
+  }
+
+  Bodies make(StateRequest state) {
+    bodies_.reserve(frame_.bodies.size());
+    for (std::size_t i = 0; i < frame_.bodies.size();) i += add(i);
+    // Groups of which no body is left.
+    for (const std::string& name : frame_.groups)
+      if (std::ranges::find(bodies_.groups, name, &BodyGroup::name) == bodies_.groups.end())
+        bodies_.groups.push_back({name, bodies_.ids_given});
+    if (!faults_.empty()) throw PlacedError(std::move(faults_));
+    bodies_.finish(state);
+    return std::move(bodies_);
+  }
+
+ private:
+  /// Adds a sphere or a clump. Returns its number of spheres; those of a clump have consecutive ids.
+  std::size_t add(std::size_t first) {
+    const FrameBody& body = frame_.bodies[first];
+    const std::string& name = frame_.groups.at(body.group);
+    if (bodies_.groups.empty() || bodies_.groups.back().name != name) bodies_.groups.push_back({name, body.id});
+    bodies_.ids_given = body.id;
+    const GroupBuilder& builder = builder_of(name);
+    if (body.clump < 0) {
+      if (builder.clump() != nullptr) refuse(name, 1, builder);
+      else builder.add(bodies_, body.position, body.radius, Eigen::Quaterniond::Identity(), body.velocity, body.spin);
+      return 1;
+    }
+    std::size_t last = first;
+    while (last < frame_.bodies.size() && frame_.bodies[last].clump == body.clump) ++last;
+    const FrameClump& clump = *clumps_.at(body.clump);
+    if (!has_shape(builder.clump(), clump, first, last)) return refuse(name, last - first, builder), last - first;
+    bodies_.clump_ids_given = static_cast<std::uint32_t>(clump.id);
+    builder.add_clump(bodies_, clump.centre, clump.radius, clump.orientation, clump.velocity, clump.spin);
+    return last - first;
+  }
+
+  bool has_shape(const ClumpShape* shape, const FrameClump& clump, std::size_t first, std::size_t last) const {
+    constexpr double rounding = 1e-9;  // of radii, relative
+    if (shape == nullptr || shape->spheres.size() != last - first) return false;
+    for (std::size_t k = first; k < last; ++k) {
+      const double radius = frame_.bodies[k].radius;
+      if (std::abs(clump.radius * shape->spheres[k - first].w - radius) > rounding * radius) return false;
+    }
+    return true;
+  }
+
+  /// One fault for each group.
+  void refuse(const std::string& name, std::size_t count, const GroupBuilder& builder) {
+    if (!refused_.insert(name).second) return;
+    const std::size_t wanted = builder.clump() == nullptr ? 1 : builder.clump()->spheres.size();
+    faults_.push_back({{"bodies", name},
+                       "this group of " + sample_ + " has " + spheres(count) + ", here it has " +
+                           (wanted == count ? "others" : spheres(wanted)) + "; use the type and shape of the sample"});
+  }
+
+  const GroupBuilder& builder_of(const std::string& name) {
+    if (const auto known = builders_.find(name); known != builders_.end()) return known->second;
+    const SceneDescription& scene = live_.now();
+    return builders_.emplace(name, GroupBuilder(scene, scene.bodies.at(name), live_.components().body_kinds.at(name)))
+        .first->second;
+  }
+
+  const LiveScene& live_;
+  const FrameState& frame_;
+  std::string sample_;
+  std::map<std::int64_t, const FrameClump*> clumps_;
+  std::map<std::string, GroupBuilder> builders_;
+  std::set<std::string> refused_;
+  SampleFaults faults_;
+  Bodies bodies_;
+};
+
+/// The walls of the run, where they were.
+Walls walls_of(const FrameState& frame, const LiveScene& before) {
+  Walls walls;
+  walls.apply(before.now(), before.components());
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    const auto at = std::ranges::find(frame.walls, walls.name(w), &FrameWall::name);
+    if (at != frame.walls.end()) walls.put(w, at->pose, {at->velocity, at->spin});
+  }
+  return walls;
+}
+
+}  // namespace
+
+Prepared sample_of_frame(const LiveScene& live, const Registry& registry, StateRequest state) {
+  const SceneDescription& scene = live.now();
+  const BeginDescription& begin = *scene.begin;
+  const ChosenFrame chosen = chosen_frame(begin);
+  const FrameState frame = read_frame_state(chosen.path);
+  const Scene before = scene_of(begin, registry);
+  LiveScene live_before(before);
+  live_before.go_to(stage_of(frame, before), 0);
+
+  SampleFaults faults;
+  const std::string sample = name_of_sample(begin);
+  check_groups(scene, {frame.groups.begin(), frame.groups.end()}, sample, faults);
+  check_domain(scene.domain, live_before.now().domain, sample, faults);
+  if (!faults.empty()) throw PlacedError(std::move(faults));
+
+  const Cell cell{frame.cell_low, frame.cell_high, live_before.now().domain.periodic, frame.strain_rate};
+  Prepared prepared(FrameBodies(live, frame, sample).make(state),
+                    {DeformingCell(cell), walls_of(frame, live_before), {}, {}});
+  prepared.sample->walls.drop(walls_with_other_geometry(scene, live_before.now()));
+  prepared.note = "begins from frame " + std::to_string(chosen.number) + " of " + begin.from + ", at " +
+                  number(chosen.time) + " s; frames hold no contact springs, which start at zero";
+  return prepared;
+}
+
+}  // namespace grit
