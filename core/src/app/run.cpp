@@ -151,7 +151,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   }
 
   Prepared prepared = job.opened->prepare(picture_state(description));
-  if (!prepared.note.empty()) say(prepared.note);
+  if (!prepared.note.empty() && !checkpoint) say(prepared.note);
   ResultsFolder results(results_of(job, std::move(facts), prepared.bodies));
   std::optional<Watch> watch;  // before the simulation, which makes threads
   if (listener) watch.emplace(*listener, folder);
