@@ -26,6 +26,7 @@
 #include "lint/unused_motions.hpp"
 #include "lint/unused_scenario_parameters.hpp"
 #include "lint/unused_settings.hpp"
+#include "output/named_fields.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
 #include "simulation/first_instant.hpp"
@@ -81,6 +82,7 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
   for (const auto& [name, probe] : description.probes)
     probes.push_back(Observer(name, probe, components.probes.at(name), kernel.world()).group());
   SingleChannels(probes).check(scene.document, description.output);  // as in a run
+  check_fields(scene.document, description, kernel.world());
   const std::size_t bodies = kernel.world().positions().size();
 
   std::cout << "\nbody state besides position, velocity and spin\n";

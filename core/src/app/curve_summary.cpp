@@ -5,17 +5,20 @@
 #include <cmath>
 #include <sstream>
 
+#include "output/named_fields.hpp"
+
 namespace grit {
 
-CurveSummary::CurveSummary(Recorder& next, const Document& document, const OutputDescription& output,
-                           std::function<void(const std::string&)> say)
-    : next_(next), document_(document), output_(output), say_(std::move(say)), curves_(output.summary.size()) {}
+CurveSummary::CurveSummary(Recorder& next, const Scene& scene, std::function<void(const std::string&)> say)
+    : next_(next), scene_(scene), say_(std::move(say)), curves_(scene.description->output.summary.size()) {}
 
 void CurveSummary::begin(const World& world, std::span<const ProbeGroup> probes) {
   const SingleChannels channels(probes);
-  channels.check(document_, output_);
+  const SceneDescription& description = *scene_.description;
+  channels.check(scene_.document, description.output);
+  check_fields(scene_.document, description, world);
   for (std::size_t i = 0; i < curves_.size(); ++i)
-    curves_[i].channel = channels.at(output_.summary[i], fmt::format("/output/summary/{}", i));
+    curves_[i].channel = channels.at(description.output.summary[i], fmt::format("/output/summary/{}", i));
   next_.begin(world, probes);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "input/scene.hpp"
 #include "output/single_channels.hpp"
 #include "run/recorder.hpp"
 
@@ -12,11 +13,10 @@ namespace grit {
 
 class CurveSummary final : public Recorder {
  public:
-  /// `document` and `output` are the description's; `say` gets one line per stage that ends.
-  CurveSummary(Recorder& next, const Document& document, const OutputDescription& output,
-               std::function<void(const std::string&)> say);
+  /// `say` gets one line per stage that ends.
+  CurveSummary(Recorder& next, const Scene& scene, std::function<void(const std::string&)> say);
 
-  /// Throws DescriptionError if the output names channels that no probe has.
+  /// Throws DescriptionError if the output names channels or fields that no probe has.
   void begin(const World& world, std::span<const ProbeGroup> probes) override;
   void sample(std::size_t probe, const World& world, std::span<const std::span<const double>> values) override;
   void frame(const World& world, std::span<const FieldGroup> fields) override { next_.frame(world, fields); }
@@ -35,8 +35,7 @@ class CurveSummary final : public Recorder {
     bool any = false;
   };
   Recorder& next_;
-  const Document& document_;
-  const OutputDescription& output_;
+  const Scene& scene_;
   std::function<void(const std::string&)> say_;
   std::vector<Curve> curves_;
 };

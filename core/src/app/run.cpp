@@ -96,6 +96,12 @@ RunFacts facts_of(const RunJob& job, unsigned threads, const std::vector<std::st
           .commands = {command_line}};
 }
 
+/// The ends of a colour's scale; none if the description sets none.
+ScaleEnds scale_of(const std::string& color, const std::deque<ColorScaleDescription>& scales) {
+  const auto found = std::ranges::find(scales, color, &ColorScaleDescription::of);
+  return found == scales.end() ? ScaleEnds{} : ScaleEnds{found->low, found->high};
+}
+
 ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodies) {
   const OpenedScene& opened = *job.opened;
   const SceneDescription& description = *opened.scene.description;
@@ -107,7 +113,8 @@ ResultsOptions results_of(const RunJob& job, RunFacts facts, const Bodies& bodie
                          .formats = description.output.frames.formats,
                          .picture = {}};
   if (const auto& picture = description.output.picture)
-    results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color};
+    results.picture = PictureRequest{picture->x, picture->y, picture->view, picture->color,
+                                     scale_of(picture->color, description.output.color_scales)};
   return results;
 }
 
@@ -156,7 +163,7 @@ ExitStatus run_one(RunJob job, const Options& options, const std::vector<std::st
   std::optional<Watch> watch;  // before the simulation, which makes threads
   if (listener) watch.emplace(*listener, folder);
   ProgressBar bar;
-  CurveSummary curves(results, scene.document, description.output, [&](const std::string& line) {
+  CurveSummary curves(results, scene, [&](const std::string& line) {
     bar.end();
     say(line);
   });

@@ -527,6 +527,12 @@ struct PictureDescription {
   std::string color = "rotation";
   void declare(Parameters& p);
 };
+/// Ends of a colour scale, in SI.
+struct ColorScaleDescription {
+  std::string of;
+  std::optional<double> low, high;
+  void declare(Parameters& p);
+};
 /// Reports a name that is not "probe/channel"; "" is allowed.
 void check_channel(const std::string& name, const char* key, const Complain& complain);
 
@@ -551,6 +557,7 @@ struct OutputDescription {
   FramesDescription frames;
   double checkpoint_every = 600;  ///< s of wall clock
   std::optional<PictureDescription> picture;
+  std::deque<ColorScaleDescription> color_scales;
   std::map<std::string, ReferenceDescription> references;
   std::vector<std::string> summary;
   void declare(Parameters& p);

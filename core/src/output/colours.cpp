@@ -15,6 +15,17 @@ double colour_limit(std::vector<double> sizes) {
   return *nth;
 }
 
+ColourRange with_ends(ColourRange range, const ScaleEnds& ends, bool symmetric) {
+  if (range.low < ends.most) range.high = std::min(range.high, ends.most);
+  if (ends.low) range.low = *ends.low;
+  if (ends.high) range.high = *ends.high;
+  if (symmetric && ends.low && !ends.high) range.high = -*ends.low;
+  if (symmetric && ends.high && !ends.low) range.low = -*ends.high;
+  if (range.low < range.high) return range;
+  const double set = ends.low ? range.low : range.high, width = set != 0 ? std::abs(set) : 1;
+  return ends.low ? ColourRange{set, set + width} : ColourRange{set - width, set};
+}
+
 std::string colour_at(std::span<const Rgb> scale, double place) {
   const double along = std::clamp(place, 0.0, 1.0) * static_cast<double>(scale.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(along), scale.size() - 2);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +26,18 @@ inline constexpr std::array<Rgb, 7> sequential_colours{
 
 /// The 98th percentile of magnitudes, where the colour scale ends, so that outliers do not dominate it. 0 if empty.
 double colour_limit(std::vector<double> sizes);
+
+struct ColourRange {
+  double low, high;
+};
+/// Ends of a colour scale that do not follow from the values, in their unit.
+struct ScaleEnds {
+  std::optional<double> low, high;  ///< set by a description
+  /// Largest upper end, unless it is set or all values are above.
+  double most = std::numeric_limits<double>::infinity();
+};
+/// The range with these ends. One end of a symmetric range sets both. It is never empty.
+ColourRange with_ends(ColourRange range, const ScaleEnds& ends, bool symmetric);
 
 /// "#rrggbb" at a position of a scale, clamped to 0 … 1.
 std::string colour_at(std::span<const Rgb> scale, double place);

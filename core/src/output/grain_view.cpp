@@ -71,8 +71,17 @@ Value colouring(const SeenBodies& seen, const Sight& look, const std::string& co
       shown.note += (k > 0 ? ", " : "") + std::to_string(k + 1) + ' ' + seen.group_names[k];
     return [groups = seen.groups](std::uint32_t i) { return groups[i] + 1; };
   }
+  if (names_a_field(color)) {
+    if (!seen.values) {
+      shown.value = {color, "1"};
+      return grey;
+    }
+    shown.value = {seen.values->label, seen.values->unit};
+    shown.symmetric = seen.values->is_signed;
+    return [values = std::span(seen.values->of_bodies)](std::uint32_t i) { return values[i]; };
+  }
   throw Error("picture: found the color '" + color +
-              "'; allowed are 'rotation', 'displacement', 'speed', 'radius' and 'group'");
+              "'; allowed are 'rotation', 'displacement', 'speed', 'radius', 'group' and fields of probes");
 }
 
 /// Whether each body is no outlier.
@@ -150,13 +159,14 @@ GrainView grain_view(const SeenBodies& seen, std::span<const std::vector<Vec3>> 
 }
 
 GrainView grain_view(const World& world, std::span<const WallShape> walls, const std::string& view,
-                     const std::string& color) {
+                     const std::string& color, const BodyValues* values) {
   std::vector<std::vector<Vec3>> where;
   for (const WallView& wall : world.walls()) where.push_back(triangles_of(wall, walls, world.stage()));
   SeenBodies seen{world.positions(), world.velocities(), world.rotations(), world.displacements(), world.specimen()};
   GroupIndex groups;
   if (color == "group") groups = group_index(world);
   seen.groups = groups.of_bodies, seen.group_names = groups.names;
+  seen.values = values;
   return grain_view(seen, where, view, color);
 }
 

@@ -43,7 +43,8 @@ struct Colours {
   }
 };
 
-Colours colours_of(const std::vector<MapCell>& cells, std::size_t panel, bool about_zero) {
+Colours colours_of(const std::vector<MapCell>& cells, std::size_t panel, const MapPanel& look) {
+  const bool about_zero = look.about_zero;
   std::vector<double> finite;
   for (const MapCell& cell : cells)
     if (drawable(cell.values[panel])) finite.push_back(cell.values[panel]);
@@ -57,6 +58,8 @@ Colours colours_of(const std::vector<MapCell>& cells, std::size_t panel, bool ab
   if (about_zero) colours.high = most > 0 ? most : 1, colours.low = -colours.high;
   else if (!(colours.high - colours.low > 1e-9 * most))  // ignores round-off
     colours.low -= 0.5 * (most > 0 ? most : 1), colours.high += 0.5 * (most > 0 ? most : 1);
+  const auto [low, high] = with_ends({colours.low, colours.high}, look.ends, about_zero);
+  colours.low = low, colours.high = high;
   return colours;
 }
 
@@ -283,7 +286,7 @@ std::string draw(const MapPicture& whole) {
   std::vector<Panel> panels;
   double longest = 0;
   for (std::size_t i = 0; i < picture.panels.size(); ++i) {
-    const Colours colours = colours_of(picture.cells, i, picture.panels[i].about_zero);
+    const Colours colours = colours_of(picture.cells, i, picture.panels[i]);
     ReadableUnit unit = readable(picture.unit, std::max(std::abs(colours.low), std::abs(colours.high)));
     std::string title = axis_title(picture.panels[i].label, unit.unit);
     longest = std::max(longest, label_letter * static_cast<double>(letters(title)));

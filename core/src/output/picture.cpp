@@ -331,13 +331,13 @@ class PolarDrawing {
 
 /// Layout of the view of grains and its colour scale.
 struct ViewLayout {
-  Range x, y;               ///< m
-  double scale = 1;         ///< px/m
-  double wide, high;        ///< px
-  double limit = 1;         ///< value of the outermost colour
-  ReadableUnit unit{};      ///< of that value
-  std::string value_title;  ///< above the colour bar
-  double bar = 0;           ///< width of the colour bar, including the gap [px]; 0 without one
+  Range x, y;                ///< m
+  double scale = 1;          ///< px/m
+  double wide, high;         ///< px
+  ColourRange values{0, 1};  ///< of the outermost colours
+  ReadableUnit unit{};       ///< of these values
+  std::string value_title;   ///< above the colour bar
+  double bar = 0;            ///< width of the colour bar, including the gap [px]; 0 without one
 };
 
 constexpr double bar_gap = 28;  // between the view and the colour bar, px
@@ -380,8 +380,10 @@ ViewLayout layout(const GrainView& view) {
     result.y = {result.y.low - border, result.y.low + border};
   }
   if (!sizes.empty()) {
-    if (const double limit = colour_limit(std::move(sizes)); limit > 0) result.limit = limit;
-    result.unit = readable(view.value.unit, result.limit);
+    double limit = colour_limit(std::move(sizes));
+    if (!(limit > 0)) limit = 1;
+    result.values = with_ends({view.symmetric ? -limit : 0, limit}, view.ends, view.symmetric);
+    result.unit = readable(view.value.unit, std::max(std::abs(result.values.low), std::abs(result.values.high)));
     result.value_title = axis_title(view.value.label, result.unit.unit);
     constexpr double numbers = 64;  // px
     const double words = std::max(title_wide(result.value_title), letter * static_cast<double>(letters(view.note)));
@@ -393,9 +395,9 @@ ViewLayout layout(const GrainView& view) {
   return result;
 }
 
-int class_of(double value, double limit, const GrainView& view) {
+int class_of(double value, const ColourRange& values, const GrainView& view) {
   if (view.layers > 0) return std::clamp(static_cast<int>(std::lround(value)), 1, view.layers) - 1;
-  const double place = view.symmetric ? 0.5 + 0.5 * value / limit : value / limit;
+  const double place = (value - values.low) / (values.high - values.low);
   return static_cast<int>(std::lround(std::clamp(place, 0.0, 1.0) * (classes - 1)));
 }
 
@@ -416,7 +418,7 @@ void draw_grains(Svg& svg, const GrainView& view, const ViewLayout& at, double l
     if (!drawable(disc.x) || !drawable(disc.y) || !drawable(disc.radius)) continue;
     const bool coloured = drawable(disc.value);
     svg.circle(place(disc.x, disc.y), disc.radius * at.scale,
-               coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.limit, view))] : "class=\"n\"");
+               coloured ? names[static_cast<std::size_t>(class_of(disc.value, at.values, view))] : "class=\"n\"");
   }
   svg.close_group();
   // Clips at half the view's extent beyond its edges, so that cut ends are not visible.
@@ -466,7 +468,7 @@ void draw_colour_bar(Svg& svg, const GrainView& view, const ViewLayout& at, doub
   for (int i = 0; i < pieces; ++i)
     svg.rectangle({left, first + tall * (pieces - 1 - i) / pieces}, 14, tall / pieces + 0.3,
                   fmt::format("class=\"c{}\"", i));
-  double high = at.limit * at.unit.factor, low = view.symmetric ? -high : 0;
+  double high = at.values.high * at.unit.factor, low = at.values.low * at.unit.factor;
   auto marks = ticks(low, high, 4);
   if (view.layers > 0) {  // a number at the middle of each piece
     low = 0.5, high = view.layers + 0.5;

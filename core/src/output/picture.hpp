@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "output/colours.hpp"
+
 namespace grit {
 
 struct Curve {
@@ -52,6 +54,7 @@ struct GrainView {
   Axis value;
   std::string note;          ///< below the colour bar: the sign convention
   bool symmetric = true;     ///< blue–white–red about zero, else dark to bright from zero
+  ScaleEnds ends = {};       ///< of the colours
   int layers = 0;            ///< if above 0: values are 1, 2, … up to this, each with its own colour
   std::size_t left_out = 0;  ///< number of outliers, which are not drawn; stated in the picture
 };

@@ -1,6 +1,9 @@
 #include "output/read_frames.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
 
 #include "grit/description.hpp"
 #include "grit/error.hpp"
@@ -56,6 +59,31 @@ void read_chains(const hdf5::Group& probes, Frame& frame) {
   }
 }
 
+/// A table of a probe, if it has this many rows.
+std::optional<Field> read_field(const hdf5::Group& tables, const std::string& name, std::size_t rows) {
+  const auto table = tables.dataset(name);
+  const auto shape = table.shape();
+  if (shape.empty() || shape.front() != rows) return std::nullopt;
+  return Field{name,
+               table.text("units"),
+               table.text("long_name"),
+               hdf5::product(std::span(shape).subspan(1)),
+               table.read<double>(),
+               table.words("components")};
+}
+
+void read_values(const hdf5::Group& probes, Frame& frame) {
+  for (const auto& probe : probes.names()) {
+    const auto tables = probes.group(probe);
+    if (!tables.has("id")) continue;
+    const std::size_t rows = tables.dataset("id").rows();
+    FieldGroup of_bodies{probe, {}};
+    for (const auto& name : tables.names())
+      if (auto field = read_field(tables, name, rows)) of_bodies.fields.push_back(std::move(*field));
+    std::ranges::move(values_of_bodies(of_bodies, frame.id), std::back_inserter(frame.values));
+  }
+}
+
 void read_walls(const hdf5::Group& group, Frame& frame) {
   for (const auto& name : group.names()) {
     const auto wall = group.dataset(name);
@@ -86,7 +114,7 @@ Frame read_frame(const std::filesystem::path& path) {
   read_bodies(file.group("bodies"), frame);
   read_contacts(file.group("contacts"), frame);
   read_walls(file.group("walls"), frame);
-  if (file.has("probes")) read_chains(file.group("probes"), frame);
+  if (file.has("probes")) read_chains(file.group("probes"), frame), read_values(file.group("probes"), frame);
   return frame;
 }
 
@@ -101,12 +129,7 @@ std::vector<FieldGroup> read_maps(const std::filesystem::path& path) {
     const auto cells = tables.dataset("centre").rows();
     FieldGroup map{probe, {}};
     const auto add = [&](const std::string& name) {
-      const auto table = tables.dataset(name);
-      const auto shape = table.shape();
-      if (shape.empty() || shape.front() != cells) return;
-      map.fields.push_back({name, table.text("units"), table.text("long_name"),
-                            hdf5::product(std::span(shape).subspan(1)), table.read<double>(),
-                            table.words("components")});
+      if (auto field = read_field(tables, name, cells)) map.fields.push_back(std::move(*field));
     };
     add("centre"), add("size");
     const bool placed = map.fields.size() == 2 && map.fields[0].width == 3 && map.fields[1].width == 3;

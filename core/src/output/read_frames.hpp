@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "grit/vec.hpp"
+#include "output/body_values.hpp"
 #include "run/recorder.hpp"
 
 namespace grit {
@@ -25,6 +26,7 @@ struct Frame {
   std::vector<std::int64_t> clump;       ///< id of the clump, -1 for a single sphere; empty without clumps
   std::vector<std::int32_t> group;       ///< index of the body's group; empty if there is only one
   std::vector<std::string> group_names;  ///< ascending
+  std::vector<BodyValues> values;        ///< of the bodies, from the fields of probes
   std::size_t bodies() const { return id.size(); }
 
   std::vector<std::int64_t> body_a;  ///< id of a contact's first body

@@ -124,7 +124,11 @@ void ResultsFolder::sample(std::size_t probe, const World& world, std::span<cons
     }
 }
 
-void ResultsFolder::frame(const World& world, std::span<const FieldGroup> fields) { frames_->write(world, fields); }
+void ResultsFolder::frame(const World& world, std::span<const FieldGroup> fields) {
+  frames_->write(world, fields);
+  if (options_.picture && names_a_field(options_.picture->color))
+    color_values_ = values_of_bodies(fields, world, options_.picture->color), color_step_ = world.step();
+}
 
 void ResultsFolder::stage_ended(const World& world, const std::string& what) {
   series_->flush();
@@ -187,7 +191,12 @@ void ResultsFolder::draw_picture(const World& world, const RunSummary& summary) 
     }
     picture.panels.push_back({axis(x.channel), axis(y.channel), {std::move(curve)}});
   }
-  picture.grains = grain_view(world, options_.walls, options_.picture->view, options_.picture->color);
+  // Of the last frame, which is that of this instant unless the run failed.
+  const bool known = !color_values_.name.empty() && color_step_ == world.step() &&
+                     color_values_.of_bodies.size() == world.ids().size();
+  picture.grains = grain_view(world, options_.walls, options_.picture->view, options_.picture->color,
+                              known ? &color_values_ : nullptr);
+  picture.grains->ends = options_.picture->scale;
   write_atomically(options_.folder / "picture.svg", draw(picture));
 }
 

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "grit/checkpoint.hpp"
+#include "output/body_values.hpp"
+#include "output/colours.hpp"
 #include "output/folder_lock.hpp"
 #include "output/frames.hpp"
 #include "output/run_json.hpp"
@@ -22,6 +24,7 @@ struct PictureRequest {
   std::string x;
   std::vector<std::string> y;
   std::string view = "xz", color = "rotation";
+  ScaleEnds scale = {};  ///< of the colour
 };
 
 /// What to do if the folder holds a run.
@@ -97,6 +100,9 @@ class ResultsFolder final : public Recorder {
   std::optional<Series> series_;
   std::optional<Frames> frames_;
   std::vector<Kept> kept_;  ///< x first, then the y of the picture
+  /// Of the bodies at the last frame, if the picture is coloured by a field; and the step of that frame.
+  BodyValues color_values_;
+  std::uint64_t color_step_ = 0;
   Extent resumed_;
 };
 

@@ -11,7 +11,7 @@
 
 #include "grit/description.hpp"
 #include "output/read_frames.hpp"
-#include "report/map_fields.hpp"
+#include "output/shown_fields.hpp"
 #include "report/packed.hpp"
 
 namespace grit {
@@ -30,7 +30,7 @@ class CellMaps {
   ///   boxes    by stage {low, high}: corners of the box of all cells of its frames [m]
   ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, rank, ranges}], of the cells,
   ///            without bookkeeping: signed, by component, whether the quantity is signed; rank, the order of fields
-  ///            (see map_fields); ranges, by stage, [[low, high] per component] of the central 98 % of the cells of
+  ///            (see shown_fields); ranges, by stage, [[low, high] per component] of the central 98 % of the cells of
   ///            each frame, null without numbers
   ///   frames   [{frame, cells, data}]: for frames that have the map, float32: of all cells x, y and z of the centre,
   ///            then of the size [m], then each component of the fields

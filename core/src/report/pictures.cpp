@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -18,9 +19,9 @@
 #include "output/picture.hpp"
 #include "output/read_frames.hpp"
 #include "output/scale.hpp"
+#include "output/shown_fields.hpp"
 #include "output/strays.hpp"
 #include "report/layers.hpp"
-#include "report/map_fields.hpp"
 
 namespace grit {
 namespace {
@@ -45,6 +46,20 @@ std::optional<Frame> last_frame(RunResults& run) {
   return std::nullopt;
 }
 
+/// The ends of a colour scale that the description sets, by the first of these names that it has.
+ScaleEnds ends_of(const RunResults& run, std::initializer_list<std::string> names) {
+  for (const std::string& name : names)
+    for (const Description& scale : run.at("/description/output/color_scales")) {
+      if (!scale.is_object() || scale.value("of", "") != name) continue;
+      const auto end = [&](const char* key) {
+        const auto found = scale.find(key);
+        return found != scale.end() && found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
+      };
+      return {end("low"), end("high")};
+    }
+  return {};
+}
+
 std::string view_wanted(const RunResults& run) { return text_or(run.at("/description/output/picture/view"), "xz"); }
 
 std::vector<std::vector<Vec3>> walls_of(const Frame& frame) {
@@ -65,10 +80,14 @@ Picture view_of(const RunResults& run, const Frame& frame, const std::string& co
   SeenBodies seen{positions, velocities, rotations, displacements};
   seen.layers = layers;
   seen.groups = frame.group, seen.group_names = frame.group_names;
+  const auto values = std::ranges::find(frame.values, color, &BodyValues::name);
+  if (values != frame.values.end()) seen.values = &*values;
+  GrainView view = grain_view(seen, walls_of(frame), view_wanted(run), color);
+  view.ends = ends_of(run, {color});
   return {run.title(),
           fmt::format("{} grains  ·  stage {}  ·  {}", grouped(frame.bodies()), frame.stage, written_time(frame.time)),
           {},
-          grain_view(seen, walls_of(frame), view_wanted(run), color)};
+          std::move(view)};
 }
 
 }  // namespace
@@ -110,9 +129,13 @@ std::vector<NamedPicture> map_pictures(RunResults& run) {
           {},
           field.unit};
       const std::vector<std::string> components = components_of(field);
-      for (std::size_t k = 0; k < field.width; ++k)
+      for (std::size_t k = 0; k < field.width; ++k) {
+        const std::string full = map.name + '/' + field.name, component = components.empty() ? "" : components[k];
+        ScaleEnds ends = ends_of(run, {full + '/' + component, full});
+        ends.most = largest_shown(field);
         picture.panels.push_back(
-            {spelled(field.name) + (components.empty() ? "" : ' ' + components[k]), is_signed(field, k)});
+            {spelled(field.name) + (component.empty() ? "" : ' ' + component), is_signed(field, k), ends});
+      }
       for (const std::size_t cell : cells) {
         const auto row = field.values.begin() + static_cast<std::ptrdiff_t>(field.width * cell);
         picture.cells.push_back({at(centre, cell, right),
@@ -133,7 +156,8 @@ std::optional<std::string> grains_picture(RunResults& run) {
   const std::string wanted = text_or(run.at("/description/output/picture/color"), "rotation");
   const bool kept = (wanted != "rotation" || !frame->rotation.empty()) &&
                     (wanted != "displacement" || !frame->displacement.empty()) &&
-                    (wanted != "group" || !frame->group.empty());
+                    (wanted != "group" || !frame->group.empty()) &&
+                    (!names_a_field(wanted) || std::ranges::count(frame->values, wanted, &BodyValues::name) > 0);
   return draw(view_of(run, *frame, kept ? wanted : "speed", {}));
 }
 

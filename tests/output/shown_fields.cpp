@@ -1,11 +1,11 @@
-// Properties of cell fields as maps, from their names, units and docs.
-#include "report/map_fields.hpp"
+// Properties of fields in maps and as colours, from their names, units and docs.
+#include "output/shown_fields.hpp"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 
-namespace grit::map_fields_tests {
+namespace grit::shown_fields_tests {
 namespace {
 
 Field field(const std::string& name, const std::string& unit, const std::string& doc, std::size_t width = 1,
@@ -48,4 +48,4 @@ TEST(MapFields, OmitCounters) {
 }
 
 }  // namespace
-}  // namespace grit::map_fields_tests
+}  // namespace grit::shown_fields_tests

@@ -1,8 +1,9 @@
-#include "report/map_fields.hpp"
+#include "output/shown_fields.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <string_view>
 
 namespace grit {
@@ -13,9 +14,9 @@ using std::string_view;
 constexpr std::array<string_view, 10> bookkeeping{"id",    "bodies", "grains", "contacts", "chain",
                                                   "count", "number", "step",   "samples",  "start_position"};
 
-constexpr std::array<string_view, 10> informative{
-    "void_ratio", "strain",      "displacement",      "rotation",       "velocity",
-    "stress",     "mean_stress", "deviatoric_stress", "friction_angle", "coordination_number"};
+constexpr std::array<string_view, 11> informative{
+    "void_ratio",  "solid_fraction",    "strain",         "displacement",       "rotation", "velocity", "stress",
+    "mean_stress", "deviatoric_stress", "friction_angle", "coordination_number"};
 
 constexpr std::array<string_view, 2> of_reliability{"free_volume_fraction", "correlation"};
 
@@ -41,6 +42,10 @@ bool is_bookkeeping(const Field& field) { return has(bookkeeping, field.name); }
 int field_rank(const Field& field) {
   const auto place = std::ranges::find(informative, field.name) - informative.begin();
   return static_cast<int>(place) + (has(of_reliability, field.name) ? 1 : 0);
+}
+
+double largest_shown(const Field& field) {
+  return field.name == "void_ratio" && field.unit == "1" ? 3 : std::numeric_limits<double>::infinity();
 }
 
 bool is_signed(const Field& field, std::size_t component) {
