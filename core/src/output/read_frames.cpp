@@ -94,6 +94,22 @@ void read_walls(const hdf5::Group& group, Frame& frame) {
   }
 }
 
+void read_wall_fields(const hdf5::Group& probes, Frame& frame) {
+  for (const auto& probe : probes.names()) {
+    const auto tables = probes.group(probe);
+    for (const auto& name : tables.names()) {
+      const auto table = tables.dataset(name);
+      if (!table.has_attribute("wall")) continue;
+      const auto wall = std::ranges::find(frame.walls, table.text("wall"), &Frame::Wall::name);
+      if (wall == frame.walls.end()) continue;
+      if (auto field = read_field(tables, name, wall->corners.size() / 9)) {
+        field->name = probe + '/' + name;
+        wall->fields.push_back(std::move(*field));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> frame_files(const std::filesystem::path& folder) {
@@ -114,7 +130,10 @@ Frame read_frame(const std::filesystem::path& path) {
   read_bodies(file.group("bodies"), frame);
   read_contacts(file.group("contacts"), frame);
   read_walls(file.group("walls"), frame);
-  if (file.has("probes")) read_chains(file.group("probes"), frame), read_values(file.group("probes"), frame);
+  if (file.has("probes")) {
+    const auto probes = file.group("probes");
+    read_chains(probes, frame), read_values(probes, frame), read_wall_fields(probes, frame);
+  }
   return frame;
 }
 

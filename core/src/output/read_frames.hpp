@@ -37,8 +37,9 @@ struct Frame {
 
   struct Wall {
     std::string name;
-    std::vector<double> corners;  ///< of its triangles in their present position: nine values per triangle [m]
-    Vec3 displacement;            ///< since the start of the run [m]
+    std::vector<double> corners;     ///< of its triangles in their present position: nine values per triangle [m]
+    Vec3 displacement;               ///< since the start of the run [m]
+    std::vector<Field> fields = {};  ///< of its triangles, named "PROBE/FIELD"
   };
   std::vector<Wall> walls;
 };

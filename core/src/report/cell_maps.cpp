@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "format/symbols.hpp"
+#include "output/colours.hpp"
 #include "output/scale.hpp"
 #include "output/strays.hpp"
 
@@ -32,8 +33,15 @@ CellMaps::Map& CellMaps::map_of(const FieldGroup& group) {
   Map map{.probe = group.name, .fields = {}, .boxes = {}};
   for (const Field& field : group.fields) {
     if (field.name == "centre" || field.name == "size" || is_bookkeeping(field)) continue;
-    map.fields.push_back(
-        {field.name, field.unit, field.doc, components_of(field), field.width, {}, field_rank(field), {}});
+    map.fields.push_back({field.name,
+                          field.unit,
+                          field.doc,
+                          components_of(field),
+                          field.width,
+                          {},
+                          field_rank(field),
+                          {},
+                          largest_shown(field)});
     for (std::size_t k = 0; k < field.width; ++k) map.fields.back().is_signed.push_back(grit::is_signed(field, k));
   }
   return maps_.emplace_back(std::move(map));
@@ -101,7 +109,9 @@ Description CellMaps::result() const {
         Description& list = ranges[stage] = Description::array();
         for (std::size_t k = 0; k < components.size(); ++k) {
           const auto& range = components[k];
-          list.push_back(range ? Description{range->low, range->high} : Description());
+          const double high =
+              range ? with_ends({range->low, range->high}, {.most = field.largest_shown}, false).high : 0;
+          list.push_back(range ? Description{range->low, high} : Description());
           if (range) whole[k] = {std::min(whole[k].low, range->low), std::max(whole[k].high, range->high)};
         }
       }

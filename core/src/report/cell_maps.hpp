@@ -31,7 +31,7 @@ class CellMaps {
   ///   fields   [{name, label, unit, shown_unit, factor, about, components, signed, rank, ranges}], of the cells,
   ///            without bookkeeping: signed, by component, whether the quantity is signed; rank, the order of fields
   ///            (see shown_fields); ranges, by stage, [[low, high] per component] of the central 98 % of the cells of
-  ///            each frame, null without numbers
+  ///            each frame, but at most largest_shown(); null without numbers
   ///   frames   [{frame, cells, data}]: for frames that have the map, float32: of all cells x, y and z of the centre,
   ///            then of the size [m], then each component of the fields
   ///   left_out number of frames omitted for lack of space
@@ -52,6 +52,7 @@ class CellMaps {
     std::map<std::string, std::vector<std::optional<Range>>> ranges;  ///< by stage, one per component
     int rank;
     std::vector<bool> is_signed;  ///< one per component
+    double largest_shown;
   };
   struct Map {
     std::string probe;

@@ -8,9 +8,12 @@
 #include <optional>
 #include <utility>
 
+#include "format/symbols.hpp"
 #include "grit/error.hpp"
 #include "output/colours.hpp"
 #include "output/read_frames.hpp"
+#include "output/scale.hpp"
+#include "output/shown_fields.hpp"
 #include "output/strays.hpp"
 #include "report/cell_maps.hpp"
 #include "report/layers.hpp"
@@ -81,10 +84,39 @@ struct Box {
   }
 };
 
+/// Numbers of a colour. Those that are not drawable() do not count.
+struct ValueRange {
+  double low = std::numeric_limits<double>::infinity(), high = -low, limit = 0;
+
+  void add(const std::vector<double>& values, bool with_zero) {
+    std::vector<double> sizes;
+    for (const double value : values) {
+      if (!drawable(value)) continue;
+      low = std::min(low, value), high = std::max(high, value);
+      if (with_zero || value != 0) sizes.push_back(std::abs(value));
+    }
+    limit = std::max(limit, colour_limit(std::move(sizes)));
+  }
+  double largest() const { return std::max(std::abs(low), std::abs(high)); }
+};
+
+/// Numbers of a field: one, or the magnitude of a vector.
+std::vector<double> sizes_of(const Field& field) {
+  if (field.width == 1) return field.values;
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i + field.width <= field.values.size(); i += field.width) {
+    double sum = 0;
+    for (std::size_t k = 0; k < field.width; ++k) sum += field.values[i + k] * field.values[i + k];
+    sizes.push_back(std::sqrt(sum));
+  }
+  return sizes;
+}
+
 /// Ranges of a stage. By stage, so that a fast one does not compress the colours of others.
 struct StageExtent {
   double speed = 0, speed_limit = 0;
   VectorRange rotation, displacement;
+  std::map<std::string, ValueRange> values, wall_fields;  ///< by name; of walls also by wall
 
   void add(const Frame& frame) {
     std::vector<double> finite = speeds(frame);
@@ -92,7 +124,17 @@ struct StageExtent {
     for (const double v : finite) speed = std::max(speed, v);
     speed_limit = std::max(speed_limit, colour_limit(std::move(finite)));
     rotation.add(frame.rotation, frame.bodies()), displacement.add(frame.displacement, frame.bodies());
+    for (const BodyValues& one : frame.values) values[one.name].add(one.of_bodies, true);
+    for (const Frame::Wall& wall : frame.walls)
+      for (const Field& field : wall.fields) wall_fields[field.name + ' ' + wall.name].add(sizes_of(field), false);
   }
+};
+
+/// A number of bodies or triangles of walls that the page can show.
+struct Shown {
+  std::string name, label, unit, about, wall;
+  bool is_signed;
+  std::string key() const { return wall.empty() ? name : name + ' ' + wall; }
 };
 
 /// Ranges of all frames.
@@ -100,6 +142,8 @@ struct Extent : Box {
   double reach = 0, diameters = 0;
   std::size_t bodies = 0;
   std::map<std::string, StageExtent> stages;
+  std::vector<Shown> values, wall_fields;  ///< in the order of their appearance
+  std::size_t triangles = 0;               ///< of walls with fields, of all frames, once for each field
 
   void add(const Frame& frame) {
     Box::add(frame.position);
@@ -108,6 +152,26 @@ struct Extent : Box {
     for (const double radius : frame.radius) diameters += 2 * radius;
     bodies += frame.bodies();
     stages[frame.stage].add(frame);
+    const auto note = [](std::vector<Shown>& all, Shown one) {
+      const auto same = [&](const Shown& other) { return other.key() == one.key(); };
+      if (std::ranges::none_of(all, same)) all.push_back(std::move(one));
+    };
+    for (const BodyValues& one : frame.values)
+      note(values, {one.name, one.label, one.unit, one.doc, "", one.is_signed});
+    for (const Frame::Wall& wall : frame.walls)
+      for (const Field& field : wall.fields) {
+        triangles += wall.corners.size() / 9;
+        note(wall_fields, {field.name, spelled(field.name.substr(field.name.find('/') + 1)), field.unit, field.doc,
+                           wall.name, field.width == 1 && is_signed(field, 0)});
+      }
+  }
+  /// The largest magnitude in any stage.
+  double largest(const std::string& key, std::map<std::string, ValueRange> StageExtent::*ranges) const {
+    double most = 0;
+    for (const auto& [name, stage] : stages)
+      if (const auto found = (stage.*ranges).find(key); found != (stage.*ranges).end())
+        if (found->second.low <= found->second.high) most = std::max(most, found->second.largest());
+    return most;
   }
   bool everywhere(VectorRange StageExtent::*vectors) const {
     return std::ranges::all_of(stages, [&](const auto& stage) { return (stage.second.*vectors).everywhere; });
@@ -131,6 +195,7 @@ std::size_t drop_unplaced(Frame& frame) {
   };
   keep(frame.radius, 1), keep(frame.clump, 1), keep(frame.group, 1);
   for (auto* vectors : {&frame.position, &frame.velocity, &frame.rotation, &frame.displacement}) keep(*vectors, 3);
+  for (BodyValues& one : frame.values) keep(one.of_bodies, 1);
   keep(frame.id, 1);
   return dropped;
 }
@@ -176,7 +241,14 @@ bool alike(const std::vector<float>& a, const std::vector<float>& b) {
 class Writer {
  public:
   Writer(const Extent& extent, const GrainLimits& limits, DataElements& data)
-      : extent_(extent), limits_(limits), data_(data) {}
+      : extent_(extent), limits_(limits), data_(data), values_(extent.values), wall_fields_(extent.wall_fields) {
+    const auto fit = [&](std::vector<Shown>& all, std::size_t bytes_of_each) {
+      const std::size_t most = limits.value_bytes / std::max<std::size_t>(1, bytes_of_each);
+      if (all.size() > most) left_out_ += all.size() - most, all.resize(most);
+    };
+    fit(values_, sizeof(std::uint16_t) * extent.bodies);
+    fit(wall_fields_, sizeof(float) * extent.triangles / std::max<std::size_t>(1, wall_fields_.size()));
+  }
 
   void add(const Frame& frame, std::size_t unplaced) {
     const std::size_t set = set_of(frame);
@@ -184,6 +256,7 @@ class Writer {
     if (unplaced > 0) json["unplaced"] = unplaced;
     add_box(frame, json);
     add_bodies(frame, set, json);
+    add_values(frame, json);
     add_contacts(frame, json);
     add_walls(frame, json);
     frames_.push_back(std::move(json));
@@ -196,7 +269,9 @@ class Writer {
     for (const Set& set : sets_)
       bodies.push_back(
           Description{{"count", set.id.size()}, {"data", set.data}, {"clumps", set.clumps}, {"groups", set.groups}});
-    for (const Wall& wall : walls_) walls.push_back(Description{{"name", wall.name}, {"data", wall.data}});
+    for (const Wall& wall : walls_)
+      walls.push_back(
+          Description{{"name", wall.name}, {"data", wall.data}, {"low", wall.box.low}, {"high", wall.box.high}});
     const LayersBegin layers = where_layers_begin(instants_);
     Description json = {
         {"low", extent_.low},
@@ -207,6 +282,9 @@ class Writer {
         {"groups", groups_},
         {"bodies", bodies},
         {"walls", walls},
+        {"values", shown(values_, &StageExtent::values)},
+        {"wall_fields", shown(wall_fields_, &StageExtent::wall_fields)},
+        {"values_left_out", left_out_},
         {"layers", {{"frame", layers.frame}, {"stage", layers.stage}}},
         {"frames", frames_}};
     for (const auto& [stage, extent] : extent_.stages) {
@@ -215,6 +293,13 @@ class Writer {
         if (extent_.everywhere(vectors))
           ranges[name] = (extent.*vectors).largest, limits[name] = (extent.*vectors).limits;
       json["stages"][stage] = {{"ranges", std::move(ranges)}, {"limits", std::move(limits)}};
+      Description& values = json["stages"][stage]["values"] = Description::array();
+      for (const Shown& one : values_) {
+        const ValueRange range = range_of(extent, one, &StageExtent::values);
+        values.push_back(range.low <= range.high ? Description{range.low, range.high, range.limit} : Description());
+      }
+      Description& of_walls = json["stages"][stage]["wall_fields"] = Description::array();
+      for (const Shown& one : wall_fields_) of_walls.push_back(range_of(extent, one, &StageExtent::wall_fields).limit);
     }
     return json;
   }
@@ -231,17 +316,64 @@ class Writer {
     std::string name;
     std::size_t data;
     std::vector<float> corners;  ///< without its displacement
+    Box box;                     ///< of them
   };
+  using Ranges = std::map<std::string, ValueRange> StageExtent::*;
 
-  /// Box of the grains, without those far from all others.
+  static ValueRange range_of(const StageExtent& extent, const Shown& one, Ranges ranges) {
+    const auto found = (extent.*ranges).find(one.key());
+    return found == (extent.*ranges).end() ? ValueRange() : found->second;
+  }
+  Description shown(const std::vector<Shown>& all, Ranges ranges) const {
+    Description list = Description::array();
+    for (const Shown& one : all) {
+      const ReadableUnit unit = readable(one.unit, extent_.largest(one.key(), ranges));
+      Description json = {{"name", one.name},
+                          {"label", one.label},
+                          {"unit", unit.unit},
+                          {"factor", unit.factor},
+                          {"about", with_symbols(one.about)},
+                          {"signed", one.is_signed}};
+      if (!one.wall.empty()) json["wall"] = one.wall;
+      list.push_back(std::move(json));
+    }
+    return list;
+  }
+
+  /// Numbers of the bodies, 65535 for those without.
+  void add_values(const Frame& frame, Description& json) {
+    if (values_.empty() || frame.values.empty()) return;
+    constexpr std::uint16_t none = 65535;
+    Numbers numbers;
+    for (const Shown& shown : values_) {
+      const ValueRange range = range_of(extent_.stages.at(frame.stage), shown, &StageExtent::values);
+      const auto found = std::ranges::find(frame.values, shown.name, &BodyValues::name);
+      for (std::size_t i = 0; i < frame.bodies(); ++i) {
+        const bool known = found != frame.values.end() && drawable(found->of_bodies[i]);
+        numbers.push_back(
+            known ? std::min<std::uint16_t>(quantised(found->of_bodies[i], range.low, range.high), none - 1) : none);
+      }
+    }
+    json["values"] = data_.add(byte_planes(numbers));
+  }
+
+  /// Boxes of the grains, without those far from all others.
   void add_box(const Frame& frame, Description& json) const {
     const Fences fences(frame, far_to_see);
-    std::vector<double> seen;
-    for (std::size_t i = 0; i < frame.bodies(); ++i)
-      if (fences.hold(frame.position, i)) seen.insert(seen.end(), &frame.position[3 * i], &frame.position[3 * i] + 3);
-    Box box;
-    box.add(seen);
-    if (!seen.empty()) json["low"] = box.low, json["high"] = box.high;
+    std::vector<double> seen, surfaces;
+    for (std::size_t i = 0; i < frame.bodies(); ++i) {
+      if (!fences.hold(frame.position, i)) continue;
+      const double* centre = &frame.position[3 * i];
+      seen.insert(seen.end(), centre, centre + 3);
+      for (const double side : {-frame.radius[i], frame.radius[i]})
+        for (std::size_t axis = 0; axis < 3; ++axis) surfaces.push_back(centre[axis] + side);
+    }
+    Box box, surface;
+    box.add(seen), surface.add(surfaces);
+    if (!seen.empty()) {
+      json["low"] = box.low, json["high"] = box.high;
+      json["surface"] = {surface.low, surface.high};
+    }
     if (const std::size_t strays = frame.bodies() - seen.size() / 3; strays > 0) json["strays"] = strays;
   }
 
@@ -321,6 +453,7 @@ class Writer {
 
   void add_walls(const Frame& frame, Description& json) {
     json["walls"] = Description::array();
+    Description fields = Description::array();
     for (const Frame::Wall& wall : frame.walls) {
       if (wall.corners.empty() || wall.corners.size() > 3 * limits_.wall_corners) continue;
       std::vector<float> corners(wall.corners.size());
@@ -334,17 +467,29 @@ class Writer {
         if (last != walls_.rend()) known = std::prev(last.base());
       }
       if (known == walls_.end()) {
-        known = walls_.insert(walls_.end(), {wall.name, data_.add_numbers<float>(corners), corners});
+        Box box;
+        box.add({corners.begin(), corners.end()});
+        known = walls_.insert(walls_.end(), {wall.name, data_.add_numbers<float>(corners), corners, box});
         wall_bytes_ += corners.size() * sizeof(float);
       }
       const Vec3& moved = wall.displacement;
+      for (std::size_t k = 0; k < wall_fields_.size(); ++k) {
+        const auto field = std::ranges::find(wall.fields, wall_fields_[k].name, &Field::name);
+        if (wall_fields_[k].wall != wall.name || field == wall.fields.end()) continue;
+        const std::vector<double> sizes = sizes_of(*field);
+        fields.push_back(Description{json["walls"].size(), k,
+                                     data_.add_numbers<float>(std::vector<float>(sizes.begin(), sizes.end()))});
+      }
       json["walls"].push_back(Description{known - walls_.begin(), moved.x(), moved.y(), moved.z()});
     }
+    if (!fields.empty()) json["wall_fields"] = std::move(fields);
   }
 
   const Extent& extent_;
   const GrainLimits& limits_;
   DataElements& data_;
+  std::vector<Shown> values_, wall_fields_;  ///< those that fit into the page
+  std::size_t left_out_ = 0;
   std::vector<Set> sets_;
   std::vector<Wall> walls_;
   std::size_t wall_bytes_ = 0;

@@ -256,6 +256,7 @@ Description references_json(RunResults& run, DataElements& data) {
 
 Description run_json(RunResults& run, DataElements& data) {
   Description json = {{"name", run.name}, {"title", run.title()}, {"picture", run.at("/description/output/picture")}};
+  json["color_scales"] = run.at("/description/output/color_scales");
   json["references"] = references_json(run, data);
   json["probes"] = Description::array();
   for (const ProbeSeries& probe : run.probes) {
@@ -295,6 +296,7 @@ ReportContent report_content(std::span<const std::filesystem::path> folders, con
   GrainLimits of_run = limits;
   of_run.bytes /= std::max<std::size_t>(1, runs.size());
   of_run.map_bytes /= std::max<std::size_t>(1, runs.size());
+  of_run.value_bytes /= std::max<std::size_t>(1, runs.size());
   ReportContent content = empty_content(runs.size() == 1 ? runs[0].title() : "Runs side by side", "");
   std::vector<double> diameters;
   for (RunResults& run : runs) {

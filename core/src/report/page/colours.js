@@ -42,5 +42,17 @@ const colourTables = {
   }),
 };
 
+/** A range [low, high] with the ends that the description sets, or null; one end of a symmetric range sets both. As in pictures. */
+function withEnds([low, high], ends, symmetric) {
+  if (!ends) return [low, high];
+  const { low: first, high: last } = ends, mirrored = (one) => (symmetric && one !== undefined ? -one : undefined);
+  low = first ?? mirrored(last) ?? low;
+  high = last ?? mirrored(first) ?? high;
+  if (low < high) return [low, high];
+  return first !== undefined ? [low, low + (Math.abs(low) || 1)] : [high - (Math.abs(high) || 1), high];
+}
+/** The ends that a run's description sets for the first of these names; null if it sets none. */
+const endsOf = (scales, ...names) => names.map((name) => scales?.find(({ of }) => of === name)).find(Boolean) ?? null;
+
 const rgb = ([r, g, b]) => `rgb(${r},${g},${b})`;
 const parsed = (hex) => [1, 3, 5].map((i) => parseInt(hex.length === 4 ? hex[(i + 1) / 2].repeat(2) : hex.slice(i, i + 2), 16));

@@ -42,8 +42,9 @@ class Layout {
     Object.assign(this, { width, margin });
     const across = Math.max(high[view.right] - low[view.right], 1e-9), upward = Math.max(high[view.up] - low[view.up], 1e-9);
     const inner = Math.max(80, width - margin.left - margin.right);
+    this.metresToFit = (wide, tall) => Math.max(wide / inner, tall / (this.height - margin.top - margin.bottom)); // per pixel
     this.height = Math.round(Math.min(Math.max((inner * upward) / across + margin.top + margin.bottom, 240), tallest));
-    this.metresPerPixel = Math.max(across / inner, upward / (this.height - margin.top - margin.bottom)) / zoom;
+    this.metresPerPixel = this.metresToFit(across, upward) / zoom;
     this.centre = [
       (low[view.right] + high[view.right]) / 2 + pan[0] + (this.metresPerPixel * (margin.right - margin.left)) / 2,
       (low[view.up] + high[view.up]) / 2 + pan[1] - (this.metresPerPixel * (margin.bottom - margin.top)) / 2,
@@ -69,7 +70,7 @@ class Layout {
   }
 }
 
-/** Sections of triangles with the plane at a depth: from and to, to the right and upwards [m]. */
+/** Sections of triangles with the plane at a depth: from and to, to the right and upwards [m], and the number of the triangle. */
 function cutBy(view, corners, depth) {
   const lines = [];
   for (let t = 0; t + 8 < corners.length; t += 9) {
@@ -81,7 +82,7 @@ function cutBy(view, corners, depth) {
       const fraction = before / (before - after), between = (axis) => corners[a + axis] + fraction * (corners[b + axis] - corners[a + axis]);
       points.push([between(view.right), between(view.up)]);
     }
-    if (points.length === 2) lines.push(points);
+    if (points.length === 2) lines.push([...points, t / 9]);
   }
   return lines;
 }
@@ -109,11 +110,11 @@ function drawColourBar(pen, look, { left, top, tall, low, high, table, factor })
     pen.text(left + 20, at + 4, atTick(value, step), look.ink, "start", 11.5);
   }
 }
-/** The same at the upper right, with its title. */
-function drawColourScale(pen, look, { width, height, label, unit, note, ...scale }) {
-  const tall = Math.min(240, height - 110), top = 46;
-  pen.text(width - 2, 20, label, look.ink, "end", 12.5);
-  if (unit !== "1") pen.text(width - 2, 35, `[${unit}]`, look.soft, "end", 11.5);
+/** The same to the right, `first` pixels below the top, with its title. */
+function drawColourScale(pen, look, { width, first, tall, label, unit, note, ...scale }) {
+  const top = first + 46;
+  pen.text(width - 2, first + 20, label, look.ink, "end", 12.5);
+  if (unit !== "1") pen.text(width - 2, first + 35, `[${unit}]`, look.soft, "end", 11.5);
   drawColourBar(pen, look, { left: width - 66, top, tall, ...scale });
   if (note) pen.text(width - 2, top + tall + 18, note, look.soft, "end", 11);
 }

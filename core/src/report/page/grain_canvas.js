@@ -33,21 +33,21 @@ void main() {
 }`;
 const segmentVertex = `#version 300 es
 precision highp float;
-layout(location=0) in vec2 from; layout(location=1) in vec2 to; layout(location=2) in float width; layout(location=3) in float alpha;
+layout(location=0) in vec2 from; layout(location=1) in vec2 to; layout(location=2) in float width; layout(location=3) in float alpha; layout(location=4) in vec4 tint;
 uniform vec4 window; uniform vec2 size;
-flat out float shade;
+flat out float shade; flat out vec4 paint;
 void main() {
   vec2 a = (from - window.xy) * window.zw * size, b = (to - window.xy) * window.zw * size;
   vec2 along = normalize(b - a + vec2(1e-9, 0)), across = vec2(-along.y, along.x);
   float side = float(gl_VertexID & 1) * 2.0 - 1.0;
   vec2 at = ((gl_VertexID >> 1) == 0 ? a : b) + across * side * width;
-  shade = alpha;
+  shade = alpha, paint = tint;
   gl_Position = vec4(at / size, 0, 1);
 }`;
 const segmentFragment = `#version 300 es
 precision highp float;
-flat in float shade; uniform vec3 ink; out vec4 colour;
-void main() { colour = vec4(ink * shade, shade); }`;
+flat in float shade; flat in vec4 paint; uniform vec3 ink; out vec4 colour;
+void main() { colour = vec4(mix(ink, paint.rgb, paint.a) * shade, shade); }`;
 
 class GlPainter {
   constructor(canvas) {
@@ -93,13 +93,14 @@ class GlPainter {
   setPlaces(places) {
     this.attribute(this.discArray, "place", 4, places, 1, this.gl.FLOAT, false);
   }
-  /** [{from, to, width px, alpha}] as flat lists. */
-  setSegments({ from, to, width, alpha }) {
+  /** [{from, to, width px, alpha, tint}] as flat lists; see inkOf() on tint. */
+  setSegments({ from, to, width, alpha, tint }) {
     const { gl } = this;
     this.attribute(this.segmentArray, "from", 0, from, 2, gl.FLOAT, false);
     this.attribute(this.segmentArray, "to", 1, to, 2, gl.FLOAT, false);
     this.attribute(this.segmentArray, "width", 2, width, 1, gl.FLOAT, false);
     this.attribute(this.segmentArray, "alpha", 3, alpha, 1, gl.FLOAT, false);
+    this.attribute(this.segmentArray, "tint", 4, tint, 4, gl.UNSIGNED_BYTE, true);
     this.segmentCount = width.length;
   }
   setColours(table) {
@@ -144,6 +145,9 @@ class GlPainter {
     }
   }
 }
+
+/** The colour of a segment from its red, green, blue and 255, or 0 for that of all lines. */
+const inkOf = (tint, i, look) => (tint[4 * i + 3] > 0 ? rgb([...tint.subarray(4 * i, 4 * i + 3)]) : look.ink);
 
 /** Lines, circles and text on a canvas. Lengths in CSS pixels. */
 class CanvasPen {

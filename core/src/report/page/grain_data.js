@@ -2,6 +2,7 @@
 "use strict";
 
 const kept = 6; // frames in memory, around the one shown
+const wallReach = 0.35; // of the extent of the grains, as in pictures
 
 class GrainFrames {
   constructor(json) {
@@ -20,6 +21,29 @@ class GrainFrames {
     if (same.length === 0) return null;
     const over = (key, of) => [0, 1, 2].map((axis) => of(...same.map((frame) => frame[key][axis])));
     return { low: over("low", Math.min), high: over("high", Math.max) };
+  }
+  /**
+   * Corners of the box of the grains of some frames, without those far from all others, with the walls that the middle plane of a view cuts.
+   * Of walls no more than a third of the extent of the grains around them, as they may be far larger. Null without grains.
+   */
+  outline(frames, view, walls) {
+    const seen = frames.filter((frame) => frame.surface), axes = [view.right, view.up];
+    if (seen.length === 0) return null;
+    const corner = (end, of) => [0, 1, 2].map((axis) => of(...seen.map(({ surface }) => surface[end][axis])));
+    const grains = [corner(0, Math.min), corner(1, Math.max)], low = [...grains[0]], high = [...grains[1]];
+    if (!walls) return { low, high };
+    const reach = wallReach * Math.max(...axes.map((axis) => high[axis] - low[axis])), middle = (low[view.depth] + high[view.depth]) / 2;
+    for (const frame of seen)
+      for (const [wall, ...moved] of frame.walls) {
+        const [first, last] = ["low", "high"].map((end) => this.json.walls[wall][end].map((one, axis) => one + moved[axis]));
+        if (first[view.depth] > middle || last[view.depth] < middle) continue;
+        if (axes.some((axis) => last[axis] < grains[0][axis] - reach || first[axis] > grains[1][axis] + reach)) continue; // e.g. a gate moved far away
+        for (const axis of axes) {
+          low[axis] = Math.min(low[axis], Math.max(first[axis], grains[0][axis] - reach));
+          high[axis] = Math.max(high[axis], Math.min(last[axis], grains[1][axis] + reach));
+        }
+      }
+    return { low, high };
   }
   has(range) {
     return Object.values(this.json.stages).every(({ ranges }) => ranges[range] !== undefined);
@@ -49,7 +73,7 @@ class GrainFrames {
     return this.absolute.get(number);
   }
 
-  /** {time, step, stage, count, radius, id, clump, x, y, z, speed, rotation, displacement}; 16-bit lists from x on. */
+  /** {time, step, stage, count, radius, id, clump, x, y, z, speed, rotation, displacement, values}; 16-bit lists from x on; values: one list for each of json.values, or null. */
   frame(number) {
     if (!this.frames.has(number)) {
       this.frames.set(number, this.read(number));
@@ -64,10 +88,12 @@ class GrainFrames {
       const from = await this.base(base);
       for (let i = 0; i < from.length; ++i) all[i] += from[i];
     }
+    const { values: element } = this.json.frames[number], numbers = element === undefined ? null : await planesOf(element);
+    const values = numbers && this.json.values.map((_, k) => numbers.subarray(count * k, count * (k + 1)));
     let next = 0;
     const list = () => all.subarray(count * next, count * ++next);
     const vector = (name) => (this.has(name) ? [list(), list(), list()] : null);
-    return { number, time, step, stage, count, ...bodies, x: list(), y: list(), z: list(), speed: list(), rotation: vector("rotation"), displacement: vector("displacement") };
+    return { number, time, step, stage, count, ...bodies, x: list(), y: list(), z: list(), speed: list(), rotation: vector("rotation"), displacement: vector("displacement"), values };
   }
 
   /** The contacts of a frame to show, or the links of its linear chains: {count, body, branch [m] of all x, y, z, force [N]}. */
@@ -81,13 +107,14 @@ class GrainFrames {
       force: Float32Array.from(force, (q) => (q / 65535) * strongest) };
   }
 
-  /** Triangles of the walls at a frame: corners of three numbers [m]. */
-  async walls(number) {
-    const placed = [];
-    for (const [wall, ...moved] of this.json.frames[number].walls) {
-      const { name, data } = this.json.walls[wall];
+  /** Triangles of the walls at a frame: corners of three numbers [m], and the values of a field of json.wall_fields, or null. */
+  async walls(number, field = -1) {
+    const placed = [], frame = this.json.frames[number];
+    for (const [place, [wall, ...moved]] of frame.walls.entries()) {
+      const { name, data } = this.json.walls[wall], [, , element] = frame.wall_fields?.find(([at, one]) => at === place && one === field) ?? [];
       if (!this.wallCorners.has(wall)) this.wallCorners.set(wall, inflated(data).then((buffer) => new Float32Array(buffer)));
-      placed.push({ name, corners: Float32Array.from(await this.wallCorners.get(wall), (c, i) => c + moved[i % 3]) });
+      placed.push({ name, corners: Float32Array.from(await this.wallCorners.get(wall), (c, i) => c + moved[i % 3]),
+        values: element === undefined ? null : new Float32Array(await inflated(element)) });
     }
     return placed;
   }

@@ -1,9 +1,9 @@
 // The grains: slider over the frames, view, colours, force chains, walls.
 "use strict";
 
-// The quantities that colours show: value in its unit from a frame `of` a stage, and colour table.
+// The quantities that colours show: value in its unit from a frame `of` a stage, and colour table. Factor: unit per SI unit.
 const colourings = {
-  rotation: { label: "rotation", unit: "°", table: "diverging", note: "clockwise +", needs: "rotation",
+  rotation: { label: "rotation", unit: "°", factor: 180 / Math.PI, table: "diverging", note: "clockwise +", needs: "rotation",
     limit: (of, view) => (of.limits.rotation[view.depth] * 180) / Math.PI,
     value: (of, view, frame) => (i) => ((frame.rotation[view.depth][i] / 65535) * 2 - 1) * of.ranges.rotation * view.away * (180 / Math.PI) },
   displacement: { label: "displacement", unit: "m", table: "diverging", needs: "displacement", note: (view) => `${letter(view.right)} +`,
@@ -18,6 +18,16 @@ const colourings = {
   clump: { label: "clump", unit: "1", table: "clumps", needs: "clumps", value: (of, view, frame) => (i) => frame.clump?.[i] ?? -1 },
 };
 
+/** The same for a number of bodies from a field of a probe; `place` is its index. In its readable unit. */
+const fieldColouring = ({ label, unit, factor, signed }, place) => ({
+  label, unit, factor, table: signed ? "diverging" : "sequential",
+  limit: (of) => (of.values[place]?.[2] ?? 0) * factor,
+  value: (of, view, frame) => {
+    const list = frame.values?.[place], [low, high] = of.values[place] ?? [0, 0];
+    return (i) => (!list || list[i] === 65535 ? NaN : (low + (list[i] / 65535) * (high - low)) * factor);
+  },
+});
+
 const layerCount = 10;
 const stillAfter = 150; // ms
 
@@ -25,15 +35,17 @@ class GrainView {
   constructor(section, runs, player) {
     this.player = player;
     this.refresh(runs);
-    this.state = { run: 0, frame: 0, view: "xz", colour: "speed", cut: 0, chains: false, linear: false, walls: true, zoom: 1, pan: [0, 0] };
+    this.state = { run: 0, frame: 0, view: "xz", colour: "speed", cut: 0, chains: false, linear: false, walls: true, wallField: -1, zoom: 1, pan: [0, 0] };
     this.build(section);
     new ResizeObserver(() => this.redraw()).observe(this.stage);
     dark.addEventListener("change", () => this.redraw());
   }
   /** Takes more frames of the same runs; turn() follows. */
   refresh(runs) {
-    this.runs = runs.map((run) => ({ name: run.name, frames: framesOf(run.grains), leftOut: run.grains.left_out, picture: run.picture ?? {} }));
+    this.runs = runs.map((run) => ({ name: run.name, frames: framesOf(run.grains), leftOut: run.grains.left_out, picture: run.picture ?? {}, scales: run.color_scales,
+      fields: Object.fromEntries(run.grains.values.map((one, place) => [one.name, { ...fieldColouring(one, place), about: one.about, title: `${one.name.split("/")[0]}: ${one.label}` }])) }));
     this.now = this.layersOf = this.shownOf = null;
+    if (this.colourChoice) this.offerColours();
   }
   get frames() {
     return this.runs[this.state.run].frames;
@@ -45,7 +57,7 @@ class GrainView {
     return views[this.state.view];
   }
   get colouring() {
-    return colourings[this.state.colour];
+    return colourings[this.state.colour] ?? this.runs[this.state.run].fields[this.state.colour] ?? colourings.speed;
   }
 
   // ---- controls
@@ -56,7 +68,9 @@ class GrainView {
     const tool = (text, title, act) => make("button", { type: "button", title, onclick: act }, text);
     this.runChoice = choice("run", this.runs.map((run, i) => [i, run.name]), (value) => this.player.takeRun(+value));
     this.viewChoice = choice("view", Object.entries(views).map(([name, one]) => [name, one.label]), (value) => ((this.viewChosen = true), this.change({ view: value, zoom: 1, pan: [0, 0] })));
-    this.colourPlace = make("span");
+    this.colourChoice = make("select", { name: "colour", onchange: () => ((this.chosen = true), this.change({ colour: this.colourChoice.value })) });
+    this.wallChoice = make("select", { name: "wall-colour", onchange: () => this.change({ wallField: +this.wallChoice.value }) });
+    this.wallPlace = labelled("colour of walls", this.wallChoice);
     this.cut = make("input", { type: "range", name: "cut", min: 0, max: 100, value: 0, title: "fraction cut away in front", oninput: () => this.change({ cut: this.cut.value / 100 }) });
     const showChains = () => this.change({ chains: this.chains.checked || this.linear.checked, linear: this.linear.checked });
     this.chains = make("input", { type: "checkbox", name: "chains", onchange: showChains });
@@ -71,10 +85,10 @@ class GrainView {
     this.about = make("span", { className: "about" });
     section.append(make("h2", {}, "Grains"),
       make("div", { className: "controls" }, ...(this.runs.length > 1 ? [labelled("run", this.runChoice)] : []), labelled("view", this.viewChoice),
-        labelled("colour", this.colourPlace), labelled("cut away", this.cut), make("label", {}, this.chains, " force chains"), this.linearLabel, make("label", {}, this.walls, " walls")),
+        labelled("colour", this.colourChoice), labelled("cut away", this.cut), make("label", {}, this.chains, " force chains"), this.linearLabel, make("label", {}, this.walls, " walls"), this.wallPlace),
       make("figure", { className: "grains" }, this.stage, this.player.strip(),
         make("figcaption", {}, this.under, this.about, make("span", { className: "tools" }, tool("−", "Zoom out", () => this.scale(1 / 1.4)), tool("+", "Zoom in", () => this.scale(1.4)),
-          tool("fit", "Fit to view", () => this.change({ zoom: 1, pan: [0, 0] })), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
+          tool("fit", "Fit the grains and walls of this frame", () => this.fit()), tool("SVG", "Save as SVG", () => this.saveSvg()), tool("PNG", "Save as PNG", () => this.savePng()), tool("CSV", "Save the grains", () => this.saveCsv())))));
     section.querySelector("figure").grains = this;
     this.painter = painterFor(this.canvas);
     this.listen();
@@ -122,20 +136,31 @@ class GrainView {
     this.state.run = run;
     this.now = null;
     const { json } = this;
-    const there = Object.entries(colourings).filter(([, one]) => !one.needs || (one.needs === "clumps" ? json.clumps : one.needs === "groups" ? json.groups.length > 1 : this.frames.has(one.needs)));
     const { color, view } = this.runs[run].picture; // from its description, until the user has chosen
     if (!this.chosen) this.state.colour = color ?? "rotation";
     if (!this.viewChosen) this.state.view = view in views ? view : "xz";
     this.viewChoice.value = this.state.view;
-    if (!there.some(([name]) => name === this.state.colour)) this.state.colour = "speed";
-    this.colourChoice = make("select", { name: "colour", onchange: () => ((this.chosen = true), this.change({ colour: this.colourChoice.value })) },
-      ...there.map(([name, one]) => make("option", { value: name, selected: name === this.state.colour }, one.label)));
-    this.colourPlace.replaceChildren(this.colourChoice);
+    this.state.wallField = -1;
+    this.offerColours();
     this.linearLabel.hidden = !json.frames.some((frame) => frame.linear_contacts > 0);
     // Cut a deep specimen near its middle: in front there are walls.
     const { low, high } = json.frames.at(-1).low ? json.frames.at(-1) : json, deep = high[this.view.depth] - low[this.view.depth] > 3 * json.mean_diameter;
     this.cut.value = deep ? 33 : 0;
     this.state.cut = this.cut.value / 100;
+  }
+
+  /** The colours that the run has, of grains and of walls. */
+  offerColours() {
+    const { json, state } = this, needed = { clumps: () => json.clumps, groups: () => json.groups.length > 1 };
+    const there = Object.entries(colourings).filter(([, { needs }]) => !needs || (needed[needs] ?? (() => this.frames.has(needs)))()).map(([name, { label }]) => [name, label]);
+    there.push(...Object.entries(this.runs[state.run].fields).map(([name, { title }]) => [name, title]));
+    if (!there.some(([name]) => name === state.colour)) state.colour = "speed";
+    offer(this.colourChoice, there);
+    this.colourChoice.value = state.colour;
+    if (state.wallField >= json.wall_fields.length) state.wallField = -1;
+    offer(this.wallChoice, [["-1", "none"], ...json.wall_fields.map(({ wall, label }, place) => [String(place), `${label} of ${wall}`])]);
+    this.wallChoice.value = state.wallField;
+    this.wallPlace.hidden = json.wall_fields.length === 0;
   }
 
   /** Shows a frame, unless another one is requested meanwhile. */
@@ -168,28 +193,45 @@ class GrainView {
   extent() {
     return this.frames.extent(this.now.stage) ?? this.json;
   }
-  /** The layout on a stage of this size. */
-  arranged(size) {
+  /** Corners of the box of the grains and walls of these frames. */
+  outline(frames) {
+    return this.frames.outline(frames, this.view, this.state.walls);
+  }
+  /** The layout on a stage of this size: unless it is zoomed or moved, grains and walls of all frames of this stage. */
+  arranged(size, { zoom, pan } = this.state) {
     const { json, view } = this, radius = 0.75 * json.mean_diameter, extent = this.extent();
     const low = extent.low.map((v) => v - radius), high = extent.high.map((v) => v + radius);
-    const layout = new Layout(size, { left: 14, right: 92, top: 14, bottom: 44 }, view, low, high, this.state.zoom, this.state.pan);
+    const all = this.outline(json.frames.filter(({ stage }) => stage === this.now.stage)) ?? { low, high };
+    const layout = new Layout(size, { left: 14, right: 92, top: 14, bottom: 44 }, view, all.low, all.high, zoom, pan);
     // Depth grows away from the reader.
     const ends = [view.away * low[view.depth], view.away * high[view.depth]].sort((a, b) => a - b);
     const cut = this.state.cut > 0 ? ends[0] + this.state.cut * (ends[1] - ends[0]) : -Infinity;
     return Object.assign(layout, { near: ends[0], far: ends[1], cut: Math.max(cut, ends[0] - 1e-9 - (ends[1] - ends[0])) });
   }
 
+  /** Zooms and moves so that the grains and walls of this frame fill the stage. */
+  fit() {
+    const [here, all] = [[this.json.frames[this.now.number]], this.json.frames.filter(({ stage }) => stage === this.now.stage)].map((frames) => this.outline(frames));
+    if (!here) return this.change({ zoom: 1, pan: [0, 0] });
+    const { view } = this, layout = this.arranged(sizeOf(this.stage), { zoom: 1, pan: [0, 0] });
+    const wide = (axis) => Math.max(here.high[axis] - here.low[axis], 1e-9), middle = ({ low, high }, axis) => (low[axis] + high[axis]) / 2;
+    const zoom = layout.metresPerPixel / layout.metresToFit(wide(view.right), wide(view.up));
+    return this.change({ zoom, pan: [view.right, view.up].map((axis) => middle(here, axis) - middle(all, axis)) });
+  }
+
   /** The colour scale: {low, high} of the value, and the table. */
   scaleOfColours(frame) {
-    const { json, view, colouring } = this;
+    const { json, view, colouring } = this, { factor = 1 } = colouring, ends = endsOf(this.runs[this.state.run].scales, this.state.colour);
+    const set = ends && Object.fromEntries(["low", "high"].filter((end) => ends[end] !== undefined).map((end) => [end, ends[end] * factor]));
     const table = colourTables[colouring.table];
     if (colouring.between) {
-      const [low, high] = rangeOf([frame.radius]);
-      return { table, low, high: high > low ? high : low + 1e-12 };
+      const [least, most] = rangeOf([frame.radius]), [low, high] = withEnds([least, most > least ? most : least + 1e-12], set, false);
+      return { table, low, high };
     }
     if (this.state.colour === "layers") return { table, low: 1, high: layerCount };
-    const high = (colouring.limit ? colouring.limit(json.stages[frame.stage], view) : 1) || 1;
-    return { table, low: colouring.table === "diverging" ? -high : 0, high };
+    const limit = (colouring.limit ? colouring.limit(json.stages[frame.stage], view) : 1) || 1, signed = colouring.table === "diverging";
+    const [low, high] = withEnds([signed ? -limit : 0, limit], set, signed);
+    return { table, low, high };
   }
   places(frame) {
     const value = this.valueOf(frame), { low, high } = this.colours;
@@ -202,7 +244,10 @@ class GrainView {
       for (let i = 0; i < frame.count; ++i) places[i] = value(i) < 0 ? -1 : (value(i) - 1) / (layerCount - 1);
       return places;
     }
-    for (let i = 0; i < frame.count; ++i) places[i] = Math.min(1, Math.max(0, (value(i) - low) / (high - low)));
+    for (let i = 0; i < frame.count; ++i) {
+      const place = (value(i) - low) / (high - low);
+      places[i] = Number.isNaN(place) ? -1 : Math.min(1, Math.max(0, place));
+    }
     return places;
   }
   valueOf(frame) {
@@ -225,8 +270,8 @@ class GrainView {
   /** Chains and walls as segments in the plane of the view; widths in pixels, `ratio` of them per CSS pixel. */
   async segments(frame, layout, ratio) {
     const { view, state, json } = this, { cut, near, far } = layout;
-    const from = [], to = [], width = [], alpha = [];
-    const put = (a, b, w, shade) => (from.push(...a), to.push(...b), width.push(w), alpha.push(shade));
+    const from = [], to = [], width = [], alpha = [], tint = [];
+    const put = (a, b, w, shade, ink = [0, 0, 0, 0]) => (from.push(...a), to.push(...b), width.push(w), alpha.push(shade), tint.push(...ink));
     if (state.chains) {
       const chains = await this.frames.chains(frame.number, state.linear), lists = [frame.x, frame.y, frame.z];
       const slab = Math.max(4 * json.mean_diameter, 0.25 * (far - near)), first = Math.max(near, cut);
@@ -241,10 +286,18 @@ class GrainView {
       }
     }
     if (state.walls) {
-      const middle = (view.away * (near + far)) / 2;
-      for (const { corners } of await this.frames.walls(frame.number)) for (const [a, b] of cutBy(view, corners, middle)) put(a, b, ratio, 1);
+      const middle = (view.away * (near + far)) / 2, { low, high, table } = this.scaleOfWalls(frame);
+      const inkOf = (value) => [...table[Math.round(255 * Math.min(1, Math.max(0, (value - low) / (high - low))))], 255];
+      for (const { corners, values } of await this.frames.walls(frame.number, state.wallField))
+        for (const [a, b, triangle] of cutBy(view, corners, middle)) values && Number.isFinite(values[triangle]) ? put(a, b, 2.5 * ratio, 1, inkOf(values[triangle])) : put(a, b, ratio, 1);
     }
-    return { from: Float32Array.from(from), to: Float32Array.from(to), width: Float32Array.from(width), alpha: Float32Array.from(alpha) };
+    return { from: Float32Array.from(from), to: Float32Array.from(to), width: Float32Array.from(width), alpha: Float32Array.from(alpha), tint: Uint8Array.from(tint) };
+  }
+  /** The field of json.wall_fields that colours walls, if any, and its colour scale in SI. */
+  scaleOfWalls(frame) {
+    const { wallField } = this.state, field = this.json.wall_fields[wallField], limit = this.json.stages[frame.stage].wall_fields[wallField] || 1;
+    const [low, high] = withEnds([field?.signed ? -limit : 0, limit], field && endsOf(this.runs[this.state.run].scales, field.name), field?.signed);
+    return { field, low, high, table: colourTables[field?.signed ? "diverging" : "sequential"] };
   }
 
   async show(frame) {
@@ -273,7 +326,8 @@ class GrainView {
     this.stage.setAttribute("aria-label", `${frame.count} grains at ${writtenTime(frame.time)}, coloured by ${this.colouring.label}`);
     this.stage.dataset.frame = frame.number;
     const { leftOut } = this.runs[this.state.run], { unplaced, strays } = this.json.frames[frame.number];
-    this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, to limit the size of the page` : "",
+    this.about.textContent = [leftOut > 0 ? `${this.frames.count} of ${this.frames.count + leftOut} frames, to limit the size of the page` : "", this.colouring.about ?? "",
+      this.json.values_left_out > 0 ? `colours omitted to limit the size of the page: ${this.json.values_left_out}` : "",
       strays > 0 ? `far from all others and initially out of view: ${strays}` : "",
       unplaced > 0 ? `bodies omitted, without a finite position or too far away: ${unplaced}` : ""].filter(Boolean).join("; ");
     this.painted = frame;
@@ -317,7 +371,7 @@ class GrainView {
     for (let i = 0; i < now.count; ++i) if (depth(i) >= layout.cut) all.push(i);
     return all.sort((a, b) => depth(b) - depth(a));
   }
-  drawGrains(pen, look, layout, { from, to, width, alpha }) {
+  drawGrains(pen, look, layout, { from, to, width, alpha, tint }) {
     const { view, now } = this, lists = [now.x, now.y, now.z];
     const fade = this.state.chains ? 0.72 : 0, paper = parsed(look.paper);
     const mixed = (colour) => rgb(colour.map((c, k) => Math.round(c + fade * (paper[k] - c))));
@@ -328,19 +382,23 @@ class GrainView {
         Math.max(0.5, now.radius[i] / layout.metresPerPixel), place < 0 ? grey : fills[k], place < 0 ? "#666" : rims[k]);
     }
     for (let i = 0; i < width.length; ++i)
-      pen.line(layout.across(from[2 * i]), layout.down(from[2 * i + 1]), layout.across(to[2 * i]), layout.down(to[2 * i + 1]), look.ink, 2 * width[i], alpha[i]);
+      pen.line(layout.across(from[2 * i]), layout.down(from[2 * i + 1]), layout.across(to[2 * i]), layout.down(to[2 * i + 1]), inkOf(tint, i, look), 2 * width[i], alpha[i]);
   }
 
-  /** Scale bar, axes and colour scale. */
+  /** Scale bar, axes and colour scales: that of walls below that of grains. */
   annotate(pen, look, layout) {
     const { view, colours, colouring } = this, { width, height, margin } = layout;
     drawLengthBar(pen, look, layout);
     pen.box(width - margin.right - 58, height - 26, 62, 20, look.paper);
     pen.text(width - margin.right, height - 12, `${letter(view.right)} →  ${letter(view.up)} ↑`, look.soft, "end");
-    if (this.colouring.table === "clumps") return;
-    const [factor, unit] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
-    drawColourScale(pen, look, { width, height, ...colours, label: colouring.label, unit, factor,
-      note: typeof colouring.note === "function" ? colouring.note(view, this) : colouring.note });
+    const { field, ...ofWalls } = this.scaleOfWalls(this.now), walls = field && this.state.walls, grains = colouring.table !== "clumps";
+    const tall = walls && grains ? Math.min(240, Math.max(30, height / 2 - 80)) : Math.min(240, height - 110);
+    if (grains) {
+      const [factor, unit] = prefixed(colouring.unit, Math.max(Math.abs(colours.low), Math.abs(colours.high)));
+      drawColourScale(pen, look, { width, first: 0, tall, ...colours, label: colouring.label, unit, factor,
+        note: typeof colouring.note === "function" ? colouring.note(view, this) : colouring.note });
+    }
+    if (walls) drawColourScale(pen, look, { width, first: grains ? tall + 62 : 0, tall, ...ofWalls, label: field.label, unit: field.unit, factor: field.factor, note: field.wall });
   }
 
   /** Shows the values of the grain under the pointer. */

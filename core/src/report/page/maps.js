@@ -16,7 +16,7 @@ class MapView {
   }
 
   readRuns(runs) {
-    this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, frames: run.grains.frames, grains: framesOf(run.grains) }));
+    this.runs = runs.map((run) => ({ name: run.name, maps: run.grains.maps, scales: run.color_scales, frames: run.grains.frames, grains: framesOf(run.grains) }));
   }
   /** Takes more frames, and possibly more maps, of the same runs; turn() follows. */
   refresh(runs) {
@@ -79,7 +79,7 @@ class MapView {
     offer(this.componentChoice, components.map((label, place) => [String(place), label]));
     this.componentChoice.value = this.state.component;
     const { left_out } = this.map;
-    this.about.textContent = `${this.field.about}; the colour scale covers 98 % of the cells of each stage` + (left_out > 0 ? `; ${left_out} frames have no map, to limit the size of the page` : "");
+    this.about.textContent = `${this.field.about}; the colour scale ${this.ends ? "has ends set by the description" : "covers 98 % of the cells of each stage"}` + (left_out > 0 ? `; ${left_out} frames have no map, to limit the size of the page` : "");
     if (this.number !== undefined) this.turn(this.number);
   }
   get frames() {
@@ -144,14 +144,19 @@ class MapView {
     return all;
   }
 
-  /** The colour scale, fixed over a stage; symmetric about zero for signed quantities, whatever the values. */
+  /** The colour scale, fixed over a stage or by the description; symmetric about zero for signed quantities, whatever the values. */
   scale() {
-    const { field, state } = this, [low, high] = field.ranges[this.now.stage]?.[state.component] ?? [0, 1];
-    if (field.signed[state.component]) {
-      const most = Math.max(-low, high) || 1;
-      return { low: -most, high: most, table: colourTables.diverging };
-    }
-    return high > low ? { low, high, table: colourTables.sequential } : { low: low - 0.5 * (Math.abs(low) || 1), high: low + 0.5 * (Math.abs(low) || 1), table: colourTables.sequential };
+    const { field, state } = this, signed = field.signed[state.component];
+    let [low, high] = field.ranges[this.now.stage]?.[state.component] ?? [0, 1];
+    if (signed) (high = Math.max(-low, high) || 1), (low = -high);
+    else if (!(high > low)) [low, high] = [low - 0.5 * (Math.abs(low) || 1), low + 0.5 * (Math.abs(low) || 1)];
+    [low, high] = withEnds([low, high], this.ends, signed);
+    return { low, high, table: colourTables[signed ? "diverging" : "sequential"] };
+  }
+  /** Those of the colour scale that the description sets. */
+  get ends() {
+    const { field, state } = this;
+    return endsOf(this.run.scales, `${state.field}/${field.components[state.component]}`, state.field);
   }
 
   /** The layout on a stage of this size: all cells, and grains around them up to half the width of their box. */

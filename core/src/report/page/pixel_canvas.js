@@ -95,11 +95,11 @@ class PixelPainter {
   }
 
   drawSegments({ window, metresPerPixel, look, panelWidth }) {
-    const { from, to, width, alpha } = this.segments, pen = new CanvasPen(this.context), { canvas } = this, size = 0.5 / metresPerPixel;
+    const { from, to, width, alpha, tint } = this.segments, pen = new CanvasPen(this.context), { canvas } = this, size = 0.5 / metresPerPixel;
     const across = (x) => (x - window[0]) * size + 0.5 * canvas.width, down = (y) => (window[1] - y) * size + 0.5 * canvas.height;
     pen.within([0, 0, panelWidth, canvas.height], () => {
       for (let i = 0; i < width.length; ++i)
-        pen.line(across(from[2 * i]), down(from[2 * i + 1]), across(to[2 * i]), down(to[2 * i + 1]), look.ink, 2 * width[i], alpha[i]);
+        pen.line(across(from[2 * i]), down(from[2 * i + 1]), across(to[2 * i]), down(to[2 * i + 1]), inkOf(tint, i, look), 2 * width[i], alpha[i]);
     });
   }
 }
