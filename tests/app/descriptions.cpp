@@ -369,6 +369,63 @@ TEST(Descriptions, AreRefusedForChannelsThatNoProbeHas) {
   }
 }
 
+TEST(Descriptions, AreRefusedForFieldsThatNoProbeHas) {
+  const OwnFolder folder;
+  folder.write("two.json", two_grains);
+  const std::string moved = R"(/probes/moved={"type": "displacements", "every_steps": 10})";
+  const auto picture = [](const std::string& color) {
+    return R"(/output/picture={"x": "packing/time", "y": ["packing/kinetic_energy"], "color": ")" + color + "\"}";
+  };
+  const auto refused = [&](const std::string& does, const std::vector<std::string>& sets) {
+    std::vector<std::string> words{does, "two.json"};
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    const auto outcome = grit_in(folder.path(), words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    return outcome.err;
+  };
+  for (const std::string does : {"check", "run"})
+    EXPECT_THAT(
+        refused(
+            does,
+            {moved, picture("moved/fluctuatoin"),
+             R"(/output/color_scales=[{"of": "packing/void_ratoi", "high": 1}, {"of": "packing/stress/xx", "low": 0}])"}),
+        AllOf(HasSubstr(
+                  "--set: /output/picture/color: found \"moved/fluctuatoin\", which is not a field of bodies of any "
+                  "probe; did you mean \"moved/fluctuation\"? Allowed is one of moved/fluctuation, "
+                  "moved/fluctuation/x, moved/fluctuation/y, moved/fluctuation/z"),
+              HasSubstr("/output/color_scales/0/of: found \"packing/void_ratoi\", which is not a field of any probe on "
+                        "maps or bodies; did you mean \"packing/void_ratio\"? Allowed is one of "),
+              HasSubstr("2 problems")))
+        << does;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "results"));
+  EXPECT_THAT(refused("check", {picture("packing/void_ratio")}),
+              HasSubstr("found \"packing/void_ratio\", which is not a field of bodies of any probe; allowed is none "
+                        "without probes that have such fields"));
+  const std::string color = picture("moved/fluctuation");
+  EXPECT_THAT(refused("check", {moved, color, "/probes/moved/frames=false"}),
+              HasSubstr("found \"moved/fluctuation\" of a probe that is not in frames; allowed is a field of "
+                        "a probe in frames: set /probes/moved/frames to true"));
+  EXPECT_THAT(refused("check", {moved, color, "/output/frames=null"}),
+              HasSubstr("found \"moved/fluctuation\" without frames, from which it is taken; allowed is a field "
+                        "if /output/frames has an interval, e.g. every_time"));
+  const std::string more =
+      R"(/stages=[{"name": "part", "until": {"type": "steps", "value": 2}, "limit": 1}, {"name": "rest", "until": {"type": "steps", "value": 2}, "limit": 1}])";
+  EXPECT_THAT(
+      refused("check", {moved, color, more, R"(/probes/moved/stages=["part"])"}),
+      HasSubstr("of a probe that does not sample in the last stage, after which the picture is drawn; allowed is "
+                "a field of a probe that does: add \"rest\" to /probes/moved/stages"));
+  EXPECT_THAT(refused("check", {picture("sped")}),
+              HasSubstr("/output/picture/color: found \"sped\"; did you mean \"speed\"? Allowed is one of rotation, "
+                        "displacement, speed, radius, group, or probe/field"));
+  EXPECT_THAT(
+      refused("check", {R"(/output/color_scales=[{"of": "speed"}, {"of": "speed", "low": 2, "high": 1}])"}),
+      AllOf(HasSubstr("/output/color_scales/0/high: found neither low nor high; allowed is one of them, or both"),
+            HasSubstr("/output/color_scales/1/high: found a value that is not above low; allowed is above low")));
+  const auto fine = grit_in(folder.path(), {"run", "two.json", "--quiet", "--set", moved, "--set", color});
+  EXPECT_EQ(fine.status, 0) << fine.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "results/two/picture.svg"));
+}
+
 /// Faults that show only at the first step are located, too, and leave no folder behind.
 TEST(Descriptions, AreRefusedForFaultsOfTheFirstInstant) {
   const std::string start = R"({

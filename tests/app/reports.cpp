@@ -81,8 +81,9 @@ TEST_F(Reports, DrawPicturesWithoutABrowser) {
   EXPECT_EQ(outcome.out,
             "picture: results/two/curves.png\npicture: results/two/grains.png\n"
             "picture: results/two/layers.png\n"
-            "picture: results/two/map-packing-coordination_number.png\npicture: results/two/map-packing-stress.png\n"
-            "picture: results/two/map-packing-void_ratio.png\n");
+            "picture: results/two/map-packing-coordination_number.png\n"
+            "picture: results/two/map-packing-solid_fraction.png\n"
+            "picture: results/two/map-packing-stress.png\npicture: results/two/map-packing-void_ratio.png\n");
   for (const char* name : {"curves", "grains", "layers", "map-packing-stress"}) {
     EXPECT_THAT(text(std::string("results/two/") + name + ".png"), StartsWith("\x89PNG\r\n\x1a\n"));
     EXPECT_FALSE(exists(std::string("results/two/") + name + ".png.log"));

@@ -60,6 +60,21 @@ TEST(MapPicture, HasThePaletteOfItsFieldWhateverTheNumbers) {
   EXPECT_THAT(colours(row_of({7, 7, nan}, false)), testing::AllOf(Contains("#d4d4d0"), SizeIs(2)));
 }
 
+TEST(MapPicture, HasAColourScaleWithGivenEnds) {
+  MapPicture dilute = row_of({0, 1, 2, 1e6, std::numeric_limits<double>::infinity()}, false);
+  EXPECT_EQ(tiles(dilute).at(2).colour, dark) << "one cell makes all others alike";
+  dilute.panels[0].ends.most = 2;
+  EXPECT_EQ(tiles(dilute).at(2).colour, bright);
+  EXPECT_EQ(tiles(dilute).at(4).colour, "#d4d4d0");
+  dilute.panels[0].ends.low = 1;
+  EXPECT_EQ(tiles(dilute).at(1).colour, dark);
+  dilute.panels[0].ends.high = 4;
+  EXPECT_NE(tiles(dilute).at(2).colour, bright) << "the set end counts";
+  MapPicture cloud = row_of({10, 20}, false);
+  cloud.panels[0].ends.most = 2;
+  EXPECT_EQ(colours(cloud), (std::set<std::string>{dark, bright})) << "all are above";
+}
+
 TEST(MapPicture, HasAxesWithUnitsAndWalls) {
   MapPicture picture = row_of({1, 2, 3, 4}, false);
   picture.cells.push_back({0, 2e-3, 1e-3, 1e-3, {5}});

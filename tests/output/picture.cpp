@@ -336,6 +336,25 @@ TEST(Picture, GoesFromDarkToBrightWhereNothingIsNegative) {
               testing::AllOf(HasSubstr(".c0{fill:#440154}"), HasSubstr(".c20{fill:#fde725}")));
 }
 
+/// Classes of the colours of grains with these values.
+std::vector<std::string> classes(const std::vector<double>& values, bool symmetric, const ScaleEnds& ends) {
+  GrainView view;
+  view.value = {"speed", "m/s"}, view.symmetric = symmetric, view.ends = ends;
+  for (const double value : values) view.discs.push_back({value, 0, 0.1, value});
+  std::vector<std::string> all;
+  for (const auto& disc : elements(parsed(draw({.title = "", .facts = "", .panels = {}, .grains = view})), "circle"))
+    all.push_back(text_of(disc, "class"));
+  return all;
+}
+
+TEST(Picture, HasAColourScaleWithGivenEnds) {
+  EXPECT_THAT(classes({0, 1, 2, 100}, false, {.low = {}, .high = 2}), ElementsAre("c0", "c10", "c20", "c20"));
+  EXPECT_THAT(classes({0, 1, 2, 100}, false, {.low = 1, .high = 2}), ElementsAre("c0", "c0", "c20", "c20"));
+  EXPECT_THAT(classes({-1, 0, 2, 100}, true, {.low = {}, .high = 2}), ElementsAre("c5", "c10", "c20", "c20"))
+      << "symmetric";
+  EXPECT_THAT(classes({0, 1}, false, {.low = 3, .high = {}}), ElementsAre("c0", "c0")) << "never empty";
+}
+
 TEST(Picture, LeavesNoRoomForWallsThatAreFarAway) {
   GrainView view;
   view.discs = {{0, 0, 0.5, nan}, {9, 9, 0.5, nan}};
@@ -530,6 +549,19 @@ TEST(GrainView, IsSeenAlongTheAxisWithClockwiseRotationsPositive) {
   EXPECT_TRUE(std::isnan(grain_view(world, {}, "xz", "rotation").discs.at(0).value));
   EXPECT_THAT(error_of<Error>([&] { grain_view(world, {}, "zx", "rotation"); }), HasSubstr("found the view 'zx'"));
   EXPECT_THAT(error_of<Error>([&] { grain_view(world, {}, "xz", "age"); }), HasSubstr("found the color 'age'"));
+}
+
+TEST(GrainView, IsColouredByAFieldOfAProbe) {
+  NumberedWorld world;
+  world.add(1, {0, 0, 0}, 0.1), world.add(2, {1, 0, 0}, 0.1);
+  const BodyValues values{"moved/way/x", "way x", "m", "", true, {0.5, nan}};
+  const auto view = grain_view(world, {}, "xz", "moved/way/x", &values);
+  EXPECT_EQ(view.value.label, "way x");
+  EXPECT_EQ(view.value.unit, "m");
+  EXPECT_TRUE(view.symmetric);
+  EXPECT_EQ(view.discs.at(0).value, 0.5);
+  EXPECT_TRUE(std::isnan(view.discs.at(1).value));
+  EXPECT_TRUE(std::isnan(grain_view(world, {}, "xz", "moved/way/x").discs.at(0).value)) << "grey without numbers";
 }
 
 TEST(GrainView, TakesTheMiddleThirdBackToFront) {

@@ -11,6 +11,7 @@
 #include "fake_world.hpp"
 #include "folder.hpp"
 #include "grit/error.hpp"
+#include "svg_elements.hpp"
 
 namespace grit::results_folder_tests {
 namespace {
@@ -243,6 +244,30 @@ TEST(ResultsFolder, DrawsCurvesOverTime) {
   summary.status = "done";
   results.finish(world, summary);
   EXPECT_THAT(text_of(folder / "run/picture.svg"), AllOf(HasSubstr(">time [s]<"), HasSubstr(">20<")));
+}
+
+TEST(ResultsFolder, ColoursThePictureByAFieldOfItsLastFrame) {
+  const Folder folder;
+  auto coloured = options(folder / "run");
+  coloured.picture->color = "moved/work";
+  coloured.picture->scale.high = 8;
+  auto world = world_of_two();
+  ResultsFolder results(coloured);
+  results.begin(world, probes);
+  for (const double most : {2.0, 4.0}) {
+    sample(results, world, 0, 0.5);
+    world.steps += 10;
+    const std::vector<FieldGroup> fields{
+        {"moved", {{"id", "1", "id of each body", 1, {1, 4}}, {"work", "J", "done on it", 1, {0, most}}}}};
+    results.frame(world, fields);
+  }
+  results.finish(world, {});
+  const std::string svg = text_of(folder / "run/picture.svg");
+  EXPECT_THAT(svg, HasSubstr(">work [J]<"));
+  const auto discs = elements(parsed(svg), "circle");
+  ASSERT_EQ(discs.size(), 2u);
+  EXPECT_EQ(text_of(discs[0], "class"), "c10") << "the grain 4: half of the end of the scale";
+  EXPECT_EQ(text_of(discs[1], "class"), "c0");
 }
 
 TEST(ResultsFolder, KnowsTheChannelsOfThePicture) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace grit::shown_fields_tests {
 namespace {
@@ -17,6 +18,11 @@ std::vector<bool> signs(const Field& field) {
   std::vector<bool> all;
   for (std::size_t k = 0; k < field.width; ++k) all.push_back(is_signed(field, k));
   return all;
+}
+
+TEST(MapFields, HaveALargestVoidRatio) {
+  EXPECT_EQ(largest_shown(field("void_ratio", "1", "infinite without solids")), 3);
+  EXPECT_EQ(largest_shown(field("coordination_number", "1", "mean")), std::numeric_limits<double>::infinity());
 }
 
 TEST(MapFields, AreSignedByKind) {

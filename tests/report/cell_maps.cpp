@@ -113,6 +113,19 @@ TEST(CellMaps, LeavesTheFarthestOfManyCellsToTheEndsOfTheScale) {
   EXPECT_NEAR(range.at(1).get<double>(), 990, 2);
 }
 
+TEST(CellMaps, EndTheScaleOfVoidRatiosBelowThoseOfDiluteCells) {
+  FieldGroup group = two_cells(1, 1);
+  group.fields[2] = {"void_ratio", "1", "of the cell", 1, {0.6, 250}};
+  DataElements data;
+  CellMaps maps(data, 1 << 20);
+  maps.add(0, "flow", {group});
+  group.fields[2].values = {20, 250};
+  maps.add(1, "cloud", {group});
+  const json ranges = made_of(maps).at(0).at("fields").at(0).at("ranges");
+  EXPECT_EQ(ranges.at("flow"), json::parse("[[0.6000000238418579, 3.0]]"));
+  EXPECT_EQ(ranges.at("cloud"), json::parse("[[20.0, 250.0]]"));
+}
+
 TEST(CellMaps, GivesEachProbeTheSameSpace) {
   FieldGroup many = two_cells(1, 1), few = two_cells(1, 1);
   many.name = "many";

@@ -244,6 +244,73 @@ TEST(ReportPage, HasWallsAndTheirDisplacements) {
   EXPECT_THAT(json_of(page.html).at("runs").at(0).at("grains").at("frames").at(1).at("walls"), IsEmpty());
 }
 
+/// The small run with work of two of its bodies and the pressure on its wall in the last two of three frames.
+void write_with_fields(const std::filesystem::path& folder) {
+  SmallRun run(folder);
+  run.options.facts.description["output"] =
+      Description::parse(R"({"color_scales": [{"of": "moved/work", "high": 3}]})");
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  results.frame(run.world, {});
+  for (const double level : {1.0, 2.0}) {
+    const std::vector<FieldGroup> fields{
+        {"facets", {{"pressure", "Pa", "on the facet", 1, {4e3 * level}, {}, "floor"}}},
+        {"moved", {{"id", "1", "", 1, {7, 5}}, {"work", "J", "done on it", 1, {level, -level}}}}};
+    results.frame(run.world, fields);
+  }
+  results.finish(run.world, {});
+}
+
+TEST(ReportPage, HasNumbersOfBodiesFromFields) {
+  const Folder folder;
+  write_with_fields(folder / "run");
+  const auto page = page_of(folder / "run");
+  const json run = json_of(page.html).at("runs").at(0), grains = run.at("grains");
+  EXPECT_EQ(run.at("color_scales"), json::parse(R"([{"of": "moved/work", "high": 3}])"));
+  ASSERT_THAT(grains.at("values"), SizeIs(1));
+  EXPECT_EQ(grains.at("values").at(0).at("name"), "moved/work");
+  EXPECT_EQ(grains.at("values").at(0).at("label"), "work");
+  EXPECT_EQ(grains.at("values").at(0).at("unit"), "J");
+  EXPECT_EQ(grains.at("stages").at("shear").at("values"), json::parse("[[-2.0, 2.0, 2.0]]"));
+  EXPECT_FALSE(grains.at("frames").at(0).contains("values"));
+  // Of the bodies 2, 5 and 7, in the range of the stage; 65535 is none.
+  EXPECT_THAT(planes_of(page.html, grains.at("frames").at(1).at("values")), ElementsAre(65535, 16384, 49151));
+  EXPECT_THAT(planes_of(page.html, grains.at("frames").at(2).at("values")), ElementsAre(65535, 0, 65534));
+  const json small = json_of(page_of(folder / "run", {.value_bytes = 17}).html).at("runs").at(0).at("grains");
+  EXPECT_THAT(small.at("values"), IsEmpty()) << "three frames of three bodies have 18 bytes";
+  EXPECT_EQ(small.at("values_left_out"), 1);
+}
+
+TEST(ReportPage, HasNumbersOfFacetsFromFields) {
+  const Folder folder;
+  write_with_fields(folder / "run");
+  const auto page = page_of(folder / "run");
+  const json grains = json_of(page.html).at("runs").at(0).at("grains");
+  ASSERT_THAT(grains.at("wall_fields"), SizeIs(1));
+  const json field = grains.at("wall_fields").at(0);
+  EXPECT_EQ(field.at("name"), "facets/pressure");
+  EXPECT_EQ(field.at("wall"), "floor");
+  EXPECT_EQ(field.at("unit"), "kPa");
+  EXPECT_EQ(field.at("factor"), 1e-3);
+  EXPECT_EQ(grains.at("stages").at("shear").at("wall_fields"), json::parse("[8000.0]"));
+  EXPECT_FALSE(grains.at("frames").at(0).contains("wall_fields"));
+  const json last = grains.at("frames").at(2).at("wall_fields");
+  ASSERT_THAT(last, SizeIs(1));
+  EXPECT_EQ(last.at(0).at(0), 0) << "the first wall of the frame";
+  EXPECT_EQ(last.at(0).at(1), 0);
+  EXPECT_THAT(numbers_of<float>(page.html, last.at(0).at(2)), ElementsAre(8000));
+}
+
+TEST(ReportPage, HasTheBoxOfGrainsWithTheirSurfaces) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.write();
+  const json grains = json_of(page_of(folder / "run").html).at("runs").at(0).at("grains");
+  EXPECT_EQ(grains.at("frames").at(0).at("surface"), json::parse("[[-0.5, -0.5, 0.5], [2.125, 1.125, 3.125]]"));
+  EXPECT_EQ(grains.at("walls").at(0).at("low"), json::parse("[0.0, 0.0, 0.0]"));
+  EXPECT_EQ(grains.at("walls").at(0).at("high"), json::parse("[1.0, 1.0, 0.0]"));
+}
+
 TEST(ReportPage, HasWallsThatChange) {
   const Folder folder;
   SmallRun run(folder / "run");

@@ -313,6 +313,53 @@ TEST(MapPictures, NameTheirContentOnce) {
               ElementsAre(testing::AllOf(testing::StartsWith("strain  ·  stage"), testing::EndsWith("  ·  29.14 ms"))));
 }
 
+TEST(MapPictures, HaveTheColourScalesOfTheDescription) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.options.facts.description["output"]["color_scales"] =
+      Description::parse(R"([{"of": "cells/force", "high": 2}, {"of": "cells/force/y", "high": 100}])");
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  const std::vector<FieldGroup> tables{{"cells",
+                                        {{"centre", "m", "", 3, {0.5, 0, 0.5, 1.5, 0, 0.5}},
+                                         {"size", "m", "", 3, {1, 2, 1, 1, 2, 1}},
+                                         {"force", "N", "on the cell", 2, {2, 2, 50, 50}, {"x", "y"}}}}};
+  results.frame(run.world, tables);
+  results.finish(run.world, {});
+  RunResults read = read_results(folder / "run");
+  const auto pictures = map_pictures(read);
+  ASSERT_THAT(pictures, SizeIs(1));
+  std::vector<std::string> fills;
+  for (const auto& group : elements(parsed(pictures[0].svg), "g", "cells"))
+    for (const auto& tile : elements(group, "rect")) fills.push_back(text_of(tile, "fill"));
+  ASSERT_THAT(fills, SizeIs(4));
+  EXPECT_EQ(fills[0], "#a01228") << "x, at the end of its scale";
+  EXPECT_EQ(fills[1], "#a01228");
+  EXPECT_NE(fills[2], "#a01228") << "y has a scale of its own";
+  EXPECT_NE(fills[3], "#a01228");
+}
+
+TEST(GrainsPictures, AreColouredByAField) {
+  const Folder folder;
+  SmallRun run(folder / "run");
+  run.options.facts.description["output"]["picture"] = {{"view", "xz"}, {"color", "moved/work"}};
+  ResultsFolder results(run.options);
+  results.begin(run.world, {});
+  results.frame(run.world, {});
+  results.finish(run.world, {});
+  RunResults without = read_results(folder / "run");
+  EXPECT_THAT(grains_picture(without).value_or(""), HasSubstr(">speed [m/s]<")) << "the frame has no such field";
+  SmallRun again(folder / "again");
+  again.options.facts.description = run.options.facts.description;
+  ResultsFolder more(again.options);
+  more.begin(again.world, {});
+  const std::vector<FieldGroup> tables{{"moved", {{"id", "1", "", 1, {7, 2, 5}}, {"work", "J", "", 1, {1, 2, 3}}}}};
+  more.frame(again.world, tables);
+  more.finish(again.world, {});
+  RunResults with = read_results(folder / "again");
+  EXPECT_THAT(grains_picture(with).value_or(""), HasSubstr(">work [J]<"));
+}
+
 TEST(MapPictures, HaveWallsAxesAndTheirFieldsPalette) {
   const Folder folder;
   SmallRun run(folder / "run");

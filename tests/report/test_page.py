@@ -747,7 +747,7 @@ class Page(unittest.TestCase):
 
     def test_the_most_informative_map_is_the_first(self):
         self.assertEqual(self.browser.evaluate("[...document.querySelector('[name=field]').options].map(({value}) => value)"),
-                         ["packing/void_ratio", "packing/stress", "packing/coordination_number"])
+                         ["packing/void_ratio", "packing/solid_fraction", "packing/stress", "packing/coordination_number"])
         self.assertEqual(self.browser.evaluate(f"{MAP}.state.field"), "packing/void_ratio")
 
     def list_chart(self, probe, name):

@@ -83,13 +83,15 @@ std::string refusal(const std::string& name, const std::string& what, const std:
 std::string absence(const SceneDescription& scene, const std::string& name, const ProbeDescription& probe) {
   const std::string section = "/probes/" + name.substr(0, name.find('/'));
   if (scene.output.frames.never())
-    return fault_text('"' + name + "\" without frames, from which it is taken", "with /output/frames, e.g. every_time");
+    return fault_text('"' + name + "\" without frames, from which it is taken",
+                      "a field if /output/frames has an interval, e.g. every_time");
   if (!probe.frames)
-    return fault_text('"' + name + "\" of a probe that is not in frames", "with " + section + "/frames true");
+    return fault_text('"' + name + "\" of a probe that is not in frames",
+                      "a field of a probe in frames: set " + section + "/frames to true");
   if (!probe.stages.empty() && !scene.stages.empty() && !has(probe.stages, scene.stages.back().name))
     return fault_text(
         '"' + name + "\" of a probe that does not sample in the last stage, after which the picture is drawn",
-        "with \"" + scene.stages.back().name + "\" in " + section + "/stages");
+        "a field of a probe that does: add \"" + scene.stages.back().name + "\" to " + section + "/stages");
   return {};
 }
 

@@ -104,6 +104,15 @@ TEST(Formula, ComputesTestCurves) {
   EXPECT_TRUE(std::isinf(value_of("1 / top_force_x")));
 }
 
+TEST(Formula, AddsTheForcesOfSeveralWalls) {
+  WatchedWorld world = shear_box();
+  world.wall.push_back(still_wall("upper-right"));
+  world.wall.back().force = {70, 0, 16};
+  EXPECT_DOUBLE_EQ(value_of("upper_left_force_x + upper_right_force_x", world), -50);
+  EXPECT_DOUBLE_EQ(value_of("sum(upper_left_force_z, upper_right_force_z, top_force_z)", world), 220);
+  EXPECT_DOUBLE_EQ(value_of("max(abs(upper_left_force_x), abs(upper_right_force_x))", world), 120);
+}
+
 TEST(Formula, FollowsTheWorld) {
   WatchedWorld world = shear_box();
   FormulaProbe probe;

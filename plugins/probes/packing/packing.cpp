@@ -172,11 +172,13 @@ std::vector<Field> PackingProbe::fields(const World& world) {
       "coordination_number", "1", "mean number of contacts of the grains centred in the cell; 0 without any", 1, {}};
   Field stress{
       "stress", "Pa", "Love-Weber stress of the cell, row by row (force, branch), positive in compression", 9, {}};
+  Field solids{"solid_fraction", "1", "volume of solids over that of the cell, 1 / (1 + void ratio)", 1, {}};
   for (const CellAverage& cell : cell_averages(world, cells)) {
     ratio.values.push_back(cell.void_ratio), touching.values.push_back(cell.coordination_number);
+    solids.values.push_back(1 / (1 + cell.void_ratio));
     for (int i = 0; i < 9; ++i) stress.values.push_back(cell.stress(i / 3, i % 3));
   }
-  for (Field* field : {&ratio, &touching, &stress}) fields.push_back(std::move(*field));
+  for (Field* field : {&ratio, &touching, &stress, &solids}) fields.push_back(std::move(*field));
   return fields;
 }
 

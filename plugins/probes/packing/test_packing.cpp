@@ -272,7 +272,7 @@ TEST(Packing, GivesItsCellsAsFields) {
   PackingProbe probe;
   const FakeWorld world = cubic(7, 0.5, {1, 2, 3});
   const auto fields = probe.fields(world);
-  ASSERT_EQ(fields.size(), 5u);
+  ASSERT_EQ(fields.size(), 6u);
   EXPECT_EQ(fields[0].name, "centre");
   ASSERT_EQ(fields[0].values.size(), 9 * 3u);
   EXPECT_THAT(std::vector(fields[0].values.begin(), fields[0].values.begin() + 6),
@@ -281,6 +281,10 @@ TEST(Packing, GivesItsCellsAsFields) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(fields[1].values[3 * n + axis], axis == 1 ? 3.5 : 0.5, 1e-12) << n;
   EXPECT_NEAR(fields[4].values[8], 12, 1e-9);
+  EXPECT_EQ(fields[5].name, "solid_fraction");
+  ASSERT_EQ(fields[5].values.size(), 9u);
+  for (std::size_t n = 0; n < 9; ++n)
+    EXPECT_EQ(fields[5].values[n], 1 / (1 + fields[2].values[n])) << "0 where the void ratio is infinite";
 }
 
 std::shared_ptr<Probe> driven() {

@@ -312,6 +312,7 @@ TEST(VoidRatio, KnowsTheCubicLattice) {
   EXPECT_EQ(cells.size(), 64u);  // cubes of 5, moved by 1, in 8
   EXPECT_THAT(cells, testing::Each(near));
   EXPECT_THAT(field_values(probe, world, "free_volume_fraction"), testing::Each(testing::DoubleNear(1, 1e-12)));
+  EXPECT_THAT(field_values(probe, world, "solid_fraction"), testing::Each(testing::DoubleNear(sixth, 1e-11)));
 }
 
 TEST(VoidRatio, OfCellsAndSlicesAgreesWithThatOfEachBox) {

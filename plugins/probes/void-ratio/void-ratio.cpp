@@ -118,12 +118,14 @@ std::vector<Field> VoidRatio::fields(const World& world) {
       1,
       {}};
   Field share{"free_volume_fraction", "1", "fraction of the volume of the cell in front of all walls", 1, {}};
+  Field solids{"solid_fraction", "1", "volume of solids over that in front of walls, 1 / (1 + void ratio)", 1, {}};
   const auto each = volumes(world, cells);
   for (std::size_t n = 0; n < each.size(); ++n) {
     ratio.values.push_back(void_ratio_of_cell(each[n], cells.cell(n)));
+    solids.values.push_back(1 / (1 + ratio.values.back()));
     share.values.push_back(each[n].free / cells.cell(n).volume());
   }
-  fields.push_back(std::move(ratio)), fields.push_back(std::move(share));
+  for (Field* field : {&ratio, &share, &solids}) fields.push_back(std::move(*field));
   return fields;
 }
 
