@@ -439,6 +439,102 @@ class Page(unittest.TestCase):
         self.browser.wait(f"{GRAINS}.layers && {GRAINS}.now === {GRAINS}.painted")
         self.assertGreater(len(set(self.browser.evaluate(f"[...{GRAINS}.layers.values()]"))), 7, "layers are those of the others")
 
+    def test_the_view_fits_large_grains_and_walls(self):
+        boulder = {"type": "sphere", "material": "sand", "source": {"type": "list", "bodies": [{"position": ["4 mm", "3 mm", "13 mm"], "radius": "2.9 mm"}]}}
+        box = {**SCENE["walls"]["box"], "high": ["8 mm", "6 mm", "17 mm"]}
+        run(self.folder, "boulder", bodies={**SCENE["bodies"], "boulder": boulder},
+            walls={"box": box, "far": {"type": "plane", "material": "sand", "point": [0, 0, "-400 mm"]}})
+        self.browser.open(self.folder / "boulder/report.html")
+        self.browser.wait(f"{GRAINS}?.painted")
+        inside = f"""(async () => {{
+            const view = {GRAINS}, {{layout, now, frames}} = view, {{width, height, margin}} = layout, [right, up] = [view.view.right, view.view.up];
+            const lists = [now.x, now.y, now.z], slack = 0.5, off = [];
+            const check = (x, y, r) => {{ const [u, v] = [layout.across(x), layout.down(y)], p = r / layout.metresPerPixel;
+                off.push(Math.min(u - p - margin.left, width - margin.right - u - p), Math.min(v - p - margin.top, height - margin.bottom - v - p)); }};
+            for (let i = 0; i < now.count; ++i) check(frames.metres(right, lists[right][i]), frames.metres(up, lists[up][i]), now.radius[i]);
+            check(0, 0, 0), check(8e-3, 0, 0);
+            const {{from, to}} = view.shownSegments;
+            return {{off: Math.min(...off), tops: Math.max(...Array.from(from).filter((_, i) => i % 2 === 1)), zoom: view.state.zoom, above: layout.metresUp(margin.top), below: layout.metresUp(height - margin.bottom)}}; }})()"""
+        last = len(list((self.folder / "boulder/frames").iterdir())) - 1
+        for number in (0, last):
+            self.browser.evaluate(f"{GRAINS}.player.go({number})")
+            self.browser.wait(f"{GRAINS}.painted.number === {number}")
+            seen = self.browser.evaluate(inside)
+            self.assertGreater(seen["off"], -0.5, "grains and the floor are in the frame, with their surfaces")
+            self.assertGreaterEqual(seen["above"], 17e-3 - 1e-6, "the top of the box is in the frame")
+            self.assertGreater(seen["below"], -3e-3, "a wall far away makes nothing smaller")
+        whole = self.browser.evaluate(f"{GRAINS}.layout.metresPerPixel")
+        self.browser.evaluate(f"{GRAINS}.fit()")
+        seen = self.browser.evaluate(inside)
+        self.assertGreater(seen["off"], -0.5, "what is there now is in the frame")
+        self.assertLess(self.browser.evaluate(f"{GRAINS}.layout.metresPerPixel"), whole)
+        self.browser.evaluate(f"{GRAINS}.change({{walls: false}})")
+        self.browser.evaluate(f"{GRAINS}.fit()")
+        seen = self.browser.evaluate(inside.replace("check(0, 0, 0), check(8e-3, 0, 0);", ""))
+        self.assertGreater(seen["off"], -0.5)
+        self.assertLess(seen["off"], 1, "they fill it")
+        self.browser.evaluate("document.querySelector('.stage').dispatchEvent(new Event('dblclick'))")
+        self.assertEqual(self.browser.evaluate(f"[{GRAINS}.state.zoom, ...{GRAINS}.state.pan]"), [1, 0, 0])
+
+    def test_grains_are_coloured_by_a_field_of_a_probe(self):
+        picture = {**SCENE["output"]["picture"], "color": "moved/fluctuation/x"}
+        run(self.folder, "moved", probes={"packing": SCENE["probes"]["packing"], "moved": LISTS["moved"]},
+            output={**SCENE["output"], "picture": picture, "color_scales": [{"of": "moved/fluctuation/x", "high": 0.25e-3}, {"of": "packing/void_ratio", "low": 0.5, "high": 2}]})
+        self.browser.open(self.folder / "moved/report.html")
+        self.browser.wait(f"{GRAINS}?.painted")
+        self.assertEqual(self.browser.evaluate("[...document.querySelector('[name=colour]').options].map(({label}) => label).filter((label) => label.startsWith('moved'))"),
+                         [f"moved: fluctuation{part}" for part in ("", " x", " y", " z")])
+        self.assertEqual(self.browser.evaluate(f"{GRAINS}.state.colour"), "moved/fluctuation/x", "that of the description")
+        low, high, factor = self.browser.evaluate(f"(({{colours: {{low, high}}, colouring}}) => [low, high, colouring.factor])({GRAINS})")
+        self.assertAlmostEqual(high, 0.25e-3 * factor)
+        self.assertAlmostEqual(low, -high)
+        for number in (2, 5):
+            for colour, wanted in (("moved/fluctuation/x", lambda rows: rows[:, 0]), ("moved/fluctuation", lambda rows: numpy.linalg.norm(rows, axis=1))):
+                shown = self.browser.evaluate(f"""(async () => {{ const view = {GRAINS}; await view.change({{colour: '{colour}'}}); await view.turn({number});
+                    const value = view.valueOf(view.now); return [...view.now.id].map((id, i) => [id, String(value(i))]); }})()""")
+                with h5py.File(self.folder / f"moved/frames/{number:06}.h5") as frame:
+                    expected = dict(zip(frame["probes/moved/id"][()].astype(int), wanted(frame["probes/moved/fluctuation"][()])))
+                self.assertEqual(len(shown), 40)
+                most = max(abs(value) for value in expected.values() if value == value)
+                for number_of_body, value in shown:
+                    value = float(value) / factor
+                    if expected[number_of_body] == expected[number_of_body]:
+                        self.assertAlmostEqual(value, expected[number_of_body], delta=1e-2 * most)
+                    else:
+                        self.assertNotEqual(value, value)
+        self.browser.evaluate(f"{MAP}.takeField('packing/void_ratio')")
+        self.browser.wait(f"{MAP}.now && {MAP}.colours")
+        self.assertEqual(self.browser.evaluate(f"[{MAP}.colours.low, {MAP}.colours.high]"), [0.5, 2])
+        self.assertIn("ends set by the description", self.browser.evaluate(f"{MAP}.about.textContent"))
+
+    def test_walls_are_coloured_by_the_pressure_on_their_facets(self):
+        corners = [(0, 0), (8, 0), (8, 6)], [(0, 0), (8, 6), (0, 6)]
+        facets = "".join("facet normal 0 0 1\nouter loop\n" + "".join(f"vertex {x} {y} 0\n" for x, y in three) + "endloop\nendfacet\n" for three in corners)
+        (self.folder / "tray.stl").write_text(f"solid tray\n{facets}endsolid tray\n")
+        run(self.folder, "tray", walls={"box": {**SCENE["walls"]["box"], "open": ["z_high", "z_low"]}, "tray": {"type": "mesh", "path": "tray.stl", "scale": "1 mm", "open": True, "material": "sand"}},
+            probes={**SCENE["probes"], "facets": {"type": "facets", "wall": "tray", "every_time": "1 ms"}})
+        self.browser.open(self.folder / "tray/report.html")
+        self.browser.wait(f"{GRAINS}?.painted")
+        names = self.browser.evaluate("[...document.querySelector('[name=wall-colour]').options].map(({label}) => label)")
+        self.assertEqual(names[0], "none")
+        self.assertIn("pressure of tray", names)
+        place = names.index("pressure of tray") - 1
+        shown = self.browser.evaluate(f"""(async () => {{ const view = {GRAINS}; await view.change({{wallField: {place}, cut: 0}});
+            const {{tint, from}} = view.shownSegments, {{table, high}} = view.scaleOfWalls(view.now);
+            return {{inks: Array.from({{length: tint.length / 4}}, (_, i) => [...tint.slice(4 * i, 4 * i + 4)]).filter((ink) => ink[3] > 0), high, table: table.map((one) => one.join())}}; }})()""")
+        last = sorted((self.folder / "tray/frames").iterdir())[-1]
+        with h5py.File(last) as frame:
+            pressure = frame["probes/facets/pressure"][()]
+        self.assertEqual(len(shown["inks"]), 2, "the section cuts both facets, and the box has no field")
+        places = sorted(shown["table"].index(",".join(map(str, ink[:3]))) for ink in shown["inks"])
+        for got, wanted in zip(places, sorted(255 * min(1, value / shown["high"]) for value in pressure)):
+            self.assertAlmostEqual(got, wanted, delta=1)
+        svg = self.saved("figure.grains", "SVG")[1].decode()
+        for ink in shown["inks"]:
+            self.assertIn(f'stroke="rgb({ink[0]},{ink[1]},{ink[2]})"', svg)
+        self.open("one/report.html")
+        self.assertTrue(self.browser.evaluate(f"{GRAINS}.wallPlace.hidden"))
+
     def test_layers_are_those_of_the_start_of_a_stage(self):
         self.go(5)
         self.browser.evaluate(f"{GRAINS}.change({{colour: 'layers'}})")

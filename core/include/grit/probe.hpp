@@ -14,7 +14,8 @@ namespace grit {
 /// A table at one instant, of any length: contacts, cells, chains. If a probe has the fields "centre" (present position
 /// of a cell [m], width 3) and "size" (size of a cell on a map [m], width 3), its fields with the same number of rows
 /// are drawn as maps. The colours of a map diverge at zero for all components except the diagonal of a tensor in Pa;
-/// for a single number, if its doc contains "positive" or "clockwise" and its unit is not Pa.
+/// for a single number, if its doc contains "positive" or "clockwise" and its unit is not Pa. If it has the field "id"
+/// (of bodies, width 1), bodies can be coloured by its fields with as many rows.
 struct Field {
   std::string name;  ///< snake_case
   std::string unit, doc;
