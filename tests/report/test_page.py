@@ -981,7 +981,7 @@ class Page(unittest.TestCase):
             covered = self.browser.evaluate(f"""(() => {{ const {{canvas}} = {GRAINS};
                 const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, 0.7 * canvas.width, 0.8 * canvas.height).data.buffer);
                 return pixels.filter((pixel) => pixel !== 0).length / pixels.length; }})()""")
-            self.assertGreater(covered, 0.1, "apart from the colour scale and the scale bar")
+            self.assertGreater(covered, 0.04, "apart from the colour scale and the scale bar")
         finally:
             self.browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
 
