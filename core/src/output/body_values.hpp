@@ -22,8 +22,8 @@ struct BodyValues {
 /// Whether a name is that of a probe's field, not of a built-in colour.
 inline bool names_a_field(const std::string& name) { return name.find('/') != std::string::npos; }
 
-/// The numbers of the bodies with these ids. A table belongs to bodies if it has a field "id"; its fields are those with
-/// as many rows, without "centre" and "size". Empty for other tables.
+/// The numbers of the bodies with these ids. A table belongs to bodies if it has a field "id"; its fields are those
+/// with as many rows, without "centre" and "size". Empty for other tables.
 std::vector<BodyValues> values_of_bodies(const FieldGroup& table, std::span<const std::int64_t> ids);
 
 /// Those of this name among several tables, for the bodies of a world; without a name if there are none.

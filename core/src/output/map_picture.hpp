@@ -32,8 +32,8 @@ struct MapPicture {
 };
 
 /// The picture as SVG, up to 900 px wide: one panel per value, each with axes and a colour scale, side by side if they
-/// are tall or more than four. The colour scale covers the middle 98 % of the cells, or has the given ends. Gaps of less than three quarters
-/// of a cell are closed by the nearest cell. Walls are drawn near the cells only.
+/// are tall or more than four. The colour scale covers the middle 98 % of the cells, or has the given ends. Gaps of
+/// less than three quarters of a cell are closed by the nearest cell. Walls are drawn near the cells only.
 std::string draw(const MapPicture& picture);
 
 }  // namespace grit

@@ -8,8 +8,8 @@
 namespace grit {
 
 /// Throws DescriptionError with all names of fields that no probe has, or that are not there when the picture is drawn,
-/// each with its location. Needs the world at the first instant; new instances of the probes are evaluated, so that those
-/// of the run keep their state.
+/// each with its location. Needs the world at the first instant; new instances of the probes are evaluated, so that
+/// those of the run keep their state.
 void check_fields(const Document& document, const SceneDescription& scene, const World& world);
 
 }  // namespace grit
