@@ -49,6 +49,7 @@ PARTS = {
     'linear-rolling': (LAWS / 'linear-rolling', 'linear-rolling.hpp', [
         *at_each('shear stiffness × 2', 'mean(a.shear_to_normal_stiffness, stiff_b.shear_to_normal_stiffness)'),
         *at_each('friction + 1 %', FRICTION, '1.01'),
+        ('dashpot × 2', 'dashpot(pair.damping, kn, at.inverse_mass_a + at.inverse_mass_b)', 'L(2.0) * $'),
         ('velocity of shear half a step late',
          'state.shear = response.shear;',
          f'$ response.shear = response.shear + {LATE};'),
