@@ -200,21 +200,31 @@ TEST(Periodic, WallOfOnePeriodMayMoveAlongIt) {
   }
 }
 
+// The drum drags a ball up to the angle of friction, where it slides: rolling resistance, 0.4 > tan φ, keeps it from
+// rolling back. There its overlap carries m g cos φ.
 TEST(Periodic, DrumOfOnePeriodMaySpinAboutIt) {
-  Description d = in_cell({{{3e-3, 3e-3, 3e-3}, 5e-4}}, Vec3::Zero());
+  const double ball = 5e-4, drum = 2.5e-3, modulus = 1e6, friction = 0.3, g = 9.81;
+  const Vec3 axis(3e-3, 0, 3e-3);
+  Description d = in_cell({{axis + Vec3(0, 3e-3, 0), ball}}, Vec3::Zero());
+  d["materials"]["grain"].update({{"friction_angle", friction}, {"restitution", 0.1}, {"rolling_limit", 0.4}});
   d["domain"]["periodic"] = {false, true, false};
   d["domain"].erase("strain_rate");
   d["time_step"] = Description::object();
-  d["engines"]["gravity"] = {{"type", "gravity"}};
+  d["engines"] = {{"gravity", {{"type", "gravity"}, {"acceleration", {0, 0, -g}}}},
+                  {"damping", {{"type", "local-damping"}, {"coefficient", 0.7}}}};
   d["walls"]["drum"] = {{"type", "cylinder"},
-                        {"start", {3e-3, 0, 3e-3}},
-                        {"end", {3e-3, period.y(), 3e-3}},
-                        {"radius", 2.5e-3},
+                        {"start", vector(axis)},
+                        {"end", vector(axis + Vec3(0, period.y(), 0))},
+                        {"radius", drum},
                         {"material", "grain"}};
   d["walls"]["drum"]["motion"]["spin"] = {0, 3, 0};
   Trial t(d);
-  while (t.world().time() < 0.1) t.step();
-  EXPECT_NEAR((t.position(0) - Vec3(3e-3, t.position(0).y(), 3e-3)).norm(), 2e-3, 1e-4) << "it lies on the drum";
+  while (t.world().time() < 0.6) t.step();
+  const double overlap = t.mass(0) * g * std::cos(friction) / (modulus * ball);
+  const double x = t.position(0).x() - axis.x(), z = t.position(0).z() - axis.z();
+  // It still swings along the drum, by less than 5e-4 rad. The force changes by tan φ times that.
+  EXPECT_NEAR(std::atan2(-x, -z), friction, 5e-4);
+  EXPECT_NEAR(std::hypot(x, z), drum - ball + overlap, 5e-4 * std::tan(friction) * overlap);
 }
 
 TEST(Periodic, WallOfOnePeriodMustBeUniformAlongIt) {
