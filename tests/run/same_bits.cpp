@@ -28,14 +28,14 @@ Description boxed() {
   return d;
 }
 
-/// 2744 grains without a wall, compressed along x and y, stretched along z.
-Description periodic() {
+/// 2744 grains without a wall, compressed along x and y at this rate [1/s], stretched along z.
+Description periodic(double rate = 20) {
   const double spacing = 1e-3;
   Description d = description("linear-rolling", sand, jumble({14, 14, 14}, spacing, 0.02, 6));
   d["domain"] = {{"low", {0, 0, 0}},
                  {"high", {14 * spacing, 14 * spacing, 14 * spacing}},
                  {"periodic", {true, true, true}},
-                 {"strain_rate", {-20, -20, 15}}};
+                 {"strain_rate", {-rate, -rate, 0.75 * rate}}};
   d["guards"] = {{"overlap", 0.5}, {"travel", 0.2}, {"energy", 1}};
   return d;
 }
@@ -125,10 +125,11 @@ TEST(SameBits, OfAPeriodicPackingUnderPrescribedStresses) { expect_same_bits(und
 TEST(SameBits, OfAPackingThatIsSheared) { expect_same_bits(sheared()); }
 TEST(SameBits, OfSpringsThatStiffen) { expect_same_bits(stiffening()); }
 TEST(SameBits, OfBodiesThatAttract) {
-  for (Description d : {cohesive(boxed(), 2e4), cohesive(periodic(), 2e4)}) {
-    d["guards"]["overlap"] = 0.9;
-    expect_same_bits(d);
-  }
+  expect_same_bits(cohesive(boxed(), 2e4));
+  // Attraction resists no compression. At 10/s, 1000 steps of 15 µs compress the cell by a factor of exp(−0.15). If all
+  // bodies followed it, the nearest neighbours, 0.94 mm apart with radii of 0.535 mm, would overlap by 0.49 radii: less
+  // than the guard allows.
+  expect_same_bits(cohesive(periodic(10), 2e4));
 }
 
 TEST(SameBits, OfOneThatIsPressedAndShortensTheTimeStep) {
