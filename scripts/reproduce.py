@@ -44,7 +44,7 @@ The reference is A. Grabowski, doctoral dissertation, Gdańsk 2024 (YADE, full s
 
 UNFINISHED = 'Not run to their ends'
 HEAD_OF_UNFINISHED = f'''## {UNFINISHED}
-- Hours are those of `grit check` on two threads at 12 M particle-steps/s, with typical durations of stages and with their limits.
+- Hours are those of `grit check` on two threads at 36 M particle-steps/s, with typical durations of stages and with their limits.
 - Timed runs (`--for`) show the fraction done and the commit. They cover falling sand only, so that their core-hours are a lower bound.
 - The last column uses the measured speed with resting sand, a quarter of that.
 

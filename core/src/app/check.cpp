@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <thread>
 #include <utility>
 
@@ -29,6 +28,7 @@
 #include "output/named_fields.hpp"
 #include "output/single_channels.hpp"
 #include "run/observer.hpp"
+#include "simulation/expected_stages.hpp"
 #include "simulation/first_instant.hpp"
 #include "simulation/live_scene.hpp"
 #include "simulation/prepared_sample.hpp"
@@ -36,33 +36,12 @@
 namespace grit {
 namespace {
 
-// Optimistic planning value: dense packings reach 4 to 5 M particle-steps/s on one core of an AMD EPYC (Zen 3).
-constexpr double planning_speed = 6e6;
+// Particle-steps/s of one thread: quick simulations reach 12 to 31 million, dense packings of 10 000 to 50 000 grains
+// 19 to 23 million on an AMD EPYC (Zen 4), see docs/evidence/estimates.md.
+constexpr double planning_speed = 18e6;
 // A cloud has no contacts yet; in a dense packing the critical step of the same grains is about this fraction of the
 // cloud's.
 constexpr double dense_step_fraction = 0.6;
-
-/// Simulated duration of a stage [s]: known from its description, or between its typical time and its limit.
-struct StageTime {
-  double least = 0, most = 0;
-  bool known = false, usual = false;
-};
-
-StageTime stage_time(const StageDescription& stage, const SceneDescription& scene) {
-  const auto& condition = stage.until.is.value();
-  if (const auto* time = std::get_if<TimeCondition>(&condition)) return {time->value, time->value, true};
-  if (const auto* displacement = std::get_if<DisplacementCondition>(&condition)) {
-    const MotionDescription& motion = scene.walls.at(displacement->wall).motion;
-    const int axis = displacement->axis[0] - 'x';
-    const double speed = motion.velocity[axis];
-    const bool swings = motion.oscillation && motion.oscillation->amplitude[axis] != 0;
-    if (speed != 0 && !swings) {
-      const double takes = std::abs(displacement->value / speed) + 0.5 * motion.ramp_time;
-      return {takes, takes, true};
-    }
-  }
-  return {stage.typical_time.value_or(0), stage.limit, false, stage.typical_time.has_value()};
-}
 
 void check_one(const std::string& file, const Scene& scene, const Options& options, const Registry& registry) {
   const SceneDescription& description = *scene.description;
@@ -99,38 +78,37 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
     if (engine->phase() == Phase::removal) std::cout << std::exchange(before, ", ") << name;
   std::cout << "\n\nbodies: " << bodies << ", contacts of pairs at the start: " << kernel.state().pairs.touching_count()
             << '\n';
-  std::map<std::string, std::size_t> coming;  // by stage
-  std::size_t all_bodies = bodies;
-  for (const auto& [name, group] : description.bodies) {
-    if (group.stage.empty()) continue;
-    const std::size_t count = body_count(description, name, components.body_kinds.at(name));
-    all_bodies += count, coming[group.stage] += count;
+  const TimeStepDescription& wish = description.time_step;
+  const double safe = wish.safety * kernel.critical_time_step();
+  const bool cloud = kernel.state().pairs.touching_count() * 2 < bodies;
+  const double dt =
+      cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_fraction * safe) : kernel.world().dt();
+  const std::vector<ExpectedStage> stages = expected_stages(scene, components, bodies, dt);
+  auto most_bodies = static_cast<double>(bodies);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    most_bodies = std::max(most_bodies, stages[i].bodies);
+    if (stages[i].arriving > 0)
+      std::cout << "  " << stages[i].arriving << " more in the stage " << description.stages[i].name << '\n';
   }
-  for (const StageDescription& stage : description.stages)
-    if (coming.contains(stage.name))
-      std::cout << "  " << coming[stage.name] << " more in the stage " << stage.name << '\n';
+  for (const ExpectedStream& stream : expected_streams(description, components)) {
+    std::cout << "  stream " << stream.name << " from the stage " << stream.stage << ": " << stream.rate << " 1/s";
+    if (std::isfinite(stream.limit)) std::cout << ", " << stream.limit << " in all";
+    std::cout << '\n';
+  }
   for (const auto& [name, clump] : clumps_of(components))
     std::cout << "clumps " << name << ": "
               << body_count(description, name, components.body_kinds.at(name)) / clump.spheres << " of "
               << clump.spheres << " spheres each; errors: mass " << std::setprecision(2) << clump.errors.mass
               << ", centre " << clump.errors.centre << " of the enclosing radius, inertia " << clump.errors.inertia
               << std::setprecision(6) << '\n';
-  const TimeStepDescription& wish = description.time_step;
-  const double safe = wish.safety * kernel.critical_time_step();
   std::cout << "time step: " << kernel.world().dt() << " s, critical " << kernel.critical_time_step()
             << " s at the start; ";
   if (!wish.value && kernel.world().dt() < safe)
     std::cout << wish.steps_per_impact << " steps per impact of two bodies; ";
   std::cout << "updated as contacts change\n";
   std::cout << "memory: " << std::lround(1e-6 * static_cast<double>(kernel.state().bytes())) + 1 << " MB now, about "
-            << std::lround(1e-6 * 700.0 * static_cast<double>(all_bodies)) + 1 << " MB when dense\n\nstages\n";
+            << std::lround(1e-6 * 700.0 * most_bodies) + 1 << " MB when dense\n\nstages\n";
 
-  const bool cloud = kernel.state().pairs.touching_count() * 2 < bodies;
-  const double dt =
-      cloud && !wish.value ? std::min(kernel.world().dt(), dense_step_fraction * safe) : kernel.world().dt();
-  double least = 0, most = 0;  // s times bodies
-  std::size_t present = bodies;
-  std::vector<StageTime> times;
   through_stages(description, scene.stages, [&](const SceneDescription& now, std::optional<std::size_t> i) {
     if (!i) return true;
     try {
@@ -139,29 +117,29 @@ void check_one(const std::string& file, const Scene& scene, const Options& optio
       error.begun(*i + 1);
       throw;
     }
-    if (times.size() == *i) times.push_back(stage_time(description.stages[*i], now));
     return true;
   });
-  for (std::size_t i = 0; i < scene.stages.size(); ++i) {
-    const StageDescription& stage = description.stages[i];
-    const StageTime& time = times[i];
-    present += coming[stage.name];
-    least += time.least * static_cast<double>(present), most += time.most * static_cast<double>(present);
-    const double shown = time.known || time.usual ? time.least : time.most;
-    std::cout << "  " << std::setw(16) << stage.name
-              << (time.known   ? ""
-                  : time.usual ? "usually "
-                               : "at most ")
-              << shown << " s, " << std::llround(shown / dt) << " steps";
-    if (!time.known)
-      std::cout << " (ends by its condition" << (time.usual ? fmt::format(", {:g} s at most", time.most) : "") << ')';
+  double least = 0, most = 0;  // s times bodies
+  bool all_known = true;
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    const ExpectedStage& stage = stages[i];
+    const bool estimated = stage.known || stage.usual;
+    least += stage.least_body_time, most += stage.most_body_time, all_known &= estimated;
+    std::cout << "  " << std::setw(16) << description.stages[i].name
+              << (stage.known   ? ""
+                  : stage.usual ? "usually "
+                                : "at most ")
+              << stage.shown() << " s, " << std::llround(stage.shown() / dt) << " steps";
+    if (!stage.known)
+      std::cout << " (ends by its condition" << (stage.usual ? fmt::format(", {:g} s at most", stage.most) : "") << ')';
     std::cout << '\n';
   }
   const double per_second = planning_speed * std::min(threads, std::max(1u, std::thread::hardware_concurrency()));
   const auto cost = [&](double body_seconds) { return body_seconds / dt / per_second; };
   std::cout << "\nestimated time on " << threads << (threads == 1 ? " thread" : " threads") << " at "
             << 1e-6 * per_second << " M particle-steps/s: " << std::fixed << std::setprecision(2) << cost(least) / 3600
-            << " h (" << duration_text(cost(least)) << ')';
+            << " h (" << duration_text(cost(least)) << ')'
+            << (all_known ? "" : " at least (the end of a stage without typical_time is unknown)");
   if (most > least)
     std::cout << ", at most " << cost(most) / 3600 << " h (" << duration_text(cost(most))
               << ") if stages run to their limits";

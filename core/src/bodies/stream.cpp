@@ -56,6 +56,15 @@ Region bounds_of(const DiscRegion& region) {
 }
 Region bounds_of(const BoxRegion& region) { return {region.low, region.high}; }
 
+/// Mean mass of the bodies of a stream [kg].
+double mean_mass(const StreamSource& source, const GroupBuilder& builder) {
+  Random random(0);
+  double mean = 0;
+  for (const double diameter : draw_diameters(source.sizes, batch, random, builder.shape_diameter()))
+    mean += builder.mass(0.5 * diameter) / batch;
+  return mean;
+}
+
 }  // namespace
 
 Stream::Stream(const StreamSource& source, const GroupBuilder& builder, std::uint64_t seed)
@@ -119,13 +128,14 @@ void Stream::draw() {
 
 void Stream::serialize(Archive& archive) { archive(random_, begun_, diameters_, entered_, mass_, waiting_, next_); }
 
+double expected_rate(const StreamSource& source, const GroupBuilder& builder) {
+  return source.number_rate ? *source.number_rate : *source.mass_rate / mean_mass(source, builder);
+}
+
 std::size_t expected_count(const StreamSource& source, const GroupBuilder& builder) {
   double count = std::numeric_limits<double>::infinity();
   if (source.count > 0) count = static_cast<double>(source.count);
-  Random random(0);
-  double mean = 0;
-  for (const double diameter : draw_diameters(source.sizes, batch, random, builder.shape_diameter()))
-    mean += builder.mass(0.5 * diameter) / batch;
+  const double mean = mean_mass(source, builder);
   if (source.mass) count = std::min(count, *source.mass / mean);
   if (source.time && source.number_rate) count = std::min(count, *source.number_rate * *source.time);
   if (source.time && source.mass_rate) count = std::min(count, *source.mass_rate * *source.time / mean);

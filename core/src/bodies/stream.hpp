@@ -64,6 +64,9 @@ class Stream {
   double next_ = 0;  // s, time of the next attempt at the earliest
 };
 
+/// Rate of a stream [1/s]; of one by mass that of its mean body.
+double expected_rate(const StreamSource& source, const GroupBuilder& builder);
+
 /// Number of bodies of a stream by its limits; 0 if it has none.
 std::size_t expected_count(const StreamSource& source, const GroupBuilder& builder);
 
