@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "support/packing.hpp"
+#include "support/stl_file.hpp"
 
 namespace grit::test::critical_step_tests {
 namespace {
@@ -57,6 +61,55 @@ TEST(CriticalStep, FollowsContactsBetweenSearches) {
   EXPECT_EQ(t.kernel().state().lists.rebuilds(), searches) << "without a search";
   t.step(25);
   EXPECT_DOUBLE_EQ(critical(), alone);
+}
+
+/// A funnel of this many triangles, whose slope is 45° at its edges; its tip is at 0.
+std::vector<Vec3> funnel(int facets) {
+  const auto rim = [&](int i) {
+    const double angle = 2 * std::numbers::pi * i / facets;
+    return Vec3(0.05 * std::cos(angle), 0.05 * std::sin(angle), 0.05);
+  };
+  std::vector<Vec3> corners;
+  for (int i = 0; i < facets; ++i)
+    for (const Vec3& corner : {Vec3(Vec3::Zero()), rim(i), rim(i + 1)}) corners.push_back(corner);
+  return corners;
+}
+
+TEST(CriticalStep, CountsFacetsThatAreHitAtOnce) {
+  constexpr int facets = 16;
+  constexpr double ball = 0.01, modulus = 1e7, g = 9.81;
+  const std::vector<Vec3> corners = funnel(facets);
+  const StlFile file(stl_text(corners));
+  Description d =
+      description("linear-frictional",
+                  {{"density", 2600}, {"contact_modulus", modulus}, {"friction_angle", "20 deg"}, {"restitution", 0.5}},
+                  {{{0, 0, 0.02}, ball}});
+  d["walls"]["funnel"] = {
+      {"type", "mesh"}, {"path", file.path()}, {"scale", "1 m"}, {"open", true}, {"material", "grain"}};
+  d["engines"] = {{"gravity", {{"type", "gravity"}, {"acceleration", {0, 0, -g}}}},
+                  {"damping", {{"type", "local-damping"}, {"coefficient", 0.3}}}};
+  Trial t(d);
+  const double alone = t.world().dt();
+  while (t.world().contacts().empty()) t.step();
+  // One impact on all springs, K = 16 E R n_z², takes seven steps as those of two bodies do, K = 2 E R.
+  const double n_z = corners[1].cross(corners[2]).normalized().z();
+  EXPECT_NEAR(t.world().dt() / alone, std::sqrt(2 / (facets * n_z * n_z)), 1e-6);
+  while (t.world().time() < 0.5) t.step();  // within the energy guard
+  EXPECT_EQ(t.world().contacts().size(), std::size_t{facets});
+  EXPECT_LT(t.velocity(0).norm(), 1e-6);
+}
+
+TEST(CriticalStep, IsNotShorterInAValleyOfTwoFacets) {
+  // A valley of two facets is not stiffer than a body of the same size.
+  const std::vector<Vec3> corners{{0, -1, 0}, {0, 1, 0}, {-1, -1, 0.2}, {0, 1, 0}, {0, -1, 0}, {1, 1, 0.2}};
+  const StlFile file(stl_text(corners));
+  Description d = description("linear-frictional", {{"density", 2600}, {"contact_modulus", 1e7}, {"restitution", 0.5}},
+                              {{{0, 0, 0.0104}, 0.01}});
+  Description with = d;
+  with["walls"]["valley"] = {
+      {"type", "mesh"}, {"path", file.path()}, {"scale", "1 m"}, {"open", true}, {"material", "grain"}};
+  const Trial valley(with), free(d);
+  EXPECT_EQ(valley.world().dt(), free.world().dt());
 }
 
 }  // namespace

@@ -146,6 +146,42 @@ class Dashpots {
   Vec3 both_ = Vec3::Zero();
 };
 
+PairSize size_at_wall(const Bodies& bodies, std::size_t i, double overlap) {
+  PairSize size = size_of(bodies, i, i, overlap);
+  size.inverse_mass_b = 0, size.wall = true;
+  return size;
+}
+
+/// Calls `use` with the contacts of a body of the chunk with facets of one mesh, if its radius were larger by `ahead`
+/// [m] and there were more than one.
+template <class Use>
+void each_group_of_facets(std::size_t chunk, const CriticalStep::Instant& at, double ahead, Use use) {
+  std::vector<SurfaceContact> found;
+  for (std::size_t w = 0; w < at.surfaces.size(); ++w) {
+    const WallSurface& wall = at.surfaces[w];
+    if (!wall.geometry->triangle_of(0)) continue;
+    found.clear();
+    at.walls.each_near(chunk, at.bodies, wall, w, ahead, [&](const SurfaceContact& one) { found.push_back(one); });
+    for (std::size_t begin = 0, end = 0; begin < found.size(); begin = end) {
+      while (end < found.size() && found[end].body == found[begin].body) ++end;
+      if (end - begin > 1) use(std::span<const SurfaceContact>(found).subspan(begin, end - begin), wall);
+    }
+  }
+}
+
+/// (π / duration)² of the impact of a body on facets that it hits at once [1/s²]; at most that of their springs along
+/// one direction.
+double impact_on(std::span<const SurfaceContact> facets, const WallSurface& wall, const CriticalStep::Instant& at) {
+  Mat3 springs = Mat3::Zero();
+  for (const SurfaceContact& contact : facets) {
+    const std::uint32_t i = contact.body;
+    const double stiffness =
+        at.law.stiffness(size_at_wall(at.bodies, i, 0), at.bodies.material[i], wall.material).normal;
+    springs += stiffness * mobility(at.bodies, i, contact.normal).along * contact.normal * contact.normal.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(springs, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
 }  // namespace
 
 Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law) {
@@ -228,17 +264,26 @@ void CriticalStep::ask(std::size_t chunk, const Instant& at) {
     own.near.push_back(static_cast<std::uint32_t>(c));
   });
   const double near = at.near + at.skins.reach();
-  at.walls.each_near(chunk, bodies, at.surfaces, near, [&](const SurfaceContact& contact, const WallSurface& wall) {
+  const auto ask_wall = [&](const SurfaceContact& contact, const WallSurface& wall, double overlap) {
     const std::uint32_t a = contact.body;
-    PairSize size = size_of(bodies, a, a, std::max(contact.overlap - near, 0.0));
-    size.inverse_mass_b = 0, size.wall = true;
-    const Stiffness k = at.law.stiffness(size, bodies.material[a], wall.material);
+    const Stiffness k = at.law.stiffness(size_at_wall(bodies, a, overlap), bodies.material[a], wall.material);
     springs[a - first] += demand(k, bodies, a, contact.normal);
     if (bodies.clumps.clump_of(a) != no_clump)
       clump_dashpots[a - first] += dashpots(k, mobility(bodies, a, contact.normal), {}, bodies.velocity[a].w);
     else damped[a - first].add(rates(k, bodies.velocity[a].w), contact.normal, Dashpots::square(contact.normal));
+  };
+  at.walls.each_near(chunk, bodies, at.surfaces, near, [&](const SurfaceContact& contact, const WallSurface& wall) {
+    ask_wall(contact, wall, std::max(contact.overlap - near, 0.0));
   });
   own.demand = {};
+  const double ahead = at.ahead + at.skins.reach();
+  each_group_of_facets(chunk, at, ahead, [&](std::span<const SurfaceContact> facets, const WallSurface& wall) {
+    const double impact = impact_on(facets, wall, at);
+    if (impact <= demand_alone(bodies, facets.front().body, at.law, at.overlap).impact) return;
+    own.demand.impact = std::max(own.demand.impact, impact);
+    for (const SurfaceContact& contact : facets)
+      if (contact.overlap <= ahead - near) ask_wall(contact, wall, 0);
+  });
   for (std::size_t i = first; i < last; ++i) {
     const Demand alone = demand_alone(bodies, i, at.law, at.overlap);
     const double of_one = 0.5 * alone.spring;

@@ -23,6 +23,9 @@ Demand demand_without_contacts(const Bodies& bodies, const ContactLaw& law);
 /// Contacts form and open where bodies move. A chunk is evaluated again, independently of others, when its bodies have
 /// moved far enough.
 ///
+/// Contacts with several facets of a mesh may begin in one step, as in a ring of facets. If they stop a body sooner
+/// than one like itself would, all within `ahead` count, and their impact limits the step.
+///
 /// The contacts of a clump have arms. The demand of a spring on it is bounded by those of its components along and
 /// across the normal, each with the smallest effective mass there. Its dashpots are summed regardless of their
 /// directions.
@@ -37,6 +40,7 @@ class CriticalStep {
     const ImageShift* shifts;
     const Skins& skins;
     double near;     ///< m
+    double ahead;    ///< distance of facets that bodies may reach before the next evaluation [m]
     double overlap;  ///< minimum overlap with a body of the same size, over its radius
   };
   /// Evaluates all chunks.

@@ -12,8 +12,9 @@ namespace grit {
 /// Upper bounds for the critical time step: Q of springs [1/s²] and D of dashpots [1/s].
 struct Demand {
   double spring = 0, dashpot = 0;
-  double impact =
-      0;  ///< (π / duration)² of the shortest impact of two isolated bodies [1/s²]; 0 if they separate softly
+  /// (π / duration)² of the shortest impact of two isolated bodies, or of one on facets of a mesh [1/s²]; 0 if they
+  /// separate softly.
+  double impact = 0;
 
   /// Critical time step of the leap-frog scheme, whose dashpots use the velocities of half a step ago [s]: the solution
   /// of 2 dt D + dt² Q = 4. Infinite without contacts.

@@ -43,6 +43,7 @@ CriticalStep::Instant TimeStepControl::near_contacts(const State& state) const {
           .shifts = state.cell.images(),
           .skins = state.lists.skins(),
           .near = contact_distance * state.statistics.mean_diameter,
+          .ahead = 2 * renew_distance * state.statistics.mean_diameter,  // of a body and a wall
           .overlap = stiffening_.expected_overlap()};
 }
 
