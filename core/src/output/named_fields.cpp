@@ -39,9 +39,9 @@ struct FieldNames {
   }
 };
 
-class Names {
+class ProbeFields {
  public:
-  Names(const SceneDescription& scene, const World& world) : scene_(scene), world_(world) {}
+  ProbeFields(const SceneDescription& scene, const World& world) : scene_(scene), world_(world) {}
 
   /// The probe that the name begins with; null if there is none.
   const ProbeDescription* probe_of(const std::string& name) const {
@@ -98,7 +98,7 @@ std::string absence(const SceneDescription& scene, const std::string& name, cons
 }  // namespace
 
 void check_fields(const Document& document, const SceneDescription& scene, const World& world) {
-  const Names names(scene, world);
+  const ProbeFields names(scene, world);
   std::vector<Problem> problems;
   if (const auto& picture = scene.output.picture; picture && names_a_field(picture->color)) {
     const std::string& color = picture->color;
